@@ -1,0 +1,58 @@
+// What the control thread tells the vision thread. The answers come back as PanelResult (panel_vision.hpp).
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "shared/messages/joint_io.hpp"
+#include "shared/messages/time.hpp"
+
+namespace lf {
+
+// The arm's joints at a SYNC, decoded from the drives' answers.
+struct JointSample {
+  Time t;
+  std::array<double, arm_joint_count> q_rad{};
+};
+
+// Why an exposure was asked for.
+enum class ExposureKind : std::uint8_t {
+  laser_on,    // a stripe to be measured
+  background,  // the same scene without the laser: serves the stripes around it
+  still,       // lamps on, laser off: markers are looked for in it
+};
+
+// One order to the scan pipeline, in the order of their times.
+struct ScanCommand {
+  enum class Kind : std::uint8_t {
+    joint_sample,   // `joints`
+    exposure,       // `exposure_start`, `exposure_kind`: an image with this start is coming
+    begin_sweep,    // empties the cloud; `sweep` names what follows
+    end_sweep,      // no stripe after this one belongs to `sweep`
+    analyse,        // fit the plane to the cloud and hand plane, cloud and still image on; `sweep` comes back as PanelRequest::id
+    drop_exposure,  // `exposure_start`: laser or lamps were not what was asked during it; the image is refused and counted
+  };
+  Kind kind = Kind::joint_sample;
+  JointSample joints;
+  Time exposure_start;
+  ExposureKind exposure_kind = ExposureKind::laser_on;
+  std::uint32_t sweep = 0;
+};
+
+// Counters of the vision side, never reset.
+struct ScanStats {
+  std::uint32_t images = 0;             // measured: a stripe, a background or a still was taken from them
+  std::uint32_t images_unexpected = 0;  // no exposure was ordered at their time
+  std::uint32_t images_refused = 0;     // malformed, stale, or dropped by order
+  std::uint32_t images_missing = 0;     // exposures whose image did not come before the sweep's end
+  std::uint32_t peaks = 0;
+  std::uint32_t peaks_weak = 0;
+  std::uint32_t peaks_saturated = 0;
+  std::uint32_t peaks_ambiguous = 0;
+  std::uint32_t points = 0;
+  std::uint32_t points_overflowed = 0;  // the cloud was full
+  std::uint32_t points_no_joints = 0;   // no joint samples around mid-exposure
+  std::uint32_t commands_refused = 0;   // out of order, or not a number
+};
+
+}  // namespace lf
