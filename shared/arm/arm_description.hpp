@@ -1,0 +1,66 @@
+// The arm as its URDF tells it: links, joints, actuators, and the real joints' faults. Hosted side only; the core has constants made of it.
+//
+// The URDF is plain and opens in any viewer; what URDF has no words for stands in <lanternfish:...> elements inside <joint>.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "shared/geometry/pose.hpp"
+#include "shared/messages/joint_io.hpp"
+#include "shared/scene/scene.hpp"
+
+namespace lf {
+
+struct ArmLink {
+  std::string name;
+  double mass_kg = 0;       // in water the arm is trimmed: weight less buoyancy is `wet_weight_n`
+  double wet_weight_n = 0;  // acts at the centre of mass, downward
+  Pose link_from_com = Pose::Identity();
+  Mat3 inertia_kg_m2 = Mat3::Identity();  // about the centre of mass, in its axes
+  std::vector<scene::Shape> shapes;
+};
+
+// A screw or gear between motor counts and the joint's angle.
+// Screw: its length closes a triangle, length^2 = pivot_a^2 + pivot_b^2 - 2 pivot_a pivot_b cos(q + offset); counts = counts_per_m (length - length(q = 0)).
+// Gear (pivot lengths 0): counts = counts_per_rad q.
+struct ArmActuator {
+  double pivot_a_m = 0;
+  double pivot_b_m = 0;
+  double offset_rad = 0;
+  double counts_per_m = 0;
+  double counts_per_rad = 0;
+};
+
+struct ArmJoint {
+  std::string name;
+  Pose parent_from_joint = Pose::Identity();
+  Vec3 axis = Vec3::UnitZ();
+  double lower_rad = 0, upper_rad = 0;
+  double effort_nm = 0;        // the drive's peak torque at the joint
+  double rated_torque_nm = 0;  // CiA 402 object 6076
+  double velocity_rad_s = 0;   // the drive's top speed
+  double acceleration_rad_s2 = 0;
+  double stiction_rad_s = 0;     // below this speed the joint does not move
+  double backlash_rad = 0;       // total play
+  double holding_torque_nm = 0;  // of the self-locking gear without power
+  ArmActuator actuator;
+};
+
+// Bodies in the order of scene::BodyId: base (vehicle), slew, upper_arm, forearm, wrist, finger_a, finger_b.
+// Joint i moves body i + 1; finger_b mimics finger_a (opening positive on both).
+struct ArmDescription {
+  static constexpr std::size_t link_count = 7;
+  std::array<ArmLink, link_count> links;
+  std::array<ArmJoint, joint_count> joints;
+  ArmJoint finger_b;                        // mimic of the jaw joint
+  Pose base_from_arm = Pose::Identity();    // fixed mount of the DH base in the base frame
+  Pose wrist_from_tool = Pose::Identity();  // the tool frame on the wrist body
+};
+
+// Reads and checks a URDF. Throws InputError with file and line: unreadable file, missing joint or link, limits that are not numbers or
+// out of order, non-positive mass or effort, an inertia that is not positive definite, a chain that is not this arm's.
+ArmDescription load_arm_urdf(const std::string& path);
+
+}  // namespace lf
