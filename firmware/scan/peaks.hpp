@@ -1,0 +1,105 @@
+// Sub-pixel peaks of a laser stripe, at most one per image column (or row).
+//
+// The stripe lies on a sloped, scattering background, so the brightest pixel and the centre of mass are biased toward the background's bright side.
+// A zero-mean second-derivative filter does not see the background's offset and slope (Forest, Salvi, Cabruja, Pous, ICPR 2004, with the
+// second derivative in place of the first: on a backscatter skirt the zero-mean Laplacian-of-Gaussian of sigma 2.5-3 px erred a third as much).
+// The filter here is the cubic B-spline's second difference, sigma 2.83 px, 19 taps: -(1 - z^5)^4 / (1 - z)^2, so four shifted rows and two
+// running sums in place of 21 multiplications; its sums wrap around in 16 bits, and the result, below 255 * 68, is exact all the same.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <type_traits>
+
+#include "shared/messages/image.hpp"
+
+namespace lf::scan {
+
+struct Peak {
+  float u_px = 0;
+  float v_px = 0;            // pixel centres at integers; sub-pixel along the scanned axis
+  float amplitude = 0;       // grey levels of the brightest pixel over the local background
+  float ratio = 0;           // second peak's response over this one's, 0..1; near 1 the choice is unsure
+  std::uint8_t clipped = 0;  // pixels of the stripe at full scale
+};
+
+// Columns (or rows) seen by a detector, by what became of them. Never reset.
+struct PeakCounters {
+  std::uint64_t found = 0;
+  std::uint64_t weak = 0;
+  std::uint64_t saturated = 0;
+  std::uint64_t ambiguous = 0;
+};
+
+// Grey pixels, row-major, not owned; `stride` in pixels.
+template <class Pixel>
+struct PixelView {
+  const Pixel* data = nullptr;
+  std::int32_t width = 0;
+  std::int32_t height = 0;
+  std::int32_t stride = 0;
+
+  PixelView() = default;
+  PixelView(const Pixel* first, std::int32_t w, std::int32_t h, std::int32_t pixels_a_row)
+      : data(first), width(w), height(h), stride(pixels_a_row) {}
+  PixelView(const ImageView& image)
+      : data(image.data), width(image.width), height(image.height), stride(image.stride) {}  // NOLINT: same thing
+  bool valid() const { return data != nullptr && width > 0 && height > 0 && stride >= width; }
+};
+
+enum class PeakAxis : std::uint8_t { column, row };
+
+struct PeakConfig {
+  PeakAxis axis = PeakAxis::column;  // along which the one peak is looked for
+  // Response over its positive lobe's sum, grey levels: 2.6 sigma of the response to noise of 1 grey level in both images is 2, to 3 levels 6.
+  // A column of mere noise that passes fails at `max_ratio`, since noise has many peaks alike.
+  float min_contrast = 6.0f;
+  float max_ratio = 0.7f;         // of the second peak to the first
+  std::int32_t max_clipped = 12;  // px at full scale; a wider plateau no longer tells its centre to 0.2 px
+  std::int32_t full_scale = 255;  // grey level at which the sensor clips
+};
+
+// Pixel: std::uint8_t or std::uint16_t. MaxLength: pixels along the scanned axis. All scratch memory is inside the object.
+template <class Pixel, std::int32_t MaxLength>
+class BasicPeakDetector {
+ public:
+  using Config = PeakConfig;
+  static constexpr std::int32_t max_length = MaxLength;
+  static constexpr std::int32_t min_length = 25;  // the filter's 19 taps and a peak's neighbours
+
+  explicit BasicPeakDetector(const Config& config = {}) : config_(config) {}
+
+  // Finds at most one peak in each column (row) of `image` less `background`, and writes them to `peaks` in the order of columns (rows).
+  // `background`: the same scene with the laser off, the same size; an invalid (empty) view leaves the differencing out.
+  // Returns the number written; columns without a good peak are counted in `counters()`. Writes nothing when the image is not valid, of
+  // another size than the background, shorter than `min_length`, longer than `max_length`, or when `peaks` has less than a place a column.
+  // O(width * height), no allocation.
+  std::size_t detect(const PixelView<Pixel>& image, const PixelView<Pixel>& background, std::span<Peak> peaks);
+
+  const PeakCounters& counters() const { return counters_; }
+  const Config& config() const { return config_; }
+
+ private:
+  // 64 columns at a time: their rings, sums and maxima stay in the first-level cache.
+  static constexpr std::int32_t strip = 64;
+  using Sum = std::conditional_t<sizeof(Pixel) == 1, std::uint16_t, std::uint32_t>;
+  using Response = std::make_signed_t<Sum>;
+
+  struct Best {
+    alignas(64) std::array<Response, strip> response, second, row;
+  };
+
+  Config config_;
+  PeakCounters counters_;
+  alignas(64) std::array<std::array<Pixel, strip>, MaxLength> on_, off_;
+  alignas(64) std::array<std::array<Response, strip>, MaxLength> response_;
+};
+
+// The core's, for 640x480 in both directions, and the desktop's.
+using PeakDetector = BasicPeakDetector<std::uint8_t, 640>;
+using LargePeakDetector = BasicPeakDetector<std::uint8_t, 4096>;
+using LargePeakDetector16 = BasicPeakDetector<std::uint16_t, 4096>;
+
+}  // namespace lf::scan
