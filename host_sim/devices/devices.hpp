@@ -1,0 +1,89 @@
+// The CAN bus with everything on it but the master: five servo drives and the output node, in simulated time.
+//
+// There is no side door: the master reaches the nodes with frames, the world with joint readings, and nothing else does.
+// Order of one millisecond of a lockstep platform, at time t (a multiple of 1 ms):
+//   world.step(devices.drives())      -> readings at t
+//   devices.step(t, readings)            the bus runs from t - 1 ms to t, then every drive closes its loop
+//   while (devices.next_to_master(f, at)) controller.on_can(0, f, at);
+//   every 4th: controller.tick(t) -> devices.master_sends(frame, t) for each
+// A frame sent at t is on the bus from t on; a SYNC sent at t arrives about 50 us later, which is when outputs switch, positions are latched and the
+// camera's exposure starts. Answers come about 0.2 to 1 ms after the SYNC, so they reach the master before its next tick.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "host_sim/devices/devices_config.hpp"
+#include "shared/messages/can_frame.hpp"
+#include "shared/messages/joint_io.hpp"
+#include "shared/messages/time.hpp"
+
+namespace lf::devices {
+
+// One exposure that the output node triggered.
+struct Exposure {
+  Time start;  // the SYNC's last bit
+  Duration duration;
+  std::uint8_t counter = 0;  // the trigger counter that asked for it
+  bool laser = false;        // outputs as they are from `start` on
+  bool lamps = false;
+};
+
+struct BusStats {
+  std::uint64_t frames = 0;      // delivered
+  std::uint64_t bits = 0;        // of all, stuffing and interframe space included
+  std::uint64_t errors = 0;      // error frames
+  std::uint64_t lost = 0;        // frames dropped by a fault or by a controller off the bus
+  double load_percent = 0;       // mean since the first frame
+  double peak_load_percent = 0;  // worst window of 100 ms
+};
+
+// A frame as it passed on the bus.
+struct BusRecord {
+  CanFrame frame;
+  Time delivered;
+  std::uint8_t sender = 0;  // node number; can_map::master_node is the master
+};
+
+class Devices {
+ public:
+  // Power comes on at `start`: boot-up messages follow `boot_time` later. Throws InputError if a drive's figures are impossible
+  // (no stroke, no torque, a screw whose triangle does not close, a node number twice) or a fault names an unknown node.
+  explicit Devices(const DevicesConfig& config, Time start = {});
+  ~Devices();
+  Devices(Devices&&) noexcept;
+  Devices& operator=(Devices&&) noexcept;
+
+  // Queues a frame in the master's controller at `t`, not before the last step's time. False when its 64 places are full or it is off the bus.
+  bool master_sends(const CanFrame& frame, Time t);
+
+  // Runs the bus up to `t`, then the drives on `readings`, which are those at `t`. `t` grows by 1 ms a call.
+  void step(Time t, const JointReadings& readings);
+
+  // What the drives do to the joints until the next step.
+  const JointDrives& drives() const;
+
+  // Frames that reached the master up to the last step, in order, each once. Error frames of its own controller come with CanFrame::error_flag and
+  // SocketCAN's classes: 0x04 controller state (data[1] 0x20 error passive), 0x40 bus off, 0x100 restarted.
+  bool next_to_master(CanFrame& frame, Time& delivered);
+
+  bool laser_on() const;  // after the interlock
+  bool lamps_on() const;
+  std::optional<Exposure> take_exposure();  // oldest first, each once
+
+  // Inputs of the output node beside those that faults open. Both chains are closed (healthy) at first.
+  void set_estop_closed(bool closed);
+  void set_interlock_closed(bool closed);
+
+  BusStats bus() const;
+  // Called for every frame delivered on the bus, in the order of time, whoever sent it.
+  void set_tap(std::function<void(const BusRecord&)> tap);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace lf::devices

@@ -1,0 +1,76 @@
+// What the simulated CAN nodes are made of, and what goes wrong with them and when.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "shared/arm/arm_description.hpp"
+#include "shared/can/can_map.hpp"
+#include "shared/messages/joint_io.hpp"
+#include "shared/messages/time.hpp"
+
+namespace lf::devices {
+
+// One servo drive and its motor. `drive_config` fills it from the arm's description.
+struct DriveConfig {
+  std::uint8_t node = 1;
+  std::string name = "LF servo drive";  // object 1008
+  ArmActuator actuator;
+  double lower_rad = 0, upper_rad = 0;  // mechanical stroke: defaults of 607D and the limit of a homing run
+  double peak_torque_nm = 0;            // object 6072 at 6076's scale, as a default
+  double rated_torque_nm = 0;           // object 6076, in mNm
+  double max_velocity_rad_s = 0;
+  double max_acceleration_rad_s2 = 0;
+  double stiction_rad_s = 0;          // the joint stands still below it; the drive pulses instead of creeping
+  double encoder_offset_rad = 0;      // the encoder says motor angle + offset: an assembly error that nobody measures
+  bool absolute_encoder = true;       // else the position reads 0 at power-on until homed
+  double torque_noise_ratio = 0.004;  // 1 sigma of the torque reading over the rated torque: 12-bit current sensing
+  double water_celsius = 12;
+  double rise_at_rated_celsius = 30;  // of the winding in the long run at rated torque
+  double trip_celsius = 85;
+};
+
+// From the URDF: the only source of the arm's geometry and of its joints' figures.
+DriveConfig drive_config(const ArmJoint& joint, std::uint8_t node);
+
+struct IoConfig {
+  std::uint8_t node = can_map::io_node;
+};
+
+enum class DeviceFaultKind : std::uint8_t {
+  overcurrent,     // EMCY 2310: as long as it lasts the drive cannot be reset
+  hot,             // winding at 95 degrees: EMCY 4210
+  following,       // the motor is jammed: velocity 0 whatever the loop asks; EMCY 8611 when the command moves on
+  stuck_encoder,   // position reading frozen while the joint moves
+  silent,          // the node's cable is cut: nothing in, nothing out. The drive's own heartbeat consumer notices too
+  reboot,          // power dip: comes back with a boot-up message and its stored values
+  estop,           // the emergency-stop chain is open
+  interlock_open,  // the laser's interlock is open
+  drop_frames,     // frames with the identifier `can_id` are lost on their way, to every receiver
+  error_frames,    // one frame in two is destroyed by an error frame and sent again
+  bus_off,         // the node's CAN controller goes off the bus; afterwards EMCY 8140. `node` 0x7F is the master's
+};
+
+struct DeviceFault {
+  double at_s = 0;
+  DeviceFaultKind kind = DeviceFaultKind::silent;
+  std::uint8_t node = 0;     // where the kind is a node's
+  double duration_s = 0;     // 0 lasts for the rest of the run; `reboot` takes the boot time alone
+  std::uint32_t can_id = 0;  // drop_frames only
+};
+
+struct DevicesConfig {
+  std::array<DriveConfig, joint_count> drives;
+  IoConfig io;
+  std::uint64_t seed = 1;
+  Duration boot_time = Duration::from_ms(150);  // from power or NMT reset node to the boot-up message
+  Duration reaction = Duration::from_us(30);    // from a frame's last bit to the node's answer queued
+  std::vector<DeviceFault> faults;
+};
+
+// The five drives of `arm` at the nodes of the CAN map. Joint i reads `joint_offsets_rad[i]` too much.
+DevicesConfig devices_config(const ArmDescription& arm, const std::array<double, joint_count>& joint_offsets_rad, std::uint64_t seed);
+
+}  // namespace lf::devices
