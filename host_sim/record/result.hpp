@@ -1,0 +1,123 @@
+// What a run came to: result.json, as a struct.
+//
+// A number that is unknown is NaN here and null in the file.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lf::record {
+
+inline constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+struct PhaseRecord {
+  std::string name;
+  double start_s = unknown;
+  double end_s = unknown;
+  std::string outcome;  // "done", "retried", "failed", "aborted": the mission's word
+};
+
+struct TaskRecord {
+  std::string task;              // "turn_valve" or "press_button"
+  std::string button;            // press_button: "left", "centre" or "right"
+  int presses = 0;               // press_button: clicks counted by the button itself
+  double target_deg = unknown;   // turn_valve
+  double reached_deg = unknown;  // turn_valve: the true angle
+  bool done = false;
+};
+
+// Against the simulator's truth, scored outside the core.
+struct ErrorRecord {
+  double plane_normal_deg = unknown;
+  double plane_offset_mm = unknown;
+  double valve_base_mm = unknown;
+  double handle_angle_deg = unknown;
+  double cloud_rms_mm = unknown;        // to the fitted plane
+  double cloud_truth_p95_mm = unknown;  // to the true surface
+  double peak_rms_px = unknown;
+  double peak_recall = unknown;  // 0..1
+};
+
+struct DockingRecord {
+  int attempts = 0;
+  double offset_mm = unknown;
+  double angle_deg = unknown;
+  double peak_force_n = unknown;
+};
+
+struct ContactRecord {
+  double peak_force_n = unknown;
+  std::uint64_t unintended_contacts = 0;
+};
+
+// Microseconds of thread CPU time.
+struct TimesRecord {
+  double p50 = unknown, p99 = unknown, p999 = unknown, max = unknown;
+};
+
+struct CoreRecord {
+  std::optional<std::uint64_t> heap_calls;  // none: this build does not count them
+  std::uint64_t controller_bytes = 0;
+  TimesRecord tick_us;
+  TimesRecord frame_us;
+  std::map<std::string, std::uint64_t> rejected_inputs;
+};
+
+struct BusRecord {
+  double load_percent = unknown;
+  std::uint64_t frames = 0;
+  std::uint64_t errors = 0;
+};
+
+struct HostRecord {
+  std::string isa;
+  int threads = 0;
+  std::string build;
+};
+
+struct TimeRecord {
+  double simulated_s = unknown;
+  double wall_s = unknown;
+  double real_time_factor = unknown;
+};
+
+struct FailureRecord {
+  std::string phase;
+  std::string reason;
+};
+
+struct RunResult {
+  std::string scenario;
+  std::uint64_t seed = 0;
+  std::string version;
+  bool success = false;
+  std::optional<FailureRecord> failure;
+  std::vector<PhaseRecord> phases;
+  std::vector<TaskRecord> tasks;
+  ErrorRecord errors;
+  std::optional<DockingRecord> docking;  // when the vehicle swims
+  ContactRecord contact;
+  CoreRecord core;
+  BusRecord bus;
+  HostRecord host;
+  TimeRecord time;
+  std::string digest;
+};
+
+// nearest-rank percentiles of `values_us`; all unknown when there are none.
+TimesRecord times_record(std::vector<double> values_us);
+
+// JSON text, two blanks of indentation, keys in the order above, a newline at the end. Text that is not UTF-8 has its bad bytes replaced.
+std::string result_json(const RunResult& result);
+
+// The reverse, for a campaign that goes on where it stopped. Throws InputError for text that is not such a result; keys that are missing keep
+// their defaults, unknown ones are ignored.
+RunResult parse_result_json(const std::string& text, const std::string& name_for_errors);
+RunResult read_result_file(const std::filesystem::path& path);
+
+}  // namespace lf::record
