@@ -1,0 +1,22 @@
+// Everything the core is told before it starts: one plain struct, checked by the hosted side, and again by the core where safety hangs on it.
+#pragma once
+
+#include "firmware/canopen/network.hpp"
+#include "firmware/mission/mission_config.hpp"
+#include "firmware/safety/limits.hpp"
+#include "firmware/scan/peaks.hpp"
+#include "shared/calibration/calibration.hpp"
+
+namespace lf {
+
+struct ControllerConfig {
+  canopen::NetworkConfig network;
+  CameraCalibration camera;
+  LaserCalibration laser;
+  MarkerCalibration marker;
+  mission::MissionConfig mission;
+  safety::Limits limits;          // from the signed file
+  safety::Limits mission_limits;  // equal or tighter; wider is refused
+};
+
+}  // namespace lf

@@ -1,0 +1,50 @@
+// What the mission is to do, and how fast: one plain struct, filled and checked by the hosted side.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "firmware/arm/kinematics.hpp"
+#include "shared/geometry/pose.hpp"
+#include "shared/messages/static_vector.hpp"
+#include "shared/panel/panel_layout.hpp"
+
+namespace lf::mission {
+
+struct Task {
+  enum class Kind : std::uint8_t { turn_valve, press_button };
+  Kind kind = Kind::turn_valve;
+  double to_rad = 0;        // turn_valve: the handle angle to reach, shared/geometry/pose.hpp's convention
+  std::uint8_t button = 0;  // press_button: 0 left, 1 centre, 2 right
+};
+
+struct MissionConfig {
+  static constexpr std::size_t max_tasks = 16;
+  StaticVector<Task, max_tasks> tasks;
+
+  PanelLayout layout;  // as surveyed; where it stands is for the core to find
+
+  arm::JointVector park_rad{0.0, 0.60, 1.90, 0.0};  // folded, clear of the panel at every docking error
+  bool use_lamps = true;                            // during scans and stills
+  bool camera_always_on = false;                    // a frame every camera period even when nobody needs it, for the record
+
+  // The camera: every tenth SYNC is 25 Hz. Of five frames one is taken without the laser, the background of the other four.
+  std::uint32_t camera_syncs = 10;
+  std::uint32_t frames_per_background = 5;
+  // The laser plane's speed on the panel comes from the sweep's plan; joints keep this much above the real joints' stiction of 0.06 rad/s.
+  double sweep_speed_rad_s = 0.065;
+  double verify_band_m = 0.055;  // half height of the verification's sweep around the valve: the handle's half length and 7 mm
+
+  double move_speed_fraction = 0.6;    // of the joints' own speed limits, in free motion
+  double approach_distance_m = 0.080;  // pre-grasp and pre-press stand this far off along the panel's normal
+  double approach_speed_m_s = 0.040;   // straight guarded motions
+  double press_speed_m_s = 0.025;
+  double press_overtravel_m = 0.006;   // beyond the button's nominal bottom before a press counts as missed
+  double press_torque_nm = 7.0;        // rise of an arm joint's torque that says the button has bottomed: about 12 N at the cap
+  double turn_speed_rad_s = 0.35;      // of the handle; above the wrist's stiction of 0.2 rad/s
+  double valve_tolerance_rad = 0.035;  // 2 degrees: what the second look accepts without turning again
+  double tip_beyond_tool_m = 0.020;    // the closed fingers' tip beyond the tool point, along the tool axis
+  std::uint32_t tries = 3;             // of a step whose row allows a retry, per task
+};
+
+}  // namespace lf::mission

@@ -1,0 +1,63 @@
+// The mission's state machine as a table: every step, the phase it is safe or unsafe in, how long it may take, and where it leads.
+//
+// docs/mission.md holds the drawing; a test draws it again from this table and compares.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "firmware/safety/faults.hpp"
+
+namespace lf::mission {
+
+enum class Step : std::uint8_t {
+  idle,
+  boot,
+  enable,
+  home,
+  deploy,
+  scan,
+  look,
+  perceive,
+  next_task,
+  reach_valve,
+  advance,
+  grip,
+  turn,
+  let_go,
+  back_off,
+  verify_reach,
+  verify_scan,
+  verify_look,
+  verify,
+  reach_button,
+  press,
+  button_back,
+  abandon,
+  abandon_back,
+  stow,
+  done,
+  failed,
+  held,
+  stopped,
+  off,
+  count
+};
+inline constexpr std::size_t step_count = static_cast<std::size_t>(Step::count);
+
+struct StepRow {
+  Step step;
+  const char* name;
+  const char* stage;    // the part of the mission a user follows: boot, deploy, scan, perceive, turn_valve, press_buttons, stow, end
+  safety::Phase phase;  // column of the table of faults
+  double timeout_s;     // 0: none
+  Step on_done;
+  Step on_branch;  // the step's other way out; the same as on_done where it has none
+  Step on_retry;   // where it is taken again from; `count` where it is not
+};
+
+const StepRow& row(Step step);
+inline bool is_end(Step step) { return step >= Step::done; }
+
+}  // namespace lf::mission

@@ -1,0 +1,69 @@
+// What the core says of itself every tick, for the record and the operator.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "firmware/mission/steps.hpp"
+#include "firmware/safety/faults.hpp"
+#include "shared/messages/joint_io.hpp"
+#include "shared/messages/static_vector.hpp"
+#include "shared/messages/time.hpp"
+
+namespace lf {
+
+// Calls of the platform, for on_port_error().
+enum class Port : std::uint8_t { clock, can_receive, can_send, camera, panel_submit, panel_receive, telemetry, scan_ring, count };
+inline constexpr std::size_t port_count = static_cast<std::size_t>(Port::count);
+
+// A decision of the mission.
+struct Event {
+  enum class Kind : std::uint8_t {
+    step,       // `step` begins
+    fault,      // `fault` came up in `step`; `reaction` is taken
+    located,    // the panel was found: value is the handle angle in rad
+    task_done,  // value: rad reached as seen by the second look, or the button's presses
+    task_failed,
+  };
+  Kind kind = Kind::step;
+  Time t;
+  mission::Step step = mission::Step::idle;
+  safety::Fault fault = safety::Fault::count;
+  safety::Reaction reaction = safety::Reaction::count_only;
+  std::uint8_t task = 0;  // index of the task under way
+  std::int32_t code = 0;  // what the step or port says of its failure
+  double value = 0;
+};
+
+// The reasons a step gives when it fails, in Event::code.
+enum class StepFailure : std::int32_t {
+  none = 0,
+  unreachable = 1,
+  no_motion = 2,
+  early_contact = 3,
+  no_contact = 4,
+  not_gripped = 5,
+  wrong_angle = 6,
+  no_click = 7,
+  no_panel = 8,
+  no_marker = 9,
+  no_handle = 10,
+  panel_moved = 11,
+  not_homed = 12,
+  too_few_points = 13,
+};
+const char* name(StepFailure failure);
+
+struct Telemetry {
+  Time t;
+  mission::Step step = mission::Step::idle;
+  std::array<double, joint_count> target_rad{};
+  std::array<double, joint_count> actual_rad{};
+  std::array<double, joint_count> torque_nm{};
+  std::uint8_t outputs = 0;  // asked of the output node
+  std::uint32_t rejected_inputs = 0;
+  std::array<std::uint32_t, safety::fault_count> faults{};
+  StaticVector<Event, 16> events;  // of this tick
+};
+
+}  // namespace lf

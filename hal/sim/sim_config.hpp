@@ -1,0 +1,26 @@
+// The simulated platform, in one plain struct: the world, its optics, its devices, and how long its sensors take.
+#pragma once
+
+#include <cstdint>
+
+#include "hal/vision/panel_vision.hpp"
+#include "host_sim/devices/devices.hpp"
+#include "host_sim/optics/optics.hpp"
+#include "host_sim/world/world.hpp"
+#include "shared/messages/time.hpp"
+
+namespace lf::hal {
+
+struct SimConfig {
+  world::WorldConfig world;
+  optics::OpticsConfig optics;
+  devices::DevicesConfig devices;
+  vision::PanelVisionConfig vision;
+
+  // From the start of an exposure until the image can be received: exposure, readout and transfer of a 640x480 camera on Gigabit Ethernet.
+  Duration image_latency = Duration::from_ms(30);
+  // From a question to panel vision until its answer can be received. The real one takes 20 to 100 ms on a desktop.
+  Duration vision_latency = Duration::from_ms(300);
+};
+
+}  // namespace lf::hal
