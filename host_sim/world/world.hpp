@@ -1,0 +1,119 @@
+// The docked vehicle's world in Bullet: arm, gripper, panel, valve, buttons and their contacts, stepped at a fixed rate.
+//
+// Everything is computed and given in the base frame B (x toward the panel, y right, z down), which stands still while the vehicle is docked.
+// The valve is turned, and the buttons are pressed, by contact and friction only. Without noise or clocks: equal calls give equal bits.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "host_sim/world/contact_force.hpp"
+#include "shared/arm/arm_description.hpp"
+#include "shared/geometry/pose.hpp"
+#include "shared/messages/joint_io.hpp"
+#include "shared/panel/panel_layout.hpp"
+#include "shared/scene/scene.hpp"
+
+namespace lf::world {
+
+// A T-bar on a shaft. Angles as in geometry/pose.hpp: about panel z, 0 is a vertical bar.
+struct ValveConfig {
+  double start_rad = 0;
+  double friction_nm = 1.5;      // Coulomb: what it takes to move it
+  double viscous_nm_s = 0.05;    // per rad/s
+  double inertia_kg_m2 = 1e-3;   // handle, stem and the fluid they move; below 1e-4 the contact jitters (Bullet, 1 kHz)
+  double stop_min_rad = -1.832;  // -105 deg, so that +/-90 deg is clear of the stops
+  double stop_max_rad = 1.832;
+  std::vector<double> detents_rad;   // the named positions
+  double detent_nm = 0.3;            // peak torque toward a detent, on top of the friction
+  double detent_width_rad = 0.0873;  // half a detent's width: the pull is -detent_nm sin(pi x / width), gone at the edge
+};
+
+// A sprung cap: force to hold it at depth x is preload + spring x, and less by `click_drop_n` once it has clicked.
+struct ButtonConfig {
+  double preload_n = 5;
+  double spring_n_m = 2000;
+  double damping_n_s_m = 20;
+  double stroke_m = 0.005;
+  double click_depth_m = 0.0035;    // going in: pressed, and counted
+  double release_depth_m = 0.0025;  // coming out: no longer pressed
+  double click_drop_n = 3;
+  double mass_kg = 0.25;  // cap, plunger and water; below 0.2 kg a bottomed cap overtravels (Bullet, 1 kHz, 30 iterations)
+};
+
+struct WorldConfig {
+  ArmDescription arm;
+  PanelLayout layout;
+  scene::Scene scene;                       // shapes with `collides` are collided; see shared/scene/panel_scene.hpp
+  Pose base_from_panel = Pose::Identity();  // true
+  ValveConfig valve;
+  std::array<ButtonConfig, PanelLayout::button_count> buttons;
+  std::array<double, joint_count> start_rad{0, 0.60, 1.90, 0, 0.3};  // parked, jaw half open
+  Vec3 vehicle_com_m = Vec3(-0.5, 0, -0.3);                          // where the base wrench is taken, in B
+  double joint_drag_nm_s = 0.5;  // viscous, each arm joint in water, per rad/s; the jaw's fingers a tenth of it
+  double restitution = 0;        // of every contact
+  double step_s = 0.001;
+  double force_window_s = 0.020;  // contact forces are impulses over this window
+  int solver_iterations = 30;
+};
+
+struct ButtonState {
+  double depth_m = 0;
+  bool pressed = false;
+  std::uint32_t presses = 0;
+};
+
+// Two bodies that should not have met.
+struct UnintendedContact {
+  scene::BodyId a{}, b{};
+  double first_s = 0;       // since the world began
+  double peak_force_n = 0;  // over the force window
+};
+
+// Forces from contacts alone (no weight, no inertia), averaged over `force_window_s`, acting on the robot.
+struct ContactReport {
+  Wrench tool_wrench;                  // on wrist and fingers, in the tool frame, about its origin
+  Wrench base_wrench;                  // on arm and vehicle, in B, about `vehicle_com_m`
+  Vec3 handle_force_n = Vec3::Zero();  // on the handle, in B
+  double grip_force_n = 0;             // each finger's force on the handle along the jaw's closing direction, mean of both
+  double peak_force_n = 0;             // largest windowed |base_wrench.force_n| so far
+  // Intended are: finger on finger, finger on handle, finger on button. Each other pair of bodies that touches is listed once, in order of time.
+  std::vector<UnintendedContact> unintended;
+};
+
+class World {
+ public:
+  // Throws InputError when a value is not finite or out of its range, and when the arm starts outside its limits.
+  explicit World(const WorldConfig& config);
+  ~World();
+  World(World&&) noexcept;
+  World& operator=(World&&) noexcept;
+
+  // What the drives do from the next step on. The jaw's torque is that on each of the two fingers. NaN holds the joint with no torque.
+  void set_drives(const JointDrives& drives);
+  // Advances by `step_s`.
+  void step();
+
+  double time_s() const;
+  // After construction and after each step. motor_position_rad: see drive_rows.hpp for the model of the play.
+  JointReadings readings() const;
+  scene::BodyPoses base_from_body() const;
+  Pose base_from_tool() const;
+  double valve_angle_rad() const;
+  double valve_speed_rad_s() const;
+  ButtonState button(std::size_t index) const;  // left, centre, right
+  ContactReport contacts() const;
+  // Kinetic energy of the arm, joule.
+  double arm_kinetic_energy_j() const;
+  // FNV-1a over the bits of the whole state: equal worlds have equal digests.
+  std::uint64_t state_digest() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace lf::world

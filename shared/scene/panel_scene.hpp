@@ -1,0 +1,14 @@
+// Builds the scene: the robot's bodies from its URDF, the panel and what stands on it from the layout. Hosted side only.
+#pragma once
+
+#include "shared/arm/arm_description.hpp"
+#include "shared/panel/panel_layout.hpp"
+#include "shared/scene/scene.hpp"
+
+namespace lf::scene {
+
+// Frames of the bodies: arm links as in the URDF; vehicle: the base frame; panel and handle: the panel frame, the handle turned by its angle
+// about z (its bar along y at 0); buttons: the centre of the cap on the panel's plane, axes as the panel's, moving along -z when pressed.
+Scene make_scene(const ArmDescription& arm, const PanelLayout& layout);
+
+}  // namespace lf::scene
