@@ -19,7 +19,7 @@ struct ArmLink {
   double wet_weight_n = 0;  // acts at the centre of mass, downward
   Pose link_from_com = Pose::Identity();
   Mat3 inertia_kg_m2 = Mat3::Identity();  // about the centre of mass, in its axes
-  std::vector<scene::Shape> shapes;
+  std::vector<scene::Shape> shapes;       // a URDF's visuals are drawn only, its collisions collide only
 };
 
 // A screw or gear between motor counts and the joint's angle.
@@ -49,13 +49,13 @@ struct ArmJoint {
 };
 
 // Bodies in the order of scene::BodyId: base (vehicle), slew, upper_arm, forearm, wrist, finger_a, finger_b.
-// Joint i moves body i + 1; finger_b mimics finger_a (opening positive on both).
+// Joint i moves body i + 1, whose parent is body i; finger_b hangs on the wrist and mimics finger_a (opening positive on both).
+// The slew's parent_from_joint carries the mount, base_from_arm: a body's pose is the product of parent_from_joint and the turn about `axis`, nothing else.
 struct ArmDescription {
   static constexpr std::size_t link_count = 7;
   std::array<ArmLink, link_count> links;
   std::array<ArmJoint, joint_count> joints;
   ArmJoint finger_b;                        // mimic of the jaw joint
-  Pose base_from_arm = Pose::Identity();    // fixed mount of the DH base in the base frame
   Pose wrist_from_tool = Pose::Identity();  // the tool frame on the wrist body
 };
 

@@ -1,0 +1,308 @@
+#include "shared/arm/arm_description.hpp"
+
+#include <tinyxml2.h>
+
+#include <Eigen/Eigenvalues>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <string_view>
+
+#include "shared/input_error.hpp"
+
+namespace lf {
+namespace {
+
+using tinyxml2::XMLElement;
+
+constexpr std::array<const char*, ArmDescription::link_count> link_names{"base",  "slew",     "upper_arm", "forearm",
+                                                                         "wrist", "finger_a", "finger_b"};
+constexpr std::array<const char*, joint_count> joint_names{"slew", "shoulder", "elbow", "roll", "jaw"};
+
+// Elements and attributes of one URDF, with the place of what is wrong.
+class Urdf {
+ public:
+  explicit Urdf(const std::string& file) : file_(file) {
+    if (document_.LoadFile(file.c_str()) != tinyxml2::XML_SUCCESS) throw InputError(file, document_.ErrorLineNum(), load_error());
+    robot_ = document_.RootElement();
+    if (std::strcmp(robot_->Name(), "robot") != 0) fail(robot_, "expected <robot>, found <" + std::string(robot_->Name()) + ">");
+  }
+
+  [[noreturn]] void fail(const XMLElement* at, const std::string& message) const {
+    throw InputError(file_, at != nullptr ? at->GetLineNum() : 0, message);
+  }
+
+  const XMLElement* named(const char* tag, const std::string& name) const {
+    for (const XMLElement* e = robot_->FirstChildElement(tag); e != nullptr; e = e->NextSiblingElement(tag))
+      if (name == text(e, "name")) return e;
+    fail(robot_, "no <" + std::string(tag) + "> named '" + name + "'");
+  }
+
+  const XMLElement* child(const XMLElement* parent, const char* tag) const {
+    const XMLElement* e = parent->FirstChildElement(tag);
+    if (e == nullptr) fail(parent, label(parent) + " has no <" + tag + ">");
+    return e;
+  }
+
+  std::string text(const XMLElement* e, const char* attribute) const {
+    const char* value = e->Attribute(attribute);
+    if (value == nullptr) fail(e, label(e) + " has no " + attribute);
+    return value;
+  }
+
+  template <int N>
+  Eigen::Matrix<double, N, 1> numbers(const XMLElement* e, const char* attribute) const {
+    const std::string value = text(e, attribute);
+    const auto bad = [&] {
+      fail(e, label(e) + ": " + attribute + "=\"" + value + "\" is not " + (N == 1 ? "a number" : std::to_string(N) + " numbers"));
+    };
+    Eigen::Matrix<double, N, 1> result;
+    const char* at = value.data();
+    const char* const end = at + value.size();
+    const auto skip_spaces = [&] {
+      while (at != end && std::isspace(static_cast<unsigned char>(*at)) != 0) ++at;
+    };
+    for (int i = 0; i < N; ++i) {
+      skip_spaces();
+      const auto [next, error] = std::from_chars(at, end, result[i]);
+      if (error != std::errc() || !std::isfinite(result[i])) bad();
+      at = next;
+    }
+    skip_spaces();
+    if (at != end) bad();
+    return result;
+  }
+
+  double number(const XMLElement* e, const char* attribute) const { return numbers<1>(e, attribute)[0]; }
+  double positive(const XMLElement* e, const char* attribute) const {
+    const double value = number(e, attribute);
+    if (value <= 0) fail(e, label(e) + ": " + attribute + " must be positive");
+    return value;
+  }
+  double not_negative(const XMLElement* e, const char* attribute) const {
+    const double value = number(e, attribute);
+    if (value < 0) fail(e, label(e) + ": " + attribute + " must not be negative");
+    return value;
+  }
+
+  // The <origin> of `e`; identity when it has none, as URDF has it.
+  Pose origin(const XMLElement* e) const {
+    Pose pose = Pose::Identity();
+    const XMLElement* const origin = e->FirstChildElement("origin");
+    if (origin == nullptr) return pose;
+    if (origin->Attribute("xyz") != nullptr) pose.translation() = numbers<3>(origin, "xyz");
+    if (origin->Attribute("rpy") == nullptr) return pose;
+    const Vec3 rpy = numbers<3>(origin, "rpy");
+    using Eigen::AngleAxisd;
+    pose.linear() =
+        (AngleAxisd(rpy.z(), Vec3::UnitZ()) * AngleAxisd(rpy.y(), Vec3::UnitY()) * AngleAxisd(rpy.x(), Vec3::UnitX())).toRotationMatrix();
+    return pose;
+  }
+
+  // "joint 'elbow'", or "<limit>" for what has no name.
+  static std::string label(const XMLElement* e) {
+    const char* const name = e->Attribute("name");
+    return name != nullptr ? std::string(e->Name()) + " '" + name + "'" : "<" + std::string(e->Name()) + ">";
+  }
+
+ private:
+  std::string load_error() const {
+    switch (document_.ErrorID()) {
+      case tinyxml2::XML_ERROR_FILE_NOT_FOUND:
+        return "no such file";
+      case tinyxml2::XML_ERROR_FILE_COULD_NOT_BE_OPENED:
+      case tinyxml2::XML_ERROR_FILE_READ_ERROR:
+        return "cannot be read";
+      case tinyxml2::XML_ERROR_EMPTY_DOCUMENT:
+        return "is empty";
+      default:
+        return std::string("is not well-formed XML (") + document_.ErrorName() + ")";
+    }
+  }
+
+  std::string file_;
+  tinyxml2::XMLDocument document_;
+  const XMLElement* robot_ = nullptr;
+};
+
+scene::Shape read_geometry(const Urdf& urdf, const XMLElement* e) {
+  scene::Shape shape;
+  shape.body_from_shape = urdf.origin(e);
+  const XMLElement* const geometry = urdf.child(e, "geometry");
+  if (const XMLElement* const box = geometry->FirstChildElement("box")) {
+    shape.kind = scene::ShapeKind::box;
+    shape.size_m = urdf.numbers<3>(box, "size");
+    if (shape.size_m.minCoeff() <= 0) urdf.fail(box, "<box>: size must be positive");
+  } else if (const XMLElement* const cylinder = geometry->FirstChildElement("cylinder")) {
+    shape.kind = scene::ShapeKind::cylinder;
+    shape.size_m = Vec3(urdf.positive(cylinder, "radius"), 0, urdf.positive(cylinder, "length"));
+  } else if (const XMLElement* const sphere = geometry->FirstChildElement("sphere")) {
+    shape.kind = scene::ShapeKind::sphere;
+    shape.size_m = Vec3(urdf.positive(sphere, "radius"), 0, 0);
+  } else {
+    urdf.fail(geometry, "<geometry> holds none of <box>, <cylinder>, <sphere>");
+  }
+  return shape;
+}
+
+scene::Shape read_visual(const Urdf& urdf, const XMLElement* visual) {
+  scene::Shape shape = read_geometry(urdf, visual);
+  shape.collides = false;
+  const XMLElement* material = visual->FirstChildElement("material");
+  if (material == nullptr) return shape;
+  if (material->FirstChildElement("color") == nullptr) material = urdf.named("material", urdf.text(material, "name"));
+  const XMLElement* const color = urdf.child(material, "color");
+  const Eigen::Vector4d rgba = urdf.numbers<4>(color, "rgba");
+  if (rgba.minCoeff() < 0 || rgba.maxCoeff() > 1) urdf.fail(color, "<color>: rgba must lie within 0 and 1");
+  for (int i = 0; i < 3; ++i) shape.albedo[static_cast<std::size_t>(i)] = static_cast<float>(rgba[i]);
+  return shape;
+}
+
+scene::Shape read_collision(const Urdf& urdf, const XMLElement* collision) {
+  scene::Shape shape = read_geometry(urdf, collision);
+  shape.visible = false;
+  if (const XMLElement* const friction = collision->FirstChildElement("lanternfish:friction"))
+    shape.friction = urdf.not_negative(friction, "coefficient");
+  return shape;
+}
+
+Mat3 read_inertia(const Urdf& urdf, const XMLElement* inertial) {
+  const XMLElement* const e = urdf.child(inertial, "inertia");
+  const double xy = urdf.number(e, "ixy"), xz = urdf.number(e, "ixz"), yz = urdf.number(e, "iyz");
+  Mat3 inertia;
+  inertia << urdf.number(e, "ixx"), xy, xz, xy, urdf.number(e, "iyy"), yz, xz, yz, urdf.number(e, "izz");
+  const Vec3 principal = Eigen::SelfAdjointEigenSolver<Mat3>(inertia).eigenvalues();  // ascending
+  if (principal[0] <= 0) urdf.fail(e, "<inertia> is not positive definite");
+  if (principal[0] + principal[1] < principal[2] * (1 - 1e-9))
+    urdf.fail(e, "<inertia> is of no real body: a principal moment exceeds the sum of the others");
+  return inertia;
+}
+
+ArmLink read_link(const Urdf& urdf, const char* name) {
+  const XMLElement* const e = urdf.named("link", name);
+  const XMLElement* const inertial = urdf.child(e, "inertial");
+  ArmLink link;
+  link.name = name;
+  link.mass_kg = urdf.positive(urdf.child(inertial, "mass"), "value");
+  link.wet_weight_n = urdf.number(urdf.child(e, "lanternfish:wet_weight"), "n");
+  link.link_from_com = urdf.origin(inertial);
+  link.inertia_kg_m2 = read_inertia(urdf, inertial);
+  for (const XMLElement* v = e->FirstChildElement("visual"); v != nullptr; v = v->NextSiblingElement("visual"))
+    link.shapes.push_back(read_visual(urdf, v));
+  for (const XMLElement* c = e->FirstChildElement("collision"); c != nullptr; c = c->NextSiblingElement("collision"))
+    link.shapes.push_back(read_collision(urdf, c));
+  return link;
+}
+
+const XMLElement* joint_between(const Urdf& urdf, const char* name, const char* type, const char* parent, const char* child) {
+  const XMLElement* const e = urdf.named("joint", name);
+  if (urdf.text(e, "type") != type) urdf.fail(e, urdf.label(e) + " must be of type " + type);
+  const auto expect = [&](const char* tag, const char* link) {
+    const XMLElement* const end = urdf.child(e, tag);
+    if (urdf.text(end, "link") != link) urdf.fail(end, urdf.label(e) + ": its " + tag + " must be link '" + link + "'");
+  };
+  expect("parent", parent);
+  expect("child", child);
+  return e;
+}
+
+// What every moving joint has: place, axis and limits.
+ArmJoint read_joint(const Urdf& urdf, const char* name, const char* parent, const char* child) {
+  const XMLElement* const e = joint_between(urdf, name, "revolute", parent, child);
+  const XMLElement* const limit = urdf.child(e, "limit");
+  ArmJoint joint;
+  joint.name = name;
+  joint.parent_from_joint = urdf.origin(e);
+  joint.axis = urdf.numbers<3>(urdf.child(e, "axis"), "xyz");
+  if (std::abs(joint.axis.norm() - 1) > 1e-9) urdf.fail(e, urdf.label(e) + ": its axis is not a unit vector");
+  joint.lower_rad = urdf.number(limit, "lower");
+  joint.upper_rad = urdf.number(limit, "upper");
+  if (joint.lower_rad >= joint.upper_rad) urdf.fail(limit, urdf.label(e) + ": lower limit is not below the upper one");
+  if (joint.lower_rad < -pi || joint.upper_rad > pi) urdf.fail(limit, urdf.label(e) + ": limits reach beyond half a turn");
+  if (joint.lower_rad > 0 || joint.upper_rad < 0) urdf.fail(limit, urdf.label(e) + ": limits leave out angle 0, where counts start");
+  joint.effort_nm = urdf.positive(limit, "effort");
+  joint.velocity_rad_s = urdf.positive(limit, "velocity");
+  return joint;
+}
+
+ArmActuator read_screw(const Urdf& urdf, const XMLElement* e, const ArmJoint& joint) {
+  ArmActuator screw;
+  screw.pivot_a_m = urdf.positive(e, "pivot_a_m");
+  screw.pivot_b_m = urdf.positive(e, "pivot_b_m");
+  screw.offset_rad = urdf.number(e, "offset_rad");
+  screw.counts_per_m = urdf.positive(e, "counts_per_m");
+  if (joint.lower_rad + screw.offset_rad <= 0 || joint.upper_rad + screw.offset_rad >= pi)
+    urdf.fail(e, "joint '" + joint.name + "': its screw passes a dead centre within the limits");
+  return screw;
+}
+
+void read_drive(const Urdf& urdf, ArmJoint& joint) {
+  const XMLElement* const e = urdf.named("joint", joint.name);
+  const XMLElement* const drive = urdf.child(e, "lanternfish:drive");
+  joint.rated_torque_nm = urdf.positive(drive, "rated_torque_nm");
+  joint.acceleration_rad_s2 = urdf.positive(drive, "acceleration_rad_s2");
+  joint.stiction_rad_s = urdf.not_negative(drive, "stiction_rad_s");
+  joint.backlash_rad = urdf.not_negative(drive, "backlash_rad");
+  joint.holding_torque_nm = urdf.not_negative(drive, "holding_torque_nm");
+  if (joint.rated_torque_nm > joint.effort_nm) urdf.fail(drive, urdf.label(e) + ": rated torque exceeds the peak effort");
+  if (joint.stiction_rad_s >= joint.velocity_rad_s) urdf.fail(drive, urdf.label(e) + ": it can never move, stiction reaches its top speed");
+  if (const XMLElement* const screw = e->FirstChildElement("lanternfish:screw"))
+    joint.actuator = read_screw(urdf, screw, joint);
+  else
+    joint.actuator.counts_per_rad = 1 / urdf.positive(urdf.child(e, "lanternfish:gear"), "rad_per_count");
+}
+
+ArmJoint read_mimic(const Urdf& urdf, const ArmJoint& jaw) {
+  ArmJoint finger_b = read_joint(urdf, "finger_b", "wrist", "finger_b");
+  const XMLElement* const mimic = urdf.child(urdf.named("joint", "finger_b"), "mimic");
+  if (urdf.text(mimic, "joint") != jaw.name || urdf.number(mimic, "multiplier") != 1 || urdf.number(mimic, "offset") != 0)
+    urdf.fail(mimic, "joint 'finger_b' must mimic 'jaw' with multiplier 1 and offset 0");
+  return finger_b;
+}
+
+// The closed forms of the core hold for one kind of chain only: slew axis through the base's origin, then shoulder and elbow parallel and square to it,
+// the roll axis square to these, and everything in the one plane that the slew turns.
+void check_chain(const Urdf& urdf, const ArmDescription& arm) {
+  const auto expect = [&](bool holds, const char* joint, const char* message) {
+    if (!holds) urdf.fail(urdf.named("joint", joint), std::string("joint '") + joint + "' " + message);
+  };
+  constexpr double tolerance = 1e-9;
+  const auto same = [](const Vec3& a, const Vec3& b) { return (a - b).norm() < tolerance; };
+  for (std::size_t i = 0; i < arm_joint_count; ++i)
+    expect(same(arm.joints[i].axis, Vec3::UnitZ()), joint_names[i], "must turn about its own z");
+  const Pose slew = arm.joints[0].parent_from_joint;
+  const Pose shoulder = slew * arm.joints[1].parent_from_joint;
+  const Pose elbow = shoulder * arm.joints[2].parent_from_joint;
+  const Pose roll = elbow * arm.joints[3].parent_from_joint;
+  const Vec3 across = shoulder.linear().col(2);
+  const auto in_plane = [&](const Pose& p) { return std::abs(across.dot(p.translation() - slew.translation())) < tolerance; };
+  expect(slew.translation().norm() < tolerance, "slew", "must sit at the base's origin");
+  expect(same(slew.linear().col(2), Vec3::UnitZ()), "slew", "must turn about the base's z");
+  expect(
+      same(across, -slew.linear().col(1)) && std::abs(arm.joints[1].parent_from_joint.translation().z()) < tolerance && in_plane(shoulder),
+      "shoulder", "must turn about the slew's -y, on its x axis");
+  expect(same(elbow.linear().col(2), across) && in_plane(elbow), "elbow", "must be parallel to the shoulder and in the arm's plane");
+  expect(std::abs(roll.linear().col(2).dot(across)) < tolerance && in_plane(roll), "roll",
+         "must be square to the elbow and in the arm's plane");
+  const Pose& tool = arm.wrist_from_tool;
+  expect(tool.linear().isIdentity(tolerance) && tool.translation().head<2>().norm() < tolerance, "tool",
+         "must lie on the roll axis, unturned");
+}
+
+}  // namespace
+
+ArmDescription load_arm_urdf(const std::string& path) {
+  const Urdf urdf(path);
+  ArmDescription arm;
+  for (std::size_t i = 0; i < link_names.size(); ++i) arm.links[i] = read_link(urdf, link_names[i]);
+  for (std::size_t i = 0; i < joint_names.size(); ++i) {
+    arm.joints[i] = read_joint(urdf, joint_names[i], link_names[i], link_names[i + 1]);
+    read_drive(urdf, arm.joints[i]);
+  }
+  arm.finger_b = read_mimic(urdf, arm.joints[static_cast<std::size_t>(Joint::jaw)]);
+  arm.wrist_from_tool = urdf.origin(joint_between(urdf, "tool", "fixed", "wrist", "tool"));
+  check_chain(urdf, arm);
+  return arm;
+}
+
+}  // namespace lf
