@@ -28,7 +28,7 @@ struct PanelLayout {
   double handle_length_m = 0.0966;
   double handle_thickness_m = 0.0126;
   double handle_height_m = 0.100;
-  double stem_radius_m = 0.008;
+  double stem_radius_m = 0.004;  // thinner than the bar: pads that grip it 10 mm deep stay clear of the stem at 14 degrees of tilt
 
   // Left, centre, right; centres of the caps in panel x and y (base Z 0.455, 0.407, 0.455).
   std::array<Vec2, button_count> buttons_m{Vec2{-0.064, 0.137}, Vec2{0.0, 0.185}, Vec2{0.064, 0.137}};
