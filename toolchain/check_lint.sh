@@ -1,0 +1,19 @@
+#!/usr/bin/env bash
+# Runs clang-tidy over the sources changed since a base (default: the last commit's parent), or over all with `--all`.
+# Needs a configured build/release for the compile commands.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+if [ "${1:-}" = "--all" ]; then
+  files=$(git ls-files -- 'firmware/*.cpp' 'hal/*.cpp' 'host_sim/*.cpp' 'shared/*.cpp')
+else
+  base=${1:-$(git rev-parse --verify -q HEAD~1 || git hash-object -t tree /dev/null)}
+  files=$(git diff --name-only --diff-filter=d "$base" -- 'firmware/*.cpp' 'hal/*.cpp' 'host_sim/*.cpp' 'shared/*.cpp')
+fi
+if [ -z "$files" ]; then
+  echo "lint: no source changed"
+  exit 0
+fi
+# Generated headers have to be there before a file that includes them can be read.
+cmake --build build/release --target lf_arm_geometry >/dev/null
+echo "$files" | xargs -n 1 -P 2 clang-tidy --quiet -p build/release
+echo "lint: clean"
