@@ -1,0 +1,162 @@
+// One CiA 402 drive in operation: state machine, cyclic synchronous position, homing, and the watch over its answers.
+//
+// Synchronous RPDO data act at the next SYNC and are answered one SYNC later, so a statusword tells of a controlword three SYNCs after it was
+// decided: every handshake waits that long. Positions are motor counts, torques thousandths of the rated torque 6076.
+//
+// A latched fault stops the drive (quick stop) and stays until `reset_fault` is requested; nothing restarts by itself.
+#pragma once
+
+#include <cstdint>
+
+#include "firmware/canopen/cia402.hpp"
+#include "firmware/canopen/sdo_client.hpp"
+#include "firmware/canopen/setup.hpp"
+#include "shared/messages/can_frame.hpp"
+#include "shared/messages/time.hpp"
+
+namespace lf::canopen {
+
+enum class AxisRequest : std::uint8_t {
+  disable,       // without power
+  hold_enabled,  // powered in cyclic synchronous position: holds where it is, then follows `set_target_counts`
+  quick_stop,    // stops on the quick-stop ramp and stays stopped
+  reset_fault,   // clears a latched fault and resets the drive's with a rising edge; becomes `disable` when done
+  home,          // runs the homing of DriveSetup; becomes `disable` in cyclic mode when done, `homed()` tells
+};
+
+enum class AxisState : std::uint8_t {
+  offline,    // not heard, or the node is not operational
+  disabled,   // without power
+  enabling,   // on the way to `enabled`, or between modes
+  enabled,    // follows targets
+  homing,     // the drive moves by itself
+  stopping,   // on the way to `disabled` or `stopped`
+  stopped,    // quick stop active
+  fault,      // latched, see `fault()`
+  resetting,  // `reset_fault` at work
+};
+const char* name(AxisState state);
+
+enum class AxisFault : std::uint8_t {
+  none,
+  drive_fault,         // the drive is in its fault state (following error, over-temperature, lost heartbeat...): its EMCY has the code
+  following_error,     // bit 13 while following, before the drive itself faults
+  stale,               // no TPDO for three SYNC cycles
+  dropped_out,         // left operation enabled without being told to (power or safe-torque-off)
+  transition_timeout,  // a commanded state was not reached
+  mode_refused,        // 6060 was not accepted or 6061 did not follow
+  homing_error,        // bit 13 in homing mode
+  homing_timeout,
+  reset_refused,  // three rising edges did not clear the fault
+  node_lost,      // heartbeat lost, rebooted, or no longer operational
+};
+const char* name(AxisFault fault);
+
+class Axis {
+ public:
+  // Three SYNC cycles: a command acts one SYNC after it is sent and is answered one later.
+  static constexpr std::uint8_t handshake_syncs = 3;
+
+  struct Stats {
+    std::uint32_t targets_refused = 0;  // outside the position limits, or while not enabled
+    std::uint32_t targets_limited = 0;  // cycles in which the target ran ahead of the maximum speed and was held back
+    std::uint32_t unknown_states = 0;   // statuswords with a pattern the standard does not have
+  };
+
+  Axis() = default;
+  Axis(const DriveSetup& setup, const NetworkConfig& config);
+
+  // The core's side.
+  void request(AxisRequest request);
+  AxisRequest requested() const { return request_; }
+  // Next target, in effect while `enabled()`. False, and counted, when outside the limits or not enabled: the last target stays.
+  bool set_target_counts(std::int32_t counts);
+  // Torque feed-forward (60B2), limited to the maximum torque; 0 unless set, and 0 again whenever the axis is not enabled.
+  void set_torque_offset_permille(std::int16_t permille);
+
+  AxisState state() const;
+  bool enabled() const { return state() == AxisState::enabled; }
+  bool homed() const { return homed_; }  // true from boot for absolute encoders
+  AxisFault fault() const { return fault_; }
+  // The latest values, those of the SYNC at `actual_time()`.
+  std::int32_t actual_counts() const { return actual_counts_; }
+  std::int16_t torque_permille() const { return torque_permille_; }
+  Time actual_time() const { return actual_time_; }
+  bool seen() const { return seen_; }
+  // Values not older than three SYNC cycles. What is not fresh must not be acted on.
+  bool fresh(Time now) const;
+  std::int32_t target_counts() const { return target_counts_; }  // as sent, after limiting
+  std::int64_t following_counts() const { return static_cast<std::int64_t>(target_counts_) - actual_counts_; }
+  bool following_error() const;  // bit 13 in cyclic mode
+  bool drive_follows() const;    // bit 12 in cyclic mode; drives clear it when an internal limit is active
+  std::uint16_t statusword() const { return statusword_; }
+  std::uint16_t controlword() const { return controlword_; }
+  DriveState drive_state() const { return decode_statusword(statusword_); }
+  std::uint32_t rated_torque_mnm() const { return rated_torque_mnm_; }  // 6076, read at boot
+  const DriveSetup& setup() const { return setup_; }
+  const Stats& stats() const { return stats_; }
+
+  // The network's side.
+  void go_online(std::uint32_t rated_torque_mnm);  // configured, in cyclic mode, and started
+  void go_offline();                               // being booted
+  void lose_node();                                // latches node_lost
+  void forget_home();                              // the node lost its memory
+  void on_tpdo(const CanFrame& frame, Time sync);  // `frame` has the right identifier and length
+  void step(Time now, SdoClient& sdo);             // once a SYNC
+  // False before the first TPDO: a target that was never seeded is never sent.
+  bool make_rpdo(CanFrame& frame) const;
+
+ private:
+  enum class HomingPhase : std::uint8_t { idle, enter, enable, run, leave };
+  enum class ModeStep : std::uint8_t { settled, write, writing, read, reading };
+
+  void supervise(Time now);
+  void latch(AxisFault fault);
+  DriveGoal goal() const;
+  void choose_command(Time now);
+  void choose_fault_reset();
+  void step_mode(Time now, SdoClient& sdo);
+  void step_homing(Time now);
+  void step_target();
+  bool mode_change_wanted() const;
+  OperationMode wanted_mode() const;
+  void set_controlword(std::uint16_t word, Time now);
+  bool handshake_over() const { return syncs_since_change_ >= handshake_syncs; }
+
+  DriveSetup setup_;
+  Duration sync_period_;
+  Duration transition_timeout_;
+  Duration sdo_timeout_;
+  std::int64_t max_step_counts_ = 0;
+  AxisRequest request_ = AxisRequest::disable;
+  AxisFault fault_ = AxisFault::none;
+  bool online_ = false;
+  bool seen_ = false;
+  bool homed_ = false;
+  bool was_enabled_ = false;
+  // From the drive.
+  std::uint16_t statusword_ = 0;
+  std::int32_t actual_counts_ = 0;
+  std::int16_t torque_permille_ = 0;
+  Time actual_time_;
+  std::uint32_t rated_torque_mnm_ = 0;
+  // To the drive.
+  std::uint16_t controlword_ = 0;
+  std::int32_t target_counts_ = 0;
+  std::int32_t wanted_counts_ = 0;
+  std::int16_t torque_offset_permille_ = 0;
+  // Handshakes.
+  std::uint8_t syncs_since_change_ = 0;
+  std::uint8_t reset_edges_ = 0;
+  Time waiting_since_;  // for the drive's state to change
+  DriveState last_state_ = DriveState::unknown;
+  OperationMode mode_ = OperationMode::cyclic_position;
+  OperationMode next_mode_ = OperationMode::cyclic_position;
+  ModeStep mode_step_ = ModeStep::settled;
+  Time mode_since_;
+  HomingPhase homing_ = HomingPhase::idle;
+  Time homing_since_;
+  Stats stats_;
+};
+
+}  // namespace lf::canopen

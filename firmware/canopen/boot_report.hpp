@@ -1,0 +1,61 @@
+// How far the bus is booted, and what stopped it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "shared/messages/joint_io.hpp"
+
+namespace lf::canopen {
+
+enum class BootState : std::uint8_t { idle, running, done, failed };
+
+enum class BootFailure : std::uint8_t {
+  none,
+  configuration,    // NetworkConfig is not valid: nothing was sent
+  no_boot_up,       // no boot-up message after NMT reset communication
+  sdo_aborted,      // the node refused, `abort_code` says why
+  sdo_timeout,      // no answer, after all retries
+  wrong_identity,   // device type, vendor or product is not the expected one
+  wrong_readback,   // the object holds another value than was written
+  wrong_length,     // the object's value has another length than the standard's
+  rebooted,         // a boot-up message while being configured
+  not_operational,  // no heartbeat said operational after NMT start
+  no_process_data,  // operational, but no TPDO came
+};
+const char* name(BootFailure failure);
+
+struct NodeBoot {
+  BootState state = BootState::idle;
+  BootFailure failure = BootFailure::none;
+  std::uint8_t node = 0;
+  std::uint16_t index = 0;  // object at work, or that failed; 0 outside the SDO part
+  std::uint8_t sub = 0;
+  std::uint8_t retries = 0;  // so far, all steps together
+  std::uint16_t step = 0;    // of the node's boot table
+  std::uint16_t steps = 0;
+  std::uint32_t abort_code = 0;  // of `failure`, see sdo_abort::name
+  std::uint32_t expected = 0;    // for wrong_identity and wrong_readback
+  std::uint32_t read = 0;
+  std::uint32_t device_type = 0;       // 1000
+  std::uint32_t vendor = 0;            // 1018:01
+  std::uint32_t product = 0;           // 1018:02
+  std::uint32_t rated_torque_mnm = 0;  // 6076
+  std::array<char, 33> device_name{};  // 1008, zero-terminated, printable ASCII, cut at 32
+};
+
+struct BootReport {
+  static constexpr std::size_t node_count = joint_count + 1;
+  BootState state = BootState::idle;
+  std::array<NodeBoot, node_count> nodes{};  // the drives in the order of Joint, then the output node
+
+  // The first node that failed; nullptr if none did.
+  const NodeBoot* failed() const {
+    for (const NodeBoot& node : nodes) {
+      if (node.state == BootState::failed) return &node;
+    }
+    return nullptr;
+  }
+};
+
+}  // namespace lf::canopen

@@ -1,0 +1,142 @@
+// The front door of the CAN bus: the master of five CiA 402 drives and one CiA 401 output node.
+//
+// Feed it every frame that arrives and call `tick` once a SYNC period; it answers with the frames to send, in the order to send them: SYNC, RPDOs,
+// master heartbeat, NMT, SDO. Nothing blocks, allocates or reads a clock. A frame that is not understood is refused and counted by its cause.
+//
+//   Network network(config);
+//   network.start_boot(now);
+//   every 4 ms:  for (frames that arrived) network.on_frame(frame, time_of_arrival);
+//                decide: network.axis(Joint::elbow).set_target_counts(...), network.io().trigger_camera(...)
+//                outbox.clear(); network.tick(now, outbox); send(outbox)
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "firmware/canopen/axis.hpp"
+#include "firmware/canopen/boot_report.hpp"
+#include "firmware/canopen/emcy.hpp"
+#include "firmware/canopen/io_module.hpp"
+#include "firmware/canopen/node.hpp"
+#include "firmware/canopen/setup.hpp"
+#include "shared/messages/can_frame.hpp"
+#include "shared/messages/static_vector.hpp"
+
+namespace lf::canopen {
+
+// A tick sends at most SYNC + 6 RPDOs + heartbeat + 6 NMT + 6 SDO aborts + 6 SDO requests = 26.
+using Outbox = StaticVector<CanFrame, 64>;
+
+// Why a frame was refused.
+enum class Refusal : std::uint8_t {
+  error_frame,     // made by the CAN controller: the platform's business
+  not_classic,     // extended or remote
+  bad_length,      // over 8 bytes, or an EMCY, SDO or heartbeat of the wrong length
+  unknown_node,    // a node that is not configured
+  unknown_id,      // no message of the predefined connection set
+  foreign_master,  // NMT, SYNC, RPDO, SDO request or heartbeat in the master's name from somebody else
+  pdo_too_short,
+  pdo_too_long,
+  pdo_unmapped,      // TPDO 2, 3 or 4: disabled at boot
+  pdo_before_start,  // from a node that was not started
+  sdo_refused,       // unexpected or about another object; SdoClient::Stats has more
+  heartbeat_state,   // not one of boot-up, stopped, operational, pre-operational
+  time_backwards,    // the clock ran backwards: frame or tick ignored
+};
+inline constexpr std::size_t refusal_count = 13;
+const char* name(Refusal refusal);
+
+// Counted from construction on, never reset.
+struct NetworkStats {
+  std::uint64_t frames_in = 0;
+  std::uint64_t frames_out = 0;
+  std::uint64_t bits_out_in = 0;  // exact bits on the wire of all of them, stuffing and interframe space included
+  std::array<std::uint32_t, refusal_count> refused{};
+  std::uint32_t outbox_overflows = 0;  // frames that found no room
+  std::uint32_t syncs = 0;
+  std::uint32_t emcys = 0;
+  std::uint32_t emcys_forgotten = 0;  // overwritten before `take_emcy`
+  std::uint32_t pdo_repeated = 0;     // second TPDO of a node in one SYNC cycle: taken, the last one counts
+
+  std::uint32_t refused_total() const {
+    std::uint32_t total = 0;
+    for (const std::uint32_t n : refused) total += n;
+    return total;
+  }
+};
+
+class Network {
+ public:
+  static constexpr std::size_t node_count = BootReport::node_count;
+  static constexpr std::size_t io_index = joint_count;  // nodes are indexed as joints, then the output node
+
+  explicit Network(const NetworkConfig& config);
+
+  // Resets and configures every node, all at once, and starts them when all are configured. Call again to boot anew after a failure or a reboot:
+  // every axis goes offline, disabled and without latched faults. An invalid configuration fails at once.
+  void start_boot(Time now);
+  void on_frame(const CanFrame& frame, Time now);
+  void tick(Time now, Outbox& outbox);
+
+  BootReport boot() const;
+  // Booted, and every node answers, is operational and has no unacknowledged fault of its link (`NodeFault`, not the drives' own faults).
+  bool operational() const;
+
+  Axis& axis(Joint joint) { return axes_[static_cast<std::size_t>(joint)]; }
+  const Axis& axis(Joint joint) const { return axes_[static_cast<std::size_t>(joint)]; }
+  IoModule& io() { return io_; }
+  const IoModule& io() const { return io_; }
+
+  // What is wrong with a node's link, latched until acknowledged. Acknowledging does not repair: a node that rebooted needs `start_boot`.
+  const NodeFault& fault(std::size_t node) const { return nodes_[node].fault(); }
+  bool any_fault() const;
+  void acknowledge(std::size_t node) { nodes_[node].acknowledge(); }
+  // EMCY messages in the order of their arrival, the last 16.
+  std::optional<Emcy> take_emcy();
+
+  void quick_stop_all();  // every axis; the laser and the lamps are the caller's
+  void disable_all();     // power off
+  // Quick stop, outputs off, then NMT stop of every node after the axes had three SYNCs to hear of it. Only `start_boot` leads back.
+  void shut_down();
+
+  Time last_sync() const { return last_sync_; }
+  const NetworkStats& stats() const { return stats_; }
+  const SdoClient& sdo(std::size_t node) const { return nodes_[node].sdo(); }
+  const NetworkConfig& config() const { return config_; }
+
+ private:
+  void refuse(Refusal cause) { ++stats_.refused[static_cast<std::size_t>(cause)]; }
+  void send(Outbox& outbox, const CanFrame& frame);
+  void dispatch(const CanFrame& frame, Time now);
+  void on_tpdo(std::size_t node, const CanFrame& frame);
+  void on_emcy(std::size_t node, const CanFrame& frame, Time now);
+  void on_heartbeat(std::size_t node, const CanFrame& frame, Time now);
+  void on_sdo(std::size_t node, const CanFrame& frame, Time now);
+  void step_boot(Time now);
+  void step_links(Time now);
+  void send_process_data(Time now, Outbox& outbox);
+  void send_heartbeat(Time now, Outbox& outbox);
+  void send_services(Time now, Outbox& outbox);
+  std::optional<std::size_t> index_of(std::uint8_t node) const;
+
+  NetworkConfig config_;
+  std::array<Node, node_count> nodes_;
+  std::array<Axis, joint_count> axes_;
+  IoModule io_;
+  BootState boot_ = BootState::idle;
+  ConfigError config_error_ = ConfigError::none;
+  std::uint8_t bad_node_ = 0;
+  bool boot_up_sent_ = false;
+  bool synced_ = false;
+  std::uint8_t shut_down_syncs_ = 0;  // left until NMT stop
+  Time last_sync_;
+  Time last_seen_;  // latest time ever passed in
+  Time next_heartbeat_;
+  static constexpr std::size_t emcy_history = 16;  // a drive sends one or two at a fault: all six nodes' fit
+  std::array<Emcy, emcy_history> emcys_{};
+  std::size_t emcy_first_ = 0, emcy_count_ = 0;
+  NetworkStats stats_;
+};
+
+}  // namespace lf::canopen

@@ -1,0 +1,86 @@
+#include "firmware/canopen/setup.hpp"
+
+namespace lf::canopen {
+
+const char* name(ConfigError error) {
+  switch (error) {
+    case ConfigError::none:
+      return "none";
+    case ConfigError::node_id:
+      return "node id out of 1..126";
+    case ConfigError::node_twice:
+      return "node id used twice";
+    case ConfigError::position_limits:
+      return "minimum position not below maximum";
+    case ConfigError::speed:
+      return "maximum speed is zero";
+    case ConfigError::torque:
+      return "maximum torque is zero";
+    case ConfigError::following:
+      return "following error window is zero";
+    case ConfigError::homing:
+      return "homing without speed, acceleration or time-out";
+    case ConfigError::sync_period:
+      return "SYNC period does not fit object 60C2";
+    case ConfigError::timeout:
+      return "a time-out is not positive";
+  }
+  return "unknown";
+}
+
+bool interpolation_period(Duration period, std::uint8_t& value, std::int8_t& exponent) {
+  std::int64_t mantissa = period.ns();
+  std::int8_t power = -9;
+  if (mantissa <= 0) return false;
+  while (mantissa % 10 == 0) {
+    mantissa /= 10;
+    ++power;
+  }
+  if (mantissa > 255) return false;
+  value = static_cast<std::uint8_t>(mantissa);
+  exponent = power;
+  return true;
+}
+
+namespace {
+
+ConfigError check_drive(const DriveSetup& drive) {
+  if (drive.min_counts >= drive.max_counts) return ConfigError::position_limits;
+  if (drive.max_speed_counts_s == 0) return ConfigError::speed;
+  if (drive.max_torque_permille == 0) return ConfigError::torque;
+  if (drive.following_window_counts == 0) return ConfigError::following;
+  // 35 and 37 take the present position and need no speed.
+  const bool moves = drive.homing_method != 0 && drive.homing_method != 35 && drive.homing_method != 37;
+  if (moves && (drive.homing_speed_counts_s == 0 || drive.homing_accel_counts_s2 == 0)) return ConfigError::homing;
+  if (drive.homing_method != 0 && drive.homing_timeout <= Duration{}) return ConfigError::homing;
+  return ConfigError::none;
+}
+
+std::uint8_t node_of(const NetworkConfig& config, std::size_t i) { return i < joint_count ? config.drives[i].node : config.io.node; }
+
+}  // namespace
+
+ConfigError check(const NetworkConfig& config, std::size_t& offender) {
+  std::uint8_t value = 0;
+  std::int8_t exponent = 0;
+  offender = joint_count;
+  if (!interpolation_period(config.sync_period, value, exponent)) return ConfigError::sync_period;
+  const Duration shortest = config.sync_period;
+  for (const Duration timeout : {config.sdo_timeout, config.boot_up_timeout, config.start_timeout, config.transition_timeout}) {
+    if (timeout < shortest) return ConfigError::timeout;
+  }
+  for (std::size_t i = 0; i <= joint_count; ++i) {
+    offender = i;
+    const std::uint8_t node = node_of(config, i);
+    if (node < 1 || node >= can_map::master_node) return ConfigError::node_id;
+    for (std::size_t other = 0; other < i; ++other) {
+      if (node_of(config, other) == node) return ConfigError::node_twice;
+    }
+    if (i == joint_count) break;
+    if (const ConfigError error = check_drive(config.drives[i]); error != ConfigError::none) return error;
+  }
+  offender = joint_count;
+  return ConfigError::none;
+}
+
+}  // namespace lf::canopen

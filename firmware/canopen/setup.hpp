@@ -1,0 +1,81 @@
+// What the master is told before it boots the bus: plain numbers, filled by the hosted side and checked by `valid`.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "shared/can/can_map.hpp"
+#include "shared/messages/joint_io.hpp"
+#include "shared/messages/time.hpp"
+
+namespace lf::canopen {
+
+// What 1018 must answer; 0 accepts any.
+struct Identity {
+  std::uint32_t vendor = 0;
+  std::uint32_t product = 0;
+};
+
+// One CiA 402 drive. Every number is written at boot and read back; the object is named beside it.
+struct DriveSetup {
+  std::uint8_t node = 0;  // 1..126
+  Identity identity;
+
+  std::int32_t min_counts = 0;                // 607D:01, also what `Axis::set_target_counts` accepts
+  std::int32_t max_counts = 0;                // 607D:02
+  std::uint16_t max_torque_permille = 1000;   // 6072, of the rated torque 6076
+  std::uint32_t max_speed_counts_s = 0;       // 607F; the axis limits its target's steps to it as well
+  std::uint32_t max_motor_speed_rpm = 0;      // 6080, drives that have it; 0 leaves the drive's own
+  std::uint32_t quick_stop_counts_s2 = 0;     // 6085; 0 leaves the drive's own
+  std::uint32_t following_window_counts = 0;  // 6065
+  std::uint16_t following_timeout_ms = 100;   // 6066
+
+  std::int16_t quick_stop_option = 6;  // 605A: 1, 2 stop and lose power; 5, 6 stop and stay powered. 6: on the quick-stop ramp, holding
+  std::int16_t abort_option = 3;       // 6007, the master is gone: 3 is a quick stop
+
+  std::int8_t homing_method = 0;  // 6098; 0: absolute encoder, nothing to home. 35, 37: here is home. Negative: the maker's, to a hard stop
+  std::int32_t home_offset_counts = 0;       // 607C
+  std::uint32_t homing_speed_counts_s = 0;   // 6099:01, toward the stop or switch; 6099:02 is a quarter of it
+  std::uint32_t homing_accel_counts_s2 = 0;  // 609A
+  Duration homing_timeout = Duration::from_ms(60'000);
+};
+
+// The CiA 401 output node.
+struct IoSetup {
+  std::uint8_t node = can_map::io_node;
+  Identity identity;
+};
+
+struct NetworkConfig {
+  std::array<DriveSetup, joint_count> drives{};
+  IoSetup io;
+  Duration sync_period = can_map::sync_period;             // 60C2 (and 1006): whole thousandths of 10^k s that fit one byte, see `valid`
+  Duration sdo_timeout = Duration::from_ms(500);           // for each answer; servers on real drives take up to 100 ms while they store
+  std::uint8_t retries = 2;                                // of a lost SDO transfer, a missing boot-up, a missing start
+  Duration boot_up_timeout = Duration::from_ms(3'000);     // from the reset command to the boot-up message
+  Duration start_timeout = Duration::from_ms(500);         // from the start command to a heartbeat that says operational: five heartbeats
+  Duration transition_timeout = Duration::from_ms(2'000);  // a step of the CiA 402 state machine, with a brake's release
+};
+
+// Why a configuration is refused.
+enum class ConfigError : std::uint8_t {
+  none,
+  node_id,
+  node_twice,
+  position_limits,
+  speed,
+  torque,
+  following,
+  homing,
+  sync_period,
+  timeout
+};
+const char* name(ConfigError error);
+
+// First thing wrong with `config`. `drive` is set to the index of the offender (joint_count: the output node or the network).
+ConfigError check(const NetworkConfig& config, std::size_t& offender);
+
+// 60C2: period = value * 10^exponent s. False when no byte and exponent give the period exactly.
+bool interpolation_period(Duration period, std::uint8_t& value, std::int8_t& exponent);
+
+}  // namespace lf::canopen
