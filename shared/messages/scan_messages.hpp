@@ -20,6 +20,7 @@ enum class ExposureKind : std::uint8_t {
   laser_on,    // a stripe to be measured
   background,  // the same scene without the laser: serves the stripes around it
   still,       // lamps on, laser off: markers are looked for in it
+  monitor,     // for the record only: nothing is measured in it
 };
 
 // One order to the scan pipeline, in the order of their times.
