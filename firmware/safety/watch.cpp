@@ -58,7 +58,7 @@ void Watch::check(const canopen::Network& network, const Vec3& tool_m, bool arme
     const canopen::NodeFault& link = network.fault(node);
     const bool drive = node < joint_count;
     raise(link.heartbeat_lost, drive ? Fault::node_lost : Fault::io_lost, static_cast<std::int32_t>(node), began);
-    raise(link.rebooted, Fault::node_rebooted, static_cast<std::int32_t>(node), began);
+    raise(link.rebooted || link.left_operational, Fault::node_rebooted, static_cast<std::int32_t>(node), began);
   }
   for (std::size_t i = 0; i < joint_count; ++i) {
     const auto code = static_cast<std::int32_t>(i);
