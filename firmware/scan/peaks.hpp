@@ -3,8 +3,8 @@
 // The stripe lies on a sloped, scattering background, so the brightest pixel and the centre of mass are biased toward the background's bright side.
 // A zero-mean second-derivative filter does not see the background's offset and slope (Forest, Salvi, Cabruja, Pous, ICPR 2004, with the
 // second derivative in place of the first: on a backscatter skirt the zero-mean Laplacian-of-Gaussian of sigma 2.5-3 px erred a third as much).
-// The filter here is the cubic B-spline's second difference, sigma 2.83 px, 19 taps: -(1 - z^5)^4 / (1 - z)^2, so four shifted rows and two
-// running sums in place of 21 multiplications; its sums wrap around in 16 bits, and the result, below 255 * 68, is exact all the same.
+// The filter here is the cubic B-spline's second difference, sigma 2.83 px, 19 taps: -(1 - z^5)^4 / (1 - z)^2, so five shifted rows and two
+// running sums in place of 19 multiplications; its sums wrap around in 16 bits, and the result, below 255 * 68, is exact all the same.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ struct Peak {
   float v_px = 0;            // pixel centres at integers; sub-pixel along the scanned axis
   float amplitude = 0;       // grey levels of the brightest pixel over the local background
   float ratio = 0;           // second peak's response over this one's, 0..1; near 1 the choice is unsure
-  std::uint8_t clipped = 0;  // pixels of the stripe at full scale
+  std::uint8_t clipped = 0;  // pixels of the stripe at full scale; above 3 the centre is the plateau's, and less sure
 };
 
 // Columns (or rows) seen by a detector, by what became of them. Never reset.
@@ -47,17 +47,18 @@ struct PixelView {
   PixelView(const ImageView& image)
       : data(image.data), width(image.width), height(image.height), stride(image.stride) {}  // NOLINT: same thing
   bool valid() const { return data != nullptr && width > 0 && height > 0 && stride >= width; }
+  const Pixel* row(std::int32_t v) const { return data + static_cast<std::ptrdiff_t>(v) * stride; }
 };
 
 enum class PeakAxis : std::uint8_t { column, row };
 
 struct PeakConfig {
   PeakAxis axis = PeakAxis::column;  // along which the one peak is looked for
-  // Response over its positive lobe's sum, grey levels: 2.6 sigma of the response to noise of 1 grey level in both images is 2, to 3 levels 6.
-  // A column of mere noise that passes fails at `max_ratio`, since noise has many peaks alike.
+  // Response over its positive lobe's sum, grey levels. Noise of 1 grey level in both images gives 0.8 rms, and 480 rows of it 2.4 at most;
+  // at 3 levels 7. A column of mere noise that passes fails at `max_ratio`, since noise has many peaks alike.
   float min_contrast = 6.0f;
   float max_ratio = 0.7f;         // of the second peak to the first
-  std::int32_t max_clipped = 12;  // px at full scale; a wider plateau no longer tells its centre to 0.2 px
+  std::int32_t max_clipped = 12;  // px at full scale; a wider plateau is no stripe
   std::int32_t full_scale = 255;  // grey level at which the sensor clips
 };
 
@@ -82,19 +83,44 @@ class BasicPeakDetector {
   const Config& config() const { return config_; }
 
  private:
-  // 64 columns at a time: their rings, sums and maxima stay in the first-level cache.
+  // 64 lines at a time: their rows, sums and maxima stay in the first-level cache.
   static constexpr std::int32_t strip = 64;
+  static constexpr std::int32_t taps = 19, centre = 9;
   using Sum = std::conditional_t<sizeof(Pixel) == 1, std::uint16_t, std::uint32_t>;
   using Response = std::make_signed_t<Sum>;
+  template <class T>
+  using Lanes = std::array<T, strip>;
 
-  struct Best {
-    alignas(64) std::array<Response, strip> response, second, row;
+  // Up to 64 lines of the picture, from `first` on.
+  struct Strip {
+    const PixelView<Pixel>& on;
+    const PixelView<Pixel>& off;
+    std::int32_t first, lines, length;
   };
+
+  struct Plateau {
+    std::int32_t first = 0, length = 0;
+  };
+
+  void load_row(const Strip& s, std::int32_t row);
+  void load_block(const PixelView<Pixel>& image, const Strip& s, std::int32_t begin, std::array<Lanes<Pixel>, strip>& block) const;
+  void sweep(const Strip& s);
+  bool finish(const Strip& s, std::int32_t lane, Peak& peak);
+  float second_response(std::int32_t lane, std::int32_t peak_row, const Plateau& plateau, std::int32_t length) const;
+  float response_peak(const Strip& s, std::int32_t lane, std::int32_t row) const;
+  std::int32_t pixel(const PixelView<Pixel>& image, std::int32_t line, std::int32_t row) const;
+  std::int32_t difference(const Strip& s, std::int32_t line, std::int32_t row) const;
+  Plateau find_plateau(const Strip& s, std::int32_t line, std::int32_t row) const;
+  float plateau_centre(const Strip& s, std::int32_t line, const Plateau& plateau) const;
+  float amplitude(const Strip& s, std::int32_t line, std::int32_t row) const;
 
   Config config_;
   PeakCounters counters_;
-  alignas(64) std::array<std::array<Pixel, strip>, MaxLength> on_, off_;
-  alignas(64) std::array<std::array<Response, strip>, MaxLength> response_;
+  alignas(64) std::array<Lanes<Pixel>, strip> on_block_{}, off_block_{};
+  alignas(64) std::array<Lanes<Sum>, 32> rows_{};               // the newest rows of the difference; the filter looks back 20
+  alignas(64) Lanes<Sum> sum_{}, sum_of_sums_{};                // the filter's two integrators
+  alignas(64) Lanes<Response> best_{}, second_{}, best_row_{};  // of each lane's local maxima
+  alignas(64) std::array<Lanes<Response>, MaxLength> response_{};
 };
 
 // The core's, for 640x480 in both directions, and the desktop's.
