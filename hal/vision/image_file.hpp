@@ -27,4 +27,13 @@ struct GreyImage {
 // Throws InputError for a file that is missing, no image, or truncated (also where the decoder would have filled up with grey).
 GreyImage read_image_file(const std::string& path, Channel channel = Channel::grey);
 
+// The same with all its bits.
+struct GreyImage16 {
+  std::int32_t width = 0;
+  std::int32_t height = 0;
+  std::int32_t full_scale = 255;  // 65535 for a 16-bit file
+  std::vector<std::uint16_t> pixels;
+};
+GreyImage16 read_image_file_16(const std::string& path, Channel channel = Channel::grey);
+
 }  // namespace lf::vision

@@ -1,0 +1,109 @@
+#include "hal/vision/image_file.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <string_view>
+
+#include "hal/vision/pixels.hpp"
+#include "shared/input_error.hpp"
+
+namespace lf::vision {
+namespace {
+
+std::vector<char> read_bytes(const std::string& path) {
+  if (std::filesystem::is_directory(path)) throw InputError(path, 0, "is a folder, not an image");
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw InputError(path, 0, "cannot be read");
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+// A JPEG's scan ends with the marker FF D9, and its data cannot contain it (T.81, B.1.1.5): without it the file was cut off.
+// libjpeg only warns and fills up with grey.
+bool truncated_jpeg(std::string_view bytes) {
+  using namespace std::string_view_literals;
+  if (!bytes.starts_with("\xFF\xD8"sv)) return false;
+  const auto scan = bytes.rfind("\xFF\xDA"sv);
+  const auto end = bytes.rfind("\xFF\xD9"sv);
+  return scan == bytes.npos || end == bytes.npos || end < scan;
+}
+
+// A PNG ends with the chunk IEND.
+bool truncated_png(std::string_view bytes) { return bytes.starts_with("\x89PNG") && bytes.find("IEND") == bytes.npos; }
+
+cv::Mat decode(const std::string& path, Channel channel) {
+  const std::vector<char> bytes = read_bytes(path);
+  const std::string_view text(bytes.data(), bytes.size());
+  if (truncated_jpeg(text) || truncated_png(text)) throw InputError(path, 0, "the image is truncated");
+  cv::Mat image;
+  try {
+    const cv::Mat buffer(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
+    // The pixels as the sensor had them: no rotation by EXIF, which would contradict the calibration.
+    if (!bytes.empty()) image = cv::imdecode(buffer, cv::IMREAD_UNCHANGED | cv::IMREAD_IGNORE_ORIENTATION);
+  } catch (const cv::Exception&) {
+    image.release();
+  }
+  if (image.empty()) throw InputError(path, 0, "is no image that can be decoded");
+  if (image.depth() != CV_8U && image.depth() != CV_16U) throw InputError(path, 0, "has neither 8 nor 16 bits a channel");
+  return one_channel(image, channel);
+}
+
+// Bits in use, in steps of two: 8, 10, 12, 14 or 16.
+int used_bits(const cv::Mat& image) {
+  double largest = 0;
+  cv::minMaxIdx(image, nullptr, &largest);
+  int bits = 8;
+  while (bits < 16 && largest >= (1 << bits)) bits += 2;
+  return bits;
+}
+
+}  // namespace
+
+cv::Mat one_channel(const cv::Mat& image, Channel channel) {
+  cv::Mat grey;
+  const int channels = image.channels();
+  if (channels < 3) {
+    cv::extractChannel(image, grey, 0);
+  } else if (channel == Channel::grey) {
+    cv::cvtColor(image, grey, channels == 4 ? cv::COLOR_BGRA2GRAY : cv::COLOR_BGR2GRAY);
+  } else {
+    cv::extractChannel(image, grey, channel == Channel::blue ? 0 : channel == Channel::green ? 1 : 2);
+  }
+  return grey;
+}
+
+Channel channel_from_name(const std::string& name) {
+  if (name == "grey") return Channel::grey;
+  if (name == "red") return Channel::red;
+  if (name == "green") return Channel::green;
+  if (name == "blue") return Channel::blue;
+  throw InputError("unknown channel '" + name + "': grey, red, green or blue");
+}
+
+GreyImage read_image_file(const std::string& path, Channel channel) {
+  cv::Mat grey = decode(path, channel);
+  if (grey.depth() == CV_16U) {
+    const int shift = used_bits(grey) - 8;
+    cv::Mat upper(grey.size(), CV_8U);
+    std::transform(grey.begin<std::uint16_t>(), grey.end<std::uint16_t>(), upper.begin<std::uint8_t>(),
+                   [shift](std::uint16_t value) { return static_cast<std::uint8_t>(value >> shift); });
+    grey = upper;
+  }
+  return {grey.cols, grey.rows, {grey.begin<std::uint8_t>(), grey.end<std::uint8_t>()}};
+}
+
+GreyImage16 read_image_file_16(const std::string& path, Channel channel) {
+  const cv::Mat grey = decode(path, channel);
+  GreyImage16 image{grey.cols, grey.rows, grey.depth() == CV_16U ? 65535 : 255, {}};
+  if (grey.depth() == CV_16U) {
+    image.pixels.assign(grey.begin<std::uint16_t>(), grey.end<std::uint16_t>());
+  } else {
+    image.pixels.assign(grey.begin<std::uint8_t>(), grey.end<std::uint8_t>());
+  }
+  return image;
+}
+
+}  // namespace lf::vision

@@ -1,0 +1,99 @@
+#include "hal/vision/panel_vision.hpp"
+
+#include <algorithm>
+#include <cfenv>
+#include <exception>
+
+namespace lf::vision {
+namespace {
+
+// Lanternfish may run with floating-point traps set; the libraries here divide by zero on purpose now and then.
+class TrapsOff {
+ public:
+  TrapsOff() { std::feholdexcept(&saved_); }
+  ~TrapsOff() { std::fesetenv(&saved_); }
+  TrapsOff(const TrapsOff&) = delete;
+  TrapsOff& operator=(const TrapsOff&) = delete;
+
+ private:
+  std::fenv_t saved_{};
+};
+
+PanelRegion region_of(const PanelVisionConfig& config) {
+  const Vec2 margin = Vec2::Constant(config.region_margin_m);
+  return {config.panel.nominal_base_from_panel(), config.panel.plate_min_m - margin, config.panel.plate_max_m + margin};
+}
+
+double tilt_cosine(const Pose& camera_from_tag, const Pose& base_from_camera, const Plane& plane) {
+  return plane.normal.dot((base_from_camera * camera_from_tag).linear().col(2));
+}
+
+MarkerObservation observe_marker(ImageView still, const PlaneFit& fit, const PanelVisionConfig& config) {
+  MarkerObservation observation;
+  MarkerDetector detector(config.detector);
+  const auto markers = detector.detect(still);
+  const auto ours = std::find_if(markers.begin(), markers.end(), [&](const DetectedMarker& m) { return m.id == config.marker.id; });
+  if (ours == markers.end()) return observation;
+  const auto pose = marker_pose(ours->corners_px, config.marker.size_m, config.camera.intrinsics);
+  if (!pose) return observation;
+
+  observation.found = true;
+  observation.id = ours->id;
+  observation.corners_px = ours->corners_px;
+  observation.centre_px = ours->centre_px;
+  observation.margin = ours->margin;
+  observation.camera_from_tag = pose->camera_from_tag;
+  observation.reprojection_rms_px = pose->reprojection_rms_px;
+  observation.ambiguity = pose->ambiguity();
+  const bool unsure = pose->has_second && observation.ambiguity < config.full_ambiguity;
+  if (unsure && fit.valid &&
+      tilt_cosine(pose->camera_from_tag_second, config.camera.base_from_camera, fit.plane) >
+          tilt_cosine(pose->camera_from_tag, config.camera.base_from_camera, fit.plane)) {
+    observation.camera_from_tag = pose->camera_from_tag_second;
+    observation.reprojection_rms_px = pose->second_rms_px;
+  }
+  return observation;
+}
+
+double confidence_of(const PanelResult& result, bool has_still, const PanelVisionConfig& config) {
+  if (!result.fit.valid || result.fit.points == 0 || result.clusters.empty()) return 0;
+  if (has_still && !result.marker.found) return 0;
+  double confidence = static_cast<double>(result.fit.inliers) / result.fit.points;
+  confidence = std::min(confidence, static_cast<double>(result.clusters[0].points) / config.full_cluster_points);
+  if (has_still) {
+    const double sureness = (result.marker.ambiguity - 1) / (config.full_ambiguity - 1);
+    confidence = std::min({confidence, result.marker.margin / config.full_margin, 0.5 + 0.5 * std::clamp(sureness, 0.0, 1.0)});
+  }
+  return std::isfinite(confidence) ? std::clamp(confidence, 0.0, 1.0) : 0;
+}
+
+bool usable(const PlaneFit& fit) { return fit.valid && fit.plane.normal.allFinite() && std::isfinite(fit.plane.offset_m); }
+
+}  // namespace
+
+PanelResult analyse_panel(const PanelRequest& request, ImageView still, std::span<const CloudPoint> cloud, const PanelVisionConfig& config,
+                          bool* failed) {
+  const TrapsOff traps_off;
+  if (failed != nullptr) *failed = false;
+  PanelResult result;
+  result.id = request.id;
+  result.measured = request.still_time;
+  result.fit = request.fit;
+  try {
+    if (request.has_still) result.marker = observe_marker(still, request.fit, config);
+    if (usable(request.fit)) {
+      const PanelClusters found = find_panel_clusters(cloud, request.fit.plane, region_of(config), config.clusters);
+      result.clusters = found.clusters;
+      result.clusters_dropped = found.dropped;
+    }
+    result.confidence = static_cast<float>(confidence_of(result, request.has_still, config));
+  } catch (...) {
+    if (failed != nullptr) *failed = true;
+    result.marker = {};
+    result.clusters.clear();
+    result.confidence = 0;
+  }
+  return result;
+}
+
+}  // namespace lf::vision
