@@ -11,7 +11,7 @@ class InputError : public std::runtime_error {
   explicit InputError(const std::string& message) : std::runtime_error(message) {}
   // "file:line: message"; line 0 leaves the line out.
   InputError(const std::string& file, int line, const std::string& message)
-      : std::runtime_error(file + (line > 0 ? ":" + std::to_string(line) : "") + ": " + message) {}
+      : std::runtime_error(file + (line > 0 ? std::string(":").append(std::to_string(line)) : "") + ": " + message) {}
 };
 
 }  // namespace lf

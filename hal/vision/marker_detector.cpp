@@ -46,7 +46,7 @@ const Family& family_from_name(const std::string& name) {
   std::string known;
   for (const Family& family : families()) {
     if (family.name == name) return family;
-    known += (known.empty() ? "" : ", ") + family.name;
+    known.append(known.empty() ? "" : ", ").append(family.name);
   }
   throw InputError("unknown marker family '" + name + "': " + known);
 }
