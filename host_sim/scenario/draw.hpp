@@ -1,0 +1,43 @@
+// One run out of a scenario: every random quantity drawn by a seed.
+//
+// Each quantity has a generator of its own, made of the seed and the quantity's name, so that a new one leaves all others as they were.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include "host_sim/scenario/scenario.hpp"
+#include "shared/geometry/pose.hpp"
+#include "shared/messages/joint_io.hpp"
+
+namespace lf::scenario {
+
+// SI units; angles in radians. Turns are vectors whose direction is the axis and whose length is the angle.
+struct Sample {
+  std::uint64_t seed = 0;
+  Vec3 docking_shift_m = Vec3::Zero();  // in the base frame
+  Vec3 docking_turn_rad = Vec3::Zero();
+  double valve_start_rad = 0;
+  double valve_friction_nm = 0;
+  double attenuation_per_m = 0;
+  double camera_noise_grey = 0;
+  bool lamps_lit = false;
+  Vec3 camera_shift_m = Vec3::Zero();  // in the camera frame
+  Vec3 camera_turn_rad = Vec3::Zero();
+  Vec3 laser_shift_m = Vec3::Zero();  // in the laser frame
+  Vec3 laser_turn_rad = Vec3::Zero();
+  std::array<double, joint_count> joint_offset_rad{};
+  Vec3 marker_shift_m = Vec3::Zero();  // in the panel frame, within its plane: z is 0
+  double marker_turn_rad = 0;          // about the panel's normal
+  std::uint64_t optics_seed = 0;
+  std::uint64_t devices_seed = 0;
+};
+
+Sample draw(const Scenario& scenario, std::uint64_t seed);
+
+// Uniform in [0, 1), 53 bits: splitmix64 (Steele, Lea, Flood, OOPSLA 2014) over the seed and the FNV-1a hash of the name.
+double uniform(std::uint64_t seed, std::string_view name);
+std::uint64_t bits(std::uint64_t seed, std::string_view name);
+
+}  // namespace lf::scenario

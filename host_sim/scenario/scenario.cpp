@@ -1,0 +1,135 @@
+#include "host_sim/scenario/scenario.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include "host_sim/scenario/keys.hpp"
+#include "host_sim/scenario/nearest.hpp"
+#include "host_sim/scenario/share.hpp"
+#include "host_sim/scenario/yaml_reader.hpp"
+#include "shared/input_error.hpp"
+
+namespace lf::scenario {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::uintmax_t largest_file = 1u << 20;  // a scenario has a few hundred lines; more is no scenario
+
+std::string read_text(const fs::path& path) {
+  std::error_code error;
+  if (fs::is_directory(path, error)) throw InputError(path.string() + ": is a folder, not a scenario");
+  const std::uintmax_t size = fs::file_size(path, error);
+  if (error) throw InputError(path.string() + ": " + error.message());
+  if (size > largest_file) throw InputError(path.string() + ": larger than 1 MB, not a scenario");
+  std::ifstream in(path, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  if (!in) throw InputError(path.string() + ": cannot be read");
+  return text;
+}
+
+YAML::Node parse(const std::string& text, const Source& source) {
+  try {
+    return YAML::Load(text);
+  } catch (const YAML::Exception& error) {
+    source.refuse(error.mark, "not YAML: " + error.msg);
+  }
+}
+
+std::vector<std::string> shipped_names() {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(share_folder() / "scenarios")) {
+    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+bool looks_like_a_file(const std::string& name) {
+  return name.find('/') != std::string::npos || name.ends_with(".yaml") || name.ends_with(".yml");
+}
+
+fs::path find_scenario(const std::string& file_or_name) {
+  if (looks_like_a_file(file_or_name)) return file_or_name;
+  const std::vector<std::string> names = shipped_names();
+  if (std::find(names.begin(), names.end(), file_or_name) != names.end()) return share_folder() / "scenarios" / (file_or_name + ".yaml");
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  const std::string near = suggestion(file_or_name, names);
+  throw InputError("no scenario '" + file_or_name + "'" + (near.empty() ? "; there are " + list + ", or give a file" : near));
+}
+
+void apply_override(Scenario& scenario, const std::string& text) {
+  const Source source = Source::of_override(text);
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0) source.refuse(YAML::Mark::null_mark(), "needs the form path.to.key=value");
+  const std::string path = text.substr(0, equals);
+  const std::vector<Key> table = keys(scenario);
+  const auto found = std::find_if(table.begin(), table.end(), [&](const Key& key) { return key.path == path; });
+  if (found == table.end()) source.refuse(YAML::Mark::null_mark(), "unknown key '" + path + "'" + suggest_path(path, table));
+  read_value(parse(text.substr(equals + 1), source), path, *found, source);
+}
+
+// What no single key can tell.
+void check_together(const Scenario& s, const std::string& where) {
+  const auto refuse = [&](const std::string& message) { throw InputError(where + ": " + message); };
+  if (s.valve.stop_min_deg >= s.valve.stop_max_deg) refuse("'valve.stop_min_deg' is not below 'valve.stop_max_deg'");
+  if (s.valve.start_deg.min < s.valve.stop_min_deg || s.valve.start_deg.max > s.valve.stop_max_deg)
+    refuse("'valve.start_deg' lies beyond the valve's stops");
+  if (s.buttons.release_depth_m >= s.buttons.click_depth_m) refuse("'buttons.release_depth_m' is not below 'buttons.click_depth_m'");
+  if (s.buttons.click_depth_m > s.panel.button_stroke_m) refuse("'buttons.click_depth_m' is beyond 'panel.button_stroke_m'");
+  if ((s.panel.plate_min_m.array() >= s.panel.plate_max_m.array()).any()) refuse("'panel.plate_min_m' is not below 'panel.plate_max_m'");
+  if (s.panel.marker_plate_m <= s.panel.marker_size_m) refuse("'panel.marker_plate_m' is not larger than 'panel.marker_size_m'");
+  if (s.camera.distortion.size() != 5) refuse("'camera.distortion' takes 5 numbers: k1, k2, p1, p2, k3");
+  std::size_t tasks = 0;
+  for (const Task& task : s.tasks) {
+    tasks += task.kind == Task::Kind::turn_valve ? 1 : task.order.size();
+    if (task.kind == Task::Kind::turn_valve && (task.to_deg < s.valve.stop_min_deg || task.to_deg > s.valve.stop_max_deg)) {
+      refuse("'turn_valve.to_deg' lies beyond the valve's stops");
+    }
+  }
+  if (tasks == 0) refuse("'tasks' is empty: there is nothing to do");
+  if (tasks > mission::MissionConfig::max_tasks) {
+    refuse("'tasks' has " + std::to_string(tasks) + " turns and presses; the core holds " +
+           std::to_string(mission::MissionConfig::max_tasks));
+  }
+  for (const Fault& fault : s.faults) {
+    const bool of_all =
+        fault.kind == "estop" || fault.kind == "interlock_open" || fault.kind == "drop_frames" || fault.kind == "error_frames";
+    if (!of_all && fault.node.empty()) refuse("'faults': " + fault.kind + " needs a node");
+    if (fault.kind == "drop_frames" && fault.can_id == 0) refuse("'faults': drop_frames needs a can_id");
+  }
+}
+
+}  // namespace
+
+Scenario load_scenario(const std::string& file_or_name, const std::vector<std::string>& overrides) {
+  const fs::path path = find_scenario(file_or_name);
+  Scenario scenario;
+  scenario.name = path.stem();
+  scenario.file = path;
+  const Source source = Source::of_file(path);
+  const YAML::Node root = parse(read_text(path), source);
+  if (!root.IsNull()) {
+    if (!root.IsMap()) source.refuse(root.Mark(), "a scenario is a group of keys");
+    read_map(root, "", "", keys(scenario), source);
+  }
+  for (const std::string& text : overrides) apply_override(scenario, text);
+  check_together(scenario, overrides.empty() ? source.name() : source.name() + " with --set");
+  return scenario;
+}
+
+std::vector<ShippedScenario> shipped_scenarios() {
+  std::vector<ShippedScenario> all;
+  for (const std::string& name : shipped_names()) {
+    const Scenario scenario = load_scenario(name);
+    all.push_back({name, scenario.description, scenario.file});
+  }
+  return all;
+}
+
+}  // namespace lf::scenario

@@ -1,0 +1,169 @@
+// What a run is made of, as its YAML file says: the place, the water, the machine's errors, the job, and what goes wrong.
+//
+// Every default is the initial value of its member, here or in the struct it comes from, and nowhere else; keys.hpp gives each its path, unit, range
+// and words. Members that a run draws at random are a Spread or a Chance; draw() turns them into a Sample. The unit is in the name; angles that a user
+// thinks of are in degrees.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "firmware/mission/mission_config.hpp"
+#include "host_sim/devices/devices_config.hpp"
+#include "host_sim/optics/optics.hpp"
+#include "host_sim/scenario/spread.hpp"
+#include "host_sim/world/world.hpp"
+#include "shared/calibration/calibration.hpp"
+#include "shared/panel/panel_layout.hpp"
+
+namespace lf::scenario {
+
+// How far the panel stands from its nominal place once the vehicle is docked: shifted along the base's axes, turned about them at the valve's base.
+struct Docking {
+  Spread x_m = Spread::around(0, 0.020);  // toward the panel
+  Spread y_m = Spread::around(0, 0.020);  // right
+  Spread z_m = Spread::around(0, 0.020);  // down
+  Spread roll_deg = Spread::around(0, 2);
+  Spread pitch_deg = Spread::around(0, 2);
+  Spread yaw_deg = Spread::around(0, 2);
+};
+
+struct Valve {
+  Spread start_deg = Spread::around(0, 40);
+  Spread friction_nm{0.5, 3};
+  double stop_min_deg = -105;  // +/-90 is clear of the stops
+  double stop_max_deg = 105;
+  std::vector<double> detents_deg{-90, 0, 90};  // the named positions: shut, half, open
+  double detent_nm = world::ValveConfig{}.detent_nm;
+  double viscous_nm_s = world::ValveConfig{}.viscous_nm_s;
+};
+
+struct Water {
+  Spread attenuation_per_m{0.1, 0.8};  // of green light, absorption and scattering together
+  double scattering_share = optics::WaterConfig{}.scattering_share;
+  double asymmetry = optics::WaterConfig{}.asymmetry;
+  double ambient = 1.0;  // daylight over the default's
+};
+
+struct Lamps {
+  Chance lit = Chance::either;  // whether the mission uses the lamps
+  double power = 1.0;           // over the default's
+};
+
+struct Camera {
+  bool always_on = false;  // a frame every camera period, needed or not
+  Spread noise_grey{1, 3};
+  std::int64_t exposure_us = 2000;
+  double blur_px = optics::CameraConfig{}.blur_px;
+  std::array<double, 3> position_m{0.015, -0.245, 0.060};
+  double down_deg = 43.5;
+  double right_deg = 20.75;
+  double focal_px = CameraIntrinsics{}.fx;
+  std::vector<double> distortion{-0.06, 0.02, 0.0005, -0.0005, 0.0};
+};
+
+struct Laser {
+  double power_w = optics::LaserConfig{}.power_w;
+  double waist_sigma_m = optics::LaserConfig{}.waist_sigma_m;
+  double fan_half_angle_deg = 40.0;                       // 38.5 is needed at the worst docking error
+  std::array<double, 3> position_m{-0.090, 0.0, -0.365};  // in the tool frame
+};
+
+// Assembly errors that nobody measured: between the machine as it is and as its calibration says. Drawn for each axis and joint on its own.
+struct Mounting {
+  Spread camera_m = Spread::around(0, 0.0002);
+  Spread camera_deg = Spread::around(0, 0.05);
+  Spread laser_m = Spread::around(0, 0.0002);
+  Spread laser_deg = Spread::around(0, 0.05);
+  Spread joints_deg = Spread::around(0, 0.05);
+  Spread marker_m = Spread::around(0, 0.0002);
+  Spread marker_deg = Spread::around(0, 0.05);
+};
+
+struct Arm {
+  std::string urdf = "arm/lanternfish_arm.urdf";
+};
+
+struct Jaw {
+  double torque_nm = 0;     // 0: as the URDF says
+  double pad_friction = 0;  // 0: as the URDF says
+};
+
+struct Physics {
+  double restitution = world::WorldConfig{}.restitution;
+  double joint_drag_nm_s = world::WorldConfig{}.joint_drag_nm_s;
+  double torque_noise_ratio = devices::DriveConfig{}.torque_noise_ratio;
+  double water_celsius = devices::DriveConfig{}.water_celsius;
+};
+
+struct Latency {
+  double image_ms = 30;
+  double panel_vision_ms = 300;
+};
+
+struct Sensors {
+  std::int64_t seed = 0;
+};
+
+struct Safety {
+  std::string limits = "safety/limits.yaml";
+};
+
+struct Task {
+  enum class Kind : std::uint8_t { turn_valve, press_buttons };
+  Kind kind = Kind::turn_valve;
+  double to_deg = 90;
+  std::vector<std::string> order{"left", "centre", "right"};
+};
+
+// Something that goes wrong during the run; devices::DeviceFault says what each kind does.
+struct Fault {
+  double at_s = 0;
+  std::string kind = "overcurrent";
+  std::string node;         // slew, shoulder, elbow, roll, jaw, io or master, where the kind is a node's
+  double duration_s = 0;    // 0: for the rest of the run
+  std::int64_t can_id = 0;  // drop_frames only
+};
+
+struct Scenario {
+  std::string name;  // of the file, without its ending
+  std::string file;  // where it was read
+  std::string description;
+  double time_limit_s = 400;
+  PanelLayout panel;
+  Docking docking;
+  Valve valve;
+  world::ButtonConfig buttons;  // all three
+  Water water;
+  Lamps lamps;
+  Camera camera;
+  Laser laser;
+  Mounting mounting;
+  Arm arm;
+  Jaw jaw;
+  Physics physics;
+  Latency latency;
+  Sensors sensors;
+  Safety safety;
+  mission::MissionConfig mission;  // its speeds, distances and tries; layout, lamps and tasks are filled from the rest
+  std::vector<Task> tasks{Task{}, Task{Task::Kind::press_buttons}};
+  std::vector<Fault> faults;
+};
+
+// Reads a file, or a shipped scenario by its name, then applies `overrides` ("path.to.key=value", the value in YAML) in their order.
+// Throws InputError in one line, "file:line: ..." or "--set key=value: ...": a missing or malformed file, an unknown, misspelt or repeated key (with the
+// nearest known one), a value of another type, out of its range or not a finite number, and values that do not go together.
+Scenario load_scenario(const std::string& file_or_name, const std::vector<std::string>& overrides = {});
+
+struct ShippedScenario {
+  std::string name;
+  std::string description;
+  std::string file;
+};
+
+// Those in the share folder, by name.
+std::vector<ShippedScenario> shipped_scenarios();
+
+}  // namespace lf::scenario
