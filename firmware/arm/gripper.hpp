@@ -1,0 +1,86 @@
+// The jaw: opens, closes, and knows held from empty by where it stalls and by the torque it takes to stay there.
+#pragma once
+
+#include <cstdint>
+
+#include "shared/arm/arm_geometry.hpp"
+#include "shared/messages/time.hpp"
+
+namespace lf::arm {
+
+// Distance between the pads' faces at their centres, m, negative where they would overlap; and the jaw angle for a distance (clamped to the limits).
+// At jaw angle 0 the pads are parallel.
+double gap_from_jaw(double jaw_rad);
+double jaw_from_gap(double gap_m);
+// Force of each pad, at its centre, for a jaw torque that both fingers share, N.
+double pad_force_n(double jaw_rad, double jaw_torque_nm);
+// How far the fingers reach beyond the tool point along the tool axis, m.
+double tip_beyond_tool_m(double jaw_rad);
+
+struct GripperConfig {
+  double bar_m = 0.0126;           // what is to be held
+  double bar_tolerance_m = 0.006;  // a stall within this of it is plausible: tilt, and the bar off the pads' middle
+  double grip_torque_nm = 6.0;     // to be reached before a stall counts as a grip
+  double hold_torque_nm = 2.0;     // less than this while holding: nothing is between the pads
+  double closing_speed_rad_s = 0.25;
+  double opening_speed_rad_s = 0.4;
+  double lead_rad =
+      0.05;  // the target runs ahead of the jaw by at most this: the squeeze while holding, and below the drive's following-error window
+  double stall_rad = 0.002;  // less movement than this within `stall_time` is a stall; 4 encoder counts
+  Duration stall_time = Duration::from_ms(150);
+  double slip_rad = 0.03;                           // closing further than this from the grip while holding: it slipped out
+  Duration move_timeout = Duration::from_ms(8000);  // the full stroke takes 5.6 s at the closing speed
+};
+
+enum class GripperState : std::uint8_t {
+  idle,     // holds its position
+  opening,  //
+  open,     // at the wanted opening
+  closing,
+  held,     // stalled on something as thick as the bar
+  empty,    // closed past the bar, nothing between the pads
+  dropped,  // was held, and is no more
+  jammed,   // stalled where it should not, or took too long
+};
+
+class Gripper {
+ public:
+  explicit Gripper(const GripperConfig& config = {}) : config_(config) {}
+
+  // Orders. The next update() begins them.
+  void open_to(double gap_m);
+  void close();
+  void stay();  // idle at the present position
+
+  // One SYNC: the jaw's measured angle and torque in; the angle to command out. A sample that is not a number, or not later than the one before,
+  // is refused and counted, and the last target stands.
+  double update(Time t, double jaw_rad, double torque_nm);
+
+  GripperState state() const { return state_; }
+  double target_rad() const { return target_rad_; }
+  double grip_gap_m() const { return grip_gap_m_; }  // at which it stalled; 0 before
+  std::uint32_t refused() const { return refused_; }
+
+ private:
+  enum class Order : std::uint8_t { none, stay, open, close };
+
+  void begin(Time t, double jaw_rad);
+  void move(Time t, double jaw_rad, double torque_nm, double dt_s);
+  void stalled_closing(double jaw_rad, double torque_nm);
+  void hold(double jaw_rad, double torque_nm);
+
+  GripperConfig config_;
+  GripperState state_ = GripperState::idle;
+  Order order_ = Order::stay;
+  double goal_rad_ = 0;
+  double target_rad_ = 0;
+  double grip_rad_ = 0;
+  double grip_gap_m_ = 0;
+  double still_rad_ = 0;  // where the jaw was when it last moved
+  Time still_since_, began_, last_;
+  bool started_ = false;
+  std::uint32_t low_torque_run_ = 0;
+  std::uint32_t refused_ = 0;
+};
+
+}  // namespace lf::arm

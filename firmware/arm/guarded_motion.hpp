@@ -1,0 +1,67 @@
+// Knows from the drives alone that the arm touches something: torque above what free motion takes, or a joint that no longer follows.
+//
+// The torque of free motion (screw friction, the arm's wet weight, drag) is learned on the way: over the first samples of a motion, and slowly
+// after that, so that a pose-dependent weight does not add up to a contact. A contact is many times faster than this drift.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "firmware/arm/kinematics.hpp"
+#include "shared/messages/time.hpp"
+
+namespace lf::arm {
+
+struct GuardConfig {
+  JointVector contact_torque_nm{4.0, 4.0, 4.0, 2.0};      // rise over the baseline. 10 N at the tool, 0.4 m from the shoulder, are 4 N m
+  JointVector overload_torque_nm{45.0, 45.0, 45.0, 9.0};  // without regard to the baseline; 1.5 x the rated torque
+  JointVector following_rad{0.03, 0.03, 0.03, 0.12};      // command less position; 3 x the lag at full speed with a position loop of 20 / s
+  double filter_s = 0.012;                                // first-order low pass of the torque: 3 SYNCs, against single outliers
+  double baseline_s = 1.0;                                // time constant with which the baseline follows while free
+  std::uint32_t learning = 25;  // samples averaged into the first baseline: 0.1 s; no contact is reported meanwhile, an overload is
+  std::uint32_t debounce = 3;   // samples in a row that say so before it is believed
+};
+
+enum class GuardState : std::uint8_t {
+  learning,
+  free,
+  contact,   // latched until reset()
+  overload,  // latched
+};
+
+enum class GuardCause : std::uint8_t { none, torque, following_error };
+
+class GuardedMotion {
+ public:
+  explicit GuardedMotion(const GuardConfig& config = {}) : config_(config) {}
+
+  // Starts anew: forgets the baseline.
+  void reset();
+
+  // One SYNC's measurements. A sample with a value that is not a number is refused and counted, and so is one not later than the one before.
+  GuardState update(Time t, const JointVector& command_rad, const JointVector& position_rad, const JointVector& torque_nm);
+
+  GuardState state() const { return state_; }
+  GuardCause cause() const { return cause_; }
+  Joint joint() const { return joint_; }  // that showed it first
+  bool touched() const { return state_ == GuardState::contact || state_ == GuardState::overload; }
+  const JointVector& excess_torque_nm() const { return excess_nm_; }  // filtered torque less baseline
+  std::uint32_t refused() const { return refused_; }
+
+ private:
+  void latch(GuardState state, GuardCause cause, std::size_t joint);
+
+  GuardConfig config_;
+  GuardState state_ = GuardState::learning;
+  GuardCause cause_ = GuardCause::none;
+  Joint joint_ = Joint::slew;
+  Time last_;
+  std::uint32_t samples_ = 0;
+  std::uint32_t refused_ = 0;
+  JointVector filtered_nm_ = JointVector::Zero();
+  JointVector baseline_nm_ = JointVector::Zero();
+  JointVector excess_nm_ = JointVector::Zero();
+  std::array<std::uint32_t, arm_joint_count> torque_run_{}, following_run_{}, overload_run_{};
+};
+
+}  // namespace lf::arm
