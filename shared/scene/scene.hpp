@@ -22,6 +22,7 @@ struct Shape {
   bool collides = true;
   bool visible = true;
   std::int32_t marker_id = -1;   // a 36h11 tag drawn on the +z face (box only), x right and y up; -1 none
+                                 // upright as AprilTag's own images have it: OpenCV's dictionaries draw it turned by half a turn
   double marker_size_m = 0;      // side of its black square
   std::vector<Vec3> vertices_m;  // mesh only
   std::vector<std::array<std::uint32_t, 3>> triangles;
