@@ -17,7 +17,7 @@ constexpr Albedo bezel_grey{0.25f, 0.26f, 0.28f};
 constexpr std::array<Albedo, PanelLayout::button_count> cap_colours{Albedo{0.72f, 0.09f, 0.08f}, Albedo{0.09f, 0.48f, 0.14f},
                                                                     Albedo{0.10f, 0.20f, 0.66f}};
 
-// Friction of a pair is the product of both. Fingers bring 0.7 (rubber pads, from the URDF): 0.7 on the bar, as rubber on wet steel.
+// Friction of a pair is the product of both: the URDF's rubber pads bring 0.8, which is then 0.8 on the bar.
 constexpr double bar_friction = 1.0;
 constexpr double default_friction = 0.6;
 
@@ -56,15 +56,11 @@ void add_vehicle(Body& vehicle) {
   vehicle.shapes.push_back(shape(ShapeKind::capsule, hull_size, along(Vec3(-0.55, -0.35, -0.85), forward), vehicle_yellow));
   vehicle.shapes.push_back(shape(ShapeKind::capsule, hull_size, along(Vec3(-0.55, 0.35, -0.85), forward), vehicle_yellow));
   vehicle.shapes.push_back(shape(ShapeKind::capsule, Vec3(0.15, 0, 0.85), along(Vec3(-0.60, 0, -0.30), forward), vehicle_yellow));
-  vehicle.shapes.push_back(shape(ShapeKind::box, Vec3(0.70, 0.60, 0.02), at(-0.37, 0, -0.085), skid_grey));
+  vehicle.shapes.push_back(shape(ShapeKind::box, Vec3(0.70, 0.60, 0.02), at(-0.37, 0, -0.115), skid_grey));
   for (const double y : {-0.30, 0.30}) {
-    vehicle.shapes.push_back(shape(ShapeKind::cylinder, Vec3(0.02, 0, 0.70), along(Vec3(-0.37, y, -0.085), forward), skid_grey));
+    vehicle.shapes.push_back(shape(ShapeKind::cylinder, Vec3(0.02, 0, 0.70), along(Vec3(-0.37, y, -0.115), forward), skid_grey));
     vehicle.shapes.push_back(shape(ShapeKind::box, Vec3(0.03, 0.03, 0.75), at(-0.30, y, -0.46), skid_grey));
   }
-  // The camera's housing: behind the projection centre of the nominal mounting, along its axis, clear of its view.
-  const Vec3 camera(0.015, -0.245, 0.060);
-  const Vec3 view = Vec3(0.678, 0.257, 0.688).normalized();
-  vehicle.shapes.push_back(decoration(shape(ShapeKind::cylinder, Vec3(0.03, 0, 0.10), along(camera - 0.075 * view, view), housing_black)));
 }
 
 void add_panel(Body& panel, const PanelLayout& layout) {

@@ -1,0 +1,143 @@
+#include "host_sim/world/arm_body.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+
+#include "host_sim/world/bullet_types.hpp"
+
+namespace lf::world {
+namespace {
+
+constexpr std::size_t jaw = std::size_t(Joint::jaw);
+constexpr int finger_b_link = 5;
+
+// The joint that drives Bullet's link: the two fingers share the jaw's.
+std::size_t joint_of(int link) { return link == finger_b_link ? jaw : std::size_t(link); }
+
+const ArmJoint& joint_before(const ArmDescription& arm, int link) {
+  return link == finger_b_link ? arm.finger_b : arm.joints[std::size_t(link)];
+}
+
+// Both fingers hang on the wrist.
+int parent_of(int link) { return link == finger_b_link ? link - 2 : link - 1; }
+
+}  // namespace
+
+ArmBody::ArmBody(const ArmDescription& arm, const scene::Scene& scene, const Config& config)
+    : arm_(arm), config_(config), part_(bullet_links, Pose::Identity()) {
+  set_up_links();
+  part_.finish_links();
+  for (int link = -1; link < bullet_links; ++link) {
+    const auto body = std::size_t(link + 1);
+    part_.add_collider(link, make_collision_shape(scene[body], link_from_frame_[body]), int(body), config.restitution);
+  }
+  for (int link = 0; link < bullet_links; ++link) {
+    const ArmJoint& joint = joint_before(arm_, link);
+    const ArmJoint& drive = arm_.joints[joint_of(link)];
+    joints_[std::size_t(link)] = {link, joint.lower_rad, joint.upper_rad, drive.backlash_rad, drive.holding_torque_nm};
+    rows_[std::size_t(link)] = &part_.add_rows(link);
+  }
+  start_at(config.start_rad);
+}
+
+void ArmBody::set_up_links() {
+  link_from_frame_[0] = Pose::Identity();  // the base does not move: its mass does not matter
+  principal_kg_m2_[0] = Vec3::Ones();
+  for (int link = 0; link < bullet_links; ++link) {
+    const auto index = std::size_t(link + 1);
+    const ArmLink& description = arm_.links[index];
+    const Eigen::SelfAdjointEigenSolver<Mat3> axes(description.inertia_kg_m2);
+    Pose com_from_frame = Pose::Identity();
+    com_from_frame.linear() = axes.eigenvectors();
+    if (com_from_frame.linear().determinant() < 0) com_from_frame.linear().col(2) *= -1;
+    link_from_frame_[index] = description.link_from_com * com_from_frame;
+    principal_kg_m2_[index] = axes.eigenvalues();
+
+    const ArmJoint& joint = joint_before(arm_, link);
+    const int parent = parent_of(link);
+    const Pose& frame = link_from_frame_[index];
+    const Pose parent_frame_from_joint = link_from_frame_[std::size_t(parent + 1)].inverse() * joint.parent_from_joint;
+    const Mat3 frame_from_parent_frame = (parent_frame_from_joint.linear() * frame.linear()).transpose();
+    const Mat3 frame_from_link = frame.linear().transpose();
+    part_.body().setupRevolute(link, description.mass_kg, to_bullet(principal_kg_m2_[index]), parent, to_bullet(frame_from_parent_frame),
+                               to_bullet(Vec3(frame_from_link * joint.axis.normalized())),
+                               to_bullet(Vec3(parent_frame_from_joint.translation())),
+                               to_bullet(Vec3(frame_from_link * frame.translation())), false);
+  }
+}
+
+void ArmBody::start_at(const std::array<double, joint_count>& start_rad) {
+  for (int link = 0; link < bullet_links; ++link) part_.body().setJointPos(link, start_rad[joint_of(link)]);
+  part_.update_poses();
+  motor_rad_ = start_rad;
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    readings_[i] = {start_rad[i], start_rad[i], 0, 0};
+    drives_[i].released = true;
+  }
+}
+
+void ArmBody::before_step() {
+  btMultiBody& body = part_.body();
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    plan_[i] = plan_drive(drives_[i], arm_.joints[i].holding_torque_nm, motor_rad_[i], config_.step_s);
+  }
+  for (int link = 0; link < bullet_links; ++link) {
+    const auto i = std::size_t(link);
+    const bool finger = joint_of(link) == jaw;
+    rows_[i]->begin();
+    stall_nm_[i] = set_drive_rows(*rows_[i], joints_[i], plan_[joint_of(link)], body.getJointPos(link), config_.step_s);
+    rows_[i]->apply_start(config_.step_s);
+    const double drag_nm_s = config_.joint_drag_nm_s * (finger ? 0.1 : 1.0);
+    body.addJointTorque(link, stall_nm_[i] - drag_nm_s * body.getJointVel(link));
+    body.addLinkForce(link, btVector3(0, 0, arm_.links[i + 1].wet_weight_n));
+  }
+}
+
+void ArmBody::after_step() {
+  btMultiBody& body = part_.body();
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    const int link = int(i);
+    motor_rad_[i] = motor_in_play(plan_[i].motor_rad, body.getJointPos(link), joints_[i].backlash_rad);
+    double position_rad = body.getJointPos(link);
+    double velocity_rad_s = body.getJointVel(link);
+    double torque_nm = drive_torque_nm(*rows_[i], config_.step_s) + stall_nm_[i];
+    if (i == jaw) {  // one motor for both fingers: the screw stops when either finger stops it
+      motor_rad_[i] = motor_in_play(motor_rad_[i], body.getJointPos(finger_b_link), joints_[i].backlash_rad);
+      position_rad = 0.5 * (position_rad + body.getJointPos(finger_b_link));
+      velocity_rad_s = 0.5 * (velocity_rad_s + body.getJointVel(finger_b_link));
+      torque_nm = 0.5 * (torque_nm + drive_torque_nm(*rows_[finger_b_link], config_.step_s) + stall_nm_[finger_b_link]);
+    }
+    readings_[i] = {position_rad, motor_rad_[i], velocity_rad_s, torque_nm};
+  }
+}
+
+Pose ArmBody::base_from_link(std::size_t link) const {
+  return link == 0 ? Pose::Identity() : Pose(part_.base_from_link(int(link) - 1) * link_from_frame_[link].inverse());
+}
+
+Pose ArmBody::base_from_tool() const { return base_from_link(4) * arm_.wrist_from_tool; }
+
+double ArmBody::kinetic_energy_j() const {
+  // Velocities of the links from the joints', outward along the chain.
+  const btMultiBody& body = part_.body();
+  std::array<Vec3, ArmDescription::link_count> turn;
+  std::array<Vec3, ArmDescription::link_count> speed;  // of the centre of mass
+  turn[0] = speed[0] = Vec3::Zero();
+  double energy = 0;
+  for (int link = 0; link < bullet_links; ++link) {
+    const auto index = std::size_t(link + 1);
+    const auto parent = std::size_t(parent_of(link) + 1);
+    const Pose frame = part_.base_from_link(link);
+    const Pose origin = base_from_link(index);
+    const Vec3 axis = origin.linear() * joint_before(arm_, link).axis.normalized();
+    turn[index] = turn[parent] + axis * body.getJointVel(link);
+    const Vec3 at_origin = speed[parent] + turn[parent].cross(origin.translation() - part_.base_from_link(parent_of(link)).translation());
+    speed[index] = at_origin + turn[index].cross(frame.translation() - origin.translation());
+    const Vec3 in_frame = frame.linear().transpose() * turn[index];
+    energy +=
+        0.5 * arm_.links[index].mass_kg * speed[index].squaredNorm() + 0.5 * in_frame.dot(principal_kg_m2_[index].cwiseProduct(in_frame));
+  }
+  return energy;
+}
+
+}  // namespace lf::world

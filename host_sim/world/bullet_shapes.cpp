@@ -1,0 +1,68 @@
+#include "host_sim/world/bullet_shapes.hpp"
+
+#include <BulletCollision/CollisionShapes/btBoxShape.h>
+#include <BulletCollision/CollisionShapes/btCapsuleShape.h>
+#include <BulletCollision/CollisionShapes/btConvexHullShape.h>
+#include <BulletCollision/CollisionShapes/btCylinderShape.h>
+#include <BulletCollision/CollisionShapes/btSphereShape.h>
+
+#include <algorithm>
+
+#include "host_sim/world/bullet_types.hpp"
+
+namespace lf::world {
+namespace {
+
+// Rounds the edges of boxes, cylinders and hulls inside their true surface. Bullet's 40 mm would swallow a 12.6 mm handle; below about
+// 0.1 mm GJK loses the closest points of touching faces.
+constexpr double edge_radius_m = 0.0005;
+
+std::unique_ptr<btCollisionShape> convex_shape(const scene::Shape& shape) {
+  using scene::ShapeKind;
+  const Vec3& size = shape.size_m;
+  std::unique_ptr<btCollisionShape> made;
+  switch (shape.kind) {
+    case ShapeKind::box:
+      made = std::make_unique<btBoxShape>(to_bullet(Vec3(0.5 * size)));
+      break;
+    case ShapeKind::cylinder:
+      made = std::make_unique<btCylinderShapeZ>(btVector3(size.x(), size.x(), 0.5 * size.z()));
+      break;
+    case ShapeKind::capsule:
+      return std::make_unique<btCapsuleShapeZ>(size.x(), size.z());
+    case ShapeKind::sphere:
+      return std::make_unique<btSphereShape>(size.x());
+    case ShapeKind::mesh: {
+      auto hull = std::make_unique<btConvexHullShape>();
+      for (const Vec3& vertex : shape.vertices_m) hull->addPoint(to_bullet(vertex), false);
+      hull->recalcLocalAabb();
+      made = std::move(hull);
+      break;
+    }
+  }
+  made->setMargin(edge_radius_m);
+  return made;
+}
+
+}  // namespace
+
+CollisionShape make_collision_shape(const scene::Body& body, const Pose& body_from_frame) {
+  CollisionShape made;
+  made.compound = std::make_unique<btCompoundShape>();
+  double friction = 0;
+  for (const scene::Shape& shape : body.shapes) {
+    if (!shape.collides) continue;
+    made.children.push_back(convex_shape(shape));
+    made.compound->addChildShape(to_bullet(Pose(body_from_frame.inverse() * shape.body_from_shape)), made.children.back().get());
+    friction = std::max(friction, shape.friction);
+  }
+  if (made.children.empty()) {
+    made.children.push_back(std::make_unique<btSphereShape>(1e-4));
+    made.compound->addChildShape(btTransform::getIdentity(), made.children.back().get());
+  } else {
+    made.friction = friction;
+  }
+  return made;
+}
+
+}  // namespace lf::world

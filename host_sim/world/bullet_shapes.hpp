@@ -1,0 +1,24 @@
+// Bullet's collision shape of a body of the scene. Internal to this folder.
+#pragma once
+
+#include <BulletCollision/CollisionShapes/btCompoundShape.h>
+
+#include <memory>
+#include <vector>
+
+#include "shared/geometry/pose.hpp"
+#include "shared/scene/scene.hpp"
+
+namespace lf::world {
+
+// A compound and the shapes it is made of, which it does not own by itself.
+struct CollisionShape {
+  std::unique_ptr<btCompoundShape> compound;
+  std::vector<std::unique_ptr<btCollisionShape>> children;
+  double friction = 0.6;  // the largest of the shapes: Bullet has one a body
+};
+
+// The shapes of `body` with `collides`, seen from `body_from_frame`; a point that touches nothing when there is none.
+CollisionShape make_collision_shape(const scene::Body& body, const Pose& body_from_frame);
+
+}  // namespace lf::world

@@ -1,0 +1,116 @@
+#include "host_sim/world/contact_sensor.hpp"
+
+#include <BulletCollision/CollisionDispatch/btCollisionObject.h>
+#include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
+
+#include <algorithm>
+
+#include "host_sim/world/bullet_types.hpp"
+
+namespace lf::world {
+namespace {
+
+using scene::BodyId;
+
+bool is_finger(BodyId body) { return body == BodyId::finger_a || body == BodyId::finger_b; }
+bool is_beyond_wrist(BodyId body) { return body == BodyId::wrist || is_finger(body); }
+bool is_robot(BodyId body) { return body <= BodyId::finger_b; }
+bool is_handled(BodyId body) { return body >= BodyId::handle; }
+
+void add(Wrench& sum, const Vec3& impulse, const Vec3& arm) {
+  sum.force_n += impulse;
+  sum.torque_nm += arm.cross(impulse);
+}
+
+ContactImpulse reversed(const ContactImpulse& contact) { return {contact.b, contact.a, contact.point_m, -contact.impulse_n_s}; }
+
+}  // namespace
+
+void take_contact_impulses(btDispatcher& dispatcher, std::vector<ContactImpulse>& impulses) {
+  impulses.clear();
+  for (int m = 0; m < dispatcher.getNumManifolds(); ++m) {
+    btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(m);
+    const int a = manifold.getBody0()->getUserIndex();
+    const int b = manifold.getBody1()->getUserIndex();
+    if (a < 0 || b < 0) continue;
+    for (int c = 0; c < manifold.getNumContacts(); ++c) {
+      btManifoldPoint& point = manifold.getContactPoint(c);
+      const btVector3 impulse = point.m_appliedImpulse * point.m_normalWorldOnB +
+                                point.m_appliedImpulseLateral1 * point.m_lateralFrictionDir1 +
+                                point.m_appliedImpulseLateral2 * point.m_lateralFrictionDir2;
+      point.m_appliedImpulse = point.m_appliedImpulseLateral1 = point.m_appliedImpulseLateral2 = 0;
+      if (impulse.isZero()) continue;
+      const btVector3 middle = 0.5 * (point.getPositionWorldOnA() + point.getPositionWorldOnB());
+      impulses.push_back({BodyId(a), BodyId(b), from_bullet(middle), from_bullet(impulse)});
+    }
+  }
+}
+
+bool contact_is_intended(BodyId a, BodyId b) {
+  return (is_finger(a) && (is_finger(b) || is_handled(b))) || (is_finger(b) && is_handled(a));
+}
+
+ContactSensor::ContactSensor(double window_s, double step_s, const Vec3& vehicle_com_m)
+    : window_s_(window_s),
+      step_s_(step_s),
+      vehicle_com_m_(vehicle_com_m),
+      tool_(window_s, step_s),
+      base_(window_s, step_s),
+      handle_(window_s, step_s),
+      grip_{ForceWindow(window_s, step_s), ForceWindow(window_s, step_s)} {}
+
+void ContactSensor::take(const std::vector<ContactImpulse>& impulses, const Pose& base_from_tool, double time_s) {
+  Wrench tool, base, handle;
+  std::array<Wrench, 2> grip;
+  const Mat3 tool_from_base = base_from_tool.linear().transpose();
+  for (const ContactImpulse& seen : impulses) {
+    for (const ContactImpulse& contact : {seen, reversed(seen)}) {
+      if (contact.a == BodyId::handle) add(handle, contact.impulse_n_s, Vec3::Zero());
+      if (!is_robot(contact.a) || is_robot(contact.b)) continue;
+      add(base, contact.impulse_n_s, contact.point_m - vehicle_com_m_);
+      if (is_beyond_wrist(contact.a)) {
+        add(tool, tool_from_base * contact.impulse_n_s, tool_from_base * (contact.point_m - base_from_tool.translation()));
+      }
+      if (is_finger(contact.a) && contact.b == BodyId::handle) {
+        add(grip[contact.a == BodyId::finger_a ? 0 : 1], tool_from_base * contact.impulse_n_s, Vec3::Zero());
+      }
+    }
+    if (!contact_is_intended(seen.a, seen.b)) add_to_unintended(seen, time_s);
+  }
+  tool_.add(tool);
+  base_.add(base);
+  handle_.add(handle);
+  for (std::size_t i = 0; i < grip.size(); ++i) grip_[i].add(grip[i]);
+  peak_force_n_ = std::max(peak_force_n_, base_.mean().force_n.norm());
+  for (Unintended& pair : unintended_) {
+    pair.force.add(pair.step);
+    pair.step = {};
+    pair.contact.peak_force_n = std::max(pair.contact.peak_force_n, pair.force.mean().force_n.norm());
+  }
+}
+
+void ContactSensor::add_to_unintended(const ContactImpulse& contact, double time_s) {
+  const BodyId first = std::min(contact.a, contact.b);
+  const BodyId second = std::max(contact.a, contact.b);
+  auto found = std::find_if(unintended_.begin(), unintended_.end(),
+                            [&](const Unintended& pair) { return pair.contact.a == first && pair.contact.b == second; });
+  if (found == unintended_.end()) {
+    unintended_.push_back({{first, second, time_s, 0}, ForceWindow(window_s_, step_s_), {}});
+    found = unintended_.end() - 1;
+  }
+  const Vec3 on_first = contact.a == first ? contact.impulse_n_s : Vec3(-contact.impulse_n_s);
+  add(found->step, on_first, Vec3::Zero());
+}
+
+ContactReport ContactSensor::report() const {
+  ContactReport report;
+  report.tool_wrench = tool_.mean();
+  report.base_wrench = base_.mean();
+  report.handle_force_n = handle_.mean().force_n;
+  report.grip_force_n = 0.5 * (std::abs(grip_[0].mean().force_n.x()) + std::abs(grip_[1].mean().force_n.x()));
+  report.peak_force_n = peak_force_n_;
+  for (const Unintended& pair : unintended_) report.unintended.push_back(pair.contact);
+  return report;
+}
+
+}  // namespace lf::world

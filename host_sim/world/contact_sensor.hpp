@@ -1,0 +1,53 @@
+// Reads what contacts did in a step and keeps the forces that sensors would show. Internal to this folder.
+#pragma once
+
+#include <BulletCollision/BroadphaseCollision/btDispatcher.h>
+
+#include <array>
+#include <vector>
+
+#include "host_sim/world/contact_force.hpp"
+#include "host_sim/world/world.hpp"
+
+namespace lf::world {
+
+// The impulse of the last step on body `a` by body `b`, in B.
+struct ContactImpulse {
+  scene::BodyId a{}, b{};
+  Vec3 point_m = Vec3::Zero();
+  Vec3 impulse_n_s = Vec3::Zero();
+};
+
+// All contacts that exchanged an impulse in the last step, in Bullet's order. Clears the impulses, which Bullet would keep for contacts that it does not
+// solve again. Colliders whose user index is not a body of the scene are left out.
+void take_contact_impulses(btDispatcher& dispatcher, std::vector<ContactImpulse>& impulses);
+
+// Fingers may touch each other, the handle and the buttons; the handle and the buttons never touch the panel they are set in.
+bool contact_is_intended(scene::BodyId a, scene::BodyId b);
+
+class ContactSensor {
+ public:
+  ContactSensor(double window_s, double step_s, const Vec3& vehicle_com_m);
+
+  // Takes the last step's impulses. `base_from_tool` is the tool as the step began.
+  void take(const std::vector<ContactImpulse>& impulses, const Pose& base_from_tool, double time_s);
+  ContactReport report() const;
+
+ private:
+  struct Unintended {
+    UnintendedContact contact;
+    ForceWindow force;
+    Wrench step;
+  };
+
+  void add_to_unintended(const ContactImpulse& contact, double time_s);
+
+  double window_s_, step_s_;
+  Vec3 vehicle_com_m_;
+  ForceWindow tool_, base_, handle_;
+  std::array<ForceWindow, 2> grip_;
+  double peak_force_n_ = 0;
+  std::vector<Unintended> unintended_;
+};
+
+}  // namespace lf::world

@@ -1,0 +1,69 @@
+#include "host_sim/world/joint_rows.hpp"
+
+#include <BulletDynamics/Featherstone/btMultiBody.h>
+#include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
+
+#include <algorithm>
+
+namespace lf::world {
+
+JointRows::JointRows(btMultiBody* body, int link)
+    : btMultiBodyConstraint(body, nullptr, link, -1, int(slot_count), false, MULTIBODY_CONSTRAINT_1DOF_JOINT_MOTOR) {
+  finalizeMultiDof();
+  for (std::size_t i = 0; i < slot_count; ++i) internalSetAppliedImpulse(int(i), 0);
+}
+
+void JointRows::finalizeMultiDof() {
+  allocateJacobiansMultiDof();
+  const int offset = 6 + m_bodyA->getLink(m_linkA).m_dofOffset;
+  for (int row = 0; row < int(slot_count); ++row) jacobianA(row)[offset] = 1;
+  m_numDofsFinalized = m_jacSizeBoth;
+}
+
+int JointRows::getIslandIdA() const {
+  const btMultiBodyLinkCollider* collider = m_bodyA->getLink(m_linkA).m_collider;
+  return collider != nullptr ? collider->getIslandTag() : -1;
+}
+
+void JointRows::begin() {
+  for (std::size_t i = 0; i < slot_count; ++i) {
+    slots_[i].start = impulse(i);
+    slots_[i].used = false;
+    internalSetAppliedImpulse(int(i), 0);
+  }
+}
+
+void JointRows::set(std::size_t slot, const Row& row) {
+  slots_[slot].row = row;
+  slots_[slot].used = true;
+}
+
+void JointRows::apply_start(double step_s) {
+  double sum = 0;
+  for (Slot& slot : slots_) {
+    slot.start = slot.used ? std::clamp(slot.start, slot.row.impulse_min, slot.row.impulse_max) : 0;
+    sum += slot.start;
+  }
+  if (sum != 0) m_bodyA->addJointTorque(m_linkA, sum / step_s);
+}
+
+double JointRows::impulse(std::size_t slot) const { return slots_[slot].start + m_data[int(slot)]; }
+
+void JointRows::createConstraintRows(btMultiBodyConstraintArray& rows, btMultiBodyJacobianData& data, const btContactSolverInfo& info) {
+  const btVector3 unused(0, 0, 0);
+  for (int i = 0; i < int(slot_count); ++i) {
+    const Slot& slot = slots_[std::size_t(i)];
+    if (!slot.used) continue;
+    btMultiBodySolverConstraint& row = rows.expandNonInitializing();
+    fillMultiBodyConstraint(row, data, jacobianA(i), jacobianB(i), unused, unused, unused, unused, 0, info,
+                            slot.row.impulse_min - slot.start, slot.row.impulse_max - slot.start, false, 1, false, slot.row.speed);
+    row.m_orgConstraint = this;
+    row.m_orgDofIndex = i;
+    row.m_contactNormal1.setZero();
+    row.m_contactNormal2.setZero();
+    row.m_relpos1CrossNormal.setZero();
+    row.m_relpos2CrossNormal.setZero();
+  }
+}
+
+}  // namespace lf::world

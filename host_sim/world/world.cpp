@@ -1,0 +1,191 @@
+#include "host_sim/world/world.hpp"
+
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+
+#include <bit>
+
+#include "host_sim/world/arm_body.hpp"
+#include "host_sim/world/bullet_types.hpp"
+#include "host_sim/world/bullet_world.hpp"
+#include "host_sim/world/button_body.hpp"
+#include "host_sim/world/config_check.hpp"
+#include "host_sim/world/contact_sensor.hpp"
+#include "host_sim/world/valve_body.hpp"
+
+namespace lf::world {
+namespace {
+
+using scene::BodyId;
+
+// The valve and the buttons join the simulation when the arm comes this near, and leave it once they rest and it is gone: at rest they change nothing. The arm
+// moves by less than 2 mm a step.
+constexpr double near_m = 0.02;
+
+const WorldConfig& checked(const WorldConfig& config) {
+  check(config);
+  return config;
+}
+
+Pose base_from_button(const WorldConfig& config, std::size_t index) {
+  const Vec2& centre = config.layout.buttons_m[index];
+  return config.base_from_panel * Eigen::Translation3d(centre.x(), centre.y(), 0);
+}
+
+struct Box {
+  btVector3 min_m, max_m;
+};
+
+Box box_of(const MultibodyPart& part) {
+  const btCollisionObject& collider = *part.colliders().back();
+  Box box;
+  collider.getCollisionShape()->getAabb(collider.getWorldTransform(), box.min_m, box.max_m);
+  box.min_m -= btVector3(near_m, near_m, near_m);
+  box.max_m += btVector3(near_m, near_m, near_m);
+  return box;
+}
+
+class Digest {
+ public:
+  void add(double value) {
+    const auto bits = std::bit_cast<std::uint64_t>(value);
+    for (int byte = 0; byte < 8; ++byte) hash_ = (hash_ ^ ((bits >> (8 * byte)) & 0xFF)) * 0x100000001b3ULL;
+  }
+  void add(const Vec3& v) {
+    for (int i = 0; i < 3; ++i) add(v[i]);
+  }
+  std::uint64_t value() const { return hash_; }
+
+ private:
+  std::uint64_t hash_ = 0xcbf29ce484222325ULL;  // FNV-1a offset and prime, 64 bits
+};
+
+}  // namespace
+
+struct World::Impl {
+  WorldConfig config;
+  BulletWorld bullet;
+  ArmBody arm;
+  CollisionShape panel_shape;
+  std::unique_ptr<btRigidBody> panel;
+  ValveBody valve;
+  std::array<ButtonBody, PanelLayout::button_count> buttons;
+  ContactSensor sensor;
+  std::vector<ContactImpulse> impulses;
+  std::int64_t steps = 0;
+
+  explicit Impl(const WorldConfig& from)
+      : config(checked(from)),
+        bullet(config.solver_iterations),
+        arm(config.arm, config.scene, {config.start_rad, config.joint_drag_nm_s, config.restitution, config.step_s}),
+        panel_shape(make_collision_shape(config.scene[std::size_t(BodyId::panel)], Pose::Identity())),
+        valve(config.valve, config.base_from_panel, config.scene[std::size_t(BodyId::handle)], config.restitution, config.step_s),
+        buttons{make_button(0), make_button(1), make_button(2)},
+        sensor(config.force_window_s, config.step_s, config.vehicle_com_m) {
+    arm.part().enter(bullet.get());
+    panel = std::make_unique<btRigidBody>(0, nullptr, panel_shape.compound.get());
+    panel->setWorldTransform(to_bullet(config.base_from_panel));
+    panel->setFriction(panel_shape.friction);
+    panel->setRestitution(config.restitution);
+    panel->setUserIndex(int(BodyId::panel));
+    bullet.get().addCollisionObject(panel.get());
+    if (config.restitution > 0) {
+      panel->setContactProcessingThreshold(0);
+      bullet.make_restitution_exact();
+    }
+  }
+
+  ~Impl() {
+    for (ButtonBody& button : buttons) button.part().leave(bullet.get());
+    valve.part().leave(bullet.get());
+    bullet.get().removeCollisionObject(panel.get());
+    arm.part().leave(bullet.get());
+  }
+
+  ButtonBody make_button(std::size_t i) const {
+    const std::size_t body = std::size_t(BodyId::button_left) + i;
+    return ButtonBody(config.buttons[i], base_from_button(config, i), config.scene[body], int(body), config.restitution, config.step_s);
+  }
+
+  bool arm_is_near(const MultibodyPart& part) {
+    const Box box = box_of(part);
+    for (const auto& collider : arm.part().colliders()) {
+      const btBroadphaseProxy& proxy = *collider->getBroadphaseHandle();
+      if (TestAabbAgainstAabb2(box.min_m, box.max_m, proxy.m_aabbMin, proxy.m_aabbMax)) return true;
+    }
+    return false;
+  }
+
+  template <typename Mechanism>
+  void enter_or_leave(Mechanism& mechanism) {
+    const bool near = arm_is_near(mechanism.part());
+    if (near && !mechanism.part().entered()) mechanism.part().enter(bullet.get());
+    if (!near && mechanism.part().entered() && mechanism.at_rest()) mechanism.part().leave(bullet.get());
+  }
+
+  void step() {
+    enter_or_leave(valve);
+    for (ButtonBody& button : buttons) enter_or_leave(button);
+    const Pose base_from_tool = arm.base_from_tool();
+    arm.before_step();
+    if (valve.part().entered()) valve.before_step();
+    for (ButtonBody& button : buttons) {
+      if (button.part().entered()) button.before_step();
+    }
+    bullet.step(config.step_s);
+    arm.after_step();
+    for (ButtonBody& button : buttons) {
+      if (button.part().entered()) button.after_step();
+    }
+    ++steps;
+    take_contact_impulses(*bullet.get().getDispatcher(), impulses);
+    sensor.take(impulses, base_from_tool, double(steps) * config.step_s);
+  }
+};
+
+World::World(const WorldConfig& config) : impl_(std::make_unique<Impl>(config)) {}
+World::~World() = default;
+World::World(World&&) noexcept = default;
+World& World::operator=(World&&) noexcept = default;
+
+void World::set_drives(const JointDrives& drives) { impl_->arm.set_drives(drives); }
+void World::step() { impl_->step(); }
+double World::time_s() const { return double(impl_->steps) * impl_->config.step_s; }
+JointReadings World::readings() const { return impl_->arm.readings(); }
+Pose World::base_from_tool() const { return impl_->arm.base_from_tool(); }
+double World::valve_angle_rad() const { return impl_->valve.angle_rad(); }
+double World::valve_speed_rad_s() const { return impl_->valve.speed_rad_s(); }
+ButtonState World::button(std::size_t index) const { return impl_->buttons.at(index).state(); }
+ContactReport World::contacts() const { return impl_->sensor.report(); }
+double World::arm_kinetic_energy_j() const { return impl_->arm.kinetic_energy_j(); }
+
+scene::BodyPoses World::base_from_body() const {
+  scene::BodyPoses poses;
+  for (std::size_t i = 0; i < ArmDescription::link_count; ++i) poses[i] = impl_->arm.base_from_link(i);
+  poses[std::size_t(BodyId::panel)] = impl_->config.base_from_panel;
+  poses[std::size_t(BodyId::handle)] = impl_->valve.base_from_handle();
+  for (std::size_t i = 0; i < PanelLayout::button_count; ++i) {
+    poses[std::size_t(BodyId::button_left) + i] = impl_->buttons[i].base_from_cap();
+  }
+  return poses;
+}
+
+std::uint64_t World::state_digest() const {
+  Digest digest;
+  for (const JointReading& joint : impl_->arm.readings()) {
+    for (const double value : {joint.position_rad, joint.motor_position_rad, joint.velocity_rad_s, joint.torque_nm}) digest.add(value);
+  }
+  digest.add(valve_angle_rad());
+  digest.add(valve_speed_rad_s());
+  for (const ButtonBody& button : impl_->buttons) {
+    digest.add(button.state().depth_m);
+    digest.add(double(button.state().presses));
+  }
+  const ContactReport contacts = impl_->sensor.report();
+  digest.add(contacts.tool_wrench.force_n);
+  digest.add(contacts.tool_wrench.torque_nm);
+  digest.add(contacts.base_wrench.torque_nm);
+  digest.add(contacts.peak_force_n);
+  return digest.value();
+}
+
+}  // namespace lf::world
