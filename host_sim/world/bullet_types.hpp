@@ -15,7 +15,7 @@ inline btQuaternion to_bullet(const Mat3& rotation) {
   return {q.x(), q.y(), q.z(), q.w()};
 }
 
-inline btTransform to_bullet(const Pose& pose) { return {to_bullet(Mat3(pose.linear())), to_bullet(Vec3(pose.translation()))}; }
+inline btTransform to_bullet(const Pose& pose) { return btTransform(to_bullet(Mat3(pose.linear())), to_bullet(Vec3(pose.translation()))); }
 
 inline Pose from_bullet(const btTransform& transform) {
   const btQuaternion q = transform.getRotation();
