@@ -102,7 +102,7 @@ class Urdf {
   // "joint 'elbow'", or "<limit>" for what has no name.
   static std::string label(const XMLElement* e) {
     const char* const name = e->Attribute("name");
-    return name != nullptr ? std::string(e->Name()) + " '" + name + "'" : "<" + std::string(e->Name()) + ">";
+    return name != nullptr ? std::string(e->Name()) + " '" + name + "'" : std::string("<") + e->Name() + ">";
   }
 
  private:
