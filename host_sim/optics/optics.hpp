@@ -66,7 +66,7 @@ struct LaserConfig {
 struct LampConfig {
   scene::BodyId body = scene::BodyId::vehicle;
   Pose body_from_lamp = Pose::Identity();
-  Rgb intensity_w_sr{0.15f, 0.15f, 0.13f};
+  Rgb intensity_w_sr{4.5f, 5.f, 4.5f};
   double cone_half_angle_rad = 0.87;  // half intensity
   double edge_rad = 0.25;             // from full to none
   bool casts_shadows = true;
@@ -77,10 +77,10 @@ struct WaterConfig {
   Rgb attenuation_ratio{2.2f, 1.0f, 1.15f};  // of the bands to green: red is absorbed most
   double scattering_share = 0.5;             // of the attenuation that scatters (single-scattering albedo)
   double asymmetry = 0.85;                   // Henyey-Greenstein g: sea water scatters forward
-  double halo_share = 0.25;                  // of the forward-scattered light that stays near the stripe as a broad skirt
+  double halo_share = 0.4;                   // of the forward-scattered light that stays near the stripe as a broad skirt
   double halo_rad = 0.03;                    // standard deviation of the skirt seen from the emitter
-  Rgb ambient_w_m2{0.6f, 2.4f, 2.6f};        // downwelling irradiance on a surface that faces up
-  Rgb water_w_m2_sr{0.02f, 0.30f, 0.38f};    // radiance of the open water seen horizontally
+  Rgb ambient_w_m2{3.f, 16.f, 16.f};         // downwelling irradiance on a surface that faces up
+  Rgb water_w_m2_sr{0.1f, 1.5f, 2.0f};       // radiance of the open water seen horizontally
 };
 
 struct OpticsConfig {

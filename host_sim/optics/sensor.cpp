@@ -1,0 +1,89 @@
+#include "host_sim/optics/sensor.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "shared/geometry/pose.hpp"
+
+namespace lf::optics {
+namespace {
+
+constexpr std::size_t quantile_bits = 12;
+constexpr std::size_t quantile_count = std::size_t{1} << quantile_bits;
+
+// Acklam's rational approximation of the inverse normal distribution (relative error 1e-9), at the middles of 4096 equal shares.
+double inverse_normal_cdf(double p) {
+  constexpr double a[] = {-3.969683028665376e+01, 2.209460984245205e+02,  -2.759285104469687e+02,
+                          1.383577518672690e+02,  -3.066479806614716e+01, 2.506628277459239e+00};
+  constexpr double b[] = {-5.447609879822406e+01, 1.615858368580409e+02, -1.556989798598866e+02, 6.680131188771972e+01,
+                          -1.328068155288572e+01};
+  constexpr double c[] = {-7.784894002430293e-03, -3.223964580411365e-01, -2.400758277161838e+00,
+                          -2.549732539343734e+00, 4.374664141464968e+00,  2.938163982698783e+00};
+  constexpr double d[] = {7.784695709041462e-03, 3.224671290700398e-01, 2.445134137142996e+00, 3.754408661907416e+00};
+  if (p > 0.5) return -inverse_normal_cdf(1 - p);
+  if (p < 0.02425) {
+    const double q = std::sqrt(-2 * std::log(p));
+    return (((((c[0] * q + c[1]) * q + c[2]) * q + c[3]) * q + c[4]) * q + c[5]) / ((((d[0] * q + d[1]) * q + d[2]) * q + d[3]) * q + 1);
+  }
+  const double q = p - 0.5, r = q * q;
+  return (((((a[0] * r + a[1]) * r + a[2]) * r + a[3]) * r + a[4]) * r + a[5]) * q /
+         (((((b[0] * r + b[1]) * r + b[2]) * r + b[3]) * r + b[4]) * r + 1);
+}
+
+// Scaled to unit variance: the middles of the outermost shares miss the far tails.
+std::array<float, quantile_count> make_quantiles() {
+  std::array<float, quantile_count> table{};
+  double squares = 0;
+  for (std::size_t i = 0; i < quantile_count; ++i) {
+    const double q = inverse_normal_cdf((static_cast<double>(i) + 0.5) / quantile_count);
+    squares += q * q;
+    table[i] = static_cast<float>(q);
+  }
+  const double scale = std::sqrt(quantile_count / squares);
+  for (float& q : table) q = static_cast<float>(q * scale);
+  return table;
+}
+
+const std::array<float, quantile_count>& quantiles() {
+  static const std::array<float, quantile_count> table = make_quantiles();
+  return table;
+}
+
+// Wellons' lowbias32: every input bit flips each output bit with probability 0.5 +/- 0.17 %.
+constexpr std::uint32_t mix(std::uint32_t x) {
+  x = (x ^ (x >> 16)) * 0x7feb352dU;
+  x = (x ^ (x >> 15)) * 0x846ca68bU;
+  return x ^ (x >> 16);
+}
+
+constexpr std::uint64_t splitmix(std::uint64_t x) {
+  x += 0x9e3779b97f4a7c15ULL;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebULL;
+  return x ^ (x >> 31);
+}
+
+}  // namespace
+
+Sensor::Sensor(const CameraConfig& camera)
+    : grey_per_radiance_(static_cast<float>(camera.gain * camera.sensitivity * camera.exposure.s())),
+      read_variance_(static_cast<float>(camera.gain * camera.gain * camera.read_noise_grey * camera.read_noise_grey)),
+      variance_per_grey_(camera.electrons_per_grey > 0 ? static_cast<float>(camera.gain / camera.electrons_per_grey) : 0.f) {}
+
+void Sensor::expose(const float* grey, std::uint8_t* pixels, std::size_t count, std::uint32_t first, std::uint64_t key) const {
+  const auto& table = quantiles();
+  const auto low = static_cast<std::uint32_t>(key), high = static_cast<std::uint32_t>(key >> 32);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t bits = mix(mix((first + static_cast<std::uint32_t>(i)) ^ low) + high);
+    const float sigma = std::sqrt(read_variance_ + variance_per_grey_ * std::max(grey[i], 0.f));
+    const float value = grey[i] + sigma * table[bits >> (32 - quantile_bits)];
+    pixels[i] = static_cast<std::uint8_t>(std::clamp(value + 0.5f, 0.f, 255.f));
+  }
+}
+
+std::uint64_t noise_key(std::uint64_t seed, std::uint64_t camera, std::uint64_t frame_number) {
+  return splitmix(splitmix(splitmix(seed) + camera) + frame_number);
+}
+
+}  // namespace lf::optics

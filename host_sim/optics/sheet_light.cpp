@@ -1,0 +1,156 @@
+#include "host_sim/optics/sheet_light.hpp"
+
+#include <cmath>
+
+namespace lf::optics {
+namespace {
+
+constexpr float root_two_pi = 2.50662827f;
+constexpr float fan_edge = 0.01f;   // the fan's ends fade over this much of tan(angle)
+constexpr float core_reach = 4.5f;  // standard deviations: 4e-5 of the peak
+constexpr float halo_reach = 3.0f;
+constexpr float least_range_m = 0.02f;  // nothing is lit closer to the emitter
+
+// A Gaussian of unit height, integrated over a pixel (box) of the given extents along and across its gradient.
+// The wide side is integrated exactly, the narrow one by its variance; `sigma` includes all blur, `height` undoes the widening.
+Lanes box_gaussian(Lanes offset, Lanes own_sigma, Lanes sigma, Lanes box) {
+  const Lanes half = max(0.5f * box, all_lanes(1e-3f));
+  return root_two_pi * own_sigma * (normal_cdf((offset + half) / sigma) - normal_cdf((offset - half) / sigma)) / (2.f * half);
+}
+
+}  // namespace
+
+SheetLight::SheetLight(const LaserConfig& config, const Pose& base_from_body)
+    : tan_half_fan_(static_cast<float>(std::tan(config.fan_half_angle_rad))),
+      w_per_rad_(static_cast<float>(config.power_w / (2 * config.fan_half_angle_rad))),
+      waist_m_(static_cast<float>(config.waist_sigma_m)),
+      divergence_rad_(static_cast<float>(config.divergence_rad)),
+      tan_cone_(static_cast<float>(std::tan(config.cone_rad))),
+      cos_cone_(static_cast<float>(std::cos(config.cone_rad))),
+      power_w_(config.power_w),
+      band_(config.band) {
+  const Pose base_from_laser = base_from_body * config.body_from_laser;
+  base_from_laser_ = Rotation(base_from_laser.linear());
+  emitter_ = Lanes3(base_from_laser.translation());
+}
+
+Lanes SheetLight::fan_weight(Lanes y, Lanes z) const {
+  const Lanes tangent = abs(y) / max(z, all_lanes(1e-4f));
+  const Lanes weight = clamp((tan_half_fan_ - tangent) / fan_edge + 0.5f, 0.f, 1.f);
+  return z > 1e-3f ? weight : Lanes{};
+}
+
+Lanes SheetLight::distance(const Lanes3& point) const {
+  const Lanes3 place = base_from_laser_.transposed_times(point - emitter_);
+  return (place.x - tan_cone_ * sqrt(place.y * place.y + place.z * place.z)) * cos_cone_;
+}
+
+StripePacket SheetLight::on_surface(const SurfacePacket& surface, const Water& water, float footprint, float blur_px) const {
+  if (pattern_ != nullptr && pattern_->has_value()) return picture(surface, water, footprint);
+  return line(surface, water, footprint, blur_px);
+}
+
+StripePacket SheetLight::line(const SurfacePacket& s, const Water& water, float footprint, float blur_px) const {
+  const Lanes3 place = base_from_laser_.transposed_times(s.point - emitter_);
+  const Lanes radius = max(sqrt(place.y * place.y + place.z * place.z), all_lanes(1e-4f));
+  const Lanes distance = (place.x - tan_cone_ * radius) * cos_cone_;
+  // The sheet's normal at this place: of the plane, or of the cone's tangent plane.
+  Lanes3 normal = base_from_laser_.column_x;
+  if (tan_cone_ != 0.f) {
+    const Lanes3 outward = base_from_laser_.column_y * (place.y / radius) + base_from_laser_.column_z * (place.z / radius);
+    normal = (normal - outward * all_lanes(tan_cone_)) * all_lanes(cos_cone_);
+  }
+
+  // Distance to the stripe in the image: w = distance * facing is linear in the image plane for a pinhole.
+  StripePacket stripe;
+  const Lanes w_du = s.facing * dot(normal, s.point_du) + distance * dot(s.normal, s.direction_du);
+  const Lanes w_dv = s.facing * dot(normal, s.point_dv) + distance * dot(s.normal, s.direction_dv);
+  const Lanes gradient = max(sqrt(w_du * w_du + w_dv * w_dv), all_lanes(1e-9f));
+  stripe.offset_px = distance * s.facing / gradient;
+  stripe.slope_v = w_dv / gradient;
+  const Lanes px_per_m = -s.facing / gradient;
+
+  // The stripe's centre on the tangent plane, and the beam there.
+  const Lanes across = dot(normal, s.normal);
+  const Lanes3 to_centre = (normal - s.normal * across) * (distance / max(1.f - across * across, all_lanes(1e-3f)));
+  const Lanes3 centre = s.point - to_centre;
+  const Lanes3 beam = centre - emitter_;
+  const Lanes3 centre_place = base_from_laser_.transposed_times(beam);
+  const Lanes range = max(norm(beam), all_lanes(least_range_m));
+  const Lanes camera_range = norm(centre - s.origin);
+  const Lanes incidence = max(-dot(s.normal, beam) / range, Lanes{});
+  const Lanes weight = fan_weight(centre_place.y, centre_place.z) * incidence;
+  const Lanes sigma_m = sqrt(waist_m_ * waist_m_ + divergence_rad_ * divergence_rad_ * range * range);
+  const Lanes sigma_px = sigma_m * px_per_m;
+
+  const Lanes box_u = footprint * abs(w_du) / gradient, box_v = footprint * abs(w_dv) / gradient;
+  const Lanes wide = max(box_u, box_v), narrow = min(box_u, box_v);
+  const Lanes sigma = sqrt(sigma_px * sigma_px + blur_px * blur_px + narrow * narrow * (1.f / 12.f));
+  const Lanes halo_m = water.halo_rad * range;
+  const Lanes halo_sigma = sqrt(sigma * sigma + halo_m * halo_m * px_per_m * px_per_m);
+  stripe.reached =
+      s.met & (weight > 0.f) & ((abs(stripe.offset_px) < core_reach * sigma + 1.f) | (abs(stripe.offset_px) < halo_reach * halo_sigma));
+  if (!any(stripe.reached)) return stripe;
+
+  const Lanes peak = w_per_rad_ / (range * root_two_pi * sigma_m) * weight;
+  const Lanes core = box_gaussian(stripe.offset_px, sigma_px, sigma, wide);
+  const Lanes bell = exp(-0.5f * stripe.offset_px * stripe.offset_px / (halo_sigma * halo_sigma)) * sigma_px / halo_sigma;
+  for (std::size_t band = 0; band < 3; ++band) {
+    if (band_[band] == 0.f) continue;
+    const Lanes path = range + camera_range;
+    const Lanes light = peak * band_[band] * water.transmission(band, path) * (core + bell * water.halo_power(band, path));
+    stripe.irradiance[band] = stripe.reached ? light : Lanes{};
+  }
+  return stripe;
+}
+
+StripePacket SheetLight::picture(const SurfacePacket& s, const Water& water, float footprint) const {
+  const PatternTable& table = **pattern_;
+  const Pattern& g = table.geometry();
+  const Lanes3 beam = s.point - emitter_;
+  const Lanes3 place = base_from_laser_.transposed_times(beam);
+  const Lanes3 place_du = base_from_laser_.transposed_times(s.point_du), place_dv = base_from_laser_.transposed_times(s.point_dv);
+  const Lanes range = norm(beam);
+  const Lanes facing = max(-dot(s.normal, beam), Lanes{});
+  const Lanes depth = max(place.z, all_lanes(least_range_m));
+  const auto fx = static_cast<float>(g.fx), fy = static_cast<float>(g.fy);
+  const Lanes x = place.x / depth, y = place.y / depth;
+  const Lanes extent_u = footprint * fx / depth * (abs(place_du.x - x * place_du.z) + abs(place_dv.x - x * place_dv.z));
+  const Lanes extent_v = footprint * fy / depth * (abs(place_du.y - y * place_du.z) + abs(place_dv.y - y * place_dv.z));
+  StripePacket stripe;
+  Lanes share{};
+  for (int i = 0; i < lane_count; ++i) {
+    if (s.met[i] == 0 || place.z[i] <= least_range_m || facing[i] <= 0) continue;
+    share[i] = table.lit_share(x[i] * fx + static_cast<float>(g.cx), y[i] * fy + static_cast<float>(g.cy), extent_u[i], extent_v[i]);
+  }
+  stripe.reached = share > 0.f;
+  // Power even over the image plane: what a surface element takes of it is |normal . beam| / depth^3.
+  const Lanes irradiance = share * static_cast<float>(power_w_ / table.unit_plane_area()) * facing / (depth * depth * depth);
+  for (std::size_t band = 0; band < 3; ++band)
+    stripe.irradiance[band] = irradiance * band_[band] * water.transmission(band, range + s.range);
+  return stripe;
+}
+
+void SheetLight::add_backscatter(const RayPacket& rays, Lanes range_m, const Water& water, RgbLanes& radiance) const {
+  if (pattern_ != nullptr && pattern_->has_value()) return;
+  const Lanes approach = dot(base_from_laser_.column_x, rays.direction);
+  const Lanes safe = abs(approach) > 1e-4f ? approach : all_lanes(1e-4f);
+  const Lanes t = -dot(base_from_laser_.column_x, rays.origin - emitter_) / safe;
+  const Lanes slope = CameraRays::slope(rays);
+  const LaneMask crossed = (t > 0.f) & (t * slope < range_m);
+  if (!any(crossed)) return;
+  const Lanes3 beam = rays.origin + rays.direction * t - emitter_;
+  const Lanes3 place = base_from_laser_.transposed_times(beam);
+  const Lanes range = max(norm(beam), all_lanes(least_range_m));
+  const Lanes weight = fan_weight(place.y, place.z);
+  // Light flows along the beam and turns back along the ray.
+  const Lanes cosine = -dot(beam, rays.direction) / (range * slope);
+  const Lanes crossing = w_per_rad_ / range * weight * slope / abs(safe);
+  for (std::size_t band = 0; band < 3; ++band) {
+    if (band_[band] == 0.f) continue;
+    const Lanes light = crossing * band_[band] * water.scattering(band, cosine) * water.transmission(band, range + t * slope);
+    radiance[band] += crossed ? light : Lanes{};
+  }
+}
+
+}  // namespace lf::optics

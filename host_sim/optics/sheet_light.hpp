@@ -1,0 +1,57 @@
+// A laser line's light on surfaces and in the water.
+//
+// The stripe is analytic. The surface at a hit point is its tangent plane; the plane through the camera's centre and the line in which the sheet cuts that
+// tangent plane gives the pixel's distance to the stripe in the image, exactly linear for a pinhole. Across it stands a Gaussian: the beam's cross-section
+// and the lens's spot, integrated over the pixel. Range, incidence and attenuation are those of the stripe's centre, so they do not pull the peak.
+#pragma once
+
+#include <optional>
+
+#include "host_sim/optics/pattern.hpp"
+#include "host_sim/optics/surface.hpp"
+#include "host_sim/optics/water.hpp"
+
+namespace lf::optics {
+
+// The stripe about a packet of surface points.
+struct StripePacket {
+  LaneMask reached{};     // lanes close enough to the stripe, before occlusion
+  Lanes offset_px{};      // the pixel's distance to the stripe's centre
+  Lanes slope_v{};        // its change from one row to the next
+  RgbLanes irradiance{};  // W/m2 there times the way back to the camera, unoccluded
+};
+
+class SheetLight {
+ public:
+  SheetLight(const LaserConfig& config, const Pose& base_from_body);
+
+  // `footprint`: side of the sample's square, px (1, or 1/4 for sub-samples).
+  StripePacket on_surface(const SurfacePacket& surface, const Water& water, float footprint, float blur_px) const;
+
+  // Radiance scattered into the camera where its rays cross the sheet before they have gone `range_m` (single scattering, the sheet thin).
+  void add_backscatter(const RayPacket& rays, Lanes range_m, const Water& water, RgbLanes& radiance) const;
+
+  // Distance to the sheet (m) and whether a point lies within the fan.
+  Lanes distance(const Lanes3& point) const;
+
+  const Lanes3& emitter() const { return emitter_; }
+
+ private:
+  struct Place;  // of a point in the laser frame
+  StripePacket line(const SurfacePacket& surface, const Water& water, float footprint, float blur_px) const;
+  StripePacket picture(const SurfacePacket& surface, const Water& water, float footprint) const;
+  Lanes fan_weight(Lanes y, Lanes z) const;
+
+  Rotation base_from_laser_;  // columns: plane normal, along the fan, central ray
+  Lanes3 emitter_;
+  float tan_half_fan_, w_per_rad_, waist_m_, divergence_rad_, tan_cone_, cos_cone_;
+  double power_w_;
+  Rgb band_;
+  const std::optional<PatternTable>* pattern_ = nullptr;
+
+ public:
+  // The pattern's table is made once and outlives the frame's light.
+  void show(const std::optional<PatternTable>& table) { pattern_ = &table; }
+};
+
+}  // namespace lf::optics

@@ -1,0 +1,129 @@
+#include "host_sim/optics/surface_look.hpp"
+
+#include <cmath>
+
+#include "shared/input_error.hpp"
+
+namespace lf::optics {
+namespace {
+
+constexpr int tile = 128;                 // cells of the grain, then it repeats
+constexpr float fine_per_m = 1 / 0.004f;  // cells of 4 mm: 2 px on the panel
+constexpr float coarse_per_m = 1 / 0.023f;
+
+std::uint32_t hash(std::uint32_t x) {
+  x = (x ^ (x >> 16)) * 0x7feb352dU;
+  x = (x ^ (x >> 15)) * 0x846ca68bU;
+  return x ^ (x >> 16);
+}
+
+// Value noise in -1 .. 1 at (a, b) in cells, bilinear between random corners.
+Lanes value_noise(const std::vector<float>& corners, Lanes a, Lanes b) {
+  Lanes value;
+  for (int i = 0; i < lane_count; ++i) {
+    const float floor_a = std::floor(a[i]), floor_b = std::floor(b[i]);
+    const float fa = a[i] - floor_a, fb = b[i] - floor_b;
+    const auto ia = static_cast<unsigned>(static_cast<int>(floor_a)) % tile, ib = static_cast<unsigned>(static_cast<int>(floor_b)) % tile;
+    const unsigned ja = (ia + 1) % tile, jb = (ib + 1) % tile;
+    const float low = corners[ib * tile + ia] * (1 - fa) + corners[ib * tile + ja] * fa;
+    const float high = corners[jb * tile + ia] * (1 - fa) + corners[jb * tile + ja] * fa;
+    value[i] = low * (1 - fb) + high * fb;
+  }
+  return value;
+}
+
+}  // namespace
+
+SurfaceLook::SurfaceLook(const scene::Scene& scene, float grain) : grain_(grain) {
+  for (std::size_t body = 0; body < scene.size(); ++body) {
+    for (const scene::Shape& shape : scene[body].shapes) {
+      Look look;
+      look.albedo = shape.albedo;
+      look.body = body;
+      look.body_from_shape = shape.body_from_shape;
+      look.top_m = 0.5 * shape.size_m.z();
+      for (const float albedo : shape.albedo) {
+        if (!(albedo >= 0 && albedo <= 1)) throw InputError("scene: " + scene[body].name + ": an albedo must lie in 0..1");
+      }
+      if (shape.marker_id >= 0) {
+        if (shape.kind != scene::ShapeKind::box) throw InputError("scene: " + scene[body].name + ": a marker needs a box");
+        look.marker.emplace(shape.marker_id, shape.marker_size_m);
+      }
+      looks_.push_back(look);
+    }
+  }
+  noise_.resize(static_cast<std::size_t>(tile) * tile);
+  for (std::uint32_t i = 0; i < noise_.size(); ++i) noise_[i] = static_cast<float>(hash(i + 1)) / 2147483648.f - 1.f;
+  scene::BodyPoses poses;
+  poses.fill(Pose::Identity());
+  set_poses(poses);
+}
+
+void SurfaceLook::set_poses(const scene::BodyPoses& base_from_body) {
+  poses_ = base_from_body;
+  for (std::size_t body = 0; body < poses_.size(); ++body) {
+    rotations_[body] = Rotation(poses_[body].linear());
+    positions_[body] = Lanes3(poses_[body].translation());
+  }
+}
+
+Lanes SurfaceLook::grain(const SurfacePacket& surface, LaneMask shape, float footprint) const {
+  Lanes3 local;
+  const auto body_of = [&](int lane) { return shape[lane] < 0 ? std::size_t{0} : looks_[static_cast<std::size_t>(shape[lane])].body; };
+  bool uniform = true;
+  for (int i = 1; i < lane_count; ++i) uniform &= body_of(i) == body_of(0);
+  if (uniform) {
+    local = rotations_[body_of(0)].transposed_times(surface.point - positions_[body_of(0)]);
+  } else {
+    for (int i = 0; i < lane_count; ++i) {
+      const Pose& pose = poses_[body_of(i)];
+      const Vec3 p = pose.linear().transpose() * (Vec3(surface.point.x[i], surface.point.y[i], surface.point.z[i]) - pose.translation());
+      local.x[i] = static_cast<float>(p.x()), local.y[i] = static_cast<float>(p.y()), local.z[i] = static_cast<float>(p.z());
+    }
+  }
+  // An oblique map to two dimensions: no face of a box is degenerate, no seam runs through a surface.
+  const Lanes a = local.x + 0.7f * local.z, b = local.y + 0.6f * local.z;
+  const Lanes pixel_m = footprint * sqrt(dot(surface.point_dv, surface.point_dv));
+  const Lanes fine = clamp(2.f - 1.5f * pixel_m * fine_per_m, 0.f, 1.f);  // finer than the pixel it would alias
+  return 1.f +
+         grain_ * (value_noise(noise_, a * coarse_per_m, b * coarse_per_m) + fine * value_noise(noise_, a * fine_per_m, b * fine_per_m));
+}
+
+void SurfaceLook::draw_marker(const SurfacePacket& surface, int lane, const Look& look, float footprint, RgbLanes& albedo) const {
+  const auto at = [lane](const Lanes3& v) { return Vec3(v.x[lane], v.y[lane], v.z[lane]); };
+  const Pose shape_from_base = (poses_[look.body] * look.body_from_shape).inverse();
+  const Vec3 p = shape_from_base * at(surface.point);
+  if (std::abs(p.z() - look.top_m) > 1e-4) return;
+  const Vec3 du = shape_from_base.linear() * at(surface.point_du) * footprint,
+             dv = shape_from_base.linear() * at(surface.point_dv) * footprint;
+  const float white = look.marker->white_share(p.head<2>(), du.head<2>(), dv.head<2>());
+  constexpr float paper = 0.80f, ink = 0.04f;  // printed plastic
+  for (std::size_t band = 0; band < 3; ++band) albedo[band][lane] = ink + (paper - ink) * white;
+}
+
+RgbLanes SurfaceLook::albedo(const SurfacePacket& surface, LaneMask shape, float footprint) const {
+  RgbLanes albedo{};
+  bool uniform = true;
+  for (int i = 1; i < lane_count; ++i) uniform &= shape[i] == shape[0];
+  if (uniform) {
+    if (shape[0] < 0) return albedo;
+    for (std::size_t band = 0; band < 3; ++band) albedo[band] = all_lanes(looks_[static_cast<std::size_t>(shape[0])].albedo[band]);
+  } else {
+    for (int i = 0; i < lane_count; ++i) {
+      if (shape[i] < 0) continue;
+      for (std::size_t band = 0; band < 3; ++band) albedo[band][i] = looks_[static_cast<std::size_t>(shape[i])].albedo[band];
+    }
+  }
+  if (grain_ > 0) {
+    const Lanes factor = grain(surface, shape, footprint);
+    for (Lanes& band : albedo) band *= factor;
+  }
+  for (int i = 0; i < lane_count; ++i) {
+    if (shape[i] < 0) continue;
+    const Look& look = looks_[static_cast<std::size_t>(shape[i])];
+    if (look.marker) draw_marker(surface, i, look, footprint, albedo);
+  }
+  return albedo;
+}
+
+}  // namespace lf::optics
