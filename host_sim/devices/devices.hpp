@@ -15,37 +15,14 @@
 #include <memory>
 #include <optional>
 
+#include "host_sim/devices/bus_record.hpp"
 #include "host_sim/devices/devices_config.hpp"
+#include "host_sim/devices/exposure.hpp"
 #include "shared/messages/can_frame.hpp"
 #include "shared/messages/joint_io.hpp"
 #include "shared/messages/time.hpp"
 
 namespace lf::devices {
-
-// One exposure that the output node triggered.
-struct Exposure {
-  Time start;  // the SYNC's last bit
-  Duration duration;
-  std::uint8_t counter = 0;  // the trigger counter that asked for it
-  bool laser = false;        // outputs as they are from `start` on
-  bool lamps = false;
-};
-
-struct BusStats {
-  std::uint64_t frames = 0;      // delivered
-  std::uint64_t bits = 0;        // of all, stuffing and interframe space included
-  std::uint64_t errors = 0;      // error frames
-  std::uint64_t lost = 0;        // frames dropped by a fault or by a controller off the bus
-  double load_percent = 0;       // mean since the first frame
-  double peak_load_percent = 0;  // worst window of 100 ms
-};
-
-// A frame as it passed on the bus.
-struct BusRecord {
-  CanFrame frame;
-  Time delivered;
-  std::uint8_t sender = 0;  // node number; can_map::master_node is the master
-};
 
 class Devices {
  public:
@@ -66,7 +43,7 @@ class Devices {
   const JointDrives& drives() const;
 
   // Frames that reached the master up to the last step, in order, each once. Error frames of its own controller come with CanFrame::error_flag and
-  // SocketCAN's classes: 0x04 controller state (data[1] 0x20 error passive), 0x40 bus off, 0x100 restarted.
+  // SocketCAN's classes: 0x40 bus off, 0x100 restarted.
   bool next_to_master(CanFrame& frame, Time& delivered);
 
   bool laser_on() const;  // after the interlock

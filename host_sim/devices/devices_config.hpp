@@ -49,7 +49,7 @@ enum class DeviceFaultKind : std::uint8_t {
   estop,           // the emergency-stop chain is open
   interlock_open,  // the laser's interlock is open
   drop_frames,     // frames with the identifier `can_id` are lost on their way, to every receiver
-  error_frames,    // one frame in two is destroyed by an error frame and sent again
+  error_frames,    // one frame in sixteen is destroyed by an error frame and sent again
   bus_off,         // the node's CAN controller goes off the bus; afterwards EMCY 8140. `node` 0x7F is the master's
 };
 
@@ -72,5 +72,8 @@ struct DevicesConfig {
 
 // The five drives of `arm` at the nodes of the CAN map. Joint i reads `joint_offsets_rad[i]` too much.
 DevicesConfig devices_config(const ArmDescription& arm, const std::array<double, joint_count>& joint_offsets_rad, std::uint64_t seed);
+
+// Throws InputError with what cannot be: see Devices.
+void check(const DevicesConfig& config);
 
 }  // namespace lf::devices

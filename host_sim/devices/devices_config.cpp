@@ -1,0 +1,95 @@
+#include "host_sim/devices/devices_config.hpp"
+
+#include <cmath>
+#include <set>
+
+#include "host_sim/devices/actuator.hpp"
+#include "shared/input_error.hpp"
+
+namespace lf::devices {
+namespace {
+
+void require(bool good, const DriveConfig& drive, const std::string& what) {
+  if (!good) throw InputError("drive of node " + std::to_string(drive.node) + ": " + what);
+}
+
+void check_drive(const DriveConfig& drive) {
+  const auto positive = [](double value) { return std::isfinite(value) && value > 0; };
+  require(drive.node >= 1 && drive.node <= 126, drive, "node number outside 1 to 126");
+  require(std::isfinite(drive.lower_rad) && std::isfinite(drive.upper_rad) && drive.lower_rad < drive.upper_rad, drive, "no stroke");
+  require(positive(drive.rated_torque_nm) && drive.peak_torque_nm >= drive.rated_torque_nm, drive,
+          "no rated torque, or one above the peak torque");
+  require(drive.peak_torque_nm <= 30 * drive.rated_torque_nm, drive, "peak torque above 30 times the rated torque");  // 6077 is 16 bits
+  require(positive(drive.max_velocity_rad_s) && positive(drive.max_acceleration_rad_s2), drive, "no top speed or acceleration");
+  require(std::isfinite(drive.stiction_rad_s) && drive.stiction_rad_s >= 0 && drive.stiction_rad_s < drive.max_velocity_rad_s, drive,
+          "stiction speed not below the top speed");
+  require(std::isfinite(drive.encoder_offset_rad) && std::abs(drive.encoder_offset_rad) < 0.1, drive, "encoder offset above 0.1 rad");
+  const Actuator actuator(drive.actuator);
+  const double sign = actuator.counts_per_rad(0.5 * (drive.lower_rad + drive.upper_rad));
+  for (int i = 0; i <= 16; ++i) {
+    const double q = drive.lower_rad + (drive.upper_rad - drive.lower_rad) * i / 16;
+    const double slope = actuator.counts_per_rad(q);
+    require(std::isfinite(slope) && std::abs(slope) > 1 && slope * sign > 0, drive, "the actuator does not reach over the whole stroke");
+    require(std::abs(actuator.counts(q)) < 1e9, drive, "more counts than 32 bits hold");
+  }
+}
+
+bool of_one_node(DeviceFaultKind kind) {
+  return kind != DeviceFaultKind::estop && kind != DeviceFaultKind::interlock_open && kind != DeviceFaultKind::drop_frames &&
+         kind != DeviceFaultKind::error_frames;
+}
+
+bool of_a_drive(DeviceFaultKind kind) {
+  return kind == DeviceFaultKind::overcurrent || kind == DeviceFaultKind::hot || kind == DeviceFaultKind::following ||
+         kind == DeviceFaultKind::stuck_encoder;
+}
+
+void check_fault(const DeviceFault& fault, const DevicesConfig& config) {
+  if (!(fault.at_s >= 0) || !(fault.duration_s >= 0) || fault.at_s > 1e6 || fault.duration_s > 1e6) {
+    throw InputError("a device fault's time is not within 0 to 1,000,000 s");
+  }
+  if (!of_one_node(fault.kind)) return;
+  bool known = fault.kind == DeviceFaultKind::bus_off && fault.node == can_map::master_node;
+  for (const DriveConfig& drive : config.drives) known = known || drive.node == fault.node;
+  known = known || (fault.node == config.io.node && !of_a_drive(fault.kind));
+  if (!known) throw InputError("a device fault names node " + std::to_string(fault.node) + ", which cannot have it");
+}
+
+}  // namespace
+
+DriveConfig drive_config(const ArmJoint& joint, std::uint8_t node) {
+  DriveConfig drive;
+  drive.node = node;
+  drive.name = "LF servo drive, " + joint.name;
+  drive.actuator = joint.actuator;
+  drive.lower_rad = joint.lower_rad;
+  drive.upper_rad = joint.upper_rad;
+  drive.peak_torque_nm = joint.effort_nm;
+  drive.rated_torque_nm = joint.rated_torque_nm;
+  drive.max_velocity_rad_s = joint.velocity_rad_s;
+  drive.max_acceleration_rad_s2 = joint.acceleration_rad_s2;
+  drive.stiction_rad_s = joint.stiction_rad_s;
+  return drive;
+}
+
+DevicesConfig devices_config(const ArmDescription& arm, const std::array<double, joint_count>& joint_offsets_rad, std::uint64_t seed) {
+  DevicesConfig config;
+  config.seed = seed;
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    config.drives[i] = drive_config(arm.joints[i], can_map::drive_nodes[i]);
+    config.drives[i].encoder_offset_rad = joint_offsets_rad[i];
+  }
+  return config;
+}
+
+void check(const DevicesConfig& config) {
+  std::set<int> nodes{config.io.node, can_map::master_node};
+  if (nodes.size() != 2 || config.io.node == 0 || config.io.node > 126) throw InputError("output node: node number outside 1 to 126");
+  for (const DriveConfig& drive : config.drives) {
+    check_drive(drive);
+    if (!nodes.insert(drive.node).second) throw InputError("node " + std::to_string(drive.node) + " stands twice on the bus");
+  }
+  for (const DeviceFault& fault : config.faults) check_fault(fault, config);
+}
+
+}  // namespace lf::devices

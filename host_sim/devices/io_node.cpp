@@ -1,0 +1,92 @@
+#include "host_sim/devices/io_node.hpp"
+
+#include "host_sim/devices/communication_objects.hpp"
+#include "shared/can/can_map.hpp"
+
+namespace lf::devices {
+namespace {
+
+constexpr std::uint32_t io_device_type = 0x00030191;  // CiA 401, digital inputs and outputs
+
+std::vector<Object> io_objects(std::uint8_t node) {
+  PdoDefaults pdos;
+  pdos.receive[0] = {0x62000108};
+  pdos.transmit[0] = {0x60000108};
+  std::vector<Object> objects = communication_objects(node, io_device_type, "LF output node", pdos);
+  const auto add = [&](std::uint16_t index, std::uint8_t sub, Type type, Access access, Mapping mapping, std::int64_t value) {
+    objects.push_back({.index = index, .sub = sub, .type = type, .access = access, .mapping = mapping, .value = value});
+  };
+  const auto count = [&](std::uint16_t index, std::int64_t subs) { add(index, 0, Type::u8, Access::constant, Mapping::none, subs); };
+  count(0x6000, 1);
+  add(0x6000, 1, Type::u8, Access::read_only, Mapping::transmit, 0);
+  count(0x6200, 1);
+  add(0x6200, 1, Type::u8, Access::read_write, Mapping::receive, 0);
+  count(0x2100, 2);
+  add(0x2100, 1, Type::u8, Access::read_write, Mapping::receive, 0);
+  add(0x2100, 2, Type::u16, Access::read_write, Mapping::receive, 0);
+  count(0x2101, 3);
+  add(0x2101, 1, Type::u8, Access::read_only, Mapping::transmit, 0);
+  add(0x2101, 2, Type::u8, Access::read_only, Mapping::transmit, 0);
+  add(0x2101, 3, Type::u16, Access::read_only, Mapping::transmit, 0);
+  return objects;
+}
+
+}  // namespace
+
+IoNode::IoNode(const IoConfig& config, Duration boot_time)
+    : node_(config.node, io_objects(config.node), boot_time, *this),
+      inputs_(node_.objects().at(0x6000, 1)),
+      outputs_(node_.objects().at(0x6200, 1)),
+      trigger_(node_.objects().at(0x2100, 1)),
+      exposure_us_(node_.objects().at(0x2100, 2)),
+      outputs_shown_(node_.objects().at(0x2101, 1)),
+      last_trigger_(node_.objects().at(0x2101, 2)),
+      last_exposure_us_(node_.objects().at(0x2101, 3)) {}
+
+void IoNode::tick(Time now) {
+  inputs_.value = (estop_closed_ ? can_map::input_estop_closed : 0) | (interlock_closed_ ? can_map::input_interlock_closed : 0);
+  node_.tick(now);
+}
+
+void IoNode::set_interlock_closed(bool closed) {
+  interlock_closed_ = closed;
+  switch_outputs();
+}
+
+void IoNode::switch_outputs() {
+  on_ = node_.state() == NmtState::operational ? static_cast<std::uint8_t>(outputs_.value) : std::uint8_t{0};
+  if (!interlock_closed_) on_ &= static_cast<std::uint8_t>(~can_map::output_laser);
+  outputs_shown_.value = on_;
+}
+
+void IoNode::written(const Object& object, Time now) {
+  if (node_.state() == NmtState::operational && (object.index == 0x6200 || object.index == 0x2100)) received(now);
+}
+
+void IoNode::received(Time now) {
+  switch_outputs();
+  if (trigger_.value == last_trigger_.value) return;
+  last_trigger_.value = trigger_.value;
+  last_exposure_us_.value = exposure_us_.value;
+  if (exposure_us_.value == 0) return;
+  exposures_.push_back({now, Duration::from_us(exposure_us_.value), static_cast<std::uint8_t>(trigger_.value), laser_on(), lamps_on()});
+}
+
+void IoNode::state_changed(NmtState state, Time) {
+  if (state != NmtState::operational) outputs_.value = 0;  // who starts the node again asks again
+  switch_outputs();
+}
+
+void IoNode::restarted(Time) { switch_outputs(); }
+
+bool IoNode::laser_on() const { return (on_ & can_map::output_laser) != 0; }
+bool IoNode::lamps_on() const { return (on_ & can_map::output_lamps) != 0; }
+
+std::optional<Exposure> IoNode::take_exposure() {
+  if (exposures_.empty()) return std::nullopt;
+  const Exposure oldest = exposures_.front();
+  exposures_.erase(exposures_.begin());
+  return oldest;
+}
+
+}  // namespace lf::devices
