@@ -32,9 +32,8 @@ Drive402::Drive402(const DriveConfig& config, Duration boot_time, std::uint64_t 
       winding_(config.water_celsius, config.rise_at_rated_celsius) {}
 
 void Drive402::power_on(Time now, const JointReading& reading) {
-  node_.power_on(now);
   measure(reading);
-  last_counts_ = static_cast<double>(o_.position_actual.value);
+  node_.power_on(now);
 }
 
 void Drive402::restarted(Time) {
