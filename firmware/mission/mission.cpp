@@ -1,0 +1,354 @@
+#include "firmware/mission/mission.hpp"
+
+#include "firmware/arm/actuator.hpp"
+
+namespace lf::mission {
+
+using safety::Fault;
+using safety::Reaction;
+
+namespace {
+
+CameraWork::Config camera_config(const ControllerConfig& config) {
+  CameraWork::Config camera;
+  camera.exposure = config.camera.exposure;
+  camera.camera_syncs = config.mission.camera_syncs;
+  camera.frames_per_background = config.mission.frames_per_background;
+  camera.use_lamps = config.mission.use_lamps;
+  camera.always_on = config.mission.camera_always_on;
+  camera.sync_period = config.network.sync_period;
+  return camera;
+}
+
+}  // namespace
+
+Mission::Mission(const ControllerConfig& config)
+    : config_(config),
+      watch_(config.mission_limits),
+      camera_(camera_config(config)),
+      motion_(config.mission_limits),
+      map_(config.mission.layout, config.marker, config.camera) {
+  for (const Task& task : config.mission.tasks) {
+    TaskResult result;
+    result.task = task;
+    if (!tasks_.push_back(result)) break;  // the same capacity on both sides
+  }
+}
+
+void Mission::on_panel(const PanelResult& result) {
+  if (result.id != sweep_) return;  // an answer to an earlier question: came too late to matter
+  panel_ = result;
+  panel_arrived_ = true;
+}
+
+void Mission::tick(Time now, canopen::Network& network, ScanOrders& orders, Telemetry& telemetry) {
+  const Tick tick{now, network, orders, telemetry};
+  observe(tick);
+  watch_faults(tick);
+  if (!entered_) begin(tick);
+  const Status status = run(tick);
+  if (status != Status::running) finish_step(tick, status);
+  camera_.tick(now, network.io(), orders);
+  drive(tick);
+  report(tick);
+}
+
+// Reads the joints, and passes them on to the vision thread while it may need them.
+void Mission::observe(const Tick& tick) {
+  std::array<double, joint_count> rad{};
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    const auto joint = static_cast<Joint>(i);
+    rad[i] = arm::rad_from_counts(joint, tick.network.axis(joint).actual_counts());
+  }
+  const Time before = watch_.joints().t;
+  watch_.observe(tick.network, rad, tick.now);
+  const safety::JointStates& joints = watch_.joints();
+  if (!joints.valid || joints.t == before || camera_.mode() != CameraWork::Mode::sweep) return;
+  ScanCommand sample;
+  sample.kind = ScanCommand::Kind::joint_sample;
+  sample.joints.t = joints.t;
+  for (std::size_t i = 0; i < arm_joint_count; ++i) sample.joints.q_rad[i] = joints.position_rad[i];
+  if (!tick.orders.push_back(sample)) raise(tick, Fault::port_error, static_cast<std::int32_t>(Port::scan_ring));
+}
+
+void Mission::watch_faults(const Tick& tick) {
+  if (is_end(step_)) return;
+  faults_now_.clear();
+  const safety::JointStates& joints = watch_.joints();
+  arm::JointVector q;
+  for (std::size_t i = 0; i < arm_joint_count; ++i) q[static_cast<Eigen::Index>(i)] = joints.position_rad[i];
+  watch_.check(tick.network, arm::base_from_tool(q).translation(), powered_, tick.now, faults_now_);
+
+  for (std::size_t i = 0; i < faults_now_.size() && !is_end(step_); ++i) raise(tick, faults_now_[i].fault, faults_now_[i].code);
+  if (is_end(step_)) return;
+  if (stop_ordered_) raise(tick, Fault::estop, 1);
+  stop_ordered_ = false;
+  if (port_error_ > 0) raise(tick, Fault::port_error, port_error_ - 1);
+  port_error_ = 0;
+  if (camera_.laser_inhibited()) raise(tick, Fault::interlock, 0);
+  if (abort_ordered_ && !failing_ && !is_end(step_)) {
+    abort_ordered_ = false;
+    give_up(Fault::step_failed, 0);
+    react(tick, Reaction::retreat);
+  }
+  const StepRow& now = row(step_);
+  if (now.timeout_s > 0 && tick.now - step_since_ > Duration::from_s(now.timeout_s)) raise(tick, Fault::step_timeout, 0);
+}
+
+void Mission::raise(const Tick& tick, Fault fault, std::int32_t code) {
+  if (is_end(step_)) return;
+  ++fault_counts_[static_cast<std::size_t>(fault)];
+  Reaction reaction = safety::reaction(fault, row(step_).phase);
+  if (reaction == Reaction::retry && !may_retry()) reaction = powered_ ? Reaction::retreat : Reaction::power_off;
+  Event fault_event;
+  fault_event.kind = Event::Kind::fault;
+  fault_event.t = tick.now;
+  fault_event.step = step_;
+  fault_event.fault = fault;
+  fault_event.reaction = reaction;
+  fault_event.task = static_cast<std::uint8_t>(task_index_);
+  fault_event.code = code;
+  (void)tick.telemetry.events.push_back(fault_event);  // a full record of one tick loses details, never the counts
+  if (reaction > Reaction::retry) give_up(fault, code);
+  react(tick, reaction);
+}
+
+bool Mission::may_retry() {
+  if (failing_ || row(step_).on_retry == Step::count) return false;
+  return tries_[static_cast<std::size_t>(step_)] + 1u < config_.mission.tries;
+}
+
+// Remembers the first fault that ended the mission.
+void Mission::give_up(Fault fault, std::int32_t code) {
+  if (failing_) return;
+  failing_ = true;
+  outcome_.stage = row(step_).stage;
+  outcome_.step = step_;
+  outcome_.fault = fault;
+  outcome_.code = code;
+}
+
+void Mission::react(const Tick& tick, Reaction reaction) {
+  switch (reaction) {
+    case Reaction::count_only:
+      return;
+    case Reaction::retry:
+      ++tries_[static_cast<std::size_t>(step_)];
+      retrying_ = true;
+      enter(tick, row(step_).on_retry);
+      return;
+    case Reaction::retreat:
+      retrying_ = false;
+      enter(tick, in_contact_phase() ? Step::abandon : Step::stow);
+      return;
+    case Reaction::hold:
+      motion_.stop();
+      enter(tick, Step::held);
+      return;
+    case Reaction::quick_stop:
+      tick.network.quick_stop_all();
+      motion_.freeze();
+      enter(tick, Step::stopped);
+      return;
+    case Reaction::power_off:
+      tick.network.disable_all();
+      motion_.freeze();
+      powered_ = false;
+      enter(tick, Step::off);
+      return;
+  }
+}
+
+void Mission::enter(const Tick& tick, Step next) {
+  step_ = next;
+  step_since_ = tick.now;
+  entered_ = false;
+  failure_ = StepFailure::none;
+  if (camera_.mode() != CameraWork::Mode::idle) camera_.set_mode(CameraWork::Mode::idle, tick.now);
+  event(tick, Event::Kind::step);
+  if (is_end(next)) {
+    outcome_.ended = true;
+    outcome_.success = next == Step::done && !failing_;
+  }
+}
+
+void Mission::event(const Tick& tick, Event::Kind kind, double value) {
+  Event event;
+  event.kind = kind;
+  event.t = tick.now;
+  event.step = step_;
+  event.task = static_cast<std::uint8_t>(task_index_);
+  event.value = value;
+  (void)tick.telemetry.events.push_back(event);
+}
+
+Mission::Status Mission::fail(StepFailure failure) {
+  failure_ = failure;
+  return Status::failed;
+}
+
+void Mission::finish_step(const Tick& tick, Status status) {
+  const StepRow& now = row(step_);
+  if (status == Status::failed) {
+    const bool by_vision = step_ == Step::perceive || step_ == Step::verify;
+    raise(tick,
+          by_vision             ? Fault::vision_poor
+          : step_ == Step::boot ? Fault::boot_failed
+                                : Fault::step_failed,
+          static_cast<std::int32_t>(failure_));
+    return;
+  }
+  enter(tick, status == Status::branch ? now.on_branch : now.on_done);
+}
+
+void Mission::begin(const Tick& tick) {
+  entered_ = true;
+  switch (step_) {
+    case Step::boot:
+      tick.network.start_boot(tick.now);
+      return;
+    case Step::deploy:
+      begin_deploy();
+      return;
+    case Step::verify_reach:
+      begin_verify_reach();
+      return;
+    case Step::scan:
+    case Step::verify_scan:
+      begin_scan(tick);
+      return;
+    case Step::look:
+    case Step::verify_look:
+      begin_look(tick);
+      return;
+    case Step::reach_valve:
+      begin_reach_valve();
+      return;
+    case Step::advance:
+      begin_advance();
+      return;
+    case Step::grip:
+      gripper_.close();
+      return;
+    case Step::turn:
+      begin_turn();
+      return;
+    case Step::let_go:
+      gripper_.open();
+      return;
+    case Step::back_off:
+      begin_back_off();
+      return;
+    case Step::reach_button:
+      begin_reach_button();
+      return;
+    case Step::press:
+      begin_press();
+      return;
+    case Step::button_back:
+      begin_button_back();
+      return;
+    case Step::abandon:
+      begin_abandon();
+      return;
+    case Step::abandon_back:
+      begin_back_off();
+      return;
+    case Step::stow:
+      begin_stow();
+      return;
+    default:
+      return;
+  }
+}
+
+Mission::Status Mission::run(const Tick& tick) {
+  switch (step_) {
+    case Step::idle:
+      return start_ordered_ ? Status::done : Status::running;
+    case Step::boot:
+      return run_boot(tick);
+    case Step::enable:
+      return run_enable(tick);
+    case Step::home:
+      return run_home(tick);
+    case Step::deploy:
+    case Step::verify_reach:
+      return run_motion();
+    case Step::scan:
+    case Step::verify_scan:
+      return run_scan(tick);
+    case Step::look:
+    case Step::verify_look:
+      return run_look(tick);
+    case Step::perceive:
+      return run_perceive(tick);
+    case Step::next_task:
+      return run_next_task();
+    case Step::reach_valve:
+      return run_reach_valve();
+    case Step::advance:
+      return run_advance();
+    case Step::grip:
+      return run_grip();
+    case Step::turn:
+      return run_turn();
+    case Step::let_go:
+      return gripper_.state() == arm::GripperState::open ? Status::done : Status::running;
+    case Step::back_off:
+      return run_back_off();
+    case Step::verify:
+      return run_verify(tick);
+    case Step::reach_button:
+      return run_reach_button();
+    case Step::press:
+      return run_press(tick);
+    case Step::button_back:
+      return run_button_back();
+    case Step::abandon:
+      return run_abandon();
+    case Step::abandon_back:
+      return run_motion() == Status::running ? Status::running : (retrying_ ? Status::branch : Status::done);
+    case Step::stow:
+      return run_stow();
+    default:
+      return Status::running;
+  }
+}
+
+Mission::Status Mission::run_motion() {
+  if (failure_ != StepFailure::none) return Status::failed;
+  return motion_.done() ? Status::done : Status::running;
+}
+
+// Targets to the drives: the arm follows the motion, the jaw its gripper. Without power the motion follows the joints instead.
+void Mission::drive(const Tick& tick) {
+  const safety::JointStates& joints = watch_.joints();
+  if (!powered_) return;
+  motion_.step(tick.network.config().sync_period.s());
+  const arm::JointVector& target = motion_.target();
+  for (std::size_t i = 0; i < arm_joint_count; ++i) {
+    const auto joint = static_cast<Joint>(i);
+    tick.network.axis(joint).set_target_counts(arm::counts_from_rad(joint, target[static_cast<Eigen::Index>(i)]));
+  }
+  const auto jaw = static_cast<std::size_t>(Joint::jaw);
+  if (joints.valid) gripper_.tick(joints.position_rad[jaw], joints.torque_nm[jaw], tick.network.config().sync_period);
+  tick.network.axis(Joint::jaw).set_target_counts(arm::counts_from_rad(Joint::jaw, gripper_.target_rad()));
+}
+
+void Mission::report(const Tick& tick) {
+  Telemetry& telemetry = tick.telemetry;
+  telemetry.t = tick.now;
+  telemetry.step = step_;
+  const safety::JointStates& joints = watch_.joints();
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    const auto joint = static_cast<Joint>(i);
+    telemetry.actual_rad[i] = joints.position_rad[i];
+    telemetry.torque_nm[i] = joints.torque_nm[i];
+    telemetry.target_rad[i] = arm::rad_from_counts(joint, tick.network.axis(joint).target_counts());
+  }
+  telemetry.outputs = tick.network.io().wanted_outputs();
+  telemetry.faults = fault_counts_;
+}
+
+}  // namespace lf::mission

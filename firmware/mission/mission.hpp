@@ -1,0 +1,174 @@
+// The mission: one step of the table at a time, each a few lines that begin it and a few that watch it.
+//
+// Owns what is known of the panel, what moves, and what went wrong. What a fault does is read from the table of faults (safety/faults.hpp), where a
+// step leads from the table of steps (steps.hpp); neither is decided here.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "firmware/arm/gripper.hpp"
+#include "firmware/arm/guarded_motion.hpp"
+#include "firmware/canopen/network.hpp"
+#include "firmware/config.hpp"
+#include "firmware/mission/camera_work.hpp"
+#include "firmware/mission/motion.hpp"
+#include "firmware/mission/panel_map.hpp"
+#include "firmware/mission/steps.hpp"
+#include "firmware/safety/watch.hpp"
+#include "firmware/telemetry.hpp"
+#include "shared/messages/panel_vision.hpp"
+#include "shared/messages/scan_messages.hpp"
+
+namespace lf::mission {
+
+struct TaskResult {
+  Task task;
+  bool attempted = false;
+  bool done = false;
+  double reached_rad = 0;     // turn_valve: as the second look saw it
+  std::uint32_t presses = 0;  // press_button: bottomed and felt
+};
+
+struct Outcome {
+  bool ended = false;
+  bool success = false;
+  // Of the first fault that ended the mission.
+  const char* stage = "";
+  Step step = Step::idle;
+  safety::Fault fault = safety::Fault::count;
+  std::int32_t code = 0;
+};
+
+class Mission {
+ public:
+  explicit Mission(const ControllerConfig& config);
+
+  void start() { start_ordered_ = true; }
+  void abort() { abort_ordered_ = true; }
+  void stop() { stop_ordered_ = true; }
+  void on_panel(const PanelResult& result);
+  void on_scan(const ScanStats& stats) { scan_stats_ = stats; }
+  void on_port_error(std::int32_t port) { port_error_ = port + 1; }
+
+  // One control period: reads the network's answers, sets its targets and outputs, and adds orders and events.
+  void tick(Time now, canopen::Network& network, ScanOrders& orders, Telemetry& telemetry);
+
+  Step step() const { return step_; }
+  const Outcome& outcome() const { return outcome_; }
+  const StaticVector<TaskResult, MissionConfig::max_tasks>& tasks() const { return tasks_; }
+  const PanelMap& map() const { return map_; }
+  const safety::JointStates& joints() const { return watch_.joints(); }
+
+ private:
+  enum class Status : std::uint8_t { running, done, branch, failed };
+
+  // One tick's surroundings, so that steps need no long argument lists.
+  struct Tick {
+    Time now;
+    canopen::Network& network;
+    ScanOrders& orders;
+    Telemetry& telemetry;
+  };
+
+  // mission.cpp: the machine
+  void observe(const Tick& tick);
+  void watch_faults(const Tick& tick);
+  void raise(const Tick& tick, safety::Fault fault, std::int32_t code);
+  void react(const Tick& tick, safety::Reaction reaction);
+  void enter(const Tick& tick, Step next);
+  void begin(const Tick& tick);
+  Status run(const Tick& tick);
+  void finish_step(const Tick& tick, Status status);
+  void give_up(safety::Fault fault, std::int32_t code);
+  bool may_retry();
+  void drive(const Tick& tick);
+  void report(const Tick& tick);
+  void event(const Tick& tick, Event::Kind kind, double value = 0);
+  Status fail(StepFailure failure);
+  bool in_contact_phase() const { return row(step_).phase == safety::Phase::contact || row(step_).phase == safety::Phase::gripping; }
+
+  // mission_start.cpp: power up and the way home
+  Status run_boot(const Tick& tick);
+  Status run_enable(const Tick& tick);
+  Status run_home(const Tick& tick);
+  void begin_stow();
+  Status run_stow();
+  void begin_abandon();
+  Status run_abandon();
+
+  // mission_look.cpp: sweeps, stills and what is made of them
+  void begin_deploy();
+  void begin_verify_reach();
+  void begin_scan(const Tick& tick);
+  Status run_scan(const Tick& tick);
+  void begin_look(const Tick& tick);
+  Status run_look(const Tick& tick);
+  Status run_perceive(const Tick& tick);
+  Status run_verify(const Tick& tick);
+  bool order_sweep(const Tick& tick, ScanCommand::Kind kind);
+  void order(const Tick& tick, ScanCommand::Kind kind);
+
+  // mission_valve.cpp
+  Status run_next_task();
+  void begin_reach_valve();
+  Status run_reach_valve();
+  void begin_advance();
+  Status run_advance();
+  Status run_grip();
+  void begin_turn();
+  Status run_turn();
+  void begin_back_off();
+  Status run_back_off();
+
+  // mission_buttons.cpp
+  void begin_reach_button();
+  Status run_reach_button();
+  void begin_press();
+  Status run_press(const Tick& tick);
+  void begin_button_back();
+  Status run_button_back();
+
+  Status run_motion();  // done when the motion is
+  const Task& task() const { return config_.mission.tasks[task_index_]; }
+
+  ControllerConfig config_;
+  safety::Watch watch_;
+  CameraWork camera_;
+  Motion motion_;
+  arm::Gripper gripper_;
+  arm::ContactGuard guard_;
+  PanelMap map_;
+  safety::FaultReports faults_now_;
+  std::array<std::uint32_t, safety::fault_count> fault_counts_{};
+
+  Step step_ = Step::idle;
+  Time step_since_;
+  bool entered_ = false;  // begin() has run
+  std::array<std::uint8_t, step_count> tries_{};
+  StepFailure failure_ = StepFailure::none;
+  bool failing_ = false;   // the mission failed and is on its way to a safe end
+  bool retrying_ = false;  // the task under way is taken again after the way back
+  bool powered_ = false;
+  bool parked_jaw_ = true;
+
+  std::size_t task_index_ = 0;
+  StaticVector<TaskResult, MissionConfig::max_tasks> tasks_;
+  Outcome outcome_;
+
+  // Orders and answers from outside, taken at the next tick.
+  bool start_ordered_ = false, abort_ordered_ = false, stop_ordered_ = false;
+  std::int32_t port_error_ = 0;
+  ScanStats scan_stats_;
+  PanelResult panel_;
+  bool panel_arrived_ = false;
+
+  std::uint32_t sweep_ = 0;
+  bool sweep_begun_ = false;
+  Vec3 standoff_m_ = Vec3::Zero();  // where straight motions start and return to
+  double tool_roll_rad_ = 0;
+  bool pressed_ = false;
+  Time pressed_since_;
+};
+
+}  // namespace lf::mission

@@ -1,0 +1,82 @@
+#include "firmware/mission/mission.hpp"
+
+namespace lf::mission {
+
+Mission::Status Mission::run_boot(const Tick& tick) {
+  const safety::LimitsVerdict verdict = safety::check(config_.limits);
+  const bool tighter = safety::is_tighter(config_.mission_limits, config_.limits);
+  if (verdict != safety::LimitsVerdict::good || !tighter) {
+    raise(tick, safety::Fault::limits_refused, verdict != safety::LimitsVerdict::good ? static_cast<std::int32_t>(verdict) : 100);
+    return Status::running;
+  }
+  switch (tick.network.boot().state) {
+    case canopen::BootState::done:
+      return Status::done;
+    case canopen::BootState::failed:
+      return Status::failed;
+    default:
+      return Status::running;
+  }
+}
+
+Mission::Status Mission::run_enable(const Tick& tick) {
+  // An axis without a homed zero is powered when it is homed.
+  bool all = true;
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    canopen::Axis& axis = tick.network.axis(static_cast<Joint>(i));
+    if (axis.fault() != canopen::AxisFault::none || axis.state() == canopen::AxisState::fault) {
+      axis.request(canopen::AxisRequest::reset_fault);
+      all = false;
+      continue;
+    }
+    if (!axis.homed()) continue;
+    if (axis.requested() != canopen::AxisRequest::hold_enabled) axis.request(canopen::AxisRequest::hold_enabled);
+    all = all && axis.enabled();
+  }
+  if (!all || !watch_.joints().valid) return Status::running;
+  const safety::JointStates& joints = watch_.joints();
+  arm::JointVector q;
+  for (std::size_t i = 0; i < arm_joint_count; ++i) q[static_cast<Eigen::Index>(i)] = joints.position_rad[i];
+  motion_.start_at(q);
+  return Status::done;
+}
+
+Mission::Status Mission::run_home(const Tick& tick) {
+  bool all = true;
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    canopen::Axis& axis = tick.network.axis(static_cast<Joint>(i));
+    if (axis.enabled() && axis.homed()) continue;
+    all = false;
+    if (axis.fault() != canopen::AxisFault::none) return fail(StepFailure::not_homed);
+    const canopen::AxisRequest wanted = axis.homed() ? canopen::AxisRequest::hold_enabled : canopen::AxisRequest::home;
+    if (axis.requested() != wanted) axis.request(wanted);
+  }
+  if (!all || !watch_.joints().valid) return Status::running;
+  gripper_.start_at(watch_.joints().position_rad[static_cast<std::size_t>(Joint::jaw)]);
+  powered_ = true;
+  return Status::done;
+}
+
+void Mission::begin_stow() {
+  gripper_.close_empty();
+  if (!motion_.go_via_clear({config_.mission.park_rad}, config_.mission.move_speed_fraction)) failure_ = StepFailure::no_motion;
+}
+
+Mission::Status Mission::run_stow() {
+  const Status status = run_motion();
+  if (status != Status::done) return status;
+  return failing_ ? Status::branch : Status::done;
+}
+
+// Out of a contact: open the jaw, whatever it holds, before going back.
+void Mission::begin_abandon() {
+  motion_.stop();
+  gripper_.open();
+}
+
+Mission::Status Mission::run_abandon() {
+  const bool open = gripper_.state() == arm::GripperState::open || gripper_.state() == arm::GripperState::jammed;
+  return open && motion_.done() ? Status::done : Status::running;
+}
+
+}  // namespace lf::mission
