@@ -63,7 +63,7 @@ void Mission::observe(const Tick& tick) {
   const Time before = watch_.joints().t;
   watch_.observe(tick.network, rad, tick.now);
   const safety::JointStates& joints = watch_.joints();
-  if (!joints.valid || joints.t == before || camera_.mode() != CameraWork::Mode::sweep) return;
+  if (!joints.valid || joints.t == before || row(step_).phase != safety::Phase::scan) return;
   ScanCommand sample;
   sample.kind = ScanCommand::Kind::joint_sample;
   sample.joints.t = joints.t;
@@ -74,10 +74,7 @@ void Mission::observe(const Tick& tick) {
 void Mission::watch_faults(const Tick& tick) {
   if (is_end(step_)) return;
   faults_now_.clear();
-  const safety::JointStates& joints = watch_.joints();
-  arm::JointVector q;
-  for (std::size_t i = 0; i < arm_joint_count; ++i) q[static_cast<Eigen::Index>(i)] = joints.position_rad[i];
-  watch_.check(tick.network, arm::base_from_tool(q).translation(), powered_, tick.now, faults_now_);
+  watch_.check(tick.network, arm::base_from_tool(measured_rad()).translation(), powered_, tick.now, faults_now_);
 
   for (std::size_t i = 0; i < faults_now_.size() && !is_end(step_); ++i) raise(tick, faults_now_[i].fault, faults_now_[i].code);
   if (is_end(step_)) return;
@@ -139,7 +136,12 @@ void Mission::react(const Tick& tick, Reaction reaction) {
       return;
     case Reaction::retreat:
       retrying_ = false;
-      enter(tick, in_contact_phase() ? Step::abandon : Step::stow);
+      if (!in_contact_phase()) {
+        enter(tick, Step::stow);
+      } else {
+        const bool at_button = step_ == Step::press || step_ == Step::button_back;
+        enter(tick, at_button ? Step::abandon_back : Step::abandon);
+      }
       return;
     case Reaction::hold:
       motion_.stop();
@@ -148,6 +150,7 @@ void Mission::react(const Tick& tick, Reaction reaction) {
     case Reaction::quick_stop:
       tick.network.quick_stop_all();
       motion_.freeze();
+      powered_ = false;
       enter(tick, Step::stopped);
       return;
     case Reaction::power_off:
@@ -166,6 +169,11 @@ void Mission::enter(const Tick& tick, Step next) {
   failure_ = StepFailure::none;
   if (camera_.mode() != CameraWork::Mode::idle) camera_.set_mode(CameraWork::Mode::idle, tick.now);
   event(tick, Event::Kind::step);
+  settling_ = false;
+  if (next == Step::done || next == Step::failed) {
+    tick.network.disable_all();  // parked: the gears lock themselves
+    powered_ = false;
+  }
   if (is_end(next)) {
     outcome_.ended = true;
     outcome_.success = next == Step::done && !failing_;
@@ -198,7 +206,7 @@ void Mission::finish_step(const Tick& tick, Status status) {
           static_cast<std::int32_t>(failure_));
     return;
   }
-  enter(tick, status == Status::branch ? now.on_branch : now.on_done);
+  enter(tick, status == Status::end ? now.on_end : status == Status::branch ? now.on_branch : now.on_done);
 }
 
 void Mission::begin(const Tick& tick) {
@@ -316,6 +324,22 @@ Mission::Status Mission::run(const Tick& tick) {
   }
 }
 
+arm::JointVector Mission::measured_rad() const {
+  arm::JointVector q;
+  for (std::size_t i = 0; i < arm_joint_count; ++i) q[static_cast<Eigen::Index>(i)] = watch_.joints().position_rad[i];
+  return q;
+}
+
+bool Mission::settled(bool condition, Duration for_how_long, Time now) {
+  if (!condition) {
+    settling_ = false;
+  } else if (!settling_) {
+    settling_ = true;
+    settled_since_ = now;
+  }
+  return settling_ && now - settled_since_ >= for_how_long;
+}
+
 Mission::Status Mission::run_motion() {
   if (failure_ != StepFailure::none) return Status::failed;
   return motion_.done() ? Status::done : Status::running;
@@ -331,9 +355,10 @@ void Mission::drive(const Tick& tick) {
     const auto joint = static_cast<Joint>(i);
     tick.network.axis(joint).set_target_counts(arm::counts_from_rad(joint, target[static_cast<Eigen::Index>(i)]));
   }
+  if (!joints.valid) return;
   const auto jaw = static_cast<std::size_t>(Joint::jaw);
-  if (joints.valid) gripper_.tick(joints.position_rad[jaw], joints.torque_nm[jaw], tick.network.config().sync_period);
-  tick.network.axis(Joint::jaw).set_target_counts(arm::counts_from_rad(Joint::jaw, gripper_.target_rad()));
+  const double jaw_rad = gripper_.update(joints.t, joints.position_rad[jaw], joints.torque_nm[jaw]);
+  tick.network.axis(Joint::jaw).set_target_counts(arm::counts_from_rad(Joint::jaw, jaw_rad));
 }
 
 void Mission::report(const Tick& tick) {

@@ -61,7 +61,7 @@ class Mission {
   const safety::JointStates& joints() const { return watch_.joints(); }
 
  private:
-  enum class Status : std::uint8_t { running, done, branch, failed };
+  enum class Status : std::uint8_t { running, done, branch, end, failed };
 
   // One tick's surroundings, so that steps need no long argument lists.
   struct Tick {
@@ -102,24 +102,22 @@ class Mission {
   void begin_verify_reach();
   void begin_scan(const Tick& tick);
   Status run_scan(const Tick& tick);
-  void begin_look(const Tick& tick);
   Status run_look(const Tick& tick);
   Status run_perceive(const Tick& tick);
   Status run_verify(const Tick& tick);
-  bool order_sweep(const Tick& tick, ScanCommand::Kind kind);
   void order(const Tick& tick, ScanCommand::Kind kind);
 
   // mission_valve.cpp
-  Status run_next_task();
+  Status run_next_task(const Tick& tick);
   void begin_reach_valve();
   Status run_reach_valve();
   void begin_advance();
-  Status run_advance();
+  Status run_advance(const Tick& tick);
   Status run_grip();
+  Status run_let_go();
   void begin_turn();
-  Status run_turn();
+  Status run_turn(const Tick& tick);
   void begin_back_off();
-  Status run_back_off();
 
   // mission_buttons.cpp
   void begin_reach_button();
@@ -127,9 +125,15 @@ class Mission {
   void begin_press();
   Status run_press(const Tick& tick);
   void begin_button_back();
-  Status run_button_back();
+  Status run_button_back(const Tick& tick);
 
+  // True once the condition has held for `for_how_long`.
+  bool settled(bool condition, Duration for_how_long, Time now);
   Status run_motion();  // done when the motion is
+  // Goes there straight if that keeps clear of the panel, else by the park position.
+  bool go_clear(const arm::JointVector& goal_rad);
+  void guard_with(const arm::GuardConfig& config) { guard_ = arm::GuardedMotion(config); }
+  arm::JointVector measured_rad() const;
   const Task& task() const { return config_.mission.tasks[task_index_]; }
 
   ControllerConfig config_;
@@ -137,20 +141,19 @@ class Mission {
   CameraWork camera_;
   Motion motion_;
   arm::Gripper gripper_;
-  arm::ContactGuard guard_;
+  arm::GuardedMotion guard_;
   PanelMap map_;
   safety::FaultReports faults_now_;
   std::array<std::uint32_t, safety::fault_count> fault_counts_{};
 
   Step step_ = Step::idle;
   Time step_since_;
-  bool entered_ = false;  // begin() has run
-  std::array<std::uint8_t, step_count> tries_{};
+  bool entered_ = false;                           // begin() has run
+  std::array<std::uint32_t, step_count> tries_{};  // of the task under way
   StepFailure failure_ = StepFailure::none;
   bool failing_ = false;   // the mission failed and is on its way to a safe end
   bool retrying_ = false;  // the task under way is taken again after the way back
   bool powered_ = false;
-  bool parked_jaw_ = true;
 
   std::size_t task_index_ = 0;
   StaticVector<TaskResult, MissionConfig::max_tasks> tasks_;
@@ -164,11 +167,11 @@ class Mission {
   bool panel_arrived_ = false;
 
   std::uint32_t sweep_ = 0;
-  bool sweep_begun_ = false;
+  Time settled_since_;  // of waits within a step
+  bool settling_ = false;
   Vec3 standoff_m_ = Vec3::Zero();  // where straight motions start and return to
   double tool_roll_rad_ = 0;
   bool pressed_ = false;
-  Time pressed_since_;
 };
 
 }  // namespace lf::mission

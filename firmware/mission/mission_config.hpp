@@ -42,8 +42,8 @@ struct MissionConfig {
   double press_overtravel_m = 0.006;   // beyond the button's nominal bottom before a press counts as missed
   double press_torque_nm = 7.0;        // rise of an arm joint's torque that says the button has bottomed: about 12 N at the cap
   double turn_speed_rad_s = 0.35;      // of the handle; above the wrist's stiction of 0.2 rad/s
+  double jaw_open_m = 0.060;           // between the pads when reaching for the bar: 24 mm to either side
   double valve_tolerance_rad = 0.035;  // 2 degrees: what the second look accepts without turning again
-  double tip_beyond_tool_m = 0.020;    // the closed fingers' tip beyond the tool point, along the tool axis
   std::uint32_t tries = 3;             // of a step whose row allows a retry, per task
 };
 

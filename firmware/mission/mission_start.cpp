@@ -34,10 +34,7 @@ Mission::Status Mission::run_enable(const Tick& tick) {
     all = all && axis.enabled();
   }
   if (!all || !watch_.joints().valid) return Status::running;
-  const safety::JointStates& joints = watch_.joints();
-  arm::JointVector q;
-  for (std::size_t i = 0; i < arm_joint_count; ++i) q[static_cast<Eigen::Index>(i)] = joints.position_rad[i];
-  motion_.start_at(q);
+  motion_.start_at(measured_rad());
   return Status::done;
 }
 
@@ -52,14 +49,14 @@ Mission::Status Mission::run_home(const Tick& tick) {
     if (axis.requested() != wanted) axis.request(wanted);
   }
   if (!all || !watch_.joints().valid) return Status::running;
-  gripper_.start_at(watch_.joints().position_rad[static_cast<std::size_t>(Joint::jaw)]);
+  gripper_.stay();
   powered_ = true;
   return Status::done;
 }
 
 void Mission::begin_stow() {
-  gripper_.close_empty();
-  if (!motion_.go_via_clear({config_.mission.park_rad}, config_.mission.move_speed_fraction)) failure_ = StepFailure::no_motion;
+  gripper_.close();
+  if (!go_clear(config_.mission.park_rad)) failure_ = StepFailure::no_motion;
 }
 
 Mission::Status Mission::run_stow() {
@@ -71,7 +68,7 @@ Mission::Status Mission::run_stow() {
 // Out of a contact: open the jaw, whatever it holds, before going back.
 void Mission::begin_abandon() {
   motion_.stop();
-  gripper_.open();
+  gripper_.open_to(config_.mission.jaw_open_m);
 }
 
 Mission::Status Mission::run_abandon() {

@@ -17,7 +17,7 @@ constexpr std::array<StepRow, step_count> table{{
     {Step::scan, "scan", "scan", Phase::scan, 60, Step::look, Step::look, Step::deploy},
     {Step::look, "look", "scan", Phase::scan, 5, Step::perceive, Step::perceive, Step::look},
     {Step::perceive, "perceive", "perceive", Phase::free, 10, Step::next_task, Step::next_task, Step::look},
-    {Step::next_task, "next task", "perceive", Phase::free, 1, Step::reach_valve, Step::reach_button, never},
+    {Step::next_task, "next task", "perceive", Phase::free, 1, Step::reach_valve, Step::reach_button, never, Step::stow},
     {Step::reach_valve, "reach valve", "turn_valve", Phase::free, 60, Step::advance, Step::advance, Step::reach_valve},
     {Step::advance, "advance", "turn_valve", Phase::contact, 20, Step::grip, Step::grip, Step::abandon},
     {Step::grip, "grip", "turn_valve", Phase::contact, 20, Step::turn, Step::turn, Step::abandon},

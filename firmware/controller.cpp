@@ -1,0 +1,94 @@
+#include "firmware/controller.hpp"
+
+#include <cmath>
+
+namespace lf {
+
+Controller::Controller(const ControllerConfig& config) : network_(config.network), mission_(config) {}
+
+void Controller::on_can(std::uint8_t bus, const CanFrame& frame, Time t) {
+  if (bus >= bus_count) {
+    ++rejected_inputs_;
+    return;
+  }
+  network_.on_frame(frame, t);
+}
+
+void Controller::on_panel(const PanelResult& result, Time t) {
+  const bool sound = result.fit.plane.normal.allFinite() && std::isfinite(result.fit.plane.offset_m) && std::isfinite(result.confidence) &&
+                     result.marker.camera_from_tag.matrix().allFinite() && result.measured <= t &&
+                     result.clusters.size() <= PanelResult::max_clusters;
+  if (!sound) {
+    ++rejected_inputs_;
+    return;
+  }
+  mission_.on_panel(result);
+}
+
+void Controller::on_scan(const ScanStats& stats, Time) { mission_.on_scan(stats); }
+
+void Controller::on_port_error(Port port, std::int32_t, Time) {
+  if (port >= Port::count) {
+    ++rejected_inputs_;
+    return;
+  }
+  ++port_errors_[static_cast<std::size_t>(port)];
+  mission_.on_port_error(static_cast<std::int32_t>(port));
+}
+
+void Controller::on_command(Command command, Time) {
+  switch (command) {
+    case Command::start:
+      mission_.start();
+      return;
+    case Command::emergency_stop:
+      mission_.stop();
+      return;
+    case Command::abort:
+      mission_.abort();
+      return;
+  }
+  ++rejected_inputs_;
+}
+
+void Controller::tick(Time t, TickOutput& out) {
+  mission_.tick(t, network_, out.scan, out.telemetry);
+  out.telemetry.rejected_inputs = rejected_inputs_ + network_.stats().refused_total();
+  network_.tick(t, out.can[0]);
+}
+
+const char* name(StepFailure failure) {
+  switch (failure) {
+    case StepFailure::none:
+      return "none";
+    case StepFailure::unreachable:
+      return "unreachable";
+    case StepFailure::no_motion:
+      return "no way there";
+    case StepFailure::early_contact:
+      return "touched something before the aim";
+    case StepFailure::no_contact:
+      return "nothing to touch where the aim should be";
+    case StepFailure::not_gripped:
+      return "nothing held";
+    case StepFailure::wrong_angle:
+      return "the handle is not where it was turned to";
+    case StepFailure::no_click:
+      return "no click";
+    case StepFailure::no_panel:
+      return "no panel seen";
+    case StepFailure::no_marker:
+      return "no usable marker seen";
+    case StepFailure::no_handle:
+      return "no handle seen";
+    case StepFailure::panel_moved:
+      return "the panel has moved";
+    case StepFailure::not_homed:
+      return "homing failed";
+    case StepFailure::too_few_points:
+      return "too few points of the panel";
+  }
+  return "unknown";
+}
+
+}  // namespace lf
