@@ -22,6 +22,7 @@ LAYERS = {
     "firmware/": ["firmware/"] + SHARED_FOR_CORE,
     "hal/ports.hpp": ["firmware/", "shared/"],
     "hal/core_loop.hpp": ["firmware/", "shared/", "hal/"],
+    "hal/lockstep.hpp": ["firmware/", "shared/", "hal/"],
     "hal/heap_guard/": ["hal/heap_guard/"],
     "hal/mock/": ["hal/mock/", "hal/ports.hpp", "firmware/", "shared/"],
     "hal/vision/": ["hal/vision/", "firmware/", "shared/"],
