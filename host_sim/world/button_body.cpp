@@ -26,6 +26,7 @@ ButtonBody::ButtonBody(const ButtonConfig& config, const Pose& base_from_button,
   part_.add_collider(-1, make_collision_shape({}, Pose::Identity()), no_body, restitution);
   part_.add_collider(0, make_collision_shape(cap, Pose::Identity()), scene_body, restitution);
   rows_ = &part_.add_rows(0);
+  part_.update_poses();
 }
 
 void ButtonBody::before_step() {
