@@ -9,6 +9,7 @@
 #include <cstdint>
 
 #include "shared/can/can_map.hpp"
+#include "shared/geometry/pose.hpp"
 #include "shared/messages/scan_messages.hpp"
 
 namespace lf::scan {
@@ -35,6 +36,7 @@ class JointHistory {
 
  private:
   const JointSample& sample(std::size_t age) const;  // 0 is the oldest
+  void fit(std::size_t first, std::size_t last, Time t, std::array<double, arm_joint_count>& q_rad) const;
 
   std::array<JointSample, capacity> ring_{};
   std::size_t next_ = 0;

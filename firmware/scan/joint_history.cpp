@@ -1,0 +1,79 @@
+#include "firmware/scan/joint_history.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace lf::scan {
+namespace {
+
+// Two missed SYNCs in a row are a lost frame or two; three leave 12 ms without a reading, and the drives' own watchdog trips.
+constexpr Duration max_gap = can_map::sync_period * 3;
+
+}  // namespace
+
+const JointSample& JointHistory::sample(std::size_t age) const { return ring_[(next_ + capacity - size_ + age) % capacity]; }
+
+bool JointHistory::add(const JointSample& sample_in) {
+  if (!std::all_of(sample_in.q_rad.begin(), sample_in.q_rad.end(), [](double q) { return std::isfinite(q); })) return false;
+  if (size_ > 0 && sample_in.t <= sample(size_ - 1).t) return false;
+  ring_[next_] = sample_in;
+  next_ = (next_ + 1) % capacity;
+  size_ = std::min(size_ + 1, capacity);
+  return true;
+}
+
+auto JointHistory::at(Time t, bool final, std::array<double, arm_joint_count>& q_rad) const -> Outcome {
+  if (size_ == 0 || t > sample(size_ - 1).t) return final ? Outcome::gap : Outcome::wait;
+  if (t < sample(0).t) return Outcome::too_old;
+  // The first sample after t, by bisection; samples are in the order of their times.
+  std::size_t low = 0, high = size_ - 1;
+  while (low < high) {
+    const std::size_t middle = (low + high) / 2;
+    if (sample(middle).t < t)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  const std::size_t after = low;
+  if (!final && size_ - after < static_cast<std::size_t>(half_window)) return Outcome::wait;
+  if (after > 0 && sample(after).t - sample(after - 1).t > max_gap) return Outcome::gap;
+
+  std::size_t first = after, last = after;
+  while (first > 0 && after - first < static_cast<std::size_t>(half_window) && sample(first).t - sample(first - 1).t <= max_gap) --first;
+  while (last + 1 < size_ && last + 1 - after < static_cast<std::size_t>(half_window) && sample(last + 1).t - sample(last).t <= max_gap)
+    ++last;
+  fit(first, last, t, q_rad);
+  return Outcome::done;
+}
+
+// Least squares of 1, x, x^2 over the samples `first` to `last`, x their time from `t` in units of the half window: the joint at t is the first
+// coefficient. With fewer than five samples, or on one side of t only, a parabola would extrapolate noise: a straight line then.
+void JointHistory::fit(std::size_t first, std::size_t last, Time t, std::array<double, arm_joint_count>& q_rad) const {
+  const double unit_s = (can_map::sync_period * half_window).s();
+  const std::size_t count = last - first + 1;
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Eigen::Matrix<double, 3, arm_joint_count> right = Eigen::Matrix<double, 3, arm_joint_count>::Zero();
+  const auto& reference = sample(first).q_rad;  // differences from it keep the sums small
+  for (std::size_t i = first; i <= last; ++i) {
+    const double x = (sample(i).t - t).s() / unit_s;
+    const Vec3 row(1, x, x * x);
+    normal += row * row.transpose();
+    for (std::size_t j = 0; j < arm_joint_count; ++j) right.col(static_cast<Eigen::Index>(j)) += row * (sample(i).q_rad[j] - reference[j]);
+  }
+  // Balanced enough for a parabola: a third of the samples on the lesser side.
+  const double balance = std::abs(normal(0, 1)) / normal(0, 0);
+  const bool quadratic = count >= 5 && balance < 0.25;
+  if (count == 1) {
+    q_rad = reference;
+    return;
+  }
+  Eigen::Matrix<double, 3, arm_joint_count> solution = Eigen::Matrix<double, 3, arm_joint_count>::Zero();
+  if (quadratic)
+    solution = normal.ldlt().solve(right);
+  else
+    solution.topRows<2>() = normal.topLeftCorner<2, 2>().ldlt().solve(right.topRows<2>());
+  for (std::size_t j = 0; j < arm_joint_count; ++j) q_rad[j] = reference[j] + solution(0, static_cast<Eigen::Index>(j));
+}
+
+}  // namespace lf::scan
