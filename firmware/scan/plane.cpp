@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -31,10 +32,9 @@ std::uint64_t splitmix(std::uint64_t& state) {
 // Uniform in 0..n-1, n < 2^32; biased by less than n / 2^32.
 std::size_t draw_below(std::uint64_t& state, std::size_t n) { return static_cast<std::size_t>(((splitmix(state) >> 32) * n) >> 32); }
 
-bool finite(const CloudPoint& point) {
-  const Eigen::Vector3f& p = point.p_m;
-  return (p.x() - p.x()) + (p.y() - p.y()) + (p.z() - p.z()) == 0;  // infinity less itself is not a number
-}
+// By the exponent's bits: arithmetic on infinities would raise floating-point exceptions, which the tests trap.
+bool finite(float value) { return (std::bit_cast<std::uint32_t>(value) & 0x7F800000u) != 0x7F800000u; }
+bool finite(const CloudPoint& point) { return finite(point.p_m.x()) & finite(point.p_m.y()) & finite(point.p_m.z()); }
 
 // Zeroth to second moments of the points near a plane, about `centre`.
 struct Moments {
@@ -49,58 +49,80 @@ struct Moments {
   }
 };
 
+// Points are summed by chunks of structures of arrays; the loops below have constant counts and no branches, so that the compiler makes vector
+// code of them.
 constexpr std::size_t chunk = 64;
-constexpr std::size_t accumulators = 4;  // doubles in an AVX register
-struct Lanes {
-  alignas(64) std::array<std::array<double, accumulators>, 10> sums{};
+using Coordinates = std::array<double, chunk>;
+struct Chunk {
+  alignas(64) Coordinates x, y, z;
 };
 
-// Adds a chunk's points within `threshold` of the plane: no branch, so that the compiler makes vector code of it.
-[[gnu::noinline]] void add_chunk(const double* __restrict x, const double* __restrict y, const double* __restrict z, const Vec3& normal,
-                                 double offset, double threshold, Lanes& lanes) {
-  const double a = normal.x(), b = normal.y(), c = normal.z();
-  auto& s = lanes.sums;
-  for (std::size_t i = 0; i < chunk; i += accumulators) {
-    for (std::size_t j = 0; j < accumulators; ++j) {
-      const double distance = a * x[i + j] + b * y[i + j] + c * z[i + j] + offset;
-      const double w = std::abs(distance) < threshold ? 1.0 : 0.0;
-      const double wx = w * x[i + j], wy = w * y[i + j], wz = w * z[i + j];
-      s[0][j] += w;
-      s[1][j] += wx;
-      s[2][j] += wy;
-      s[3][j] += wz;
-      s[4][j] += wx * x[i + j];
-      s[5][j] += wx * y[i + j];
-      s[6][j] += wx * z[i + j];
-      s[7][j] += wy * y[i + j];
-      s[8][j] += wy * z[i + j];
-      s[9][j] += wz * z[i + j];
-    }
+// A value, or zero where `keep` is false. A conditional would be control flow to GCC 12, since a comparison may trap; a mask is not.
+double keep_if(bool keep, double value) {
+  return std::bit_cast<double>(std::bit_cast<std::int64_t>(value) & -static_cast<std::int64_t>(keep));
+}
+
+// Copies a chunk of points about the centre; what is not finite is put far away.
+[[gnu::noinline]] void load(const CloudPoint* __restrict points, const Vec3& centre_m, Chunk& __restrict out) {
+  const double cx = centre_m.x(), cy = centre_m.y(), cz = centre_m.z();
+  for (std::size_t i = 0; i < chunk; ++i) {
+    const double x = points[i].p_m.x(), y = points[i].p_m.y(), z = points[i].p_m.z();
+    const bool good = finite(points[i]);
+    const double far_m = keep_if(!good, far_away_m);
+    out.x[i] = keep_if(good, x - cx) + far_m;
+    out.y[i] = keep_if(good, y - cy) + far_m;
+    out.z[i] = keep_if(good, z - cz) + far_m;
   }
 }
 
-// Copies up to a chunk of points about the centre; what is not finite, and the rest of the chunk, is put far away.
-void load_chunk(std::span<const CloudPoint> points, const Vec3& centre_m, double* __restrict x, double* __restrict y,
-                double* __restrict z) {
+double dot(const Coordinates& a, const Coordinates& b) {
+  constexpr std::size_t lanes = 8;
+  std::array<double, lanes> sums{};
+  for (std::size_t i = 0; i < chunk; i += lanes)
+    for (std::size_t j = 0; j < lanes; ++j) sums[j] += a[i + j] * b[i + j];
+  double total = 0;
+  for (double s : sums) total += s;
+  return total;
+}
+
+// Adds the chunk's points within `threshold` of the plane.
+[[gnu::noinline]] void add(const Chunk& __restrict p, const Vec3& normal, double offset_m, double threshold_m, Moments& m) {
+  const double a = normal.x(), b = normal.y(), c = normal.z();
+  alignas(64) Coordinates weight, x, y, z;
   for (std::size_t i = 0; i < chunk; ++i) {
-    const bool good = i < points.size() && finite(points[i]);
-    x[i] = good ? static_cast<double>(points[i].p_m.x()) - centre_m.x() : static_cast<double>(far_away_m);
-    y[i] = good ? static_cast<double>(points[i].p_m.y()) - centre_m.y() : static_cast<double>(far_away_m);
-    z[i] = good ? static_cast<double>(points[i].p_m.z()) - centre_m.z() : static_cast<double>(far_away_m);
+    const double distance = a * p.x[i] + b * p.y[i] + c * p.z[i] + offset_m;
+    const bool near = std::abs(distance) < threshold_m;
+    weight[i] = keep_if(near, 1.0);
+    x[i] = keep_if(near, p.x[i]);
+    y[i] = keep_if(near, p.y[i]);
+    z[i] = keep_if(near, p.z[i]);
   }
+  m.n += dot(weight, weight);
+  m.x += dot(weight, x);
+  m.y += dot(weight, y);
+  m.z += dot(weight, z);
+  m.xx += dot(x, p.x);
+  m.xy += dot(x, p.y);
+  m.xz += dot(x, p.z);
+  m.yy += dot(y, p.y);
+  m.yz += dot(y, p.z);
+  m.zz += dot(z, p.z);
 }
 
 Moments moments_near(std::span<const CloudPoint> points, const Vec3& centre_m, const Vec3& normal, double offset_m, double threshold_m) {
-  Lanes lanes;
-  alignas(64) std::array<double, chunk> x, y, z;
-  for (std::size_t i = 0; i < points.size(); i += chunk) {
-    load_chunk(points.subspan(i, std::min(chunk, points.size() - i)), centre_m, x.data(), y.data(), z.data());
-    add_chunk(x.data(), y.data(), z.data(), normal, offset_m, threshold_m, lanes);
+  Moments m;
+  Chunk p;
+  std::size_t i = 0;
+  for (; i + chunk <= points.size(); i += chunk) {
+    load(points.data() + i, centre_m, p);
+    add(p, normal, offset_m, threshold_m, m);
   }
-  std::array<double, 10> t{};
-  for (std::size_t k = 0; k < t.size(); ++k)
-    for (double lane : lanes.sums[k]) t[k] += lane;
-  return {t[0], t[1], t[2], t[3], t[4], t[5], t[6], t[7], t[8], t[9]};
+  std::array<CloudPoint, chunk> rest;
+  rest.fill({.p_m = Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN())});
+  std::copy(points.begin() + i, points.end(), rest.begin());
+  load(rest.data(), centre_m, p);
+  add(p, normal, offset_m, threshold_m, m);
+  return m;
 }
 
 // The total least squares plane. False when the points do not span one: nearly on a line, or as thick as they are wide.
