@@ -56,6 +56,9 @@ class Axis {
  public:
   // Three SYNC cycles: a command acts one SYNC after it is sent and is answered one later.
   static constexpr std::uint8_t handshake_syncs = 3;
+  // A drive may take tens of milliseconds to leave its fault state: each rising edge is given 25 SYNCs, 100 ms, and there are three.
+  static constexpr std::uint8_t reset_syncs = 25;
+  static constexpr std::uint8_t reset_edges = 3;
 
   struct Stats {
     std::uint32_t targets_refused = 0;  // outside the position limits, or while not enabled
@@ -66,7 +69,7 @@ class Axis {
   Axis() = default;
   Axis(const DriveSetup& setup, const NetworkConfig& config);
 
-  // The core's side.
+  // The core's side. Asking once is enough; `reset_fault` and `home` asked again after they ended start again. Ignored while offline.
   void request(AxisRequest request);
   AxisRequest requested() const { return request_; }
   // Next target, in effect while `enabled()`. False, and counted, when outside the limits or not enabled: the last target stays.
@@ -97,36 +100,39 @@ class Axis {
   const Stats& stats() const { return stats_; }
 
   // The network's side.
-  void go_online(std::uint32_t rated_torque_mnm);  // configured, in cyclic mode, and started
-  void go_offline();                               // being booted
-  void lose_node();                                // latches node_lost
-  void forget_home();                              // the node lost its memory
-  void on_tpdo(const CanFrame& frame, Time sync);  // `frame` has the right identifier and length
-  void step(Time now, SdoClient& sdo);             // once a SYNC
+  void go_online(std::uint32_t rated_torque_mnm, Time now);  // configured, in cyclic mode, and started
+  void go_offline();                                         // being booted
+  void lose_node();                                          // latches node_lost
+  void forget_home();                                        // the node lost its memory
+  void on_tpdo(const CanFrame& frame, Time sync);            // `frame` has the right identifier and length
+  void step(Time now, SdoClient& sdo);                       // once a SYNC
   // False before the first TPDO: a target that was never seeded is never sent.
   bool make_rpdo(CanFrame& frame) const;
 
  private:
-  enum class HomingPhase : std::uint8_t { idle, enter, enable, run, leave };
-  enum class ModeStep : std::uint8_t { settled, write, writing, read, reading };
+  enum class HomingPhase : std::uint8_t { idle, enter_mode, enable, run, leave_mode };
+  enum class ModeStep : std::uint8_t { settled, write, writing, reading };
 
+  void forget_state();
   void supervise(Time now);
   void latch(AxisFault fault);
   DriveGoal goal() const;
   void choose_command(Time now);
-  void choose_fault_reset();
+  void choose_reset_word(Time now);
+  void set_controlword(std::uint16_t word);
+  bool powered_and_commanded() const;
   void step_mode(Time now, SdoClient& sdo);
-  void step_homing(Time now);
-  void step_target();
-  bool mode_change_wanted() const;
+  void start_mode_transfer(Time now, SdoClient& sdo);
   OperationMode wanted_mode() const;
-  void set_controlword(std::uint16_t word, Time now);
+  bool mode_settled() const { return mode_step_ == ModeStep::settled && mode_ == wanted_mode(); }
+  void step_homing(Time now);
+  void watch_homing();
+  void step_target();
   bool handshake_over() const { return syncs_since_change_ >= handshake_syncs; }
 
   DriveSetup setup_;
   Duration sync_period_;
   Duration transition_timeout_;
-  Duration sdo_timeout_;
   std::int64_t max_step_counts_ = 0;
   AxisRequest request_ = AxisRequest::disable;
   AxisFault fault_ = AxisFault::none;
@@ -147,7 +153,7 @@ class Axis {
   std::int16_t torque_offset_permille_ = 0;
   // Handshakes.
   std::uint8_t syncs_since_change_ = 0;
-  std::uint8_t reset_edges_ = 0;
+  std::uint8_t reset_edges_sent_ = 0;
   Time waiting_since_;  // for the drive's state to change
   DriveState last_state_ = DriveState::unknown;
   OperationMode mode_ = OperationMode::cyclic_position;

@@ -34,7 +34,9 @@ class BootSequence {
   void on_operational(Time now);
   void on_process_data();
   // All nodes are configured: start this one.
-  void release();
+  void release(Time now);
+  // No longer watched or expected to answer; the report stays.
+  void stand_down() { phase_ = Phase::idle; }
   // The NMT command that is due, once.
   std::optional<NmtCommand> take_nmt();
 
@@ -51,11 +53,11 @@ class BootSequence {
   enum class Exchange : std::uint8_t { next, reading, writing, reading_back };
 
   void start_step(SdoClient& sdo, const BootContext& context);
-  void take_result(SdoClient& sdo, const BootContext& context);
-  void take_read(SdoClient& sdo, const BootStep& step, const BootContext& context);
+  void take_result(SdoClient& sdo);
+  void take_read(SdoClient& sdo, const BootStep& step);
   void take_sdo_failure(const SdoClient& sdo, const BootStep& step);
   void record(const SdoClient& sdo, const BootStep& step);
-  bool compare(std::uint32_t read, std::uint32_t expected, std::uint32_t mask, BootFailure failure);
+  void await(Time now, Phase again, Duration timeout, BootFailure failure);
   void next_step();
   bool retry();
 

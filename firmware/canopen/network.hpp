@@ -41,23 +41,23 @@ enum class Refusal : std::uint8_t {
   pdo_unmapped,      // TPDO 2, 3 or 4: disabled at boot
   pdo_before_start,  // from a node that was not started
   sdo_refused,       // unexpected or about another object; SdoClient::Stats has more
-  heartbeat_state,   // not one of boot-up, stopped, operational, pre-operational
-  time_backwards,    // the clock ran backwards: frame or tick ignored
+  heartbeat_state,   // none of boot-up, stopped, operational, pre-operational
 };
-inline constexpr std::size_t refusal_count = 13;
+inline constexpr std::size_t refusal_count = 12;
 const char* name(Refusal refusal);
 
 // Counted from construction on, never reset.
 struct NetworkStats {
   std::uint64_t frames_in = 0;
   std::uint64_t frames_out = 0;
-  std::uint64_t bits_out_in = 0;  // exact bits on the wire of all of them, stuffing and interframe space included
+  std::uint64_t bits_on_bus = 0;  // of all of them but error frames, exactly: stuffing and interframe space included
   std::array<std::uint32_t, refusal_count> refused{};
   std::uint32_t outbox_overflows = 0;  // frames that found no room
   std::uint32_t syncs = 0;
   std::uint32_t emcys = 0;
   std::uint32_t emcys_forgotten = 0;  // overwritten before `take_emcy`
   std::uint32_t pdo_repeated = 0;     // second TPDO of a node in one SYNC cycle: taken, the last one counts
+  std::uint32_t time_backwards = 0;   // before the last SYNC: a tick is ignored, a frame is taken as of that SYNC
 
   std::uint32_t refused_total() const {
     std::uint32_t total = 0;
@@ -97,7 +97,7 @@ class Network {
 
   void quick_stop_all();  // every axis; the laser and the lamps are the caller's
   void disable_all();     // power off
-  // Quick stop, outputs off, then NMT stop of every node after the axes had three SYNCs to hear of it. Only `start_boot` leads back.
+  // Quick stop, outputs off, and NMT stop of every node when the axes had three SYNCs to hear of it. Only `start_boot` leads back.
   void shut_down();
 
   Time last_sync() const { return last_sync_; }
@@ -107,31 +107,37 @@ class Network {
 
  private:
   void refuse(Refusal cause) { ++stats_.refused[static_cast<std::size_t>(cause)]; }
-  void send(Outbox& outbox, const CanFrame& frame);
+  std::optional<std::size_t> index_of(std::uint8_t node) const;
+  BootContext context(std::size_t node) const;
   void dispatch(const CanFrame& frame, Time now);
   void on_tpdo(std::size_t node, const CanFrame& frame);
   void on_emcy(std::size_t node, const CanFrame& frame, Time now);
   void on_heartbeat(std::size_t node, const CanFrame& frame, Time now);
   void on_sdo(std::size_t node, const CanFrame& frame, Time now);
   void step_boot(Time now);
-  void step_links(Time now);
-  void send_process_data(Time now, Outbox& outbox);
+  void start_nodes(Time now);
+  void give_up_boot();
+  void go_offline();
+  void stop_nodes();
+  void step_axes(Time now);
+  void send(Outbox& outbox, const CanFrame& frame);
+  void send_process_data(Outbox& outbox);
   void send_heartbeat(Time now, Outbox& outbox);
-  void send_services(Time now, Outbox& outbox);
-  std::optional<std::size_t> index_of(std::uint8_t node) const;
+  void send_nmt(Outbox& outbox);
+  void send_sdo(Time now, Outbox& outbox);
 
   NetworkConfig config_;
   std::array<Node, node_count> nodes_;
   std::array<Axis, joint_count> axes_;
   IoModule io_;
   BootState boot_ = BootState::idle;
-  ConfigError config_error_ = ConfigError::none;
-  std::uint8_t bad_node_ = 0;
+  bool running_ = false;  // SYNC and heartbeat are produced
+  bool nodes_started_ = false;
   bool boot_up_sent_ = false;
-  bool synced_ = false;
-  std::uint8_t shut_down_syncs_ = 0;  // left until NMT stop
+  std::size_t misconfigured_node_ = node_count;  // what `check` found; node_count: nothing
+  std::uint8_t shut_down_syncs_ = 0;             // left until NMT stop; 0: not shutting down
+  std::array<std::optional<NmtCommand>, node_count> nmt_due_{};
   Time last_sync_;
-  Time last_seen_;  // latest time ever passed in
   Time next_heartbeat_;
   static constexpr std::size_t emcy_history = 16;  // a drive sends one or two at a fault: all six nodes' fit
   std::array<Emcy, emcy_history> emcys_{};

@@ -38,22 +38,21 @@ class Node {
   const SdoClient& sdo() const { return sdo_; }
   BootSequence& boot() { return boot_; }
   const BootSequence& boot() const { return boot_; }
-  bool started() const { return boot_.started(); }
+  bool started() const { return boot_.started() && !fault_.rebooted; }  // its process data count
 
   void start_boot(Time now, const BootContext& context);
   // False when `state` is not one of CiA 301's.
   bool on_heartbeat(std::uint8_t state, Time now);
   void on_emcy(const Emcy& emcy);
   void on_process_data() { boot_.on_process_data(); }
-  // Watches the heartbeat and drives the boot. True when the link was lost in this step.
-  bool step(Time now, const BootContext& context);
+  // Watches the heartbeat and drives the boot. Once a SYNC.
+  void step(Time now, const BootContext& context);
 
  private:
   std::uint8_t id_ = 0;
   NmtState nmt_ = NmtState::unknown;
   Time last_heartbeat_;
   NodeFault fault_;
-  bool lost_ = false;
   SdoClient sdo_;
   BootSequence boot_;
 };

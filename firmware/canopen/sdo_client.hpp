@@ -50,8 +50,8 @@ class SdoClient {
 
   // Gives up without telling the server: the node was reset.
   void reset();
-  // An SDO answer of this node (COB-ID 0x580 + node), 8 bytes.
-  void on_frame(const CanFrame& frame, Time now);
+  // An SDO answer of this node (COB-ID 0x580 + node), 8 bytes. False when it is refused: nobody waits for it, or it is about another object.
+  bool on_frame(const CanFrame& frame, Time now);
   // Writes the frame that is due, if any: a request, the next segment, or an abort. Call until it returns false.
   bool poll(Time now, CanFrame& frame);
 
@@ -85,6 +85,10 @@ class SdoClient {
   bool toggle_ = false;
   std::uint8_t last_segment_ = 0;  // bytes in the download segment on its way
   std::uint32_t abort_code_ = 0;
+  // The abort that waits for `poll`: the next transfer may already have been asked for.
+  std::uint16_t aborted_index_ = 0;
+  std::uint8_t aborted_sub_ = 0;
+  std::uint32_t own_abort_code_ = 0;
   std::size_t size_ = 0;      // bytes of the value (download: all; upload: so far)
   std::size_t position_ = 0;  // download: acknowledged; upload: announced size, 0 if none
   Time deadline_;
