@@ -14,8 +14,9 @@ Marker::Marker(std::int32_t id, double size_m) : size_m_(size_m) {
   if (!(size_m > 0) || !std::isfinite(size_m)) throw InputError("marker: its size must be positive");
   cv::Mat bitmap;
   dictionary->drawMarker(id, cells, bitmap, 1);
+  // OpenCV keeps AprilTags half a turn on from the way that AprilTag's own images are printed.
   for (int row = 0; row < cells; ++row) {
-    for (int column = 0; column < cells; ++column) white_[row][column] = bitmap.at<std::uint8_t>(row, column) > 127;
+    for (int column = 0; column < cells; ++column) white_[row][column] = bitmap.at<std::uint8_t>(cells - 1 - row, cells - 1 - column) > 127;
   }
 }
 

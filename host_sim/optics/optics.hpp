@@ -55,7 +55,7 @@ struct LaserConfig {
   Pose body_from_laser = Pose::Identity();  // the true one, mounting error included
   double fan_half_angle_rad = 0.70;
   double cone_rad = 0;             // the sheet's half-angle error: 0 a plane; otherwise the cone that a tilted port bends it to, toward +x
-  double power_w = 0.10;           // even over the fan; with a pattern over all of the image
+  double power_w = 0.45;           // even over the fan; with a pattern over all of the image
   Rgb band{0.f, 1.f, 0.f};         // how the power falls on red, green, blue: 532 nm
   double waist_sigma_m = 0.0010;   // cross-section's standard deviation at range r: hypot(waist_sigma_m, divergence_rad r)
   double divergence_rad = 0.0027;  // with the waist 1.9 mm at 0.6 m

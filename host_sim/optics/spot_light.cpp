@@ -63,8 +63,10 @@ LampHaze::LampHaze(const CameraRays& rays, const Pose& base_from_camera, int wid
     for (int node = 0; node < columns_; ++node) {
       float* sums = sums_.data() +
                     (static_cast<std::size_t>(node_row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(node)) * node_size;
-      const int u = std::min(node * spacing_px, width), v = std::min(node_row * spacing_px, height);
-      const RayPacket ray = rays.around(base_from_camera, u, v, Lanes{}, Lanes{});
+      // The last nodes lie past the image's edge, where the rays go on smoothly.
+      const int u = std::min(node * spacing_px, width - 1), v = std::min(node_row * spacing_px, height - 1);
+      const RayPacket ray = rays.around(base_from_camera, u, v, all_lanes(static_cast<float>(node * spacing_px - u)),
+                                        all_lanes(static_cast<float>(node_row * spacing_px - v)));
       const Lanes slope = CameraRays::slope(ray);
       // Eight knot intervals at a time, each by its middle.
       for (int first = 0; first + 1 < knots; first += lane_count) {
