@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <system_error>
 
+#include "hal/sim/sim_config.hpp"
 #include "host_sim/scenario/keys.hpp"
 #include "host_sim/scenario/nearest.hpp"
 #include "host_sim/scenario/share.hpp"
+#include "host_sim/scenario/text_file.hpp"
 #include "host_sim/scenario/yaml_reader.hpp"
 #include "shared/input_error.hpp"
 
@@ -17,28 +16,6 @@ namespace lf::scenario {
 namespace fs = std::filesystem;
 
 namespace {
-
-constexpr std::uintmax_t largest_file = 1u << 20;  // a scenario has a few hundred lines; more is no scenario
-
-std::string read_text(const fs::path& path) {
-  std::error_code error;
-  if (fs::is_directory(path, error)) throw InputError(path.string() + ": is a folder, not a scenario");
-  const std::uintmax_t size = fs::file_size(path, error);
-  if (error) throw InputError(path.string() + ": " + error.message());
-  if (size > largest_file) throw InputError(path.string() + ": larger than 1 MB, not a scenario");
-  std::ifstream in(path, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (!in) throw InputError(path.string() + ": cannot be read");
-  return text;
-}
-
-YAML::Node parse(const std::string& text, const Source& source) {
-  try {
-    return YAML::Load(text);
-  } catch (const YAML::Exception& error) {
-    source.refuse(error.mark, "not YAML: " + error.msg);
-  }
-}
 
 std::vector<std::string> shipped_names() {
   std::vector<std::string> names;
@@ -71,7 +48,7 @@ void apply_override(Scenario& scenario, const std::string& text) {
   const std::vector<Key> table = keys(scenario);
   const auto found = std::find_if(table.begin(), table.end(), [&](const Key& key) { return key.path == path; });
   if (found == table.end()) source.refuse(YAML::Mark::null_mark(), "unknown key '" + path + "'" + suggest_path(path, table));
-  read_value(parse(text.substr(equals + 1), source), path, *found, source);
+  read_value(parse_yaml(text.substr(equals + 1), source), path, *found, source);
 }
 
 // What no single key can tell.
@@ -107,13 +84,28 @@ void check_together(const Scenario& s, const std::string& where) {
 
 }  // namespace
 
+Latency::Latency() {
+  const hal::SimConfig defaults;
+  image_ms = defaults.image_latency.s() * 1e3;
+  panel_vision_ms = defaults.vision_latency.s() * 1e3;
+}
+
+Physics::Physics() {
+  const world::WorldConfig world;
+  restitution = world.restitution;
+  joint_drag_nm_s = world.joint_drag_nm_s;
+  const devices::DriveConfig drive;
+  torque_noise_ratio = drive.torque_noise_ratio;
+  water_celsius = drive.water_celsius;
+}
+
 Scenario load_scenario(const std::string& file_or_name, const std::vector<std::string>& overrides) {
   const fs::path path = find_scenario(file_or_name);
   Scenario scenario;
   scenario.name = path.stem();
   scenario.file = path;
   const Source source = Source::of_file(path);
-  const YAML::Node root = parse(read_text(path), source);
+  const YAML::Node root = parse_yaml(read_text_file(path), source);
   if (!root.IsNull()) {
     if (!root.IsMap()) source.refuse(root.Mark(), "a scenario is a group of keys");
     read_map(root, "", "", keys(scenario), source);

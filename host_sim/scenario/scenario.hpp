@@ -83,7 +83,7 @@ struct Mounting {
 };
 
 struct Arm {
-  std::string urdf = "arm/lanternfish_arm.urdf";
+  std::string urdf = "arm/arm5e.urdf";
 };
 
 struct Jaw {
@@ -92,15 +92,17 @@ struct Jaw {
 };
 
 struct Physics {
-  double restitution = world::WorldConfig{}.restitution;
-  double joint_drag_nm_s = world::WorldConfig{}.joint_drag_nm_s;
-  double torque_noise_ratio = devices::DriveConfig{}.torque_noise_ratio;
-  double water_celsius = devices::DriveConfig{}.water_celsius;
+  Physics();  // those of world::WorldConfig and devices::DriveConfig
+  double restitution = 0;
+  double joint_drag_nm_s = 0;
+  double torque_noise_ratio = 0;
+  double water_celsius = 0;
 };
 
 struct Latency {
-  double image_ms = 30;
-  double panel_vision_ms = 300;
+  Latency();  // those of hal::SimConfig
+  double image_ms = 0;
+  double panel_vision_ms = 0;
 };
 
 struct Sensors {

@@ -197,6 +197,14 @@ void Source::refuse(const YAML::Mark& mark, const std::string& message) const {
   throw InputError(name_, has_lines_ && mark.line >= 0 ? mark.line + 1 : 0, message);
 }
 
+YAML::Node parse_yaml(const std::string& text, const Source& source) {
+  try {
+    return YAML::Load(text);
+  } catch (const YAML::Exception& error) {
+    source.refuse(error.mark, "not YAML: " + error.msg);
+  }
+}
+
 std::string suggest_path(const std::string& path, const std::vector<Key>& table) {
   const std::string prefix = path.substr(0, path.rfind('.') == std::string::npos ? 0 : path.rfind('.') + 1);
   std::vector<std::string> here, elsewhere;

@@ -25,6 +25,9 @@ class Source {
   bool has_lines_;
 };
 
+// Throws InputError with the line for text that is not YAML.
+YAML::Node parse_yaml(const std::string& text, const Source& source);
+
 // Reads the map `node` into `table`. `prefix`: path of the node within the table, "" or "valve."; `shown`: what stands before a path in messages.
 void read_map(const YAML::Node& node, const std::string& prefix, const std::string& shown, const std::vector<Key>& table,
               const Source& source);

@@ -1,0 +1,32 @@
+// One run, ready to start: what is true of it, and what the core is told of it. The core's side is made of the scenario and of the operator's choice to
+// light the lamps; the rest of the sample is the truth and enters the simulator's side only.
+#pragma once
+
+#include "firmware/config.hpp"
+#include "firmware/scan_pipeline.hpp"
+#include "hal/sim/sim_config.hpp"
+#include "host_sim/scenario/draw.hpp"
+#include "host_sim/scenario/scenario.hpp"
+
+namespace lf::scenario {
+
+// What the core is told: nominal calibrations, the survey of the panel, the job, drives and limits.
+struct Nominal {
+  ControllerConfig controller;
+  ScanConfig scan;
+};
+
+// Reads the arm's URDF and the file of limits. Throws InputError for these, and for a job that the machine as it is described cannot do: a valve or button
+// out of the arm's reach, a panel that the camera does not see.
+Nominal make_nominal(const Scenario& scenario, bool lamps_lit);
+
+// The world, the optics, the devices with the sample's errors in them.
+hal::SimConfig make_truth(const Scenario& scenario, const Sample& sample, const Nominal& nominal, int render_threads);
+
+// base_from_panel with the sample's docking error: shifted along the base's axes, turned about them at the panel's origin (roll, then pitch, then yaw).
+Pose true_base_from_panel(const PanelLayout& layout, const Sample& sample);
+
+// Where the camera is and looks for the scenario's angles: first to the right, then down.
+Pose base_from_camera(const Camera& camera);
+
+}  // namespace lf::scenario
