@@ -1,0 +1,144 @@
+#include "firmware/mission/camera_work.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "shared/can/can_map.hpp"
+
+namespace lf::mission {
+namespace {
+
+constexpr Duration period = can_map::sync_period;
+
+// An output node that does what the map says: what an RPDO asks acts at the next SYNC; its report of a SYNC has the outputs as that SYNC made them.
+class Bench {
+ public:
+  explicit Bench(const CameraWork::Config& config) : work(config), io_(make_io()) {
+    io_.go_online();
+    report();
+  }
+
+  void cycle() {
+    now_ = now_ + period;
+    report();  // the answer to the last SYNC
+    ScanOrders orders;
+    work.tick(now_, io_, orders);
+    for (const ScanCommand& order : orders) all.push_back(order);
+    io_.step(now_);
+    CanFrame rpdo;
+    if (io_.make_rpdo(rpdo, can_map::io_node)) asked_ = rpdo;
+    if (break_at_cycle == cycles_) interlock_ = false;
+    ++cycles_;
+  }
+  void run(int cycles) {
+    for (int i = 0; i < cycles; ++i) cycle();
+  }
+
+  int count(ScanCommand::Kind kind) const {
+    int n = 0;
+    for (const ScanCommand& order : all) n += order.kind == kind;
+    return n;
+  }
+
+  CameraWork work;
+  std::vector<ScanCommand> all;
+  int break_at_cycle = -1;
+  Time now() const { return now_; }
+  const canopen::IoModule& io() const { return io_; }
+
+ private:
+  static canopen::IoModule make_io() {
+    canopen::NetworkConfig config;
+    return canopen::IoModule(config);
+  }
+
+  void report() {
+    std::uint8_t outputs = asked_.data[0];
+    if (!interlock_) outputs = static_cast<std::uint8_t>(outputs & ~can_map::output_laser);
+    CanFrame tpdo;
+    tpdo.id = 0x180u + can_map::io_node;
+    tpdo.length = canopen::IoModule::tpdo_length;
+    tpdo.data[0] = static_cast<std::uint8_t>(can_map::input_estop_closed | (interlock_ ? can_map::input_interlock_closed : 0));
+    tpdo.data[1] = outputs;
+    tpdo.data[2] = asked_.data[1];
+    tpdo.data[3] = asked_.data[2];
+    tpdo.data[4] = asked_.data[3];
+    io_.on_tpdo(tpdo, now_ - period);
+  }
+
+  canopen::IoModule io_;
+  Time now_ = Time::from_s(1);
+  CanFrame asked_;
+  bool interlock_ = true;
+  int cycles_ = 0;
+};
+
+TEST(CameraWork, SweepsAtTwentyFiveHertzWithEveryFifthFrameDark) {
+  Bench bench({});
+  bench.work.set_mode(CameraWork::Mode::sweep, bench.now());
+  bench.run(500);  // 2 s
+  std::vector<ExposureKind> kinds;
+  for (const ScanCommand& order : bench.all) {
+    if (order.kind == ScanCommand::Kind::exposure) kinds.push_back(order.exposure_kind);
+  }
+  ASSERT_EQ(kinds.size(), 50u);
+  for (std::size_t i = 0; i < kinds.size(); ++i) {
+    EXPECT_EQ(kinds[i], i % 5 == 0 ? ExposureKind::background : ExposureKind::laser_on) << i;
+  }
+  EXPECT_EQ(bench.count(ScanCommand::Kind::drop_exposure), 0);
+}
+
+TEST(CameraWork, AnExposureIsDueAtTheNextSync) {
+  Bench bench({});
+  bench.work.set_mode(CameraWork::Mode::sweep, bench.now());
+  Time asked;
+  while (bench.all.empty()) {
+    bench.cycle();
+    asked = bench.now();
+  }
+  EXPECT_EQ(bench.all.front().exposure_start.ns(), (asked + period).ns());
+}
+
+TEST(CameraWork, FramesWhoseLaserWasNotAsAskedAreDropped) {
+  Bench bench({});
+  bench.work.set_mode(CameraWork::Mode::sweep, bench.now());
+  bench.break_at_cycle = 100;
+  bench.run(250);
+  EXPECT_TRUE(bench.work.laser_inhibited() || bench.count(ScanCommand::Kind::drop_exposure) > 0);
+  // Dark frames are still good: only laser-on ones are dropped.
+  int laser_frames_after = 0;
+  for (const ScanCommand& order : bench.all) {
+    const bool after = order.exposure_start > Time::from_s(1) + period * 103;
+    laser_frames_after += order.kind == ScanCommand::Kind::exposure && order.exposure_kind == ExposureKind::laser_on && after;
+  }
+  EXPECT_GT(laser_frames_after, 0);
+  EXPECT_GE(bench.count(ScanCommand::Kind::drop_exposure), laser_frames_after - 1);
+}
+
+TEST(CameraWork, AStillIsTakenOnceWithLampsAndWithoutLaser) {
+  Bench bench({});
+  bench.work.set_mode(CameraWork::Mode::still, bench.now());
+  EXPECT_FALSE(bench.work.still_taken(bench.now()));
+  bench.run(100);
+  EXPECT_TRUE(bench.work.still_taken(bench.now()));
+  EXPECT_EQ(bench.count(ScanCommand::Kind::exposure), 1);
+  EXPECT_EQ(bench.io().wanted_outputs(), can_map::output_lamps);
+}
+
+TEST(CameraWork, InIdleItIsDarkAndTakesNothingUnlessAskedToRunAlways) {
+  Bench idle({});
+  idle.run(100);
+  EXPECT_EQ(idle.all.size(), 0u);
+  EXPECT_EQ(idle.io().wanted_outputs(), 0);
+
+  CameraWork::Config config;
+  config.always_on = true;
+  Bench always(config);
+  always.run(100);
+  EXPECT_EQ(always.count(ScanCommand::Kind::exposure), 10);
+  for (const ScanCommand& order : always.all) EXPECT_EQ(order.exposure_kind, ExposureKind::monitor);
+}
+
+}  // namespace
+}  // namespace lf::mission
