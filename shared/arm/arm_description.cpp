@@ -101,8 +101,9 @@ class Urdf {
 
   // "joint 'elbow'", or "<limit>" for what has no name.
   static std::string label(const XMLElement* e) {
-    const char* const name = e->Attribute("name");
-    return name != nullptr ? std::string(e->Name()) + " '" + name + "'" : std::string("<") + e->Name() + ">";
+    std::string label = e->Name();
+    if (const char* const name = e->Attribute("name")) return label.append(" '").append(name).append("'");
+    return label.insert(0, 1, '<').append(1, '>');
   }
 
  private:
@@ -231,8 +232,9 @@ ArmActuator read_screw(const Urdf& urdf, const XMLElement* e, const ArmJoint& jo
   screw.pivot_b_m = urdf.positive(e, "pivot_b_m");
   screw.offset_rad = urdf.number(e, "offset_rad");
   screw.counts_per_m = urdf.positive(e, "counts_per_m");
-  if (joint.lower_rad + screw.offset_rad <= 0 || joint.upper_rad + screw.offset_rad >= pi)
-    urdf.fail(e, "joint '" + joint.name + "': its screw passes a dead centre within the limits");
+  constexpr double widening_rad = 0.1;  // the core converts counts that far past the limits
+  if (joint.lower_rad - widening_rad + screw.offset_rad <= 0 || joint.upper_rad + widening_rad + screw.offset_rad >= pi)
+    urdf.fail(e, "joint '" + joint.name + "': its screw passes a dead centre within 0.1 rad of the limits");
   return screw;
 }
 
