@@ -12,16 +12,17 @@ namespace lf::arm {
 // At jaw angle 0 the pads are parallel.
 double gap_from_jaw(double jaw_rad);
 double jaw_from_gap(double gap_m);
-// Force of each pad, at its centre, for a jaw torque that both fingers share, N.
-double pad_force_n(double jaw_rad, double jaw_torque_nm);
+// Force of each pad, at its centre and square to its face, for a jaw torque that both fingers share, N. 20 N m give 101 N.
+double pad_force_n(double jaw_torque_nm);
 // How far the fingers reach beyond the tool point along the tool axis, m.
 double tip_beyond_tool_m(double jaw_rad);
 
 struct GripperConfig {
-  double bar_m = 0.0126;           // what is to be held
-  double bar_tolerance_m = 0.006;  // a stall within this of it is plausible: tilt, and the bar off the pads' middle
-  double grip_torque_nm = 6.0;     // to be reached before a stall counts as a grip
-  double hold_torque_nm = 2.0;     // less than this while holding: nothing is between the pads
+  double bar_m = 0.0126;                  // what is to be held
+  double bar_tolerance_m = 0.006;         // a stall within this of it is plausible: tilt, and the bar off the pads' middle
+  double grip_torque_nm = 6.0;            // to be reached before a stall counts as a grip
+  double hold_torque_nm = 2.0;            // less than this while holding, for `low_torque_samples`: nothing is between the pads
+  std::uint32_t low_torque_samples = 25;  // 0.1 s: turning the handle unloads the pads for shorter
   double closing_speed_rad_s = 0.25;
   double opening_speed_rad_s = 0.4;
   double lead_rad =
@@ -66,7 +67,7 @@ class Gripper {
 
   void begin(Time t, double jaw_rad);
   void move(Time t, double jaw_rad, double torque_nm, double dt_s);
-  void stalled_closing(double jaw_rad, double torque_nm);
+  void stalled(Time t, double jaw_rad, double torque_nm);
   void hold(double jaw_rad, double torque_nm);
 
   GripperConfig config_;

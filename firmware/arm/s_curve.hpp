@@ -24,18 +24,21 @@ class SCurve {
 
   double duration_s() const { return duration_s_; }
   double distance() const { return distance_; }
+  double peak_velocity() const { return jerk_ * jerk_time_s_ * acceleration_time_s_; }
   // At rest before 0 s and, exactly at `distance`, from duration_s() on.
   PathState sample(double t_s) const;
 
  private:
   double distance_ = 0, duration_s_ = 0;
-  double jerk_ = 0, jerk_time_s_ = 0, acceleration_time_s_ = 0, cruise_time_s_ = 0;
+  double jerk_ = 0;
+  double jerk_time_s_ = 0, acceleration_time_s_ = 0, cruise_time_s_ = 0;  // a ramp lasts both of the first two
 };
 
 // From any speed and acceleration to rest, as fast as acceleration and jerk allow; wherever it ends.
 class StopCurve {
  public:
   StopCurve() = default;
+  // Bounds must be positive.
   StopCurve(const PathState& from, double max_acceleration, double max_jerk);
 
   double duration_s() const { return segment_s_[0] + segment_s_[1] + segment_s_[2]; }

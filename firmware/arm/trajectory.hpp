@@ -1,6 +1,7 @@
 // Joint motions: point to point, through via points, along a Cartesian line, at constant speed, and to a stop. All are planned once and sampled by time.
 //
-// Every motion starts and ends at rest, keeps speed, acceleration and jerk within JointLimits, and moves all joints in step: they start and arrive together.
+// Every motion but a stop starts and ends at rest and moves all joints in step: they start and arrive together. Speeds, accelerations and jerks stay
+// within JointLimits; along a Cartesian line the jerk that the arm's curvature adds, of the order of its square of speed, is not bounded.
 // Times are seconds from the motion's start: the caller subtracts two lf::Time. Before 0 a motion stands at its start, after its duration at its goal.
 #pragma once
 
@@ -70,7 +71,8 @@ struct LinePlan {
   double speed_m_s = 0;          // that will be reached: lower than asked for where a joint's limit, or the way's shortness, says so
 };
 
-// The tool point along a straight line, the roll from start to goal in proportion. Checked along the whole way before it starts.
+// The tool point along a straight line, the roll from start to goal in proportion. Checked along the whole way before it starts: every point has joint
+// angles within the limits, and the speed is lowered until no joint passes its own.
 class CartesianLine {
  public:
   static constexpr int checks = 64;  // points at which reach and joint rates are checked; 80 mm of way are 1.25 mm apart

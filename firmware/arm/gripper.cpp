@@ -1,0 +1,113 @@
+#include "firmware/arm/gripper.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lf::arm {
+namespace {
+
+constexpr arm_geometry::JawNumbers jaw = arm_geometry::jaw;
+constexpr double lower_rad = arm_geometry::joints[4].lower_rad;
+constexpr double upper_rad = arm_geometry::joints[4].upper_rad;
+
+}  // namespace
+
+double gap_from_jaw(double jaw_rad) { return -2 * (jaw.pivot_x_m + jaw.face_x_m * std::cos(jaw_rad) - jaw.face_z_m * std::sin(jaw_rad)); }
+
+double jaw_from_gap(double gap_m) {
+  // face_x cos q - face_z sin q = reach cos(q + phase)
+  const double reach = std::hypot(jaw.face_x_m, jaw.face_z_m);
+  const double phase = std::atan2(jaw.face_z_m, jaw.face_x_m);
+  const double cosine = std::clamp((-gap_m / 2 - jaw.pivot_x_m) / reach, -1.0, 1.0);
+  return std::clamp(std::acos(cosine) - phase, lower_rad, upper_rad);
+}
+
+double pad_force_n(double jaw_torque_nm) { return jaw_torque_nm / 2 / jaw.face_z_m; }
+
+double tip_beyond_tool_m(double jaw_rad) {
+  const double end = (jaw.face_z_m + jaw.pad_depth_m / 2) * std::cos(jaw_rad);
+  return jaw.pivot_z_m + end + std::max(0.0, jaw.face_x_m * std::sin(jaw_rad));
+}
+
+void Gripper::open_to(double gap_m) {
+  if (!std::isfinite(gap_m)) return;
+  goal_rad_ = jaw_from_gap(gap_m);
+  order_ = Order::open;
+}
+
+void Gripper::close() { order_ = Order::close; }
+void Gripper::stay() { order_ = Order::stay; }
+
+void Gripper::begin(Time t, double jaw_rad) {
+  if (order_ == Order::close) goal_rad_ = lower_rad;
+  state_ = order_ == Order::open ? GripperState::opening : order_ == Order::close ? GripperState::closing : GripperState::idle;
+  order_ = Order::none;
+  // From where the jaw is: a squeeze's lead or an old target must not make it jump.
+  target_rad_ = std::clamp(jaw_rad, lower_rad, upper_rad);
+  still_rad_ = jaw_rad;
+  still_since_ = began_ = t;
+  low_torque_run_ = 0;
+}
+
+double Gripper::update(Time t, double jaw_rad, double torque_nm) {
+  if (!std::isfinite(jaw_rad) || !std::isfinite(torque_nm) || (started_ && t <= last_)) {
+    ++refused_;
+    return target_rad_;
+  }
+  const double dt_s = started_ ? (t - last_).s() : 0;
+  last_ = t;
+  started_ = true;
+  if (order_ != Order::none) begin(t, jaw_rad);
+  if (state_ == GripperState::opening || state_ == GripperState::closing) move(t, jaw_rad, torque_nm, dt_s);
+  if (state_ == GripperState::held) hold(jaw_rad, torque_nm);
+  return target_rad_;
+}
+
+void Gripper::move(Time t, double jaw_rad, double torque_nm, double dt_s) {
+  const double speed = state_ == GripperState::opening ? config_.opening_speed_rad_s : config_.closing_speed_rad_s;
+  target_rad_ += std::clamp(goal_rad_ - target_rad_, -speed * dt_s, speed * dt_s);
+  target_rad_ = std::clamp(target_rad_, jaw_rad - config_.lead_rad, jaw_rad + config_.lead_rad);
+  if (std::abs(jaw_rad - still_rad_) > config_.stall_rad) {
+    still_rad_ = jaw_rad;
+    still_since_ = t;
+  }
+  if (std::abs(jaw_rad - goal_rad_) <= 2 * config_.stall_rad) {
+    state_ = state_ == GripperState::opening ? GripperState::open : GripperState::empty;
+    target_rad_ = goal_rad_;
+    return;
+  }
+  const bool pushing = target_rad_ == goal_rad_ || std::abs(target_rad_ - jaw_rad) >= 0.99 * config_.lead_rad;
+  if (pushing && t - still_since_ >= config_.stall_time) stalled(t, jaw_rad, torque_nm);
+  if (t - began_ >= config_.move_timeout && (state_ == GripperState::opening || state_ == GripperState::closing))
+    state_ = GripperState::jammed;
+}
+
+// Opening is positive, so that a closing torque is negative.
+void Gripper::stalled(Time t, double jaw_rad, double torque_nm) {
+  if (state_ == GripperState::opening) {
+    // A jaw at rest below its stiction is no jam: it gets until the time-out.
+    if (t - began_ >= config_.move_timeout) state_ = GripperState::jammed;
+    return;
+  }
+  if (-torque_nm < config_.grip_torque_nm) return;
+  const double gap = gap_from_jaw(jaw_rad);
+  grip_rad_ = jaw_rad;
+  grip_gap_m_ = gap;
+  if (gap > config_.bar_m + config_.bar_tolerance_m) {
+    state_ = GripperState::jammed;
+    target_rad_ = jaw_rad;
+  } else if (gap < config_.bar_m - config_.bar_tolerance_m) {
+    state_ = GripperState::empty;
+    target_rad_ = jaw_rad;
+  } else {
+    state_ = GripperState::held;
+    target_rad_ = std::max(jaw_rad - config_.lead_rad, lower_rad);
+  }
+}
+
+void Gripper::hold(double jaw_rad, double torque_nm) {
+  low_torque_run_ = -torque_nm < config_.hold_torque_nm ? low_torque_run_ + 1 : 0;
+  if (jaw_rad < grip_rad_ - config_.slip_rad || low_torque_run_ >= config_.low_torque_samples) state_ = GripperState::dropped;
+}
+
+}  // namespace lf::arm

@@ -1,0 +1,58 @@
+#include "firmware/arm/guarded_motion.hpp"
+
+#include <cmath>
+
+namespace lf::arm {
+namespace {
+
+// Counts samples in a row for which `says_so`; true once there are `wanted` of them.
+bool run_of(bool says_so, std::uint32_t wanted, std::uint32_t& run) {
+  run = says_so ? run + 1 : 0;
+  return run >= wanted;
+}
+
+}  // namespace
+
+void GuardedMotion::reset() {
+  const std::uint32_t refused = refused_;
+  *this = GuardedMotion(config_);
+  refused_ = refused;
+}
+
+void GuardedMotion::latch(GuardState state, GuardCause cause, std::size_t joint) {
+  if (state_ == GuardState::overload || state_ == state) return;
+  state_ = state;
+  cause_ = cause;
+  joint_ = static_cast<Joint>(joint);
+}
+
+GuardState GuardedMotion::update(Time t, const JointVector& command_rad, const JointVector& position_rad, const JointVector& torque_nm) {
+  if (!command_rad.allFinite() || !position_rad.allFinite() || !torque_nm.allFinite() || (samples_ > 0 && t <= last_)) {
+    ++refused_;
+    return state_;
+  }
+  const double dt_s = samples_ > 0 ? (t - last_).s() : 0;
+  last_ = t;
+  ++samples_;
+  if (samples_ == 1) filtered_nm_ = torque_nm;
+  filtered_nm_ += (torque_nm - filtered_nm_) * (dt_s / (dt_s + config_.filter_s));
+  const bool learning = samples_ <= config_.learning;
+  if (learning) baseline_nm_ += (torque_nm - baseline_nm_) / samples_;
+  excess_nm_ = filtered_nm_ - baseline_nm_;
+
+  for (std::size_t i = 0; i < arm_joint_count; ++i) {
+    const bool over = std::abs(filtered_nm_[i]) > config_.overload_torque_nm[i];
+    const bool pushed = !learning && std::abs(excess_nm_[i]) > config_.contact_torque_nm[i];
+    const bool behind = !learning && std::abs(command_rad[i] - position_rad[i]) > config_.following_rad[i];
+    if (run_of(over, config_.debounce, overload_run_[i])) latch(GuardState::overload, GuardCause::torque, i);
+    if (run_of(pushed, config_.debounce, torque_run_[i])) latch(GuardState::contact, GuardCause::torque, i);
+    if (run_of(behind, config_.debounce, following_run_[i])) latch(GuardState::contact, GuardCause::following_error, i);
+    // A joint that is being pushed teaches nothing about free motion.
+    if (!learning && std::abs(excess_nm_[i]) < 0.5 * config_.contact_torque_nm[i])
+      baseline_nm_[i] += excess_nm_[i] * (dt_s / (dt_s + config_.baseline_s));
+  }
+  if (!learning && state_ == GuardState::learning) state_ = GuardState::free;
+  return state_;
+}
+
+}  // namespace lf::arm

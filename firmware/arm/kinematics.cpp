@@ -1,0 +1,103 @@
+#include "firmware/arm/kinematics.hpp"
+
+#include "firmware/arm/planar_chain.hpp"
+
+namespace lf::arm {
+namespace {
+
+Pose pose_of(const arm_geometry::Transform& transform) {
+  Pose pose = Pose::Identity();
+  pose.linear() = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(transform.rotation.data());
+  pose.translation() = Eigen::Map<const Vec3>(transform.translation_m.data());
+  return pose;
+}
+
+// A child's frame: its joint's place on the parent, turned by `angle_rad` about the joint's z (or y, for the fingers).
+Pose turned(const Pose& base_from_parent, std::size_t origin, double angle_rad, const Vec3& axis) {
+  Pose pose = base_from_parent * pose_of(arm_geometry::joint_origins[origin]);
+  pose.linear() = pose.linear() * Eigen::AngleAxisd(angle_rad, axis).toRotationMatrix();
+  return pose;
+}
+
+Pose tool_at_roll_zero(const PlanarChain& chain) {
+  Pose pose = Pose::Identity();
+  pose.linear().col(0) = chain.tool_x();
+  pose.linear().col(1) = chain.across();
+  pose.linear().col(2) = chain.tool_z();
+  pose.translation() = chain.tool();
+  return pose;
+}
+
+}  // namespace
+
+Pose base_from_tool(const JointVector& q_rad) {
+  const PlanarChain chain(q_rad);
+  const double c = std::cos(q_rad[3]);
+  const double s = std::sin(q_rad[3]);
+  const Vec3 x = chain.tool_x();
+  const Vec3 y = chain.across();
+  Pose pose = Pose::Identity();
+  pose.linear().col(0) = c * x + s * y;
+  pose.linear().col(1) = c * y - s * x;
+  pose.linear().col(2) = chain.tool_z();
+  pose.translation() = chain.tool();
+  return pose;
+}
+
+Vec3 approach_axis(const JointVector& q_rad) { return PlanarChain(q_rad).tool_z(); }
+
+Pose base_from_laser(const JointVector& q_rad, const LaserCalibration& laser) {
+  return tool_at_roll_zero(PlanarChain(q_rad)) * laser.tool_from_laser;
+}
+
+Jacobian jacobian(const JointVector& q_rad) {
+  const PlanarChain chain(q_rad);
+  const Vec3 across = chain.across();
+  Jacobian j = Jacobian::Zero();
+  const auto set = [&j](int column, const Vec3& linear, const Vec3& angular) {
+    j.block<3, 1>(0, column) = linear;
+    j.block<3, 1>(3, column) = angular;
+  };
+  // Turning by `across` within the arm's plane takes (r, z) to (-z, r); turning about z takes the plane's r to -across.
+  set(0, -chain.tool_r_m * across, Vec3::UnitZ());
+  set(1, chain.in_base(-chain.tool_z_m, chain.tool_r_m - a0_m), across);
+  set(2, chain.in_base(chain.elbow_z_m - chain.tool_z_m, chain.tool_r_m - chain.elbow_r_m), across);
+  set(3, Vec3::Zero(), chain.tool_z());
+  return j;
+}
+
+LinkPoses base_from_links(const JointVector& q_rad, double jaw_rad) {
+  LinkPoses links;
+  Pose parent = Pose::Identity();
+  for (std::size_t i = 0; i < arm_joint_count; ++i) parent = links[i] = turned(parent, i, q_rad[i], Vec3::UnitZ());
+  links[4] = turned(parent, 4, jaw_rad, -Vec3::UnitY());
+  links[5] = turned(parent, 5, jaw_rad, Vec3::UnitY());
+  return links;
+}
+
+LinkCapsules link_capsules(const JointVector& q_rad, double jaw_rad) {
+  const LinkPoses links = base_from_links(q_rad, jaw_rad);
+  LinkCapsules capsules;
+  for (std::size_t i = 0; i < capsules.size(); ++i) {
+    const arm_geometry::CapsuleNumbers& n = arm_geometry::capsules[i];
+    const Pose& base_from_link = links[n.link - 1];
+    capsules[i] = {n.link, base_from_link * Eigen::Map<const Vec3>(n.a_m.data()), base_from_link * Eigen::Map<const Vec3>(n.b_m.data()),
+                   n.radius_m};
+  }
+  return capsules;
+}
+
+JointLimits joint_limits(double position_margin_rad, double speed_fraction, double jerk_time_s) {
+  JointLimits limits;
+  for (std::size_t i = 0; i < arm_joint_count; ++i) {
+    const arm_geometry::JointNumbers& joint = arm_geometry::joints[i];
+    limits.lower_rad[i] = joint.lower_rad + position_margin_rad;
+    limits.upper_rad[i] = joint.upper_rad - position_margin_rad;
+    limits.velocity_rad_s[i] = joint.velocity_rad_s * speed_fraction;
+    limits.acceleration_rad_s2[i] = joint.acceleration_rad_s2;
+    limits.jerk_rad_s3[i] = joint.acceleration_rad_s2 / jerk_time_s;
+  }
+  return limits;
+}
+
+}  // namespace lf::arm
