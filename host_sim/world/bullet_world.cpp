@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "host_sim/world/fixed_base_solver.hpp"
 #include "shared/scene/scene.hpp"
 
 namespace lf::world {
@@ -41,13 +42,13 @@ BulletWorld::BulletWorld(int solver_iterations) {
   broadphase_ = std::make_unique<btDbvtBroadphase>();
   filter_ = std::make_unique<PairFilter>();
   broadphase_->getOverlappingPairCache()->setOverlapFilterCallback(filter_.get());
-  solver_ = std::make_unique<btMultiBodyConstraintSolver>();
+  solver_ = std::make_unique<FixedBaseSolver>();
   world_ = std::make_unique<btMultiBodyDynamicsWorld>(dispatcher_.get(), broadphase_.get(), solver_.get(), configuration_.get());
   world_->setGravity(btVector3(0, 0, 0));  // weight less buoyancy is applied to each link
   world_->setForceUpdateAllAabbs(false);
   btContactSolverInfo& info = world_->getSolverInfo();
   info.m_numIterations = solver_iterations;
-  info.m_leastSquaresResidualThreshold = 0;
+  info.m_leastSquaresResidualThreshold = 1e-18;  // ends when no row changes by more than 1e-9 m/s or rad/s
   info.m_globalCfm = 0;
   info.m_erp2 = 0.2;
   info.m_frictionERP = 0.2;

@@ -1,0 +1,114 @@
+#include "host_sim/world/fixed_base_solver.hpp"
+
+#include <BulletDynamics/Featherstone/btMultiBody.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lf::world {
+
+FixedBaseSolver::Side FixedBaseSolver::side(const btMultiBody* body, int speeds_index, int jacobian_index) {
+  Side made;
+  if (body == nullptr || speeds_index < 0) return made;
+  const auto found = std::find(mechanisms_.begin(), mechanisms_.end(), body);
+  made.mechanism = int(found - mechanisms_.begin());
+  if (found == mechanisms_.end()) {
+    mechanisms_.push_back(body);
+    speeds_.push_back(Joints::Zero());
+  }
+  const int joints = body->getNumDofs();
+  for (int i = 0; i < joints; ++i) {
+    made.jacobian[i] = m_data.m_jacobians[jacobian_index + 6 + i];
+    made.response[i] = m_data.m_deltaVelocitiesUnitImpulse[jacobian_index + 6 + i];
+  }
+  return made;
+}
+
+void FixedBaseSolver::take(const btMultiBodyConstraintArray& from, std::vector<Row>& to) {
+  to.clear();
+  for (int i = 0; i < from.size(); ++i) {
+    const btMultiBodySolverConstraint& c = from[i];
+    Row row;
+    row.a = side(c.m_multiBodyA, c.m_deltaVelAindex, c.m_jacAindex);
+    row.b = side(c.m_multiBodyB, c.m_deltaVelBindex, c.m_jacBindex);
+    row.inverse_mass = c.m_jacDiagABInv;
+    row.rhs = c.m_rhs;
+    row.cfm = c.m_cfm;
+    row.lower = c.m_lowerLimit;
+    row.upper = c.m_upperLimit;
+    row.friction = c.m_friction;
+    row.normal_row = c.m_frictionIndex;
+    to.push_back(row);
+  }
+}
+
+void FixedBaseSolver::take_rows() {
+  mechanisms_.clear();
+  speeds_.clear();
+  take(m_multiBodyNonContactConstraints, joints_);
+  take(m_multiBodyNormalContactConstraints, normals_);
+  take(m_multiBodyFrictionContactConstraints, frictions_);
+}
+
+double FixedBaseSolver::wanted_impulse(const Row& row) const {
+  double speed = 0;
+  if (row.a.mechanism >= 0) speed += row.a.jacobian.dot(speeds_[std::size_t(row.a.mechanism)]);
+  if (row.b.mechanism >= 0) speed += row.b.jacobian.dot(speeds_[std::size_t(row.b.mechanism)]);
+  return row.applied + row.rhs - row.applied * row.cfm - speed * row.inverse_mass;
+}
+
+// Returns the change of speed along the row.
+double FixedBaseSolver::apply(Row& row, double impulse) {
+  const double change = impulse - row.applied;
+  row.applied = impulse;
+  if (row.a.mechanism >= 0) speeds_[std::size_t(row.a.mechanism)] += change * row.a.response;
+  if (row.b.mechanism >= 0) speeds_[std::size_t(row.b.mechanism)] += change * row.b.response;
+  return change / row.inverse_mass;
+}
+
+double FixedBaseSolver::solve(Row& row) { return apply(row, std::clamp(wanted_impulse(row), row.lower, row.upper)); }
+
+double FixedBaseSolver::solve_friction(Row& first, Row& second) {
+  const double limit = first.friction * normals_[std::size_t(first.normal_row)].applied;
+  double along = wanted_impulse(first);
+  double across = wanted_impulse(second);
+  const double size = std::sqrt(along * along + across * across);
+  if (size > limit) {
+    along *= limit / size;
+    across *= limit / size;
+  }
+  const double change = apply(first, along);
+  return std::max(std::abs(change), std::abs(apply(second, across)));
+}
+
+btScalar FixedBaseSolver::solveSingleIteration(int iteration, btCollisionObject**, int, btPersistentManifold**, int, btTypedConstraint**,
+                                               int, const btContactSolverInfo&, btIDebugDraw*) {
+  if (iteration == 0) take_rows();
+  double change = 0;
+  for (std::size_t i = 0; i < joints_.size(); ++i) {  // to and fro, as Bullet does
+    Row& row = joints_[iteration % 2 != 0 ? i : joints_.size() - 1 - i];
+    change = std::max(change, std::abs(solve(row)));
+  }
+  for (Row& row : normals_) change = std::max(change, std::abs(solve(row)));
+  for (std::size_t i = 0; i + 1 < frictions_.size(); i += 2) change = std::max(change, solve_friction(frictions_[i], frictions_[i + 1]));
+  return change * change;
+}
+
+void FixedBaseSolver::give_back(const std::vector<Row>& from, btMultiBodyConstraintArray& to) {
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const btMultiBodySolverConstraint& c = to[int(i)];
+    const double change = from[i].applied - c.m_appliedImpulse;
+    c.m_appliedImpulse = from[i].applied;
+    if (from[i].a.mechanism >= 0) c.m_multiBodyA->applyDeltaVeeMultiDof2(&m_data.m_deltaVelocitiesUnitImpulse[c.m_jacAindex], change);
+    if (from[i].b.mechanism >= 0) c.m_multiBodyB->applyDeltaVeeMultiDof2(&m_data.m_deltaVelocitiesUnitImpulse[c.m_jacBindex], change);
+  }
+}
+
+btScalar FixedBaseSolver::solveGroupCacheFriendlyFinish(btCollisionObject** bodies, int body_count, const btContactSolverInfo& info) {
+  give_back(joints_, m_multiBodyNonContactConstraints);
+  give_back(normals_, m_multiBodyNormalContactConstraints);
+  give_back(frictions_, m_multiBodyFrictionContactConstraints);
+  return btMultiBodyConstraintSolver::solveGroupCacheFriendlyFinish(bodies, body_count, info);
+}
+
+}  // namespace lf::world

@@ -1,0 +1,61 @@
+// Bullet's sequential-impulse solver for a world of small fixed-base mechanisms. Internal to this folder.
+//
+// Same rows and same order as btMultiBodyConstraintSolver's, with its iterations written anew: each row is copied once into fixed-size vectors without the six
+// coordinates of a base that does not move, and the iterations end when no row changes a speed any more. 2.5 times faster while a handle is gripped
+// (24 contact points of three rows each, 21 Nov 2026). Friction is projected radially onto its cone.
+//
+// Only for worlds whose multibodies have fixed bases and at most 6 joints, and whose rigid bodies do not move.
+#pragma once
+
+#include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace lf::world {
+
+class FixedBaseSolver : public btMultiBodyConstraintSolver {
+ public:
+  static constexpr int max_joints = 6;
+
+ protected:
+  btScalar solveSingleIteration(int iteration, btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
+                                int manifold_count, btTypedConstraint** constraints, int constraint_count, const btContactSolverInfo& info,
+                                btIDebugDraw* drawer) override;
+  btScalar solveGroupCacheFriendlyFinish(btCollisionObject** bodies, int body_count, const btContactSolverInfo& info) override;
+
+ private:
+  using Joints = Eigen::Matrix<double, max_joints, 1>;
+
+  // One mechanism's part in a row: its jacobian and what a unit impulse does to its joints' speeds.
+  struct Side {
+    int mechanism = -1;  // index of its speeds; -1 none
+    Joints jacobian = Joints::Zero();
+    Joints response = Joints::Zero();
+  };
+
+  struct Row {
+    Side a, b;
+    double inverse_mass = 0;  // of the row: impulse that changes its speed by 1
+    double rhs = 0, cfm = 0;
+    double lower = 0, upper = 0;
+    double applied = 0;
+    double friction = 0;
+    int normal_row = 0;  // friction rows: the contact they belong to
+  };
+
+  void take_rows();
+  void take(const btMultiBodyConstraintArray& from, std::vector<Row>& to);
+  Side side(const btMultiBody* body, int speeds_index, int jacobian_index);
+  double wanted_impulse(const Row& row) const;
+  double apply(Row& row, double impulse);
+  double solve(Row& row);
+  double solve_friction(Row& first, Row& second);
+  void give_back(const std::vector<Row>& from, btMultiBodyConstraintArray& to);
+
+  std::vector<Row> joints_, normals_, frictions_;
+  std::vector<const btMultiBody*> mechanisms_;
+  std::vector<Joints> speeds_;  // what the impulses have changed so far
+};
+
+}  // namespace lf::world
