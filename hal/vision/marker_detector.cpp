@@ -16,6 +16,7 @@
 #include <tuple>
 #include <utility>
 
+#include "hal/vision/corner_refinement.hpp"
 #include "shared/input_error.hpp"
 
 namespace lf::vision {
@@ -61,7 +62,12 @@ void check(const MarkerDetectorConfig& config) {
 // libapriltag has pixel corners at integers; ours are the centres.
 constexpr double pixel_centre_px = 0.5;
 
-DetectedMarker from_library(const apriltag_detection_t& detection) {
+Vec2 crossing_of_diagonals(const std::array<Vec2, 4>& corners) {
+  const Vec2 a = corners[2] - corners[0], b = corners[3] - corners[1], d = corners[1] - corners[0];
+  return corners[0] + a * ((d.x() * b.y() - d.y() * b.x()) / (a.x() * b.y() - a.y() * b.x()));
+}
+
+DetectedMarker from_library(const apriltag_detection_t& detection, ImageView image) {
   DetectedMarker marker;
   marker.id = detection.id;
   marker.hamming = detection.hamming;
@@ -69,7 +75,8 @@ DetectedMarker from_library(const apriltag_detection_t& detection) {
   for (std::size_t i = 0; i < 4; ++i) {
     marker.corners_px[i] = Vec2(detection.p[i][0] - pixel_centre_px, detection.p[i][1] - pixel_centre_px);
   }
-  marker.centre_px = Vec2(detection.c[0] - pixel_centre_px, detection.c[1] - pixel_centre_px);
+  marker.corners_px = refine_corners(image, marker.corners_px, detection.family->width_at_border);
+  marker.centre_px = crossing_of_diagonals(marker.corners_px);
   return marker;
 }
 
@@ -125,7 +132,7 @@ std::vector<DetectedMarker> MarkerDetector::detect(ImageView image) {
   for (int i = 0; i < zarray_size(detections); ++i) {
     apriltag_detection_t* detection = nullptr;
     zarray_get(detections, i, &detection);
-    if (detection->decision_margin >= own.config.min_margin) markers.push_back(from_library(*detection));
+    if (detection->decision_margin >= own.config.min_margin) markers.push_back(from_library(*detection, image));
   }
   apriltag_detections_destroy(detections);
   std::sort(markers.begin(), markers.end(), [](const DetectedMarker& a, const DetectedMarker& b) { return order_of(a) < order_of(b); });

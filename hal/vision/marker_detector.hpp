@@ -21,7 +21,7 @@ namespace lf::vision {
 struct MarkerDetectorConfig {
   std::string family = "36h11";  // marker_families() has the names
   int max_hamming = 0;           // corrected bits; with 1, 38 wrong ids came with 491 murky frames of 16h5, with 0 one
-  double decimate = 1;           // the search runs on an image so many times smaller; corners are refined in full resolution
+  double decimate = 1;           // the search runs on an image so many times smaller; corners are found in full resolution
   double blur_sigma_px = 0;      // of the searched image
   double min_margin = 10;        // grey levels between the decoded bits and their thresholds; weaker ones are dropped
 };

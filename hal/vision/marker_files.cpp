@@ -88,7 +88,8 @@ class MarkerFinder {
     constexpr int shift = 4;  // sixteenths of a pixel
     std::vector<cv::Point> outline;
     for (const Vec2& corner : marker.corners_px) {
-      outline.emplace_back(static_cast<int>(std::lround(corner.x() * (1 << shift))), static_cast<int>(std::lround(corner.y() * (1 << shift))));
+      outline.emplace_back(static_cast<int>(std::lround(corner.x() * (1 << shift))),
+                           static_cast<int>(std::lround(corner.y() * (1 << shift))));
     }
     const cv::Scalar red(40, 40, 230);
     cv::polylines(picture, outline, true, red, 2, cv::LINE_AA, shift);

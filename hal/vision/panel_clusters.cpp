@@ -129,8 +129,7 @@ PanelClusters find_panel_clusters(std::span<const CloudPoint> cloud, const Plane
   result.lone_points = static_cast<std::uint32_t>(proud->size() - kept->size());
 
   std::vector<pcl::PointIndices> groups = groups_of(*kept, config);
-  std::stable_sort(groups.begin(), groups.end(),
-                   [](const auto& a, const auto& b) { return a.indices.size() > b.indices.size(); });
+  std::stable_sort(groups.begin(), groups.end(), [](const auto& a, const auto& b) { return a.indices.size() > b.indices.size(); });
   for (const pcl::PointIndices& group : groups) {
     if (!result.clusters.push_back(describe(*kept, group, frame, config))) ++result.dropped;
   }
