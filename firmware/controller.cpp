@@ -38,15 +38,9 @@ void Controller::on_port_error(Port port, std::int32_t, Time) {
 
 void Controller::on_command(Command command, Time) {
   switch (command) {
-    case Command::start:
-      mission_.start();
-      return;
-    case Command::emergency_stop:
-      mission_.stop();
-      return;
-    case Command::abort:
-      mission_.abort();
-      return;
+    case Command::start: mission_.start(); return;
+    case Command::emergency_stop: mission_.stop(); return;
+    case Command::abort: mission_.abort(); return;
   }
   ++rejected_inputs_;
 }
@@ -59,34 +53,20 @@ void Controller::tick(Time t, TickOutput& out) {
 
 const char* name(StepFailure failure) {
   switch (failure) {
-    case StepFailure::none:
-      return "none";
-    case StepFailure::unreachable:
-      return "unreachable";
-    case StepFailure::no_motion:
-      return "no way there";
-    case StepFailure::early_contact:
-      return "touched something before the aim";
-    case StepFailure::no_contact:
-      return "nothing to touch where the aim should be";
-    case StepFailure::not_gripped:
-      return "nothing held";
-    case StepFailure::wrong_angle:
-      return "the handle is not where it was turned to";
-    case StepFailure::no_click:
-      return "no click";
-    case StepFailure::no_panel:
-      return "no panel seen";
-    case StepFailure::no_marker:
-      return "no usable marker seen";
-    case StepFailure::no_handle:
-      return "no handle seen";
-    case StepFailure::panel_moved:
-      return "the panel has moved";
-    case StepFailure::not_homed:
-      return "homing failed";
-    case StepFailure::too_few_points:
-      return "too few points of the panel";
+    case StepFailure::none: return "none";
+    case StepFailure::unreachable: return "unreachable";
+    case StepFailure::no_motion: return "no way there";
+    case StepFailure::early_contact: return "touched something before the aim";
+    case StepFailure::no_contact: return "nothing to touch where the aim should be";
+    case StepFailure::not_gripped: return "nothing held";
+    case StepFailure::wrong_angle: return "the handle is not where it was turned to";
+    case StepFailure::no_click: return "no click";
+    case StepFailure::no_panel: return "no panel seen";
+    case StepFailure::no_marker: return "no usable marker seen";
+    case StepFailure::no_handle: return "no handle seen";
+    case StepFailure::panel_moved: return "the panel has moved";
+    case StepFailure::not_homed: return "homing failed";
+    case StepFailure::too_few_points: return "too few points of the panel";
   }
   return "unknown";
 }

@@ -127,8 +127,7 @@ void Mission::give_up(Fault fault, std::int32_t code) {
 
 void Mission::react(const Tick& tick, Reaction reaction) {
   switch (reaction) {
-    case Reaction::count_only:
-      return;
+    case Reaction::count_only: return;
     case Reaction::retry:
       ++tries_[static_cast<std::size_t>(step_)];
       retrying_ = true;
@@ -212,115 +211,62 @@ void Mission::finish_step(const Tick& tick, Status status) {
 void Mission::begin(const Tick& tick) {
   entered_ = true;
   switch (step_) {
-    case Step::boot:
-      tick.network.start_boot(tick.now);
-      return;
-    case Step::deploy:
-      begin_deploy();
-      return;
-    case Step::verify_reach:
-      begin_verify_reach();
-      return;
+    case Step::boot: tick.network.start_boot(tick.now); return;
+    case Step::deploy: begin_deploy(); return;
+    case Step::verify_reach: begin_verify_reach(); return;
     case Step::scan:
-    case Step::verify_scan:
-      begin_scan(tick);
-      return;
+    case Step::verify_scan: begin_scan(tick); return;
     case Step::look:
-    case Step::verify_look:
-      begin_look(tick);
+    case Step::verify_look: camera_.set_mode(CameraWork::Mode::still, tick.now); return;
+    case Step::perceive:
+    case Step::verify:
+      panel_arrived_ = false;
+      order(tick, ScanCommand::Kind::analyse);
       return;
-    case Step::reach_valve:
-      begin_reach_valve();
-      return;
-    case Step::advance:
-      begin_advance();
-      return;
-    case Step::grip:
-      gripper_.close();
-      return;
-    case Step::turn:
-      begin_turn();
-      return;
-    case Step::let_go:
-      gripper_.open();
-      return;
-    case Step::back_off:
-      begin_back_off();
-      return;
-    case Step::reach_button:
-      begin_reach_button();
-      return;
-    case Step::press:
-      begin_press();
-      return;
-    case Step::button_back:
-      begin_button_back();
-      return;
-    case Step::abandon:
-      begin_abandon();
-      return;
-    case Step::abandon_back:
-      begin_back_off();
-      return;
-    case Step::stow:
-      begin_stow();
-      return;
-    default:
-      return;
+    case Step::reach_valve: begin_reach_valve(); return;
+    case Step::advance: begin_advance(); return;
+    case Step::grip: gripper_.close(); return;
+    case Step::turn: begin_turn(); return;
+    case Step::let_go: gripper_.open_to(config_.mission.jaw_open_m); return;
+    case Step::back_off: begin_back_off(); return;
+    case Step::reach_button: begin_reach_button(); return;
+    case Step::press: begin_press(); return;
+    case Step::button_back: begin_button_back(); return;
+    case Step::abandon: begin_abandon(); return;
+    case Step::abandon_back: begin_back_off(); return;
+    case Step::stow: begin_stow(); return;
+    default: return;
   }
 }
 
 Mission::Status Mission::run(const Tick& tick) {
   switch (step_) {
-    case Step::idle:
-      return start_ordered_ ? Status::done : Status::running;
-    case Step::boot:
-      return run_boot(tick);
-    case Step::enable:
-      return run_enable(tick);
-    case Step::home:
-      return run_home(tick);
+    case Step::idle: return start_ordered_ ? Status::done : Status::running;
+    case Step::boot: return run_boot(tick);
+    case Step::enable: return run_enable(tick);
+    case Step::home: return run_home(tick);
     case Step::deploy:
-    case Step::verify_reach:
-      return run_motion();
+    case Step::verify_reach: return run_motion();
     case Step::scan:
-    case Step::verify_scan:
-      return run_scan(tick);
+    case Step::verify_scan: return run_scan(tick);
     case Step::look:
-    case Step::verify_look:
-      return run_look(tick);
-    case Step::perceive:
-      return run_perceive(tick);
-    case Step::next_task:
-      return run_next_task();
-    case Step::reach_valve:
-      return run_reach_valve();
-    case Step::advance:
-      return run_advance();
-    case Step::grip:
-      return run_grip();
-    case Step::turn:
-      return run_turn();
-    case Step::let_go:
-      return gripper_.state() == arm::GripperState::open ? Status::done : Status::running;
-    case Step::back_off:
-      return run_back_off();
-    case Step::verify:
-      return run_verify(tick);
-    case Step::reach_button:
-      return run_reach_button();
-    case Step::press:
-      return run_press(tick);
-    case Step::button_back:
-      return run_button_back();
-    case Step::abandon:
-      return run_abandon();
-    case Step::abandon_back:
-      return run_motion() == Status::running ? Status::running : (retrying_ ? Status::branch : Status::done);
-    case Step::stow:
-      return run_stow();
-    default:
-      return Status::running;
+    case Step::verify_look: return run_look(tick);
+    case Step::perceive: return run_perceive(tick);
+    case Step::next_task: return run_next_task(tick);
+    case Step::reach_valve: return run_reach_valve();
+    case Step::advance: return run_advance(tick);
+    case Step::grip: return run_grip();
+    case Step::turn: return run_turn(tick);
+    case Step::let_go: return run_let_go();
+    case Step::back_off: return run_motion();
+    case Step::verify: return run_verify(tick);
+    case Step::reach_button: return run_reach_button();
+    case Step::press: return run_press(tick);
+    case Step::button_back: return run_button_back(tick);
+    case Step::abandon: return run_abandon();
+    case Step::abandon_back: return run_motion() == Status::running ? Status::running : (retrying_ ? Status::branch : Status::done);
+    case Step::stow: return run_stow();
+    default: return Status::running;
   }
 }
 

@@ -10,12 +10,9 @@ Mission::Status Mission::run_boot(const Tick& tick) {
     return Status::running;
   }
   switch (tick.network.boot().state) {
-    case canopen::BootState::done:
-      return Status::done;
-    case canopen::BootState::failed:
-      return Status::failed;
-    default:
-      return Status::running;
+    case canopen::BootState::done: return Status::done;
+    case canopen::BootState::failed: return Status::failed;
+    default: return Status::running;
   }
 }
 

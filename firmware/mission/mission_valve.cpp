@@ -80,14 +80,11 @@ Mission::Status Mission::run_advance(const Tick& tick) {
 
 Mission::Status Mission::run_grip() {
   switch (gripper_.state()) {
-    case arm::GripperState::held:
-      return motion_.done() ? Status::done : Status::running;
+    case arm::GripperState::held: return motion_.done() ? Status::done : Status::running;
     case arm::GripperState::empty:
     case arm::GripperState::dropped:
-    case arm::GripperState::jammed:
-      return fail(StepFailure::not_gripped);
-    default:
-      return Status::running;
+    case arm::GripperState::jammed: return fail(StepFailure::not_gripped);
+    default: return Status::running;
   }
 }
 

@@ -82,23 +82,12 @@ void Motion::step(double dt_s) {
   if (kind_ == Kind::rest) return;
   t_s_ += dt_s;
   switch (kind_) {
-    case Kind::path:
-      target_ = path_.sample(t_s_);
-      break;
-    case Kind::line:
-      target_ = line_.sample(t_s_);
-      break;
-    case Kind::sweep:
-      target_ = sweep_.sample(t_s_);
-      break;
-    case Kind::turn:
-      target_.q_rad = turn_.sample(t_s_);
-      break;
-    case Kind::stop:
-      target_ = stop_.sample(t_s_);
-      break;
-    case Kind::rest:
-      break;
+    case Kind::path: target_ = path_.sample(t_s_); break;
+    case Kind::line: target_ = line_.sample(t_s_); break;
+    case Kind::sweep: target_ = sweep_.sample(t_s_); break;
+    case Kind::turn: target_.q_rad = turn_.sample(t_s_); break;
+    case Kind::stop: target_ = stop_.sample(t_s_); break;
+    case Kind::rest: break;
   }
   if (t_s_ >= duration_s_) freeze();
 }

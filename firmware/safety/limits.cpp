@@ -61,16 +61,11 @@ LimitsVerdict check(const Limits& limits) {
 
 const char* name(LimitsVerdict verdict) {
   switch (verdict) {
-    case LimitsVerdict::good:
-      return "good";
-    case LimitsVerdict::wrong_checksum:
-      return "wrong checksum";
-    case LimitsVerdict::not_a_number:
-      return "not a number";
-    case LimitsVerdict::out_of_order:
-      return "minimum above maximum";
-    case LimitsVerdict::not_positive:
-      return "not positive";
+    case LimitsVerdict::good: return "good";
+    case LimitsVerdict::wrong_checksum: return "wrong checksum";
+    case LimitsVerdict::not_a_number: return "not a number";
+    case LimitsVerdict::out_of_order: return "minimum above maximum";
+    case LimitsVerdict::not_positive: return "not positive";
   }
   return "unknown";
 }
