@@ -1,0 +1,224 @@
+#include "firmware/scan_pipeline.hpp"
+
+#include <algorithm>
+
+#include "firmware/arm/kinematics.hpp"
+
+namespace lf {
+namespace {
+
+// The camera's stamp against the SYNC that triggered it; exposures are 40 ms apart.
+constexpr Duration match_window = Duration::from_ms(2);
+
+Duration distance(Time a, Time b) { return a < b ? b - a : a - b; }
+
+scan::PlaneFitter::Config toward_camera(scan::PlaneFitter::Config config, const CameraCalibration& camera) {
+  config.toward_m = camera.base_from_camera.translation();
+  return config;
+}
+
+}  // namespace
+
+ScanPipeline::ScanPipeline(const ScanConfig& config)
+    : config_(config), detector_(config.peaks), triangulator_(config.camera, config.laser, config.triangulation) {
+  config_.plane = toward_camera(config.plane, config.camera);
+}
+
+void ScanPipeline::on_command(const ScanCommand& command) {
+  switch (command.kind) {
+    case ScanCommand::Kind::joint_sample:
+      if (!joints_.add(command.joints)) ++stats_.commands_refused;
+      add_points(false);
+      return;
+    case ScanCommand::Kind::exposure:
+      expect(command);
+      return;
+    case ScanCommand::Kind::begin_sweep:
+      begin_sweep(command.sweep);
+      return;
+    case ScanCommand::Kind::end_sweep:
+      sweeping_ = false;
+      return;
+    case ScanCommand::Kind::analyse:
+      analyse(command.sweep);
+      return;
+    case ScanCommand::Kind::drop_exposure:
+      drop(command.exposure_start);
+      return;
+  }
+  ++stats_.commands_refused;
+}
+
+void ScanPipeline::begin_sweep(std::uint32_t sweep) {
+  forget_exposures(exposures_.size());
+  stripes_.clear();
+  cloud_.clear();
+  // Between sweeps the arm, its shadow and what it turned have moved.
+  background_.present = false;
+  still_.present = false;
+  request_ready_ = false;
+  request_.id = sweep;
+  sweeping_ = true;
+}
+
+void ScanPipeline::expect(const ScanCommand& command) {
+  if (any_order_ && command.exposure_start <= last_order_) {
+    ++stats_.commands_refused;
+    return;
+  }
+  any_order_ = true;
+  last_order_ = command.exposure_start;
+  if (exposures_.full()) forget_exposures(1);
+  (void)exposures_.push_back({.start = command.exposure_start, .kind = command.exposure_kind, .in_sweep = sweeping_});
+}
+
+// The image of a dropped exposure may be on its way, or have come already.
+void ScanPipeline::drop(Time start) {
+  for (Exposure& exposure : exposures_) {
+    if (exposure.start != start) continue;
+    exposure.dropped = true;
+    return;
+  }
+  bool known = false;
+  for (StoredImage* image : {&background_, &still_}) {
+    if (!image->present || image->start != start) continue;
+    image->present = false;
+    known = true;
+  }
+  for (Stripe& stripe : stripes_) {
+    if (stripe.start != start) continue;
+    stripe.count = 0;
+    known = true;
+  }
+  ++(known ? stats_.images_refused : stats_.commands_refused);
+}
+
+// The oldest `count` exposures have no image.
+void ScanPipeline::forget_exposures(std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) stats_.images_missing += exposures_[i].dropped ? 0 : 1;
+  std::copy(exposures_.begin() + count, exposures_.end(), exposures_.begin());
+  for (std::size_t i = 0; i < count; ++i) exposures_.pop_back();
+}
+
+// Takes the exposure ordered for `start` off the list, with those before it: images come in the order of their exposures.
+bool ScanPipeline::match(Time start, Exposure& exposure) {
+  for (std::size_t i = 0; i < exposures_.size(); ++i) {
+    if (distance(exposures_[i].start, start) > match_window) continue;
+    exposure = exposures_[i];
+    forget_exposures(i);
+    std::copy(exposures_.begin() + 1, exposures_.end(), exposures_.begin());
+    exposures_.pop_back();
+    return true;
+  }
+  return false;
+}
+
+// `start` is the instant that was ordered, by which a later `drop_exposure` calls it, not the camera's stamp.
+void ScanPipeline::store(const Image& image, Time start, StoredImage& out) {
+  for (std::int32_t v = 0; v < image_height; ++v)
+    std::copy_n(image.view.row(v), image_width, out.pixels.data() + static_cast<std::ptrdiff_t>(v) * image_width);
+  out.start = start;
+  out.mid_exposure = image.mid_exposure();
+  out.present = true;
+}
+
+void ScanPipeline::on_image(std::uint8_t camera, const Image& image) {
+  if (camera != config_.camera_index) return;
+  Exposure exposure;
+  if (!match(image.exposure_start, exposure)) {
+    ++stats_.images_unexpected;
+    return;
+  }
+  const bool well_formed =
+      image.view.valid() && image.view.width == image_width && image.view.height == image_height && image.exposure > Duration();
+  if (!well_formed || exposure.dropped) {
+    ++stats_.images_refused;
+    return;
+  }
+  ++stats_.images;
+  switch (exposure.kind) {
+    case ExposureKind::laser_on:
+      measure(image, exposure);
+      add_points(false);
+      return;
+    case ExposureKind::background:
+      store(image, exposure.start, background_);
+      return;
+    case ExposureKind::still:
+      store(image, exposure.start, still_);
+      return;
+    case ExposureKind::monitor:
+      return;
+  }
+}
+
+// The stripe's peaks; those of a sweep wait for their joints.
+void ScanPipeline::measure(const Image& image, const Exposure& exposure) {
+  const scan::PixelView<std::uint8_t> background = background_.present ? view(background_) : ImageView{};
+  last_peaks_count_ = detector_.detect(image.view, background, last_peaks_);
+  last_peaks_time_ = image.mid_exposure();
+  const scan::PeakCounters& counters = detector_.counters();
+  stats_.peaks = static_cast<std::uint32_t>(counters.found);
+  stats_.peaks_weak = static_cast<std::uint32_t>(counters.weak);
+  stats_.peaks_saturated = static_cast<std::uint32_t>(counters.saturated);
+  stats_.peaks_ambiguous = static_cast<std::uint32_t>(counters.ambiguous);
+  if (!exposure.in_sweep) return;
+  if (stripes_.full()) add_points(true);
+  (void)stripes_.push_back({});
+  Stripe& stripe = stripes_.back();
+  stripe.start = exposure.start;
+  stripe.mid_exposure = image.mid_exposure();
+  stripe.count = last_peaks_count_;
+  std::copy_n(last_peaks_.begin(), last_peaks_count_, stripe.peaks.begin());
+}
+
+// Stripes whose joints are known become points, oldest first; `final` leaves none waiting.
+void ScanPipeline::add_points(bool final) {
+  std::size_t done = 0;
+  while (done < stripes_.size() && add_points(stripes_[done], final)) ++done;
+  if (done == 0) return;
+  std::copy(stripes_.begin() + done, stripes_.end(), stripes_.begin());
+  for (std::size_t i = 0; i < done; ++i) stripes_.pop_back();
+}
+
+// False when the stripe has to wait.
+bool ScanPipeline::add_points(const Stripe& stripe, bool final) {
+  if (stripe.count == 0) return true;
+  std::array<double, arm_joint_count> q_rad;
+  const scan::JointHistory::Outcome outcome = joints_.at(stripe.mid_exposure, final, q_rad);
+  if (outcome == scan::JointHistory::Outcome::wait) return false;
+  if (outcome != scan::JointHistory::Outcome::done) {
+    stats_.points_no_joints += static_cast<std::uint32_t>(stripe.count);
+    return true;
+  }
+  const Pose base_from_laser = arm::base_from_laser(arm::JointVector(q_rad[0], q_rad[1], q_rad[2], q_rad[3]), config_.laser);
+  for (const scan::Peak& peak : std::span(stripe.peaks).first(stripe.count)) {
+    const std::optional<Vec3> point_m = triangulator_.point(Vec2(peak.u_px, peak.v_px), base_from_laser);
+    if (!point_m) continue;
+    if (cloud_.add({.p_m = point_m->cast<float>(), .amplitude = peak.amplitude}))
+      ++stats_.points;
+    else
+      ++stats_.points_overflowed;
+  }
+  return true;
+}
+
+void ScanPipeline::analyse(std::uint32_t sweep) {
+  forget_exposures(exposures_.size());
+  add_points(true);
+  sweeping_ = false;
+  request_.id = sweep;
+  request_.fit = fitter_.fit(cloud_.points(), config_.plane);
+  request_.has_still = still_.present;
+  request_.still_time = still_.mid_exposure;
+  request_ready_ = true;
+}
+
+bool ScanPipeline::take_request(PanelRequest& request) {
+  if (!request_ready_) return false;
+  request = request_;
+  request_ready_ = false;
+  return true;
+}
+
+}  // namespace lf
