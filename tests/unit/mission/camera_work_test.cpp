@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <vector>
 
 #include "shared/can/can_map.hpp"
@@ -11,7 +12,7 @@ namespace {
 
 constexpr Duration period = can_map::sync_period;
 
-// An output node that does what the map says: what an RPDO asks acts at the next SYNC; its report of a SYNC has the outputs as that SYNC made them.
+// An output node that does what the map says: what an RPDO asks acts at the next SYNC, and the report of the SYNC after that one is the first to show it.
 class Bench {
  public:
   explicit Bench(const CameraWork::Config& config) : work(config), io_(make_io()) {
@@ -28,6 +29,7 @@ class Bench {
     io_.step(now_);
     CanFrame rpdo;
     if (io_.make_rpdo(rpdo, can_map::io_node)) asked_ = rpdo;
+    shown_next_ = {shown_next_[1], shown_next_[2], asked_};
     if (break_at_cycle == cycles_) interlock_ = false;
     ++cycles_;
   }
@@ -54,22 +56,24 @@ class Bench {
   }
 
   void report() {
-    std::uint8_t outputs = asked_.data[0];
+    const CanFrame& shown = shown_next_[0];
+    std::uint8_t outputs = shown.data[0];
     if (!interlock_) outputs = static_cast<std::uint8_t>(outputs & ~can_map::output_laser);
     CanFrame tpdo;
     tpdo.id = 0x180u + can_map::io_node;
     tpdo.length = canopen::IoModule::tpdo_length;
     tpdo.data[0] = static_cast<std::uint8_t>(can_map::input_estop_closed | (interlock_ ? can_map::input_interlock_closed : 0));
     tpdo.data[1] = outputs;
-    tpdo.data[2] = asked_.data[1];
-    tpdo.data[3] = asked_.data[2];
-    tpdo.data[4] = asked_.data[3];
+    tpdo.data[2] = shown.data[1];
+    tpdo.data[3] = shown.data[2];
+    tpdo.data[4] = shown.data[3];
     io_.on_tpdo(tpdo, now_ - period);
   }
 
   canopen::IoModule io_;
   Time now_ = Time::from_s(1);
   CanFrame asked_;
+  std::array<CanFrame, 3> shown_next_{};
   bool interlock_ = true;
   int cycles_ = 0;
 };
