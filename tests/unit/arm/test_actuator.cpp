@@ -1,0 +1,80 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "firmware/arm/actuator.hpp"
+
+namespace lf::arm {
+namespace {
+
+constexpr std::array<Joint, joint_count> joints{Joint::slew, Joint::shoulder, Joint::elbow, Joint::roll, Joint::jaw};
+
+double at_fraction(Joint joint, int i, int n) {
+  return numbers(joint).lower_rad + (numbers(joint).upper_rad - numbers(joint).lower_rad) * i / n;
+}
+
+TEST(Actuator, CountsRiseWithTheAngleOverTheWholeStroke) {
+  for (const Joint joint : joints)
+    for (int i = 1; i <= 10'000; ++i)
+      ASSERT_GT(exact_counts_from_rad(joint, at_fraction(joint, i, 10'000)),
+                exact_counts_from_rad(joint, at_fraction(joint, i - 1, 10'000)))
+          << "joint " << static_cast<int>(joint) << " step " << i;
+}
+
+// The published angle per encoder tick, smallest and largest over the stroke.
+TEST(Actuator, TicksAreAsCoarseAsPublished) {
+  const std::array<std::array<double, 2>, joint_count> published{
+      {{1.3e-4, 3.6e-4}, {0.6e-4, 1.8e-4}, {1.0e-4, 3.7e-4}, {3.14e-3, 3.14e-3}, {5.37e-4, 5.37e-4}}};
+  for (std::size_t k = 0; k < joint_count; ++k) {
+    double finest = 1, coarsest = 0;
+    for (int i = 0; i <= 10'000; ++i) {
+      const double tick = rad_per_count(joints[k], at_fraction(joints[k], i, 10'000));
+      finest = std::min(finest, tick);
+      coarsest = std::max(coarsest, tick);
+    }
+    EXPECT_NEAR(finest, published[k][0], 0.005 * published[k][0]) << k;
+    EXPECT_NEAR(coarsest, published[k][1], 0.005 * published[k][1]) << k;
+  }
+}
+
+TEST(Actuator, TickIsTheInverseSlopeOfTheCounts) {
+  for (const Joint joint : joints)
+    for (int i = 1; i < 100; ++i) {
+      const double q = at_fraction(joint, i, 100);
+      const double slope = (exact_counts_from_rad(joint, q + 1e-6) - exact_counts_from_rad(joint, q - 1e-6)) / 2e-6;
+      EXPECT_NEAR(rad_per_count(joint, q) * slope, 1, 1e-6);
+    }
+}
+
+TEST(Actuator, CountsAndAnglesAreInverse) {
+  for (const Joint joint : joints) {
+    for (int i = 0; i <= 1000; ++i) {
+      const double q = at_fraction(joint, i, 1000);
+      const std::int32_t counts = counts_from_rad(joint, q);
+      EXPECT_LE(std::abs(rad_from_counts(joint, counts) - q), 0.51 * rad_per_count(joint, q) + 1e-7);
+      EXPECT_EQ(counts_from_rad(joint, rad_from_counts(joint, counts)), counts);
+    }
+    EXPECT_EQ(counts_from_rad(joint, 0), 0);
+  }
+}
+
+// The law of cosines written down once more: the elbow's screw between pivots 0.26 m and 0.06 m.
+TEST(Actuator, ScrewIsTheTrianglesThirdSide) {
+  const auto length = [](double q) { return std::sqrt(0.26 * 0.26 + 0.06 * 0.06 - 2 * 0.26 * 0.06 * std::cos(q + 0.2115)); };
+  EXPECT_NEAR(exact_counts_from_rad(Joint::elbow, 1.151), 166667 * (length(1.151) - length(0)), 1e-8);
+}
+
+TEST(Actuator, WithstandsNonsense) {
+  for (const Joint joint : joints) {
+    EXPECT_EQ(counts_from_rad(joint, std::numeric_limits<double>::quiet_NaN()), 0);
+    EXPECT_EQ(counts_from_rad(joint, std::numeric_limits<double>::infinity()), counts_from_rad(joint, numbers(joint).upper_rad + 0.1));
+    EXPECT_EQ(counts_from_rad(joint, -1e300), counts_from_rad(joint, numbers(joint).lower_rad - 0.1));
+    EXPECT_NEAR(rad_from_counts(joint, std::numeric_limits<std::int32_t>::max()), numbers(joint).upper_rad + 0.1, 1e-12);
+    EXPECT_NEAR(rad_from_counts(joint, std::numeric_limits<std::int32_t>::min()), numbers(joint).lower_rad - 0.1, 1e-12);
+    EXPECT_TRUE(std::isfinite(rad_per_count(joint, std::numeric_limits<double>::quiet_NaN())));
+  }
+}
+
+}  // namespace
+}  // namespace lf::arm
