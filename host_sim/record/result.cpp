@@ -1,0 +1,95 @@
+#include "host_sim/record/result.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace lf::record {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// JSON has no NaN and no infinity.
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json to_json(const TimesRecord& times) {
+  return {{"p50", number(times.p50)}, {"p99", number(times.p99)}, {"p999", number(times.p999)}, {"max", number(times.max)}};
+}
+
+Json to_json(const PhaseRecord& phase) {
+  return {{"name", phase.name}, {"start_s", number(phase.start_s)}, {"end_s", number(phase.end_s)}, {"outcome", phase.outcome}};
+}
+
+Json to_json(const TaskRecord& task) {
+  if (task.task == "press_button") return {{"task", task.task}, {"button", task.button}, {"presses", task.presses}, {"done", task.done}};
+  return {{"task", task.task}, {"target_deg", number(task.target_deg)}, {"reached_deg", number(task.reached_deg)}, {"done", task.done}};
+}
+
+Json to_json(const ErrorRecord& errors) {
+  return {{"plane_normal_deg", number(errors.plane_normal_deg)}, {"plane_offset_mm", number(errors.plane_offset_mm)},
+          {"valve_base_mm", number(errors.valve_base_mm)},       {"handle_angle_deg", number(errors.handle_angle_deg)},
+          {"cloud_rms_mm", number(errors.cloud_rms_mm)},         {"cloud_truth_p95_mm", number(errors.cloud_truth_p95_mm)},
+          {"peak_rms_px", number(errors.peak_rms_px)},           {"peak_recall", number(errors.peak_recall)}};
+}
+
+Json to_json(const DockingRecord& docking) {
+  return {{"attempts", docking.attempts},
+          {"offset_mm", number(docking.offset_mm)},
+          {"angle_deg", number(docking.angle_deg)},
+          {"peak_force_n", number(docking.peak_force_n)}};
+}
+
+Json to_json(const CoreRecord& core) {
+  Json rejected = Json::object();
+  for (const auto& [name, count] : core.rejected_inputs) rejected[name] = count;
+  return {{"heap_calls", core.heap_calls ? Json(*core.heap_calls) : Json(nullptr)},
+          {"controller_bytes", core.controller_bytes},
+          {"tick_us", to_json(core.tick_us)},
+          {"frame_us", to_json(core.frame_us)},
+          {"rejected_inputs", std::move(rejected)}};
+}
+
+template <class Record>
+Json list(const std::vector<Record>& records) {
+  Json array = Json::array();
+  for (const Record& record : records) array.push_back(to_json(record));
+  return array;
+}
+
+}  // namespace
+
+TimesRecord times_record(std::vector<double> values_us) {
+  if (values_us.empty()) return {};
+  std::sort(values_us.begin(), values_us.end());
+  const auto rank = [&](double share) {
+    const auto nearest = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values_us.size())));
+    return values_us[std::clamp<std::size_t>(nearest, 1, values_us.size()) - 1];
+  };
+  return {rank(0.5), rank(0.99), rank(0.999), values_us.back()};
+}
+
+std::string result_json(const RunResult& result) {
+  Json document;
+  document["scenario"] = result.scenario;
+  document["seed"] = result.seed;
+  document["version"] = result.version;
+  document["success"] = result.success;
+  document["failure"] = nullptr;
+  if (result.failure) document["failure"] = {{"phase", result.failure->phase}, {"reason", result.failure->reason}};
+  document["phases"] = list(result.phases);
+  document["tasks"] = list(result.tasks);
+  document["errors"] = to_json(result.errors);
+  if (result.docking) document["docking"] = to_json(*result.docking);
+  document["contact"] = {{"peak_force_n", number(result.contact.peak_force_n)},
+                         {"unintended_contacts", result.contact.unintended_contacts}};
+  document["core"] = to_json(result.core);
+  document["bus"] = {{"load_percent", number(result.bus.load_percent)}, {"frames", result.bus.frames}, {"errors", result.bus.errors}};
+  document["host"] = {{"isa", result.host.isa}, {"threads", result.host.threads}, {"build", result.host.build}};
+  document["time"] = {{"simulated_s", number(result.time.simulated_s)},
+                      {"wall_s", number(result.time.wall_s)},
+                      {"real_time_factor", number(result.time.real_time_factor)}};
+  document["digest"] = result.digest;
+  return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace lf::record

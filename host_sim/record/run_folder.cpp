@@ -1,0 +1,39 @@
+#include "host_sim/record/run_folder.hpp"
+
+#include <system_error>
+
+#include "shared/input_error.hpp"
+
+namespace lf::record {
+namespace fs = std::filesystem;
+
+RunFolder::RunFolder(const fs::path& directory) : directory_(directory) {
+  std::error_code error;
+  fs::create_directories(directory, error);
+  if (!fs::is_directory(directory)) {
+    throw InputError(directory.string(), 0, "cannot be made a folder: " + (error ? error.message() : std::string("it is a file")));
+  }
+  const fs::path probe = directory / ".writable";
+  { const FileSink opened(probe); }
+  fs::remove(probe, error);
+}
+
+fs::path RunFolder::file(const std::string& name) const {
+  const fs::path relative = fs::path(name).lexically_normal();
+  if (relative.empty() || relative.is_absolute() || *relative.begin() == "..") {
+    throw InputError(name, 0, "lies outside of the run's folder");
+  }
+  const fs::path path = directory_ / relative;
+  std::error_code error;
+  fs::create_directories(path.parent_path(), error);
+  if (error) throw InputError(path.parent_path().string(), 0, "cannot be made a folder: " + error.message());
+  return path;
+}
+
+void RunFolder::write(const std::string& name, std::string_view bytes) const { write_file_atomically(file(name), bytes); }
+
+void RunFolder::write(const std::string& name, std::span<const std::uint8_t> bytes) const {
+  write(name, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+}
+
+}  // namespace lf::record
