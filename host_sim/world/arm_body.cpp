@@ -14,6 +14,9 @@ constexpr int finger_b_link = 5;
 // The joint that drives Bullet's link: the two fingers share the jaw's.
 std::size_t joint_of(int link) { return link == finger_b_link ? jaw : std::size_t(link); }
 
+// One screw turns both fingers: torques are given for each, and it holds the sum.
+double driven_links(std::size_t joint) { return joint == jaw ? 2 : 1; }
+
 const ArmJoint& joint_before(const ArmDescription& arm, int link) {
   return link == finger_b_link ? arm.finger_b : arm.joints[std::size_t(link)];
 }
@@ -31,11 +34,10 @@ ArmBody::ArmBody(const ArmDescription& arm, const scene::Scene& scene, const Con
     const auto body = std::size_t(link + 1);
     part_.add_collider(link, make_collision_shape(scene[body], link_from_frame_[body]), int(body), config.restitution);
   }
-  for (int link = 0; link < bullet_links; ++link) {
-    const ArmJoint& joint = joint_before(arm_, link);
-    const ArmJoint& drive = arm_.joints[joint_of(link)];
-    joints_[std::size_t(link)] = {link, joint.lower_rad, joint.upper_rad, drive.backlash_rad, drive.holding_torque_nm};
-    rows_[std::size_t(link)] = &part_.add_rows(link);
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    const ArmJoint& joint = arm_.joints[i];
+    joints_[i] = {i == jaw, joint.lower_rad, joint.upper_rad, joint.backlash_rad, driven_links(i) * config.drive_stiffness_nm_rad[i]};
+    rows_[i] = &part_.add_rows(int(i), i == jaw ? finger_b_link : -1);
   }
   start_at(config.start_rad);
 }
@@ -76,38 +78,39 @@ void ArmBody::start_at(const std::array<double, joint_count>& start_rad) {
   }
 }
 
+double ArmBody::position_rad(std::size_t joint) const {
+  const double position = part_.body().getJointPos(int(joint));
+  return joint == jaw ? 0.5 * (position + part_.body().getJointPos(finger_b_link)) : position;
+}
+
+double ArmBody::velocity_rad_s(std::size_t joint) const {
+  const double velocity = part_.body().getJointVel(int(joint));
+  return joint == jaw ? 0.5 * (velocity + part_.body().getJointVel(finger_b_link)) : velocity;
+}
+
 void ArmBody::before_step() {
   btMultiBody& body = part_.body();
   for (std::size_t i = 0; i < joint_count; ++i) {
     plan_[i] = plan_drive(drives_[i], arm_.joints[i].holding_torque_nm, motor_rad_[i], config_.step_s);
+    plan_[i].torque_nm *= driven_links(i);
+    rows_[i]->begin();
+    stall_nm_[i] = set_drive_rows(*rows_[i], joints_[i], plan_[i], position_rad(i), config_.step_s);
+    if (i == jaw) set_coupling_row(*rows_[i], joints_[i], body.getJointPos(finger_b_link) - body.getJointPos(int(jaw)), config_.step_s);
+    rows_[i]->apply_start(config_.step_s);
   }
   for (int link = 0; link < bullet_links; ++link) {
-    const auto i = std::size_t(link);
-    const bool finger = joint_of(link) == jaw;
-    rows_[i]->begin();
-    stall_nm_[i] = set_drive_rows(*rows_[i], joints_[i], plan_[joint_of(link)], body.getJointPos(link), config_.step_s);
-    rows_[i]->apply_start(config_.step_s);
-    const double drag_nm_s = config_.joint_drag_nm_s * (finger ? 0.1 : 1.0);
-    body.addJointTorque(link, stall_nm_[i] - drag_nm_s * body.getJointVel(link));
-    body.addLinkForce(link, btVector3(0, 0, arm_.links[i + 1].wet_weight_n));
+    const std::size_t joint = joint_of(link);
+    const double drag_nm_s = config_.joint_drag_nm_s * (joint == jaw ? 0.1 : 1.0);
+    body.addJointTorque(link, stall_nm_[joint] / driven_links(joint) - drag_nm_s * body.getJointVel(link));
+    body.addLinkForce(link, btVector3(0, 0, arm_.links[std::size_t(link) + 1].wet_weight_n));
   }
 }
 
 void ArmBody::after_step() {
-  btMultiBody& body = part_.body();
   for (std::size_t i = 0; i < joint_count; ++i) {
-    const int link = int(i);
-    motor_rad_[i] = motor_in_play(plan_[i].motor_rad, body.getJointPos(link), joints_[i].backlash_rad);
-    double position_rad = body.getJointPos(link);
-    double velocity_rad_s = body.getJointVel(link);
-    double torque_nm = drive_torque_nm(*rows_[i], config_.step_s) + stall_nm_[i];
-    if (i == jaw) {  // one motor for both fingers: the screw stops when either finger stops it
-      motor_rad_[i] = motor_in_play(motor_rad_[i], body.getJointPos(finger_b_link), joints_[i].backlash_rad);
-      position_rad = 0.5 * (position_rad + body.getJointPos(finger_b_link));
-      velocity_rad_s = 0.5 * (velocity_rad_s + body.getJointVel(finger_b_link));
-      torque_nm = 0.5 * (torque_nm + drive_torque_nm(*rows_[finger_b_link], config_.step_s) + stall_nm_[finger_b_link]);
-    }
-    readings_[i] = {position_rad, motor_rad_[i], velocity_rad_s, torque_nm};
+    motor_rad_[i] = motor_after(plan_[i], joints_[i], position_rad(i));
+    const double torque_nm = (drive_torque_nm(*rows_[i], config_.step_s) + stall_nm_[i]) / driven_links(i);
+    readings_[i] = {position_rad(i), motor_rad_[i], velocity_rad_s(i), torque_nm};
   }
 }
 

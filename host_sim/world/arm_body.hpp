@@ -14,6 +14,7 @@ class ArmBody {
   struct Config {
     std::array<double, joint_count> start_rad{};
     double joint_drag_nm_s = 0;
+    std::array<double, joint_count> drive_stiffness_nm_rad{};
     double restitution = 0;
     double step_s = 0.001;
   };
@@ -39,14 +40,15 @@ class ArmBody {
 
   void set_up_links();
   void start_at(const std::array<double, joint_count>& start_rad);
-  double joint_motor_rad(int link) const;
+  double position_rad(std::size_t joint) const;
+  double velocity_rad_s(std::size_t joint) const;
 
   ArmDescription arm_;
   Config config_;
   MultibodyPart part_;
-  std::array<DrivenJoint, bullet_links> joints_;
-  std::array<JointRows*, bullet_links> rows_{};
-  std::array<double, bullet_links> stall_nm_{};
+  std::array<DrivenJoint, joint_count> joints_;
+  std::array<JointRows*, joint_count> rows_{};
+  std::array<double, joint_count> stall_nm_{};
   std::array<Pose, ArmDescription::link_count> link_from_frame_;  // Bullet's link frames: centre of mass, principal axes
   std::array<Vec3, ArmDescription::link_count> principal_kg_m2_;
   std::array<DriveStep, joint_count> plan_{};

@@ -54,6 +54,7 @@ void check_arm(const WorldConfig& config) {
     expect(joint.lower_rad < joint.upper_rad, "arm joint " + joint.name, "needs lower < upper");
     expect(config.start_rad[i] >= joint.lower_rad && config.start_rad[i] <= joint.upper_rad, "start_rad of " + joint.name,
            "must lie within the joint's limits");
+    expect_not_negative(config.drive_stiffness_nm_rad[i], "drive_stiffness_nm_rad of " + joint.name);
     expect_not_negative(joint.backlash_rad, "arm joint " + joint.name + " backlash");
     expect_not_negative(joint.holding_torque_nm, "arm joint " + joint.name + " holding torque");
   }

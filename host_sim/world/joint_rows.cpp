@@ -6,17 +6,27 @@
 #include <algorithm>
 
 namespace lf::world {
+namespace {
 
-JointRows::JointRows(btMultiBody* body, int link)
-    : btMultiBodyConstraint(body, nullptr, link, -1, int(slot_count), false, MULTIBODY_CONSTRAINT_1DOF_JOINT_MOTOR) {
+// Bullet leaves a joint's row rigid: its softness adds to the inverse of the row's mass.
+void soften(btMultiBodySolverConstraint& row, double softness) {
+  const double inverse_mass = 1 / (1 / row.m_jacDiagABInv + softness);
+  row.m_rhs *= inverse_mass / row.m_jacDiagABInv;
+  row.m_jacDiagABInv = inverse_mass;
+  row.m_cfm = softness * inverse_mass;
+}
+
+}  // namespace
+
+JointRows::JointRows(btMultiBody* body, int link, int second_link)
+    : btMultiBodyConstraint(body, nullptr, link, -1, int(slot_count), false, MULTIBODY_CONSTRAINT_1DOF_JOINT_MOTOR),
+      second_link_(second_link) {
   finalizeMultiDof();
   for (std::size_t i = 0; i < slot_count; ++i) internalSetAppliedImpulse(int(i), 0);
 }
 
 void JointRows::finalizeMultiDof() {
   allocateJacobiansMultiDof();
-  const int offset = 6 + m_bodyA->getLink(m_linkA).m_dofOffset;
-  for (int row = 0; row < int(slot_count); ++row) jacobianA(row)[offset] = 1;
   m_numDofsFinalized = m_jacSizeBoth;
 }
 
@@ -36,15 +46,22 @@ void JointRows::begin() {
 void JointRows::set(std::size_t slot, const Row& row) {
   slots_[slot].row = row;
   slots_[slot].used = true;
+  constexpr int base_coordinates = 6;
+  double* jacobian = jacobianA(int(slot)) + base_coordinates;
+  jacobian[m_bodyA->getLink(m_linkA).m_dofOffset] = row.first;
+  if (second_link_ >= 0) jacobian[m_bodyA->getLink(second_link_).m_dofOffset] = row.second;
 }
 
 void JointRows::apply_start(double step_s) {
-  double sum = 0;
+  double first = 0;
+  double second = 0;
   for (Slot& slot : slots_) {
     slot.start = slot.used ? std::clamp(slot.start, slot.row.impulse_min, slot.row.impulse_max) : 0;
-    sum += slot.start;
+    first += slot.row.first * slot.start;
+    second += slot.row.second * slot.start;
   }
-  if (sum != 0) m_bodyA->addJointTorque(m_linkA, sum / step_s);
+  if (first != 0) m_bodyA->addJointTorque(m_linkA, first / step_s);
+  if (second != 0 && second_link_ >= 0) m_bodyA->addJointTorque(second_link_, second / step_s);
 }
 
 double JointRows::impulse(std::size_t slot) const { return slots_[slot].start + m_data[int(slot)]; }
@@ -55,8 +72,10 @@ void JointRows::createConstraintRows(btMultiBodyConstraintArray& rows, btMultiBo
     const Slot& slot = slots_[std::size_t(i)];
     if (!slot.used) continue;
     btMultiBodySolverConstraint& row = rows.expandNonInitializing();
+    const double speed = slot.row.speed - slot.row.softness * slot.start;
     fillMultiBodyConstraint(row, data, jacobianA(i), jacobianB(i), unused, unused, unused, unused, 0, info,
-                            slot.row.impulse_min - slot.start, slot.row.impulse_max - slot.start, false, 1, false, slot.row.speed);
+                            slot.row.impulse_min - slot.start, slot.row.impulse_max - slot.start, false, 1, false, speed);
+    soften(row, slot.row.softness);
     row.m_orgConstraint = this;
     row.m_orgDofIndex = i;
     row.m_contactNormal1.setZero();

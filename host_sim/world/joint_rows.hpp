@@ -1,4 +1,4 @@
-// Velocity constraints on one joint of a multibody, set anew each step: drives, friction, stops. Internal to this folder.
+// Velocity constraints on one joint of a multibody, or on two coupled ones, set anew each step: drives, friction, stops. Internal to this folder.
 //
 // Each row asks the joint for a speed and may spend an impulse between two bounds to reach it. Bullet's own joint motor has one symmetric bound and its
 // limit sees a stop only once it is passed. The rows start from the impulse of the step before (applied as a joint torque, the bounds moved by as much), which
@@ -15,14 +15,17 @@ namespace lf::world {
 class JointRows : public btMultiBodyConstraint {
  public:
   // Rows have fixed slots, so that each finds its own impulse of the step before.
-  static constexpr std::size_t slot_count = 4;
+  static constexpr std::size_t slot_count = 5;
 
   struct Row {
     double speed = 0;                         // rad/s or m/s
     double impulse_min = 0, impulse_max = 0;  // N m s or N s
+    double first = 1, second = 0;             // the row's coordinate: first x joint + second x second joint
+    double softness = 0;                      // the joint gives way by softness x impulse: the row holds speed + softness x impulse
   };
 
-  JointRows(btMultiBody* body, int link);
+  // `second_link` -1: there is none.
+  JointRows(btMultiBody* body, int link, int second_link = -1);
 
   // Between two steps: forgets the rows, keeping what they applied.
   void begin();
@@ -44,6 +47,7 @@ class JointRows : public btMultiBodyConstraint {
     bool used = false;
     double start = 0;
   };
+  int second_link_;
   std::array<Slot, slot_count> slots_;
 };
 

@@ -40,8 +40,8 @@ void MultibodyPart::add_collider(int link, CollisionShape shape, int scene_body,
   colliders_.push_back(std::move(collider));
 }
 
-JointRows& MultibodyPart::add_rows(int link) {
-  rows_.push_back(std::make_unique<JointRows>(body_.get(), link));
+JointRows& MultibodyPart::add_rows(int link, int second_link) {
+  rows_.push_back(std::make_unique<JointRows>(body_.get(), link, second_link));
   return *rows_.back();
 }
 

@@ -32,7 +32,7 @@ class MultibodyPart {
   void finish_links();
   // link -1 is the base; user index: the body of the scene, or `no_body`.
   void add_collider(int link, CollisionShape shape, int scene_body, double restitution);
-  JointRows& add_rows(int link);
+  JointRows& add_rows(int link, int second_link = -1);
 
   // Brings everything into the world, or takes it out.
   void enter(btMultiBodyDynamicsWorld& world);

@@ -76,7 +76,8 @@ struct World::Impl {
   explicit Impl(const WorldConfig& from)
       : config(checked(from)),
         bullet(config.solver_iterations),
-        arm(config.arm, config.scene, {config.start_rad, config.joint_drag_nm_s, config.restitution, config.step_s}),
+        arm(config.arm, config.scene,
+            {config.start_rad, config.joint_drag_nm_s, config.drive_stiffness_nm_rad, config.restitution, config.step_s}),
         panel_shape(make_collision_shape(config.scene[std::size_t(BodyId::panel)], Pose::Identity())),
         valve(config.valve, config.base_from_panel, config.scene[std::size_t(BodyId::handle)], config.restitution, config.step_s),
         buttons{make_button(0), make_button(1), make_button(2)},
