@@ -86,11 +86,11 @@ CameraRays::CameraRays(const CameraIntrinsics& intrinsics, const std::optional<F
 }
 
 // slopes: d/du and d/dv of direction x, y, then of origin x, y.
-RayPacket CameraRays::to_base(const Pose& base_from_camera, const Lanes3& origin, const Lanes3& direction,
+RayPacket CameraRays::to_base(const CameraPlace& place, const Lanes3& origin, const Lanes3& direction,
                               const std::array<Lanes, 8>& slopes) const {
-  const Rotation rotation(base_from_camera.linear());
+  const Rotation& rotation = place.rotation;
   RayPacket rays;
-  rays.origin = Lanes3(base_from_camera.translation());
+  rays.origin = place.position;
   rays.direction = rotation * direction;
   rays.direction_du = rotation.column_x * slopes[0] + rotation.column_y * slopes[1];
   rays.direction_dv = rotation.column_x * slopes[2] + rotation.column_y * slopes[3];
@@ -102,7 +102,7 @@ RayPacket CameraRays::to_base(const Pose& base_from_camera, const Lanes3& origin
   return rays;
 }
 
-RayPacket CameraRays::row(const Pose& base_from_camera, int u, int v) const {
+RayPacket CameraRays::row(const CameraPlace& place, int u, int v) const {
   const std::size_t i = index(u, v);
   const auto at = [](const std::vector<float>& values, std::size_t k) { return load_lanes(values.data() + k); };
   const auto slope_u = [&](const std::vector<float>& values) { return 0.5f * (at(values, i + 1) - at(values, i - 1)); };
@@ -115,25 +115,24 @@ RayPacket CameraRays::row(const Pose& base_from_camera, int u, int v) const {
     slopes[6] = slope_v(node_.origin_x), slopes[7] = slope_v(node_.origin_y);
     origin = {at(node_.origin_x, i), at(node_.origin_y, i), all_lanes(origin_z_)};
   }
-  return to_base(base_from_camera, origin, {at(node_.direction_x, i), at(node_.direction_y, i), all_lanes(1.f)}, slopes);
+  return to_base(place, origin, {at(node_.direction_x, i), at(node_.direction_y, i), all_lanes(1.f)}, slopes);
 }
 
-RayPacket CameraRays::shifted_row(const Pose& base_from_camera, int u, int v, Lanes offset_v) const {
+RayPacket CameraRays::shifted_row(const CameraPlace& place, int u, int v, Lanes offset_v) const {
   const std::size_t i = index(u, v);
   const auto values = [](const std::vector<float>& f, std::size_t k) { return load_lanes(f.data() + k); };
   const auto at = [&](const std::vector<float>& f) {
     const Lanes above = values(f, i - stride_), here = values(f, i), below = values(f, i + stride_);
     return here + offset_v * (0.5f * (below - above) + (0.5f * (below + above) - here) * offset_v);
   };
-  RayPacket rays = row(base_from_camera, u, v);
-  const Rotation rotation(base_from_camera.linear());
+  RayPacket rays = row(place, u, v);
+  const Rotation& rotation = place.rotation;
   rays.direction = rotation * Lanes3{at(node_.direction_x), at(node_.direction_y), all_lanes(1.f)};
-  if (port_)
-    rays.origin = Lanes3(base_from_camera.translation()) + rotation * Lanes3{at(node_.origin_x), at(node_.origin_y), all_lanes(origin_z_)};
+  if (port_) rays.origin = place.position + rotation * Lanes3{at(node_.origin_x), at(node_.origin_y), all_lanes(origin_z_)};
   return rays;
 }
 
-RayPacket CameraRays::around(const Pose& base_from_camera, int u, int v, Lanes offset_u, Lanes offset_v) const {
+RayPacket CameraRays::around(const CameraPlace& place, int u, int v, Lanes offset_u, Lanes offset_v) const {
   const std::size_t i = index(u, v);
   // Second order along each axis: a distorted ray's third-order rest over half a pixel is below 1e-8.
   const auto at = [&](const std::vector<float>& f) {
@@ -151,7 +150,7 @@ RayPacket CameraRays::around(const Pose& base_from_camera, int u, int v, Lanes o
     slopes[6] = slope_v(node_.origin_x), slopes[7] = slope_v(node_.origin_y);
     origin = {at(node_.origin_x), at(node_.origin_y), all_lanes(origin_z_)};
   }
-  return to_base(base_from_camera, origin, {at(node_.direction_x), at(node_.direction_y), all_lanes(1.f)}, slopes);
+  return to_base(place, origin, {at(node_.direction_x), at(node_.direction_y), all_lanes(1.f)}, slopes);
 }
 
 }  // namespace lf::optics

@@ -30,19 +30,26 @@ struct RayPacket {
   Lanes3 direction_du, direction_dv;
 };
 
+// A camera's pose, ready for packets.
+struct CameraPlace {
+  explicit CameraPlace(const Pose& base_from_camera) : rotation(base_from_camera.linear()), position(base_from_camera.translation()) {}
+  Rotation rotation;
+  Lanes3 position;
+};
+
 class CameraRays {
  public:
   // Throws InputError where a pixel of the image has no ray.
   CameraRays(const CameraIntrinsics& intrinsics, const std::optional<FlatPort>& port);
 
   // The rays of pixels (u .. u + 7, v); u a multiple of eight; lanes past the right edge hold rays of their own that nobody needs.
-  RayPacket row(const Pose& base_from_camera, int u, int v) const;
+  RayPacket row(const CameraPlace& place, int u, int v) const;
 
   // The same moved down the image by up to a pixel, each lane by its own `offset_v`.
-  RayPacket shifted_row(const Pose& base_from_camera, int u, int v, Lanes offset_v) const;
+  RayPacket shifted_row(const CameraPlace& place, int u, int v, Lanes offset_v) const;
 
   // Eight rays through image points within about a pixel of pixel (u, v), each at its own offset.
-  RayPacket around(const Pose& base_from_camera, int u, int v, Lanes offset_u, Lanes offset_v) const;
+  RayPacket around(const CameraPlace& place, int u, int v, Lanes offset_u, Lanes offset_v) const;
 
   // Depth of the rays' origins along the camera's axis: 0 without a port.
   float origin_depth_m() const { return origin_z_; }
@@ -56,7 +63,7 @@ class CameraRays {
     std::vector<float> direction_x, direction_y, origin_x, origin_y;
   };
   std::size_t index(int u, int v) const { return static_cast<std::size_t>(v + 1) * stride_ + static_cast<std::size_t>(u + 1); }
-  RayPacket to_base(const Pose& base_from_camera, const Lanes3& origin, const Lanes3& direction, const std::array<Lanes, 8>& slopes) const;
+  RayPacket to_base(const CameraPlace& place, const Lanes3& origin, const Lanes3& direction, const std::array<Lanes, 8>& slopes) const;
 
   std::size_t stride_ = 0;
   bool port_ = false;

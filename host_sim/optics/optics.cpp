@@ -103,7 +103,7 @@ struct Optics::Impl {
     size(camera, shot, frame);
     std::optional<LampHaze> haze;
     if (!shader.lamps.empty()) {
-      haze.emplace(camera.rays, camera.config.base_from_camera, frame.width, frame.height, shader.lamps, water);
+      haze.emplace(camera.rays, CameraPlace(camera.config.base_from_camera), frame.width, frame.height, shader.lamps, water);
     }
     const RenderPass pass(camera.config, camera.rays, camera.sensor, shader, haze ? &*haze : nullptr, store);
     const std::uint64_t key = noise_key(seed, shot.camera, shot.frame_number);

@@ -65,6 +65,7 @@ struct RayScene::Impl {
   void add_body(std::size_t body, const scene::Body& description) {
     RTCScene scene = rtcNewScene(device);
     rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
     bool empty = true;
     for (std::size_t i = 0; i < description.shapes.size(); ++i) {
       if (!description.shapes[i].visible) continue;

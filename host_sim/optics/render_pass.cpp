@@ -21,7 +21,7 @@ LaneMask load_mask(const std::int32_t* from) {
 
 void PixelStore::resize(int width, int height, int channels) {
   stride = static_cast<std::size_t>((width + lane_count - 1) / lane_count * lane_count);
-  plane = stride * static_cast<std::size_t>(height);
+  plane = stride * static_cast<std::size_t>(height) + 2 * lane_count;
   for (auto* values : {&depth_m, &normal_x, &normal_y, &normal_z}) values->resize(plane);
   for (auto* values : {&shape, &reached, &lit}) values->resize(plane);
   grey.resize(plane * static_cast<std::size_t>(channels));
@@ -29,7 +29,14 @@ void PixelStore::resize(int width, int height, int channels) {
 
 RenderPass::RenderPass(const CameraConfig& camera, const CameraRays& rays, const Sensor& sensor, const Shader& shader, const LampHaze* haze,
                        PixelStore& store)
-    : camera_(camera), rays_(rays), sensor_(sensor), shader_(shader), haze_(haze), store_(store), channel_count_(camera.colour ? 3 : 1) {}
+    : camera_(camera),
+      place_(camera.base_from_camera),
+      rays_(rays),
+      sensor_(sensor),
+      shader_(shader),
+      haze_(haze),
+      store_(store),
+      channel_count_(camera.colour ? 3 : 1) {}
 
 std::array<Lanes, 3> RenderPass::channels(const RgbLanes& radiance) const {
   const float scale = sensor_.grey_per_radiance();
@@ -43,7 +50,7 @@ void RenderPass::sample_block(int block) const {
   for (int v = first_row(block); v < end_row(block); ++v) {
     const std::vector<float> haze_row = haze_ != nullptr ? haze_->row(v) : std::vector<float>{};
     for (int u = 0; u < camera_.intrinsics.width; u += lane_count) {
-      const RayPacket rays = rays_.row(camera_.base_from_camera, u, v);
+      const RayPacket rays = rays_.row(place_, u, v);
       const Sample sample = shader_.sample(rays, 1.f, blur, haze_ != nullptr ? &haze_row : nullptr, static_cast<float>(u), 1.f);
       const std::size_t i = store_.index(u, v);
       store_lanes(&store_.depth_m[i], sample.hit.parameter);
@@ -60,47 +67,62 @@ void RenderPass::sample_block(int block) const {
   }
 }
 
-bool RenderPass::is_edge(std::size_t a, std::size_t b) const {
+LaneMask RenderPass::edge_between(std::size_t a, std::size_t b) const {
   const PixelStore& s = store_;
-  if (s.shape[a] != s.shape[b]) return true;
-  if (s.shape[a] < 0) return false;
-  if (((s.lit[a] ^ s.lit[b]) & s.reached[a] & s.reached[b]) != 0) return true;
-  const float cosine = s.normal_x[a] * s.normal_x[b] + s.normal_y[a] * s.normal_y[b] + s.normal_z[a] * s.normal_z[b];
-  return cosine < crease_cosine || std::abs(s.depth_m[a] - s.depth_m[b]) > depth_step * std::min(s.depth_m[a], s.depth_m[b]);
+  const LaneMask shape = load_mask(&s.shape[a]), other_shape = load_mask(&s.shape[b]);
+  const LaneMask shadow = (load_mask(&s.lit[a]) ^ load_mask(&s.lit[b])) & load_mask(&s.reached[a]) & load_mask(&s.reached[b]);
+  const Lanes cosine = load_lanes(&s.normal_x[a]) * load_lanes(&s.normal_x[b]) + load_lanes(&s.normal_y[a]) * load_lanes(&s.normal_y[b]) +
+                       load_lanes(&s.normal_z[a]) * load_lanes(&s.normal_z[b]);
+  const Lanes depth = load_lanes(&s.depth_m[a]), other_depth = load_lanes(&s.depth_m[b]);
+  const LaneMask bend = (cosine < crease_cosine) | (abs(depth - other_depth) > depth_step * min(depth, other_depth));
+  return (shape != other_shape) | ((shape >= 0) & ((shadow != 0) | bend));
+}
+
+// Which of eight pixels differ from a neighbour in the image.
+LaneMask RenderPass::edges(int u, int v) const {
+  const std::size_t i = store_.index(u, v);
+  LaneMask column;
+  for (int lane = 0; lane < lane_count; ++lane) column[lane] = u + lane;
+  const int width = camera_.intrinsics.width;
+  LaneMask edge = (edge_between(i, i - 1) & (column > 0)) | (edge_between(i, i + 1) & (column < width - 1));
+  if (v > 0) edge |= edge_between(i, i - store_.stride);
+  if (v + 1 < camera_.intrinsics.height) edge |= edge_between(i, i + store_.stride);
+  return edge & (column < width);
 }
 
 void RenderPass::resample_edges(int block, std::vector<float>& grey) const {
-  const int width = camera_.intrinsics.width, height = camera_.intrinsics.height;
-  const auto blur = static_cast<float>(camera_.blur_px);
-  Lanes offset_u, offset_v;  // the upper eight of 4x4 sub-pixels; the lower ones lie half a pixel further down
-  for (int i = 0; i < lane_count; ++i) {
-    offset_u[i] = 0.25f * static_cast<float>(i % 4) - 0.375f;
-    offset_v[i] = 0.25f * static_cast<float>(i / 4) - 0.375f;
-  }
   for (int v = first_row(block); v < end_row(block); ++v) {
     const std::vector<float> haze_row = haze_ != nullptr ? haze_->row(v) : std::vector<float>{};
     for (int c = 0; c < channel_count_; ++c) {
       const std::size_t from = static_cast<std::size_t>(c) * store_.plane + store_.index(0, v);
       std::copy_n(store_.grey.begin() + static_cast<std::ptrdiff_t>(from), store_.stride, grey.begin() + static_cast<std::ptrdiff_t>(from));
     }
-    for (int u = 0; u < width; ++u) {
-      const std::size_t i = store_.index(u, v);
-      const bool edge = (u > 0 && is_edge(i, i - 1)) || (u + 1 < width && is_edge(i, i + 1)) || (v > 0 && is_edge(i, i - store_.stride)) ||
-                        (v + 1 < height && is_edge(i, i + store_.stride));
-      if (!edge) continue;
-      std::array<float, 3> sum{};
-      for (int half = 0; half < 2; ++half) {
-        const RayPacket rays = rays_.around(camera_.base_from_camera, u, v, offset_u, offset_v + 0.5f * static_cast<float>(half));
-        const Sample sample = shader_.sample(rays, 0.25f, blur, haze_ != nullptr ? &haze_row : nullptr, static_cast<float>(u), 0.f);
-        const auto values = channels(sample.radiance);
-        for (std::size_t c = 0; c < 3; ++c) {
-          for (int lane = 0; lane < lane_count; ++lane) sum[c] += values[c][lane];
-        }
+    for (int u = 0; u < camera_.intrinsics.width; u += lane_count) {
+      const LaneMask edge = edges(u, v);
+      for (int lane = 0; lane < lane_count; ++lane) {
+        if (edge[lane] != 0) resample(u + lane, v, haze_ != nullptr ? &haze_row : nullptr, grey);
       }
-      for (int c = 0; c < channel_count_; ++c)
-        grey[static_cast<std::size_t>(c) * store_.plane + i] = sum[static_cast<std::size_t>(c)] / 16.f;
     }
   }
+}
+
+void RenderPass::resample(int u, int v, const std::vector<float>* haze_row, std::vector<float>& grey) const {
+  Lanes offset_u, offset_v;  // the upper eight of 4x4 sub-pixels; the lower ones lie half a pixel further down
+  for (int i = 0; i < lane_count; ++i) {
+    offset_u[i] = 0.25f * static_cast<float>(i % 4) - 0.375f;
+    offset_v[i] = 0.25f * static_cast<float>(i / 4) - 0.375f;
+  }
+  std::array<float, 3> sum{};
+  for (int half = 0; half < 2; ++half) {
+    const RayPacket rays = rays_.around(place_, u, v, offset_u, offset_v + 0.5f * static_cast<float>(half));
+    const Sample sample = shader_.sample(rays, 0.25f, static_cast<float>(camera_.blur_px), haze_row, static_cast<float>(u), 0.f);
+    const auto values = channels(sample.radiance);
+    for (std::size_t c = 0; c < 3; ++c) {
+      for (int lane = 0; lane < lane_count; ++lane) sum[c] += values[c][lane];
+    }
+  }
+  for (int c = 0; c < channel_count_; ++c)
+    grey[static_cast<std::size_t>(c) * store_.plane + store_.index(u, v)] = sum[static_cast<std::size_t>(c)] / 16.f;
 }
 
 void RenderPass::expose_block(int block, const std::vector<float>& grey, std::uint64_t key, Frame& frame) const {
@@ -146,7 +168,7 @@ void RenderPass::refine_stripe(std::size_t laser, int u, int v, Lanes offset_v, 
   StripePacket stripe;
   HitPacket hit;
   for (int i = 0; i < 4; ++i) {
-    const RayPacket rays = rays_.shifted_row(camera_.base_from_camera, u, v, offset_v);
+    const RayPacket rays = rays_.shifted_row(place_, u, v, offset_v);
     hit = shader_.scene().intersect(rays.origin, rays.direction, near_m);
     surface = make_surface(rays, hit);
     stripe = sheet.on_surface(surface, shader_.water(), 1.f, static_cast<float>(camera_.blur_px));
@@ -170,7 +192,7 @@ std::vector<RenderPass::StripeCentre> RenderPass::stripe_centres(int block, std:
     for (int u = 0; u < camera_.intrinsics.width; u += lane_count) {
       if (!any(load_mask(&store_.reached[store_.index(u, v)]) & (1 << laser))) continue;
       HitPacket hit;
-      const SurfacePacket surface = stored_surface(rays_.row(camera_.base_from_camera, u, v), u, v, hit);
+      const SurfacePacket surface = stored_surface(rays_.row(place_, u, v), u, v, hit);
       const StripePacket stripe = shader_.sheets[laser].on_surface(surface, shader_.water(), 1.f, static_cast<float>(camera_.blur_px));
       const Lanes offset_v = -stripe.offset_px / (abs(stripe.slope_v) > 0.02f ? stripe.slope_v : all_lanes(0.02f));
       const LaneMask near = stripe.reached & (abs(offset_v) < 0.75f);

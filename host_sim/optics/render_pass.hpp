@@ -11,7 +11,8 @@ namespace lf::optics {
 // What the first pass keeps of each pixel, padded to whole packets. Planes of grey values, one a channel, follow each other.
 struct PixelStore {
   void resize(int width, int height, int channels);
-  std::size_t index(int u, int v) const { return static_cast<std::size_t>(v) * stride + static_cast<std::size_t>(u); }
+  // A packet's worth of room before the first and after the last pixel, so that neighbours can be read without asking.
+  std::size_t index(int u, int v) const { return static_cast<std::size_t>(v) * stride + static_cast<std::size_t>(u) + lane_count; }
 
   std::size_t stride = 0, plane = 0;
   std::vector<float> depth_m, normal_x, normal_y, normal_z, grey;
@@ -43,13 +44,16 @@ class RenderPass {
 
  private:
   std::array<Lanes, 3> channels(const RgbLanes& radiance) const;
-  bool is_edge(std::size_t a, std::size_t b) const;
+  LaneMask edge_between(std::size_t a, std::size_t b) const;
+  LaneMask edges(int u, int v) const;
+  void resample(int u, int v, const std::vector<float>* haze_row, std::vector<float>& grey) const;
   SurfacePacket stored_surface(const RayPacket& rays, int u, int v, HitPacket& hit) const;
   void refine_stripe(std::size_t laser, int u, int v, Lanes offset_v, LaneMask wanted, std::vector<StripeCentre>& centres) const;
   int first_row(int block) const { return block * block_rows; }
   int end_row(int block) const { return std::min(camera_.intrinsics.height, (block + 1) * block_rows); }
 
   const CameraConfig& camera_;
+  CameraPlace place_;
   const CameraRays& rays_;
   const Sensor& sensor_;
   const Shader& shader_;

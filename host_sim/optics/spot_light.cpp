@@ -55,7 +55,7 @@ RgbLanes SpotLight::scattered(const Lanes3& point, const Lanes3& unit_direction,
   return radiance;
 }
 
-LampHaze::LampHaze(const CameraRays& rays, const Pose& base_from_camera, int width, int height, const std::vector<SpotLight>& lamps,
+LampHaze::LampHaze(const CameraRays& rays, const CameraPlace& place, int width, int height, const std::vector<SpotLight>& lamps,
                    const Water& water)
     : columns_((width + spacing_px - 1) / spacing_px + 1), rows_((height + spacing_px - 1) / spacing_px + 1) {
   sums_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_) * node_size, 0.f);
@@ -65,7 +65,7 @@ LampHaze::LampHaze(const CameraRays& rays, const Pose& base_from_camera, int wid
                     (static_cast<std::size_t>(node_row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(node)) * node_size;
       // The last nodes lie past the image's edge, where the rays go on smoothly.
       const int u = std::min(node * spacing_px, width - 1), v = std::min(node_row * spacing_px, height - 1);
-      const RayPacket ray = rays.around(base_from_camera, u, v, all_lanes(static_cast<float>(node * spacing_px - u)),
+      const RayPacket ray = rays.around(place, u, v, all_lanes(static_cast<float>(node * spacing_px - u)),
                                         all_lanes(static_cast<float>(node_row * spacing_px - v)));
       const Lanes slope = CameraRays::slope(ray);
       // Eight knot intervals at a time, each by its middle.

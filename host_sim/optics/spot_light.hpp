@@ -38,7 +38,7 @@ class LampHaze {
   static constexpr int spacing_px = 16;
   static constexpr int knots = 24;
 
-  LampHaze(const CameraRays& rays, const Pose& base_from_camera, int width, int height, const std::vector<SpotLight>& lamps,
+  LampHaze(const CameraRays& rays, const CameraPlace& place, int width, int height, const std::vector<SpotLight>& lamps,
            const Water& water);
 
   // The grid brought to one row of pixels: [column node][band][knot].

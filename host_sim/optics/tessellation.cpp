@@ -9,11 +9,12 @@ namespace lf::optics {
 namespace {
 
 constexpr double tolerance_m = 20e-6;  // 1/100 of a pixel on the panel
+constexpr int most_sides = 64;         // slivers slow the rays down; only what is thicker than 66 mm becomes coarser
 
 // Sides of a polygon that stays within the tolerance of its circle when it lies half inside, half outside.
 int circle_sides(double radius_m) {
   const double sides = pi / std::sqrt(4 * tolerance_m / radius_m);
-  return std::clamp(static_cast<int>(std::ceil(sides / 4)) * 4, 16, 256);
+  return std::clamp(static_cast<int>(std::ceil(sides / 4)) * 4, 16, most_sides);
 }
 
 // The polygon's corner radius that puts it half outside: the sagitta is shared between corner and side.
