@@ -9,6 +9,9 @@ namespace {
 // Wide enough that no limit speaks: the line checks the caller's limits itself.
 constexpr double no_limit_margin_rad = -0.5;
 
+// Of a joint between two checks. 20 mm from the slew axis a check's 2 mm turn the slew by 0.1 rad.
+constexpr double max_step_rad = 0.3;
+
 // First and second derivative of the joints with respect to the fraction of the way, for a tool point that moves by `way_m` and a roll by `turn_rad` in all.
 struct Rates {
   JointVector first = JointVector::Zero();
@@ -46,8 +49,9 @@ struct FractionLimits {
 
   void respect(const Rates& rates, const JointLimits& limits) {
     for (std::size_t i = 0; i < arm_joint_count; ++i) {
-      const double first = std::abs(rates.first[i]);
       const double second = std::abs(rates.second[i]);
+      // The largest within half a step of this check, to second order.
+      const double first = std::abs(rates.first[i]) + second / (2 * CartesianLine::checks);
       if (first > 0) {
         velocity = std::min(velocity, limits.velocity_rad_s[i] / first);
         acceleration = std::min(acceleration, limits.acceleration_rad_s2[i] / (2 * first));
@@ -75,6 +79,7 @@ LinePlan CartesianLine::plan(const JointVector& start_rad, const Vec3& goal_m, d
   FractionLimits fraction_limits;
   const double length = way.norm();
   if (length > 0) fraction_limits = {line.speed_m_s / length, line.acceleration_m_s2 / length, line.jerk_m_s3 / length};
+  JointVector last_rad = start_rad;
   for (int i = 0; i <= checks; ++i) {
     const double fraction = static_cast<double>(i) / checks;
     const IkResult ik = inverse_kinematics(start_m_ + fraction * way, start_rad[3] + fraction * turn, no_limit_margin_rad);
@@ -83,7 +88,12 @@ LinePlan CartesianLine::plan(const JointVector& start_rad, const Vec3& goal_m, d
     result.outcome = PlanOutcome::unreachable;
     // The start is where the arm is: a motion may lead back inside from there.
     if (result.ik != IkOutcome::ok && (i > 0 || !ik.ok())) return result;
+    // Past the slew axis the arm would have to turn about between two checks.
+    result.ik = IkOutcome::slew_limit;
+    if ((ik.q_rad - last_rad).head<3>().cwiseAbs().maxCoeff() > max_step_rad) return result;
+    last_rad = ik.q_rad;
     const Rates rates_here = rates(ik.q_rad, way, turn);
+    result.ik = IkOutcome::too_far;  // the stretched arm is singular
     if (!rates_here.first.allFinite() || !rates_here.second.allFinite()) return result;
     fraction_limits.respect(rates_here, limits);
   }
@@ -106,7 +116,8 @@ JointState CartesianLine::sample(double t_s) const {
   if (curve_.duration_s() == 0 || s.position == 0) return state;
   const Vec3 way = goal_m_ - start_m_;
   const double turn = goal_roll_rad_ - start_rad_[3];
-  state.q_rad = inverse_kinematics(start_m_ + s.position * way, start_rad_[3] + s.position * turn, no_limit_margin_rad).q_rad;
+  const double roll = s.position < 1 ? start_rad_[3] + s.position * turn : goal_roll_rad_;
+  state.q_rad = inverse_kinematics(start_m_ + s.position * way, roll, no_limit_margin_rad).q_rad;
   const Rates r = rates(state.q_rad, way, turn);
   state.qd_rad_s = s.velocity * r.first;
   state.qdd_rad_s2 = s.acceleration * r.first + s.velocity * s.velocity * r.second;

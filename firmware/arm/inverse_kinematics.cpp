@@ -60,22 +60,14 @@ bool solve_plane(double r_m, double z_m, double cos_bend, double sin_bend, doubl
 
 const char* name(IkOutcome outcome) {
   switch (outcome) {
-    case IkOutcome::ok:
-      return "ok";
-    case IkOutcome::not_a_number:
-      return "not a number";
-    case IkOutcome::too_far:
-      return "too far";
-    case IkOutcome::too_near:
-      return "too near";
-    case IkOutcome::slew_limit:
-      return "slew limit";
-    case IkOutcome::shoulder_limit:
-      return "shoulder limit";
-    case IkOutcome::elbow_limit:
-      return "elbow limit";
-    case IkOutcome::roll_limit:
-      return "roll limit";
+    case IkOutcome::ok: return "ok";
+    case IkOutcome::not_a_number: return "not a number";
+    case IkOutcome::too_far: return "too far";
+    case IkOutcome::too_near: return "too near";
+    case IkOutcome::slew_limit: return "slew limit";
+    case IkOutcome::shoulder_limit: return "shoulder limit";
+    case IkOutcome::elbow_limit: return "elbow limit";
+    case IkOutcome::roll_limit: return "roll limit";
   }
   return "?";
 }

@@ -47,7 +47,7 @@ PlanOutcome JointTrajectory::plan(const JointVector& start_rad, const JointVecto
 JointState JointTrajectory::sample(double t_s) const {
   const PathState s = curve_.sample(t_s);
   const JointVector way = goal_rad_ - start_rad_;
-  if (s.position >= 1) return {goal_rad_, JointVector::Zero(), JointVector::Zero()};
+  if (t_s >= curve_.duration_s()) return {goal_rad_, JointVector::Zero(), JointVector::Zero()};
   return {start_rad_ + s.position * way, s.velocity * way, s.acceleration * way};
 }
 
