@@ -85,7 +85,7 @@ class BasicPeakDetector {
  private:
   // 64 lines at a time: their rows, sums and maxima stay in the first-level cache.
   static constexpr std::int32_t strip = 64;
-  static constexpr std::int32_t taps = 19, centre = 9;
+
   using Sum = std::conditional_t<sizeof(Pixel) == 1, std::uint16_t, std::uint32_t>;
   using Response = std::make_signed_t<Sum>;
   template <class T>
