@@ -115,39 +115,19 @@ void Devices::Impl::set_fault(const DeviceFault& fault, bool on, Time t) {
   DriveFaults none;
   DriveFaults& drive = slot < joint_count ? drives[slot]->faults() : none;
   switch (fault.kind) {
-    case DeviceFaultKind::overcurrent:
-      drive.overcurrent = on;
-      return;
-    case DeviceFaultKind::hot:
-      drive.hot = on;
-      return;
-    case DeviceFaultKind::following:
-      drive.jammed = on;
-      return;
-    case DeviceFaultKind::stuck_encoder:
-      drive.stuck_encoder = on;
-      return;
-    case DeviceFaultKind::silent:
-      silent[slot] += on ? 1 : -1;
-      return;
+    case DeviceFaultKind::overcurrent: drive.overcurrent = on; return;
+    case DeviceFaultKind::hot: drive.hot = on; return;
+    case DeviceFaultKind::following: drive.jammed = on; return;
+    case DeviceFaultKind::stuck_encoder: drive.stuck_encoder = on; return;
+    case DeviceFaultKind::silent: silent[slot] += on ? 1 : -1; return;
     case DeviceFaultKind::reboot:
       if (on) slot == io_slot ? io.power_on(t) : drives[slot]->power_on(t, readings[slot]);
       return;
-    case DeviceFaultKind::estop:
-      estop_faults += on ? 1 : -1;
-      return;
-    case DeviceFaultKind::interlock_open:
-      interlock_faults += on ? 1 : -1;
-      return;
-    case DeviceFaultKind::drop_frames:
-      bus.drop(fault.can_id, on);
-      return;
-    case DeviceFaultKind::error_frames:
-      bus.set_error_frames(on);
-      return;
-    case DeviceFaultKind::bus_off:
-      set_bus_off(fault.node, on, t);
-      return;
+    case DeviceFaultKind::estop: estop_faults += on ? 1 : -1; return;
+    case DeviceFaultKind::interlock_open: interlock_faults += on ? 1 : -1; return;
+    case DeviceFaultKind::drop_frames: bus.drop(fault.can_id, on); return;
+    case DeviceFaultKind::error_frames: bus.set_error_frames(on); return;
+    case DeviceFaultKind::bus_off: set_bus_off(fault.node, on, t); return;
   }
 }
 

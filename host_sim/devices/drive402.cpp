@@ -80,8 +80,7 @@ void Drive402::measure(const JointReading& reading) {
 
 Abort Drive402::may_write(const Object& object, std::int64_t value) {
   switch (object.index) {
-    case 0x605A:
-      return value == 3 || value == 4 ? Abort::bad_value : Abort::none;
+    case 0x605A: return value == 3 || value == 4 ? Abort::bad_value : Abort::none;
     case 0x6060: {
       const bool known = value == 0 || value == mode_profile_position || value == mode_profile_velocity || value == mode_homing ||
                          value == mode_cyclic_position;
@@ -91,10 +90,8 @@ Abort Drive402::may_write(const Object& object, std::int64_t value) {
       if (homing_.state() == Homing::State::running) return Abort::device_state;
       return known_homing_method(value) ? Abort::none : Abort::bad_value;
     case 0x60C2:
-    case 0x607C:
-      return state_ == DriveState::operation_enabled ? Abort::device_state : Abort::none;
-    default:
-      return Abort::none;
+    case 0x607C: return state_ == DriveState::operation_enabled ? Abort::device_state : Abort::none;
+    default: return Abort::none;
   }
 }
 
@@ -129,7 +126,8 @@ void Drive402::on_controlword(Time now) {
 void Drive402::reset_fault(Time now) {
   const bool too_hot = faults_.hot || winding_.celsius() > config_.trip_celsius;
   if (faults_.overcurrent || too_hot || winding_.overloaded() || node_.active(emcy::heartbeat)) return;
-  for (const std::uint16_t code : {emcy::overcurrent, emcy::hot, emcy::following, emcy::stopped_by_master, emcy::pdo_timeout}) {
+  for (const std::uint16_t code :
+       {emcy::overcurrent, emcy::hot, emcy::following, emcy::stopped_by_master, emcy::pdo_timeout, emcy::bus_off_recovered}) {
     node_.clear(code, now);
   }
   o_.error_code.value = 0;
@@ -183,8 +181,7 @@ void Drive402::connection_lost(std::uint16_t code, Time now) {
   const bool by_master = code == emcy::stopped_by_master;
   if (by_master && state_ != DriveState::operation_enabled) return;
   switch (o_.abort_option.value) {
-    case 1:
-      return fault(code, now);
+    case 1: return fault(code, now);
     case 2:
     case 3: {
       const Command command = o_.abort_option.value == 2 ? Command::disable_voltage : Command::quick_stop;
@@ -192,8 +189,7 @@ void Drive402::connection_lost(std::uint16_t code, Time now) {
       if (next != state_) enter(next);
       return;
     }
-    default:
-      return;
+    default: return;
   }
 }
 

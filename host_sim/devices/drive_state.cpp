@@ -12,8 +12,7 @@ Command command_of(std::uint16_t controlword) {
 DriveState after(DriveState state, Command command, std::int64_t quick_stop_option) {
   const bool off = command == Command::disable_voltage || command == Command::quick_stop;
   switch (state) {
-    case DriveState::switch_on_disabled:
-      return command == Command::shutdown ? DriveState::ready_to_switch_on : state;
+    case DriveState::switch_on_disabled: return command == Command::shutdown ? DriveState::ready_to_switch_on : state;
     case DriveState::ready_to_switch_on:
       if (off) return DriveState::switch_on_disabled;
       if (command == Command::switch_on) return DriveState::switched_on;
@@ -32,30 +31,21 @@ DriveState after(DriveState state, Command command, std::int64_t quick_stop_opti
       return command == Command::enable_operation && stays_after_quick_stop(quick_stop_option) ? DriveState::operation_enabled : state;
     case DriveState::not_ready:
     case DriveState::fault_reaction_active:
-    case DriveState::fault:
-      break;
+    case DriveState::fault: break;
   }
   return state;
 }
 
 std::uint16_t status_bits(DriveState state) {
   switch (state) {
-    case DriveState::not_ready:
-      return 0x00;
-    case DriveState::switch_on_disabled:
-      return 0x60;  // bit 5 is free in this state; a drive that asks for no quick stop shows 1
-    case DriveState::ready_to_switch_on:
-      return 0x21;
-    case DriveState::switched_on:
-      return 0x23;
-    case DriveState::operation_enabled:
-      return 0x27;
-    case DriveState::quick_stop_active:
-      return 0x07;
-    case DriveState::fault_reaction_active:
-      return 0x2F;
-    case DriveState::fault:
-      return 0x28;
+    case DriveState::not_ready: return 0x00;
+    case DriveState::switch_on_disabled: return 0x60;  // bit 5 is free in this state; a drive that asks for no quick stop shows 1
+    case DriveState::ready_to_switch_on: return 0x21;
+    case DriveState::switched_on: return 0x23;
+    case DriveState::operation_enabled: return 0x27;
+    case DriveState::quick_stop_active: return 0x07;
+    case DriveState::fault_reaction_active: return 0x2F;
+    case DriveState::fault: return 0x28;
   }
   return 0;
 }

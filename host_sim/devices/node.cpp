@@ -22,17 +22,12 @@ std::uint16_t at(std::uint16_t base, std::size_t i) { return static_cast<std::ui
 
 std::uint8_t emcy::register_bit(std::uint16_t code) {
   switch (code >> 8) {
-    case 0x23:
-      return 0x02;  // current
-    case 0x42:
-      return 0x08;  // temperature
+    case 0x23: return 0x02;  // current
+    case 0x42: return 0x08;  // temperature
     case 0x81:
-    case 0x82:
-      return 0x10;  // communication
-    case 0x86:
-      return 0x20;  // device profile
-    default:
-      return 0x80;  // manufacturer
+    case 0x82: return 0x10;  // communication
+    case 0x86: return 0x20;  // device profile
+    default: return 0x80;    // manufacturer
   }
 }
 
@@ -96,19 +91,14 @@ void Node::receive(const CanFrame& frame, Time now) {
 void Node::on_nmt(const CanFrame& frame, Time now) {
   if (frame.length != 2 || (frame.data[1] != 0 && frame.data[1] != id_)) return;
   switch (frame.data[0]) {
-    case nmt_start:
-      return enter(NmtState::operational, now);
+    case nmt_start: return enter(NmtState::operational, now);
     case nmt_stop:
       if (state_ == NmtState::operational) application_.connection_lost(emcy::stopped_by_master, now);
       return enter(NmtState::stopped, now);
-    case nmt_pre_operational:
-      return enter(NmtState::pre_operational, now);
-    case nmt_reset_node:
-      return power_on(now);
-    case nmt_reset_communication:
-      return reset_communication(now);
-    default:
-      return;
+    case nmt_pre_operational: return enter(NmtState::pre_operational, now);
+    case nmt_reset_node: return power_on(now);
+    case nmt_reset_communication: return reset_communication(now);
+    default: return;
   }
 }
 
@@ -302,6 +292,7 @@ void Node::bus_off(Time now) {
 
 void Node::bus_recovered(Time now) {
   if (state_ == NmtState::booting) return;
+  if (active(emcy::bus_off_recovered)) return send_emergency(emcy::bus_off_recovered);  // the drive's fault: nobody heard of it yet
   raise(emcy::bus_off_recovered, now);
   clear(emcy::bus_off_recovered, now);
 }

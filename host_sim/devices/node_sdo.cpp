@@ -64,16 +64,11 @@ Abort Node::sdo_write(std::uint16_t index, std::uint8_t sub, std::span<const std
 Abort Node::check_communication(const Object& object, std::int64_t value) {
   if (is_pdo_parameter(object.index)) return check_pdo_parameter(objects_, object, value);
   switch (object.index) {
-    case 0x1003:
-      return value == 0 ? Abort::none : Abort::bad_value;
-    case 0x1005:
-      return (value & 0x40000000) != 0 || (value & 0x7FF) == 0 || (value & 0x3FFFF800) != 0 ? Abort::bad_value : Abort::none;
-    case 0x1010:
-      return value == signature_save ? Abort::none : Abort::cannot_store;
-    case 0x1011:
-      return value == signature_load ? Abort::none : Abort::cannot_store;
-    default:
-      break;
+    case 0x1003: return value == 0 ? Abort::none : Abort::bad_value;
+    case 0x1005: return (value & 0x40000000) != 0 || (value & 0x7FF) == 0 || (value & 0x3FFFF800) != 0 ? Abort::bad_value : Abort::none;
+    case 0x1010: return value == signature_save ? Abort::none : Abort::cannot_store;
+    case 0x1011: return value == signature_load ? Abort::none : Abort::cannot_store;
+    default: break;
   }
   if (object.index != 0x1016 || (value & 0xFFFF) == 0) return Abort::none;
   const std::int64_t node = value >> 16;

@@ -8,7 +8,7 @@ namespace {
 constexpr std::uint32_t invalid_bit = 0x80000000u;
 constexpr std::uint32_t extended_bit = 0x20000000u;
 
-bool is_mapping(std::uint16_t index) { return (index & 0xFDFC) == 0x1600 || (index & 0xFFFC) == 0x1A00; }
+bool is_mapping(std::uint16_t index) { return (index & 0xFFFC) == 0x1600 || (index & 0xFFFC) == 0x1A00; }
 bool transmits(std::uint16_t index) { return index >= 0x1800; }
 
 // CiA 301, table 40: identifiers that other services own.
@@ -66,14 +66,10 @@ Abort check_pdo_parameter(ObjectDictionary& objects, const Object& parameter, st
   const bool valid = (cob_id & invalid_bit) == 0;
   if (mapping) return valid ? Abort::device_state : check_mapping(objects, parameter, value);
   switch (parameter.sub) {
-    case 1:
-      return check_cob_id(cob_id, static_cast<std::uint32_t>(value));
-    case 2:
-      return value > 240 && value < 254 ? Abort::bad_value : Abort::none;
-    case 3:
-      return valid ? Abort::device_state : Abort::none;
-    default:
-      return Abort::none;
+    case 1: return check_cob_id(cob_id, static_cast<std::uint32_t>(value));
+    case 2: return value > 240 && value < 254 ? Abort::bad_value : Abort::none;
+    case 3: return valid ? Abort::device_state : Abort::none;
+    default: return Abort::none;
   }
 }
 

@@ -47,6 +47,6 @@ double CyclicPosition::position(Time now) const {
   return from_ + part * (to_ - from_);
 }
 
-double CyclicPosition::velocity(Time now) const { return now - sync_ < period_ ? (to_ - from_) / period_.s() : 0; }
+double CyclicPosition::velocity(Time now) const { return now - sync_ <= period_ ? (to_ - from_) / period_.s() : 0; }
 
 }  // namespace lf::devices
