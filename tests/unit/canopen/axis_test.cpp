@@ -1,0 +1,416 @@
+// One axis through the network against a scripted drive: enabling, stopping, faults, homing, and what a target may do.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "firmware/canopen/codec.hpp"
+#include "tests/unit/canopen/scripted_node.hpp"
+
+namespace lf::canopen {
+namespace {
+
+using test::Bus;
+using test::ScriptedNode;
+
+class AxisTest : public ::testing::Test {
+ protected:
+  static NetworkConfig config() {
+    NetworkConfig c = test::plain_config();
+    c.sdo_timeout = Duration::from_ms(20);
+    c.transition_timeout = Duration::from_ms(400);
+    c.drives[1].quick_stop_option = 2;  // shoulder: stop, then no power
+    c.drives[2].homing_method = -3;     // elbow: to a hard stop
+    c.drives[2].homing_speed_counts_s = 400;
+    c.drives[2].homing_accel_counts_s2 = 5000;
+    c.drives[2].home_offset_counts = -77;
+    c.drives[2].homing_timeout = Duration::from_ms(1500);
+    return c;
+  }
+  void SetUp() override { ASSERT_TRUE(bus.boot()); }
+
+  Axis& axis() { return bus.network.axis(Joint::slew); }
+  ScriptedNode& drive() { return bus.nodes[0]; }
+  Axis& elbow() { return bus.network.axis(Joint::elbow); }
+  ScriptedNode& elbow_drive() { return bus.nodes[2]; }
+  bool enable(Axis& a) {
+    a.request(AxisRequest::hold_enabled);
+    return bus.run_until([&a] { return a.enabled(); }, Duration::from_ms(500));
+  }
+  CanFrame last_rpdo(std::uint8_t node = 1) {
+    for (const CanFrame& f : bus.sent) {
+      if (f.id == 0x200u + node) return f;
+    }
+    ADD_FAILURE() << "no RPDO";
+    return {};
+  }
+
+  Bus bus{config()};
+};
+
+TEST_F(AxisTest, StartsDisabledAndStaysSoUntilAsked) {
+  bus.step(100);
+  EXPECT_EQ(axis().state(), AxisState::disabled);
+  EXPECT_EQ(drive().drive_state_bits(), 0x40);
+  EXPECT_TRUE(std::all_of(drive().controlwords.begin(), drive().controlwords.end(), [](std::uint16_t w) { return w == 0; }));
+}
+
+TEST_F(AxisTest, IsEnabledThroughEveryStateInOrder) {
+  drive().controlwords.clear();
+  ASSERT_TRUE(enable(axis()));
+  EXPECT_EQ(drive().controlwords, (std::vector<std::uint16_t>{0x06, 0x07, 0x0F}));
+  bus.step(100);
+  EXPECT_TRUE(axis().enabled());
+  EXPECT_EQ(axis().fault(), AxisFault::none);
+}
+
+TEST_F(AxisTest, EachControlwordIsHeldForThreeSyncs) {
+  bus.step(5);
+  axis().request(AxisRequest::hold_enabled);
+  std::vector<std::pair<std::uint16_t, int>> runs;
+  for (int i = 0; i < 30; ++i) {
+    bus.step();
+    const auto word = get<std::uint16_t>(last_rpdo(), 0);
+    if (runs.empty() || runs.back().first != word) runs.emplace_back(word, 0);
+    ++runs.back().second;
+  }
+  ASSERT_EQ(runs.size(), 3u);
+  EXPECT_GE(runs[0].second, 3);
+  EXPECT_GE(runs[1].second, 3);
+}
+
+TEST_F(AxisTest, TheTargetIsTheActualPositionAtTheMomentOfEnabling) {
+  drive().actual_counts = -12'345;
+  drive().targets_while_enabled.clear();
+  bus.step(5);
+  ASSERT_TRUE(enable(axis()));
+  bus.step(50);
+  ASSERT_GE(drive().targets_while_enabled.size(), 10u);
+  for (const std::int32_t target : drive().targets_while_enabled) EXPECT_EQ(target, -12'345);
+}
+
+TEST_F(AxisTest, AJointMovedByHandWhileDisabledDoesNotJumpBackWhenEnabled) {
+  ASSERT_TRUE(enable(axis()));
+  ASSERT_TRUE(axis().set_target_counts(1020));
+  bus.step(10);
+  axis().request(AxisRequest::disable);
+  ASSERT_TRUE(bus.run_until([&] { return axis().state() == AxisState::disabled; }, Duration::from_ms(500)));
+  drive().actual_counts = 30'000;
+  drive().targets_while_enabled.clear();
+  bus.step(2);
+  ASSERT_TRUE(enable(axis()));
+  bus.step(20);
+  for (const std::int32_t target : drive().targets_while_enabled) EXPECT_EQ(target, 30'000);
+}
+
+TEST_F(AxisTest, FollowsTargetsNoFasterThanTheMaximumSpeed) {
+  ASSERT_TRUE(enable(axis()));
+  drive().targets_while_enabled.clear();
+  ASSERT_TRUE(axis().set_target_counts(2000));
+  bus.step(60);
+  EXPECT_EQ(axis().actual_counts(), 2000);
+  std::int32_t last = 1000;
+  for (const std::int32_t target : drive().targets_while_enabled) {
+    EXPECT_LE(target - last, 41);  // 10,000 counts/s in 4 ms, and one for rounding
+    EXPECT_GE(target, last);
+    last = target;
+  }
+  EXPECT_GT(axis().stats().targets_limited, 10u);
+}
+
+TEST_F(AxisTest, TargetsOutsideTheLimitsOrWhileNotEnabledAreRefusedAndCounted) {
+  EXPECT_FALSE(axis().set_target_counts(1000));
+  ASSERT_TRUE(enable(axis()));
+  EXPECT_FALSE(axis().set_target_counts(50'001));
+  EXPECT_FALSE(axis().set_target_counts(-50'001));
+  EXPECT_TRUE(axis().set_target_counts(1010));
+  EXPECT_EQ(axis().stats().targets_refused, 3u);
+  bus.step(10);
+  EXPECT_EQ(axis().actual_counts(), 1010);
+}
+
+TEST_F(AxisTest, ReportsValuesWithTheSyncTheyWereLatchedAt) {
+  drive().actual_counts = 4711;
+  drive().torque_permille = -250;
+  const Time sync = bus.now;
+  bus.step();
+  EXPECT_EQ(axis().actual_counts(), 4711);
+  EXPECT_EQ(axis().torque_permille(), -250);
+  EXPECT_EQ(axis().actual_time(), sync);
+}
+
+TEST_F(AxisTest, TorqueFeedForwardIsLimitedAndEndsWithTheAxis) {
+  axis().set_torque_offset_permille(100);
+  bus.step();
+  EXPECT_EQ(get<std::int16_t>(last_rpdo(), 6), 0);
+  ASSERT_TRUE(enable(axis()));
+  axis().set_torque_offset_permille(-5000);
+  bus.step();
+  EXPECT_EQ(get<std::int16_t>(last_rpdo(), 6), -1200);
+  axis().request(AxisRequest::disable);
+  bus.step();
+  EXPECT_EQ(get<std::int16_t>(last_rpdo(), 6), 0);
+}
+
+TEST_F(AxisTest, DisablingGoesDownThroughEveryState) {
+  ASSERT_TRUE(enable(axis()));
+  drive().controlwords.clear();
+  axis().request(AxisRequest::disable);
+  ASSERT_TRUE(bus.run_until([&] { return axis().state() == AxisState::disabled; }, Duration::from_ms(500)));
+  bus.step(5);
+  EXPECT_EQ(drive().controlwords, (std::vector<std::uint16_t>{0x07, 0x06, 0x00}));
+}
+
+TEST_F(AxisTest, AQuickStopActsAtOnceHoldsAndIsLeftUnderPower) {
+  ASSERT_TRUE(enable(axis()));
+  bus.step(1);
+  axis().request(AxisRequest::quick_stop);
+  bus.step();
+  EXPECT_EQ(get<std::uint16_t>(last_rpdo(), 0), 0x02);
+  bus.step(3);
+  EXPECT_EQ(axis().state(), AxisState::stopped);
+  EXPECT_EQ(axis().drive_state(), DriveState::quick_stop_active);
+  bus.step(200);
+  EXPECT_EQ(axis().state(), AxisState::stopped);
+  drive().controlwords.clear();
+  ASSERT_TRUE(enable(axis()));
+  EXPECT_EQ(drive().controlwords, std::vector<std::uint16_t>{0x0F}) << "transition 16, the power never goes";
+}
+
+TEST_F(AxisTest, AQuickStopThatLosesPowerIsLeftThroughSwitchOnDisabled) {
+  Axis& shoulder = bus.network.axis(Joint::shoulder);
+  ASSERT_TRUE(enable(shoulder));
+  shoulder.request(AxisRequest::quick_stop);
+  ASSERT_TRUE(bus.run_until([&] { return shoulder.state() == AxisState::stopped; }, Duration::from_ms(100)));
+  EXPECT_EQ(shoulder.drive_state(), DriveState::switch_on_disabled);
+  EXPECT_EQ(shoulder.fault(), AxisFault::none);
+  EXPECT_TRUE(enable(shoulder));
+}
+
+TEST_F(AxisTest, AQuickStopDoesNotWaitForAHandshake) {
+  axis().request(AxisRequest::hold_enabled);
+  bus.step();  // a new controlword has just been sent
+  axis().request(AxisRequest::quick_stop);
+  bus.step();
+  EXPECT_EQ(get<std::uint16_t>(last_rpdo(), 0), 0x02);
+}
+
+TEST_F(AxisTest, ADriveFaultIsLatchedAndNothingRestartsByItself) {
+  ASSERT_TRUE(enable(axis()));
+  drive().enter_fault(0x4210);
+  bus.step(3);
+  EXPECT_EQ(axis().state(), AxisState::fault);
+  EXPECT_EQ(axis().fault(), AxisFault::drive_fault);
+  EXPECT_EQ(bus.network.fault(0).emcy_code, 0x4210);
+  axis().request(AxisRequest::hold_enabled);
+  bus.step(100);
+  EXPECT_EQ(axis().state(), AxisState::fault);
+  EXPECT_EQ(drive().drive_state_bits(), 0x08);
+}
+
+TEST_F(AxisTest, FaultResetIsOneRisingEdgeAndEndsDisabled) {
+  ASSERT_TRUE(enable(axis()));
+  drive().enter_fault(0x8611);
+  bus.step(10);
+  drive().controlwords.clear();
+  axis().request(AxisRequest::reset_fault);
+  ASSERT_TRUE(bus.run_until([&] { return axis().state() == AxisState::disabled; }, Duration::from_ms(500)));
+  bus.step(5);
+  EXPECT_EQ(drive().controlwords, (std::vector<std::uint16_t>{0x80, 0x00}));
+  EXPECT_EQ(axis().fault(), AxisFault::none);
+  EXPECT_EQ(axis().requested(), AxisRequest::disable);
+  EXPECT_TRUE(enable(axis()));
+}
+
+TEST_F(AxisTest, BitSevenWasLowForAHandshakeBeforeItRises) {
+  ASSERT_TRUE(enable(axis()));
+  drive().enter_fault(0x8611);
+  bus.step();  // the statusword with the fault is on its way while the axis is still told to run
+  std::vector<std::uint16_t> words;
+  for (int i = 0; i < 20; ++i) {
+    if (i == 1) axis().request(AxisRequest::reset_fault);
+    bus.step();
+    words.push_back(get<std::uint16_t>(last_rpdo(), 0));
+  }
+  const auto rise = std::find(words.begin(), words.end(), 0x80);
+  ASSERT_NE(rise, words.end());
+  ASSERT_GE(rise - words.begin(), 3);
+  EXPECT_TRUE(std::all_of(rise - 3, rise, [](std::uint16_t word) { return (word & 0x80) == 0; }));
+  EXPECT_EQ(drive().drive_state_bits(), 0x40);
+}
+
+TEST_F(AxisTest, AFaultThatDoesNotClearIsTriedThreeTimesThenReported) {
+  drive().refuses_reset = true;
+  drive().enter_fault(0x2310);
+  bus.step(5);
+  drive().controlwords.clear();
+  axis().request(AxisRequest::reset_fault);
+  ASSERT_TRUE(bus.run_until([&] { return axis().state() == AxisState::fault; }, Duration::from_ms(2000)));
+  EXPECT_EQ(axis().fault(), AxisFault::reset_refused);
+  EXPECT_EQ(std::count(drive().controlwords.begin(), drive().controlwords.end(), 0x80), 3);
+}
+
+TEST_F(AxisTest, FollowingErrorStopsTheAxisBeforeTheDriveFaults) {
+  ASSERT_TRUE(enable(axis()));
+  drive().extra_status = 0x3000;
+  bus.step();
+  EXPECT_TRUE(axis().following_error());
+  bus.step();
+  EXPECT_EQ(axis().fault(), AxisFault::following_error);
+  EXPECT_EQ(get<std::uint16_t>(last_rpdo(), 0), 0x02);
+}
+
+TEST_F(AxisTest, TellsWhetherTheDriveFollowsItsTarget) {
+  ASSERT_TRUE(enable(axis()));
+  EXPECT_TRUE(axis().drive_follows());
+  drive().extra_status = 0;
+  bus.step();
+  EXPECT_FALSE(axis().drive_follows());
+}
+
+TEST_F(AxisTest, AMissingTpdoIsStaleAfterThreeCyclesAndStopsTheAxis) {
+  ASSERT_TRUE(enable(axis()));
+  drive().mute_tpdo = true;
+  bus.step(3);
+  EXPECT_TRUE(axis().fresh(bus.now - Duration::from_ms(4)));
+  EXPECT_EQ(axis().fault(), AxisFault::none);
+  EXPECT_FALSE(axis().fresh(bus.now));
+  bus.step();
+  EXPECT_EQ(axis().fault(), AxisFault::stale);
+  EXPECT_EQ(get<std::uint16_t>(last_rpdo(), 0), 0x02);
+  drive().mute_tpdo = false;
+  bus.step(50);
+  EXPECT_EQ(axis().state(), AxisState::fault) << "no restart by itself";
+  axis().request(AxisRequest::reset_fault);
+  bus.step(20);
+  EXPECT_TRUE(enable(axis()));
+}
+
+TEST_F(AxisTest, TwoMissingTpdosAreBorne) {
+  ASSERT_TRUE(enable(axis()));
+  drive().mute_tpdo = true;
+  bus.step(2);
+  drive().mute_tpdo = false;
+  bus.step(10);
+  EXPECT_TRUE(axis().enabled());
+}
+
+TEST_F(AxisTest, SafeTorqueOffIsReportedAsDroppedOut) {
+  ASSERT_TRUE(enable(axis()));
+  CanFrame tpdo = empty_frame(0x181, 8);
+  put<std::uint16_t>(tpdo, 0, 0x40);
+  put<std::int32_t>(tpdo, 2, 1000);
+  drive().mute_tpdo = true;
+  drive().send(tpdo);
+  bus.step(2);
+  EXPECT_EQ(axis().fault(), AxisFault::dropped_out);
+  EXPECT_EQ(get<std::uint16_t>(last_rpdo(), 0), 0x02);
+}
+
+TEST_F(AxisTest, ADriveThatIgnoresItsControlwordTimesOut) {
+  drive().ignores_controlword = true;
+  axis().request(AxisRequest::hold_enabled);
+  EXPECT_FALSE(bus.run_until([&] { return axis().fault() != AxisFault::none; }, Duration::from_ms(390)));
+  EXPECT_TRUE(bus.run_until([&] { return axis().fault() != AxisFault::none; }, Duration::from_ms(50)));
+  EXPECT_EQ(axis().fault(), AxisFault::transition_timeout);
+}
+
+TEST_F(AxisTest, AStatuswordTheStandardDoesNotHaveIsCountedAndStopsTheAxis) {
+  ASSERT_TRUE(enable(axis()));
+  drive().mute_tpdo = true;
+  CanFrame tpdo = empty_frame(0x181, 8);
+  put<std::uint16_t>(tpdo, 0, 0x0001);
+  drive().send(tpdo);
+  bus.step(2);
+  EXPECT_EQ(axis().stats().unknown_states, 1u);
+  EXPECT_EQ(axis().state(), AxisState::fault);
+}
+
+TEST_F(AxisTest, RequestsBeforeTheBootAreForgotten) {
+  Bus fresh(config());
+  fresh.network.axis(Joint::slew).request(AxisRequest::hold_enabled);
+  ASSERT_TRUE(fresh.boot());
+  fresh.step(100);
+  EXPECT_EQ(fresh.network.axis(Joint::slew).state(), AxisState::disabled);
+}
+
+// ---- homing ----
+
+TEST_F(AxisTest, AbsoluteEncodersAreHomedFromTheStart) {
+  EXPECT_TRUE(axis().homed());
+  EXPECT_FALSE(elbow().homed());
+  axis().request(AxisRequest::home);
+  bus.step(2);
+  EXPECT_EQ(axis().state(), AxisState::disabled);
+  EXPECT_TRUE(axis().homed());
+}
+
+TEST_F(AxisTest, HomingRunsInItsModeAndEndsDisabledInCyclicMode) {
+  elbow_drive().controlwords.clear();
+  elbow().request(AxisRequest::home);
+  bus.step(3);
+  EXPECT_EQ(elbow().state(), AxisState::homing);
+  ASSERT_TRUE(bus.run_until([&] { return elbow().homed(); }, Duration::from_ms(1400)));
+  EXPECT_EQ(elbow().state(), AxisState::disabled);
+  EXPECT_EQ(elbow().actual_counts(), -77);
+  EXPECT_EQ(elbow_drive().object(0x6061, 0), 8u);
+  EXPECT_EQ(elbow_drive().controlwords, (std::vector<std::uint16_t>{0x06, 0x07, 0x0F, 0x1F, 0x07, 0x06, 0x00}));
+  ASSERT_TRUE(enable(elbow()));
+  bus.step(5);
+  EXPECT_EQ(elbow().target_counts(), -77);
+}
+
+TEST_F(AxisTest, StatusBitsOfAnEarlierHomingAreNotTakenForThisOne) {
+  elbow_drive().homing_cycles = 100;  // the script shows "attained" until the start bit arrives
+  elbow().request(AxisRequest::home);
+  ASSERT_TRUE(bus.run_until([&] { return (elbow().controlword() & 0x10) != 0; }, Duration::from_ms(500)));
+  bus.step(50);
+  EXPECT_FALSE(elbow().homed());
+  EXPECT_EQ(elbow().state(), AxisState::homing);
+  ASSERT_TRUE(bus.run_until([&] { return elbow().homed(); }, Duration::from_ms(800)));
+}
+
+TEST_F(AxisTest, AHomingErrorIsAFault) {
+  elbow_drive().homing_fails = true;
+  elbow().request(AxisRequest::home);
+  ASSERT_TRUE(bus.run_until([&] { return elbow().fault() != AxisFault::none; }, Duration::from_ms(1000)));
+  EXPECT_EQ(elbow().fault(), AxisFault::homing_error);
+  EXPECT_FALSE(elbow().homed());
+}
+
+TEST_F(AxisTest, AHomingWithoutEndTimesOut) {
+  elbow_drive().homing_cycles = 1'000'000;
+  elbow().request(AxisRequest::home);
+  ASSERT_TRUE(bus.run_until([&] { return elbow().fault() != AxisFault::none; }, Duration::from_ms(1600)));
+  EXPECT_EQ(elbow().fault(), AxisFault::homing_timeout);
+}
+
+TEST_F(AxisTest, AHomingThatIsInterruptedReturnsToCyclicModeBeforeMoving) {
+  elbow_drive().homing_cycles = 1'000'000;
+  elbow().request(AxisRequest::home);
+  ASSERT_TRUE(bus.run_until([&] { return (elbow().controlword() & 0x10) != 0; }, Duration::from_ms(500)));
+  elbow().request(AxisRequest::quick_stop);
+  bus.step(20);
+  EXPECT_EQ(elbow().state(), AxisState::stopped);
+  elbow_drive().targets_while_enabled.clear();
+  ASSERT_TRUE(enable(elbow()));
+  EXPECT_EQ(elbow_drive().object(0x6061, 0), 8u);
+  EXPECT_FALSE(elbow().homed());
+  for (const std::int32_t target : elbow_drive().targets_while_enabled) EXPECT_EQ(target, 1000);
+}
+
+TEST_F(AxisTest, AModeThatIsRefusedOrDoesNotFollowIsAFault) {
+  elbow_drive().trick = ScriptedNode::Trick{ScriptedNode::Trick::What::abort, -1, 0x6060, 0x08000022, 1};
+  elbow().request(AxisRequest::home);
+  ASSERT_TRUE(bus.run_until([&] { return elbow().fault() != AxisFault::none; }, Duration::from_ms(500)));
+  EXPECT_EQ(elbow().fault(), AxisFault::mode_refused);
+
+  elbow().request(AxisRequest::reset_fault);
+  bus.step(10);
+  elbow_drive().ignores_mode = true;
+  elbow().request(AxisRequest::home);
+  ASSERT_TRUE(bus.run_until([&] { return elbow().fault() != AxisFault::none; }, Duration::from_ms(1000)));
+  EXPECT_EQ(elbow().fault(), AxisFault::mode_refused);
+}
+
+}  // namespace
+}  // namespace lf::canopen
