@@ -34,37 +34,26 @@ std::uint64_t bits_at(const char* bytes, std::size_t size, ByteOrder order) {
 std::size_t size_of(NumberType type) {
   switch (type) {
     case NumberType::i8:
-    case NumberType::u8:
-      return 1;
+    case NumberType::u8: return 1;
     case NumberType::i16:
-    case NumberType::u16:
-      return 2;
+    case NumberType::u16: return 2;
     case NumberType::i32:
     case NumberType::u32:
-    case NumberType::f32:
-      return 4;
-    default:
-      return 8;
+    case NumberType::f32: return 4;
+    default: return 8;
   }
 }
 
 double number_at(const char* bytes, NumberType type, ByteOrder order) {
   const std::uint64_t bits = bits_at(bytes, size_of(type), order);
   switch (type) {
-    case NumberType::i8:
-      return static_cast<std::int8_t>(bits);
-    case NumberType::i16:
-      return static_cast<std::int16_t>(bits);
-    case NumberType::i32:
-      return static_cast<std::int32_t>(bits);
-    case NumberType::i64:
-      return static_cast<double>(static_cast<std::int64_t>(bits));
-    case NumberType::f32:
-      return static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(bits)));
-    case NumberType::f64:
-      return std::bit_cast<double>(bits);
-    default:
-      return static_cast<double>(bits);
+    case NumberType::i8: return static_cast<std::int8_t>(bits);
+    case NumberType::i16: return static_cast<std::int16_t>(bits);
+    case NumberType::i32: return static_cast<std::int32_t>(bits);
+    case NumberType::i64: return static_cast<double>(static_cast<std::int64_t>(bits));
+    case NumberType::f32: return static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(bits)));
+    case NumberType::f64: return std::bit_cast<double>(bits);
+    default: return static_cast<double>(bits);
   }
 }
 

@@ -1,0 +1,197 @@
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "host_sim/record/report_parts.hpp"
+
+namespace lf::record {
+namespace {
+
+constexpr double width = 1120;  // of every drawing, in its own units; the page scales it
+constexpr double right_margin = 16;
+
+std::string px(double value) { return formatted("%.1f", value); }
+
+std::string line(double x1, double y1, double x2, double y2, const char* kind) {
+  return "<line class=\"" + std::string(kind) + "\" x1=\"" + px(x1) + "\" y1=\"" + px(y1) + "\" x2=\"" + px(x2) + "\" y2=\"" + px(y2) +
+         "\"/>";
+}
+
+std::string text(double x, double y, const char* kind, const std::string& content) {
+  return "<text class=\"" + std::string(kind) + "\" x=\"" + px(x) + "\" y=\"" + px(y) + "\">" + escape_html(content) + "</text>";
+}
+
+// 1, 2 or 5 times a power of ten, for about `count` steps over the range.
+double tick_step(double range, int count) {
+  const double rough = range / count;
+  const double power = std::pow(10, std::floor(std::log10(rough)));
+  const double ratio = rough / power;
+  return power * (ratio <= 1 ? 1 : ratio <= 2 ? 2 : ratio <= 5 ? 5 : 10);
+}
+
+struct Axis {
+  double low = 0, high = 1;  // values
+  double from = 0, to = 1;   // drawing
+  int ticks = 5;
+
+  double at(double value) const { return from + (value - low) / (high - low) * (to - from); }
+  double step() const { return tick_step(high - low, ticks); }
+  std::vector<double> marks() const {
+    std::vector<double> values;
+    const double s = step();
+    for (double k = std::ceil(low / s - 1e-9); k * s <= high + 1e-9 * s; ++k) values.push_back(k * s);
+    return values;
+  }
+  std::string label(double value) const {
+    const int digits = std::max(0, static_cast<int>(-std::floor(std::log10(step()) + 1e-9)));
+    return formatted(("%." + std::to_string(std::min(digits, 9)) + "f").c_str(), value == 0 ? 0 : value);
+  }
+};
+
+std::string time_marks(const Axis& time, double top, double bottom) {
+  std::string svg;
+  for (const double t : time.marks()) {
+    svg += line(time.at(t), top, time.at(t), bottom, "grid") + text(time.at(t), bottom + 16, "tick middle", time.label(t));
+  }
+  return svg + text(width - right_margin, bottom + 32, "tick end", "simulated time, s");
+}
+
+const char* kind_of(const std::string& outcome) {
+  if (outcome == "done") return "good";
+  if (outcome == "failed" || outcome == "aborted") return "bad";
+  return "fair";
+}
+
+bool drawable(const PhaseRecord& phase) {
+  return std::isfinite(phase.start_s) && std::isfinite(phase.end_s) && phase.end_s >= phase.start_s;
+}
+
+struct Sample {
+  double t = 0, value = 0;
+};
+
+// The first and last, lowest and highest of each of `buckets` spans of time, so that no spike is lost; gaps stay gaps.
+std::vector<Sample> thinned(const ReportSeries& series, double low, double high) {
+  constexpr double buckets = 350;
+  const std::size_t count = std::min(series.t_s.size(), series.value.size());
+  std::vector<Sample> kept;
+  std::size_t i = 0;
+  while (i < count) {
+    const double bucket = std::floor((series.t_s[i] - low) / (high - low) * buckets);
+    std::size_t lowest = i, highest = i, last = i;
+    const bool gap = !std::isfinite(series.value[i]);
+    for (; i < count && !std::isfinite(series.value[i]) == gap && std::floor((series.t_s[i] - low) / (high - low) * buckets) <= bucket;
+         ++i) {
+      if (series.value[i] < series.value[lowest]) lowest = i;
+      if (series.value[i] > series.value[highest]) highest = i;
+      last = i;
+    }
+    std::size_t picks[] = {lowest, highest};
+    if (highest < lowest) std::swap(picks[0], picks[1]);
+    for (const std::size_t pick : picks) {
+      if (gap || kept.empty() || kept.back().t != series.t_s[pick]) kept.push_back({series.t_s[pick], series.value[pick]});
+    }
+    if (!gap && last != picks[1] && i >= count) kept.push_back({series.t_s[last], series.value[last]});
+  }
+  return kept;
+}
+
+std::string polyline(const ReportSeries& series, std::size_t index, const Axis& time, const Axis& value) {
+  std::string path;
+  bool pen_down = false;
+  for (const Sample& sample : thinned(series, time.low, time.high)) {
+    if (!std::isfinite(sample.value) || !std::isfinite(sample.t)) {
+      pen_down = false;
+      continue;
+    }
+    path += (pen_down ? "L" : "M") + px(time.at(sample.t)) + " " + px(value.at(sample.value));
+    pen_down = true;
+  }
+  return "<path class=\"series s" + std::to_string(index % 6) + (series.dashed ? " dashed" : "") + "\" d=\"" + path + "\"/>";
+}
+
+std::string legend(const ReportChart& chart) {
+  std::string html = "<div class=\"legend\">";
+  for (std::size_t i = 0; i < chart.series.size(); ++i) {
+    html += "<span><svg width=\"26\" height=\"10\" aria-hidden=\"true\"><line class=\"series s" + std::to_string(i % 6) +
+            (chart.series[i].dashed ? " dashed" : "") + "\" x1=\"1\" y1=\"5\" x2=\"25\" y2=\"5\"/></svg>" +
+            escape_html(chart.series[i].name) + "</span>";
+  }
+  return html + "</div>";
+}
+
+// The range of all finite samples; `found` is false when there is none.
+void ranges(const ReportChart& chart, Axis& time, Axis& value, bool& found) {
+  found = false;
+  for (const ReportSeries& series : chart.series) {
+    for (std::size_t i = 0; i < std::min(series.t_s.size(), series.value.size()); ++i) {
+      const double t = series.t_s[i], v = series.value[i];
+      if (!std::isfinite(t) || !std::isfinite(v)) continue;
+      time.low = found ? std::min(time.low, t) : t;
+      time.high = found ? std::max(time.high, t) : t;
+      value.low = found ? std::min(value.low, v) : v;
+      value.high = found ? std::max(value.high, v) : v;
+      found = true;
+    }
+  }
+  if (time.high <= time.low) time.high = time.low + 1;
+  const double margin = std::max(0.05 * (value.high - value.low), 1e-3 * std::max(std::abs(value.low), std::abs(value.high)));
+  value.low -= value.low == 0 ? 0 : margin;  // a quantity that starts at zero keeps zero as its floor
+  value.high += margin > 0 ? margin : 1;
+}
+
+}  // namespace
+
+std::string timeline_svg(const std::vector<PhaseRecord>& phases) {
+  constexpr double left = 170, row = 24, top = 6;
+  std::vector<PhaseRecord> drawn;
+  std::copy_if(phases.begin(), phases.end(), std::back_inserter(drawn), drawable);
+  if (drawn.empty()) return "";
+  Axis time{drawn[0].start_s, drawn[0].end_s, left, width - right_margin - 60, 10};
+  for (const PhaseRecord& phase : drawn) {
+    time.low = std::min(time.low, phase.start_s);
+    time.high = std::max(time.high, phase.end_s);
+  }
+  if (time.high <= time.low) time.high = time.low + 1;
+  const double bottom = top + row * static_cast<double>(drawn.size());
+  std::string svg =
+      "<svg class=\"drawing\" viewBox=\"0 0 " + px(width) + " " + px(bottom + 38) + "\" role=\"img\" aria-label=\"Phases over time\">";
+  svg += time_marks(time, top, bottom);
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    const PhaseRecord& phase = drawn[i];
+    const double y = top + row * static_cast<double>(i);
+    const double from = time.at(phase.start_s), length = std::max(2.0, time.at(phase.end_s) - from);
+    svg += text(left - 10, y + 16, "label end", phase.name);
+    svg += "<rect class=\"bar " + std::string(kind_of(phase.outcome)) + "\" x=\"" + px(from) + "\" y=\"" + px(y + 4) + "\" width=\"" +
+           px(length) + "\" height=\"16\" rx=\"3\"><title>" + escape_html(phase.name + ": " + phase.outcome) + ", " +
+           formatted("%.2f", phase.start_s) + " to " + formatted("%.2f s", phase.end_s) + "</title></rect>";
+    std::string note = formatted("%.1f s", phase.end_s - phase.start_s);
+    if (phase.outcome != "done") note += ", " + phase.outcome;
+    svg += text(from + length + 6, y + 16, "tick", note);
+  }
+  return svg + "</svg>";
+}
+
+std::string chart_svg(const ReportChart& chart, const std::vector<PhaseRecord>& phases) {
+  constexpr double left = 64, top = 10, bottom = 210;
+  Axis time{0, 1, left, width - right_margin, 10}, value{0, 1, bottom, top, 5};
+  bool found = false;
+  ranges(chart, time, value, found);
+  std::string html = "<figure class=\"chart\"><figcaption><b>" + escape_html(chart.title) + "</b> <span class=\"unit\">" +
+                     escape_html(chart.unit) + "</span></figcaption>" + legend(chart);
+  if (!found) return html + "<p class=\"none\">nothing was recorded</p></figure>";
+  html += "<svg class=\"drawing\" viewBox=\"0 0 " + px(width) + " " + px(bottom + 38) + "\" role=\"img\" aria-label=\"" +
+          escape_html(chart.title) + " over time\">" + time_marks(time, top, bottom);
+  for (const double v : value.marks()) {
+    html += line(left, value.at(v), width - right_margin, value.at(v), v == 0 ? "zero" : "grid") +
+            text(left - 8, value.at(v) + 4, "tick end", value.label(v));
+  }
+  for (const PhaseRecord& phase : phases) {
+    if (!drawable(phase) || phase.start_s <= time.low || phase.start_s >= time.high) continue;
+    html += line(time.at(phase.start_s), top, time.at(phase.start_s), bottom, "phase");
+  }
+  for (std::size_t i = 0; i < chart.series.size(); ++i) html += polyline(chart.series[i], i, time, value);
+  return html + "</svg></figure>";
+}
+
+}  // namespace lf::record
