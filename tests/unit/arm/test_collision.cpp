@@ -1,0 +1,140 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "firmware/arm/collision.hpp"
+#include "firmware/arm/gripper.hpp"
+#include "firmware/arm/inverse_kinematics.hpp"
+#include "shared/arm/arm_description.hpp"
+#include "tests/unit/arm/random_joints.hpp"
+
+namespace lf::arm {
+namespace {
+
+constexpr std::uint64_t seed = 20136;
+
+Capsule random_capsule(RandomJoints& random) {
+  const auto point = [&] { return Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)); };
+  return {1, point(), point(), random.uniform(0.01, 0.1)};
+}
+
+// The smallest value of f on the capsule's axis, by brute force.
+template <class Function>
+double sampled(const Capsule& c, const Function& f) {
+  double least = 1e9;
+  for (int i = 0; i <= 4000; ++i) least = std::min(least, f(Vec3(c.a_m + (c.b_m - c.a_m) * (i / 4000.0))));
+  return least - c.radius_m;
+}
+
+TEST(Clearance, OfCapsulesBoxesAndCylindersIsWhatSamplingFinds) {
+  SCOPED_TRACE(testing::Message() << "seed " << seed);
+  RandomJoints random(seed);
+  for (int k = 0; k < 200; ++k) {
+    const Capsule a = random_capsule(random), b = random_capsule(random);
+    Pose pose = Pose::Identity();
+    pose.linear() = Eigen::AngleAxisd(random.uniform(-3, 3), Vec3(1, random.uniform(-1, 1), 0.3).normalized()).toRotationMatrix();
+    pose.translation() = Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    const Vec3 size(random.uniform(0.01, 0.5), random.uniform(0.01, 0.5), random.uniform(0.01, 0.5));
+    const Pose inverse = pose.inverse();
+
+    const auto to_segment = [&](const Vec3& p) {
+      const Vec3 way = b.b_m - b.a_m;
+      return (p - b.a_m - way * std::clamp(way.dot(p - b.a_m) / way.squaredNorm(), 0.0, 1.0)).norm();
+    };
+    ASSERT_NEAR(clearance_between(a, b), sampled(a, to_segment) - b.radius_m, 2e-3);
+    ASSERT_LE(clearance_between(a, b), sampled(a, to_segment) - b.radius_m + 1e-12);
+    ASSERT_NEAR(clearance_between(a, b), clearance_between(b, a), 1e-9);
+
+    const auto to_box = [&](const Vec3& p) {
+      const Vec3 q = inverse * p;
+      return (q - q.cwiseMax(-size / 2).cwiseMin(size / 2)).norm();
+    };
+    ASSERT_NEAR(clearance_to_box(a, pose, size), sampled(a, to_box), 1e-3);
+    ASSERT_LE(clearance_to_box(a, pose, size), sampled(a, to_box) + 1e-7);
+
+    const auto to_cylinder = [&](const Vec3& p) {
+      const Vec3 q = inverse * p;
+      const double r = q.head<2>().norm();
+      const Vec2 inward(std::min(r, size.x()), std::clamp(q.z(), -size.z() / 2, size.z() / 2));
+      return (Vec2(r, q.z()) - inward).norm();
+    };
+    ASSERT_NEAR(clearance_to_cylinder(a, pose, size.x(), size.z()), sampled(a, to_cylinder), 1e-3);
+    ASSERT_LE(clearance_to_cylinder(a, pose, size.x(), size.z()), sampled(a, to_cylinder) + 1e-7);
+
+    const Plane plane{Vec3(1, 2, -2) / 3, 0.4};
+    ASSERT_NEAR(clearance_to_plane(a, plane), sampled(a, [&](const Vec3& p) { return plane.signed_distance_m(p); }), 1e-12);
+  }
+}
+
+TEST(LinkCapsules, ContainTheUrdfsCollisionShapes) {
+  const ArmDescription arm = load_arm_urdf(LANTERNFISH_SOURCE_DIR "/shared/arm/arm5e.urdf");
+  const LinkPoses links = base_from_links(JointVector::Zero(), 0);
+  const LinkCapsules capsules = link_capsules(JointVector::Zero(), 0);
+  for (std::size_t k = 1; k < ArmDescription::link_count; ++k) {
+    for (const scene::Shape& shape : arm.links[k].shapes) {
+      if (!shape.collides) continue;
+      const bool box = shape.kind == scene::ShapeKind::box;
+      for (int i = 0; i < 64; ++i) {  // corners of the box, or the two rims of the cylinder
+        const double angle = i * pi / 16, end = i % 2 == 0 ? 0.5 : -0.5;
+        const Vec3 corner =
+            box ? Vec3(((i >> 1 & 1) - 0.5) * shape.size_m.x(), ((i >> 2 & 1) - 0.5) * shape.size_m.y(), end * shape.size_m.z())
+                : Vec3(shape.size_m.x() * std::cos(angle), shape.size_m.x() * std::sin(angle), end * shape.size_m.z());
+        const Vec3 p = links[k - 1] * shape.body_from_shape * corner;
+        bool inside = false;
+        for (const Capsule& c : capsules) inside = inside || (c.link == k && clearance_between(c, {k, p, p, 0}) < 1e-9);
+        ASSERT_TRUE(inside) << arm.links[k].name << ": " << corner.transpose();
+      }
+    }
+  }
+}
+
+TEST(ClearanceToItself, IsPositiveInEveryPoseOfTheMission) {
+  for (const JointVector& q :
+       {JointVector(0, 0.60, 1.90, 0), JointVector(0, 1.307, 1.151, 1.5), JointVector(0, 1.083, 1.355, 0), JointVector(0, 1.414, 1.425, 0),
+        JointVector(0.155, 1.423, 1.321, 0), JointVector(0, 0.945, 2.095, 0), JointVector(0, 0.945, 0.920, 0)})
+    for (const double gap : {0.0, 0.09}) EXPECT_GT(clearance_to_itself(link_capsules(q, jaw_from_gap(gap))), 0.02) << q.transpose();
+}
+
+TEST(ClearanceToPanel, NamesWhatIsNearest) {
+  const PanelLayout layout;
+  const Pose base_from_panel = layout.nominal_base_from_panel();
+  const Clearance parked = clearance_to_panel(link_capsules({0, 0.60, 1.90, 0}, 0), base_from_panel, layout);
+  EXPECT_GT(parked.distance_m, 0.15);
+  const Clearance grasp = clearance_to_panel(link_capsules({0, 1.307, 1.151, 0}, 0), base_from_panel, layout);
+  EXPECT_LT(grasp.distance_m, 0);
+  EXPECT_EQ(grasp.part, PanelPart::handle);
+  EXPECT_GE(grasp.link, 5u) << "a finger";
+  const JointVector press = inverse_kinematics({0.395, 0, 0.407}, 0).q_rad;
+  const Clearance button = clearance_to_panel(link_capsules(press, jaw_from_gap(0)), base_from_panel, layout);
+  EXPECT_EQ(button.part, PanelPart::button_centre);
+}
+
+// The layout's promise: 20 mm between the closed tool and the handle at any angle while a button is pressed.
+TEST(ClearanceToPanel, OfTheHandleIsTwentyMillimetresAtEveryButton) {
+  const PanelLayout layout;
+  const Pose base_from_panel = layout.nominal_base_from_panel();
+  const double jaw_rad = jaw_from_gap(0);
+  for (std::size_t i = 0; i < PanelLayout::button_count; ++i) {
+    const Vec3 cap = base_from_panel * Vec3(layout.buttons_m[i].x(), layout.buttons_m[i].y(), layout.button_height_m);
+    const IkResult ik = inverse_kinematics(cap - Vec3(tip_beyond_tool_m(jaw_rad), 0, 0), pi / 2, 0.02);
+    ASSERT_TRUE(ik.ok()) << name(ik.outcome);
+    PanelParts others = ~(bit(PanelPart::handle) | bit(PanelPart::stem));
+    const Clearance handle = clearance_to_panel(link_capsules(ik.q_rad, jaw_rad), base_from_panel, layout, others);
+    EXPECT_GT(handle.distance_m, 0.020) << "button " << i << ", link " << handle.link;
+  }
+}
+
+TEST(ClearanceOnWay, IsTheSmallestOnTheWay) {
+  const PanelLayout layout;
+  const Pose base_from_panel = layout.nominal_base_from_panel();
+  const JointVector park{0, 0.60, 1.90, 0}, low{0, 0.945, 0.920, 0};
+  const Clearance way = clearance_on_way(park, low, 0, base_from_panel, layout);
+  double least = 1e9;
+  for (int i = 0; i <= 2000; ++i)
+    least = std::min(least, clearance_to_panel(link_capsules(park + (low - park) * (i / 2000.0), 0), base_from_panel, layout).distance_m);
+  EXPECT_NEAR(way.distance_m, least, 0.003);
+  EXPECT_GE(way.distance_m, least - 1e-9);
+}
+
+}  // namespace
+}  // namespace lf::arm

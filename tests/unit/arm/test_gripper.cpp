@@ -1,0 +1,166 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "firmware/arm/gripper.hpp"
+#include "firmware/arm/kinematics.hpp"
+
+namespace lf::arm {
+namespace {
+
+// A jaw on a stiff position loop, and what stands between and outside of its pads.
+struct Jaw {
+  double q_rad = 0.5;
+  double stop_closing_rad = -1;  // a bar between the pads: no further closing
+  double stop_opening_rad = 9;
+  double torque_limit_nm = 20;
+
+  double step(double target_rad) {
+    const double wanted = std::clamp(target_rad, stop_closing_rad, stop_opening_rad);
+    q_rad += std::clamp(wanted - q_rad, -0.002, 0.002);  // 0.5 rad/s at 250 Hz
+    const bool blocked = (q_rad == stop_closing_rad && target_rad < q_rad) || (q_rad == stop_opening_rad && target_rad > q_rad);
+    return std::clamp(blocked ? 1000 * (target_rad - q_rad) : 0.0, -torque_limit_nm, torque_limit_nm);
+  }
+};
+
+class GripperRun {
+ public:
+  Gripper gripper;
+  Jaw jaw;
+  double widest_lead_rad = 0;
+
+  GripperState run(double seconds) {
+    for (int i = 0; i < static_cast<int>(seconds / 0.004); ++i) {
+      t_ = t_ + Duration::from_ms(4);
+      const double target = gripper.update(t_, jaw.q_rad, torque_);
+      widest_lead_rad = std::max(widest_lead_rad, std::abs(target - jaw.q_rad));
+      torque_ = jaw.step(target);
+    }
+    return gripper.state();
+  }
+  Time now() const { return t_; }
+
+ private:
+  Time t_;
+  double torque_ = 0;
+};
+
+// The pads of the URDF's fingers, corner by corner in the wrist's frame.
+TEST(JawGeometry, GapIsTheDistanceBetweenThePadsOfTheUrdf) {
+  for (const double q : {-0.05, 0.0, 0.1, 0.4, 0.9, 1.3}) {
+    const LinkPoses links = base_from_links(JointVector::Zero(), q);
+    const Pose wrist_from_a = links[3].inverse() * links[4], wrist_from_b = links[3].inverse() * links[5];
+    // Pad of 8 x 40 x 30 mm at (29.7, 0, 98.5) mm: its inner face.
+    const double face_a = (wrist_from_a * Vec3(0.0337, 0, 0.0985)).x(), face_b = (wrist_from_b * Vec3(-0.0337, 0, 0.0985)).x();
+    EXPECT_NEAR(gap_from_jaw(q), face_b - face_a, 1e-12);
+    EXPECT_NEAR(jaw_from_gap(gap_from_jaw(q)), q, 1e-9);
+    double tip = 0;
+    for (const double x : {0.0, 0.0337}) tip = std::max(tip, (wrist_from_a * Vec3(x, 0, 0.1135)).z());
+    EXPECT_NEAR(tip_beyond_tool_m(q), tip - 0.1485, 1e-12);
+  }
+}
+
+TEST(JawGeometry, PadsAreParallelAndCentredOnABarOf12Point6Millimetres) {
+  EXPECT_NEAR(gap_from_jaw(0), 0.0126, 1e-12);
+  EXPECT_NEAR(jaw_from_gap(0.0126), 0, 1e-12);
+  const LinkPoses links = base_from_links(JointVector::Zero(), 0);
+  EXPECT_LT((links[4].linear() - links[3].linear()).norm(), 1e-12);
+  EXPECT_LT((links[5].linear() - links[3].linear()).norm(), 1e-12);
+  EXPECT_GT(gap_from_jaw(jaw_from_gap(0.10)), 0.0999);
+}
+
+// 3 N m at the handle need 3 N m / 40 mm = 75 N on each of two pads 40 mm wide, their pressure moved to the edges.
+TEST(JawGeometry, PeakTorqueHoldsThreeNewtonMetres) {
+  const double force = pad_force_n(arm_geometry::joints[4].effort_nm);
+  EXPECT_GT(force * arm_geometry::jaw.pad_width_m, 3.0 * 1.2);
+}
+
+TEST(Gripper, HoldsABar) {
+  GripperRun run;
+  run.jaw.stop_closing_rad = 0.0;
+  run.gripper.close();
+  EXPECT_EQ(run.run(1), GripperState::closing);
+  EXPECT_EQ(run.run(3), GripperState::held);
+  EXPECT_NEAR(run.gripper.grip_gap_m(), 0.0126, 1e-6);
+  EXPECT_EQ(run.run(20), GripperState::held);
+  EXPECT_LT(run.gripper.target_rad(), run.jaw.q_rad) << "it squeezes";
+  EXPECT_LE(run.widest_lead_rad, GripperConfig().lead_rad + 1e-9) << "within the drive's following-error window";
+}
+
+TEST(Gripper, FindsNothingBetweenThePads) {
+  GripperRun run;
+  run.gripper.close();
+  EXPECT_EQ(run.run(5), GripperState::empty);
+  GripperRun tips;  // the tips touch before the limit
+  tips.jaw.stop_closing_rad = -0.0555;
+  tips.gripper.close();
+  EXPECT_EQ(tips.run(5), GripperState::empty);
+}
+
+TEST(Gripper, IsJammedBySomethingThickerThanTheBar) {
+  GripperRun run;
+  run.jaw.stop_closing_rad = jaw_from_gap(0.030);
+  run.gripper.close();
+  EXPECT_EQ(run.run(5), GripperState::jammed);
+}
+
+TEST(Gripper, NoticesThatTheBarSlippedOut) {
+  GripperRun run;
+  run.jaw.stop_closing_rad = 0.0;
+  run.gripper.close();
+  ASSERT_EQ(run.run(4), GripperState::held);
+  run.jaw.stop_closing_rad = -0.0555;
+  EXPECT_EQ(run.run(0.5), GripperState::dropped);
+}
+
+TEST(Gripper, NoticesThatTheSqueezeIsGone) {
+  GripperRun run;
+  run.jaw.stop_closing_rad = 0.0;
+  run.gripper.close();
+  ASSERT_EQ(run.run(4), GripperState::held);
+  run.jaw.torque_limit_nm = 0.5;
+  EXPECT_EQ(run.run(0.05), GripperState::held) << "a moment without torque is turning, not dropping";
+  EXPECT_EQ(run.run(0.2), GripperState::dropped);
+}
+
+TEST(Gripper, OpensToAGapAndIsJammedWhenItCannot) {
+  GripperRun run;
+  run.jaw.q_rad = 0;
+  run.gripper.open_to(0.09);
+  EXPECT_EQ(run.run(4), GripperState::open);
+  EXPECT_NEAR(gap_from_jaw(run.jaw.q_rad), 0.09, 0.001);
+  run.jaw.stop_closing_rad = 0.0;
+  run.gripper.close();
+  ASSERT_EQ(run.run(4), GripperState::held);
+  run.jaw.stop_opening_rad = run.jaw.q_rad + 0.01;
+  run.gripper.open_to(0.09);
+  EXPECT_EQ(run.run(2), GripperState::opening);
+  EXPECT_EQ(run.run(8), GripperState::jammed);
+}
+
+TEST(Gripper, DoesNotTakeAStallWithoutTorqueForAGrip) {
+  GripperRun run;
+  run.jaw.stop_closing_rad = 0.0;
+  run.jaw.torque_limit_nm = 1;
+  run.gripper.close();
+  EXPECT_EQ(run.run(5), GripperState::closing);
+  EXPECT_EQ(run.run(5), GripperState::jammed);
+}
+
+TEST(Gripper, StaysWhereItIsUntilOrderedAndRefusesNonsense) {
+  GripperRun run;
+  run.jaw.q_rad = 0.3;
+  EXPECT_EQ(run.run(1), GripperState::idle);
+  EXPECT_NEAR(run.gripper.target_rad(), 0.3, 1e-12);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  run.gripper.open_to(nan);
+  EXPECT_EQ(run.run(1), GripperState::idle);
+  EXPECT_NEAR(run.gripper.update(run.now() + Duration::from_ms(4), nan, 0), 0.3, 1e-12);
+  EXPECT_NEAR(run.gripper.update(run.now(), 0.9, 0), 0.3, 1e-12) << "stale";
+  EXPECT_EQ(run.gripper.refused(), 2u);
+}
+
+}  // namespace
+}  // namespace lf::arm

@@ -1,0 +1,142 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "firmware/arm/guarded_motion.hpp"
+
+namespace lf::arm {
+namespace {
+
+constexpr std::uint64_t seed = 20135;
+
+// A motion as the guard sees it, sample by sample at 250 Hz.
+class Motion {
+ public:
+  explicit Motion(GuardedMotion& guard) : guard_(guard) {}
+
+  // The same sample `n` times.
+  GuardState feed(int n, const JointVector& torque_nm, const JointVector& behind_rad = JointVector::Zero()) {
+    for (int i = 0; i < n; ++i) {
+      t_ = t_ + Duration::from_ms(4);
+      state_ = guard_.update(t_, behind_rad, JointVector::Zero(), torque_nm);
+    }
+    return state_;
+  }
+  Time now() const { return t_; }
+
+ private:
+  GuardedMotion& guard_;
+  Time t_;
+  GuardState state_ = GuardState::learning;
+};
+
+const JointVector friction{6, -8, 5, 0.5};
+
+TEST(GuardedMotion, IsFreeWithTheTorqueThatItLearned) {
+  GuardedMotion guard;
+  Motion motion(guard);
+  EXPECT_EQ(motion.feed(25, friction), GuardState::learning);
+  EXPECT_EQ(motion.feed(1000, friction), GuardState::free);
+  EXPECT_LT(guard.excess_torque_nm().norm(), 1e-9);
+}
+
+TEST(GuardedMotion, FindsAContactWithinTwentyMilliseconds) {
+  for (int joint = 0; joint < 4; ++joint) {
+    GuardedMotion guard;
+    Motion motion(guard);
+    motion.feed(100, friction);
+    JointVector pushed = friction;
+    pushed[joint] += joint == 3 ? 4 : 8;  // twice the threshold
+    EXPECT_EQ(motion.feed(8, pushed), GuardState::contact);
+    EXPECT_EQ(guard.cause(), GuardCause::torque);
+    EXPECT_EQ(static_cast<int>(guard.joint()), joint);
+    EXPECT_EQ(motion.feed(100, friction), GuardState::contact) << "latched";
+    guard.reset();
+    EXPECT_EQ(guard.state(), GuardState::learning);
+  }
+}
+
+TEST(GuardedMotion, TakesNoSingleOutlierForAContact) {
+  GuardedMotion guard;
+  Motion motion(guard);
+  motion.feed(100, friction);
+  for (int i = 0; i < 20; ++i) {
+    motion.feed(1, friction + JointVector(12, 0, 0, 0));
+    EXPECT_EQ(motion.feed(20, friction), GuardState::free);
+  }
+}
+
+TEST(GuardedMotion, FollowsASlowlyChangingWeightButNotAPush) {
+  GuardedMotion guard;
+  Motion motion(guard);
+  motion.feed(30, friction);
+  // 1 N m a second, as the arm's wet weight changes with its pose: 8 N m in all.
+  JointVector torque = friction;
+  for (int i = 0; i < 2000; ++i) {
+    torque[1] += 0.004;
+    ASSERT_EQ(motion.feed(1, torque), GuardState::free) << i;
+  }
+  // 20 N m a second, as a button's spring gives at 25 mm/s and 0.4 m.
+  int samples = 0;
+  while (motion.feed(1, torque) == GuardState::free) {
+    torque[1] += 0.08;
+    ASSERT_LT(++samples, 120);
+  }
+  EXPECT_EQ(guard.state(), GuardState::contact);
+  EXPECT_GT(samples, 30) << "below the threshold of 4 N m it is not believed";
+}
+
+TEST(GuardedMotion, NoiseOfAnEncodersAndACurrentSensorsSizeIsNoContact) {
+  SCOPED_TRACE(testing::Message() << "seed " << seed);
+  std::mt19937_64 engine(seed);
+  std::normal_distribution<double> noise(0, 0.5);
+  GuardedMotion guard;
+  Motion motion(guard);
+  for (int i = 0; i < 20'000; ++i) {
+    const JointVector torque = friction + JointVector(noise(engine), noise(engine), noise(engine), 0.3 * noise(engine));
+    motion.feed(1, torque, JointVector::Constant(0.01 * noise(engine)));
+  }
+  EXPECT_EQ(guard.state(), GuardState::free);
+}
+
+TEST(GuardedMotion, FindsAJointThatStaysBehind) {
+  GuardedMotion guard;
+  Motion motion(guard);
+  motion.feed(50, friction, JointVector(0, 0.02, 0, 0));
+  EXPECT_EQ(guard.state(), GuardState::free);
+  EXPECT_EQ(motion.feed(3, friction, JointVector(0, 0.04, 0, 0)), GuardState::contact);
+  EXPECT_EQ(guard.cause(), GuardCause::following_error);
+  EXPECT_EQ(guard.joint(), Joint::shoulder);
+}
+
+TEST(GuardedMotion, ReportsAnOverloadEvenWhileLearningAndOverAContact) {
+  GuardedMotion guard;
+  Motion motion(guard);
+  EXPECT_EQ(motion.feed(4, {0, 0, 60, 0}), GuardState::overload);
+  EXPECT_EQ(guard.joint(), Joint::elbow);
+  GuardedMotion other;
+  Motion second(other);
+  second.feed(50, friction);
+  EXPECT_EQ(second.feed(10, friction + JointVector(8, 0, 0, 0)), GuardState::contact);
+  EXPECT_EQ(second.feed(30, {60, 0, 0, 0}), GuardState::overload);
+}
+
+TEST(GuardedMotion, RefusesNonsenseAndStaleSamplesAndCountsThem) {
+  GuardedMotion guard;
+  Motion motion(guard);
+  motion.feed(50, friction);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const Time last = motion.now();
+  motion.feed(10, {nan, 0, 0, 0});
+  guard.update(last, JointVector::Zero(), JointVector::Zero(), JointVector::Constant(100));
+  guard.update(Time(), JointVector::Zero(), JointVector::Zero(), JointVector::Constant(100));
+  EXPECT_EQ(guard.state(), GuardState::free);
+  EXPECT_EQ(guard.refused(), 12u);
+  guard.reset();
+  EXPECT_EQ(guard.refused(), 12u) << "counters are never reset";
+}
+
+}  // namespace
+}  // namespace lf::arm
