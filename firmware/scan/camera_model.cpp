@@ -1,5 +1,6 @@
 #include "firmware/scan/camera_model.hpp"
 
+#include <Eigen/LU>
 #include <cmath>
 
 namespace lf::scan {

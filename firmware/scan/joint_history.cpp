@@ -1,6 +1,6 @@
 #include "firmware/scan/joint_history.hpp"
 
-#include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -48,32 +48,33 @@ auto JointHistory::at(Time t, bool final, std::array<double, arm_joint_count>& q
 }
 
 // Least squares of 1, x, x^2 over the samples `first` to `last`, x their time from `t` in units of the half window: the joint at t is the first
-// coefficient. With fewer than five samples, or on one side of t only, a parabola would extrapolate noise: a straight line then.
+// coefficient, a weighted mean of the samples. With fewer than five samples, or most on one side of t, a parabola would extrapolate noise: a
+// straight line then.
 void JointHistory::fit(std::size_t first, std::size_t last, Time t, std::array<double, arm_joint_count>& q_rad) const {
   const double unit_s = (can_map::sync_period * half_window).s();
-  const std::size_t count = last - first + 1;
-  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-  Eigen::Matrix<double, 3, arm_joint_count> right = Eigen::Matrix<double, 3, arm_joint_count>::Zero();
-  const auto& reference = sample(first).q_rad;  // differences from it keep the sums small
+  const auto place = [&](std::size_t i) { return (sample(i).t - t).s() / unit_s; };
+  std::array<double, 5> moments{};  // sums of x^0 .. x^4
+  for (std::size_t i = first; i <= last; ++i)
+    for (double power = 1; double& moment : moments) {
+      moment += power;
+      power *= place(i);
+    }
+  const auto& [m0, m1, m2, m3, m4] = moments;
+  Vec3 weights(1 / m0, 0, 0);  // of 1, x, x^2 in a sample's share
+  if (m0 >= 5 && std::abs(m1) < 0.25 * m0) {
+    Mat3 normal;
+    normal << m0, m1, m2, m1, m2, m3, m2, m3, m4;
+    weights = normal.inverse().col(0);
+  } else if (m0 >= 2) {
+    const double determinant = m0 * m2 - m1 * m1;
+    weights = Vec3(m2, -m1, 0) / determinant;
+  }
+  q_rad = {};
   for (std::size_t i = first; i <= last; ++i) {
-    const double x = (sample(i).t - t).s() / unit_s;
-    const Vec3 row(1, x, x * x);
-    normal += row * row.transpose();
-    for (std::size_t j = 0; j < arm_joint_count; ++j) right.col(static_cast<Eigen::Index>(j)) += row * (sample(i).q_rad[j] - reference[j]);
+    const double x = place(i);
+    const double share = weights.dot(Vec3(1, x, x * x));
+    for (std::size_t j = 0; j < arm_joint_count; ++j) q_rad[j] += share * sample(i).q_rad[j];
   }
-  // Balanced enough for a parabola: a third of the samples on the lesser side.
-  const double balance = std::abs(normal(0, 1)) / normal(0, 0);
-  const bool quadratic = count >= 5 && balance < 0.25;
-  if (count == 1) {
-    q_rad = reference;
-    return;
-  }
-  Eigen::Matrix<double, 3, arm_joint_count> solution = Eigen::Matrix<double, 3, arm_joint_count>::Zero();
-  if (quadratic)
-    solution = normal.ldlt().solve(right);
-  else
-    solution.topRows<2>() = normal.topLeftCorner<2, 2>().ldlt().solve(right.topRows<2>());
-  for (std::size_t j = 0; j < arm_joint_count; ++j) q_rad[j] = reference[j] + solution(0, static_cast<Eigen::Index>(j));
 }
 
 }  // namespace lf::scan
