@@ -21,6 +21,11 @@ std::vector<Object> io_objects(std::uint8_t node) {
   add(0x6000, 1, Type::u8, Access::read_only, Mapping::transmit, 0);
   count(0x6200, 1);
   add(0x6200, 1, Type::u8, Access::read_write, Mapping::receive, 0);
+  // What an output does in the stopped state (CiA 401): where 6206 has a bit, it takes that of 6207; otherwise it goes off with the node.
+  count(0x6206, 1);
+  add(0x6206, 1, Type::u8, Access::read_write, Mapping::none, 0xFF);
+  count(0x6207, 1);
+  add(0x6207, 1, Type::u8, Access::read_write, Mapping::none, 0);
   count(0x2100, 2);
   add(0x2100, 1, Type::u8, Access::read_write, Mapping::receive, 0);
   add(0x2100, 2, Type::u16, Access::read_write, Mapping::receive, 0);
@@ -37,6 +42,8 @@ IoNode::IoNode(const IoConfig& config, Duration boot_time)
     : node_(config.node, io_objects(config.node), boot_time, *this),
       inputs_(node_.objects().at(0x6000, 1)),
       outputs_(node_.objects().at(0x6200, 1)),
+      error_mode_(node_.objects().at(0x6206, 1)),
+      error_value_(node_.objects().at(0x6207, 1)),
       trigger_(node_.objects().at(0x2100, 1)),
       exposure_us_(node_.objects().at(0x2100, 2)),
       outputs_shown_(node_.objects().at(0x2101, 1)),
@@ -54,7 +61,9 @@ void IoNode::set_interlock_closed(bool closed) {
 }
 
 void IoNode::switch_outputs() {
-  on_ = node_.state() == NmtState::operational ? static_cast<std::uint8_t>(outputs_.value) : std::uint8_t{0};
+  on_ = 0;
+  if (node_.state() == NmtState::operational) on_ = static_cast<std::uint8_t>(outputs_.value);
+  if (node_.state() == NmtState::stopped) on_ = static_cast<std::uint8_t>(error_mode_.value & error_value_.value);
   if (!interlock_closed_) on_ &= static_cast<std::uint8_t>(~can_map::output_laser);
   outputs_shown_.value = on_;
 }

@@ -1,6 +1,7 @@
 // The output node: laser, lamps, camera trigger, and the safety inputs (CiA 401 with manufacturer's objects, see shared/can/can_map.hpp).
 //
-// Outputs are on only while the node is operational: a lost heartbeat, an NMT stop or a reset switches them off. The interlock gates the laser in
+// Outputs are on only while the node is operational: a lost heartbeat, an NMT stop or a reset switches them off, unless 6206 and 6207 hold one on
+// in the stopped state. The interlock gates the laser in
 // hardware: open, the laser is off whatever 6200 says, and 2101:01 shows it. A changed trigger counter is one exposure of 2100:02 microseconds; an
 // exposure of 0 is none.
 #pragma once
@@ -43,7 +44,7 @@ class IoNode : private Application {
   void switch_outputs();
 
   Node node_;
-  Object &inputs_, &outputs_, &trigger_, &exposure_us_, &outputs_shown_, &last_trigger_, &last_exposure_us_;
+  Object &inputs_, &outputs_, &error_mode_, &error_value_, &trigger_, &exposure_us_, &outputs_shown_, &last_trigger_, &last_exposure_us_;
   bool estop_closed_ = true;
   bool interlock_closed_ = true;
   std::uint8_t on_ = 0;  // outputs as they are

@@ -86,6 +86,18 @@ TEST_F(IoNodeTest, the_open_interlock_keeps_the_laser_off_and_shows_it) {
   ASSERT_TRUE(io.take_exposure().has_value());
 }
 
+TEST_F(IoNodeTest, a_stopped_node_shows_its_error_values) {
+  EXPECT_EQ(client.write(0x6207, 1, can_map::output_lamps, 1), 0u);
+  ask(can_map::output_laser, 0, 0);
+  client.sync();
+  EXPECT_TRUE(io.laser_on());
+  client.nmt(2);
+  EXPECT_FALSE(io.laser_on());
+  EXPECT_TRUE(io.lamps_on());
+  client.nmt(128);
+  EXPECT_FALSE(io.lamps_on());
+}
+
 TEST_F(IoNodeTest, the_open_emergency_stop_is_told) {
   io.set_estop_closed(false);
   run_ms(1);
