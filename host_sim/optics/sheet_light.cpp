@@ -68,12 +68,17 @@ StripePacket SheetLight::line(const SurfacePacket& s, const Water& water, float 
   const Lanes gradient = max(sqrt(w_du * w_du + w_dv * w_dv), all_lanes(1e-9f));
   stripe.offset_px = distance * s.facing / gradient;
   stripe.slope_v = w_dv / gradient;
-  const Lanes px_per_m = -s.facing / gradient;
 
-  // The stripe's centre on the tangent plane, and the beam there.
-  const Lanes across = dot(normal, s.normal);
-  const Lanes3 to_centre = (normal - s.normal * across) * (distance / max(1.f - across * across, all_lanes(1e-3f)));
-  const Lanes3 centre = s.point - to_centre;
+  // The stripe's centre in this pixel's column (its row, if the stripe is steep): there on the tangent plane, exactly.
+  const LaneMask down = abs(w_dv) >= abs(w_du);
+  const Lanes3 step = {down ? s.point_dv.x : s.point_du.x, down ? s.point_dv.y : s.point_du.y, down ? s.point_dv.z : s.point_du.z};
+  const Lanes approach = dot(normal, step);
+  const Lanes3 centre = s.point - step * (distance / (abs(approach) > 1e-9f ? approach : all_lanes(1e-9f)));
+  const Lanes w_step = down ? w_dv : w_du;
+  const Lanes turn = dot(s.normal, {down ? s.direction_dv.x : s.direction_du.x, down ? s.direction_dv.y : s.direction_du.y,
+                                    down ? s.direction_dv.z : s.direction_du.z});
+  const Lanes facing = s.facing - turn * distance * s.facing / (abs(w_step) > 1e-9f ? w_step : all_lanes(1e-9f));
+  const Lanes px_per_m = max(-facing, all_lanes(1e-4f)) / gradient;
   const Lanes3 beam = centre - emitter_;
   const Lanes3 centre_place = base_from_laser_.transposed_times(beam);
   const Lanes range = max(norm(beam), all_lanes(least_range_m));

@@ -121,24 +121,16 @@ TriangleMesh tessellate(const scene::Shape& shape) {
   check_size(shape);
   Builder out(shape.body_from_shape);
   switch (shape.kind) {
-    case scene::ShapeKind::box:
-      add_box(out, shape.size_m);
-      break;
+    case scene::ShapeKind::box: add_box(out, shape.size_m); break;
     case scene::ShapeKind::cylinder: {
       const int sides = circle_sides(shape.size_m.x());
       const double radius = corner_radius(shape.size_m.x(), sides);
       add_revolved(out, {{radius, -0.5 * shape.size_m.z()}, {radius, 0.5 * shape.size_m.z()}}, sides);
       break;
     }
-    case scene::ShapeKind::capsule:
-      add_capsule(out, shape.size_m.x(), shape.size_m.z());
-      break;
-    case scene::ShapeKind::sphere:
-      add_capsule(out, shape.size_m.x(), 0);
-      break;
-    case scene::ShapeKind::mesh:
-      add_mesh(out, shape);
-      break;
+    case scene::ShapeKind::capsule: add_capsule(out, shape.size_m.x(), shape.size_m.z()); break;
+    case scene::ShapeKind::sphere: add_capsule(out, shape.size_m.x(), 0); break;
+    case scene::ShapeKind::mesh: add_mesh(out, shape); break;
   }
   return std::move(out.mesh);
 }

@@ -1,4 +1,4 @@
-// Shapes as triangles: no surface is further than 20 um from its true place, round ones above 33 mm of radius 0.6 permille of it.
+// Shapes as triangles: cylinders stay within 20 um of their true surface, spheres within 60 um; above 33 mm of radius within 0.6 and 1.8 permille of it.
 #pragma once
 
 #include <array>
