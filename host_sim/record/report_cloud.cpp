@@ -11,7 +11,7 @@ namespace {
 
 using Colour = std::array<std::uint8_t, 3>;
 
-constexpr std::size_t most_points = 40'000;
+constexpr double most_points = 40'000;
 constexpr double units_per_m = 20'000;  // int16 steps of 0.05 mm reach 1.6 m
 constexpr double fine_mm = 6;           // the fine scale's half range; beyond it the coarse one begins
 constexpr double coarse_mm = 120;       // a handle stands 106 mm proud
@@ -30,16 +30,23 @@ Colour colour_of(double distance_mm) {
   return distance_mm < 0 ? mix(on, behind, -distance_mm / fine_mm) : mix(on, before, distance_mm / fine_mm);
 }
 
+// Weyl's sequence: an even choice that no sweep's pattern can meet in step, as it would a stride.
+bool chosen(std::size_t i, double share) {
+  const double place = 0.6180339887498949 * static_cast<double>(i);
+  return place - std::floor(place) < share;
+}
+
 // In the plane's frame: x right and y up as the robot sees the panel, z toward the robot; origin at the points' middle.
 std::vector<Vec3> points_on_plane(const std::vector<CloudPoint>& cloud, const PlaneFit& fit) {
-  const std::size_t stride = std::max<std::size_t>(1, (cloud.size() + most_points - 1) / most_points);
   std::vector<Vec3> points;
-  for (std::size_t i = 0; i < cloud.size(); i += stride) {
-    if (cloud[i].p_m.allFinite()) points.push_back(cloud[i].p_m.cast<double>());
+  Vec3 middle = Vec3::Zero();
+  for (const CloudPoint& point : cloud) {
+    if (!point.p_m.allFinite()) continue;
+    points.push_back(point.p_m.cast<double>());
+    middle += points.back();
   }
   if (points.empty()) return points;
-  Vec3 middle = Vec3::Zero();
-  for (const Vec3& p : points) middle += p / static_cast<double>(points.size());
+  middle /= static_cast<double>(points.size());
   const Plane plane = fit.valid ? fit.plane : Plane{-Vec3::UnitX(), middle.x()};  // without a fit: as the panel stands when docked exactly
   const Vec3 z = plane.normal.normalized();
   const Vec3 x = (Vec3::UnitY() - z * z.y()).normalized();
@@ -48,6 +55,20 @@ std::vector<Vec3> points_on_plane(const std::vector<CloudPoint>& cloud, const Pl
   const Vec3 origin = middle - z * plane.signed_distance_m(middle);
   for (Vec3& p : points) p = plane_from_base * (p - origin);
   return points;
+}
+
+// What stands proud is kept before what lies on the plane.
+std::vector<Vec3> thinned(const std::vector<Vec3>& points) {
+  const auto proud = [](const Vec3& p) { return std::abs(p.z()) * 1000 > fine_mm; };
+  const auto proud_count = static_cast<double>(std::count_if(points.begin(), points.end(), proud));
+  const auto flat_count = static_cast<double>(points.size()) - proud_count;
+  const double proud_share = std::min(1.0, 0.5 * most_points / std::max(1.0, proud_count));
+  const double flat_share = std::min(1.0, (most_points - proud_share * proud_count) / std::max(1.0, flat_count));
+  std::vector<Vec3> kept;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (chosen(i, proud(points[i]) ? proud_share : flat_share)) kept.push_back(points[i]);
+  }
+  return kept;
 }
 
 std::string packed(const std::vector<Vec3>& points) {
@@ -71,7 +92,7 @@ struct View {
 double scale_of(const std::vector<Vec3>& points, const View& view) {
   double radius = 0.05;
   for (const Vec3& p : points) radius = std::max(radius, p.head<2>().norm());
-  return 0.5 * std::min(view.width / 1.25, view.height / 0.8) / std::min(radius, 1.0);
+  return 0.5 * std::min<double>(view.width, 1.35 * view.height) / std::min(radius, 1.0);
 }
 
 RgbImage drawn(const std::vector<Vec3>& points, const View& view) {
@@ -114,7 +135,7 @@ std::string scale_legend() {
 }  // namespace
 
 std::string cloud_view(const std::vector<CloudPoint>& cloud, const PlaneFit& fit) {
-  const std::vector<Vec3> points = points_on_plane(cloud, fit);
+  const std::vector<Vec3> points = thinned(points_on_plane(cloud, fit));
   if (points.empty()) return "";
   const View view;
   const std::string picture = base64(encode_png(drawn(points, view)));

@@ -19,7 +19,7 @@ h1{font-size:26px;line-height:1.25;margin:0 0 4px}h2{font-size:17px;margin:0 0 1
 .reason{margin:6px 0;font-size:17px}.soft{color:var(--soft)}
 pre{background:var(--bg);border:1px solid var(--line);border-radius:6px;padding:10px 12px;margin:12px 0 0;white-space:pre-wrap;overflow-wrap:anywhere;
 font:13.5px/1.45 ui-monospace,"DejaVu Sans Mono",Consolas,monospace}
-.tiles{display:grid;grid-template-columns:repeat(auto-fit,minmax(150px,1fr));gap:12px;margin-top:16px}
+.tiles{display:grid;grid-template-columns:repeat(auto-fit,minmax(126px,1fr));gap:10px;margin-top:16px}
 .tile{border:1px solid var(--line);border-radius:8px;padding:9px 13px}.tile b{display:block;font-size:21px;line-height:1.3;font-weight:600}
 .tile span{color:var(--soft);font-size:13px}
 .two{display:grid;grid-template-columns:repeat(auto-fit,minmax(440px,1fr));gap:18px}.two section{margin:0}.two{margin-bottom:18px}

@@ -37,7 +37,7 @@ TimesRecord times_from(const Json& json) {
 
 PhaseRecord phase_from(const Json& json) {
   PhaseRecord phase;
-  read(json, "name", phase.name);
+  json.at("name").get_to(phase.name);
   read(json, "start_s", phase.start_s);
   read(json, "end_s", phase.end_s);
   read(json, "outcome", phase.outcome);
@@ -46,7 +46,7 @@ PhaseRecord phase_from(const Json& json) {
 
 TaskRecord task_from(const Json& json) {
   TaskRecord task;
-  read(json, "task", task.task);
+  json.at("task").get_to(task.task);
   read(json, "button", task.button);
   read(json, "presses", task.presses);
   read(json, "target_deg", task.target_deg);

@@ -9,10 +9,10 @@ namespace fs = std::filesystem;
 
 RunFolder::RunFolder(const fs::path& directory) : directory_(directory) {
   std::error_code error;
+  if (fs::exists(directory, error) && !fs::is_directory(directory, error))
+    throw InputError(directory.string(), 0, "is a file, not a folder");
   fs::create_directories(directory, error);
-  if (!fs::is_directory(directory)) {
-    throw InputError(directory.string(), 0, "cannot be made a folder: " + (error ? error.message() : std::string("it is a file")));
-  }
+  if (error) throw InputError(directory.string(), 0, "cannot be made a folder: " + error.message());
   const fs::path probe = directory / ".writable";
   { const FileSink opened(probe); }
   fs::remove(probe, error);

@@ -1,0 +1,144 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "host_sim/record/report.hpp"
+#include "tests/unit/record/demo_run.hpp"
+
+namespace lf::record {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+std::size_t count_of(const std::string& text, const std::string& part) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != text.npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
+std::string without(std::string html, const std::string& element) {
+  const std::string close = "</" + element + ">";
+  for (std::size_t at = html.find("<" + element); at != html.npos; at = html.find("<" + element)) {
+    const std::size_t end = html.find(close, at);
+    if (end == html.npos) return html;
+    html.erase(at, end + close.size() - at);
+  }
+  return html;
+}
+
+// Tags open and close in pairs; void elements and SVG's closed shapes aside. Empty when they do.
+std::string first_unbalanced_tag(const std::string& page) {
+  const std::string html = without(without(page, "script"), "style");
+  std::vector<std::string> open;
+  for (std::size_t at = html.find('<'); at != html.npos; at = html.find('<', at + 1)) {
+    const std::size_t end = html.find('>', at);
+    if (end == html.npos) return "no > after " + html.substr(at, 30);
+    const std::string tag = html.substr(at + 1, end - at - 1);
+    const std::string name = tag.substr(tag[0] == '/', tag.find(' ') - (tag[0] == '/'));
+    if (name == "img" || name == "meta" || tag[0] == '!' || tag.back() == '/') continue;
+    if (tag[0] != '/') {
+      open.push_back(name);
+    } else if (open.empty() || open.back() != name) {
+      return "<" + tag + ">";
+    } else {
+      open.pop_back();
+    }
+  }
+  return open.empty() ? "" : "<" + open.back() + ">";
+}
+
+ReportData small_run() {
+  ReportData data = test::demo_run();
+  data.pictures.resize(1);
+  data.cloud.resize(500);
+  return data;
+}
+
+TEST(Report, RefersToNothingOutsideOfItself) {
+  const std::string html = report_html(small_run());
+  for (const char* reference : {"http://", "https://", "src=\"/", "url(", "@import", "<link", "fetch(", "XMLHttpRequest"}) {
+    EXPECT_THAT(html, Not(HasSubstr(reference)));
+  }
+}
+
+TEST(Report, ShowsTheVerdictTheCommandAndEveryPhaseWithoutScripts) {
+  const ReportData data = small_run();
+  const std::string html = report_html(data);
+  const std::string without_scripts = without(html, "script");
+  EXPECT_THAT(without_scripts, HasSubstr("<span class=\"verdict\">done</span>"));
+  EXPECT_THAT(without_scripts, HasSubstr(data.command));
+  for (const PhaseRecord& phase : data.result.phases) EXPECT_THAT(without_scripts, HasSubstr(">" + phase.name + "</text>"));
+  EXPECT_EQ(count_of(without_scripts, "data:image/png;base64,"), 2u);  // one picture and the cloud
+  EXPECT_THAT(without_scripts, HasSubstr("66812 of 71000"));
+}
+
+TEST(Report, OpensAndClosesItsElementsInPairs) { EXPECT_EQ(first_unbalanced_tag(report_html(small_run())), ""); }
+
+TEST(Report, EscapesAllText) {
+  ReportData data = small_run();
+  const std::string attack = "<script>alert(\"1\")</script>&'";
+  data.result.scenario = data.result.version = data.command = data.result.digest = data.result.host.isa = attack;
+  data.result.success = false;
+  data.result.failure = FailureRecord{attack, attack};
+  data.result.phases[0].name = data.result.phases[0].outcome = attack;
+  data.result.tasks[0].task = data.result.tasks[1].button = attack;
+  data.result.core.rejected_inputs[attack] = 1;
+  data.conditions[0] = {attack, attack};
+  data.errors[0].name = data.errors[0].unit = attack;
+  data.pictures[0].title = data.pictures[0].caption = attack;
+  data.charts[0].title = data.charts[0].unit = data.charts[0].series[0].name = attack;
+  data.notes = {attack};
+  const std::string html = report_html(data);
+  EXPECT_THAT(html, Not(HasSubstr("alert(\"")));
+  EXPECT_GE(count_of(html, "&lt;script&gt;alert(&quot;1&quot;)&lt;/script&gt;&amp;&#39;"), 20u);
+  EXPECT_EQ(first_unbalanced_tag(html), "");
+}
+
+TEST(Report, OfARunThatFailedAtOnceSaysSoAndIsWhole) {
+  ReportData data;
+  data.result.scenario = "default";
+  data.result.failure = FailureRecord{"boot", "node 3 does not answer"};
+  data.charts = {{"Joint positions", "rad", {}}};
+  const std::string html = report_html(data);
+  EXPECT_THAT(html, HasSubstr("<span class=\"verdict\">failed</span>"));
+  EXPECT_THAT(html, HasSubstr("node 3 does not answer"));
+  EXPECT_THAT(html, HasSubstr("nothing was recorded"));
+  EXPECT_EQ(first_unbalanced_tag(html), "");
+  EXPECT_THAT(html, Not(HasSubstr("nan")));
+}
+
+TEST(Report, KeepsSpikesOfAMillionSamplesInAFewPoints) {
+  ReportData data;
+  ReportSeries series{"torque", {}, {}, false};
+  for (int i = 0; i < 200'000; ++i) {
+    series.t_s.push_back(i * 1e-3);
+    series.value.push_back(i == 123'456 ? 1000 : 0);
+  }
+  data.charts = {{"Torque", "N m", {series}}};
+  const std::string html = report_html(data);
+  EXPECT_LT(html.size(), 60'000u);
+  // The spike is drawn at the top: y of 1000 in a chart from 0 to 1050 and 210 to 10.
+  EXPECT_THAT(html, HasSubstr(" 19.5"));
+}
+
+TEST(Report, IsTheSameForTheSameData) { EXPECT_EQ(report_html(small_run()), report_html(small_run())); }
+
+TEST(ReportErrors, AllowMoreInMurkyWater) {
+  const RunResult result = test::demo_run().result;
+  const auto aim = [&](double attenuation, const std::string& name) {
+    for (const ReportError& error : report_errors(result, attenuation)) {
+      if (error.name == name) return error.aim;
+    }
+    return unknown;
+  };
+  EXPECT_NEAR(aim(0.1, "cloud to its plane, rms"), 0.5, 1e-12);
+  EXPECT_NEAR(aim(0.8, "cloud to its plane, rms"), 0.9, 1e-12);
+  EXPECT_NEAR(aim(0.1, "stripe peaks, rms"), 0.1, 1e-12);
+  EXPECT_NEAR(aim(0.8, "stripe peaks, rms"), 0.2, 1e-12);
+}
+
+}  // namespace
+}  // namespace lf::record
