@@ -1,6 +1,7 @@
 // How near the arm comes to the panel and to itself: capsules around its links against the panel's plate, marker plate, buttons and handle.
 //
-// A capsule contains its link's collision shape, so a clearance found here is never larger than the real one by more than the panel's own error.
+// A capsule contains its link's collision shape, so that the real clearance is never smaller than the one found here, if the panel is where it is said
+// to be.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +12,7 @@
 
 namespace lf::arm {
 
-// Signed distances between surfaces, m; negative inside (for the solids: minus the depth of the capsule's axis is not resolved, it is then minus the radius).
+// Distances between surfaces, m. Negative when they overlap; not below minus the capsule's radius, which means that its axis is inside of the solid.
 double clearance_to_plane(const Capsule& capsule, const Plane& plane);
 double clearance_between(const Capsule& a, const Capsule& b);
 // A box of `size_m` full extents centred in `base_from_box`. To 1e-7 m.
