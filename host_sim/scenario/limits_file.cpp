@@ -32,17 +32,10 @@ std::vector<Key> limit_keys(safety::Limits& limits, std::string& checksum) {
   return all;
 }
 
-bool has_path(const YAML::Node& root, const std::string& path) {
-  YAML::Node node = root;
-  for (std::size_t begin = 0; begin != std::string::npos + 1 && begin <= path.size();) {
-    const std::size_t dot = path.find('.', begin);
-    const YAML::Node next = node[path.substr(begin, dot == std::string::npos ? dot : dot - begin)];
-    if (!next) return false;
-    node.reset(next);
-    if (dot == std::string::npos) return true;
-    begin = dot + 1;
-  }
-  return false;
+bool has_path(const YAML::Node& node, const std::string& path) {
+  const std::size_t dot = path.find('.');
+  const YAML::Node next = node[path.substr(0, dot)];
+  return next.IsDefined() && (dot == std::string::npos || has_path(next, path.substr(dot + 1)));
 }
 
 std::string hex(std::uint32_t value) {
