@@ -22,16 +22,10 @@ std::unique_ptr<btCollisionShape> convex_shape(const scene::Shape& shape) {
   const Vec3& size = shape.size_m;
   std::unique_ptr<btCollisionShape> made;
   switch (shape.kind) {
-    case ShapeKind::box:
-      made = std::make_unique<btBoxShape>(to_bullet(Vec3(0.5 * size)));
-      break;
-    case ShapeKind::cylinder:
-      made = std::make_unique<btCylinderShapeZ>(btVector3(size.x(), size.x(), 0.5 * size.z()));
-      break;
-    case ShapeKind::capsule:
-      return std::make_unique<btCapsuleShapeZ>(size.x(), size.z());
-    case ShapeKind::sphere:
-      return std::make_unique<btSphereShape>(size.x());
+    case ShapeKind::box: made = std::make_unique<btBoxShape>(to_bullet(Vec3(0.5 * size))); break;
+    case ShapeKind::cylinder: made = std::make_unique<btCylinderShapeZ>(btVector3(size.x(), size.x(), 0.5 * size.z())); break;
+    case ShapeKind::capsule: return std::make_unique<btCapsuleShapeZ>(size.x(), size.z());
+    case ShapeKind::sphere: return std::make_unique<btSphereShape>(size.x());
     case ShapeKind::mesh: {
       auto hull = std::make_unique<btConvexHullShape>();
       for (const Vec3& vertex : shape.vertices_m) hull->addPoint(to_bullet(vertex), false);

@@ -1,11 +1,33 @@
 #include "host_sim/world/fixed_base_solver.hpp"
 
+#include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 #include <BulletDynamics/Featherstone/btMultiBody.h>
 
 #include <algorithm>
 #include <cmath>
 
 namespace lf::world {
+namespace {
+
+void limit_push_out(btPersistentManifold& manifold, const btContactSolverInfo& info) {
+  for (int i = 0; i < manifold.getNumContacts(); ++i) {
+    btManifoldPoint& point = manifold.getContactPoint(i);
+    const double depth_m = -point.getDistance();
+    if (depth_m <= 0) continue;
+    point.m_contactERP = std::min(info.m_erp2, FixedBaseSolver::push_out_m_s * info.m_timeStep / depth_m);
+    point.m_contactPointFlags |= BT_CONTACT_FLAG_HAS_CONTACT_ERP;
+  }
+}
+
+}  // namespace
+
+btScalar FixedBaseSolver::solveGroupCacheFriendlySetup(btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
+                                                       int manifold_count, btTypedConstraint** constraints, int constraint_count,
+                                                       const btContactSolverInfo& info, btIDebugDraw* drawer) {
+  for (int i = 0; i < manifold_count; ++i) limit_push_out(*manifolds[i], info);
+  return btMultiBodyConstraintSolver::solveGroupCacheFriendlySetup(bodies, body_count, manifolds, manifold_count, constraints,
+                                                                   constraint_count, info, drawer);
+}
 
 FixedBaseSolver::Side FixedBaseSolver::side(const btMultiBody* body, int speeds_index, int jacobian_index) {
   Side made;

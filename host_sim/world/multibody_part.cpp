@@ -1,5 +1,7 @@
 #include "host_sim/world/multibody_part.hpp"
 
+#include <cmath>
+
 #include "host_sim/world/bullet_types.hpp"
 
 namespace lf::world {
@@ -23,7 +25,7 @@ void MultibodyPart::add_collider(int link, CollisionShape shape, int scene_body,
   auto collider = std::make_unique<btMultiBodyLinkCollider>(body_.get(), link);
   collider->setCollisionShape(shape.compound.get());
   collider->setFriction(shape.friction);
-  collider->setRestitution(restitution);
+  collider->setRestitution(std::sqrt(restitution));  // Bullet multiplies both bodies'
   // Restitution is lost when contacts are solved ahead of time, while there is still a gap.
   if (restitution > 0) collider->setContactProcessingThreshold(0);
   collider->setUserIndex(scene_body);

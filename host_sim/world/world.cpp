@@ -3,6 +3,7 @@
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
 #include <bit>
+#include <cmath>
 
 #include "host_sim/world/arm_body.hpp"
 #include "host_sim/world/bullet_types.hpp"
@@ -86,7 +87,7 @@ struct World::Impl {
     panel = std::make_unique<btRigidBody>(0, nullptr, panel_shape.compound.get());
     panel->setWorldTransform(to_bullet(config.base_from_panel));
     panel->setFriction(panel_shape.friction);
-    panel->setRestitution(config.restitution);
+    panel->setRestitution(std::sqrt(config.restitution));  // Bullet multiplies both bodies'
     panel->setUserIndex(int(BodyId::panel));
     bullet.get().addCollisionObject(panel.get());
     if (config.restitution > 0) {

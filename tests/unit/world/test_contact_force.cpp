@@ -1,0 +1,185 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "host_sim/world/contact_force.hpp"
+#include "host_sim/world/fixed_base_solver.hpp"
+#include "shared/input_error.hpp"
+#include "tests/unit/world/sliding_rig.hpp"
+
+namespace lf::world {
+namespace {
+
+using scene::BodyId;
+
+constexpr int iterations = 200;
+
+struct Collision {
+  double restitution, window_s, step_s;
+};
+
+// The largest windowed force, and the time integral of all of it.
+struct Measured {
+  double peak_n = 0;
+  double impulse_n_s = 0;
+};
+
+// Bodies that stick leave at the speed that takes them out of their overlap; those that bounce, exactly.
+double slack_m_s(double restitution) { return restitution > 0 ? 1e-7 : 1.001 * FixedBaseSolver::push_out_m_s; }
+
+class StepRates : public testing::TestWithParam<double> {};
+
+void prepare(BulletWorld& world, double restitution) {
+  if (restitution > 0) world.make_restitution_exact();
+}
+
+template <typename BeforeStep>
+Measured measure(BulletWorld& world, const Collision& collision, double seconds, BodyId body, BeforeStep before_step) {
+  ForceWindow window(collision.window_s, collision.step_s);
+  std::vector<ContactImpulse> impulses;
+  Measured measured;
+  for (int i = 0; i < std::lround(seconds / collision.step_s); ++i) {
+    before_step();
+    world.step(collision.step_s);
+    take_contact_impulses(*world.get().getDispatcher(), impulses);
+    Wrench step;
+    for (const ContactImpulse& contact : impulses) step.force_n += contact.a == body ? contact.impulse_n_s : Vec3(-contact.impulse_n_s);
+    window.add(step);
+    measured.impulse_n_s += step.force_n.norm();
+    measured.peak_n = std::max(measured.peak_n, window.mean().force_n.norm());
+  }
+  return measured;
+}
+
+// A 189 kg vehicle at 0.2 m/s onto a fixed structure: m dv / t is 1890 N over 20 ms and 756 N over 50 ms when nothing bounces.
+TEST_P(StepRates, collisionWithAFixedStructureGivesMassTimesSpeedChangeOverTheWindow) {
+  const double step_s = 1 / GetParam();
+  for (const double window_s : {0.020, 0.050}) {
+    for (const double restitution : {0.0, 0.5, 1.0}) {
+      SCOPED_TRACE(testing::Message() << GetParam() << " Hz, window " << window_s << " s, e " << restitution);
+      const double mass_kg = 189;
+      const double speed_m_s = 0.2;
+      BulletWorld world(iterations);
+      prepare(world, restitution);
+      Sled sled(world, mass_kg, box_body(Vec3(0.4, 0.4, 0.4)), Pose::Identity(), restitution);
+      Wall wall(world, box_body(Vec3(1, 1, 0.2)), Pose(Eigen::Translation3d(0, 0, -0.3 - 0.0113)), restitution);
+      sled.set_speed(Vec3(0, 0, -speed_m_s));
+      const Measured measured = measure(world, {restitution, window_s, step_s}, 0.2, BodyId::finger_a, [] {});
+      const double impulse_n_s = (1 + restitution) * mass_kg * speed_m_s;
+      const double slack = slack_m_s(restitution);
+      EXPECT_NEAR(measured.impulse_n_s, impulse_n_s, mass_kg * slack);
+      EXPECT_NEAR(measured.peak_n, impulse_n_s / window_s, mass_kg * slack / window_s);
+      EXPECT_NEAR(sled.speed_m_s().z(), restitution * speed_m_s, slack);
+    }
+  }
+}
+
+TEST_P(StepRates, collisionOfTwoBodiesGivesTheReducedMassTimesSpeedChangeOverTheWindow) {
+  const double step_s = 1 / GetParam();
+  for (const double restitution : {0.0, 0.5, 1.0}) {
+    SCOPED_TRACE(testing::Message() << GetParam() << " Hz, e " << restitution);
+    const double m1 = 3, m2 = 5, v1 = 0.3, v2 = -0.1;
+    BulletWorld world(iterations);
+    prepare(world, restitution);
+    Sled first(world, m1, box_body(Vec3(0.1, 0.1, 0.1)), Pose::Identity(), restitution, BodyId::finger_a);
+    Sled second(world, m2, box_body(Vec3(0.1, 0.1, 0.1)), Pose(Eigen::Translation3d(0.1153, 0, 0)), restitution, BodyId::handle);
+    first.set_speed(Vec3(v1, 0, 0));
+    second.set_speed(Vec3(v2, 0, 0));
+    const Measured measured = measure(world, {restitution, 0.020, step_s}, 0.2, BodyId::finger_a, [] {});
+    const double impulse_n_s = (1 + restitution) * (v1 - v2) / (1 / m1 + 1 / m2);
+    const double slack = slack_m_s(restitution);
+    EXPECT_NEAR(measured.peak_n, impulse_n_s / 0.020, m1 * slack / 0.020);
+    EXPECT_NEAR(first.speed_m_s().x(), v1 - impulse_n_s / m1, slack);
+    EXPECT_NEAR(second.speed_m_s().x(), v2 + impulse_n_s / m2, slack);
+  }
+}
+
+// A lever of inertia I at speed w meets a wall at the distance r of its axis: the torque's impulse is (1 + e) I w, the force's that over r.
+TEST_P(StepRates, collisionOfALeverUsesItsInertia) {
+  const double step_s = 1 / GetParam();
+  for (const double restitution : {0.0, 0.5, 1.0}) {
+    SCOPED_TRACE(testing::Message() << GetParam() << " Hz, e " << restitution);
+    const double inertia = 0.8, speed_rad_s = 0.5, arm_m = 0.45;
+    BulletWorld world(iterations);
+    prepare(world, restitution);
+    MultibodyPart lever(1, Pose::Identity());
+    lever.body().setupRevolute(0, 1, btVector3(inertia, inertia, inertia), -1, btQuaternion::getIdentity(), btVector3(0, 0, 1),
+                               btVector3(0, 0, 0), btVector3(0, 0, 0), false);
+    lever.finish_links();
+    lever.add_collider(-1, make_collision_shape({}, Pose::Identity()), no_body, restitution);
+    scene::Body tip;
+    tip.shapes.resize(1);
+    tip.shapes[0].kind = scene::ShapeKind::sphere;
+    tip.shapes[0].size_m = Vec3(0.02, 0, 0);
+    tip.shapes[0].friction = 0;
+    tip.shapes[0].body_from_shape.translation() = Vec3(arm_m, 0, 0);
+    lever.add_collider(0, make_collision_shape(tip, Pose::Identity()), int(BodyId::finger_a), restitution);
+    lever.update_poses();
+    lever.enter(world.get());
+    Wall wall(world, box_body(Vec3(1, 0.1, 1), Pose::Identity(), 0), Pose(Eigen::Translation3d(arm_m, 0.07 + 0.002, 0)), restitution);
+    lever.body().setJointVel(0, speed_rad_s);
+    const Measured measured = measure(world, {restitution, 0.020, step_s}, 0.1, BodyId::finger_a, [] {});
+    const double force_n = (1 + restitution) * inertia * speed_rad_s / arm_m / 0.020;
+    EXPECT_NEAR(measured.peak_n, force_n, 3e-3 * force_n);  // push-out, and the tip meets the wall 2 mm round the circle: r cos(0.0044 rad)
+    EXPECT_NEAR(lever.body().getJointVel(0), -restitution * speed_rad_s, 2e-3 * speed_rad_s + slack_m_s(restitution) / arm_m);
+    lever.leave(world.get());
+  }
+}
+
+TEST_P(StepRates, weightAtRestReadsAsWeight) {
+  const double step_s = 1 / GetParam();
+  BulletWorld world(iterations);
+  Sled sled(world, 20, box_body(Vec3(0.4, 0.4, 0.4)), Pose::Identity(), 0);
+  Wall wall(world, box_body(Vec3(1, 1, 0.2)), Pose(Eigen::Translation3d(0, 0, -0.3)), 0);
+  ForceWindow window(0.020, step_s);
+  measure(world, {0, 0.020, step_s}, 0.3, BodyId::finger_a, [&] { sled.push(Vec3(0, 0, -20 * 9.81)); });
+  const Measured measured = measure(world, {0, 0.020, step_s}, 0.1, BodyId::finger_a, [&] { sled.push(Vec3(0, 0, -20 * 9.81)); });
+  EXPECT_NEAR(measured.peak_n, 196.2, 0.002);
+}
+
+INSTANTIATE_TEST_SUITE_P(From200HzTo2kHz, StepRates, testing::Values(200.0, 500.0, 1000.0, 2000.0));
+
+// Slope angles about a direction that is not one of the friction rows', so that a pyramid would be found out.
+TEST(FrictionCone, holdsBelowItsAngleAndSlidesWithTheRestAboveIt) {
+  const double mu = 0.5, mass_kg = 2, gravity = 9.81, step_s = 0.001;
+  for (const double heading_deg : {0.0, 22.5, 45.0, 70.0}) {
+    for (const double slope_deg : {15.0, 25.0, 28.0, 35.0}) {  // the cone's: 26.6
+      SCOPED_TRACE(testing::Message() << "slope " << slope_deg << " deg toward " << heading_deg << " deg");
+      BulletWorld world(iterations);
+      Sled sled(world, mass_kg, box_body(Vec3(0.2, 0.2, 0.1), Pose::Identity(), mu), Pose::Identity(), 0);
+      Wall wall(world, box_body(Vec3(4, 4, 0.2), Pose::Identity(), 1.0), Pose(Eigen::Translation3d(0, 0, -0.15)), 0);
+      const double slope = rad_from_deg(slope_deg);
+      const Vec3 downhill(std::cos(rad_from_deg(heading_deg)), std::sin(rad_from_deg(heading_deg)), 0);
+      const Vec3 weight = mass_kg * gravity * (std::sin(slope) * downhill - std::cos(slope) * Vec3::UnitZ());
+      const double seconds = 0.5;
+      measure(world, {0, 0.020, step_s}, seconds, BodyId::finger_a, [&] { sled.push(weight); });
+      const double expected = std::max(0.0, gravity * (std::sin(slope) - mu * std::cos(slope))) * seconds;
+      EXPECT_NEAR(sled.speed_m_s().dot(downhill), expected, 0.01 * expected + 1e-4);
+      EXPECT_NEAR(sled.speed_m_s().cross(downhill).head<2>().norm(), 0, 1e-3);
+    }
+  }
+}
+
+TEST(ForceWindow, averagesTheLastStepsAndReturnsToExactlyZero) {
+  ForceWindow window(0.020, 0.001);
+  EXPECT_DOUBLE_EQ(window.window_s(), 0.020);
+  window.add({Vec3(0.1, 0.2, 0.3), Vec3(1, 2, 3)});
+  for (int i = 0; i < 19; ++i) {
+    EXPECT_NEAR(window.mean().force_n.x(), 5, 1e-12);
+    EXPECT_NEAR(window.mean().torque_nm.z(), 150, 1e-12);
+    window.add({});
+  }
+  window.add({});
+  EXPECT_EQ(window.mean().force_n, Vec3::Zero());
+}
+
+TEST(ForceWindow, refusesStepsAndWindowsThatMakeNoSense) {
+  EXPECT_THROW(ForceWindow(0.02, 0), InputError);
+  EXPECT_THROW(ForceWindow(0.001, 0.002), InputError);
+  EXPECT_THROW(ForceWindow(std::numeric_limits<double>::quiet_NaN(), 0.001), InputError);
+  EXPECT_THROW(ForceWindow(std::numeric_limits<double>::infinity(), 0.001), InputError);
+}
+
+}  // namespace
+}  // namespace lf::world
