@@ -27,8 +27,8 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_L
 endif()
 target_include_directories(lanternfish_flags INTERFACE ${CMAKE_SOURCE_DIR} ${CMAKE_BINARY_DIR}/generated)
 target_link_libraries(lanternfish_flags INTERFACE Eigen3::Eigen)
-# Debian's PCL is built for SSE2: with AVX switched on, Eigen would align what both sides share differently.
-target_compile_definitions(lanternfish_flags INTERFACE EIGEN_MAX_ALIGN_BYTES=16)
+# Debian's PCL is built for SSE2: with AVX switched on, Eigen would align, allocate and free what both sides share differently.
+target_compile_definitions(lanternfish_flags INTERFACE EIGEN_MAX_ALIGN_BYTES=16 EIGEN_MALLOC_ALREADY_ALIGNED=1)
 if(LANTERNFISH_MARCH AND CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64")
   target_compile_options(lanternfish_flags INTERFACE -march=${LANTERNFISH_MARCH})
 endif()

@@ -29,7 +29,6 @@ canopen::DriveSetup drive_setup(const ArmJoint& joint, Joint which, const safety
   double least = 1e9;
   for (int i = 0; i <= 64; ++i) least = std::min(least, arm::rad_per_count(which, std::lerp(limit.min_rad, limit.max_rad, i / 64.0)));
   setup.max_speed_counts_s = static_cast<std::uint32_t>(joint.velocity_rad_s / least);
-  setup.quick_stop_counts_s2 = static_cast<std::uint32_t>(2.0 * joint.acceleration_rad_s2 / least);
   setup.following_window_counts = static_cast<std::uint32_t>(following_window_rad / least);
   return setup;
 }
