@@ -67,7 +67,7 @@ TEST(World, closedJawPressesAButtonWhichClicksAtItsForce) {
 TEST(World, listsAnArmThatHitsThePanel) {
   WorldConfig config = nominal_config();
   config.start_rad = {0, 1.327, 0.894, 0, 0.3};
-  config.base_from_panel.translation().x() -= 0.03;
+  config.base_from_panel.translation() += Vec3(-0.03, 0.25, 0);  // plain plate ahead
   World world(config);
   Script script(world, config.start_rad);
   script.targets_rad = {0, 1.574, 0.734, 0, 0.3};
