@@ -109,15 +109,11 @@ class Urdf {
  private:
   std::string load_error() const {
     switch (document_.ErrorID()) {
-      case tinyxml2::XML_ERROR_FILE_NOT_FOUND:
-        return "no such file";
+      case tinyxml2::XML_ERROR_FILE_NOT_FOUND: return "no such file";
       case tinyxml2::XML_ERROR_FILE_COULD_NOT_BE_OPENED:
-      case tinyxml2::XML_ERROR_FILE_READ_ERROR:
-        return "cannot be read";
-      case tinyxml2::XML_ERROR_EMPTY_DOCUMENT:
-        return "is empty";
-      default:
-        return std::string("is not well-formed XML (") + document_.ErrorName() + ")";
+      case tinyxml2::XML_ERROR_FILE_READ_ERROR: return "cannot be read";
+      case tinyxml2::XML_ERROR_EMPTY_DOCUMENT: return "is empty";
+      default: return std::string("is not well-formed XML (") + document_.ErrorName() + ")";
     }
   }
 
