@@ -1,0 +1,80 @@
+#include <cmath>
+#include <memory>
+
+#include "firmware/arm/inverse_kinematics.hpp"
+#include "host_sim/app/command.hpp"
+#include "shared/input_error.hpp"
+
+namespace lf::app {
+
+namespace {
+
+struct Options {
+  double x_m = 0, y_m = 0, z_m = 0, roll_rad = 0;
+  double margin_rad = arm::default_limit_margin_rad;
+  bool json = false;
+};
+
+constexpr std::array<const char*, arm_joint_count> joint_names{"slew", "shoulder", "elbow", "roll"};
+
+bool is_length(arm::IkOutcome outcome) { return outcome == arm::IkOutcome::too_far || outcome == arm::IkOutcome::too_near; }
+
+Json answer(const arm::IkResult& ik) {
+  Json json{{"reachable", ik.ok()}};
+  if (ik.ok()) {
+    const Vec3 approach = arm::approach_axis(ik.q_rad);
+    for (std::size_t i = 0; i < arm_joint_count; ++i) json["joints_rad"][joint_names[i]] = ik.q_rad[Eigen::Index(i)];
+    json["approach"] = {approach.x(), approach.y(), approach.z()};
+    json["branch"] = ik.branch == arm::IkBranch::front ? "front" : "folded";
+  } else {
+    json["reason"] = arm::name(ik.outcome);
+    json[is_length(ik.outcome) ? "excess_m" : "excess_rad"] = ik.excess;
+  }
+  return json;
+}
+
+void tell(const arm::IkResult& ik) {
+  if (!ik.ok()) {
+    if (is_length(ik.outcome)) {
+      print("not reachable: %s by %.1f mm\n", arm::name(ik.outcome), 1e3 * ik.excess);
+    } else {
+      print("not reachable: %s by %.4f rad (%.2f deg)\n", arm::name(ik.outcome), ik.excess, deg_from_rad(ik.excess));
+    }
+    return;
+  }
+  for (std::size_t i = 0; i < arm_joint_count; ++i) {
+    const double q_rad = ik.q_rad[Eigen::Index(i)];
+    print("%-9s %9.5f rad  %8.3f deg\n", joint_names[i], q_rad, deg_from_rad(q_rad));
+  }
+  const Vec3 approach = arm::approach_axis(ik.q_rad);
+  print("approach  %.5f %.5f %.5f\n", approach.x(), approach.y(), approach.z());
+}
+
+int ik(const Options& options) {
+  for (const double value : {options.x_m, options.y_m, options.z_m, options.roll_rad, options.margin_rad}) {
+    if (!std::isfinite(value)) throw InputError("ik takes finite numbers");
+  }
+  const arm::IkResult result = arm::inverse_kinematics(Vec3(options.x_m, options.y_m, options.z_m), options.roll_rad, options.margin_rad);
+  if (options.json) {
+    print_json(answer(result));
+  } else {
+    tell(result);
+  }
+  return result.ok() ? done : failed;
+}
+
+}  // namespace
+
+void add_ik(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand("ik", "Joint angles that put the tool point at a place, or the limit that stops it");
+  auto options = std::make_shared<Options>();
+  command->add_option("--x", options->x_m, "Toward the panel, m, in the arm's base frame")->required();
+  command->add_option("--y", options->y_m, "To the right, m")->required();
+  command->add_option("--z", options->z_m, "Down, m")->required();
+  command->add_option("--roll", options->roll_rad, "Roll of the jaw, rad");
+  command->add_option("--margin", options->margin_rad, "Distance to keep from the joints' limits, rad")->check(CLI::Range(0.0, 0.5));
+  command->add_flag("--json", options->json, "Print JSON");
+  command->callback([options, &action] { action = [options] { return ik(*options); }; });
+}
+
+}  // namespace lf::app

@@ -1,0 +1,79 @@
+#include <memory>
+
+#include "hal/vision/calibration_file.hpp"
+#include "hal/vision/marker_files.hpp"
+#include "host_sim/app/command.hpp"
+#include "shared/input_error.hpp"
+
+namespace lf::app {
+
+namespace {
+
+struct Options {
+  std::vector<std::string> files;
+  std::string family = "36h11";
+  std::string channel = "grey";
+  std::string camera;
+  double size_m = 0;
+  double decimate = vision::MarkerDetectorConfig{}.decimate;
+  double min_margin = vision::MarkerDetectorConfig{}.min_margin;
+  std::string overlay;
+  bool json = false;
+};
+
+void tell(const std::vector<vision::MarkerFrame>& frames) {
+  for (const vision::MarkerFrame& frame : frames) {
+    for (const vision::MarkerInFrame& found : frame.markers) {
+      const vision::DetectedMarker& marker = found.marker;
+      print("%s frame %lld: id %d at %.2f %.2f, margin %.0f", frame.source.c_str(), static_cast<long long>(frame.frame), marker.id,
+            marker.centre_px.x(), marker.centre_px.y(), marker.margin);
+      if (found.pose) {
+        const Vec3 t = found.pose->camera_from_tag.translation();
+        print(", %.4f %.4f %.4f m", t.x(), t.y(), t.z());
+      }
+      print("\n");
+    }
+  }
+}
+
+int markers(const Options& options) {
+  vision::MarkerFilesOptions asked;
+  asked.detector.family = options.family;
+  asked.detector.decimate = options.decimate;
+  asked.detector.min_margin = options.min_margin;
+  asked.channel = vision::channel_from_name(options.channel);
+  asked.size_m = options.size_m;
+  asked.overlay_path = options.overlay;
+  if (!options.camera.empty() && options.size_m <= 0) throw InputError("--camera needs --size-m, the side of the markers' black square");
+  if (options.camera.empty() && options.size_m > 0) throw InputError("--size-m needs --camera, a calibration file");
+  if (!options.camera.empty()) asked.camera = vision::read_camera_calibration(options.camera);
+  const std::vector<vision::MarkerFrame> frames = vision::find_markers_in_files(options.files, asked);
+  if (options.json) {
+    print("%s\n", vision::marker_frames_json(frames).c_str());
+  } else {
+    tell(frames);
+    std::size_t found = 0;
+    for (const vision::MarkerFrame& frame : frames) found += frame.markers.size();
+    print("%s in %s\n", count_of(found, "marker").c_str(), count_of(frames.size(), "frame").c_str());
+  }
+  return done;
+}
+
+}  // namespace
+
+void add_markers(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand("markers", "AprilTag markers in images and videos");
+  auto options = std::make_shared<Options>();
+  command->add_option("FILE", options->files, "Images or videos")->required();
+  command->add_option("--family", options->family, "36h11, 25h9, 16h5 ...")->capture_default_str();
+  command->add_option("--channel", options->channel, "grey, red, green or blue")->capture_default_str();
+  command->add_option("--camera", options->camera, "Calibration (YAML of OpenCV or ROS): gives poses; needs --size-m");
+  command->add_option("--size-m", options->size_m, "Side of the black square, m")->check(CLI::Range(1e-4, 100.0));
+  command->add_option("--decimate", options->decimate, "Search on an image so many times smaller")->capture_default_str();
+  command->add_option("--margin", options->min_margin, "Smallest decision margin")->capture_default_str();
+  command->add_option("--overlay", options->overlay, "Write the first frame with a marker to this PNG, markers drawn in");
+  command->add_flag("--json", options->json, "Print JSON");
+  command->callback([options, &action] { action = [options] { return markers(*options); }; });
+}
+
+}  // namespace lf::app

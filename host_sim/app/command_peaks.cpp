@@ -1,0 +1,136 @@
+#include <algorithm>
+#include <bit>
+#include <memory>
+#include <optional>
+
+#include "firmware/scan/peaks.hpp"
+#include "hal/vision/image_file.hpp"
+#include "host_sim/app/command.hpp"
+#include "host_sim/app/deep_image.hpp"
+#include "host_sim/record/file_sink.hpp"
+#include "host_sim/record/png.hpp"
+#include "shared/input_error.hpp"
+
+namespace lf::app {
+
+namespace {
+
+struct Options {
+  std::string image, off, axis = "column", channel = "grey", overlay;
+  bool csv = false, json = false;
+};
+
+struct Found {
+  std::vector<scan::Peak> peaks;
+  scan::PeakCounters counters;
+};
+
+template <class Pixel>
+Found detect(const scan::PixelView<Pixel>& image, const scan::PixelView<Pixel>& off, const scan::PeakConfig& config) {
+  using Detector = scan::BasicPeakDetector<Pixel, 4096>;
+  const auto detector = std::make_unique<Detector>(config);
+  Found found;
+  found.peaks.resize(static_cast<std::size_t>(std::max(image.width, image.height)));
+  found.peaks.resize(detector->detect(image, off, found.peaks));
+  found.counters = detector->counters();
+  return found;
+}
+
+// 2^n - 1 for the bits that the image uses, 8 at least: cameras of 10, 12 and 14 bits store their pixels in 16.
+std::int32_t full_scale(const std::vector<std::uint16_t>& pixels) {
+  const std::uint16_t highest = *std::max_element(pixels.begin(), pixels.end());
+  const int bits = std::max(8, (std::bit_width(highest) + 1) / 2 * 2);
+  return (1 << bits) - 1;
+}
+
+Found detect(const DeepImage& image, const std::optional<DeepImage>& off, scan::PeakConfig config) {
+  if (!image.deep) {
+    const scan::PixelView<std::uint8_t> on(image.pixels8.data(), image.width, image.height, image.width);
+    return detect<std::uint8_t>(
+        on, off ? scan::PixelView<std::uint8_t>(off->pixels8.data(), off->width, off->height, off->width) : scan::PixelView<std::uint8_t>(),
+        config);
+  }
+  config.full_scale = full_scale(image.pixels16);
+  config.min_contrast *= static_cast<float>(config.full_scale) / 255.0f;
+  const scan::PixelView<std::uint16_t> on(image.pixels16.data(), image.width, image.height, image.width);
+  return detect<std::uint16_t>(
+      on,
+      off ? scan::PixelView<std::uint16_t>(off->pixels16.data(), off->width, off->height, off->width) : scan::PixelView<std::uint16_t>(),
+      config);
+}
+
+void check_sizes(const Options& options, const DeepImage& image, const std::optional<DeepImage>& off) {
+  constexpr std::int32_t longest = scan::LargePeakDetector::max_length;
+  constexpr std::int32_t shortest = scan::LargePeakDetector::min_length;
+  const std::int32_t length = options.axis == "column" ? image.height : image.width;
+  if (length > longest || length < shortest) {
+    throw InputError(options.image + ": " + std::to_string(length) + " pixels a " + options.axis + ", peaks takes " +
+                     std::to_string(shortest) + " to " + std::to_string(longest));
+  }
+  if (!off) return;
+  if (off->width != image.width || off->height != image.height) throw InputError(options.off + ": not of the size of " + options.image);
+  if (off->deep != image.deep) throw InputError(options.off + ": not of the depth of " + options.image);
+}
+
+void write_overlay(const Options& options, const Found& found) {
+  const vision::GreyImage grey = vision::read_image_file(options.image, vision::channel_from_name(options.channel));
+  std::vector<record::PixelPoint> points;
+  for (const scan::Peak& peak : found.peaks) points.push_back({peak.u_px, peak.v_px});
+  const std::vector<std::uint8_t> png = record::encode_png(record::overlay_peaks(grey.view(), points));
+  record::write_file_atomically(options.overlay, {reinterpret_cast<const char*>(png.data()), png.size()});
+}
+
+void tell(const Options& options, const DeepImage& image, const Found& found) {
+  if (options.json) {
+    Json peaks = Json::array();
+    for (const scan::Peak& peak : found.peaks)
+      peaks.push_back({{"u", peak.u_px}, {"v", peak.v_px}, {"amplitude", peak.amplitude}, {"ratio", peak.ratio}});
+    print_json(
+        {{"width", image.width},
+         {"height", image.height},
+         {"peaks", peaks},
+         {"rejected", {{"weak", found.counters.weak}, {"saturated", found.counters.saturated}, {"ambiguous", found.counters.ambiguous}}}});
+  } else if (options.csv) {
+    print("u,v,amplitude,ratio\n");
+    for (const scan::Peak& peak : found.peaks) {
+      print("%.4f,%.4f,%.2f,%.4f\n", double(peak.u_px), double(peak.v_px), double(peak.amplitude), double(peak.ratio));
+    }
+  } else {
+    print("%s in %d %ss; refused: %llu weak, %llu saturated, %llu ambiguous\n", count_of(found.peaks.size(), "peak").c_str(),
+          options.axis == "column" ? image.width : image.height, options.axis.c_str(), static_cast<unsigned long long>(found.counters.weak),
+          static_cast<unsigned long long>(found.counters.saturated), static_cast<unsigned long long>(found.counters.ambiguous));
+  }
+}
+
+int peaks(const Options& options) {
+  const vision::Channel channel = vision::channel_from_name(options.channel);
+  const DeepImage image = read_deep_image(options.image, channel);
+  std::optional<DeepImage> off;
+  if (!options.off.empty()) off = read_deep_image(options.off, channel);
+  check_sizes(options, image, off);
+  scan::PeakConfig config;
+  config.axis = options.axis == "column" ? scan::PeakAxis::column : scan::PeakAxis::row;
+  const Found found = detect(image, off, config);
+  if (!options.overlay.empty()) write_overlay(options, found);
+  tell(options, image, found);
+  return done;
+}
+
+}  // namespace
+
+void add_peaks(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand("peaks", "Sub-pixel peaks of a laser stripe in an image");
+  auto options = std::make_shared<Options>();
+  command->add_option("IMAGE", options->image, "PNG, JPEG and what OpenCV reads, 8 or 16 bits")->required();
+  command->add_option("--off", options->off, "The same scene without the laser: is subtracted");
+  command->add_option("--axis", options->axis, "One peak in each column or row")
+      ->check(CLI::IsMember({"column", "row"}))
+      ->capture_default_str();
+  command->add_option("--channel", options->channel, "grey, red, green or blue")->capture_default_str();
+  command->add_option("--overlay", options->overlay, "Write the image with its peaks in red to this PNG");
+  CLI::Option* csv = command->add_flag("--csv", options->csv, "Print CSV");
+  command->add_flag("--json", options->json, "Print JSON")->excludes(csv);
+  command->callback([options, &action] { action = [options] { return peaks(*options); }; });
+}
+
+}  // namespace lf::app

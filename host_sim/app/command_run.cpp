@@ -1,0 +1,115 @@
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <thread>
+
+#include "host_sim/app/command.hpp"
+#include "host_sim/app/interrupt.hpp"
+#include "host_sim/app/run_session.hpp"
+#include "shared/input_error.hpp"
+
+namespace lf::app {
+
+namespace {
+
+struct Options {
+  std::string scenario = "default";
+  std::uint64_t seed = 1;
+  std::vector<std::string> set;
+  std::string out;
+  bool realtime = false;
+  int render_threads = 0;
+  bool json = false;
+};
+
+// One thread steps the world, the rest render.
+int default_render_threads() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
+
+std::string shell_word(const std::string& text) {
+  if (!text.empty() &&
+      text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=,:+") == std::string::npos)
+    return text;
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+std::string command_of(const Options& options) {
+  std::string command = "lanternfish run " + shell_word(options.scenario) + " --seed " + std::to_string(options.seed);
+  for (const std::string& set : options.set) command += " --set " + shell_word(set);
+  return command;
+}
+
+void tell_error(const char* name, double value, const char* unit) {
+  if (std::isfinite(value)) print("  %-32s %8.3f %s\n", name, value, unit);
+}
+
+void tell(const record::RunResult& result, const std::string& folder) {
+  for (const record::TaskRecord& task : result.tasks) {
+    if (task.task == "turn_valve") {
+      print("turn valve to %.1f deg: %s, it stands at %.2f deg\n", task.target_deg, task.done ? "done" : "NOT DONE", task.reached_deg);
+    } else {
+      print("press %s button: %s\n", task.button.c_str(), task.done ? "done" : "NOT DONE");
+    }
+  }
+  print("errors against the truth:\n");
+  tell_error("plane, normal", result.errors.plane_normal_deg, "deg");
+  tell_error("plane, offset", result.errors.plane_offset_mm, "mm");
+  tell_error("valve's base", result.errors.valve_base_mm, "mm");
+  tell_error("handle's angle", result.errors.handle_angle_deg, "deg");
+  tell_error("cloud to its plane, rms", result.errors.cloud_rms_mm, "mm");
+  tell_error("cloud to the true surface, p95", result.errors.cloud_truth_p95_mm, "mm");
+  tell_error("peaks, rms", result.errors.peak_rms_px, "px");
+  tell_error("peaks, recall", result.errors.peak_recall, "");
+  print("%.1f s simulated in %.1f s, %.1f x real time\n", result.time.simulated_s, result.time.wall_s, result.time.real_time_factor);
+  if (result.success) {
+    print("SUCCESS\n");
+  } else {
+    print("FAILED in %s: %s\n", result.failure->phase.c_str(), result.failure->reason.c_str());
+  }
+  if (!folder.empty()) print("report: %s/report.html\n", folder.c_str());
+}
+
+int run(const Options& options) {
+  RunRequest request;
+  request.scenario = scenario::load_scenario(options.scenario, options.set);
+  request.seed = options.seed;
+  request.realtime = options.realtime;
+  request.render_threads = options.render_threads > 0 ? options.render_threads : default_render_threads();
+  request.out = options.out.empty() ? "runs/" + request.scenario.name + "-" + std::to_string(options.seed) : options.out;
+  request.command = command_of(options);
+  if (isatty(STDERR_FILENO) != 0) {
+    request.say = [](const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); };
+  }
+  catch_interrupts();
+  const RunOutcome outcome = run_mission(request);
+  if (options.json) {
+    print("%s", record::result_json(outcome.result).c_str());
+  } else {
+    tell(outcome.result, request.out.string());
+  }
+  if (!outcome.write_error.empty()) throw EnvironmentError(outcome.write_error + "; what was recorded before is kept");
+  if (outcome.interrupted && !outcome.result.success) return exit_interrupted;
+  return outcome.result.success ? done : failed;
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand("run", "Run a mission in the simulator and leave a folder with its report");
+  auto options = std::make_shared<Options>();
+  command->add_option("SCENARIO", options->scenario, "A file or a shipped name (`lanternfish scenarios`)")->capture_default_str();
+  command->add_option("--seed", options->seed, "Draws everything random")->capture_default_str();
+  command->add_option("--set", options->set, "path.to.key=value: change the scenario")->allow_extra_args(false);
+  command->add_option("--out", options->out, "The run's folder (default runs/SCENARIO-SEED)");
+  command->add_flag("--realtime", options->realtime, "No faster than the clock on the wall");
+  command->add_option("--render-threads", options->render_threads, "Threads that render (default: all; the result is the same)")
+      ->check(CLI::Range(1, 256));
+  command->add_flag("--json", options->json, "Print result.json");
+  command->callback([options, &action] { action = [options] { return run(*options); }; });
+}
+
+}  // namespace lf::app

@@ -1,0 +1,64 @@
+#include <memory>
+
+#include "host_sim/app/command.hpp"
+#include "host_sim/scenario/describe.hpp"
+#include "host_sim/scenario/scenario.hpp"
+
+namespace lf::app {
+
+namespace {
+
+struct Options {
+  std::string name;
+  std::vector<std::string> set;
+  bool json = false;
+  bool schema = false;
+  bool keys = false;
+};
+
+int list(bool json) {
+  Json all = Json::array();
+  for (const scenario::ShippedScenario& shipped : scenario::shipped_scenarios()) {
+    if (json) {
+      all.push_back({{"name", shipped.name}, {"description", shipped.description}, {"file", shipped.file}});
+    } else {
+      print("%-14s %s\n", shipped.name.c_str(), shipped.description.c_str());
+    }
+  }
+  if (json) print_json(all);
+  return done;
+}
+
+int scenarios(const Options& options) {
+  if (options.schema) {
+    print("%s", scenario::json_schema().c_str());
+  } else if (options.keys) {
+    print("%s", scenario::keys_markdown().c_str());
+  } else if (options.name.empty()) {
+    return list(options.json);
+  } else {
+    const scenario::Scenario shown = scenario::load_scenario(options.name, options.set);
+    if (options.json) {
+      print_json(
+          {{"name", shown.name}, {"description", shown.description}, {"file", shown.file}, {"yaml", scenario::scenario_yaml(shown)}});
+    } else {
+      print("%s", scenario::scenario_yaml(shown).c_str());
+    }
+  }
+  return done;
+}
+
+}  // namespace
+
+void add_scenarios(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand("scenarios", "List the shipped scenarios, or print one with every key spelled out");
+  auto options = std::make_shared<Options>();
+  command->add_option("SCENARIO", options->name, "A file or a shipped name: checked, and printed with every key");
+  command->add_option("--set", options->set, "path.to.key=value, as for run")->allow_extra_args(false);
+  command->add_flag("--schema", options->schema, "Print the JSON Schema of scenario files");
+  command->add_flag("--keys", options->keys, "Print the table of all keys (Markdown)");
+  command->add_flag("--json", options->json, "Print JSON");
+  command->callback([options, &action] { action = [options] { return scenarios(*options); }; });
+}
+
+}  // namespace lf::app

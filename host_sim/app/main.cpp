@@ -1,0 +1,88 @@
+// The `lanternfish` command: picks the sub-command and turns what it throws into one line and an exit status.
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "host_sim/app/command.hpp"
+#include "host_sim/record/file_sink.hpp"
+#include "host_sim/scenario/nearest.hpp"
+#include "shared/input_error.hpp"
+
+namespace lf::app {
+
+namespace {
+
+void add_commands(CLI::App& app, Action& action) {
+  add_run(app, action);
+  add_campaign(app, action);
+  add_scenarios(app, action);
+  add_reach(app, action);
+  add_peaks(app, action);
+  add_plane(app, action);
+  add_markers(app, action);
+  add_ik(app, action);
+  add_bench(app, action);
+  add_doctor(app, action);
+  add_version(app, action);
+}
+
+int complain(const char* message, int status) {
+  std::fprintf(stderr, "lanternfish: %s\n", message);
+  return status;
+}
+
+void refuse_unknown_command(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return;
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    if (command->get_name() == argv[1]) return;
+    names.push_back(command->get_name());
+  }
+  const std::string near = scenario::suggestion(argv[1], names);
+  throw InputError(std::string("no command '") + argv[1] + "'" + (near.empty() ? "; `lanternfish --help` lists them" : near));
+}
+
+int run_command(int argc, char** argv) {
+  CLI::App app{"Lanternfish: an underwater robot that works on panels, and the simulator it is proven in", "lanternfish"};
+  app.require_subcommand(1);
+  app.get_formatter()->column_width(34);
+  Action action;
+  add_commands(app, action);
+  try {
+    refuse_unknown_command(app, argc, argv);
+    if (argc < 2) {
+      std::fputs(app.help().c_str(), stderr);
+      return bad_input;
+    }
+    app.parse(argc, argv);
+    return action();
+  } catch (const CLI::Success& help) {  // --help and its like
+    return app.exit(help);
+  } catch (const CLI::ParseError& error) {
+    return complain(error.what(), bad_input);
+  }
+}
+
+}  // namespace
+
+}  // namespace lf::app
+
+int main(int argc, char** argv) {
+  std::signal(SIGPIPE, SIG_IGN);  // a reader that went away is a failed write, not a death
+  try {
+    return lf::app::run_command(argc, argv);
+  } catch (const lf::InputError& error) {
+    return lf::app::complain(error.what(), lf::app::bad_input);
+  } catch (const lf::app::EnvironmentError& error) {
+    return lf::app::complain(error.what(), lf::app::environment);
+  } catch (const lf::record::RecordError& error) {
+    return lf::app::complain(error.what(), lf::app::environment);
+  } catch (const std::bad_alloc&) {
+    return lf::app::complain("out of memory", lf::app::environment);
+  } catch (const std::exception& error) {
+    return lf::app::complain((std::string("unexpected: ") + error.what()).c_str(), lf::app::environment);
+  }
+}

@@ -1,0 +1,91 @@
+#include "host_sim/app/reach_survey.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "firmware/arm/collision.hpp"
+#include "firmware/arm/gripper.hpp"
+#include "host_sim/scenario/instance.hpp"
+
+namespace lf::app {
+
+namespace {
+
+// Everything of the panel but the handle and its stem: a pressing tool touches the rest on purpose.
+constexpr arm::PanelParts all_but_handle = arm::bit(arm::PanelPart::plate) | arm::bit(arm::PanelPart::marker_plate) |
+                                           arm::bit(arm::PanelPart::button_left) | arm::bit(arm::PanelPart::button_centre) |
+                                           arm::bit(arm::PanelPart::button_right);
+
+ReachTarget survey_target(const scenario::Scenario& scenario, const std::string& name, const Vec3& point_m, double tip_m, bool is_button,
+                          int draws) {
+  ReachTarget target;
+  target.name = name;
+  target.nominal = reach_of_tip(scenario.panel.nominal_base_from_panel(), point_m, tip_m);
+  target.handle_clearance_m = std::numeric_limits<double>::infinity();
+  target.draws = draws;
+  for (int seed = 1; seed <= draws; ++seed) {
+    const Pose base_from_panel = scenario::true_base_from_panel(scenario.panel, scenario::draw(scenario, static_cast<std::uint64_t>(seed)));
+    const arm::Reach reach = reach_of_tip(base_from_panel, point_m, tip_m);
+    if (reach.outcome != arm::IkOutcome::ok) continue;
+    ++target.reached;
+    target.worst_tilt_rad = std::max(target.worst_tilt_rad, reach.tilt_rad);
+    if (!is_button) continue;
+    const arm::Clearance clearance =
+        arm::clearance_to_panel(arm::link_capsules(reach.q_rad, arm::jaw_from_gap(0)), base_from_panel, scenario.panel, all_but_handle);
+    target.handle_clearance_m = std::min(target.handle_clearance_m, clearance.distance_m);
+  }
+  return target;
+}
+
+}  // namespace
+
+double closed_tip_m() { return arm::tip_beyond_tool_m(arm::jaw_from_gap(0)); }
+
+arm::Reach reach_of_tip(const Pose& base_from_panel, const Vec3& panel_point_m, double tip_m) {
+  arm::Reach reach = arm::reach(base_from_panel, panel_point_m);
+  // The approach turns by a few degrees as the point draws back by the tip's length: each round leaves a twentieth of the error.
+  for (int round = 0; round < 6 && tip_m > 0 && reach.outcome == arm::IkOutcome::ok; ++round) {
+    const Vec3 approach = base_from_panel.linear().transpose() * arm::approach_axis(reach.q_rad);
+    reach = arm::reach(base_from_panel, panel_point_m - tip_m * approach);
+  }
+  return reach;
+}
+
+double ReachGrid::area_m2(double limit_rad) const {
+  const auto within = std::count_if(tilt_rad.begin(), tilt_rad.end(), [limit_rad](float tilt) { return double(tilt) <= limit_rad; });
+  return static_cast<double>(within) * step_m * step_m;
+}
+
+ReachGrid survey_grid(const PanelLayout& layout, double height_m, double tip_m) {
+  ReachGrid grid;
+  grid.height_m = height_m;
+  const Vec2 size = layout.plate_max_m - layout.plate_min_m;
+  grid.columns = static_cast<int>(std::lround(size.x() / ReachGrid::step_m));
+  grid.rows = static_cast<int>(std::lround(size.y() / ReachGrid::step_m));
+  const Pose base_from_panel = layout.nominal_base_from_panel();
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.columns; ++column) {
+      const Vec3 point(layout.plate_min_m.x() + (column + 0.5) * ReachGrid::step_m,
+                       layout.plate_max_m.y() - (row + 0.5) * ReachGrid::step_m, height_m);
+      const arm::Reach reach = reach_of_tip(base_from_panel, point, tip_m);
+      grid.tilt_rad.push_back(reach.outcome == arm::IkOutcome::ok ? static_cast<float>(reach.tilt_rad)
+                                                                  : std::numeric_limits<float>::quiet_NaN());
+    }
+  }
+  return grid;
+}
+
+std::vector<ReachTarget> survey_targets(const scenario::Scenario& scenario, int draws) {
+  const PanelLayout& panel = scenario.panel;
+  const double tip_m = closed_tip_m();
+  static constexpr std::array<const char*, PanelLayout::button_count> names{"left button", "centre button", "right button"};
+  std::vector<ReachTarget> targets{survey_target(scenario, "valve", Vec3(0, 0, panel.handle_height_m), 0, false, draws)};
+  for (std::size_t i = 0; i < PanelLayout::button_count; ++i) {
+    const Vec3 cap(panel.buttons_m[i].x(), panel.buttons_m[i].y(), panel.button_height_m);
+    targets.push_back(survey_target(scenario, names[i], cap, tip_m, true, draws));
+  }
+  return targets;
+}
+
+}  // namespace lf::app

@@ -1,0 +1,138 @@
+#include "host_sim/app/run_result.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+namespace lf::app {
+
+namespace {
+
+constexpr std::array<const char*, 3> button_names{"left", "centre", "right"};
+constexpr double valve_accuracy_deg = 3.0;
+
+std::string formatted(const char* format, double a, double b = 0, double c = 0) {
+  char text[160];
+  std::snprintf(text, sizeof text, format, a, b, c);
+  return text;
+}
+
+std::string reason_of(const mission::Outcome& outcome) {
+  std::string reason = safety::name(outcome.fault);
+  if (outcome.fault == safety::Fault::step_failed) {
+    reason += std::string(": ") + name(static_cast<StepFailure>(outcome.code));
+  } else if (outcome.code != 0) {
+    reason += " (" + std::to_string(outcome.code) + ")";
+  }
+  return reason + ", in step " + mission::row(outcome.step).name;
+}
+
+}  // namespace
+
+std::optional<record::FailureRecord> failure_of(const Controller& controller, const world::World& world, const RunRecorder& recorder,
+                                                const scenario::Scenario& scenario, bool interrupted) {
+  const mission::Outcome& outcome = controller.mission().outcome();
+  if (outcome.ended && outcome.success) return std::nullopt;
+  if (outcome.ended) return record::FailureRecord{outcome.stage, reason_of(outcome)};
+  if (interrupted) return record::FailureRecord{recorder.stage(), "interrupted"};
+  return record::FailureRecord{recorder.stage(),
+                               formatted("not ended by the time limit of %.0f s, at %.1f s", scenario.time_limit_s, world.time_s())};
+}
+
+std::optional<record::FailureRecord> disagreement(const std::vector<record::TaskRecord>& tasks) {
+  for (const record::TaskRecord& task : tasks) {
+    if (task.done) continue;
+    if (task.task == "turn_valve") {
+      return record::FailureRecord{"turn_valve", formatted("the valve stands at %.1f deg instead of %.1f, against the core's account",
+                                                           task.reached_deg, task.target_deg)};
+    }
+    return record::FailureRecord{"press_buttons", "the " + task.button + " button did not click, against the core's account"};
+  }
+  return std::nullopt;
+}
+
+std::vector<record::TaskRecord> task_records(const Controller& controller, const world::World& world, const RunRecorder& recorder) {
+  std::vector<record::TaskRecord> records;
+  std::array<std::uint32_t, PanelLayout::button_count> wanted{};
+  TaskTruth now;
+  now.valve_rad = world.valve_angle_rad();
+  for (std::size_t i = 0; i < now.presses.size(); ++i) now.presses[i] = world.button(i).presses;
+  const auto& results = controller.mission().tasks();
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const mission::TaskResult& result = results[i];
+    const TaskTruth& truth = i < recorder.tasks().size() ? recorder.tasks()[i] : now;
+    record::TaskRecord task;
+    if (result.task.kind == mission::Task::Kind::turn_valve) {
+      task.task = "turn_valve";
+      task.target_deg = deg_from_rad(result.task.to_rad);
+      task.reached_deg = deg_from_rad(truth.valve_rad);
+      task.done = result.done && std::abs(task.reached_deg - task.target_deg) <= valve_accuracy_deg;
+    } else {
+      task.task = "press_button";
+      task.button = button_names[result.task.button];
+      task.presses = static_cast<int>(truth.presses[result.task.button]);
+      task.done = result.done && truth.presses[result.task.button] >= ++wanted[result.task.button];
+    }
+    records.push_back(task);
+  }
+  return records;
+}
+
+record::ErrorRecord score(const RunRecorder& recorder, const hal::SimConfig& truth) {
+  record::ErrorRecord errors;
+  errors.peak_rms_px = recorder.peaks().rms_px();
+  errors.peak_recall = recorder.peaks().recall();
+  if (!recorder.located()) return errors;
+  const Located& located = *recorder.located();
+  const Pose& base_from_panel = truth.world.base_from_panel;
+  const PlaneFit& fit = located.panel.fit;
+  errors.plane_normal_deg = plane_normal_error_deg(fit.plane, base_from_panel);
+  errors.plane_offset_mm = plane_offset_error_mm(fit.plane, base_from_panel, truth.world.layout);
+  errors.cloud_rms_mm = 1e3 * fit.rms_m;
+  errors.handle_angle_deg = handle_error_deg(located.handle_found_rad, located.handle_true_rad);
+  errors.valve_base_mm = 1e3 * (located.base_from_panel.translation() - base_from_panel.translation()).norm();
+  errors.cloud_truth_p95_mm = cloud_truth_p95_mm(located.cloud, truth.world.scene, located.poses);
+  return errors;
+}
+
+std::map<std::string, std::uint64_t> rejected_inputs(const Controller& controller, const ScanPipeline& pipeline,
+                                                     const hal::CoreRings& rings) {
+  std::map<std::string, std::uint64_t> all;
+  const canopen::NetworkStats stats = controller.network().stats();
+  for (std::size_t i = 0; i < canopen::refusal_count; ++i)
+    all[std::string("can: ") + canopen::name(static_cast<canopen::Refusal>(i))] = stats.refused[i];
+  all["controller"] = controller.rejected_inputs();
+  all["images unexpected"] = pipeline.stats().images_unexpected;
+  all["images refused"] = pipeline.stats().images_refused;
+  all["images missing"] = pipeline.stats().images_missing;
+  all["scan orders refused"] = pipeline.stats().commands_refused;
+  all["points overflowed"] = pipeline.stats().points_overflowed;
+  all["rings overflowed"] = rings.scan_commands.lost() + rings.scan_stats.lost();
+  return all;
+}
+
+std::vector<std::pair<std::string, std::string>> conditions(const scenario::Sample& s) {
+  const auto mm = [](const Vec3& v) { return formatted("%.1f, %.1f, %.1f mm", 1e3 * v.x(), 1e3 * v.y(), 1e3 * v.z()); };
+  const auto deg = [](const Vec3& v) {
+    return formatted("%.2f, %.2f, %.2f deg", deg_from_rad(v.x()), deg_from_rad(v.y()), deg_from_rad(v.z()));
+  };
+  return {
+      {"docking error, shift", mm(s.docking_shift_m)},
+      {"docking error, turn", deg(s.docking_turn_rad)},
+      {"valve's start angle", formatted("%.1f deg", deg_from_rad(s.valve_start_rad))},
+      {"friction torque", formatted("%.2f N m", s.valve_friction_nm)},
+      {"attenuation", formatted("%.2f per m", s.attenuation_per_m)},
+      {"camera noise", formatted("%.1f grey levels", s.camera_noise_grey)},
+      {"lamps", s.lamps_lit ? "on" : "off"},
+      {"camera's mounting error", formatted("%.2f mm, %.3f deg", 1e3 * s.camera_shift_m.norm(), deg_from_rad(s.camera_turn_rad.norm()))},
+      {"laser's mounting error", formatted("%.2f mm, %.3f deg", 1e3 * s.laser_shift_m.norm(), deg_from_rad(s.laser_turn_rad.norm()))}};
+}
+
+std::string contact_note(const world::UnintendedContact& contact) {
+  static constexpr std::array<const char*, scene::body_count> names{"vehicle", "slew",        "upper arm",     "forearm",
+                                                                    "wrist",   "finger a",    "finger b",      "panel",
+                                                                    "handle",  "left button", "centre button", "right button"};
+  return std::string("Unintended contact: ") + names[std::size_t(contact.a)] + " and " + names[std::size_t(contact.b)] +
+         formatted(" at %.2f s, up to %.0f N.", contact.first_s, contact.peak_force_n);
+}
+
+}  // namespace lf::app

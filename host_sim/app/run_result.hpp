@@ -1,0 +1,39 @@
+// What a finished run came to, gathered from the core's own account and from the truth.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "firmware/controller.hpp"
+#include "firmware/scan_pipeline.hpp"
+#include "hal/core_loop.hpp"
+#include "hal/sim/sim_config.hpp"
+#include "host_sim/app/run_recorder.hpp"
+#include "host_sim/record/result.hpp"
+#include "host_sim/scenario/draw.hpp"
+
+namespace lf::app {
+
+// Why the mission did not succeed by its own account; nothing when it did.
+std::optional<record::FailureRecord> failure_of(const Controller& controller, const world::World& world, const RunRecorder& recorder,
+                                                const scenario::Scenario& scenario, bool interrupted);
+// Where the truth contradicts a mission that believes it succeeded.
+std::optional<record::FailureRecord> disagreement(const std::vector<record::TaskRecord>& tasks);
+
+// Turns count as done when the core says so and the true angle is within 3 degrees of the target; presses when the button itself counted them.
+std::vector<record::TaskRecord> task_records(const Controller& controller, const world::World& world, const RunRecorder& recorder);
+
+record::ErrorRecord score(const RunRecorder& recorder, const hal::SimConfig& truth);
+
+std::map<std::string, std::uint64_t> rejected_inputs(const Controller& controller, const ScanPipeline& pipeline,
+                                                     const hal::CoreRings& rings);
+
+// The drawn quantities, for the report.
+std::vector<std::pair<std::string, std::string>> conditions(const scenario::Sample& sample);
+
+std::string contact_note(const world::UnintendedContact& contact);
+
+}  // namespace lf::app

@@ -1,0 +1,94 @@
+#include "host_sim/app/scoring.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace lf::app {
+
+namespace {
+
+constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
+
+// Signed distance to a box of half extents `half`, from outside positive.
+double box_distance(const Vec3& p, const Vec3& half) {
+  const Vec3 q = p.cwiseAbs() - half;
+  return q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0);
+}
+
+double cylinder_distance(const Vec3& p, double radius, double half_height) {
+  const Vec2 q(p.head<2>().norm() - radius, std::abs(p.z()) - half_height);
+  return q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0);
+}
+
+}  // namespace
+
+double plane_normal_error_deg(const Plane& found, const Pose& true_base_from_panel) {
+  const Vec3 normal = true_base_from_panel.linear().col(2);
+  return deg_from_rad(std::atan2(found.normal.cross(normal).norm(), std::abs(found.normal.dot(normal))));
+}
+
+double plane_offset_error_mm(const Plane& found, const Pose& true_base_from_panel, const PanelLayout& layout) {
+  const Vec2 centre = 0.5 * (layout.plate_min_m + layout.plate_max_m);
+  return 1e3 * std::abs(found.signed_distance_m(true_base_from_panel * Vec3(centre.x(), centre.y(), 0)));
+}
+
+double handle_error_deg(double found_rad, double true_rad) { return deg_from_rad(std::abs(wrap(found_rad - true_rad, pi / 2))); }
+
+double distance_to_surface_m(const Vec3& point_m, const scene::Shape& shape) {
+  const Vec3 p = shape.body_from_shape.inverse() * point_m;
+  switch (shape.kind) {
+    case scene::ShapeKind::box: return std::abs(box_distance(p, 0.5 * shape.size_m));
+    case scene::ShapeKind::cylinder: return std::abs(cylinder_distance(p, shape.size_m.x(), 0.5 * shape.size_m.z()));
+    default: return std::numeric_limits<double>::infinity();
+  }
+}
+
+double cloud_truth_p95_mm(std::span<const CloudPoint> cloud, const scene::Scene& scene, const scene::BodyPoses& poses) {
+  std::array<Pose, scene::body_count> body_from_base;
+  constexpr auto first = static_cast<std::size_t>(scene::BodyId::panel);
+  for (std::size_t body = first; body < scene::body_count; ++body) body_from_base[body] = poses[body].inverse();
+  std::vector<double> distances;
+  distances.reserve(cloud.size());
+  for (const CloudPoint& point : cloud) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t body = first; body < scene::body_count; ++body) {
+      const Vec3 p = body_from_base[body] * point.p_m.cast<double>();
+      for (const scene::Shape& shape : scene[body].shapes) nearest = std::min(nearest, distance_to_surface_m(p, shape));
+    }
+    distances.push_back(1e3 * nearest);
+  }
+  return percentile(std::move(distances), 0.95);
+}
+
+void PeakScore::add(const optics::Frame& truth, std::span<const scan::Peak> peaks) {
+  const auto width = static_cast<std::size_t>(truth.width);
+  if (truth.stripe_v.size() < width || truth.stripe_grey.size() < width) return;
+  std::vector<float> detected(width, std::numeric_limits<float>::quiet_NaN());
+  for (const scan::Peak& peak : peaks) {
+    const auto column = static_cast<std::size_t>(std::lround(peak.u_px));
+    if (column < width) detected[column] = peak.v_px;
+  }
+  for (std::size_t u = 0; u < width; ++u) {
+    if (!std::isfinite(truth.stripe_v[u]) || !(truth.stripe_grey[u] >= visible_grey)) continue;
+    ++visible_;
+    const double error = double(detected[u]) - double(truth.stripe_v[u]);
+    if (!(std::abs(error) <= match_px)) continue;
+    ++matched_;
+    squares_ += error * error;
+  }
+}
+
+double PeakScore::rms_px() const { return matched_ > 0 ? std::sqrt(squares_ / static_cast<double>(matched_)) : not_known; }
+
+double PeakScore::recall() const { return visible_ > 0 ? static_cast<double>(matched_) / static_cast<double>(visible_) : not_known; }
+
+double percentile(std::vector<double> values, double share) {
+  if (values.empty()) return not_known;
+  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
+  const auto index = std::min(values.size() - 1, rank > 0 ? rank - 1 : 0);
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(index), values.end());
+  return values[index];
+}
+
+}  // namespace lf::app

@@ -1,0 +1,50 @@
+// How well the core saw, against the simulator's truth. Nothing of it goes back into the core.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "firmware/scan/peaks.hpp"
+#include "host_sim/optics/optics.hpp"
+#include "shared/geometry/pose.hpp"
+#include "shared/messages/panel_vision.hpp"
+#include "shared/panel/panel_layout.hpp"
+#include "shared/scene/scene.hpp"
+
+namespace lf::app {
+
+// Angle between the normals, deg, whichever way they point.
+double plane_normal_error_deg(const Plane& found, const Pose& true_base_from_panel);
+// Distance of the true plate's centre from the found plane, mm.
+double plane_offset_error_mm(const Plane& found, const Pose& true_base_from_panel, const PanelLayout& layout);
+// Of a bar, which is the same after half a turn: -90 to 90 deg, absolute.
+double handle_error_deg(double found_rad, double true_rad);
+
+// Distance of a point from a shape's surface, both in the body's frame; boxes and cylinders, infinity for others.
+double distance_to_surface_m(const Vec3& point_m, const scene::Shape& shape);
+// 95th percentile of the distances of the points from the nearest surface of panel, handle and buttons, mm. NaN without points.
+double cloud_truth_p95_mm(std::span<const CloudPoint> cloud, const scene::Scene& scene, const scene::BodyPoses& poses);
+
+// Detected peaks against the stripe as it was rendered, over all frames of a run.
+class PeakScore {
+ public:
+  // A column counts as seen when the stripe stands at least so high over the background; less is under three times the worst noise of 3 grey levels.
+  static constexpr float visible_grey = 10.0f;
+  // Farther off than this a peak is another thing than the stripe, and its column is missed.
+  static constexpr double match_px = 2.0;
+
+  void add(const optics::Frame& truth, std::span<const scan::Peak> peaks);
+  double rms_px() const;  // of matched peaks; NaN without any
+  double recall() const;  // matched over visible columns; NaN without any
+  std::uint64_t visible() const { return visible_; }
+
+ private:
+  std::uint64_t visible_ = 0, matched_ = 0;
+  double squares_ = 0;
+};
+
+// Nearest-rank percentile, NaN without values.
+double percentile(std::vector<double> values, double share);
+
+}  // namespace lf::app

@@ -1,0 +1,130 @@
+// What a user gets wrong: one clear line on stderr, the right exit status, no crash.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "tests/unit/app/program.hpp"
+
+namespace lf::app {
+
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+class BadInput : public Program {
+ protected:
+  void expect_refused(const std::string& arguments, const std::string& why, int status = 2) const {
+    SCOPED_TRACE(arguments);
+    const Said said = run(arguments);
+    EXPECT_EQ(said.status, status) << said.err;
+    EXPECT_THAT(said.err, StartsWith("lanternfish: "));
+    EXPECT_THAT(said.err, HasSubstr(why));
+    EXPECT_EQ(std::count(said.err.begin(), said.err.end(), '\n'), 1) << said.err;
+    EXPECT_EQ(said.out, "");
+  }
+};
+
+TEST_F(BadInput, UnknownCommandsAndOptions) {
+  expect_refused("rnu", "no command 'rnu'; did you mean 'run'?");
+  expect_refused("hydraulics", "no command 'hydraulics'");
+  expect_refused("plane --no-such-option x.pcd", "--no-such-option");
+  expect_refused("plane", "CLOUD is required");
+  expect_refused("ik --x 0.3 --y 0", "--z is required");
+  expect_refused("ik --x far --y 0 --z 0", "--x");
+  expect_refused("ik --x nan --y 0 --z 0.5", "finite");
+  expect_refused("run --seed -1", "--seed");
+  expect_refused("run --render-threads 0", "--render-threads");
+}
+
+TEST_F(BadInput, ScenariosThatAreNotWhatTheyShouldBe) {
+  file("misspelt.yaml", "valve:\n  fricton_nm: 2\n");
+  expect_refused("run ./misspelt.yaml", "./misspelt.yaml:2: unknown key 'valve.fricton_nm'; did you mean 'friction_nm'?");
+  expect_refused("run defualt", "no scenario 'defualt'; did you mean 'default'?");
+  expect_refused("run ./missing.yaml", "./missing.yaml: No such file");
+  expect_refused("run --set valve.start_deg=left", "'valve.start_deg' takes a number");
+  expect_refused("run --set water.attenuation_per_m=9", "out of its range 0 to 5");
+  expect_refused("run --set camera.noise_grey=.nan", "must be a finite number");
+  expect_refused("campaign ./misspelt.yaml --seeds 1-2", "./misspelt.yaml:2");
+  expect_refused("reach ./misspelt.yaml", "./misspelt.yaml:2");
+  expect_refused("scenarios ./misspelt.yaml", "./misspelt.yaml:2");
+}
+
+TEST_F(BadInput, JobsThatTheMachineCannotDo) {
+  expect_refused("run --set panel.handle_height_m=0.3 --set panel.ahead_m=0.3", "out of");
+  expect_refused("run --set camera.right_deg=-60", "out of the camera's view");
+  expect_refused("run --set arm.urdf=missing.urdf", "missing.urdf");
+  file("jointless.urdf", "<robot name=\"none\">\n</robot>\n");
+  expect_refused("run --set arm.urdf=" + (folder() / "jointless.urdf").string(), "jointless.urdf");
+}
+
+TEST_F(BadInput, ABadUrdfIsRefusedWithItsLine) {
+  std::string urdf = text_of(std::string(LANTERNFISH_SOURCE_DIR) + "/shared/arm/arm5e.urdf");
+  const std::size_t at = urdf.find("upper=\"0.5488\"");
+  ASSERT_NE(at, std::string::npos);
+  file("impossible.urdf", urdf.replace(at, 14, "upper=\"-9.000\""));
+  const Said said = run("run --set arm.urdf=" + (folder() / "impossible.urdf").string());
+  EXPECT_EQ(said.status, 2);
+  EXPECT_THAT(said.err, ::testing::ContainsRegex("impossible.urdf:[0-9]+: "));
+}
+
+TEST_F(BadInput, SeedsOfACampaign) {
+  for (const char* seeds : {"x", "3-1", "1-", "-3", "1-2-3", "1-99999999"})
+    expect_refused(std::string("campaign default --seeds=") + seeds, "--seeds");
+}
+
+TEST_F(BadInput, ImagesThatAreNone) {
+  file("text.png", "no image");
+  file("empty.png", "");
+  for (const char* command : {"peaks", "markers"}) {
+    expect_refused(std::string(command) + " missing.png", "missing.png");
+    expect_refused(std::string(command) + " text.png", "text.png");
+    expect_refused(std::string(command) + " empty.png", "empty.png");
+  }
+}
+
+TEST_F(BadInput, CloudsThatAreNone) {
+  file("cut.pcd",
+       "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 5\nHEIGHT 1\nPOINTS 5\nDATA ascii\n0 0 0\n1 0 "
+       "0\n");
+  file("words.csv", "x,y,z\n1,2,three\n");
+  file("cloud.txt", "1 2 3\n");
+  expect_refused("plane missing.pcd", "missing.pcd");
+  expect_refused("plane cut.pcd", "cut.pcd");
+  expect_refused("plane words.csv", "words.csv:2");
+  expect_refused("plane cloud.txt", "cloud.txt");
+}
+
+TEST_F(BadInput, CalibrationsThatAreNone) {
+  file("camera.yaml", "camera_matrix: {rows: 3, cols: 3, data: [1, 2]}\n");
+  expect_refused("markers x.png --camera camera.yaml --size-m 0.1", "camera.yaml");
+  expect_refused("markers x.png --camera camera.yaml", "--camera needs --size-m");
+  expect_refused("markers x.png --family 99h9", "99h9");
+  expect_refused("markers x.png --channel infrared", "infrared");
+}
+
+TEST_F(BadInput, FoldersThatCannotBeWritten) {
+  file("in_the_way", "");
+  expect_refused("run --out in_the_way/run", "in_the_way");
+  expect_refused("campaign default --seeds 1-2 --out in_the_way/c", "in_the_way");
+  expect_refused("reach --draws 1 --out in_the_way/reach.png", "in_the_way");
+}
+
+TEST_F(BadInput, AShareFolderWithoutScenarios) {
+  const Said said = run("scenarios", "LANTERNFISH_SHARE=/");
+  EXPECT_EQ(said.status, 2);
+  EXPECT_THAT(said.err, HasSubstr("LANTERNFISH_SHARE names this folder"));
+  EXPECT_EQ(run("doctor", "LANTERNFISH_SHARE=/").status, 3);
+}
+
+TEST_F(BadInput, AFullDiskBehindTheOutputIsNoCrash) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP();
+  const std::string command = "cd '" + folder().string() + "' && " LANTERNFISH_PROGRAM " scenarios default >/dev/full 2>.stderr";
+  const int status = std::system(command.c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 3);
+  EXPECT_THAT(text_of(folder() / ".stderr"), HasSubstr("No space left on device"));
+}
+
+}  // namespace
+
+}  // namespace lf::app

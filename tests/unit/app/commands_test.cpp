@@ -1,0 +1,125 @@
+// The sub-commands that stand alone, run as a user runs them.
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "host_sim/record/png.hpp"
+#include "tests/unit/app/program.hpp"
+
+namespace lf::app {
+
+namespace {
+
+using Json = nlohmann::json;
+
+class Commands : public Program {
+ protected:
+  Json json_of(const std::string& arguments, int status = 0) const {
+    const Said said = run(arguments + " --json");
+    EXPECT_EQ(said.status, status) << said.err;
+    return Json::parse(said.out);  // throws, and the test fails, when anything else is on stdout
+  }
+
+  // A Gaussian stripe of sigma 2 px at v = centre + slope u, over a grey of 20.
+  std::string stripe(const std::string& name, double centre, double slope) const {
+    std::vector<std::uint8_t> pixels(120 * 100);
+    for (int v = 0; v < 100; ++v) {
+      for (int u = 0; u < 120; ++u) {
+        const double off = (v - centre - slope * u) / 2.0;
+        pixels[static_cast<std::size_t>(v * 120 + u)] = static_cast<std::uint8_t>(std::lround(20 + 150 * std::exp(-0.5 * off * off)));
+      }
+    }
+    const std::vector<std::uint8_t> png = record::encode_png(ImageView{pixels.data(), 120, 100, 120});
+    return file(name, std::string(png.begin(), png.end()));
+  }
+};
+
+TEST_F(Commands, EveryCommandHasHelpAndHelpIsNoFailure) {
+  for (const char* command :
+       {"", "run", "campaign", "scenarios", "reach", "peaks", "plane", "markers", "ik", "bench", "doctor", "version"}) {
+    const Said said = run(std::string(command) + " --help");
+    EXPECT_EQ(said.status, 0) << command;
+    EXPECT_NE(said.out.find("--help"), std::string::npos) << command;
+    EXPECT_EQ(said.err, "") << command;
+  }
+}
+
+TEST_F(Commands, VersionAndScenariosTell) {
+  EXPECT_TRUE(json_of("version").contains("version"));
+  const Json scenarios = json_of("scenarios");
+  ASSERT_TRUE(scenarios.is_array());
+  EXPECT_GE(scenarios.size(), 7u);
+  EXPECT_EQ(run("scenarios hard_valve").status, 0);
+}
+
+TEST_F(Commands, DoctorFindsThisMachineFit) {
+  const Json doctor = json_of("doctor");
+  EXPECT_EQ(doctor["good"], true) << doctor.dump(2);
+}
+
+// Forward again by the published closed form: R = a0 + a1 cos b - a2 cos g + d sin g ... with the angles that ik gave.
+TEST_F(Commands, IkGivesJointsThatReachTheTarget) {
+  const Json ik = json_of("ik --x 0.34 --y 0 --z 0.592");
+  ASSERT_EQ(ik["reachable"], true);
+  const double shoulder = ik["joints_rad"]["shoulder"], elbow = ik["joints_rad"]["elbow"];
+  const double b = shoulder + 0.139277, g = b + elbow + 1.972222;
+  const double r = 0.08052 + 0.44278 * std::cos(b) - 0.083 * std::cos(g) + 0.49257 * std::sin(g);
+  const double z = 0.44278 * std::sin(b) - 0.083 * std::sin(g) - 0.49257 * std::cos(g);
+  EXPECT_NEAR(std::abs(r), 0.34, 1e-5) << "the arm is folded under: it looks the other way";
+  EXPECT_NEAR(z, 0.592, 1e-5);
+  const Json far = json_of("ik --x 2 --y 0 --z 0", 1);
+  EXPECT_EQ(far["reachable"], false);
+  EXPECT_TRUE(far.contains("reason"));
+}
+
+TEST_F(Commands, PeaksFindsAKnownStripe) {
+  const std::string image = stripe("stripe.png", 40.3, 0.1);
+  const Json found = json_of("peaks " + image + " --overlay overlay.png");
+  EXPECT_EQ(found["width"], 120);
+  EXPECT_EQ(found["height"], 100);
+  ASSERT_EQ(found["peaks"].size(), 120u);
+  for (const Json& peak : found["peaks"]) EXPECT_NEAR(double(peak["v"]), 40.3 + 0.1 * double(peak["u"]), 0.05);
+  EXPECT_TRUE(std::filesystem::exists(folder() / "overlay.png"));
+  const Said csv = run("peaks " + image + " --csv");
+  EXPECT_EQ(csv.out.substr(0, 22), "u,v,amplitude,ratio\n0.");
+}
+
+TEST_F(Commands, PeaksSubtractsTheImageWithoutTheLaser) {
+  const std::string image = stripe("stripe.png", 40, 0);
+  const Json found = json_of("peaks " + image + " --off " + image);
+  EXPECT_EQ(found["peaks"].size(), 0u) << "the same picture twice leaves nothing";
+}
+
+TEST_F(Commands, PlaneFitsAKnownPlane) {
+  std::string csv = "x,y,z\n";
+  for (int i = 0; i < 400; ++i) {
+    const double x = 0.05 * (i % 20), y = 0.05 * (i / 20);
+    csv += std::to_string(x) + "," + std::to_string(y) + "," + std::to_string(0.5 + 0.25 * x) + "\n";
+  }
+  const std::string cloud = file("plane.csv", csv);
+  const Json plane = json_of("plane " + cloud);
+  const double norm = std::sqrt(1 + 0.25 * 0.25);
+  EXPECT_NEAR(std::abs(double(plane["normal"][0])), 0.25 / norm, 1e-5);
+  EXPECT_NEAR(std::abs(double(plane["normal"][2])), 1 / norm, 1e-5);
+  EXPECT_NEAR(std::abs(double(plane["offset_m"])), 0.5 / norm, 1e-5);
+  EXPECT_EQ(plane["inliers"], 400);
+}
+
+TEST_F(Commands, APlaneThatIsNotThereIsAFailureNotAnError) {
+  const std::string cloud = file("two.csv", "x,y,z\n0,0,0\n1,1,1\n");
+  EXPECT_EQ(run("plane " + cloud).status, 1);
+}
+
+TEST_F(Commands, ReachDrawsAndHoldsTheLayoutToItsFigures) {
+  const Json reach = json_of("reach --out reach.png --draws 500");
+  EXPECT_GT(std::filesystem::file_size(folder() / "reach.png"), 10000u);
+  ASSERT_EQ(reach["targets"].size(), 4u);
+  for (const Json& target : reach["targets"]) {
+    EXPECT_EQ(target["reached"], 500) << target.dump();
+    EXPECT_LE(double(target["worst_tilt_deg"]), 20.0) << target.dump();
+    if (target.contains("handle_clearance_mm")) EXPECT_GE(double(target["handle_clearance_mm"]), 20.0) << target.dump();
+  }
+}
+
+}  // namespace
+
+}  // namespace lf::app

@@ -1,0 +1,66 @@
+#include "host_sim/app/scoring.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace lf::app {
+
+TEST(Scoring, PlaneErrorsAreThoseOfTheClosedForm) {
+  const PanelLayout layout;
+  const Pose truth = layout.nominal_base_from_panel();
+  Plane plane;
+  plane.normal = truth.linear().col(2);
+  plane.offset_m = -plane.normal.dot(truth.translation()) + 0.002;
+  EXPECT_NEAR(plane_normal_error_deg(plane, truth), 0, 1e-9);
+  EXPECT_NEAR(plane_offset_error_mm(plane, truth, layout), 2, 1e-9);
+  plane.normal = Eigen::AngleAxisd(rad_from_deg(0.1), truth.linear().col(0)) * plane.normal;
+  EXPECT_NEAR(plane_normal_error_deg(plane, truth), 0.1, 1e-9);
+  plane.normal = -plane.normal;
+  EXPECT_NEAR(plane_normal_error_deg(plane, truth), 0.1, 1e-9) << "either side";
+}
+
+TEST(Scoring, ABarIsTheSameAfterHalfATurn) {
+  EXPECT_NEAR(handle_error_deg(rad_from_deg(89), rad_from_deg(-89)), 2, 1e-9);
+  EXPECT_NEAR(handle_error_deg(rad_from_deg(10), rad_from_deg(190)), 0, 1e-9);
+  EXPECT_NEAR(handle_error_deg(rad_from_deg(-5), rad_from_deg(5)), 10, 1e-9);
+}
+
+TEST(Scoring, DistancesToBoxesAndCylinders) {
+  scene::Shape box;
+  box.kind = scene::ShapeKind::box;
+  box.size_m = Vec3(2, 4, 6);
+  EXPECT_NEAR(distance_to_surface_m(Vec3(2, 0, 0), box), 1, 1e-12);
+  EXPECT_NEAR(distance_to_surface_m(Vec3(0.75, 0, 0), box), 0.25, 1e-12) << "from inside";
+  EXPECT_NEAR(distance_to_surface_m(Vec3(4, 6, 0), box), 5, 1e-12) << "to an edge: 3, 4, 5";
+  scene::Shape cylinder;
+  cylinder.kind = scene::ShapeKind::cylinder;
+  cylinder.size_m = Vec3(1, 0, 2);
+  EXPECT_NEAR(distance_to_surface_m(Vec3(0, 3, 0), cylinder), 2, 1e-12);
+  EXPECT_NEAR(distance_to_surface_m(Vec3(4, 0, 5), cylinder), 5, 1e-12) << "to the rim";
+}
+
+TEST(Scoring, PeaksAreHeldAgainstTheRenderedStripe) {
+  optics::Frame frame;
+  frame.width = 4;
+  frame.height = 100;
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  frame.stripe_v = {50, 51, nan, 53};
+  frame.stripe_grey = {100, 100, 100, 3};  // the last is too faint to count
+  PeakScore score;
+  const scan::Peak peaks[] = {{0, 50.3f, 100, 0, 0}, {1, 80.0f, 100, 0, 0}, {2, 10.0f, 100, 0, 0}};
+  score.add(frame, peaks);
+  EXPECT_EQ(score.visible(), 2u);
+  EXPECT_NEAR(score.recall(), 0.5, 1e-12) << "29 px off is another thing";
+  EXPECT_NEAR(score.rms_px(), 0.3, 1e-6);
+}
+
+TEST(Scoring, PercentilesAreNearestRank) {
+  EXPECT_EQ(percentile({5, 1, 4, 2, 3}, 0.5), 3);
+  EXPECT_EQ(percentile({5, 1, 4, 2, 3}, 0.95), 5);
+  EXPECT_EQ(percentile({7}, 0.01), 7);
+  EXPECT_TRUE(std::isnan(percentile({}, 0.5)));
+}
+
+}  // namespace lf::app

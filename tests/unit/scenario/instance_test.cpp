@@ -1,0 +1,109 @@
+#include "host_sim/scenario/instance.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "host_sim/scenario/text_file.hpp"
+#include "tests/unit/scenario/scenario_file.hpp"
+
+namespace lf::scenario {
+
+namespace {
+
+std::string refusal(const Scenario& scenario) {
+  try {
+    (void)make_nominal(scenario, false);
+    return "";
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+}  // namespace
+
+TEST(Nominal, TheCameraLooksWhereItsAnglesSay) {
+  const Pose pose = base_from_camera(Camera());
+  EXPECT_LT((pose.linear().col(2) - Vec3(0.678, 0.257, 0.688)).norm(), 1e-3) << "the survey's axis";
+  EXPECT_NEAR(pose.linear().col(0).z(), 0, 1e-12) << "no roll";
+  EXPECT_NEAR((pose.linear() * pose.linear().transpose() - Mat3::Identity()).norm(), 0, 1e-12);
+  EXPECT_GT(pose.linear().determinant(), 0);
+}
+
+TEST(Nominal, EveryShippedScenarioCanBeRun) {
+  for (const ShippedScenario& shipped : shipped_scenarios()) EXPECT_EQ(refusal(load_scenario(shipped.name)), "") << shipped.name;
+}
+
+TEST(Nominal, DrivesAreSetUpWithinTheSafetyLimits) {
+  const Nominal nominal = make_nominal(load_scenario("default"), true);
+  std::size_t offender = 0;
+  EXPECT_EQ(canopen::check(nominal.controller.network, offender), canopen::ConfigError::none) << "drive " << offender;
+  EXPECT_TRUE(nominal.controller.mission.use_lamps);
+}
+
+TEST(Nominal, AnUnreachableValveIsRefusedWithTheLimitThatStopsIt) {
+  const std::string far = refusal(load_scenario("default", {"panel.ahead_m=1.15", "camera.position_m=[0.6, -0.245, 0.06]"}));
+  EXPECT_THAT(far, ::testing::HasSubstr("the valve is out of the arm's reach at its nominal place: "));
+  EXPECT_THAT(far, ::testing::HasSubstr(" by "));
+}
+
+TEST(Nominal, APanelOutOfViewIsRefused) {
+  EXPECT_THAT(refusal(load_scenario("default", {"camera.down_deg=-30"})), ::testing::HasSubstr("out of the camera's view"));
+  EXPECT_THAT(refusal(load_scenario("default", {"camera.right_deg=180"})), ::testing::HasSubstr("is behind the camera"));
+}
+
+TEST(Nominal, AMissingOrBadUrdfIsRefused) {
+  EXPECT_THAT(refusal(load_scenario("default", {"arm.urdf=no_such_arm.urdf"})), ::testing::HasSubstr("no_such_arm.urdf"));
+  const ScenarioFile urdf("<robot name=\"x\"/>\n", ".urdf");
+  EXPECT_THAT(refusal(load_scenario("default", {"arm.urdf=" + urdf.path()})), ::testing::HasSubstr(urdf.path()));
+}
+
+TEST(Truth, HasTheSamplesErrorsAndTheCoreHasNone) {
+  const Scenario scenario = load_scenario("default");
+  const Sample sample = draw(scenario, 3);
+  const Nominal nominal = make_nominal(scenario, sample.lamps_lit);
+  const hal::SimConfig truth = make_truth(scenario, sample, nominal, 1);
+  const Pose nominal_panel = nominal.controller.mission.layout.nominal_base_from_panel();
+  EXPECT_LT((truth.world.base_from_panel.translation() - nominal_panel.translation() - sample.docking_shift_m).norm(), 1e-12);
+  const double turn = Eigen::AngleAxisd(truth.world.base_from_panel.linear() * nominal_panel.linear().transpose()).angle();
+  EXPECT_NEAR(turn, sample.docking_turn_rad.norm(), 0.03 * sample.docking_turn_rad.norm() + 1e-9)
+      << "small turns about three axes nearly add up";
+  EXPECT_EQ(truth.world.valve.friction_nm, sample.valve_friction_nm);
+  EXPECT_EQ(truth.optics.water.attenuation_per_m, sample.attenuation_per_m);
+  const Pose camera_error = nominal.controller.camera.base_from_camera.inverse() * truth.optics.cameras[0].base_from_camera;
+  EXPECT_LT((camera_error.translation() - sample.camera_shift_m).norm(), 1e-12);
+  EXPECT_GT(sample.camera_shift_m.norm(), 1e-6) << "otherwise this test says nothing";
+}
+
+TEST(Truth, WithoutErrorsTheWorldIsAsTheCoreIsTold) {
+  const Scenario scenario =
+      load_scenario("default", {"docking.x_m=0", "docking.y_m=0", "docking.z_m=0", "docking.roll_deg=0", "docking.pitch_deg=0",
+                                "docking.yaw_deg=0", "mounting.camera_m=0", "mounting.camera_deg=0", "mounting.laser_m=0",
+                                "mounting.laser_deg=0", "mounting.joints_deg=0", "mounting.marker_m=0", "mounting.marker_deg=0"});
+  const Sample sample = draw(scenario, 1);
+  const Nominal nominal = make_nominal(scenario, false);
+  const hal::SimConfig truth = make_truth(scenario, sample, nominal, 1);
+  EXPECT_TRUE(truth.world.base_from_panel.isApprox(scenario.panel.nominal_base_from_panel(), 1e-15));
+  EXPECT_TRUE(truth.optics.cameras[0].base_from_camera.isApprox(nominal.controller.camera.base_from_camera, 1e-15));
+}
+
+// The laser as the simulator mounts it on the forearm, against the core's kinematics with the nominal calibration: two ways to one pose.
+TEST(Truth, TheLaserOnTheForearmIsWhereTheCoreThinksItIs) {
+  const Scenario scenario = load_scenario("default", {"mounting.laser_m=0", "mounting.laser_deg=0"});
+  const Nominal nominal = make_nominal(scenario, false);
+  const hal::SimConfig truth = make_truth(scenario, draw(scenario, 1), nominal, 1);
+  for (const arm::JointVector& q_rad : {arm::JointVector(0, 0.945, 2.095, 0), arm::JointVector(-0.3, 0.6, 1.2, 1.0)}) {
+    const Pose base_from_forearm = arm::base_from_links(q_rad, 0)[2];
+    const Pose base_from_laser = arm::base_from_laser(q_rad, nominal.controller.laser);
+    EXPECT_LT(((base_from_forearm * truth.optics.lasers[0].body_from_laser).matrix() - base_from_laser.matrix()).norm(), 1e-6);
+  }
+}
+
+TEST(Truth, FaultsReachTheirNodes) {
+  const Scenario scenario = load_scenario("drive_fault");
+  const hal::SimConfig truth = make_truth(scenario, draw(scenario, 1), make_nominal(scenario, false), 1);
+  ASSERT_EQ(truth.devices.faults.size(), 1u);
+  EXPECT_EQ(truth.devices.faults[0].node, can_map::drive_nodes[std::size_t(Joint::elbow)]);
+  EXPECT_EQ(truth.devices.faults[0].kind, devices::DeviceFaultKind::overcurrent);
+}
+
+}  // namespace lf::scenario

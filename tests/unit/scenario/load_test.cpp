@@ -1,0 +1,178 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/unit/scenario/scenario_file.hpp"
+
+namespace lf::scenario {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+TEST(Load, AnEmptyFileIsTheDefaults) {
+  const ScenarioFile file("# nothing\n");
+  const Scenario loaded = load_scenario(file.path());
+  const Scenario defaults;
+  EXPECT_EQ(loaded.valve.friction_nm, defaults.valve.friction_nm);
+  EXPECT_EQ(loaded.docking.x_m, (Spread{-0.020, 0.020}));
+  ASSERT_EQ(loaded.tasks.size(), 2u);
+  EXPECT_EQ(loaded.tasks[1].order, (std::vector<std::string>{"left", "centre", "right"}));
+}
+
+TEST(Load, ReadsNumbersSpreadsListsAndTasks) {
+  const ScenarioFile file(R"(
+description: a test
+valve: {start_deg: -12.5, friction_nm: {min: 1, max: 2}, detents_deg: [0, 45]}
+lamps: {lit: true}
+camera:
+  always_on: yes
+  exposure_us: 1500
+panel:
+  marker_centre_m: [-0.2, 0.1]
+tasks:
+  - press_buttons: {order: [right, right]}
+  - turn_valve: {to_deg: 45}
+faults:
+  - {at_s: 3, kind: silent, node: jaw}
+)");
+  const Scenario s = load_scenario(file.path());
+  EXPECT_EQ(s.description, "a test");
+  EXPECT_EQ(s.valve.start_deg, Spread::fixed(-12.5));
+  EXPECT_EQ(s.valve.friction_nm, (Spread{1, 2}));
+  EXPECT_EQ(s.valve.detents_deg, (std::vector<double>{0, 45}));
+  EXPECT_EQ(s.lamps.lit, Chance::yes);
+  EXPECT_TRUE(s.camera.always_on);
+  EXPECT_EQ(s.camera.exposure_us, 1500);
+  EXPECT_EQ(s.panel.marker_centre_m, Vec2(-0.2, 0.1));
+  ASSERT_EQ(s.tasks.size(), 2u);
+  EXPECT_EQ(s.tasks[0].kind, Task::Kind::press_buttons);
+  EXPECT_EQ(s.tasks[0].order, (std::vector<std::string>{"right", "right"}));
+  EXPECT_EQ(s.tasks[1].to_deg, 45);
+  ASSERT_EQ(s.faults.size(), 1u);
+  EXPECT_EQ(s.faults[0].node, "jaw");
+}
+
+struct BadText {
+  const char* name;
+  const char* text;
+  const char* complaint;
+};
+
+class Refused : public ::testing::TestWithParam<BadText> {};
+
+TEST_P(Refused, WithTheLineAndTheCause) { EXPECT_THAT(complaint(GetParam().text), StartsWith(GetParam().complaint)); }
+
+const BadText bad_texts[] = {
+    {"MisspeltKey", "valve:\n  start_dge: 3\n", ":2: unknown key 'valve.start_dge'; did you mean 'start_deg'?"},
+    {"MisspeltSection", "\nvavle:\n  start_deg: 3\n", ":2: unknown key 'vavle'; did you mean 'valve'?"},
+    {"KeyInTheWrongSection", "water:\n  friction_nm: 3\n", ":2: unknown key 'water.friction_nm'; did you mean 'valve.friction_nm'?"},
+    {"ForeignKey", "hydraulics: 3\n", ":1: unknown key 'hydraulics'"},
+    {"KeyTwice", "valve:\n  stop_max_deg: 100\n  stop_max_deg: 101\n", ":3: 'valve.stop_max_deg' is given twice"},
+    {"TextForNumber", "time_limit_s: soon\n", ":1: 'time_limit_s' takes a number, not 'soon'"},
+    {"QuotedNumber", "time_limit_s: \"100\"\n", ":1: 'time_limit_s' takes a number, not '100'"},
+    {"NumberWithUnit", "laser:\n  power_w: 0.1 W\n", ":2: 'laser.power_w' takes a number, not '0.1 W'"},
+    {"ListForNumber", "time_limit_s: [1]\n", ":1: 'time_limit_s' takes a number, not a list"},
+    {"NothingForNumber", "time_limit_s:\n", ":1: 'time_limit_s' takes a number, not nothing"},
+    {"NumberForSection", "valve: 3\n", ":1: 'valve' takes a group of keys, not '3'"},
+    {"FractionForWholeNumber", "camera: {exposure_us: 100.5}\n", ":1: 'camera.exposure_us' takes a whole number, not '100.5'"},
+    {"TextForSwitch", "camera: {always_on: maybe}\n", ":1: 'camera.always_on' takes true or false, not 'maybe'"},
+    {"TextForChance", "lamps: {lit: perhaps}\n", ":1: 'lamps.lit' takes true, false or either, not 'perhaps'"},
+    {"NotANumber", "valve: {friction_nm: .nan}\n", ":1: 'valve.friction_nm' must be a finite number, not .nan"},
+    {"BareNan", "valve: {friction_nm: nan}\n", ":1: 'valve.friction_nm' must be a finite number, not nan"},
+    {"Infinite", "valve: {friction_nm: {min: 0, max: .inf}}\n", ":1: 'valve.friction_nm.max' must be a finite number, not .inf"},
+    {"TooLargeToHold", "valve: {friction_nm: 1e999}\n", ":1: 'valve.friction_nm' must be a finite number"},
+    {"BelowItsRange", "valve: {friction_nm: -1}\n", ":1: 'valve.friction_nm' is -1, out of its range 0 to 20 N m"},
+    {"AboveItsRange", "water: {attenuation_per_m: {min: 0, max: 50}}\n",
+     ":1: 'water.attenuation_per_m.max' is 50, out of its range 0 to 5 1/m"},
+    {"SpreadUpsideDown", "valve:\n  friction_nm: {min: 3, max: 1}\n", ":2: 'valve.friction_nm' has its min above its max"},
+    {"SpreadWithoutMax", "valve: {friction_nm: {min: 3}}\n", ":1: 'valve.friction_nm' needs both min and max"},
+    {"SpreadMisspelt", "valve: {friction_nm: {min: 3, mx: 4}}\n", ":1: unknown key 'valve.friction_nm.mx'; did you mean 'max'?"},
+    {"ListTooShort", "panel: {marker_centre_m: [0.1]}\n", ":1: 'panel.marker_centre_m' takes a list of 2 numbers, not a list"},
+    {"UnknownTask", "tasks:\n  - turn_vale: {to_deg: 3}\n", ":2: unknown key 'tasks[0].turn_vale'; did you mean 'turn_valve'?"},
+    {"TaskWithoutArguments", "tasks:\n  - turn_valve\n", ":2: 'tasks[0]' takes one task, turn_valve or press_buttons, not 'turn_valve'"},
+    {"UnknownButton", "tasks:\n  - press_buttons: {order: [center]}\n",
+     ":2: 'tasks[0].press_buttons.order' has no 'center'; did you mean 'centre'?"},
+    {"NoButton", "tasks:\n  - press_buttons: {order: []}\n", ":2: 'tasks[0].press_buttons.order' names no button"},
+    {"NothingToDo", "tasks: []\n", ": 'tasks' is empty"},
+    {"TooMuchToDo",
+     "tasks: [press_buttons: {order: [left, left, left, left, left, left, left, left, left, left, left, left, left, left, left, left, "
+     "left]}]\n",
+     ": 'tasks' has 17 turns and presses; the core holds 16"},
+    {"TargetBeyondTheStop", "tasks: [turn_valve: {to_deg: 150}]\n", ": 'turn_valve.to_deg' lies beyond the valve's stops"},
+    {"UnknownFault", "faults:\n  - {at_s: 1, kind: silnet, node: jaw}\n", ":2: 'faults[0].kind' has no 'silnet'; did you mean 'silent'?"},
+    {"FaultWithoutNode", "faults: [{at_s: 1, kind: silent}]\n", ": 'faults': silent needs a node"},
+    {"FaultWithoutKind", "faults: [{at_s: 1}]\n", ":1: 'faults[0]' has no kind"},
+    {"NotYaml", "valve: {start_deg: 3\n", ":2: not YAML"},
+    {"TabIndented", "valve:\n\tstart_deg: 3\n", ":2: not YAML"},
+    {"AList", "- 1\n", ":1: a scenario is a group of keys"},
+    {"KeyThatIsAList", "[1]: 3\n", ":1: a key must be a word"},
+    {"StartBeyondTheStop", "valve: {start_deg: 120}\n", ": 'valve.start_deg' lies beyond the valve's stops"},
+    {"DistortionTooShort", "camera: {distortion: [0.1]}\n", ": 'camera.distortion' takes 5 numbers"},
+};
+INSTANTIATE_TEST_SUITE_P(Load, Refused, ::testing::ValuesIn(bad_texts), [](const auto& info) { return std::string(info.param.name); });
+
+TEST(Load, AnyTruncationOfAScenarioIsReadOrRefusedButNeverCrashes) {
+  const std::string whole =
+      "valve: {start_deg: {min: -3, max: 4}}\ntasks:\n  - press_buttons: {order: [left, right]}\nfaults: [{at_s: 1, kind: estop}]\n";
+  for (std::size_t length = 0; length <= whole.size(); ++length) {
+    SCOPED_TRACE(whole.substr(0, length));
+    const std::string said = complaint(whole.substr(0, length));
+    EXPECT_EQ(said.find('\n'), std::string::npos) << "one line";
+  }
+  EXPECT_EQ(complaint(whole), "");
+}
+
+TEST(Load, AMissingFileAFolderAndAForeignNameAreRefused) {
+  EXPECT_THROW(load_scenario("no/such/file.yaml"), InputError);
+  EXPECT_THROW(load_scenario("/"), InputError);
+  try {
+    load_scenario("defualt");
+    FAIL() << "taken";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "no scenario 'defualt'; did you mean 'default'?");
+  }
+}
+
+TEST(Load, BinaryRubbishIsRefused) {
+  EXPECT_NE(complaint(std::string("\x7f"
+                                  "ELF\0\0\1\2\xff\xfe",
+                                  10)),
+            "");
+}
+
+TEST(Override, ChangesOneKeyAndLeavesTheRest) {
+  const Scenario s =
+      load_scenario("default", {"valve.start_deg=10", "water.attenuation_per_m={min: 0.2, max: 0.3}", "camera.always_on=true"});
+  EXPECT_EQ(s.valve.start_deg, Spread::fixed(10));
+  EXPECT_EQ(s.water.attenuation_per_m, (Spread{0.2, 0.3}));
+  EXPECT_TRUE(s.camera.always_on);
+  EXPECT_EQ(s.valve.friction_nm, Scenario().valve.friction_nm);
+}
+
+TEST(Override, TheLastOneWinsAndListsAreReplacedWhole) {
+  const Scenario s = load_scenario("default", {"valve.start_deg=10", "valve.start_deg=20", "tasks=[turn_valve: {to_deg: 30}]"});
+  EXPECT_EQ(s.valve.start_deg, Spread::fixed(20));
+  ASSERT_EQ(s.tasks.size(), 1u);
+  EXPECT_EQ(s.tasks[0].to_deg, 30);
+}
+
+TEST(Override, IsCheckedAsTheFileIs) {
+  EXPECT_EQ(complaint("", {"valve.strat_deg=10"}), "--set valve.strat_deg=10: unknown key 'valve.strat_deg'; did you mean 'start_deg'?");
+  EXPECT_EQ(complaint("", {"valve.start_deg"}), "--set valve.start_deg: needs the form path.to.key=value");
+  EXPECT_EQ(complaint("", {"=3"}), "--set =3: needs the form path.to.key=value");
+  EXPECT_THAT(complaint("", {"valve.friction_nm=nan"}), HasSubstr("must be a finite number"));
+  EXPECT_THAT(complaint("", {"valve.friction_nm="}), HasSubstr("takes a number or {min: , max: }, not nothing"));
+  EXPECT_THAT(complaint("", {"valve.friction_nm={min: 1"}), HasSubstr("not YAML"));
+  EXPECT_THAT(complaint("", {"valve=3"}), HasSubstr("unknown key 'valve'"));
+}
+
+TEST(Shipped, EveryScenarioLoadsAndSaysWhatItIs) {
+  std::vector<std::string> names;
+  for (const ShippedScenario& shipped : shipped_scenarios()) {
+    EXPECT_GT(shipped.description.size(), 20u) << shipped.name;
+    names.push_back(shipped.name);
+  }
+  EXPECT_THAT(names,
+              ::testing::IsSupersetOf({"default", "clear_water", "turbid", "turn_only", "buttons_only", "hard_valve", "drive_fault"}));
+}
+
+}  // namespace lf::scenario

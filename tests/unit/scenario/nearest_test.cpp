@@ -1,0 +1,37 @@
+#include "host_sim/scenario/nearest.hpp"
+
+#include <gtest/gtest.h>
+
+namespace lf::scenario {
+
+TEST(Nearest, CountsEditsAsDamerauLevenshtein) {
+  EXPECT_EQ(edit_distance("", ""), 0);
+  EXPECT_EQ(edit_distance("abc", "abc"), 0);
+  EXPECT_EQ(edit_distance("abc", ""), 3);
+  EXPECT_EQ(edit_distance("friction", "fricton"), 1);
+  EXPECT_EQ(edit_distance("strat", "start"), 1);     // a swap is one edit
+  EXPECT_EQ(edit_distance("kitten", "sitting"), 3);  // the textbook's example
+  EXPECT_EQ(edit_distance("Valve", "valve"), 0);
+}
+
+TEST(Nearest, IsSymmetricAndObeysTheTriangleInequality) {
+  const std::vector<std::string> words{"", "a", "valve", "vavle", "lamps", "lamp", "friction_nm", "viscous_nm_s"};
+  for (const std::string& a : words) {
+    for (const std::string& b : words) {
+      EXPECT_EQ(edit_distance(a, b), edit_distance(b, a)) << a << " " << b;
+      for (const std::string& c : words)
+        EXPECT_LE(edit_distance(a, c), edit_distance(a, b) + edit_distance(b, c)) << a << " " << b << " " << c;
+    }
+  }
+}
+
+TEST(Nearest, SuggestsWhatWasProbablyMeantAndNothingElse) {
+  const std::vector<std::string> names{"valve", "water", "lamps", "camera", "laser"};
+  EXPECT_EQ(suggestion("vavle", names), "; did you mean 'valve'?");
+  EXPECT_EQ(suggestion("cammera", names), "; did you mean 'camera'?");
+  EXPECT_EQ(suggestion("lazer", names), "; did you mean 'laser'?");
+  EXPECT_EQ(suggestion("hydraulics", names), "");
+  EXPECT_EQ(suggestion("x", {}), "");
+}
+
+}  // namespace lf::scenario
