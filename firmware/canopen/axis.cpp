@@ -13,25 +13,17 @@ constexpr std::uint16_t mode_object = 0x6060;
 constexpr std::uint16_t mode_display_object = 0x6061;
 constexpr std::uint16_t word_of(Command command) { return static_cast<std::uint16_t>(command); }
 
-// The furthest a target may go in one cycle: the drive's top speed, rounded up, and a count for the caller's own rounding.
-std::int64_t step_limit(const DriveSetup& setup, Duration period) {
-  constexpr std::int64_t ns_per_s = 1'000'000'000;
-  return (static_cast<std::int64_t>(setup.max_speed_counts_s) * period.ns() + ns_per_s - 1) / ns_per_s + 1;
-}
+constexpr std::int64_t ns_per_s = 1'000'000'000;  // steps are budgeted in thousand-millionths of a count
 
 bool in_fault(DriveState state) { return state == DriveState::fault || state == DriveState::fault_reaction; }
 
 bool reached(DriveState state, DriveGoal goal) {
   switch (goal) {
-    case DriveGoal::disabled:
-      return state == DriveState::switch_on_disabled;
+    case DriveGoal::disabled: return state == DriveState::switch_on_disabled;
     case DriveGoal::enabled:
-    case DriveGoal::resumed:
-      return state == DriveState::operation_enabled;
-    case DriveGoal::quick_stop:
-      return state == DriveState::quick_stop_active || state == DriveState::switch_on_disabled || in_fault(state);
-    case DriveGoal::fault_reset:
-      return !in_fault(state);
+    case DriveGoal::resumed: return state == DriveState::operation_enabled;
+    case DriveGoal::quick_stop: return state == DriveState::quick_stop_active || state == DriveState::switch_on_disabled || in_fault(state);
+    case DriveGoal::fault_reset: return !in_fault(state);
   }
   return false;
 }
@@ -40,52 +32,32 @@ bool reached(DriveState state, DriveGoal goal) {
 
 const char* name(AxisState state) {
   switch (state) {
-    case AxisState::offline:
-      return "offline";
-    case AxisState::disabled:
-      return "disabled";
-    case AxisState::enabling:
-      return "enabling";
-    case AxisState::enabled:
-      return "enabled";
-    case AxisState::homing:
-      return "homing";
-    case AxisState::stopping:
-      return "stopping";
-    case AxisState::stopped:
-      return "stopped";
-    case AxisState::fault:
-      return "fault";
-    case AxisState::resetting:
-      return "resetting";
+    case AxisState::offline: return "offline";
+    case AxisState::disabled: return "disabled";
+    case AxisState::enabling: return "enabling";
+    case AxisState::enabled: return "enabled";
+    case AxisState::homing: return "homing";
+    case AxisState::stopping: return "stopping";
+    case AxisState::stopped: return "stopped";
+    case AxisState::fault: return "fault";
+    case AxisState::resetting: return "resetting";
   }
   return "unknown";
 }
 
 const char* name(AxisFault fault) {
   switch (fault) {
-    case AxisFault::none:
-      return "none";
-    case AxisFault::drive_fault:
-      return "drive reports a fault";
-    case AxisFault::following_error:
-      return "following error";
-    case AxisFault::stale:
-      return "no process data for three cycles";
-    case AxisFault::dropped_out:
-      return "drive left operation by itself";
-    case AxisFault::transition_timeout:
-      return "commanded state not reached";
-    case AxisFault::mode_refused:
-      return "mode of operation not accepted";
-    case AxisFault::homing_error:
-      return "homing error";
-    case AxisFault::homing_timeout:
-      return "homing took too long";
-    case AxisFault::reset_refused:
-      return "fault not cleared by reset";
-    case AxisFault::node_lost:
-      return "node lost";
+    case AxisFault::none: return "none";
+    case AxisFault::drive_fault: return "drive reports a fault";
+    case AxisFault::following_error: return "following error";
+    case AxisFault::stale: return "no process data for three cycles";
+    case AxisFault::dropped_out: return "drive left operation by itself";
+    case AxisFault::transition_timeout: return "commanded state not reached";
+    case AxisFault::mode_refused: return "mode of operation not accepted";
+    case AxisFault::homing_error: return "homing error";
+    case AxisFault::homing_timeout: return "homing took too long";
+    case AxisFault::reset_refused: return "fault not cleared by reset";
+    case AxisFault::node_lost: return "node lost";
   }
   return "unknown";
 }
@@ -94,7 +66,7 @@ Axis::Axis(const DriveSetup& setup, const NetworkConfig& config)
     : setup_(setup),
       sync_period_(config.sync_period),
       transition_timeout_(config.transition_timeout),
-      max_step_counts_(step_limit(setup, config.sync_period)) {}
+      step_income_(static_cast<std::int64_t>(setup.max_speed_counts_s) * config.sync_period.ns()) {}
 
 void Axis::request(AxisRequest request) {
   if (!online_) return;
@@ -122,16 +94,13 @@ AxisState Axis::state() const {
   if (fault_ != AxisFault::none) return AxisState::fault;
   const DriveState drive = drive_state();
   switch (request_) {
-    case AxisRequest::home:
-      return AxisState::homing;
+    case AxisRequest::home: return AxisState::homing;
     case AxisRequest::hold_enabled:
       return mode_settled() && drive == DriveState::operation_enabled && controlword_ == word_of(Command::enable_operation)
                  ? AxisState::enabled
                  : AxisState::enabling;
-    case AxisRequest::quick_stop:
-      return reached(drive, DriveGoal::quick_stop) ? AxisState::stopped : AxisState::stopping;
-    default:
-      return reached(drive, DriveGoal::disabled) || drive == DriveState::not_ready ? AxisState::disabled : AxisState::stopping;
+    case AxisRequest::quick_stop: return reached(drive, DriveGoal::quick_stop) ? AxisState::stopped : AxisState::stopping;
+    default: return reached(drive, DriveGoal::disabled) || drive == DriveState::not_ready ? AxisState::disabled : AxisState::stopping;
   }
 }
 
@@ -227,15 +196,12 @@ DriveGoal Axis::goal() const {
   if (request_ == AxisRequest::reset_fault) return DriveGoal::fault_reset;
   if (fault_ != AxisFault::none) return DriveGoal::quick_stop;
   switch (request_) {
-    case AxisRequest::quick_stop:
-      return DriveGoal::quick_stop;
+    case AxisRequest::quick_stop: return DriveGoal::quick_stop;
     case AxisRequest::hold_enabled:
       if (!mode_settled()) return DriveGoal::disabled;
       return setup_.quick_stop_option >= 5 ? DriveGoal::resumed : DriveGoal::enabled;
-    case AxisRequest::home:
-      return homing_ == HomingPhase::enable || homing_ == HomingPhase::run ? DriveGoal::enabled : DriveGoal::disabled;
-    default:
-      return DriveGoal::disabled;
+    case AxisRequest::home: return homing_ == HomingPhase::enable || homing_ == HomingPhase::run ? DriveGoal::enabled : DriveGoal::disabled;
+    default: return DriveGoal::disabled;
   }
 }
 
@@ -344,16 +310,14 @@ void Axis::step_homing(Time now) {
     case HomingPhase::enable:
       if (powered_and_commanded() && handshake_over()) homing_ = HomingPhase::run;
       return;
-    case HomingPhase::run:
-      return watch_homing();
+    case HomingPhase::run: return watch_homing();
     case HomingPhase::leave_mode:
       if (!mode_settled()) return;
       homing_ = HomingPhase::idle;
       homed_ = true;
       request_ = AxisRequest::disable;
       return;
-    case HomingPhase::idle:
-      return;
+    case HomingPhase::idle: return;
   }
 }
 
@@ -366,16 +330,21 @@ void Axis::watch_homing() {
   if (attained) homing_ = HomingPhase::leave_mode;
 }
 
-// Until the drive follows, the target is where it is: enabling never jumps.
+// Until the drive follows, the target is where it is: enabling never jumps. Then each cycle earns its share of the maximum speed to spend; one more count
+// may be saved, because coarse encoders take several cycles a count.
 void Axis::step_target() {
   if (!enabled()) {
     target_counts_ = wanted_counts_ = actual_counts_;
+    step_budget_ = 0;
     torque_offset_permille_ = 0;
     return;
   }
+  step_budget_ = std::min(step_budget_ + step_income_, step_income_ + ns_per_s);
+  const std::int64_t furthest = step_budget_ / ns_per_s;
   const std::int64_t wanted_step = static_cast<std::int64_t>(wanted_counts_) - target_counts_;
-  const std::int64_t step = std::clamp(wanted_step, -max_step_counts_, max_step_counts_);
+  const std::int64_t step = std::clamp(wanted_step, -furthest, furthest);
   if (step != wanted_step) ++stats_.targets_limited;
+  step_budget_ -= (step < 0 ? -step : step) * ns_per_s;
   target_counts_ = static_cast<std::int32_t>(target_counts_ + step);
 }
 

@@ -133,7 +133,8 @@ class Axis {
   DriveSetup setup_;
   Duration sync_period_;
   Duration transition_timeout_;
-  std::int64_t max_step_counts_ = 0;
+  std::int64_t step_income_ = 0;  // of a cycle, 1e-9 counts
+  std::int64_t step_budget_ = 0;
   AxisRequest request_ = AxisRequest::disable;
   AxisFault fault_ = AxisFault::none;
   bool online_ = false;

@@ -163,28 +163,17 @@ Number bus_value(V value, const BootContext& context) {
   std::int8_t exponent = 0;
   interpolation_period(context.config->sync_period, period, exponent);
   switch (value) {
-    case V::vendor:
-      return unless_zero(identity.vendor);
-    case V::product:
-      return unless_zero(identity.product);
-    case V::emcy_cob_id:
-      return cob_id::emcy + context.node;
-    case V::master_heartbeat:
-      return (std::uint32_t{can_map::master_node} << 16) | milliseconds(can_map::master_heartbeat_timeout);
-    case V::node_heartbeat:
-      return milliseconds(can_map::node_heartbeat);
-    case V::sync_period_us:
-      return static_cast<std::uint32_t>(context.config->sync_period.ns() / 1000);
-    case V::interpolation_value:
-      return period;
-    case V::interpolation_exponent:
-      return static_cast<std::uint8_t>(exponent);
-    case V::rpdo1_cob_id:
-      return cob_id::rpdo1 + context.node;
-    case V::tpdo1_cob_id:
-      return cob_id::pdo_no_remote | (cob_id::tpdo1 + context.node);
-    default:
-      return std::nullopt;
+    case V::vendor: return unless_zero(identity.vendor);
+    case V::product: return unless_zero(identity.product);
+    case V::emcy_cob_id: return cob_id::emcy + context.node;
+    case V::master_heartbeat: return (std::uint32_t{can_map::master_node} << 16) | milliseconds(can_map::master_heartbeat_timeout);
+    case V::node_heartbeat: return milliseconds(can_map::node_heartbeat);
+    case V::sync_period_us: return static_cast<std::uint32_t>(context.config->sync_period.ns() / 1000);
+    case V::interpolation_value: return period;
+    case V::interpolation_exponent: return static_cast<std::uint8_t>(exponent);
+    case V::rpdo1_cob_id: return cob_id::rpdo1 + context.node;
+    case V::tpdo1_cob_id: return cob_id::pdo_no_remote | (cob_id::tpdo1 + context.node);
+    default: return std::nullopt;
   }
 }
 
@@ -194,38 +183,22 @@ Number drive_value(V value, const DriveSetup& drive) {
   const bool homes = drive.homing_method != 0;
   const bool moves = homes && moves_to_home(drive);
   switch (value) {
-    case V::abort_option:
-      return static_cast<std::uint16_t>(drive.abort_option);
-    case V::quick_stop_option:
-      return static_cast<std::uint16_t>(drive.quick_stop_option);
-    case V::quick_stop_deceleration:
-      return unless_zero(drive.quick_stop_counts_s2);
-    case V::following_window:
-      return drive.following_window_counts;
-    case V::following_timeout:
-      return drive.following_timeout_ms;
-    case V::min_position:
-      return static_cast<std::uint32_t>(drive.min_counts);
-    case V::max_position:
-      return static_cast<std::uint32_t>(drive.max_counts);
-    case V::max_torque:
-      return drive.max_torque_permille;
-    case V::max_speed:
-      return drive.max_speed_counts_s;
-    case V::max_motor_speed:
-      return unless_zero(drive.max_motor_speed_rpm);
-    case V::homing_method:
-      return homes ? Number{static_cast<std::uint8_t>(drive.homing_method)} : Number{};
-    case V::homing_speed:
-      return moves ? Number{drive.homing_speed_counts_s} : Number{};
-    case V::homing_creep_speed:
-      return moves ? Number{(drive.homing_speed_counts_s + 3) / 4} : Number{};
-    case V::homing_acceleration:
-      return moves ? unless_zero(drive.homing_accel_counts_s2) : Number{};
-    case V::home_offset:
-      return homes ? Number{static_cast<std::uint32_t>(drive.home_offset_counts)} : Number{};
-    default:
-      return std::nullopt;
+    case V::abort_option: return static_cast<std::uint16_t>(drive.abort_option);
+    case V::quick_stop_option: return static_cast<std::uint16_t>(drive.quick_stop_option);
+    case V::quick_stop_deceleration: return unless_zero(drive.quick_stop_counts_s2);
+    case V::following_window: return drive.following_window_counts;
+    case V::following_timeout: return drive.following_timeout_ms;
+    case V::min_position: return static_cast<std::uint32_t>(drive.min_counts);
+    case V::max_position: return static_cast<std::uint32_t>(drive.max_counts);
+    case V::max_torque: return drive.max_torque_permille;
+    case V::max_speed: return drive.max_speed_counts_s;
+    case V::max_motor_speed: return unless_zero(drive.max_motor_speed_rpm);
+    case V::homing_method: return homes ? Number{static_cast<std::uint8_t>(drive.homing_method)} : Number{};
+    case V::homing_speed: return moves ? Number{drive.homing_speed_counts_s} : Number{};
+    case V::homing_creep_speed: return moves ? Number{(drive.homing_speed_counts_s + 3) / 4} : Number{};
+    case V::homing_acceleration: return moves ? unless_zero(drive.homing_accel_counts_s2) : Number{};
+    case V::home_offset: return homes ? Number{static_cast<std::uint32_t>(drive.home_offset_counts)} : Number{};
+    default: return std::nullopt;
   }
 }
 

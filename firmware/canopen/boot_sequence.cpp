@@ -105,17 +105,13 @@ void BootSequence::await(Time now, Phase again, Duration timeout, BootFailure fa
 
 void BootSequence::step(Time now, SdoClient& sdo, const BootContext& context) {
   switch (phase_) {
-    case Phase::await_boot_up:
-      return await(now, Phase::reset, boot_up_timeout_, BootFailure::no_boot_up);
-    case Phase::await_operational:
-      return await(now, Phase::start, start_timeout_, BootFailure::not_operational);
+    case Phase::await_boot_up: return await(now, Phase::reset, boot_up_timeout_, BootFailure::no_boot_up);
+    case Phase::await_operational: return await(now, Phase::start, start_timeout_, BootFailure::not_operational);
     case Phase::await_data:
       if (now >= deadline_) fail(BootFailure::no_process_data);
       return;
-    case Phase::configure:
-      break;
-    default:
-      return;
+    case Phase::configure: break;
+    default: return;
   }
   if (sdo.busy()) return;
   if (exchange_ != Exchange::next) take_result(sdo);

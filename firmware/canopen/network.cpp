@@ -11,30 +11,18 @@ namespace lf::canopen {
 
 const char* name(Refusal refusal) {
   switch (refusal) {
-    case Refusal::error_frame:
-      return "error frame";
-    case Refusal::not_classic:
-      return "extended or remote frame";
-    case Refusal::bad_length:
-      return "wrong length";
-    case Refusal::unknown_node:
-      return "unknown node";
-    case Refusal::unknown_id:
-      return "unknown identifier";
-    case Refusal::foreign_master:
-      return "another master";
-    case Refusal::pdo_too_short:
-      return "PDO too short";
-    case Refusal::pdo_too_long:
-      return "PDO too long";
-    case Refusal::pdo_unmapped:
-      return "PDO that was disabled";
-    case Refusal::pdo_before_start:
-      return "PDO of a node not started";
-    case Refusal::sdo_refused:
-      return "SDO answer nobody waits for";
-    case Refusal::heartbeat_state:
-      return "heartbeat with an unknown state";
+    case Refusal::error_frame: return "error frame";
+    case Refusal::not_classic: return "extended or remote frame";
+    case Refusal::bad_length: return "wrong length";
+    case Refusal::unknown_node: return "unknown node";
+    case Refusal::unknown_id: return "unknown identifier";
+    case Refusal::foreign_master: return "another master";
+    case Refusal::pdo_too_short: return "PDO too short";
+    case Refusal::pdo_too_long: return "PDO too long";
+    case Refusal::pdo_unmapped: return "PDO that was disabled";
+    case Refusal::pdo_before_start: return "PDO of a node not started";
+    case Refusal::sdo_refused: return "SDO answer nobody waits for";
+    case Refusal::heartbeat_state: return "heartbeat with an unknown state";
   }
   return "unknown";
 }
@@ -154,16 +142,11 @@ void Network::dispatch(const CanFrame& frame, Time now) {
   const std::optional<std::size_t> node = index_of(id);
   if (!node) return refuse(Refusal::unknown_node);
   switch (function) {
-    case cob_id::emcy:
-      return on_emcy(*node, frame, now);
-    case cob_id::tpdo1:
-      return on_tpdo(*node, frame);
-    case cob_id::sdo_answer:
-      return on_sdo(*node, frame, now);
-    case cob_id::heartbeat:
-      return on_heartbeat(*node, frame, now);
-    default:
-      return refuse(Refusal::pdo_unmapped);
+    case cob_id::emcy: return on_emcy(*node, frame, now);
+    case cob_id::tpdo1: return on_tpdo(*node, frame);
+    case cob_id::sdo_answer: return on_sdo(*node, frame, now);
+    case cob_id::heartbeat: return on_heartbeat(*node, frame, now);
+    default: return refuse(Refusal::pdo_unmapped);
   }
 }
 

@@ -113,18 +113,10 @@ bool SdoClient::on_frame(const CanFrame& frame, Time now) {
     return true;
   }
   switch (phase_) {
-    case Phase::upload_initiate:
-      on_upload_initiated(frame);
-      break;
-    case Phase::upload_segment:
-      on_upload_segment(frame);
-      break;
-    case Phase::download_initiate:
-      on_download_initiated(frame);
-      break;
-    case Phase::download_segment:
-      on_download_segment(frame);
-      break;
+    case Phase::upload_initiate: on_upload_initiated(frame); break;
+    case Phase::upload_segment: on_upload_segment(frame); break;
+    case Phase::download_initiate: on_download_initiated(frame); break;
+    case Phase::download_segment: on_download_segment(frame); break;
   }
   return true;
 }
@@ -201,14 +193,9 @@ bool SdoClient::poll(Time now, CanFrame& frame) {
 void SdoClient::make_request(CanFrame& frame) {
   const std::uint8_t toggle_bit = toggle_ ? 0x10 : 0x00;
   switch (phase_) {
-    case Phase::upload_initiate:
-      frame.data[0] = 0x40;
-      break;
-    case Phase::upload_segment:
-      frame.data[0] = static_cast<std::uint8_t>(0x60 | toggle_bit);
-      return;
-    case Phase::download_segment:
-      return make_download_segment(frame);
+    case Phase::upload_initiate: frame.data[0] = 0x40; break;
+    case Phase::upload_segment: frame.data[0] = static_cast<std::uint8_t>(0x60 | toggle_bit); return;
+    case Phase::download_segment: return make_download_segment(frame);
     case Phase::download_initiate:
       if (size_ <= 4) {
         frame.data[0] = static_cast<std::uint8_t>(0x23 | ((4 - size_) << 2));

@@ -4,26 +4,16 @@ namespace lf::canopen {
 
 const char* name(ConfigError error) {
   switch (error) {
-    case ConfigError::none:
-      return "none";
-    case ConfigError::node_id:
-      return "node id out of 1..126";
-    case ConfigError::node_twice:
-      return "node id used twice";
-    case ConfigError::position_limits:
-      return "minimum position not below maximum";
-    case ConfigError::speed:
-      return "maximum speed is zero";
-    case ConfigError::torque:
-      return "maximum torque is zero";
-    case ConfigError::following:
-      return "following error window is zero";
-    case ConfigError::homing:
-      return "homing without speed, acceleration or time-out";
-    case ConfigError::sync_period:
-      return "SYNC period does not fit object 60C2";
-    case ConfigError::timeout:
-      return "a time-out is not positive";
+    case ConfigError::none: return "none";
+    case ConfigError::node_id: return "node id out of 1..126";
+    case ConfigError::node_twice: return "node id used twice";
+    case ConfigError::position_limits: return "minimum position not below maximum";
+    case ConfigError::speed: return "maximum speed is zero";
+    case ConfigError::torque: return "maximum torque is zero";
+    case ConfigError::following: return "following error window is zero";
+    case ConfigError::homing: return "homing without speed, acceleration or time-out";
+    case ConfigError::sync_period: return "SYNC period does not fit object 60C2, or is over 100 ms";
+    case ConfigError::timeout: return "a time-out is not positive";
   }
   return "unknown";
 }
@@ -43,6 +33,9 @@ bool interpolation_period(Duration period, std::uint8_t& value, std::int8_t& exp
 }
 
 namespace {
+
+// Node heartbeats come every 100 ms and are watched once a SYNC.
+constexpr Duration longest_sync_period = Duration::from_ms(100);
 
 ConfigError check_drive(const DriveSetup& drive) {
   if (drive.min_counts >= drive.max_counts) return ConfigError::position_limits;
@@ -64,7 +57,8 @@ ConfigError check(const NetworkConfig& config, std::size_t& offender) {
   std::uint8_t value = 0;
   std::int8_t exponent = 0;
   offender = joint_count;
-  if (!interpolation_period(config.sync_period, value, exponent)) return ConfigError::sync_period;
+  if (!interpolation_period(config.sync_period, value, exponent) || config.sync_period > longest_sync_period)
+    return ConfigError::sync_period;
   const Duration shortest = config.sync_period;
   for (const Duration timeout : {config.sdo_timeout, config.boot_up_timeout, config.start_timeout, config.transition_timeout}) {
     if (timeout < shortest) return ConfigError::timeout;

@@ -117,6 +117,20 @@ TEST_F(AxisTest, FollowsTargetsNoFasterThanTheMaximumSpeed) {
   EXPECT_GT(axis().stats().targets_limited, 10u);
 }
 
+TEST_F(AxisTest, ACoarseEncodersTargetKeepsTheMaximumSpeedOnAverage) {
+  NetworkConfig coarse = config();
+  coarse.drives[0].max_speed_counts_s = 60;  // a count in four cycles
+  Bus slow(coarse);
+  ASSERT_TRUE(slow.boot());
+  Axis& a = slow.network.axis(Joint::slew);
+  a.request(AxisRequest::hold_enabled);
+  ASSERT_TRUE(slow.run_until([&a] { return a.enabled(); }, Duration::from_ms(500)));
+  const std::int32_t start = a.target_counts();
+  ASSERT_TRUE(a.set_target_counts(start + 1000));
+  slow.step(250);  // 1 s
+  EXPECT_NEAR(a.target_counts() - start, 60, 2);
+}
+
 TEST_F(AxisTest, TargetsOutsideTheLimitsOrWhileNotEnabledAreRefusedAndCounted) {
   EXPECT_FALSE(axis().set_target_counts(1000));
   ASSERT_TRUE(enable(axis()));

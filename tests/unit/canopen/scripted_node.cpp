@@ -272,25 +272,13 @@ void ScriptedNode::on_sdo(const CanFrame& request) {
 
 bool ScriptedNode::apply_trick(const CanFrame& request, CanFrame& answer) {
   switch (trick->what) {
-    case Trick::What::drop:
-      return false;
-    case Trick::What::abort:
-      answer = abort(u16_at(request, 1), request.data[3], trick->code);
-      return true;
-    case Trick::What::wrong_value:
-      answer.data[4] ^= 0x40;
-      return true;
-    case Trick::What::ignore_write:
-      return true;
-    case Trick::What::wrong_object:
-      answer.data[1] ^= 0x01;
-      return true;
-    case Trick::What::wrong_toggle:
-      answer.data[0] ^= 0x10;
-      return true;
-    case Trick::What::wrong_length:
-      answer.data[0] ^= 0x04;
-      return true;
+    case Trick::What::drop: return false;
+    case Trick::What::abort: answer = abort(u16_at(request, 1), request.data[3], trick->code); return true;
+    case Trick::What::wrong_value: answer.data[4] ^= 0x40; return true;
+    case Trick::What::ignore_write: return true;
+    case Trick::What::wrong_object: answer.data[1] ^= 0x01; return true;
+    case Trick::What::wrong_toggle: answer.data[0] ^= 0x10; return true;
+    case Trick::What::wrong_length: answer.data[0] ^= 0x04; return true;
   }
   return true;
 }
@@ -299,16 +287,11 @@ CanFrame ScriptedNode::answer_of(const CanFrame& request) {
   const std::uint16_t index = u16_at(request, 1);
   const std::uint8_t sub = request.data[3];
   switch (request.data[0] >> 5) {
-    case 0:
-      return download_segment(request);
-    case 1:
-      return initiate_download(request, index, sub);
-    case 2:
-      return initiate_upload(index, sub);
-    case 3:
-      return upload_segment(request);
-    default:
-      return abort(index, sub, 0x05040001);
+    case 0: return download_segment(request);
+    case 1: return initiate_download(request, index, sub);
+    case 2: return initiate_upload(index, sub);
+    case 3: return upload_segment(request);
+    default: return abort(index, sub, 0x05040001);
   }
 }
 

@@ -33,6 +33,7 @@ TEST(Setup, EachImpossibleNumberIsNamedWithItsNode) {
       {[](NetworkConfig& c) { c.drives[4].following_window_counts = 0; }, ConfigError::following, 4},
       {[](NetworkConfig& c) { c.drives[4].homing_method = -4; }, ConfigError::homing, 4},
       {[](NetworkConfig& c) { c.sync_period = Duration::from_ns(4'000'001); }, ConfigError::sync_period, joint_count},
+      {[](NetworkConfig& c) { c.sync_period = Duration::from_ms(200); }, ConfigError::sync_period, joint_count},
       {[](NetworkConfig& c) { c.sync_period = Duration{}; }, ConfigError::sync_period, joint_count},
       {[](NetworkConfig& c) { c.sdo_timeout = Duration{}; }, ConfigError::timeout, joint_count},
   };
