@@ -19,7 +19,7 @@ bool CanBus::send(std::uint8_t sender, const CanFrame& frame, Time now) {
     return false;
   }
   ++queued_[sender];
-  waiting_.push_back({frame, now, order_++, arbitration_key(frame), sender});
+  waiting_.push_back({frame, now, order_++, arbitration_key(frame), frame_bits(frame), sender});
   return true;
 }
 
@@ -42,7 +42,7 @@ bool CanBus::next(Time until, BusRecord& record) {
   while (!waiting_.empty()) {
     Time start;
     const std::size_t best = winner(start);
-    const std::uint32_t bits = frame_bits(waiting_[best].frame);
+    const std::uint32_t bits = waiting_[best].bits;
     const bool destroyed = errors_ && (attempts_ + 1) % destroyed_one_in == 0;
     const std::uint32_t on_wire = destroyed ? bits / 2 + error_frame_bits : bits;
     const Time end = start + time_of(on_wire);

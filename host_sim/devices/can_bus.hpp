@@ -43,6 +43,7 @@ class CanBus {
     Time since;
     std::uint64_t order = 0;
     std::uint32_t key = 0;
+    std::uint32_t bits = 0;
     std::uint8_t sender = 0;
   };
 

@@ -3,7 +3,7 @@
 // Outputs are on only while the node is operational: a lost heartbeat, an NMT stop or a reset switches them off, unless 6206 and 6207 hold one on
 // in the stopped state. The interlock gates the laser in
 // hardware: open, the laser is off whatever 6200 says, and 2101:01 shows it. A changed trigger counter is one exposure of 2100:02 microseconds; an
-// exposure of 0 is none.
+// exposure of 0 is none. After power-on the last counter is 0.
 #pragma once
 
 #include <cstdint>

@@ -44,16 +44,12 @@ enum class Mapping : std::uint8_t { none = 0, receive = 1, transmit = 2, both = 
 constexpr std::size_t size_of(Type type) {
   switch (type) {
     case Type::u8:
-    case Type::i8:
-      return 1;
+    case Type::i8: return 1;
     case Type::u16:
-    case Type::i16:
-      return 2;
+    case Type::i16: return 2;
     case Type::u32:
-    case Type::i32:
-      return 4;
-    case Type::text:
-      break;
+    case Type::i32: return 4;
+    case Type::text: break;
   }
   return 0;
 }

@@ -35,8 +35,8 @@ Abort check_mapping(ObjectDictionary& objects, const Object& parameter, std::int
   }
   if (value > static_cast<std::int64_t>(max_mapped)) return Abort::mapping_too_long;
   std::uint32_t bits = 0;
-  for (std::uint8_t sub = 1; sub <= value; ++sub) {
-    const auto entry = static_cast<std::uint32_t>(objects.at(parameter.index, sub).value);
+  for (std::int64_t i = 1; i <= value; ++i) {
+    const auto entry = static_cast<std::uint32_t>(objects.at(parameter.index, static_cast<std::uint8_t>(i)).value);
     const Abort code = check_entry(objects, entry, transmits(parameter.index));
     if (code != Abort::none) return code;
     bits += entry & 0xFF;
