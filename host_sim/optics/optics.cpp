@@ -51,8 +51,7 @@ struct Optics::Impl {
   void light(const Shot& shot, Shader& shader) const {
     if (shot.laser) {
       for (std::size_t i = 0; i < lasers.size(); ++i) {
-        shader.sheets.emplace_back(lasers[i], shot.poses[static_cast<std::size_t>(lasers[i].body)]);
-        shader.sheets.back().show(patterns[i]);
+        shader.sheets.emplace_back(lasers[i], shot.poses[static_cast<std::size_t>(lasers[i].body)], patterns[i]);
       }
     }
     if (shot.lamps) {

@@ -1,6 +1,7 @@
 // The passes that make one frame: a sample a pixel, sixteen where there is an edge, the sensor, and the ground truth. Each works on blocks of rows.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "host_sim/optics/sensor.hpp"
@@ -35,7 +36,7 @@ class RenderPass {
   // Depth and object of each pixel centre.
   void write_geometry(int block, const std::vector<std::uint16_t>& object_of_shape, Frame& frame) const;
 
-  // The stripes' true centres among this block's rows, as (column, v, height) triples for `laser`.
+  // The true centres of `laser`'s stripe among this block's rows.
   struct StripeCentre {
     std::int32_t u;
     float v, grey;

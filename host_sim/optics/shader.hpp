@@ -27,7 +27,7 @@ class Shader {
   // `haze_row` is the lamps' haze along the packet's row, from pixel `u` on in steps of `u_step`; nullptr without lamps.
   Sample sample(const RayPacket& rays, float footprint, float blur_px, const std::vector<float>* haze_row, float u, float u_step) const;
 
-  // Which lanes the laser's light reaches, nothing in between.
+  // Which of the wanted lanes see the light, nothing in between.
   LaneMask visible_from(const Lanes3& light, const SurfacePacket& surface, LaneMask wanted) const;
 
   const RayScene& scene() const { return scene_; }

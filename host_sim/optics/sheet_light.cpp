@@ -20,7 +20,7 @@ Lanes box_gaussian(Lanes offset, Lanes own_sigma, Lanes sigma, Lanes box) {
 
 }  // namespace
 
-SheetLight::SheetLight(const LaserConfig& config, const Pose& base_from_body)
+SheetLight::SheetLight(const LaserConfig& config, const Pose& base_from_body, const std::optional<PatternTable>& pattern)
     : tan_half_fan_(static_cast<float>(std::tan(config.fan_half_angle_rad))),
       w_per_rad_(static_cast<float>(config.power_w / (2 * config.fan_half_angle_rad))),
       waist_m_(static_cast<float>(config.waist_sigma_m)),
@@ -28,7 +28,8 @@ SheetLight::SheetLight(const LaserConfig& config, const Pose& base_from_body)
       tan_cone_(static_cast<float>(std::tan(config.cone_rad))),
       cos_cone_(static_cast<float>(std::cos(config.cone_rad))),
       power_w_(config.power_w),
-      band_(config.band) {
+      band_(config.band),
+      pattern_(pattern) {
   const Pose base_from_laser = base_from_body * config.body_from_laser;
   base_from_laser_ = Rotation(base_from_laser.linear());
   emitter_ = Lanes3(base_from_laser.translation());
@@ -40,13 +41,8 @@ Lanes SheetLight::fan_weight(Lanes y, Lanes z) const {
   return z > 1e-3f ? weight : Lanes{};
 }
 
-Lanes SheetLight::distance(const Lanes3& point) const {
-  const Lanes3 place = base_from_laser_.transposed_times(point - emitter_);
-  return (place.x - tan_cone_ * sqrt(place.y * place.y + place.z * place.z)) * cos_cone_;
-}
-
 StripePacket SheetLight::on_surface(const SurfacePacket& surface, const Water& water, float footprint, float blur_px) const {
-  if (pattern_ != nullptr && pattern_->has_value()) return picture(surface, water, footprint);
+  if (pattern_.has_value()) return picture(surface, water, footprint);
   return line(surface, water, footprint, blur_px);
 }
 
@@ -110,7 +106,7 @@ StripePacket SheetLight::line(const SurfacePacket& s, const Water& water, float 
 }
 
 StripePacket SheetLight::picture(const SurfacePacket& s, const Water& water, float footprint) const {
-  const PatternTable& table = **pattern_;
+  const PatternTable& table = *pattern_;
   const Pattern& g = table.geometry();
   const Lanes3 beam = s.point - emitter_;
   const Lanes3 place = base_from_laser_.transposed_times(beam);
@@ -137,7 +133,7 @@ StripePacket SheetLight::picture(const SurfacePacket& s, const Water& water, flo
 }
 
 void SheetLight::add_backscatter(const RayPacket& rays, Lanes range_m, const Water& water, RgbLanes& radiance) const {
-  if (pattern_ != nullptr && pattern_->has_value()) return;
+  if (pattern_.has_value()) return;
   const Lanes approach = dot(base_from_laser_.column_x, rays.direction);
   const Lanes safe = abs(approach) > 1e-4f ? approach : all_lanes(1e-4f);
   const Lanes t = -dot(base_from_laser_.column_x, rays.origin - emitter_) / safe;

@@ -23,7 +23,8 @@ struct StripePacket {
 
 class SheetLight {
  public:
-  SheetLight(const LaserConfig& config, const Pose& base_from_body);
+  // `pattern` (not owned, outlives this) takes the line's place where it has a value.
+  SheetLight(const LaserConfig& config, const Pose& base_from_body, const std::optional<PatternTable>& pattern);
 
   // `footprint`: side of the sample's square, px (1, or 1/4 for sub-samples).
   StripePacket on_surface(const SurfacePacket& surface, const Water& water, float footprint, float blur_px) const;
@@ -31,13 +32,9 @@ class SheetLight {
   // Radiance scattered into the camera where its rays cross the sheet before they have gone `range_m` (single scattering, the sheet thin).
   void add_backscatter(const RayPacket& rays, Lanes range_m, const Water& water, RgbLanes& radiance) const;
 
-  // Distance to the sheet (m) and whether a point lies within the fan.
-  Lanes distance(const Lanes3& point) const;
-
   const Lanes3& emitter() const { return emitter_; }
 
  private:
-  struct Place;  // of a point in the laser frame
   StripePacket line(const SurfacePacket& surface, const Water& water, float footprint, float blur_px) const;
   StripePacket picture(const SurfacePacket& surface, const Water& water, float footprint) const;
   Lanes fan_weight(Lanes y, Lanes z) const;
@@ -47,11 +44,7 @@ class SheetLight {
   float tan_half_fan_, w_per_rad_, waist_m_, divergence_rad_, tan_cone_, cos_cone_;
   double power_w_;
   Rgb band_;
-  const std::optional<PatternTable>* pattern_ = nullptr;
-
- public:
-  // The pattern's table is made once and outlives the frame's light.
-  void show(const std::optional<PatternTable>& table) { pattern_ = &table; }
+  const std::optional<PatternTable>& pattern_;
 };
 
 }  // namespace lf::optics

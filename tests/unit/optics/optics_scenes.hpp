@@ -86,7 +86,7 @@ struct Bench {
     look.set_poses(poses);
   }
   void add(const LaserConfig& laser, const scene::BodyPoses& poses = resting()) {
-    shader.sheets.emplace_back(laser, poses[static_cast<std::size_t>(laser.body)]);
+    shader.sheets.emplace_back(laser, poses[static_cast<std::size_t>(laser.body)], no_pattern);
   }
   void add(const LampConfig& lamp, const scene::BodyPoses& poses = resting()) {
     shader.lamps.emplace_back(lamp, poses[static_cast<std::size_t>(lamp.body)]);
@@ -97,6 +97,7 @@ struct Bench {
     return shader.sample(packet, 1.f, static_cast<float>(camera.blur_px), nullptr, 0, 0).radiance[1][0];
   }
 
+  std::optional<PatternTable> no_pattern;
   Water water;
   RayScene scene;
   SurfaceLook look;
