@@ -30,21 +30,11 @@ void ScanPipeline::on_command(const ScanCommand& command) {
       if (!joints_.add(command.joints)) ++stats_.commands_refused;
       add_points(false);
       return;
-    case ScanCommand::Kind::exposure:
-      expect(command);
-      return;
-    case ScanCommand::Kind::begin_sweep:
-      begin_sweep(command.sweep);
-      return;
-    case ScanCommand::Kind::end_sweep:
-      sweeping_ = false;
-      return;
-    case ScanCommand::Kind::analyse:
-      analyse(command.sweep);
-      return;
-    case ScanCommand::Kind::drop_exposure:
-      drop(command.exposure_start);
-      return;
+    case ScanCommand::Kind::exposure: expect(command); return;
+    case ScanCommand::Kind::begin_sweep: begin_sweep(command.sweep); return;
+    case ScanCommand::Kind::end_sweep: sweeping_ = false; return;
+    case ScanCommand::Kind::analyse: analyse(command.sweep); return;
+    case ScanCommand::Kind::drop_exposure: drop(command.exposure_start); return;
   }
   ++stats_.commands_refused;
 }
@@ -141,14 +131,9 @@ void ScanPipeline::on_image(std::uint8_t camera, const Image& image) {
       measure(image, exposure);
       add_points(false);
       return;
-    case ExposureKind::background:
-      store(image, exposure.start, background_);
-      return;
-    case ExposureKind::still:
-      store(image, exposure.start, still_);
-      return;
-    case ExposureKind::monitor:
-      return;
+    case ExposureKind::background: store(image, exposure.start, background_); return;
+    case ExposureKind::still: store(image, exposure.start, still_); return;
+    case ExposureKind::monitor: return;
   }
 }
 

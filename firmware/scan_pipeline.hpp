@@ -27,7 +27,7 @@ struct ScanConfig {
   CameraCalibration camera;
   LaserCalibration laser;
   std::uint8_t camera_index = 0;  // whose images are measured
-  scan::PeakConfig peaks;
+  scan::PeakConfig peaks{.peaks_per_line = 2};
   scan::Triangulator::Config triangulation;
   // 2.5 sigma holds 98.8 % of the panel's points, and at 0.5 mm rms leaves the marker's plate, 2 mm proud, out.
   scan::PlaneFitter::Config plane{.tight_sigmas = 2.5};
@@ -37,6 +37,7 @@ class ScanPipeline {
  public:
   static constexpr std::int32_t image_width = 640;
   static constexpr std::int32_t image_height = 480;
+  static constexpr std::size_t max_peaks = 2 * image_width;  // of an image: the panel and something proud in each column
 
   // The planes' normals point to the side of the camera, whatever `config.plane.toward_m` says.
   explicit ScanPipeline(const ScanConfig& config);
@@ -81,7 +82,7 @@ class ScanPipeline {
     Time start;
     Time mid_exposure;
     std::size_t count = 0;
-    std::array<scan::Peak, image_width> peaks{};
+    std::array<scan::Peak, max_peaks> peaks{};
   };
 
   static ImageView view(const StoredImage& image) { return {image.pixels.data(), image_width, image_height, image_width}; }
@@ -118,7 +119,7 @@ class ScanPipeline {
   PanelRequest request_;
   bool request_ready_ = false;
   ScanStats stats_;
-  std::array<scan::Peak, image_width> last_peaks_{};
+  std::array<scan::Peak, max_peaks> last_peaks_{};
   std::size_t last_peaks_count_ = 0;
   Time last_peaks_time_;
 };

@@ -71,15 +71,15 @@ std::size_t BasicPeakDetector<Pixel, MaxLength>::detect(const PixelView<Pixel>& 
   const bool columns = config_.axis == PeakAxis::column;
   const std::int32_t lines = columns ? image.width : image.height;
   const std::int32_t length = columns ? image.height : image.width;
-  if (length < min_length || length > max_length || peaks.size() < static_cast<std::size_t>(lines)) return 0;
+  if (length < min_length || length > max_length || peaks.size() < static_cast<std::size_t>(lines) * (config_.peaks_per_line > 1 ? 2u : 1u))
+    return 0;
 
   if (!background.valid()) off_block_ = {};
   std::size_t count = 0;
   for (std::int32_t first = 0; first < lines; first += strip) {
     const Strip s{image, background, first, std::min(strip, lines - first), length};
     sweep(s);
-    for (std::int32_t lane = 0; lane < s.lines; ++lane)
-      if (finish(s, lane, peaks[count])) ++count;
+    for (std::int32_t lane = 0; lane < s.lines; ++lane) count += finish(s, lane, peaks.subspan(count));
   }
   return count;
 }
@@ -141,34 +141,53 @@ void BasicPeakDetector<Pixel, MaxLength>::sweep(const Strip& s) {
   }
 }
 
-// From a lane's maxima to its peak; false, and counted, when there is no good one.
+// From a lane's maxima to its peaks; none, and counted, when there is no good one.
 template <class Pixel, std::int32_t MaxLength>
-bool BasicPeakDetector<Pixel, MaxLength>::finish(const Strip& s, std::int32_t lane, Peak& peak) {
+std::size_t BasicPeakDetector<Pixel, MaxLength>::finish(const Strip& s, std::int32_t lane, std::span<Peak> peaks) {
   const float response = static_cast<float>(best_[lane]);
   if (!(response >= config_.min_contrast * positive_lobe)) {
     ++counters_.weak;
-    return false;
+    return 0;
   }
-  const std::int32_t row = static_cast<std::int32_t>(best_row_[lane]), line = s.first + lane;
-  const Plateau plateau = find_plateau(s, line, row);
-  if (plateau.length > config_.max_clipped) {
+  std::array<Maximum, 2> maxima{maximum_at(s, lane, static_cast<std::int32_t>(best_row_[lane]), response)};
+  if (maxima[0].last - maxima[0].first - 2 * exclusion >= config_.max_clipped) {
     ++counters_.saturated;
-    return false;
+    return 0;
   }
+  // The second of all maxima is an upper bound: within a wide stripe it may be the same stripe's.
   float second = static_cast<float>(second_[lane]);
-  if (second > config_.max_ratio * response) second = second_response(lane, row, plateau, s.length);
-  if (second > config_.max_ratio * response) {
-    ++counters_.ambiguous;
-    return false;
+  const bool two = config_.peaks_per_line > 1;
+  const float doubtful = (two ? config_.min_second_ratio : config_.max_ratio) * response;
+  if (second > doubtful) {
+    maxima[1] = next_maximum(s, lane, std::span(maxima).first(1));
+    second = maxima[1].response;
   }
-  const float position = plateau.length > few_clipped ? plateau_centre(s, line, plateau) : response_peak(s, lane, row);
+  bool second_is_one = false;
+  if (two && second > doubtful && second >= config_.min_contrast * positive_lobe) {
+    const float third = next_maximum(s, lane, maxima).response;
+    second_is_one = third <= config_.max_ratio * second;
+  }
+  if (!second_is_one && second > config_.max_ratio * response) {
+    ++counters_.ambiguous;
+    return 0;
+  }
+  measure(s, lane, maxima[0], second / response, peaks[0]);
+  if (!second_is_one) return 1;
+  measure(s, lane, maxima[1], second / response, peaks[1]);
+  return 2;
+}
+
+template <class Pixel, std::int32_t MaxLength>
+void BasicPeakDetector<Pixel, MaxLength>::measure(const Strip& s, std::int32_t lane, const Maximum& maximum, float ratio, Peak& peak) {
+  const std::int32_t line = s.first + lane;
+  const Plateau plateau = find_plateau(s, line, maximum.row);
+  const float position = plateau.length > few_clipped ? plateau_centre(s, line, plateau) : response_peak(s, lane, maximum.row);
   peak.u_px = config_.axis == PeakAxis::column ? static_cast<float>(line) : position;
   peak.v_px = config_.axis == PeakAxis::column ? position : static_cast<float>(line);
-  peak.amplitude = amplitude(s, line, row);
-  peak.ratio = second / response;
+  peak.amplitude = amplitude(s, line, maximum.row);
+  peak.ratio = ratio;
   peak.clipped = static_cast<std::uint8_t>(std::min(plateau.length, 255));
   ++counters_.found;
-  return true;
 }
 
 // The vertex of the parabola through the response's maximum and its neighbours. A stripe found narrow is filtered again with the same spline at a
@@ -197,19 +216,30 @@ float BasicPeakDetector<Pixel, MaxLength>::response_peak(const Strip& s, std::in
   return static_cast<float>(middle) + vertex(narrow);
 }
 
-// The highest response further than `exclusion` from the peak: a wide stripe's noisy top has several maxima that are one stripe.
+// A wide stripe's noisy top has several maxima that are one stripe: those within `exclusion` of the peak, or of its plateau.
 template <class Pixel, std::int32_t MaxLength>
-float BasicPeakDetector<Pixel, MaxLength>::second_response(std::int32_t lane, std::int32_t peak_row, const Plateau& plateau,
-                                                           std::int32_t length) const {
-  const std::int32_t from = (plateau.length > 0 ? plateau.first : peak_row) - exclusion;
-  const std::int32_t to = (plateau.length > 0 ? plateau.first + plateau.length - 1 : peak_row) + exclusion;
-  Response second = 0;
-  for (std::int32_t row = 1; row < length - 1; ++row) {
-    if (row >= from && row <= to) continue;
+auto BasicPeakDetector<Pixel, MaxLength>::maximum_at(const Strip& s, std::int32_t lane, std::int32_t row, float response) const -> Maximum {
+  const Plateau plateau = find_plateau(s, s.first + lane, row);
+  const std::int32_t first = plateau.length > 0 ? plateau.first : row;
+  const std::int32_t last = plateau.length > 0 ? plateau.first + plateau.length - 1 : row;
+  return {row, response, first - exclusion, last + exclusion};
+}
+
+// The highest of the lane's maxima that belongs to none of the stripes `before`; of response 0 when there is none.
+template <class Pixel, std::int32_t MaxLength>
+auto BasicPeakDetector<Pixel, MaxLength>::next_maximum(const Strip& s, std::int32_t lane, std::span<const Maximum> before) const
+    -> Maximum {
+  Response highest = 0;
+  std::int32_t highest_row = 0;
+  for (std::int32_t row = 1; row < s.length - 1; ++row) {
     const Response r = response_[row][lane];
-    if (r > second && r >= response_[row - 1][lane] && r > response_[row + 1][lane]) second = r;
+    if (r <= highest || r < response_[row - 1][lane] || r <= response_[row + 1][lane]) continue;
+    const bool known = std::any_of(before.begin(), before.end(), [row](const Maximum& m) { return row >= m.first && row <= m.last; });
+    if (known) continue;
+    highest = r;
+    highest_row = row;
   }
-  return static_cast<float>(second);
+  return highest > 0 ? maximum_at(s, lane, highest_row, static_cast<float>(highest)) : Maximum{};
 }
 
 template <class Pixel, std::int32_t MaxLength>

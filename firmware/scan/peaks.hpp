@@ -1,4 +1,4 @@
-// Sub-pixel peaks of a laser stripe, at most one per image column (or row).
+// Sub-pixel peaks of a laser stripe, at most one per image column (or row), or two where something proud carries a piece of the stripe.
 //
 // The stripe lies on a sloped, scattering background, so the brightest pixel and the centre of mass are biased toward the background's bright side.
 // A zero-mean second-derivative filter does not see the background's offset and slope (Forest, Salvi, Cabruja, Pous, ICPR 2004, with the
@@ -57,7 +57,11 @@ struct PeakConfig {
   // Response over its positive lobe's sum, grey levels. Noise of 1 grey level in both images gives 0.8 rms, and 480 rows of it 2.4 at most;
   // at 3 levels 7. A column of mere noise that passes fails at `max_ratio`, since noise has many peaks alike.
   float min_contrast = 6.0f;
-  float max_ratio = 0.7f;         // of the second peak to the first
+  float max_ratio = 0.7f;  // of the second peak to the first
+  // 2: the second peak of a line is one of its own. A part that stands proud of a panel, seen from elsewhere than lit from, carries its piece of the
+  // stripe in front of columns that show the panel's piece as well. It is then the third peak that makes a line ambiguous.
+  std::int32_t peaks_per_line = 1;
+  float min_second_ratio = 0.2f;  // of a second peak to the first: reflections between parts of albedo 0.5 stay below a tenth
   std::int32_t max_clipped = 12;  // px at full scale; a wider plateau is no stripe
   std::int32_t full_scale = 255;  // grey level at which the sensor clips
 };
@@ -72,10 +76,11 @@ class BasicPeakDetector {
 
   explicit BasicPeakDetector(const Config& config = {}) : config_(config) {}
 
-  // Finds at most one peak in each column (row) of `image` less `background`, and writes them to `peaks` in the order of columns (rows).
+  // Finds at most `peaks_per_line` peaks in each column (row) of `image` less `background`, and writes them to `peaks` in the order of columns
+  // (rows), the stronger of two first.
   // `background`: the same scene with the laser off, the same size; an invalid (empty) view leaves the differencing out.
   // Returns the number written; columns without a good peak are counted in `counters()`. Writes nothing when the image is not valid, of
-  // another size than the background, shorter than `min_length`, longer than `max_length`, or when `peaks` has less than a place a column.
+  // another size than the background, shorter than `min_length`, longer than `max_length`, or when `peaks` has less than `peaks_per_line` places a column.
   // O(width * height), no allocation.
   std::size_t detect(const PixelView<Pixel>& image, const PixelView<Pixel>& background, std::span<Peak> peaks);
 
@@ -105,8 +110,16 @@ class BasicPeakDetector {
   void load_row(const Strip& s, std::int32_t row);
   void load_block(const PixelView<Pixel>& image, const Strip& s, std::int32_t begin, std::array<Lanes<Pixel>, strip>& block) const;
   void sweep(const Strip& s);
-  bool finish(const Strip& s, std::int32_t lane, Peak& peak);
-  float second_response(std::int32_t lane, std::int32_t peak_row, const Plateau& plateau, std::int32_t length) const;
+  struct Maximum {
+    std::int32_t row = 0;
+    float response = 0;
+    std::int32_t first = 0, last = 0;  // rows about it whose maxima are the same stripe's
+  };
+
+  std::size_t finish(const Strip& s, std::int32_t lane, std::span<Peak> peaks);
+  Maximum maximum_at(const Strip& s, std::int32_t lane, std::int32_t row, float response) const;
+  Maximum next_maximum(const Strip& s, std::int32_t lane, std::span<const Maximum> before) const;
+  void measure(const Strip& s, std::int32_t lane, const Maximum& maximum, float ratio, Peak& peak);
   float response_peak(const Strip& s, std::int32_t lane, std::int32_t row) const;
   std::int32_t pixel(const PixelView<Pixel>& image, std::int32_t line, std::int32_t row) const;
   std::int32_t difference(const Strip& s, std::int32_t line, std::int32_t row) const;

@@ -11,7 +11,7 @@ constexpr Albedo housing_black{0.06f, 0.06f, 0.07f};
 constexpr Albedo panel_grey{0.62f, 0.64f, 0.64f};
 constexpr Albedo frame_blue{0.10f, 0.22f, 0.38f};
 constexpr Albedo plate_white{0.85f, 0.85f, 0.85f};
-constexpr Albedo handle_orange{0.82f, 0.32f, 0.06f};
+constexpr Albedo handle_yellow{0.85f, 0.62f, 0.08f};
 constexpr Albedo stem_steel{0.45f, 0.46f, 0.48f};
 constexpr Albedo bezel_grey{0.25f, 0.26f, 0.28f};
 constexpr std::array<Albedo, PanelLayout::button_count> cap_colours{Albedo{0.72f, 0.09f, 0.08f}, Albedo{0.09f, 0.48f, 0.14f},
@@ -86,7 +86,7 @@ void add_panel(Body& panel, const PanelLayout& layout) {
 
 void add_handle(Body& handle, const PanelLayout& layout) {
   Shape bar = shape(ShapeKind::box, Vec3(layout.handle_thickness_m, layout.handle_length_m, layout.handle_thickness_m),
-                    at(0, 0, layout.handle_height_m), handle_orange);
+                    at(0, 0, layout.handle_height_m), handle_yellow);
   bar.friction = bar_friction;
   const double stem_length = layout.handle_height_m - 0.5 * layout.handle_thickness_m;
   handle.shapes.push_back(bar);
