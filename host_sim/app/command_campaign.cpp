@@ -165,18 +165,11 @@ class Campaign {
   std::map<std::uint64_t, record::RunResult> results_;
 };
 
-// Interrupts have to wake waitpid.
-void catch_interrupts_without_restart() {
-  catch_interrupts();
-  siginterrupt(SIGINT, 1);
-  siginterrupt(SIGTERM, 1);
-}
-
 int campaign(const Options& options) {
   const Seeds seeds = parse_seeds(options.seeds);
   const scenario::Scenario checked = scenario::load_scenario(options.scenario, options.set);
   const record::RunFolder folder(options.out.empty() ? fs::path("runs") / (checked.name + "-campaign") : fs::path(options.out));
-  catch_interrupts_without_restart();
+  catch_interrupts();
   const CampaignTable table = tabulate(Campaign(options, folder.path()).run(seeds));
   if (options.json) {
     Json json = json_of(table);

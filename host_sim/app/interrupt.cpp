@@ -8,16 +8,17 @@ namespace {
 
 volatile std::sig_atomic_t flag = 0;
 
-extern "C" void on_interrupt(int signal) {
-  flag = 1;
-  std::signal(signal, SIG_DFL);
-}
+extern "C" void on_interrupt(int) { flag = 1; }
 
 }  // namespace
 
+// Without SA_RESTART: an interrupt wakes a campaign that waits for its runs. Once only: the second one ends the program.
 void catch_interrupts() {
-  std::signal(SIGINT, on_interrupt);
-  std::signal(SIGTERM, on_interrupt);
+  struct sigaction action {};
+  action.sa_handler = on_interrupt;
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
 }
 
 bool interrupted() { return flag != 0; }
