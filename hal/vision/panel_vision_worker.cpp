@@ -1,3 +1,4 @@
+#include <atomic>
 #include <condition_variable>
 #include <mutex>
 #include <thread>
@@ -7,6 +8,17 @@
 #include "shared/messages/spsc_ring.hpp"
 
 namespace lf::vision {
+
+namespace {
+
+// Invalid where the size and the pixels do not go together.
+ImageView view_of(const PanelJob& job) {
+  const bool whole =
+      job.width > 0 && job.height > 0 && job.still.size() == static_cast<std::size_t>(job.width) * static_cast<std::size_t>(job.height);
+  return whole ? ImageView{job.still.data(), job.width, job.height, job.width} : ImageView{};
+}
+
+}  // namespace
 
 PanelJob PanelJob::copy(const PanelRequest& request, ImageView still, std::span<const CloudPoint> cloud) {
   PanelJob job;
@@ -42,7 +54,7 @@ struct PanelVisionWorker::Implementation {
       has_job = false;
       lock.unlock();
       bool failed = false;
-      const ImageView still{current.still.data(), current.width, current.height, current.width};
+      const ImageView still = view_of(current);
       const PanelResult result = analyse_panel(current.request, still, current.cloud, config, &failed);
       lock.lock();
       ++counters.answered;

@@ -10,8 +10,9 @@ namespace lf::vision {
 namespace {
 
 // Surveyed centres on the tank's floor, metres.
-const std::map<int, Vec2> layout_m{{0, {0.750, 0.500}},  {1, {1.548, 0.500}},  {2, {2.343, 0.500}},  {3, {0.750, 1.265}}, {4, {1.550, 1.295}},
-                                   {5, {2.350, 1.285}},  {12, {0.750, 2.057}}, {14, {1.545, 2.065}}, {16, {2.340, 2.077}}};
+const std::map<int, Vec2> layout_m{{0, {0.750, 0.500}},  {1, {1.548, 0.500}},  {2, {2.343, 0.500}},
+                                   {3, {0.750, 1.265}},  {4, {1.550, 1.295}},  {5, {2.350, 1.285}},
+                                   {12, {0.750, 2.057}}, {14, {1.545, 2.065}}, {16, {2.340, 2.077}}};
 constexpr int unmapped_id = 13;  // lies there too, its place is not known
 
 std::vector<MarkerFrame> frames_of_the_video() {
@@ -30,7 +31,8 @@ std::vector<double> pair_ratios(const std::vector<MarkerFrame>& frames) {
   for (const MarkerFrame& frame : frames) {
     for (const MarkerInFrame& a : frame.markers) {
       for (const MarkerInFrame& b : frame.markers) {
-        if (a.marker.id >= b.marker.id || !a.pose || !b.pose || !layout_m.contains(a.marker.id) || !layout_m.contains(b.marker.id)) continue;
+        if (a.marker.id >= b.marker.id || !a.pose || !b.pose || !layout_m.contains(a.marker.id) || !layout_m.contains(b.marker.id))
+          continue;
         const double seen_m = (a.pose->camera_from_tag.translation() - b.pose->camera_from_tag.translation()).norm();
         ratios.push_back(seen_m / (layout_m.at(a.marker.id) - layout_m.at(b.marker.id)).norm());
       }
