@@ -2,9 +2,11 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
-#include <sstream>
+#include <iterator>
 #include <vector>
 
 #include "shared/input_error.hpp"
@@ -15,9 +17,8 @@ namespace {
 // OpenCV writes "%YAML:1.0" where YAML has "%YAML 1.0"; the line stays so that line numbers hold.
 std::string read_text(const std::string& path) {
   std::ifstream file(path);
-  std::ostringstream text;
-  if (!file || !(text << file.rdbuf())) throw InputError(path, 0, "cannot be read");
-  std::string content = text.str();
+  if (!file || std::filesystem::is_directory(path)) throw InputError(path, 0, "cannot be read");
+  std::string content{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   if (content.starts_with("%YAML:")) content[5] = ' ';
   return content;
 }

@@ -46,15 +46,17 @@ class MarkerFinder {
  private:
   void look_in_video(const std::string& path) {
     cv::VideoCapture video(path, cv::CAP_FFMPEG);
-    if (!video.isOpened()) throw InputError(path, 0, "is neither an image nor a video that can be decoded, or it is truncated");
+    const auto refuse = [&] { throw InputError(path, 0, "is neither an image nor a video that can be decoded, or it is truncated"); };
+    if (!video.isOpened()) refuse();
     const auto announced = static_cast<std::int64_t>(video.get(cv::CAP_PROP_FRAME_COUNT));
     std::int64_t frame = 0;
     for (cv::Mat picture; video.read(picture); ++frame) {
       const cv::Mat grey = one_channel(picture, options_.channel);
       look_at(path, frame, {grey.data, grey.cols, grey.rows, static_cast<std::int32_t>(grey.step)});
     }
+    if (frame == 0) refuse();
     // Containers without an index only estimate their count, by duration times rate: one frame more or less.
-    if (frame == 0 || frame + 1 < announced) {
+    if (frame + 1 < announced) {
       throw InputError(path, 0, "the video is truncated: " + std::to_string(frame) + " of " + std::to_string(announced) + " frames");
     }
   }

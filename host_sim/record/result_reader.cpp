@@ -1,6 +1,6 @@
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "host_sim/record/result.hpp"
 #include "shared/input_error.hpp"
@@ -137,9 +137,9 @@ RunResult parse_result_json(const std::string& text, const std::string& name_for
 
 RunResult read_result_file(const std::filesystem::path& path) {
   std::ifstream file(path);
-  std::ostringstream text;
-  if (!file || !(text << file.rdbuf())) throw InputError(path.string(), 0, "cannot be read");
-  return parse_result_json(text.str(), path.string());
+  if (!file || std::filesystem::is_directory(path)) throw InputError(path.string(), 0, "cannot be read");
+  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  return parse_result_json(text, path.string());
 }
 
 }  // namespace lf::record
