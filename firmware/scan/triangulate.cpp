@@ -20,6 +20,7 @@ std::optional<Vec3> Triangulator::point(const Vec2& pixel, const Pose& base_from
   const Vec3 point_m = origin + range_m * ray;
   const Vec3 from_emitter = base_from_laser.linear().transpose() * (point_m - base_from_laser.translation());
   if (!(std::abs(std::atan2(from_emitter.y(), from_emitter.z())) <= fan_half_angle_rad_ + config_.fan_margin_rad)) return std::nullopt;
+  if ((point_m.array() < config_.region_min_m.array()).any() || (point_m.array() > config_.region_max_m.array()).any()) return std::nullopt;
   return point_m;
 }
 

@@ -64,18 +64,20 @@ double cloud_truth_p95_mm(std::span<const CloudPoint> cloud, const scene::Scene&
 void PeakScore::add(const optics::Frame& truth, std::span<const scan::Peak> peaks) {
   const auto width = static_cast<std::size_t>(truth.width);
   if (truth.stripe_v.size() < width || truth.stripe_grey.size() < width) return;
-  std::vector<float> detected(width, std::numeric_limits<float>::quiet_NaN());
+  // A column can hold two peaks; the true centre is that of the brightest piece, so the nearer of the two is meant for it.
+  std::vector<double> errors(width, std::numeric_limits<double>::infinity());
   for (const scan::Peak& peak : peaks) {
     const auto column = static_cast<std::size_t>(std::lround(peak.u_px));
-    if (column < width) detected[column] = peak.v_px;
+    if (column >= width) continue;
+    const double error = double(peak.v_px) - double(truth.stripe_v[column]);
+    if (std::abs(error) < std::abs(errors[column])) errors[column] = error;
   }
   for (std::size_t u = 0; u < width; ++u) {
     if (!std::isfinite(truth.stripe_v[u]) || !(truth.stripe_grey[u] >= visible_grey)) continue;
     ++visible_;
-    const double error = double(detected[u]) - double(truth.stripe_v[u]);
-    if (!(std::abs(error) <= match_px)) continue;
+    if (!(std::abs(errors[u]) <= match_px)) continue;
     ++matched_;
-    squares_ += error * error;
+    squares_ += errors[u] * errors[u];
   }
 }
 
