@@ -146,7 +146,6 @@ void ScanPipeline::measure(const Image& image, const Exposure& exposure) {
   stats_.peaks = static_cast<std::uint32_t>(counters.found);
   stats_.peaks_weak = static_cast<std::uint32_t>(counters.weak);
   stats_.peaks_saturated = static_cast<std::uint32_t>(counters.saturated);
-  stats_.peaks_ambiguous = static_cast<std::uint32_t>(counters.ambiguous);
   if (!exposure.in_sweep) return;
   if (stripes_.full()) add_points(true);
   (void)stripes_.push_back({});
@@ -177,15 +176,29 @@ bool ScanPipeline::add_points(const Stripe& stripe, bool final) {
     return true;
   }
   const Pose base_from_laser = arm::base_from_laser(arm::JointVector(q_rad[0], q_rad[1], q_rad[2], q_rad[3]), config_.laser);
-  for (const scan::Peak& peak : std::span(stripe.peaks).first(stripe.count)) {
-    const std::optional<Vec3> point_m = triangulator_.point(Vec2(peak.u_px, peak.v_px), base_from_laser);
-    if (!point_m) continue;
-    if (cloud_.add({.p_m = point_m->cast<float>(), .amplitude = peak.amplitude}))
-      ++stats_.points;
-    else
-      ++stats_.points_overflowed;
+  const std::span<const scan::Peak> peaks = std::span(stripe.peaks).first(stripe.count);
+  for (std::size_t begin = 0; begin < peaks.size();) {
+    std::size_t end = begin + 1;
+    while (end < peaks.size() && peaks[end].u_px == peaks[begin].u_px) ++end;
+    add_column(peaks.subspan(begin, end - begin), base_from_laser);
+    begin = end;
   }
   return true;
+}
+
+// A column shows the panel and at most one proud part in the laser's plane; where more of its peaks could be points, none is believed.
+void ScanPipeline::add_column(std::span<const scan::Peak> peaks, const Pose& base_from_laser) {
+  constexpr std::size_t most = 2;
+  StaticVector<CloudPoint, scan::max_peaks_per_line> points;
+  for (const scan::Peak& peak : peaks) {
+    const std::optional<Vec3> point_m = triangulator_.point(Vec2(peak.u_px, peak.v_px), base_from_laser);
+    if (point_m) (void)points.push_back({.p_m = point_m->cast<float>(), .amplitude = peak.amplitude});
+  }
+  if (points.size() > most) {
+    ++stats_.peaks_ambiguous;
+    return;
+  }
+  for (const CloudPoint& point : points) ++(cloud_.add(point) ? stats_.points : stats_.points_overflowed);
 }
 
 void ScanPipeline::analyse(std::uint32_t sweep) {

@@ -27,7 +27,7 @@ struct ScanConfig {
   CameraCalibration camera;
   LaserCalibration laser;
   std::uint8_t camera_index = 0;  // whose images are measured
-  scan::PeakConfig peaks{.peaks_per_line = 2};
+  scan::PeakConfig peaks{.peaks_per_line = 4};
   scan::Triangulator::Config triangulation;
   // 2.5 sigma holds 98.8 % of the panel's points, and at 0.5 mm rms leaves the marker's plate, 2 mm proud, out.
   scan::PlaneFitter::Config plane{.tight_sigmas = 2.5};
@@ -37,7 +37,7 @@ class ScanPipeline {
  public:
   static constexpr std::int32_t image_width = 640;
   static constexpr std::int32_t image_height = 480;
-  static constexpr std::size_t max_peaks = 2 * image_width;  // of an image: the panel and something proud in each column
+  static constexpr std::size_t max_peaks = scan::max_peaks_per_line * image_width;  // of an image
 
   // The planes' normals point to the side of the camera, whatever `config.plane.toward_m` says.
   explicit ScanPipeline(const ScanConfig& config);
@@ -96,6 +96,7 @@ class ScanPipeline {
   void measure(const Image& image, const Exposure& exposure);
   void add_points(bool final);
   bool add_points(const Stripe& stripe, bool final);
+  void add_column(std::span<const scan::Peak> peaks, const Pose& base_from_laser);
   void analyse(std::uint32_t sweep);
 
   // At 25 Hz and less than 0.1 s from trigger to image three are on their way; more are images that never came.

@@ -66,7 +66,7 @@ template <class Response>
 template <class Pixel, std::int32_t MaxLength>
 std::size_t BasicPeakDetector<Pixel, MaxLength>::detect(const PixelView<Pixel>& image, const PixelView<Pixel>& background,
                                                         std::span<Peak> peaks) {
-  if (!image.valid()) return 0;
+  if (!image.valid() || config_.peaks_per_line < 1 || config_.peaks_per_line > max_peaks_per_line) return 0;
   if (background.valid() && (background.width != image.width || background.height != image.height)) return 0;
   const bool columns = config_.axis == PeakAxis::column;
   const std::int32_t lines = columns ? image.width : image.height;
@@ -144,37 +144,37 @@ void BasicPeakDetector<Pixel, MaxLength>::sweep(const Strip& s) {
 // From a lane's maxima to its peaks; none, and counted, when there is no good one.
 template <class Pixel, std::int32_t MaxLength>
 std::size_t BasicPeakDetector<Pixel, MaxLength>::finish(const Strip& s, std::int32_t lane, std::span<Peak> peaks) {
-  const float response = static_cast<float>(best_[lane]);
-  if (!(response >= config_.min_contrast * positive_lobe)) {
-    ++counters_.weak;
-    return 0;
-  }
-  std::array<Maximum, 2> maxima{maximum_at(s, lane, static_cast<std::int32_t>(best_row_[lane]), response)};
-  if (maxima[0].last - maxima[0].first - 2 * exclusion >= config_.max_clipped) {
-    ++counters_.saturated;
-    return 0;
-  }
-  // The second of all maxima is an upper bound: within a wide stripe it may be the same stripe's.
+  const float least = config_.min_contrast * positive_lobe;
+  const bool several = config_.peaks_per_line > 1;
+  const float share = several ? config_.min_second_ratio : config_.max_ratio;
+  Maxima known;    // all looked at, highest first
+  Maxima stripes;  // those of them that can be a stripe's
+  Maximum next = maximum_at(s, lane, static_cast<std::int32_t>(best_row_[lane]), static_cast<float>(best_[lane]));
+  // The second of all maxima is an upper bound of the next stripe's: within a wide one it may be the same stripe's.
   float second = static_cast<float>(second_[lane]);
-  const bool two = config_.peaks_per_line > 1;
-  const float doubtful = (two ? config_.min_second_ratio : config_.max_ratio) * response;
-  if (second > doubtful) {
-    maxima[1] = next_maximum(s, lane, std::span(maxima).first(1));
-    second = maxima[1].response;
+  while (next.response >= least && !known.full()) {
+    (void)known.push_back(next);
+    const bool too_wide = next.last - next.first - 2 * exclusion >= config_.max_clipped;
+    if (too_wide && !several) break;
+    if (!too_wide) (void)stripes.push_back(next);
+    if (static_cast<std::int32_t>(stripes.size()) >= std::max(2, config_.peaks_per_line)) break;
+    if (!stripes.empty() && second <= share * stripes[0].response) break;
+    next = next_maximum(s, lane, std::span<const Maximum>(known.data(), known.size()));
+    second = next.response;
+    if (!stripes.empty() && second <= share * stripes[0].response) break;
   }
-  bool second_is_one = false;
-  if (two && second > doubtful && second >= config_.min_contrast * positive_lobe) {
-    const float third = next_maximum(s, lane, maxima).response;
-    second_is_one = third <= config_.max_ratio * second;
+  if (stripes.empty()) {
+    ++(known.empty() ? counters_.weak : counters_.saturated);
+    return 0;
   }
-  if (!second_is_one && second > config_.max_ratio * response) {
+  const float ratio = (stripes.size() > 1 ? stripes[1].response : second) / stripes[0].response;
+  if (!several && ratio > config_.max_ratio) {
     ++counters_.ambiguous;
     return 0;
   }
-  measure(s, lane, maxima[0], second / response, peaks[0]);
-  if (!second_is_one) return 1;
-  measure(s, lane, maxima[1], second / response, peaks[1]);
-  return 2;
+  const std::size_t count = several ? stripes.size() : 1;
+  for (std::size_t i = 0; i < count; ++i) measure(s, lane, stripes[i], ratio, peaks[i]);
+  return count;
 }
 
 template <class Pixel, std::int32_t MaxLength>

@@ -1,4 +1,4 @@
-// Sub-pixel peaks of a laser stripe, at most one per image column (or row), or two where something proud carries a piece of the stripe.
+// Sub-pixel peaks of a laser stripe, one per image column (or row), or a few for a later choice by geometry.
 //
 // The stripe lies on a sloped, scattering background, so the brightest pixel and the centre of mass are biased toward the background's bright side.
 // A zero-mean second-derivative filter does not see the background's offset and slope (Forest, Salvi, Cabruja, Pous, ICPR 2004, with the
@@ -14,6 +14,7 @@
 #include <type_traits>
 
 #include "shared/messages/image.hpp"
+#include "shared/messages/static_vector.hpp"
 
 namespace lf::scan {
 
@@ -50,6 +51,8 @@ struct PixelView {
   const Pixel* row(std::int32_t v) const { return data + static_cast<std::ptrdiff_t>(v) * stride; }
 };
 
+inline constexpr std::int32_t max_peaks_per_line = 4;
+
 enum class PeakAxis : std::uint8_t { column, row };
 
 struct PeakConfig {
@@ -58,11 +61,12 @@ struct PeakConfig {
   // at 3 levels 7. A column of mere noise that passes fails at `max_ratio`, since noise has many peaks alike.
   float min_contrast = 6.0f;
   float max_ratio = 0.7f;  // of the second peak to the first
-  // 2: the second peak of a line is one of its own. A part that stands proud of a panel, seen from elsewhere than lit from, carries its piece of the
-  // stripe in front of columns that show the panel's piece as well. It is then the third peak that makes a line ambiguous.
+  // More than 1: further peaks of a line are given as well, at most `max_peaks_per_line`, and who knows where the laser is chooses among them. A part
+  // that stands proud of a panel, seen from elsewhere than lit from, carries its piece of the stripe in front of columns that show the panel's piece
+  // as well; and an arm that moved since the background was taken has edges in the difference.
   std::int32_t peaks_per_line = 1;
-  float min_second_ratio = 0.2f;  // of a second peak to the first: reflections between parts of albedo 0.5 stay below a tenth
-  std::int32_t max_clipped = 12;  // px at full scale; a wider plateau is no stripe
+  float min_second_ratio = 0.2f;  // of a further peak to the first: reflections between parts of albedo 0.5 stay below a tenth
+  std::int32_t max_clipped = 12;  // px at full scale; a wider plateau is no stripe; of several it is passed over
   std::int32_t full_scale = 255;  // grey level at which the sensor clips
 };
 
@@ -77,7 +81,7 @@ class BasicPeakDetector {
   explicit BasicPeakDetector(const Config& config = {}) : config_(config) {}
 
   // Finds at most `peaks_per_line` peaks in each column (row) of `image` less `background`, and writes them to `peaks` in the order of columns
-  // (rows), the stronger of two first.
+  // (rows), within one the strongest first.
   // `background`: the same scene with the laser off, the same size; an invalid (empty) view leaves the differencing out.
   // Returns the number written; columns without a good peak are counted in `counters()`. Writes nothing when the image is not valid, of
   // another size than the background, shorter than `min_length`, longer than `max_length`, or when `peaks` has less than `peaks_per_line` places a column.
@@ -115,6 +119,8 @@ class BasicPeakDetector {
     float response = 0;
     std::int32_t first = 0, last = 0;  // rows about it whose maxima are the same stripe's
   };
+
+  using Maxima = StaticVector<Maximum, max_peaks_per_line + 2>;  // with two plateaus
 
   std::size_t finish(const Strip& s, std::int32_t lane, std::span<Peak> peaks);
   Maximum maximum_at(const Strip& s, std::int32_t lane, std::int32_t row, float response) const;
