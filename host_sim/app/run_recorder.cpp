@@ -74,6 +74,7 @@ void RunRecorder::on_event(const Event& event) {
   digest_.decision(event.t, text);
   switch (event.kind) {
     case Event::Kind::step:
+      if (event.step == mission::Step::next_task && !phases_.empty()) break;  // a decision of one tick
       if (phases_.empty() || phases_.back().name != step.stage) {
         if (!phases_.empty()) {
           phases_.back().end_s = event.t.s();
@@ -123,14 +124,28 @@ void RunRecorder::on_panel_request(const PanelRequest& request, ImageView still,
       write_error_ = error.what();
     }
   }
-  if (!request.has_still || !still.valid()) return;
-  char name[64];
-  std::snprintf(name, sizeof name, "images/still_%07.2fs.png", request.still_time.s());
-  keep_picture(name, formatted("What the marker is looked for in, at %.2f s", request.still_time.s()), "The still image, laser off.",
-               record::rgb_from_grey(still), true);
+  still_.reset();
+  if (folder_ == nullptr || !request.has_still || !still.valid()) return;
+  still_ = record::rgb_from_grey(still);
+  still_time_ = request.still_time;
 }
 
-void RunRecorder::on_panel_result(const PanelResult& result) { answered_ = result; }
+void RunRecorder::on_panel_result(const PanelResult& result) {
+  answered_ = result;
+  if (!still_) return;
+  if (result.marker.found) {
+    std::array<record::PixelPoint, 4> corners;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      corners[i] = {static_cast<float>(result.marker.corners_px[i].x()), static_cast<float>(result.marker.corners_px[i].y())};
+    }
+    record::draw_outline(*still_, corners, {255, 40, 40});
+  }
+  char name[64];
+  std::snprintf(name, sizeof name, "images/still_%07.2fs.png", still_time_.s());
+  keep_picture(name, formatted("Still image at %.2f s", still_time_.s()),
+               result.marker.found ? "The marker as it was found, in red." : "No marker was found in it.", *still_, true);
+  still_.reset();
+}
 
 void RunRecorder::after_control(const mission::Mission& mission) {
   if (!located_ || map_taken_) return;

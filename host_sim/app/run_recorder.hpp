@@ -101,6 +101,8 @@ class RunRecorder : public hal::SimObserver {
   scene::BodyPoses asked_poses_;
   double asked_valve_rad_ = 0;
   PanelResult answered_;
+  std::optional<record::RgbImage> still_;  // until the answer says where the marker is in it
+  Time still_time_;
 
   std::uint64_t bus_bits_ = 0, bus_bits_before_ = 0;
   std::uint32_t ticks_ = 0;
