@@ -95,8 +95,8 @@ class Campaign {
   }
 
   void start(std::uint64_t seed) {
-    std::vector<std::string> words{program_, "run",        options_.scenario,  "--seed", std::to_string(seed),
-                                   "--out",  folder(seed), "--render-threads", "1",      "--json"};
+    std::vector<std::string> words{program_,           "run", options_.scenario, "--seed", std::to_string(seed), "--out", folder(seed),
+                                   "--render-threads", "1",   "--no-outside",    "--json"};
     for (const std::string& set : options_.set) words.insert(words.end(), {"--set", set});
     std::vector<char*> argv;
     for (std::string& word : words) argv.push_back(word.data());

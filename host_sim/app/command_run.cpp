@@ -22,6 +22,7 @@ struct Options {
   std::string out;
   bool realtime = false;
   int render_threads = 0;
+  bool outside = true;
   bool json = false;
 };
 
@@ -78,6 +79,7 @@ int run(const Options& options) {
   request.scenario = scenario::load_scenario(options.scenario, options.set);
   request.seed = options.seed;
   request.realtime = options.realtime;
+  request.outside = options.outside;
   request.render_threads = options.render_threads > 0 ? options.render_threads : default_render_threads();
   request.out = options.out.empty() ? "runs/" + request.scenario.name + "-" + std::to_string(options.seed) : options.out;
   request.command = command_of(options);
@@ -108,6 +110,7 @@ void add_run(CLI::App& app, Action& action) {
   command->add_flag("--realtime", options->realtime, "No faster than the clock on the wall");
   command->add_option("--render-threads", options->render_threads, "Threads that render (default: all; the result is the same)")
       ->check(CLI::Range(1, 256));
+  command->add_flag("!--no-outside", options->outside, "No pictures of the robot from outside");
   command->add_flag("--json", options->json, "Print result.json");
   command->callback([options, &action] { action = [options] { return run(*options); }; });
 }

@@ -1,6 +1,7 @@
 #include "host_sim/app/run_recorder.hpp"
 
 #include <cstdio>
+#include <iterator>
 
 #include "shared/can/can_map.hpp"
 
@@ -38,7 +39,10 @@ void RunRecorder::on_bus_frame(const devices::BusRecord& record) {
   if (can_log_ && !can_log_->write(record.delivered, record.frame) && write_error_.empty()) write_error_ = can_log_->sink().error();
 }
 
-void RunRecorder::on_step(Time, const world::World& world) { world_ = &world; }
+void RunRecorder::on_step(Time now, const world::World& world) {
+  world_ = &world;
+  outside_.on_step(now, world);
+}
 
 void RunRecorder::on_image(const hal::ExposureRecord& exposure) {
   frame_ = exposure.frame;
@@ -66,6 +70,7 @@ void RunRecorder::sample_curves(const Telemetry& telemetry) {
 }
 
 void RunRecorder::on_event(const Event& event) {
+  outside_.on_event(event);
   const mission::StepRow& step = mission::row(event.step);
   char text[160];
   std::snprintf(text, sizeof text, "%d %s %s %s %d %d %.17g", int(event.kind), step.name,
@@ -181,6 +186,17 @@ void RunRecorder::keep_picture(const std::string& name, const std::string& title
   }
   constexpr std::size_t most_in_report = 12;  // 100 kB each: the report stays within 4 MB
   if (in_report && pictures_.size() < most_in_report) pictures_.push_back({title, caption, std::move(png)});
+}
+
+void RunRecorder::draw_outside(const optics::OpticsConfig& optics, int threads) {
+  if (folder_ == nullptr) return;
+  std::vector<record::ReportPicture> camera = std::move(pictures_);
+  pictures_.clear();
+  for (const OutsidePictures::Picture& picture : outside_.draw(optics, threads)) {
+    keep_picture("images/" + picture.name + ".png", picture.title, "Drawn after the run from its poses; the core never sees it.",
+                 picture.image, true);
+  }
+  std::move(camera.begin(), camera.end(), std::back_inserter(pictures_));
 }
 
 void RunRecorder::finish(const world::World& world, const std::string& failure) {

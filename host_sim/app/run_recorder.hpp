@@ -11,6 +11,7 @@
 #include "firmware/scan_pipeline.hpp"
 #include "firmware/telemetry.hpp"
 #include "hal/sim/sim_platform.hpp"
+#include "host_sim/app/outside_pictures.hpp"
 #include "host_sim/app/scoring.hpp"
 #include "host_sim/record/candump_log.hpp"
 #include "host_sim/record/cloud_file.hpp"
@@ -64,6 +65,8 @@ class RunRecorder : public hal::SimObserver {
   const std::optional<Located>& located() const { return located_; }
   const PeakScore& peaks() const { return peaks_; }
   const PlaneFit& last_fit() const { return last_fit_; }
+  // Draws the robot from outside and puts the pictures in front of the camera's.
+  void draw_outside(const optics::OpticsConfig& optics, int threads);
   std::string digest() const { return digest_.hex(); }
   std::string stage() const { return phases_.empty() ? "boot" : phases_.back().name; }
   // Why something could not be written, if so: full disk.
@@ -87,6 +90,7 @@ class RunRecorder : public hal::SimObserver {
   std::optional<Located> located_;
   bool map_taken_ = false;
   PeakScore peaks_;
+  OutsidePictures outside_;
   PlaneFit last_fit_;
   std::string write_error_;
 

@@ -111,6 +111,7 @@ class Session {
     data.command = request_.command;
     data.conditions = conditions(sample_);
     data.errors = record::report_errors(result, sample_.attenuation_per_m);
+    if (request_.outside) recorder_.draw_outside(sim_.optics, request_.render_threads);
     data.pictures = std::move(recorder_.pictures());
     if (recorder_.located()) {
       data.cloud = recorder_.located()->cloud;

@@ -19,6 +19,7 @@ struct RunRequest {
   std::uint64_t seed = 1;
   int render_threads = 1;
   bool realtime = false;
+  bool outside = true;                          // pictures of the robot from outside
   std::filesystem::path out;                    // the run folder; empty keeps nothing
   std::string command;                          // that reproduces the run, for the report
   std::function<void(const std::string&)> say;  // progress, one line a phase; may be empty
