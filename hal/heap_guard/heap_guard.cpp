@@ -27,11 +27,13 @@ void count_call() {
 #if LANTERNFISH_HEAP_GUARD
 // glibc's own names of its allocator: the replacements below forward to them.
 extern "C" {
+// NOLINTBEGIN(bugprone-reserved-identifier): they are glibc's
 void* __libc_malloc(std::size_t);
 void __libc_free(void*);
 void* __libc_calloc(std::size_t, std::size_t);
 void* __libc_realloc(void*, std::size_t);
 void* __libc_memalign(std::size_t, std::size_t);
+// NOLINTEND(bugprone-reserved-identifier)
 
 void* malloc(std::size_t size) {
   count_call();
