@@ -60,7 +60,6 @@ const char* name(StepFailure failure) {
     case StepFailure::no_contact: return "nothing to touch where the aim should be";
     case StepFailure::not_gripped: return "nothing held";
     case StepFailure::wrong_angle: return "the handle is not where it was turned to";
-    case StepFailure::no_click: return "no click";
     case StepFailure::no_panel: return "no panel seen";
     case StepFailure::no_marker: return "no usable marker seen";
     case StepFailure::no_handle: return "no handle seen";

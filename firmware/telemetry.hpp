@@ -44,13 +44,12 @@ enum class StepFailure : std::int32_t {
   no_contact = 4,
   not_gripped = 5,
   wrong_angle = 6,
-  no_click = 7,
-  no_panel = 8,
-  no_marker = 9,
-  no_handle = 10,
-  panel_moved = 11,
-  not_homed = 12,
-  too_few_points = 13,
+  no_panel = 7,
+  no_marker = 8,
+  no_handle = 9,
+  panel_moved = 10,
+  not_homed = 11,
+  too_few_points = 12,
 };
 const char* name(StepFailure failure);
 

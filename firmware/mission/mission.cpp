@@ -82,6 +82,11 @@ void Mission::watch_faults(const Tick& tick) {
   stop_ordered_ = false;
   if (port_error_ > 0) raise(tick, Fault::port_error, port_error_ - 1);
   port_error_ = 0;
+  if (scan_stats_.images_missing != images_missing_) {
+    const auto lost = static_cast<std::int32_t>(scan_stats_.images_missing - images_missing_);
+    images_missing_ = scan_stats_.images_missing;
+    raise(tick, Fault::image_lost, lost);
+  }
   if (camera_.laser_inhibited()) raise(tick, Fault::interlock, 0);
   if (abort_ordered_ && !failing_ && !is_end(step_)) {
     abort_ordered_ = false;

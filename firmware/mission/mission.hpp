@@ -163,6 +163,7 @@ class Mission {
   bool start_ordered_ = false, abort_ordered_ = false, stop_ordered_ = false;
   std::int32_t port_error_ = 0;
   ScanStats scan_stats_;
+  std::uint32_t images_missing_ = 0;  // known of
   PanelResult panel_;
   bool panel_arrived_ = false;
 

@@ -53,8 +53,8 @@ struct StepRow {
   safety::Phase phase;  // column of the table of faults
   double timeout_s;     // 0: none
   Step on_done;
-  Step on_branch;  // the step's other way out; the same as on_done where it has none
-  Step on_retry;   // where it is taken again from; `count` where it is not
+  Step on_branch;             // the step's other way out; the same as on_done where it has none
+  Step on_retry;              // where it is taken again from; `count` where it is not
   Step on_end = Step::count;  // where it leads when nothing is left to do; `count` where there is always something
 };
 
