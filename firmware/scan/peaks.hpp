@@ -59,8 +59,8 @@ struct PeakConfig {
   PeakAxis axis = PeakAxis::column;  // along which the one peak is looked for
   // Response over its positive lobe's sum, grey levels. Noise of 1 grey level in both images gives 0.8 rms, and 480 rows of it 2.4 at most;
   // at 3 levels 7. A column of mere noise that passes fails at `max_ratio`, since noise has many peaks alike.
-  float min_contrast = 6.0f;
-  float max_ratio = 0.7f;  // of the second peak to the first
+  float min_contrast = 7.0f;
+  float max_ratio = 0.65f;  // of the second peak to the first
   // More than 1: further peaks of a line are given as well, at most `max_peaks_per_line`, and who knows where the laser is chooses among them. A part
   // that stands proud of a panel, seen from elsewhere than lit from, carries its piece of the stripe in front of columns that show the panel's piece
   // as well; and an arm that moved since the background was taken has edges in the difference.

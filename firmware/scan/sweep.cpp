@@ -157,19 +157,21 @@ bool Planner::candidate(std::size_t from, std::size_t to, Candidate& out) const 
 // Steps along the way: the stripe goes down all the time, the fan covers the region's width, the tool stays off the panel.
 SweepOutcome Planner::check_way(const Candidate& c, double& widest_m) const {
   const Vec3 out_of_panel = request_.base_from_panel.linear().col(2);
-  double before_m = 0;
+  const auto on_way = [&](double f) {
+    return at(shoulder(c.from) + f * (shoulder(c.to) - shoulder(c.from)),
+              ends_[c.from].start + f * (ends_[c.to].end - ends_[c.from].start));
+  };
   widest_m = 0;
   for (int i = 0; i <= way_samples; ++i) {
     const double f = static_cast<double>(i) / way_samples;
-    const Laser laser =
-        at(shoulder(c.from) + f * (shoulder(c.to) - shoulder(c.from)), ends_[c.from].start + f * (ends_[c.to].end - ends_[c.from].start));
+    const Laser laser = on_way(f);
     const double y_m = height_m(laser);
-    if (!std::isfinite(y_m) || (i > 0 && y_m >= before_m)) return SweepOutcome::no_way;
+    const double spacing_m = y_m - height_m(on_way(f + request_.stripe_period.s() / c.duration_s));
+    if (!(spacing_m > 0)) return SweepOutcome::no_way;
     if (out_of_panel.dot(laser.tool_m - request_.base_from_panel.translation()) < tool_distance_m) return SweepOutcome::no_way;
-    const bool on_region = y_m <= request_.top_m + request_.margin_m && y_m >= request_.bottom_m - request_.margin_m;
-    if (on_region && !fan_reaches(laser, y_m)) return SweepOutcome::fan_too_narrow;
-    if (i > 0 && on_region) widest_m = std::max(widest_m, (before_m - y_m) * way_samples / c.duration_s * request_.stripe_period.s());
-    before_m = y_m;
+    if (y_m > request_.top_m + request_.margin_m || y_m < request_.bottom_m - request_.margin_m) continue;
+    if (!fan_reaches(laser, y_m)) return SweepOutcome::fan_too_narrow;
+    widest_m = std::max(widest_m, spacing_m);
   }
   return SweepOutcome::ok;
 }

@@ -94,7 +94,7 @@ ValveFrame find_valve_frame(const PanelResult& result, const MarkerCalibration& 
   frame.centre_disagreement_m = (pnp.translation() - square.base_from_tag.translation()).norm();
   frame.normal_disagreement_rad = angle_between(pnp.linear().col(2), tag_plane.normal);
   const double largest_m = config.max_size_error * marker.size_m;
-  if (!(std::abs(square.side_m - marker.size_m) <= largest_m && square.rms_m <= largest_m))
+  if (!(std::abs(square.side_m - marker.size_m) <= largest_m && square.rms_m <= 0.5 * largest_m))
     frame.outcome = ValveFrameOutcome::bad_marker;
   else if (!(frame.centre_disagreement_m <= config.max_disagreement_m))
     frame.outcome = ValveFrameOutcome::poses_disagree;

@@ -46,7 +46,7 @@ struct ButtonObservation {
 struct ValveFrameConfig {
   double max_disagreement_m =
       0.030;                     // PnP's range error at 3.4 px a tag cell is 5 mm, to which a mounting error of 0.2 mm / 0.05 deg adds 1 mm
-  double max_size_error = 0.10;  // of the marker's side on the plane
+  double max_size_error = 0.10;  // of the marker's side on the plane; half of it for the rms of its corners about a square
   double max_handle_offset_m = 0.030;  // cluster's centre from the valve's axis
 };
 

@@ -1,0 +1,366 @@
+#include "firmware/scan_pipeline.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <random>
+#include <vector>
+
+#include "firmware/arm/kinematics.hpp"
+#include "firmware/scan/sweep.hpp"
+#include "tests/unit/scan/docked_scene.hpp"
+
+namespace lf {
+namespace {
+
+using Angles = std::array<double, arm_joint_count>;
+
+constexpr int width = ScanPipeline::image_width, height = ScanPipeline::image_height;
+constexpr Duration sync_period = can_map::sync_period;
+const Duration exposure = Duration::from_ms(2);
+
+// A bare panel swept by the laser, one control period a step; images come 28 ms after their exposure.
+class ScanBench {
+ public:
+  explicit ScanBench(const Pose& base_from_panel) : base_from_panel_(base_from_panel), random_(40) {
+    config_.camera = test::nominal_camera();
+    config_.laser = test::nominal_laser();
+    pipeline_ = std::make_unique<ScanPipeline>(config_);
+  }
+
+  ScanPipeline& pipeline() { return *pipeline_; }
+  const ScanConfig& config() const { return config_; }
+
+  void command(ScanCommand::Kind kind, std::uint32_t sweep = 1) {
+    ScanCommand c;
+    c.kind = kind;
+    c.sweep = sweep;
+    pipeline_->on_command(c);
+  }
+  void joints(Time t, const Angles& q) {
+    ScanCommand c;
+    c.joints = {t, q};
+    pipeline_->on_command(c);
+  }
+  void order(Time start, ExposureKind kind) {
+    ScanCommand c;
+    c.kind = ScanCommand::Kind::exposure;
+    c.exposure_start = start;
+    c.exposure_kind = kind;
+    pipeline_->on_command(c);
+  }
+  void drop(Time start) {
+    ScanCommand c;
+    c.kind = ScanCommand::Kind::drop_exposure;
+    c.exposure_start = start;
+    pipeline_->on_command(c);
+  }
+  void send(Time start, const std::vector<std::uint8_t>& pixels) {
+    pipeline_->on_image(0, {.view = {pixels.data(), width, height, width}, .exposure_start = start, .exposure = exposure});
+  }
+
+  // The stripe on the panel as the camera sees it with the arm at `q`: a Gaussian of sigma 1.2 px and 120 grey levels on a scene of 40.
+  std::vector<std::uint8_t> picture(const Angles& q, bool laser_on) {
+    std::vector<std::uint8_t> pixels(static_cast<std::size_t>(width) * height);
+    for (auto& grey : pixels) grey = static_cast<std::uint8_t>(40 + random_() % 3);
+    if (!laser_on) return pixels;
+    const Pose laser = arm::base_from_laser(arm::JointVector(q[0], q[1], q[2], q[3]), config_.laser);
+    for (int u = 0; u < width; ++u) {
+      const double centre = stripe_row(u, laser);
+      for (int v = std::max(0, static_cast<int>(centre) - 8); v < std::min(height, static_cast<int>(centre) + 9); ++v)
+        pixels[static_cast<std::size_t>(v) * width + u] = static_cast<std::uint8_t>(
+            pixels[static_cast<std::size_t>(v) * width + u] + std::lround(120 * std::exp(-0.5 * std::pow((v - centre) / 1.2, 2))));
+    }
+    return pixels;
+  }
+
+  // Sends images and joints of a whole sweep; every fifth image is a background. Returns the number of images.
+  std::uint32_t sweep(const scan::SweepPlan& plan) {
+    std::uint32_t images = 0;
+    command(ScanCommand::Kind::begin_sweep);
+    std::vector<std::uint8_t> waiting;
+    Time waiting_start;
+    const int steps = static_cast<int>(plan.duration.s() / sync_period.s());
+    for (int i = 0; i <= steps + 20; ++i) {
+      const Time t = time(i);
+      joints(t, angles(plan, t));
+      if (!waiting.empty() && t - waiting_start > Duration::from_ms(28)) {
+        send(waiting_start, waiting);
+        waiting.clear();
+      }
+      // Every thirtieth SYNC: the rest of the images would only make the test longer.
+      if (i % 30 == 0 && i < steps) {
+        const bool background = i % 150 == 0;
+        waiting_start = t;
+        ++images;
+        order(t, background ? ExposureKind::background : ExposureKind::laser_on);
+        waiting = picture(angles(plan, t + exposure / 2), !background);
+      }
+    }
+    command(ScanCommand::Kind::end_sweep);
+    return images;
+  }
+
+  static Time time(int sync) { return Time::from_ns(5'000'000'000) + sync_period * sync; }
+  static Angles angles(const scan::SweepPlan& plan, Time t) {
+    Angles q;
+    for (std::size_t j = 0; j < q.size(); ++j) q[j] = plan.start_rad[j] + plan.speed_rad_s[j] * (t - time(0)).s();
+    return q;
+  }
+
+ private:
+  // Where in column u the panel's point lies in the laser plane.
+  double stripe_row(int u, const Pose& laser) const {
+    const Pose& camera = config_.camera.base_from_camera;
+    const Vec3 panel_normal = base_from_panel_.linear().col(2), laser_normal = laser.linear().col(0);
+    const auto beyond = [&](double v) {
+      const CameraIntrinsics& in = config_.camera.intrinsics;
+      const Vec3 ray = camera.linear() * Vec3((u - in.cx) / in.fx, (v - in.cy) / in.fy, 1);
+      const double range = panel_normal.dot(base_from_panel_.translation() - camera.translation()) / panel_normal.dot(ray);
+      return laser_normal.dot(camera.translation() + range * ray - laser.translation());
+    };
+    double low = -2000, high = 3000;  // far beyond the image: the panel goes on without end
+    low = std::max(low, horizon(u, low, high));
+    for (int i = 0; i < 60; ++i) {
+      const double middle = 0.5 * (low + high);
+      (beyond(middle) > 0 ? low : high) = middle;
+    }
+    return high;
+  }
+  // The row from which on the column's rays meet the panel in front of the camera.
+  double horizon(int u, double low, double high) const {
+    const Vec3 panel_normal = base_from_panel_.linear().col(2);
+    for (int i = 0; i < 60; ++i) {
+      const double middle = 0.5 * (low + high);
+      const CameraIntrinsics& in = config_.camera.intrinsics;
+      const Vec3 ray = config_.camera.base_from_camera.linear() * Vec3((u - in.cx) / in.fx, (middle - in.cy) / in.fy, 1);
+      (panel_normal.dot(ray) < -1e-3 ? high : low) = middle;
+    }
+    return high;
+  }
+
+  ScanConfig config_;
+  Pose base_from_panel_;
+  std::mt19937_64 random_;
+  std::unique_ptr<ScanPipeline> pipeline_;
+};
+
+scan::SweepPlan nominal_sweep() {
+  scan::SweepRequest request;
+  request.base_from_panel = PanelLayout{}.nominal_base_from_panel();
+  return scan::plan_sweep(request, test::nominal_laser());
+}
+
+TEST(ScanPipelineTest, RebuildsThePanelFromImagesAndJoints) {
+  std::mt19937_64 random(41);
+  const Pose truth = test::docked_panel(random, 0.020, rad_from_deg(2));
+  ScanBench bench(truth);
+  const std::uint32_t images = bench.sweep(nominal_sweep());
+  bench.command(ScanCommand::Kind::analyse, 7);
+  PanelRequest request;
+  ASSERT_TRUE(bench.pipeline().take_request(request));
+  EXPECT_FALSE(bench.pipeline().take_request(request)) << "once only";
+  EXPECT_EQ(request.id, 7u);
+  EXPECT_FALSE(request.has_still);
+  ASSERT_TRUE(request.fit.valid);
+  const Vec3 normal = truth.linear().col(2);
+  EXPECT_LT(request.fit.plane.normal.cross(normal).norm(), rad_from_deg(0.01));
+  EXPECT_GT(request.fit.plane.normal.dot(normal), 0) << "toward the robot";
+  EXPECT_NEAR(request.fit.plane.signed_distance_m(truth.translation()), 0, 0.0001);
+  EXPECT_LT(request.fit.rms_m, 0.0002);
+  EXPECT_GT(bench.pipeline().cloud().size(), 30'000u);
+  const ScanStats& stats = bench.pipeline().stats();
+  EXPECT_EQ(stats.points, bench.pipeline().cloud().size());
+  EXPECT_GT(images, 100u);
+  EXPECT_EQ(stats.images, images);
+  EXPECT_EQ(stats.images_missing + stats.images_refused + stats.images_unexpected + stats.points_no_joints + stats.commands_refused, 0u);
+}
+
+class ScanOrders : public testing::Test {
+ protected:
+  void SetUp() override {
+    bench_ = std::make_unique<ScanBench>(PanelLayout{}.nominal_base_from_panel());
+    stripe_ = bench_->picture(q_, true);
+    dark_ = bench_->picture(q_, false);
+  }
+  // Joint samples up to the given SYNC.
+  void joints_until(int sync) {
+    for (; next_ <= sync; ++next_) bench_->joints(ScanBench::time(next_), q_);
+  }
+  void begin() { bench_->command(ScanCommand::Kind::begin_sweep); }
+  const ScanStats& stats() { return bench_->pipeline().stats(); }
+  std::size_t points() { return bench_->pipeline().cloud().size(); }
+
+  const Angles q_{0, 0.95, 1.5, 0};
+  std::unique_ptr<ScanBench> bench_;
+  std::vector<std::uint8_t> stripe_, dark_;
+  int next_ = 0;
+};
+
+TEST_F(ScanOrders, AStripeWaitsForTheJointsAfterIt) {
+  begin();
+  joints_until(10);
+  bench_->order(ScanBench::time(10), ExposureKind::laser_on);
+  bench_->send(ScanBench::time(10), stripe_);
+  EXPECT_GT(bench_->pipeline().last_peaks().size(), 500u);
+  EXPECT_EQ(bench_->pipeline().last_peaks_time(), ScanBench::time(10) + exposure / 2);
+  EXPECT_EQ(points(), 0u);
+  joints_until(20);
+  EXPECT_GT(points(), 400u);
+}
+
+TEST_F(ScanOrders, AnalyseTakesInWhatStillWaits) {
+  begin();
+  joints_until(10);
+  bench_->order(ScanBench::time(10), ExposureKind::laser_on);
+  bench_->send(ScanBench::time(10), stripe_);
+  joints_until(12);
+  EXPECT_EQ(points(), 0u);
+  bench_->command(ScanCommand::Kind::end_sweep);
+  bench_->command(ScanCommand::Kind::analyse);
+  EXPECT_GT(points(), 400u);
+  PanelRequest request;
+  ASSERT_TRUE(bench_->pipeline().take_request(request));
+  EXPECT_FALSE(request.fit.valid) << "one stripe is no plane";
+}
+
+TEST_F(ScanOrders, ImagesWithoutAnOrderAreUnexpected) {
+  begin();
+  joints_until(30);
+  bench_->send(ScanBench::time(10), stripe_);
+  bench_->order(ScanBench::time(20), ExposureKind::laser_on);
+  bench_->send(ScanBench::time(20) + Duration::from_us(2100), stripe_);
+  EXPECT_EQ(stats().images_unexpected, 2u);
+  EXPECT_EQ(stats().images, 0u);
+  bench_->send(ScanBench::time(20) - Duration::from_us(1900), stripe_);
+  EXPECT_EQ(stats().images, 1u);
+  bench_->send(ScanBench::time(20), stripe_);
+  EXPECT_EQ(stats().images_unexpected, 3u) << "one image an order";
+  EXPECT_EQ(points(), stats().points);
+}
+
+TEST_F(ScanOrders, ADroppedExposureIsRefusedBeforeAndAfterItsImageCame) {
+  begin();
+  joints_until(10);
+  bench_->order(ScanBench::time(5), ExposureKind::laser_on);
+  bench_->drop(ScanBench::time(5));
+  bench_->send(ScanBench::time(5), stripe_);
+  EXPECT_EQ(stats().images_refused, 1u);
+  bench_->order(ScanBench::time(10), ExposureKind::laser_on);
+  bench_->send(ScanBench::time(10) + Duration::from_us(300), stripe_);
+  bench_->drop(ScanBench::time(10));
+  EXPECT_EQ(stats().images_refused, 2u);
+  joints_until(30);
+  EXPECT_EQ(points(), 0u);
+  bench_->drop(ScanBench::time(11));
+  EXPECT_EQ(stats().commands_refused, 1u) << "never ordered";
+}
+
+TEST_F(ScanOrders, ADroppedStillIsNotHandedOn) {
+  begin();
+  bench_->order(ScanBench::time(5), ExposureKind::still);
+  bench_->send(ScanBench::time(5), dark_);
+  EXPECT_TRUE(bench_->pipeline().has_still());
+  bench_->drop(ScanBench::time(5));
+  EXPECT_FALSE(bench_->pipeline().has_still());
+}
+
+TEST_F(ScanOrders, TheStillIsKeptForTheRequestWithItsTime) {
+  begin();
+  bench_->command(ScanCommand::Kind::end_sweep);
+  bench_->order(ScanBench::time(5), ExposureKind::still);
+  bench_->send(ScanBench::time(5), dark_);
+  bench_->command(ScanCommand::Kind::analyse, 3);
+  PanelRequest request;
+  ASSERT_TRUE(bench_->pipeline().take_request(request));
+  EXPECT_TRUE(request.has_still);
+  EXPECT_EQ(request.still_time, ScanBench::time(5) + exposure / 2);
+  const ImageView still = bench_->pipeline().still();
+  EXPECT_TRUE(std::equal(dark_.begin(), dark_.end(), still.data));
+}
+
+TEST_F(ScanOrders, StripesAfterTheSweepsEndAreNotItsPoints) {
+  begin();
+  joints_until(10);
+  bench_->order(ScanBench::time(8), ExposureKind::laser_on);
+  bench_->command(ScanCommand::Kind::end_sweep);
+  bench_->order(ScanBench::time(10), ExposureKind::laser_on);
+  bench_->send(ScanBench::time(8), stripe_);
+  joints_until(30);
+  const std::size_t during = points();
+  EXPECT_GT(during, 400u) << "ordered during the sweep, arrived after it";
+  bench_->send(ScanBench::time(10), stripe_);
+  joints_until(50);
+  EXPECT_EQ(points(), during);
+}
+
+TEST_F(ScanOrders, ImagesThatNeverCameAreMissing) {
+  begin();
+  for (int i = 0; i < 3; ++i) bench_->order(ScanBench::time(10 * i), ExposureKind::laser_on);
+  bench_->send(ScanBench::time(10), stripe_);  // the first is lost
+  EXPECT_EQ(stats().images_missing, 1u);
+  bench_->command(ScanCommand::Kind::analyse);
+  EXPECT_EQ(stats().images_missing, 2u);
+  for (int i = 0; i < 40; ++i) bench_->order(ScanBench::time(100 + 10 * i), ExposureKind::laser_on);
+  EXPECT_EQ(stats().images_missing, 2u + 40u - 16u) << "the oldest give way";
+}
+
+TEST_F(ScanOrders, ImagesOfAnotherSizeAreRefused) {
+  begin();
+  for (const ImageView& view : {ImageView{}, ImageView{stripe_.data(), 320, 240, 320}, ImageView{stripe_.data(), width, height, 100}}) {
+    const Time start = ScanBench::time(next_ += 10);
+    bench_->order(start, ExposureKind::laser_on);
+    bench_->pipeline().on_image(0, {.view = view, .exposure_start = start, .exposure = exposure});
+  }
+  EXPECT_EQ(stats().images_refused, 3u);
+  bench_->pipeline().on_image(3,
+                              {.view = {stripe_.data(), width, height, width}, .exposure_start = ScanBench::time(0), .exposure = exposure});
+  EXPECT_EQ(stats().images_unexpected, 0u) << "another camera's";
+}
+
+TEST_F(ScanOrders, OrdersOutOfTheirTimesAndBadJointsAreRefused) {
+  bench_->order(ScanBench::time(10), ExposureKind::laser_on);
+  bench_->order(ScanBench::time(10), ExposureKind::laser_on);
+  bench_->order(ScanBench::time(9), ExposureKind::laser_on);
+  EXPECT_EQ(stats().commands_refused, 2u);
+  bench_->joints(ScanBench::time(1), q_);
+  bench_->joints(ScanBench::time(1), q_);
+  bench_->joints(ScanBench::time(2), {0, std::numeric_limits<double>::quiet_NaN(), 0, 0});
+  EXPECT_EQ(stats().commands_refused, 4u);
+  ScanCommand unknown;
+  unknown.kind = static_cast<ScanCommand::Kind>(77);
+  bench_->pipeline().on_command(unknown);
+  EXPECT_EQ(stats().commands_refused, 5u);
+}
+
+TEST_F(ScanOrders, StripesWithoutJointsAboutThemGiveNoPoints) {
+  begin();
+  joints_until(5);
+  next_ = 20;  // 14 SYNCs are lost
+  bench_->order(ScanBench::time(10), ExposureKind::laser_on);
+  bench_->send(ScanBench::time(10), stripe_);
+  joints_until(40);
+  EXPECT_EQ(points(), 0u);
+  EXPECT_EQ(stats().points_no_joints, stats().peaks);
+}
+
+TEST_F(ScanOrders, AFullCloudCountsWhatItLoses) {
+  begin();
+  for (int i = 0; i < 600; ++i) {
+    joints_until(10 * i + 10);
+    bench_->order(ScanBench::time(10 * i + 10), ExposureKind::laser_on);
+    bench_->send(ScanBench::time(10 * i + 10), stripe_);
+  }
+  joints_until(6020);
+  EXPECT_EQ(points(), scan::Cloud::capacity);
+  EXPECT_EQ(stats().points, scan::Cloud::capacity);
+  EXPECT_GT(stats().points_overflowed, 1000u);
+  begin();
+  EXPECT_EQ(points(), 0u);
+}
+
+}  // namespace
+}  // namespace lf

@@ -1,0 +1,152 @@
+#include "firmware/scan/sweep.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "firmware/arm/kinematics.hpp"
+#include "firmware/arm/trajectory.hpp"
+#include "tests/unit/scan/docked_scene.hpp"
+
+namespace lf::scan {
+namespace {
+
+arm::JointVector joints(const std::array<double, arm_joint_count>& q) { return {q[0], q[1], q[2], q[3]}; }
+
+arm::JointVector along(const SweepPlan& plan, double f) {
+  return joints(plan.start_rad) + f * (joints(plan.end_rad) - joints(plan.start_rad));
+}
+
+// Positive where the stripe has passed the point.
+double passed_m(const SweepPlan& plan, double f, const Vec3& point, const LaserCalibration& laser) {
+  const Pose pose = arm::base_from_laser(along(plan, f), laser);
+  return pose.linear().col(0).dot(point - pose.translation());
+}
+
+SweepRequest whole_panel() {
+  SweepRequest request;
+  request.base_from_panel = PanelLayout{}.nominal_base_from_panel();
+  return request;
+}
+
+SweepRequest handle_band(const Pose& base_from_panel) {
+  SweepRequest request;
+  request.base_from_panel = base_from_panel;
+  request.top_m = 0.055;
+  request.bottom_m = -0.055;
+  request.margin_m = 0.010;
+  request.docking_shift_m = 0.003;
+  request.docking_turn_rad = 0.0035;
+  return request;
+}
+
+// The point is before the stripe at the start and behind it at the end, and in the fan when the stripe passes.
+void expect_scanned(const SweepPlan& plan, const Vec3& point, const LaserCalibration& laser) {
+  ASSERT_LT(passed_m(plan, 0, point, laser), 0);
+  ASSERT_GT(passed_m(plan, 1, point, laser), 0);
+  double before = 0, after = 1;
+  for (int i = 0; i < 30; ++i) (passed_m(plan, 0.5 * (before + after), point, laser) < 0 ? before : after) = 0.5 * (before + after);
+  const Vec3 in_laser = arm::base_from_laser(along(plan, after), laser).inverse() * point;
+  ASSERT_GT(in_laser.z(), 0);
+  ASSERT_LE(std::atan2(std::abs(in_laser.y()), in_laser.z()), laser.fan_half_angle_rad);
+}
+
+TEST(Sweep, PassesThePanelAndItsMarginAtEveryDockingError) {
+  const LaserCalibration laser = test::nominal_laser();
+  const SweepPlan plan = plan_sweep(whole_panel(), laser);
+  ASSERT_EQ(plan.outcome, SweepOutcome::ok);
+  std::mt19937_64 random(20);
+  for (int trial = 0; trial < 400; ++trial) {
+    SCOPED_TRACE(testing::Message() << "trial " << trial << " of seed 20");
+    const Pose base_from_panel = test::docked_panel(random, 0.020, rad_from_deg(2));
+    for (double x : {-0.425, -0.2, 0.0, 0.2, 0.425})
+      for (double y : {-0.403, -0.2, 0.0, 0.247}) expect_scanned(plan, base_from_panel * Vec3(x, y, 0), laser);
+    if (HasFatalFailure()) return;
+  }
+}
+
+TEST(Sweep, OfABandPassesTheWholeHandle) {
+  const LaserCalibration laser = test::nominal_laser();
+  std::mt19937_64 random(21);
+  for (int trial = 0; trial < 100; ++trial) {
+    SCOPED_TRACE(testing::Message() << "trial " << trial << " of seed 21");
+    const Pose base_from_panel = test::docked_panel(random, 0.020, rad_from_deg(2));
+    const SweepPlan plan = plan_sweep(handle_band(base_from_panel), laser);
+    ASSERT_EQ(plan.outcome, SweepOutcome::ok);
+    for (double angle = 0; angle < 2 * pi; angle += pi / 6)
+      expect_scanned(plan, base_from_panel * Vec3(0.054 * std::cos(angle), 0.054 * std::sin(angle), 0.106), laser);
+    if (HasFatalFailure()) return;
+  }
+}
+
+TEST(Sweep, IsWithinTheSoftLimitsWithRunUpAndAboveTheStiction) {
+  const arm::JointLimits limits = arm::joint_limits(0.05);
+  for (const SweepRequest& request : {whole_panel(), handle_band(PanelLayout{}.nominal_base_from_panel())}) {
+    const SweepPlan plan = plan_sweep(request, test::nominal_laser());
+    ASSERT_EQ(plan.outcome, SweepOutcome::ok);
+    arm::ConstantSpeedSweep motion;
+    EXPECT_EQ(motion.plan(joints(plan.start_rad), joints(plan.end_rad), plan.duration.s(), limits), arm::PlanOutcome::ok);
+    for (std::size_t i = 0; i < arm_joint_count; ++i) {
+      EXPECT_TRUE(plan.speed_rad_s[i] == 0 || std::abs(plan.speed_rad_s[i]) >= 0.0649) << "joint " << i;
+      EXPECT_NEAR(plan.start_rad[i] + plan.speed_rad_s[i] * plan.duration.s(), plan.end_rad[i], 1e-6);
+    }
+  }
+}
+
+// 14 s where the first exploration's elbow-only sweep took 18.1, its lines no further apart than 2.6 mm.
+TEST(Sweep, OfTheWholePanelIsShortAndDense) {
+  const SweepPlan plan = plan_sweep(whole_panel(), test::nominal_laser());
+  ASSERT_EQ(plan.outcome, SweepOutcome::ok);
+  EXPECT_LT(plan.duration.s(), 15);
+  EXPECT_LT(plan.widest_spacing_m, 0.0027);
+  EXPECT_GT(plan.widest_spacing_m, 0.0020);
+}
+
+TEST(Sweep, OfABandIsDenserWhenAskedForWithShoulderAndElbowTogether) {
+  SweepRequest request = handle_band(PanelLayout{}.nominal_base_from_panel());
+  request.line_spacing_m = 0.0015;
+  const SweepPlan plan = plan_sweep(request, test::nominal_laser());
+  ASSERT_EQ(plan.outcome, SweepOutcome::ok);
+  EXPECT_LE(plan.widest_spacing_m, 0.0015);
+  EXPECT_GT(plan.speed_rad_s[1], 0.06);
+  EXPECT_LT(plan.speed_rad_s[2], -0.06);
+}
+
+TEST(Sweep, SpacingIsWhatItSays) {
+  const LaserCalibration laser = test::nominal_laser();
+  const SweepRequest request = whole_panel();
+  const SweepPlan plan = plan_sweep(request, laser);
+  ASSERT_EQ(plan.outcome, SweepOutcome::ok);
+  // Where the stripe meets the panel's middle line, at every stripe.
+  double widest = 0, before = 0;
+  const int stripes = static_cast<int>(plan.duration.s() / request.stripe_period.s());
+  for (int i = 0; i <= stripes; ++i) {
+    const Pose pose = arm::base_from_laser(along(plan, static_cast<double>(i) / stripes), laser);
+    const Vec3 normal = pose.linear().col(0);
+    const Vec3 up = request.base_from_panel.linear().col(1);
+    const double y = (pose.translation() - request.base_from_panel.translation()).dot(normal) / up.dot(normal);
+    if (i > 0 && y < 0.247 && y > -0.403) widest = std::max(widest, before - y);
+    before = y;
+  }
+  EXPECT_NEAR(plan.widest_spacing_m, widest, 0.08 * widest);  // the plan looks at eight places
+}
+
+TEST(Sweep, SaysWhatStandsInItsWay) {
+  const LaserCalibration laser = test::nominal_laser();
+  SweepRequest request = whole_panel();
+  request.top_m = 1.0;
+  EXPECT_EQ(plan_sweep(request, laser).outcome, SweepOutcome::top_unreachable);
+  LaserCalibration narrow = laser;
+  narrow.fan_half_angle_rad = 0.4;
+  EXPECT_EQ(plan_sweep(whole_panel(), narrow).outcome, SweepOutcome::fan_too_narrow);
+  request = whole_panel();
+  request.margin_m = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(plan_sweep(request, laser).outcome, SweepOutcome::bad_request);
+  request = whole_panel();
+  std::swap(request.top_m, request.bottom_m);
+  EXPECT_EQ(plan_sweep(request, laser).outcome, SweepOutcome::bad_request);
+}
+
+}  // namespace
+}  // namespace lf::scan
