@@ -24,7 +24,9 @@ canopen::DriveSetup drive_setup(const ArmJoint& joint, Joint which, const safety
   setup.node = can_map::drive_nodes[index];
   setup.min_counts = arm::counts_from_rad(which, limit.min_rad);
   setup.max_counts = arm::counts_from_rad(which, limit.max_rad);
-  setup.max_torque_permille = static_cast<std::uint16_t>(std::clamp(1000.0 * joint.effort_nm / joint.rated_torque_nm, 1.0, 65535.0));
+  // The rated torque can be held for ever, and is several times what free motion takes: with the peak torque a grip off the bar's middle pushes three
+  // times as hard, and trips the drives' over-current guard.
+  setup.max_torque_permille = static_cast<std::uint16_t>(std::clamp(1000.0 * joint.effort_nm / joint.rated_torque_nm, 1.0, 1000.0));
   // Screws have their fewest counts a radian at the ends of the stroke and their most within it; the limits hold everywhere.
   double least = 1e9;
   for (int i = 0; i <= 64; ++i) least = std::min(least, arm::rad_per_count(which, std::lerp(limit.min_rad, limit.max_rad, i / 64.0)));
