@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "firmware/arm/collision.hpp"
 #include "firmware/arm/kinematics.hpp"
 
 namespace lf {
@@ -9,6 +10,13 @@ namespace {
 
 // The camera's stamp against the SYNC that triggered it; exposures are 40 ms apart.
 constexpr Duration match_window = Duration::from_ms(2);
+
+// The jaw is closed while the arm scans.
+constexpr double jaw_while_scanning_rad = 0;
+// Of the links only forearm, wrist and fingers come before the panel.
+constexpr std::size_t first_seen_link = 3;
+// Around the arm's outline: since the newest background, 0.16 s ago at most, the hand has moved by 6 mm at 40 mm/s.
+constexpr double silhouette_margin_m = 0.010;
 
 Duration distance(Time a, Time b) { return a < b ? b - a : a - b; }
 
@@ -175,7 +183,9 @@ bool ScanPipeline::add_points(const Stripe& stripe, bool final) {
     stats_.points_no_joints += static_cast<std::uint32_t>(stripe.count);
     return true;
   }
-  const Pose base_from_laser = arm::base_from_laser(arm::JointVector(q_rad[0], q_rad[1], q_rad[2], q_rad[3]), config_.laser);
+  const arm::JointVector q(q_rad[0], q_rad[1], q_rad[2], q_rad[3]);
+  const Pose base_from_laser = arm::base_from_laser(q, config_.laser);
+  arm_ = arm::link_capsules(q, jaw_while_scanning_rad);
   const std::span<const scan::Peak> peaks = std::span(stripe.peaks).first(stripe.count);
   for (std::size_t begin = 0; begin < peaks.size();) {
     std::size_t end = begin + 1;
@@ -186,13 +196,21 @@ bool ScanPipeline::add_points(const Stripe& stripe, bool final) {
   return true;
 }
 
+// Whether the arm's hand stands in the line of sight: what is seen there is the hand, lit by its own laser, or the edge that it moved.
+bool ScanPipeline::behind_arm(const Vec3& point_m) const {
+  const arm::Capsule sight{.link = 0, .a_m = config_.camera.base_from_camera.translation(), .b_m = point_m, .radius_m = 0};
+  return std::any_of(arm_.begin(), arm_.end(), [&](const arm::Capsule& link) {
+    return link.link >= first_seen_link && arm::clearance_between(sight, link) < silhouette_margin_m;
+  });
+}
+
 // A column shows the panel and at most one proud part in the laser's plane; where more of its peaks could be points, none is believed.
 void ScanPipeline::add_column(std::span<const scan::Peak> peaks, const Pose& base_from_laser) {
   constexpr std::size_t most = 2;
   StaticVector<CloudPoint, scan::max_peaks_per_line> points;
   for (const scan::Peak& peak : peaks) {
     const std::optional<Vec3> point_m = triangulator_.point(Vec2(peak.u_px, peak.v_px), base_from_laser);
-    if (point_m) (void)points.push_back({.p_m = point_m->cast<float>(), .amplitude = peak.amplitude});
+    if (point_m && !behind_arm(*point_m)) (void)points.push_back({.p_m = point_m->cast<float>(), .amplitude = peak.amplitude});
   }
   if (points.size() > most) {
     ++stats_.peaks_ambiguous;

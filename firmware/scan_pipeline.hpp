@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <span>
 
+#include "firmware/arm/kinematics.hpp"
 #include "firmware/scan/cloud.hpp"
 #include "firmware/scan/joint_history.hpp"
 #include "firmware/scan/peaks.hpp"
@@ -96,6 +97,7 @@ class ScanPipeline {
   void measure(const Image& image, const Exposure& exposure);
   void add_points(bool final);
   bool add_points(const Stripe& stripe, bool final);
+  bool behind_arm(const Vec3& point_m) const;
   void add_column(std::span<const scan::Peak> peaks, const Pose& base_from_laser);
   void analyse(std::uint32_t sweep);
 
@@ -119,6 +121,7 @@ class ScanPipeline {
   StoredImage still_;
   PanelRequest request_;
   bool request_ready_ = false;
+  arm::LinkCapsules arm_{};  // at the stripe under work
   ScanStats stats_;
   std::array<scan::Peak, max_peaks> last_peaks_{};
   std::size_t last_peaks_count_ = 0;
