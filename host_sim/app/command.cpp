@@ -10,7 +10,8 @@ namespace lf::app {
 namespace {
 
 void check_stdout() {
-  if (std::fflush(stdout) != 0) throw EnvironmentError(std::string("standard output: ") + std::strerror(errno));
+  // ferror: a text longer than the buffer fails before the flush, which then has nothing left to write.
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) throw EnvironmentError(std::string("standard output: ") + std::strerror(errno));
 }
 
 }  // namespace

@@ -228,6 +228,7 @@ void read_map(const YAML::Node& node, const std::string& prefix, const std::stri
     if (!seen.insert(path).second) source.refuse(entry.first.Mark(), "'" + shown + path + "' is given twice");
     const auto exact = std::find_if(table.begin(), table.end(), [&](const Key& key) { return key.path == path; });
     if (exact != table.end()) {
+      if (entry.second.IsNull()) source.refuse(entry.first.Mark(), "'" + shown + path + "' takes " + type_name(*exact) + ", not nothing");
       read_value(entry.second, shown + path, *exact, source);
       continue;
     }

@@ -52,7 +52,7 @@ TEST_F(BadInput, ScenariosThatAreNotWhatTheyShouldBe) {
 
 TEST_F(BadInput, JobsThatTheMachineCannotDo) {
   expect_refused("run --set panel.handle_height_m=0.3 --set panel.ahead_m=0.3", "out of");
-  expect_refused("run --set camera.right_deg=-60", "out of the camera's view");
+  expect_refused("run --set camera.down_deg=10", "out of the camera's view");
   expect_refused("run --set arm.urdf=missing.urdf", "missing.urdf");
   file("jointless.urdf", "<robot name=\"none\">\n</robot>\n");
   expect_refused("run --set arm.urdf=" + (folder() / "jointless.urdf").string(), "jointless.urdf");

@@ -16,7 +16,8 @@ namespace lf::scenario {
 class ScenarioFile {
  public:
   explicit ScenarioFile(const std::string& text, const std::string& ending = ".yaml") {
-    const std::string test = ::testing::UnitTest::GetInstance()->current_test_info()->name();
+    std::string test = ::testing::UnitTest::GetInstance()->current_test_info()->name();
+    for (char& c : test) c = c == '/' ? '_' : c;
     path_ = std::filesystem::temp_directory_path() / ("lanternfish_" + test + std::to_string(::getpid()) + ending);
     std::ofstream(path_, std::ios::binary) << text;
   }
