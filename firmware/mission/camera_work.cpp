@@ -37,7 +37,7 @@ void CameraWork::tick(Time now, canopen::IoModule& io, ScanOrders& orders) {
     case Mode::sweep: {
       if (!slot) return;
       const bool background = frames_++ % config_.frames_per_background == 0;
-      const auto outputs = static_cast<std::uint8_t>(lamps() | (background ? 0 : can_map::output_laser));
+      const auto outputs = background ? std::uint8_t{0} : can_map::output_laser;
       io.set_outputs(outputs);
       inhibited_ = !background && (io.laser_inhibited() || !io.interlock_closed());
       expose(now, io, background ? ExposureKind::background : ExposureKind::laser_on, outputs, orders);

@@ -19,8 +19,8 @@ using ScanOrders = StaticVector<ScanCommand, 16>;
 class CameraWork {
  public:
   enum class Mode : std::uint8_t {
-    idle,   // dark, unless `always_on` keeps the camera running for the record
-    sweep,  // laser-on frames with a background every `frames_per_background`
+    idle,  // dark, unless `always_on` keeps the camera running for the record
+    sweep,  // laser-on frames with a background every `frames_per_background`; without lamps, whose shadows of the arm would move from one to the other
     still,  // one picture for the marker, laser off
   };
 

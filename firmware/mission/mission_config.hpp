@@ -25,7 +25,7 @@ struct MissionConfig {
   PanelLayout layout;  // as surveyed; where it stands is for the core to find
 
   arm::JointVector park_rad{0.0, 0.60, 1.90, 0.0};  // folded, clear of the panel at every docking error
-  bool use_lamps = true;                            // during scans and stills
+  bool use_lamps = true;                            // for stills; sweeps are dark but for the laser
   bool camera_always_on = false;                    // a frame every camera period even when nobody needs it, for the record
 
   // The camera: every tenth SYNC is 25 Hz. Of five frames one is taken without the laser, the background of the other four.

@@ -65,7 +65,8 @@ struct PeakConfig {
   // that stands proud of a panel, seen from elsewhere than lit from, carries its piece of the stripe in front of columns that show the panel's piece
   // as well; and an arm that moved since the background was taken has edges in the difference.
   std::int32_t peaks_per_line = 1;
-  float min_second_ratio = 0.2f;  // of a further peak to the first: reflections between parts of albedo 0.5 stay below a tenth
+  float min_second_ratio =
+      0.4f;  // of a further peak to the first: parts like the panel give 0.7 and more, edges of moving shadows mostly less
   std::int32_t max_clipped = 12;  // px at full scale; a wider plateau is no stripe; of several it is passed over
   std::int32_t full_scale = 255;  // grey level at which the sensor clips
 };
