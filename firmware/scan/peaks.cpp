@@ -90,6 +90,15 @@ void BasicPeakDetector<Pixel, MaxLength>::load_row(const Strip& s, std::int32_t 
   Sum* out = rows_[row & 31].data();
   const bool direct = config_.axis == PeakAxis::column && s.lines == strip;
   if (direct) {
+    // A strip touches a cache line or two of every row, which on a large image the hardware does not foresee: asked for 16 rows ahead, 1920x1080 took
+    // 1.8 ms in place of 6.6 on a busy machine.
+    const std::int32_t ahead = std::min(row + 16, s.length - 1);
+    __builtin_prefetch(s.on.row(ahead) + s.first);
+    __builtin_prefetch(s.on.row(ahead) + s.first + strip - 1);
+    if (s.off.valid()) {
+      __builtin_prefetch(s.off.row(ahead) + s.first);
+      __builtin_prefetch(s.off.row(ahead) + s.first + strip - 1);
+    }
     const Pixel* off = s.off.valid() ? s.off.row(row) + s.first : off_block_[0].data();
     subtract(s.on.row(row) + s.first, off, out);
     return;

@@ -163,6 +163,29 @@ TEST(Peaks, TwoStripesOfLikeHeightAreAmbiguousAndOfUnlikeHeightAreNot) {
   }
 }
 
+// A handle before the panel carries its piece of the stripe; both are measured, the stronger first.
+TEST(Peaks, TwoPiecesOfAStripeInAColumnAreBothGivenWhenAskedFor) {
+  const int width = 64, height = 200;
+  std::vector<std::uint8_t> image(width * height, 10);
+  for (int u = 0; u < width; ++u) {
+    for (const auto& [row, grey] : {std::pair{60, 90}, std::pair{140, 110}}) {
+      image[(row - 1) * width + u] = image[(row + 1) * width + u] = static_cast<std::uint8_t>(grey / 2 + 5);
+      image[row * width + u] = static_cast<std::uint8_t>(grey);
+    }
+  }
+  auto detector = std::make_unique<PeakDetector>(PeakConfig{.peaks_per_line = 2});
+  std::vector<Peak> peaks(width * 2);
+  ASSERT_EQ(detector->detect(ImageView{image.data(), width, height, width}, {}, peaks), 128u);
+  for (int u = 0; u < width; ++u) {
+    EXPECT_EQ(peaks[2 * u].u_px, static_cast<float>(u));
+    EXPECT_NEAR(peaks[2 * u].v_px, 140, 1e-4);
+    EXPECT_EQ(peaks[2 * u + 1].u_px, static_cast<float>(u));
+    EXPECT_NEAR(peaks[2 * u + 1].v_px, 60, 1e-4);
+  }
+  EXPECT_EQ(detector->detect(ImageView{image.data(), width, height, width}, {}, std::span(peaks).first(64)), 0u)
+      << "no room for two a column";
+}
+
 TEST(Peaks, AWidePlateauIsSaturatedNotAStripe) {
   const int width = 64, height = 100;
   std::vector<std::uint8_t> image(width * height, 20);
