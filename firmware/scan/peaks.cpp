@@ -71,7 +71,8 @@ std::size_t BasicPeakDetector<Pixel, MaxLength>::detect(const PixelView<Pixel>& 
   const bool columns = config_.axis == PeakAxis::column;
   const std::int32_t lines = columns ? image.width : image.height;
   const std::int32_t length = columns ? image.height : image.width;
-  if (length < min_length || length > max_length || peaks.size() < static_cast<std::size_t>(lines) * (config_.peaks_per_line > 1 ? 2u : 1u))
+  if (length < min_length || length > max_length ||
+      peaks.size() < static_cast<std::size_t>(lines) * static_cast<std::size_t>(config_.peaks_per_line))
     return 0;
 
   if (!background.valid()) off_block_ = {};

@@ -184,6 +184,8 @@ TEST(Peaks, TwoPiecesOfAStripeInAColumnAreBothGivenWhenAskedFor) {
   }
   EXPECT_EQ(detector->detect(ImageView{image.data(), width, height, width}, {}, std::span(peaks).first(64)), 0u)
       << "no room for two a column";
+  auto four = std::make_unique<PeakDetector>(PeakConfig{.peaks_per_line = 4});
+  EXPECT_EQ(four->detect(ImageView{image.data(), width, height, width}, {}, peaks), 0u) << "no room for four";
 }
 
 TEST(Peaks, AWidePlateauIsSaturatedNotAStripe) {
