@@ -178,11 +178,21 @@ std::size_t BasicPeakDetector<Pixel, MaxLength>::finish(const Strip& s, std::int
     return 0;
   }
   const float ratio = (stripes.size() > 1 ? stripes[1].response : second) / stripes[0].response;
-  if (!several && ratio > config_.max_ratio) {
+  // What is hardly above the noise has to be the only one.
+  const bool alone = !several || stripes[0].response < 2 * least;
+  if (alone && ratio > config_.max_ratio) {
     ++counters_.ambiguous;
     return 0;
   }
-  const std::size_t count = several ? stripes.size() : 1;
+  // Noise has many maxima alike; stripes are few.
+  if (several && static_cast<std::int32_t>(stripes.size()) >= config_.peaks_per_line) {
+    const Maximum further = next_maximum(s, lane, std::span<const Maximum>(known.data(), known.size()));
+    if (further.response > config_.max_ratio * stripes.back().response) {
+      ++counters_.ambiguous;
+      return 0;
+    }
+  }
+  const std::size_t count = alone ? 1 : stripes.size();
   for (std::size_t i = 0; i < count; ++i) measure(s, lane, stripes[i], ratio, peaks[i]);
   return count;
 }
