@@ -151,7 +151,7 @@ Moments moments_near(std::span<const CloudPoint> points, const Vec3& centre_m, c
 bool solve(const Moments& m, Vec3& normal, double& offset_m) {
   if (!(m.n >= 3)) return false;
   const Eigen::SelfAdjointEigenSolver<Mat3> eigen(m.covariance());
-  const Vec3 spread = eigen.eigenvalues();  // ascending
+  const Vec3& spread = eigen.eigenvalues();  // ascending
   if (eigen.info() != Eigen::Success || !(spread(1) > 4 * spread(0)) || !(spread(1) > 1e-4 * spread(2))) return false;
   normal = eigen.eigenvectors().col(0).normalized();
   offset_m = -normal.dot(m.mean());
