@@ -1,5 +1,6 @@
 #include "tests/unit/vision/rendered_marker.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <opencv2/aruco.hpp>
 #include <random>
@@ -28,10 +29,20 @@ double grey_at(const MarkerScene& scene, const cv::Mat& bits, const Pose& tag_fr
   return bits.at<std::uint8_t>(row, column) != 0 ? scene.white : scene.black;
 }
 
+// The pixel's mean grey: of 8 x 8 rays where its corners differ.
+double mean_grey(const MarkerScene& scene, const cv::Mat& bits, const Pose& tag_from_camera, int u, int v) {
+  constexpr int rays = 8;
+  const auto at = [&](double du, double dv) { return grey_at(scene, bits, tag_from_camera, u + du, v + dv); };
+  const double corner = at(-0.5, -0.5);
+  if (corner == at(0.5, -0.5) && corner == at(-0.5, 0.5) && corner == at(0.5, 0.5)) return corner;
+  double sum = 0;
+  for (int i = 0; i < rays * rays; ++i) sum += at((i % rays + 0.5) / rays - 0.5, (i / rays + 0.5) / rays - 0.5);
+  return sum / (rays * rays);
+}
+
 }  // namespace
 
 RenderedMarker render_marker(const MarkerScene& scene) {
-  constexpr int rays = 8;
   RenderedMarker image{scene.camera.width, scene.camera.height, {}, {}};
   const cv::Mat bits = bits_of(scene.id);
   const Pose tag_from_camera = scene.camera_from_tag.inverse();
@@ -39,13 +50,7 @@ RenderedMarker render_marker(const MarkerScene& scene) {
   std::normal_distribution<double> noise(0, scene.noise_grey > 0 ? scene.noise_grey : 1);
   for (int v = 0; v < image.height; ++v) {
     for (int u = 0; u < image.width; ++u) {
-      double sum = 0;
-      for (int i = 0; i < rays * rays; ++i) {
-        const double du = (i % rays + 0.5) / rays - 0.5;
-        const double dv = (i / rays + 0.5) / rays - 0.5;
-        sum += grey_at(scene, bits, tag_from_camera, u + du, v + dv);
-      }
-      const double grey = sum / (rays * rays) + (scene.noise_grey > 0 ? noise(random) : 0);
+      const double grey = mean_grey(scene, bits, tag_from_camera, u, v) + (scene.noise_grey > 0 ? noise(random) : 0);
       image.pixels.push_back(static_cast<std::uint8_t>(std::clamp(std::lround(grey), 0L, 255L)));
     }
   }

@@ -1,4 +1,4 @@
-// Pictures of a marker with a known pose: each pixel the mean of 8 x 8 rays, so that edges fall where they should to a hundredth of a pixel.
+// Pictures of a marker with a known pose: each pixel on an edge the mean of 8 x 8 rays, so that edges fall where they should to a hundredth of a pixel.
 #pragma once
 
 #include <array>
