@@ -51,6 +51,7 @@ void CameraWork::tick(Time now, canopen::IoModule& io, ScanOrders& orders) {
         still_start_ = now;
       }
       return;
+    case Mode::off: io.set_outputs(0); return;
   }
 }
 

@@ -22,6 +22,7 @@ class CameraWork {
     idle,  // dark, unless `always_on` keeps the camera running for the record
     sweep,  // laser-on frames with a background every `frames_per_background`; without lamps, whose shadows of the arm would move from one to the other
     still,  // one picture for the marker, laser off
+    off,    // dark for good: the mission has ended
   };
 
   struct Config {

@@ -9,6 +9,9 @@ using safety::Reaction;
 
 namespace {
 
+// One late tick is jitter; three are the time after which a position is stale.
+constexpr std::uint32_t clock_lost_ticks = 3;
+
 CameraWork::Config camera_config(const ControllerConfig& config) {
   CameraWork::Config camera;
   camera.exposure = config.camera.exposure;
@@ -45,8 +48,9 @@ void Mission::tick(Time now, canopen::Network& network, ScanOrders& orders, Tele
   const Tick tick{now, network, orders, telemetry};
   observe(tick);
   watch_faults(tick);
-  if (!entered_) begin(tick);
-  const Status status = run(tick);
+  // After a fault the arm comes to rest first: a motion is planned from rest.
+  if (!entered_ && (!powered_ || motion_.done())) begin(tick);
+  const Status status = entered_ ? run(tick) : Status::running;
   if (status != Status::running) finish_step(tick, status);
   camera_.tick(now, network.io(), orders);
   drive(tick);
@@ -72,36 +76,59 @@ void Mission::observe(const Tick& tick) {
 }
 
 void Mission::watch_faults(const Tick& tick) {
-  if (is_end(step_)) return;
+  if (over()) return;
   faults_now_.clear();
   watch_.check(tick.network, arm::base_from_tool(measured_rad()).translation(), powered_, tick.now, faults_now_);
 
-  for (std::size_t i = 0; i < faults_now_.size() && !is_end(step_); ++i) raise(tick, faults_now_[i].fault, faults_now_[i].code);
-  if (is_end(step_)) return;
-  if (stop_ordered_) raise(tick, Fault::estop, 1);
-  stop_ordered_ = false;
-  if (port_error_ > 0) raise(tick, Fault::port_error, port_error_ - 1);
-  port_error_ = 0;
-  if (scan_stats_.images_missing != images_missing_) {
-    const auto lost = static_cast<std::int32_t>(scan_stats_.images_missing - images_missing_);
-    images_missing_ = scan_stats_.images_missing;
-    raise(tick, Fault::image_lost, lost);
-  }
+  for (std::size_t i = 0; i < faults_now_.size() && !over(); ++i) raise(tick, faults_now_[i].fault, faults_now_[i].code);
+  take_orders(tick);
+  watch_ports(tick);
+  watch_images(tick);
   if (camera_.laser_inhibited()) raise(tick, Fault::interlock, 0);
-  if (abort_ordered_ && !failing_ && !is_end(step_)) {
-    abort_ordered_ = false;
-    give_up(Fault::step_failed, 0);
-    react(tick, Reaction::retreat);
-  }
   const StepRow& now = row(step_);
   if (now.timeout_s > 0 && tick.now - step_since_ > Duration::from_s(now.timeout_s)) raise(tick, Fault::step_timeout, 0);
 }
 
+void Mission::take_orders(const Tick& tick) {
+  if (stop_ordered_) raise(tick, Fault::estop, 1);
+  if (abort_ordered_ && !failing_) raise(tick, Fault::aborted, 0);
+  stop_ordered_ = abort_ordered_ = false;
+}
+
+void Mission::watch_ports(const Tick& tick) {
+  clockless_ticks_ = clock_failed_ ? clockless_ticks_ + 1 : 0;
+  clock_failed_ = false;
+  if (clockless_ticks_ == clock_lost_ticks) raise(tick, Fault::clock_lost, static_cast<std::int32_t>(clockless_ticks_));
+  const std::int32_t failed = port_error_ - 1;
+  port_error_ = 0;
+  if (failed < 0) return;
+  // Before the start nothing is lost by it.
+  if (step_ == Step::idle) {
+    ++fault_counts_[static_cast<std::size_t>(Fault::port_error)];
+  } else {
+    raise(tick, Fault::port_error, failed);
+  }
+}
+
+// A sweep bears a lost frame; the plane's fit says when too many are.
+void Mission::watch_images(const Tick& tick) {
+  if (scan_stats_.images_missing > images_missing_) {
+    raise(tick, Fault::image_lost, static_cast<std::int32_t>(scan_stats_.images_missing - images_missing_));
+  }
+  images_missing_ = scan_stats_.images_missing;
+}
+
+void Mission::on_port_error(std::int32_t port) {
+  port_error_ = port + 1;
+  clock_failed_ = clock_failed_ || port == static_cast<std::int32_t>(Port::clock);
+}
+
 void Mission::raise(const Tick& tick, Fault fault, std::int32_t code) {
-  if (is_end(step_)) return;
+  if (over()) return;
   ++fault_counts_[static_cast<std::size_t>(fault)];
   Reaction reaction = safety::reaction(fault, row(step_).phase);
-  if (reaction == Reaction::retry && !may_retry()) reaction = powered_ ? Reaction::retreat : Reaction::power_off;
+  if (reaction == Reaction::retry && !may_retry()) reaction = Reaction::retreat;
+  if (reaction == Reaction::retreat && !powered_) reaction = Reaction::power_off;  // there is no way back without power
   Event fault_event;
   fault_event.kind = Event::Kind::fault;
   fault_event.t = tick.now;
@@ -136,10 +163,12 @@ void Mission::react(const Tick& tick, Reaction reaction) {
     case Reaction::retry:
       ++tries_[static_cast<std::size_t>(step_)];
       retrying_ = true;
+      motion_.stop();
       enter(tick, row(step_).on_retry);
       return;
     case Reaction::retreat:
       retrying_ = false;
+      motion_.stop();
       if (!in_contact_phase()) {
         enter(tick, Step::stow);
       } else {
@@ -171,7 +200,8 @@ void Mission::enter(const Tick& tick, Step next) {
   step_since_ = tick.now;
   entered_ = false;
   failure_ = StepFailure::none;
-  if (camera_.mode() != CameraWork::Mode::idle) camera_.set_mode(CameraWork::Mode::idle, tick.now);
+  const CameraWork::Mode camera = is_end(next) ? CameraWork::Mode::off : CameraWork::Mode::idle;
+  if (camera_.mode() != camera) camera_.set_mode(camera, tick.now);
   event(tick, Event::Kind::step);
   settling_ = false;
   if (next == Step::done || next == Step::failed) {

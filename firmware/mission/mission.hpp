@@ -49,7 +49,7 @@ class Mission {
   void stop() { stop_ordered_ = true; }
   void on_panel(const PanelResult& result);
   void on_scan(const ScanStats& stats) { scan_stats_ = stats; }
-  void on_port_error(std::int32_t port) { port_error_ = port + 1; }
+  void on_port_error(std::int32_t port);
 
   // One control period: reads the network's answers, sets its targets and outputs, and adds orders and events.
   void tick(Time now, canopen::Network& network, ScanOrders& orders, Telemetry& telemetry);
@@ -74,6 +74,9 @@ class Mission {
   // mission.cpp: the machine
   void observe(const Tick& tick);
   void watch_faults(const Tick& tick);
+  void take_orders(const Tick& tick);
+  void watch_ports(const Tick& tick);
+  void watch_images(const Tick& tick);
   void raise(const Tick& tick, safety::Fault fault, std::int32_t code);
   void react(const Tick& tick, safety::Reaction reaction);
   void enter(const Tick& tick, Step next);
@@ -86,6 +89,8 @@ class Mission {
   void report(const Tick& tick);
   void event(const Tick& tick, Event::Kind kind, double value = 0);
   Status fail(StepFailure failure);
+  // Nothing is under power any more. A held arm is, and is watched on.
+  bool over() const { return is_end(step_) && step_ != Step::held; }
   bool in_contact_phase() const { return row(step_).phase == safety::Phase::contact || row(step_).phase == safety::Phase::gripping; }
 
   // mission_start.cpp: power up and the way home
@@ -161,7 +166,9 @@ class Mission {
 
   // Orders and answers from outside, taken at the next tick.
   bool start_ordered_ = false, abort_ordered_ = false, stop_ordered_ = false;
-  std::int32_t port_error_ = 0;
+  std::int32_t port_error_ = 0;        // 1 + the port that failed since the last tick
+  bool clock_failed_ = false;          // since the last tick
+  std::uint32_t clockless_ticks_ = 0;  // in a row
   ScanStats scan_stats_;
   std::uint32_t images_missing_ = 0;  // known of
   PanelResult panel_;

@@ -12,7 +12,7 @@ constexpr std::array<StepRow, step_count> table{{
     {Step::idle, "idle", "boot", Phase::boot, 0, Step::boot, Step::boot, never},
     {Step::boot, "boot", "boot", Phase::boot, 15, Step::enable, Step::enable, Step::boot},
     {Step::enable, "enable", "boot", Phase::boot, 5, Step::home, Step::home, Step::enable},
-    {Step::home, "home", "boot", Phase::free, 30, Step::deploy, Step::deploy, Step::home},
+    {Step::home, "home", "boot", Phase::free, 30, Step::deploy, Step::deploy, Step::enable},
     {Step::deploy, "deploy", "deploy", Phase::free, 40, Step::scan, Step::scan, Step::deploy},
     {Step::scan, "scan", "scan", Phase::scan, 60, Step::look, Step::look, Step::deploy},
     {Step::look, "look", "scan", Phase::scan, 5, Step::perceive, Step::perceive, Step::look},
@@ -36,7 +36,8 @@ constexpr std::array<StepRow, step_count> table{{
     {Step::stow, "stow", "stow", Phase::stow, 60, Step::done, Step::failed, never},
     {Step::done, "done", "end", Phase::ended, 0, Step::done, Step::done, never},
     {Step::failed, "failed, stowed", "end", Phase::ended, 0, Step::failed, Step::failed, never},
-    {Step::held, "held", "end", Phase::ended, 0, Step::held, Step::held, never},
+    // Still under power: what stops the arm on its way to the park stops it here.
+    {Step::held, "held", "end", Phase::stow, 0, Step::held, Step::held, never},
     {Step::stopped, "stopped", "end", Phase::ended, 0, Step::stopped, Step::stopped, never},
     {Step::off, "off", "end", Phase::ended, 0, Step::off, Step::off, never},
 }};

@@ -32,7 +32,9 @@ enum class Fault : std::uint8_t {
   grip_lost,           // the handle slipped out of the jaw
   step_timeout,        // a step took longer than it may
   step_failed,         // a step ended without its aim: no contact, no click, unreachable
+  aborted,             // the operator ended the mission
   port_error,          // a call of the platform failed
+  clock_lost,          // three ticks in a row without the platform's clock: nothing is known to be fresh
   count
 };
 inline constexpr std::size_t fault_count = static_cast<std::size_t>(Fault::count);

@@ -65,6 +65,7 @@ MissionRun run_mission(const std::string& scenario_name, std::uint64_t seed, con
   run.digest = recorder.digest;
   run.refused_frames = lockstep.controller().rejected_inputs() + lockstep.controller().network().stats().refused_total();
   run.laser_on_at_end = platform.devices().laser_on();
+  run.lamps_on_at_end = platform.devices().lamps_on();
   return run;
 }
 

@@ -24,7 +24,7 @@ struct MissionRun {
   std::uint64_t heap_calls = 0;  // inside the core
   std::uint64_t digest = 0;      // FNV-1a over every CAN frame with its time, and the world's state at the end
   std::uint32_t refused_frames = 0;
-  bool laser_on_at_end = false;
+  bool laser_on_at_end = false, lamps_on_at_end = false;
 };
 
 // What a test wants to do while the mission runs; called after every control period.

@@ -1,0 +1,54 @@
+// A simulated platform whose sight is given, not rendered: what panel vision would answer is made of the world's truth. For tests of everything else:
+// a mission without rendering takes a tenth of the time.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "firmware/config.hpp"
+#include "hal/sim/sim_platform.hpp"
+
+namespace lf::test {
+
+class KnownSight {
+ public:
+  // `inner` outlives this. `base_from_panel` is the true pose of the panel.
+  KnownSight(hal::SimPlatform& inner, const ControllerConfig& told, const Pose& base_from_panel)
+      : inner_(inner), camera_(told.camera), marker_(told.marker), layout_(told.mission.layout), base_from_panel_(base_from_panel) {}
+
+  // Whether questions from now on are answered.
+  void answer(bool answers) { answers_ = answers; }
+  // Whether pictures taken from now on get lost on their way.
+  void lose_images(bool lose) { lose_images_ = lose; }
+
+  hal::PortStatus wait_for_tick(Time& tick) { return inner_.wait_for_tick(tick); }
+  hal::PortStatus receive_can(std::uint8_t bus, hal::ReceivedFrame& received) { return inner_.receive_can(bus, received); }
+  hal::PortStatus send_can(std::uint8_t bus, std::span<const CanFrame> frames) { return inner_.send_can(bus, frames); }
+  hal::PortStatus receive_image(std::uint8_t camera, Image& image);
+  hal::PortStatus submit_panel(const PanelRequest& request, ImageView still, std::span<const CloudPoint> cloud);
+  hal::PortStatus receive_panel(PanelResult& result);
+  hal::PortStatus publish(const Telemetry& telemetry) { return inner_.publish(telemetry); }
+
+  std::uint32_t questions() const { return questions_; }
+
+ private:
+  hal::SimPlatform& inner_;
+  CameraCalibration camera_;
+  MarkerCalibration marker_;
+  PanelLayout layout_;
+  Pose base_from_panel_;
+  bool answers_ = true;
+  bool lose_images_ = false;
+  std::uint32_t questions_ = 0;
+  std::optional<PanelResult> answer_;
+  Time answer_due_;
+};
+
+static_assert(hal::Platform<KnownSight>);
+
+// What panel vision would say, without error, of a panel that stands so.
+PanelResult panel_as_it_is(const Pose& base_from_panel, double handle_rad, const PanelLayout& layout, const MarkerCalibration& marker,
+                           const CameraCalibration& camera);
+
+}  // namespace lf::test

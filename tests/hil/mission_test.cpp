@@ -1,0 +1,58 @@
+// Missions from boot to park with everything simulated, held to the truth.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "hal/heap_guard/heap_guard.hpp"
+#include "tests/hil/mission_run.hpp"
+
+namespace lf::test {
+namespace {
+
+constexpr double target_rad = pi / 2;
+
+struct Seeded {
+  const char* scenario;
+  std::uint64_t seed;
+  const char* lamps;
+  const char* name;
+};
+
+void PrintTo(const Seeded& c, std::ostream* out) { *out << c.scenario << ", seed " << c.seed; }
+
+class WholeMission : public testing::TestWithParam<Seeded> {};
+
+TEST_P(WholeMission, TurnsTheValvePressesEachButtonOnceAndTouchesNothingElse) {
+  const Seeded& c = GetParam();
+  const MissionRun run = run_mission(c.scenario, c.seed, {std::string("lamps.lit=") + c.lamps});
+  SCOPED_TRACE(describe(run));
+  EXPECT_TRUE(run.outcome.success);
+  EXPECT_NEAR(run.valve_rad, target_rad, rad_from_deg(3));
+  for (const std::uint32_t presses : run.presses) EXPECT_EQ(presses, 1u);
+  EXPECT_TRUE(run.contacts.unintended.empty());
+  EXPECT_FALSE(run.laser_on_at_end);
+  EXPECT_FALSE(run.lamps_on_at_end);
+  EXPECT_EQ(run.refused_frames, 0u);
+  if (hal::HeapGuard::available()) {
+    EXPECT_EQ(run.heap_calls, 0u);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, WholeMission,
+                         testing::Values(Seeded{"default", 1, "either", "Default1"}, Seeded{"turbid", 7, "false", "TurbidInTheDark7"}),
+                         [](const testing::TestParamInfo<Seeded>& test) { return std::string(test.param.name); });
+
+// Boot, deployment and the first pictures of the sweep: everything that could depend on threads is at work by then.
+TEST(Digest, IsTheSameForOneAndTwoRenderThreadsAndForARepetition) {
+  const std::vector<std::string> short_run{"time_limit_s=12"};
+  const MissionRun once = run_mission("default", 3, short_run, 1);
+  const MissionRun again = run_mission("default", 3, short_run, 1);
+  const MissionRun two_threads = run_mission("default", 3, short_run, 2);
+  EXPECT_EQ(once.digest, again.digest);
+  EXPECT_EQ(once.digest, two_threads.digest);
+  EXPECT_NE(once.digest, run_mission("default", 4, short_run, 1).digest);
+}
+
+}  // namespace
+}  // namespace lf::test

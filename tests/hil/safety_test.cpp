@@ -1,0 +1,302 @@
+// What each fault does in each phase, on the whole robot: the table of docs/mission.md is the specification.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "tests/hil/rig.hpp"
+
+namespace lf::test {
+namespace {
+
+using mission::Step;
+using safety::Fault;
+
+// From a quick stop's order on: the SYNC that carries it, and the drives' ramps (the roll from its 0.7 rad/s in 0.2 s), with the arm's swing after it.
+constexpr double stop_time_s = 0.5;
+// Bullet's joints under load creep by less.
+constexpr double standing_rad_s = 0.002;
+
+// The phases under way, by a step in each, and how far into it the fault comes.
+struct Moment {
+  Step step;
+  double later_s;
+  const char* name;
+};
+constexpr Moment free_motion{Step::deploy, 1.0, "deploying"}, scanning{Step::scan, 1.5, "scanning"},
+    in_contact{Step::advance, 1.0, "advancing"}, gripping{Step::turn, 1.0, "turning"}, pressing{Step::press, 1.0, "pressing"},
+    stowing{Step::stow, 0.5, "stowing"};
+
+void PrintTo(const Moment& moment, std::ostream* out) { *out << moment.name; }
+
+std::vector<std::string> turn_only() { return {"tasks=[{turn_valve: {to_deg: 90}}]"}; }
+std::vector<std::string> press_only() { return {"tasks=[{press_buttons: {order: [centre]}}]"}; }
+std::vector<std::string> job_with(const Moment& moment) { return moment.step == Step::press ? press_only() : turn_only(); }
+
+bool reach(Rig& rig, const Moment& moment) {
+  rig.start();
+  if (!rig.run_to(moment.step)) return false;
+  rig.run_for(moment.later_s);
+  return rig.step_now() == moment.step;
+}
+
+class EmergencyStop : public testing::TestWithParam<Moment> {};
+
+TEST_P(EmergencyStop, StopsTheDrivesAndHoldsWhatIsHeld) {
+  Rig rig(job_with(GetParam()));
+  ASSERT_TRUE(reach(rig, GetParam())) << rig.story();
+  const double moving_rad_s = rig.fastest_joint_rad_s();
+  const double grip_n = rig.world().contacts().grip_force_n;
+  rig.devices().set_estop_closed(false);
+  rig.run_for(stop_time_s);
+  EXPECT_GT(moving_rad_s, 10 * standing_rad_s) << "there was nothing to stop";
+  EXPECT_LT(rig.fastest_joint_rad_s(), standing_rad_s);
+  const double valve_rad = rig.world().valve_angle_rad();
+  rig.run_for(2);
+  EXPECT_LT(rig.fastest_joint_rad_s(), standing_rad_s);
+  EXPECT_EQ(rig.step_now(), Step::stopped) << rig.story();
+  EXPECT_EQ(rig.outcome().fault, Fault::estop);
+  EXPECT_FALSE(rig.outcome().success);
+  EXPECT_FALSE(rig.devices().laser_on());
+  EXPECT_FALSE(rig.devices().lamps_on());
+  if (GetParam().step != Step::turn) return;
+  EXPECT_GT(grip_n, 20) << "nothing was held";
+  EXPECT_GT(rig.world().contacts().grip_force_n, 0.5 * grip_n);
+  EXPECT_NEAR(rig.world().valve_angle_rad(), valve_rad, 0.005);
+}
+
+INSTANTIATE_TEST_SUITE_P(InEveryPhase, EmergencyStop, testing::Values(free_motion, scanning, in_contact, gripping, pressing, stowing),
+                         [](const testing::TestParamInfo<Moment>& test) { return std::string(test.param.name); });
+
+TEST(EmergencyStopByCommand, IsTheSameAsTheButton) {
+  Rig rig(turn_only());
+  ASSERT_TRUE(reach(rig, free_motion)) << rig.story();
+  rig.controller().on_command(Command::emergency_stop, rig.now());
+  rig.run_for(stop_time_s);
+  EXPECT_LT(rig.fastest_joint_rad_s(), standing_rad_s);
+  EXPECT_EQ(rig.step_now(), Step::stopped);
+  EXPECT_EQ(rig.outcome().fault, Fault::estop);
+}
+
+TEST(EmergencyStopBeforeTheStart, KeepsThePowerOff) {
+  Rig rig;
+  rig.devices().set_estop_closed(false);
+  rig.start();
+  ASSERT_TRUE(rig.run_to_end(60));
+  EXPECT_EQ(rig.step_now(), Step::off) << rig.story();
+  EXPECT_EQ(rig.outcome().fault, Fault::estop);
+}
+
+TEST(EmergencyStopWhileHeld, StillStops) {
+  Rig rig(turn_only(), 1, [](ControllerConfig& told) {
+    // An overload holds in free motion: what a joint may bear is set below what deploying takes.
+    for (safety::JointLimit& joint : told.mission_limits.joints) joint.max_torque_nm = 0.5;
+  });
+  rig.start();
+  ASSERT_TRUE(rig.run_to_end());
+  ASSERT_EQ(rig.step_now(), Step::held) << rig.story();
+  rig.devices().set_estop_closed(false);
+  rig.run_for(stop_time_s);
+  EXPECT_EQ(rig.step_now(), Step::stopped);
+  EXPECT_EQ(rig.outcome().fault, Fault::overload) << "the first fault is the one that ended the mission";
+}
+
+class Abort : public testing::TestWithParam<Moment> {};
+
+TEST_P(Abort, EndsStowed) {
+  Rig rig(job_with(GetParam()));
+  ASSERT_TRUE(reach(rig, GetParam())) << rig.story();
+  rig.controller().on_command(Command::abort, rig.now());
+  ASSERT_TRUE(rig.run_to_end(120)) << rig.story();
+  EXPECT_EQ(rig.step_now(), Step::failed) << rig.story();
+  EXPECT_EQ(rig.outcome().fault, Fault::aborted);
+  EXPECT_TRUE(rig.world().contacts().unintended.empty());
+  rig.run_for(0.2);
+  EXPECT_LT(rig.fastest_joint_rad_s(), standing_rad_s);
+  EXPECT_FALSE(rig.devices().laser_on());
+  EXPECT_FALSE(rig.devices().lamps_on());
+}
+
+INSTANTIATE_TEST_SUITE_P(InEveryPhase, Abort, testing::Values(free_motion, scanning, in_contact, gripping, pressing),
+                         [](const testing::TestParamInfo<Moment>& test) { return std::string(test.param.name); });
+
+TEST(AbortBeforeTheStart, EndsOffAtOnce) {
+  Rig rig;
+  rig.controller().on_command(Command::abort, rig.now());
+  rig.run_for(0.1);
+  EXPECT_EQ(rig.step_now(), Step::off) << rig.story();
+  EXPECT_EQ(rig.outcome().fault, Fault::aborted);
+}
+
+TEST(AbortAtBoot, EndsOff) {
+  Rig rig;
+  rig.start();
+  rig.run_for(0.3);
+  rig.controller().on_command(Command::abort, rig.now());
+  rig.run_for(0.5);
+  EXPECT_EQ(rig.step_now(), Step::off) << rig.story();
+  EXPECT_EQ(rig.outcome().fault, Fault::aborted);
+}
+
+// ---- drives and nodes ----
+
+struct NodeCase {
+  const char* name;
+  const char* fault;  // as a scenario has it, without its time
+  Moment moment;
+  Fault named;
+};
+
+void PrintTo(const NodeCase& c, std::ostream* out) { *out << c.name; }
+
+class NodeFaults : public testing::TestWithParam<NodeCase> {};
+
+TEST_P(NodeFaults, StopTheArmWhereItIsAndAreNamed) {
+  const NodeCase& c = GetParam();
+  double at_s = 0;
+  {
+    Rig rehearsal(job_with(c.moment));
+    ASSERT_TRUE(reach(rehearsal, c.moment)) << rehearsal.story();
+    at_s = rehearsal.now().s();
+  }
+  std::vector<std::string> overrides = job_with(c.moment);
+  overrides.push_back("faults=[{at_s: " + std::to_string(at_s) + ", " + c.fault + "}]");
+  Rig rig(overrides);
+  rig.start();
+  ASSERT_TRUE(rig.run_to_end(at_s + 5)) << rig.story();
+  EXPECT_LT(rig.now().s() - at_s, 0.5) << "the fault was seen late";
+  EXPECT_EQ(rig.step_now(), Step::stopped) << rig.story();
+  EXPECT_EQ(rig.outcome().fault, c.named) << rig.story();
+  const double grip_n = rig.world().contacts().grip_force_n;
+  rig.run_for(stop_time_s);
+  EXPECT_LT(rig.fastest_joint_rad_s(), standing_rad_s);
+  EXPECT_FALSE(rig.devices().laser_on());
+  if (c.moment.step == Step::turn) {
+    EXPECT_GT(rig.world().contacts().grip_force_n, 0.5 * grip_n) << "let go";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    InMotion, NodeFaults,
+    testing::Values(NodeCase{"DriveFaultWhileGripping", "kind: overcurrent, node: elbow", gripping, Fault::drive_fault},
+                    NodeCase{"JawsDriveFaultWhileGripping", "kind: hot, node: jaw", gripping, Fault::drive_fault},
+                    NodeCase{"DriveFaultWhileScanning", "kind: overcurrent, node: elbow", scanning, Fault::drive_fault},
+                    NodeCase{"SilentDriveInFreeMotion", "kind: silent, node: shoulder", free_motion, Fault::stale_position},
+                    NodeCase{"RebootedDriveInFreeMotion", "kind: reboot, node: shoulder", free_motion, Fault::stale_position},
+                    NodeCase{"JammedDriveInFreeMotion", "kind: following, node: shoulder", free_motion, Fault::drive_fault},
+                    NodeCase{"PositionsLostInFreeMotion", "kind: drop_frames, can_id: 0x182", free_motion, Fault::stale_position},
+                    NodeCase{"MasterOffTheBus", "kind: bus_off, node: master", free_motion, Fault::stale_position}),
+    [](const testing::TestParamInfo<NodeCase>& test) { return std::string(test.param.name); });
+
+// Two SYNC cycles are less than the three after which a position is stale.
+TEST(LostFrames, OfTwoCyclesChangeNothing) {
+  std::vector<std::string> overrides = press_only();
+  overrides.push_back("faults=[{at_s: 2.001, kind: drop_frames, can_id: 0x182, duration_s: 0.007}]");
+  Rig rig(overrides);
+  rig.start();
+  ASSERT_TRUE(rig.run_to_end()) << rig.story();
+  EXPECT_EQ(rig.step_now(), Step::done) << rig.story();
+}
+
+TEST(OutputNode, LostWhileTurningLetsGoAndStows) {
+  std::vector<std::string> overrides = turn_only();
+  double at_s = 0;
+  {
+    Rig rehearsal(turn_only());
+    ASSERT_TRUE(reach(rehearsal, gripping)) << rehearsal.story();
+    at_s = rehearsal.now().s();
+  }
+  overrides.push_back("faults=[{at_s: " + std::to_string(at_s) + ", kind: silent, node: io}]");
+  Rig rig(overrides);
+  rig.start();
+  ASSERT_TRUE(rig.run_to_end()) << rig.story();
+  EXPECT_EQ(rig.step_now(), Step::failed) << rig.story();
+  EXPECT_EQ(rig.outcome().fault, Fault::io_lost);
+  EXPECT_LT(rig.world().contacts().grip_force_n, 1);
+}
+
+TEST(Interlock, OpenInTheScanIsTriedAgainAndThenGivenUp) {
+  Rig rig(turn_only());
+  ASSERT_TRUE(reach(rig, scanning)) << rig.story();
+  rig.devices().set_interlock_closed(false);
+  rig.run_for(0.1);
+  EXPECT_FALSE(rig.devices().laser_on());
+  ASSERT_TRUE(rig.run_to_end()) << rig.story();
+  EXPECT_EQ(rig.step_now(), Step::failed) << rig.story();
+  EXPECT_EQ(rig.outcome().fault, Fault::interlock);
+}
+
+TEST(Interlock, ClosedAgainLetsTheMissionGoOn) {
+  Rig rig(turn_only());
+  ASSERT_TRUE(reach(rig, scanning)) << rig.story();
+  rig.devices().set_interlock_closed(false);
+  rig.run_for(0.2);
+  rig.devices().set_interlock_closed(true);
+  EXPECT_TRUE(rig.run_to(Step::reach_valve)) << rig.story();
+}
+
+// ---- sight ----
+
+TEST(Images, ThatAreLostAreCountedAndTheirLossAloneEndsNothing) {
+  Rig rig(turn_only());
+  rig.start();
+  ASSERT_TRUE(rig.run_to(Step::scan)) << rig.story();
+  rig.sight().lose_images(true);
+  ASSERT_TRUE(rig.run_to(Step::reach_valve)) << rig.story();
+  EXPECT_GT(rig.count(Fault::image_lost), 0u);
+}
+
+TEST(PanelVision, ThatNeverAnswersIsAskedThreeTimesAndGivenUp) {
+  Rig rig(turn_only());
+  rig.sight().answer(false);
+  rig.start();
+  ASSERT_TRUE(rig.run_to_end()) << rig.story();
+  EXPECT_EQ(rig.step_now(), Step::failed) << rig.story();
+  EXPECT_EQ(rig.outcome().fault, Fault::vision_late);
+  EXPECT_EQ(rig.sight().questions(), 3u);
+}
+
+TEST(PanelVision, WhosePortFailsForGoodIsGivenUp) {
+  Rig rig(turn_only());
+  rig.start();
+  ASSERT_TRUE(rig.run_to(Step::perceive)) << rig.story();
+  rig.ports().fail(hal::Call::receive_panel, rig.ports().calls(hal::Call::receive_panel), 5, std::numeric_limits<std::uint64_t>::max());
+  ASSERT_TRUE(rig.run_to_end()) << rig.story();
+  EXPECT_EQ(rig.step_now(), Step::failed) << rig.story();
+  EXPECT_EQ(rig.outcome().fault, Fault::vision_late);
+}
+
+// ---- limits ----
+
+TEST(Limits, WithAWrongChecksumMoveNothing) {
+  Rig rig({}, 1, [](ControllerConfig& told) { told.limits.checksum ^= 1; });
+  const JointReadings before = rig.world().readings();
+  rig.start();
+  ASSERT_TRUE(rig.run_to_end(10));
+  rig.run_for(1);
+  EXPECT_EQ(rig.step_now(), Step::off) << rig.story();
+  EXPECT_EQ(rig.outcome().fault, Fault::limits_refused);
+  for (std::size_t i = 0; i < joint_count; ++i) EXPECT_NEAR(rig.world().readings()[i].position_rad, before[i].position_rad, 1e-3);
+}
+
+TEST(Limits, ThatAMissionWidensAreRefused) {
+  Rig rig({}, 1, [](ControllerConfig& told) { told.mission_limits.joints[2].max_speed_rad_s *= 1.01; });
+  rig.start();
+  ASSERT_TRUE(rig.run_to_end(10));
+  EXPECT_EQ(rig.step_now(), Step::off) << rig.story();
+  EXPECT_EQ(rig.outcome().fault, Fault::limits_refused);
+}
+
+TEST(Clock, LostForGoodInMotionStops) {
+  Rig rig(turn_only());
+  ASSERT_TRUE(reach(rig, free_motion)) << rig.story();
+  rig.ports().fail(hal::Call::wait_for_tick, rig.ports().calls(hal::Call::wait_for_tick), 5, std::numeric_limits<std::uint64_t>::max());
+  rig.run_for(stop_time_s);
+  EXPECT_EQ(rig.step_now(), Step::stopped) << rig.story();
+  EXPECT_EQ(rig.outcome().fault, Fault::clock_lost);
+  EXPECT_LT(rig.fastest_joint_rad_s(), standing_rad_s);
+}
+
+}  // namespace
+}  // namespace lf::test
