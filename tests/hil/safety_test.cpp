@@ -15,8 +15,8 @@ using safety::Fault;
 
 // From a quick stop's order on: the SYNC that carries it, and the drives' ramps (the roll from its 0.7 rad/s in 0.2 s), with the arm's swing after it.
 constexpr double stop_time_s = 0.5;
-// Bullet's joints under load creep by less.
-constexpr double standing_rad_s = 0.002;
+// The drives' stated compliance lets a stopped arm swing by less.
+constexpr double standing_rad_s = 0.02;
 
 // The phases under way, by a step in each, and how far into it the fault comes.
 struct Moment {
@@ -50,7 +50,7 @@ TEST_P(EmergencyStop, StopsTheDrivesAndHoldsWhatIsHeld) {
   const double grip_n = rig.world().contacts().grip_force_n;
   rig.devices().set_estop_closed(false);
   rig.run_for(stop_time_s);
-  EXPECT_GT(moving_rad_s, 10 * standing_rad_s) << "there was nothing to stop";
+  EXPECT_GT(moving_rad_s, 2 * standing_rad_s) << "there was nothing to stop";
   EXPECT_LT(rig.fastest_joint_rad_s(), standing_rad_s);
   const double valve_rad = rig.world().valve_angle_rad();
   rig.run_for(2);
@@ -146,6 +146,7 @@ struct NodeCase {
   const char* fault;  // as a scenario has it, without its time
   Moment moment;
   Fault named;
+  double seen_within_s = 0.5;
 };
 
 void PrintTo(const NodeCase& c, std::ostream* out) { *out << c.name; }
@@ -165,7 +166,7 @@ TEST_P(NodeFaults, StopTheArmWhereItIsAndAreNamed) {
   Rig rig(overrides);
   rig.start();
   ASSERT_TRUE(rig.run_to_end(at_s + 5)) << rig.story();
-  EXPECT_LT(rig.now().s() - at_s, 0.5) << "the fault was seen late";
+  EXPECT_LT(rig.now().s() - at_s, c.seen_within_s) << "the fault was seen late";
   EXPECT_EQ(rig.step_now(), Step::stopped) << rig.story();
   EXPECT_EQ(rig.outcome().fault, c.named) << rig.story();
   const double grip_n = rig.world().contacts().grip_force_n;
@@ -184,15 +185,16 @@ INSTANTIATE_TEST_SUITE_P(
                     NodeCase{"DriveFaultWhileScanning", "kind: overcurrent, node: elbow", scanning, Fault::drive_fault},
                     NodeCase{"SilentDriveInFreeMotion", "kind: silent, node: shoulder", free_motion, Fault::stale_position},
                     NodeCase{"RebootedDriveInFreeMotion", "kind: reboot, node: shoulder", free_motion, Fault::stale_position},
-                    NodeCase{"JammedDriveInFreeMotion", "kind: following, node: shoulder", free_motion, Fault::drive_fault},
-                    NodeCase{"PositionsLostInFreeMotion", "kind: drop_frames, can_id: 0x182", free_motion, Fault::stale_position},
-                    NodeCase{"MasterOffTheBus", "kind: bus_off, node: master", free_motion, Fault::stale_position}),
+                    NodeCase{"JammedDriveInFreeMotion", "kind: following, node: shoulder", free_motion, Fault::following_error,
+                             2.0 /* until the target is a window of 0.15 rad away */},
+                    NodeCase{"PositionsLostInFreeMotion", "kind: drop_frames, can_id: 386", free_motion, Fault::stale_position},
+                    NodeCase{"MasterOffTheBus", "kind: bus_off, node: master", free_motion, Fault::io_lost}),
     [](const testing::TestParamInfo<NodeCase>& test) { return std::string(test.param.name); });
 
 // Two SYNC cycles are less than the three after which a position is stale.
 TEST(LostFrames, OfTwoCyclesChangeNothing) {
   std::vector<std::string> overrides = press_only();
-  overrides.push_back("faults=[{at_s: 2.001, kind: drop_frames, can_id: 0x182, duration_s: 0.007}]");
+  overrides.push_back("faults=[{at_s: 2.001, kind: drop_frames, can_id: 386, duration_s: 0.007}]");
   Rig rig(overrides);
   rig.start();
   ASSERT_TRUE(rig.run_to_end()) << rig.story();
@@ -277,7 +279,8 @@ TEST(Limits, WithAWrongChecksumMoveNothing) {
   rig.run_for(1);
   EXPECT_EQ(rig.step_now(), Step::off) << rig.story();
   EXPECT_EQ(rig.outcome().fault, Fault::limits_refused);
-  for (std::size_t i = 0; i < joint_count; ++i) EXPECT_NEAR(rig.world().readings()[i].position_rad, before[i].position_rad, 1e-3);
+  for (std::size_t i = 0; i < joint_count; ++i)
+    EXPECT_NEAR(rig.world().readings()[i].position_rad, before[i].position_rad, 2e-3);  // the jaw's play
 }
 
 TEST(Limits, ThatAMissionWidensAreRefused) {
