@@ -116,7 +116,9 @@ TEST_F(Commands, ReachDrawsAndHoldsTheLayoutToItsFigures) {
   for (const Json& target : reach["targets"]) {
     EXPECT_EQ(target["reached"], 500) << target.dump();
     EXPECT_LE(double(target["worst_tilt_deg"]), 20.0) << target.dump();
-    if (target.contains("handle_clearance_mm")) EXPECT_GE(double(target["handle_clearance_mm"]), 20.0) << target.dump();
+    if (target.contains("handle_clearance_mm")) {
+      EXPECT_GE(double(target["handle_clearance_mm"]), 20.0) << target.dump();
+    }
   }
 }
 
