@@ -154,7 +154,12 @@ void BasicPeakDetector<Pixel, MaxLength>::sweep(const Strip& s) {
 // From a lane's maxima to its peaks; none, and counted, when there is no good one.
 template <class Pixel, std::int32_t MaxLength>
 std::size_t BasicPeakDetector<Pixel, MaxLength>::finish(const Strip& s, std::int32_t lane, std::span<Peak> peaks) {
-  const float least = config_.min_contrast * positive_lobe;
+  // Also where the column has no maximum at all, and so no row of one.
+  const float least = std::max(1.0f, config_.min_contrast * positive_lobe);
+  if (static_cast<float>(best_[lane]) < least) {
+    ++counters_.weak;
+    return 0;
+  }
   const bool several = config_.peaks_per_line > 1;
   const float share = several ? config_.min_second_ratio : config_.max_ratio;
   Maxima known;    // all looked at, highest first
@@ -174,7 +179,7 @@ std::size_t BasicPeakDetector<Pixel, MaxLength>::finish(const Strip& s, std::int
     if (!stripes.empty() && second <= share * stripes[0].response) break;
   }
   if (stripes.empty()) {
-    ++(known.empty() ? counters_.weak : counters_.saturated);
+    ++counters_.saturated;
     return 0;
   }
   const float ratio = (stripes.size() > 1 ? stripes[1].response : second) / stripes[0].response;
