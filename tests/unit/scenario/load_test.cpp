@@ -108,7 +108,7 @@ const BadText bad_texts[] = {
     {"StartBeyondTheStop", "valve: {start_deg: 120}\n", ": 'valve.start_deg' lies beyond the valve's stops"},
     {"DistortionTooShort", "camera: {distortion: [0.1]}\n", ": 'camera.distortion' takes 5 numbers"},
 };
-INSTANTIATE_TEST_SUITE_P(Load, Refused, ::testing::ValuesIn(bad_texts), [](const auto& info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(Load, Refused, ::testing::ValuesIn(bad_texts), [](const auto& test) { return std::string(test.param.name); });
 
 TEST(Load, AnyTruncationOfAScenarioIsReadOrRefusedButNeverCrashes) {
   const std::string whole =
