@@ -21,7 +21,7 @@ struct ReportSeries {
   std::string name;
   std::vector<double> t_s;    // ascending
   std::vector<double> value;  // as many; not a number is a gap
-  bool dashed = false;        // for targets beside what was reached
+  bool dashed = false;        // for a target, after the series that it belongs to and in its colour
 };
 
 struct ReportChart {

@@ -96,7 +96,19 @@ std::vector<Sample> thinned(const ReportSeries& series, double low, double high)
   return kept;
 }
 
-std::string polyline(const ReportSeries& series, std::size_t index, const Axis& time, const Axis& value) {
+// A dashed series has the colour of the one before it: the target of what was reached.
+std::vector<std::string> kinds_of(const ReportChart& chart) {
+  std::vector<std::string> kinds;
+  std::size_t solid = 0;
+  for (const ReportSeries& series : chart.series) {
+    const std::size_t colour = series.dashed && solid > 0 ? solid - 1 : solid;
+    if (colour == solid) ++solid;
+    kinds.push_back("series s" + std::to_string(colour % 6) + (series.dashed ? " dashed" : ""));
+  }
+  return kinds;
+}
+
+std::string polyline(const ReportSeries& series, const std::string& kind, const Axis& time, const Axis& value) {
   std::string path;
   bool pen_down = false;
   for (const Sample& sample : thinned(series, time.low, time.high)) {
@@ -107,15 +119,15 @@ std::string polyline(const ReportSeries& series, std::size_t index, const Axis& 
     path += (pen_down ? "L" : "M") + px(time.at(sample.t)) + " " + px(value.at(sample.value));
     pen_down = true;
   }
-  return "<path class=\"series s" + std::to_string(index % 6) + (series.dashed ? " dashed" : "") + "\" d=\"" + path + "\"/>";
+  return "<path class=\"" + kind + "\" d=\"" + path + "\"/>";
 }
 
 std::string legend(const ReportChart& chart) {
   std::string html = "<div class=\"legend\">";
+  const std::vector<std::string> kinds = kinds_of(chart);
   for (std::size_t i = 0; i < chart.series.size(); ++i) {
-    html += "<span><svg width=\"26\" height=\"10\" aria-hidden=\"true\"><line class=\"series s" + std::to_string(i % 6) +
-            (chart.series[i].dashed ? " dashed" : "") + "\" x1=\"1\" y1=\"5\" x2=\"25\" y2=\"5\"/></svg>" +
-            escape_html(chart.series[i].name) + "</span>";
+    html += "<span><svg width=\"26\" height=\"10\" aria-hidden=\"true\"><line class=\"" + kinds[i] +
+            "\" x1=\"1\" y1=\"5\" x2=\"25\" y2=\"5\"/></svg>" + escape_html(chart.series[i].name) + "</span>";
   }
   return html + "</div>";
 }
@@ -190,7 +202,8 @@ std::string chart_svg(const ReportChart& chart, const std::vector<PhaseRecord>& 
     if (!drawable(phase) || phase.start_s <= time.low || phase.start_s >= time.high) continue;
     html += line(time.at(phase.start_s), top, time.at(phase.start_s), bottom, "phase");
   }
-  for (std::size_t i = 0; i < chart.series.size(); ++i) html += polyline(chart.series[i], i, time, value);
+  const std::vector<std::string> kinds = kinds_of(chart);
+  for (std::size_t i = 0; i < chart.series.size(); ++i) html += polyline(chart.series[i], kinds[i], time, value);
   return html + "</svg></figure>";
 }
 

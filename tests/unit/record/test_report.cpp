@@ -124,6 +124,18 @@ TEST(Report, KeepsSpikesOfAMillionSamplesInAFewPoints) {
   EXPECT_THAT(html, HasSubstr(" 19.5"));
 }
 
+TEST(Report, DrawsATargetDashedInTheColourOfWhatWasReached) {
+  ReportData data;
+  const auto series = [](const char* name, bool dashed) { return ReportSeries{name, {0, 1}, {0, 1}, dashed}; };
+  data.charts = {
+      {"Joints", "rad", {series("slew", false), series("slew, target", true), series("elbow", false), series("elbow, target", true)}}};
+  const std::string html = report_html(data);
+  for (const char* path :
+       {"<path class=\"series s0\"", "<path class=\"series s0 dashed\"", "<path class=\"series s1\"", "<path class=\"series s1 dashed\""}) {
+    EXPECT_EQ(count_of(html, path), 1u) << path;
+  }
+}
+
 TEST(Report, IsTheSameForTheSameData) { EXPECT_EQ(report_html(small_run()), report_html(small_run())); }
 
 TEST(ReportErrors, AllowMoreInMurkyWater) {
