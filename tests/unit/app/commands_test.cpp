@@ -122,6 +122,23 @@ TEST_F(Commands, ReachDrawsAndHoldsTheLayoutToItsFigures) {
   }
 }
 
+// The interrupt comes 2 s of processor time after the start at the latest; the run takes longer than that on any machine of today.
+TEST_F(Commands, CtrlCStopsARunAndKeepsWhatWasRecorded) {
+  const Said said = run("run turn_only --set time_limit_s=600 --realtime --out kept --json", "timeout -s INT 3");
+  EXPECT_EQ(said.status, 124) << "timeout's own status for a program that it had to stop";
+  const Json result = Json::parse(text_of(folder() / "kept" / "result.json"));
+  EXPECT_EQ(result["success"], false);
+  EXPECT_EQ(result["failure"]["reason"], "interrupted");
+  EXPECT_EQ(Json::parse(said.out)["failure"]["reason"], "interrupted");
+  EXPECT_TRUE(std::filesystem::exists(folder() / "kept" / "report.html"));
+  EXPECT_GT(std::filesystem::file_size(folder() / "kept" / "can0.log"), 1000u);
+}
+
+TEST_F(Commands, CtrlCStopsACampaignAndItsRuns) {
+  const Said said = run("campaign turn_only --seeds 1-4 --jobs 2 --set time_limit_s=600 --out many", "timeout --preserve-status -s INT 3");
+  EXPECT_EQ(said.status, 130) << said.err;
+}
+
 }  // namespace
 
 }  // namespace lf::app
