@@ -130,6 +130,7 @@ void RunRecorder::on_panel_request(const PanelRequest& request, ImageView still,
     }
   }
   still_.reset();
+  still_answered_ = false;
   if (folder_ == nullptr || !request.has_still || !still.valid()) return;
   still_ = record::rgb_from_grey(still);
   still_time_ = request.still_time;
@@ -137,22 +138,26 @@ void RunRecorder::on_panel_request(const PanelRequest& request, ImageView still,
 
 void RunRecorder::on_panel_result(const PanelResult& result) {
   answered_ = result;
-  if (!still_) return;
-  if (result.marker.found) {
+  still_answered_ = true;
+}
+
+void RunRecorder::keep_still() {
+  if (answered_.marker.found) {
     std::array<record::PixelPoint, 4> corners;
     for (std::size_t i = 0; i < corners.size(); ++i) {
-      corners[i] = {static_cast<float>(result.marker.corners_px[i].x()), static_cast<float>(result.marker.corners_px[i].y())};
+      corners[i] = {static_cast<float>(answered_.marker.corners_px[i].x()), static_cast<float>(answered_.marker.corners_px[i].y())};
     }
     record::draw_outline(*still_, corners, {255, 40, 40});
   }
   char name[64];
   std::snprintf(name, sizeof name, "images/still_%07.2fs.png", still_time_.s());
   keep_picture(name, formatted("Still image at %.2f s", still_time_.s()),
-               result.marker.found ? "The marker as it was found, in red." : "No marker was found in it.", *still_, true);
+               answered_.marker.found ? "The marker as it was found, in red." : "No marker was found in it.", *still_, true);
   still_.reset();
 }
 
 void RunRecorder::after_control(const mission::Mission& mission) {
+  if (still_ && still_answered_) keep_still();
   if (!located_ || map_taken_) return;
   located_->base_from_panel = mission.map().base_from_panel();
   map_taken_ = true;

@@ -51,7 +51,7 @@ class RunRecorder : public hal::SimObserver {
   void on_panel_request(const PanelRequest& request, ImageView still, std::span<const CloudPoint> cloud) override;
   void on_panel_result(const PanelResult& result) override;
 
-  // After each turn of the control thread: where the panel was found, once it is.
+  // After each turn of the control thread, outside of its timing: where the panel was found, and the still's picture with the marker in it.
   void after_control(const mission::Mission& mission);
   // After each turn of the vision thread: the peaks of the newest laser-on image.
   void after_vision(const ScanPipeline& pipeline);
@@ -76,6 +76,7 @@ class RunRecorder : public hal::SimObserver {
   void on_event(const Event& event);
   void keep_picture(const std::string& name, const std::string& title, const std::string& caption, const record::RgbImage& image,
                     bool in_report);
+  void keep_still();
   void sample_curves(const Telemetry& telemetry);
 
   const record::RunFolder* folder_;
@@ -106,6 +107,7 @@ class RunRecorder : public hal::SimObserver {
   double asked_valve_rad_ = 0;
   PanelResult answered_;
   std::optional<record::RgbImage> still_;  // until the answer says where the marker is in it
+  bool still_answered_ = false;
   Time still_time_;
 
   std::uint64_t bus_bits_ = 0, bus_bits_before_ = 0;
