@@ -80,6 +80,7 @@ std::optional<Line> edge_line(ImageView image, const Vec2& a, const Vec2& b, int
   if (points.size() < static_cast<std::size_t>(std::max(4, profiles / 2))) return std::nullopt;
   Line line = fit_line(points);
   std::vector<double> distances;
+  distances.reserve(points.size());
   for (const Vec2& p : points) distances.push_back(distance(line, p));
   std::nth_element(distances.begin(), distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2), distances.end());
   const double limit_px = std::max(0.1, 3.7 * distances[distances.size() / 2]);  // 2.5 sigma

@@ -64,12 +64,15 @@ std::string tasks_table(const RunResult& result) {
   std::string html = "<table><tr><th>task</th><th class=\"n\">target</th><th class=\"n\">reached</th><th></th></tr>";
   for (const TaskRecord& task : result.tasks) {
     const bool turn = task.task == "turn_valve";
-    const std::string name = turn ? "turn the valve" : task.task == "press_button" ? "press button " + task.button : task.task;
+    const std::string name = turn                          ? "turn the valve"
+                             : task.task == "press_button" ? std::string("press button ").append(task.button)
+                                                           : task.task;
     const std::string target = turn ? formatted("%.1f°", task.target_deg) : "1 press";
     const std::string reached =
-        turn ? formatted("%.1f°", task.reached_deg) : std::to_string(task.presses) + (task.presses == 1 ? " press" : " presses");
-    html += "<tr><td>" + escape_html(name) + "</td><td class=\"n\">" + target + "</td><td class=\"n\">" + reached +
-            "</td><td class=\"mark " + (task.done ? "good\">done" : "bad\">not done") + "</td></tr>";
+        turn ? formatted("%.1f°", task.reached_deg) : std::to_string(task.presses).append(task.presses == 1 ? " press" : " presses");
+    html += "<tr><td>" + escape_html(name) + "</td><td class=\"n\">";
+    html += target;
+    html += "</td><td class=\"n\">" + reached + "</td><td class=\"mark " + (task.done ? "good\">done" : "bad\">not done") + "</td></tr>";
   }
   return html + "</table>";
 }

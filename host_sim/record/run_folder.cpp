@@ -23,7 +23,7 @@ fs::path RunFolder::file(const std::string& name) const {
   if (relative.empty() || relative.is_absolute() || *relative.begin() == "..") {
     throw InputError(name, 0, "lies outside of the run's folder");
   }
-  const fs::path path = directory_ / relative;
+  fs::path path = directory_ / relative;
   std::error_code error;
   fs::create_directories(path.parent_path(), error);
   if (error) throw InputError(path.parent_path().string(), 0, "cannot be made a folder: " + error.message());
