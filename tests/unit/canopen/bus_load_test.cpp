@@ -30,9 +30,10 @@ std::string crc_by_division(std::string bits) {
 }
 
 std::size_t slow_length(const CanFrame& frame) {
+  const bool remote = (frame.id & CanFrame::remote_flag) != 0;
   std::string bits(1, '0');
-  bits.append(binary(frame.id, 11)).append(3, '0').append(binary(frame.length, 4));
-  for (int i = 0; i < frame.length; ++i) bits += binary(frame.data[static_cast<std::size_t>(i)], 8);
+  bits.append(binary(frame.id & 0x7FF, 11)).append(1, remote ? '1' : '0').append(2, '0').append(binary(frame.length, 4));
+  for (int i = 0; i < (remote ? 0 : frame.length); ++i) bits += binary(frame.data[static_cast<std::size_t>(i)], 8);
   bits += crc_by_division(bits);
   std::string stuffed;
   for (const char bit : bits) {
@@ -58,6 +59,8 @@ TEST(BusLoad, FrameLengthsAreThoseOfAnIndependentBitStuffer) {
     ASSERT_EQ(bus_load::exact_bits(frame), slow_length(frame)) << "frame " << n;
     ASSERT_LE(bus_load::exact_bits(frame), bus_load::worst_case_bits(frame.length));
     ASSERT_GE(bus_load::exact_bits(frame), 47u + 8u * frame.length);
+    frame.id |= CanFrame::remote_flag;
+    ASSERT_EQ(bus_load::exact_bits(frame), slow_length(frame)) << "frame " << n << ", remote";
   }
 }
 
