@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <optional>
 
 namespace lf::scan {
 namespace {
@@ -16,10 +18,42 @@ constexpr std::int32_t few_clipped = 3;  // px at full scale that the filter doe
 // Curvature over height of the response: 0.2225..0.227 for a stripe of sigma 1.7 px, more for a narrower one.
 constexpr float narrow_curvature = 0.2225f;
 constexpr std::int32_t narrow_half_width = 5;
-constexpr std::int32_t narrow_taps[2 * narrow_half_width + 1] = {-1, -2, -3, 0, 3, 6, 3, 0, -3, -2, -1};
+constexpr std::array<float, 2 * narrow_half_width + 1> narrow_taps = {-1, -2, -3, 0, 3, 6, 3, 0, -3, -2, -1};
+constexpr std::int32_t wide_half_width = 9;
+constexpr std::array<float, 2 * wide_half_width + 1> wide_taps = {-1, -2, -3, -4, -5, -2, 1, 4, 7, 10, 7, 4, 1, -2, -5, -4, -3, -2, -1};
+
+// A step of the background across the stripe, over the sum of both sides. A marker's border has 0.7; bare metal, shading and glow stay below.
+constexpr float background_step = 0.4f;
 
 // Where the parabola through three equidistant values has its vertex, from the middle one.
 float vertex(const float (&y)[3]) { return 0.5f * (y[0] - y[2]) / (y[0] - 2 * y[1] + y[2]); }
+
+// Where the filter's response to `window` is highest, from the window's middle; nothing where the middle is no maximum.
+template <std::size_t N>
+std::optional<float> response_vertex(const std::array<float, N>& taps, const std::array<float, N + 2>& window) {
+  float response[3] = {};
+  for (std::size_t shift = 0; shift < 3; ++shift) {
+    for (std::size_t k = 0; k < N; ++k) response[shift] += taps[k] * window[k + shift];
+  }
+  const bool maximum = response[1] >= response[0] && response[1] >= response[2] && 2 * response[1] > response[0] + response[2];
+  if (!maximum || !(response[1] > 0)) return std::nullopt;
+  return vertex(response);
+}
+
+// The same about `centre` of a line with the values `value(row)`; `centre` where there is no maximum within a pixel of it.
+template <std::size_t N, class Value>
+float peak_about(const std::array<float, N>& taps, float centre, const Value& value) {
+  constexpr std::int32_t reach = static_cast<std::int32_t>(N / 2) + 1;
+  const auto middle = static_cast<std::int32_t>(std::lround(centre));
+  std::array<float, N + 4> around;
+  for (std::int32_t i = -reach - 1; i <= reach + 1; ++i) around[static_cast<std::size_t>(i + reach + 1)] = value(middle + i);
+  for (const std::int32_t step : {0, -1, 1}) {
+    std::array<float, N + 2> window;
+    std::copy_n(around.begin() + step + 1, N + 2, window.begin());
+    if (const auto offset = response_vertex(taps, window)) return static_cast<float>(middle + step) + *offset;
+  }
+  return centre;
+}
 
 // The loops below are all there is to the detector's speed. Each stands alone with restricted pointers and a constant count, and masks in
 // place of conditions: that is what GCC 12 turns into vector code.
@@ -221,24 +255,14 @@ template <class Pixel, std::int32_t MaxLength>
 float BasicPeakDetector<Pixel, MaxLength>::response_peak(const Strip& s, std::int32_t lane, std::int32_t row) const {
   const float wide[3] = {static_cast<float>(response_[row - 1][lane]), static_cast<float>(response_[row][lane]),
                          static_cast<float>(response_[row + 1][lane])};
-  const float curvature = 2 * wide[1] - wide[0] - wide[2];
   const float centre = static_cast<float>(row) + vertex(wide);
-  if (curvature < narrow_curvature * wide[1]) return centre;
-
-  const std::int32_t middle = static_cast<std::int32_t>(std::lround(centre));
-  constexpr std::int32_t reach = narrow_half_width + 1;
-  if (middle < reach || middle + reach >= s.length) return centre;
-  std::int32_t around[2 * reach + 1];
-  for (std::int32_t i = -reach; i <= reach; ++i) around[i + reach] = difference(s, s.first + lane, middle + i);
-  float narrow[3] = {};
-  for (std::int32_t shift = 0; shift < 3; ++shift) {
-    std::int32_t sum = 0;
-    for (std::int32_t k = 0; k < 2 * narrow_half_width + 1; ++k) sum += narrow_taps[k] * around[k + shift];
-    narrow[shift] = static_cast<float>(sum);
-  }
-  // Not a maximum: the stripe was wide after all, and noisy.
-  if (!(narrow[1] >= narrow[0] && narrow[1] >= narrow[2] && narrow[1] > 0)) return centre;
-  return static_cast<float>(middle) + vertex(narrow);
+  const bool narrow = 2 * wide[1] - wide[0] - wide[2] >= narrow_curvature * wide[1];
+  const std::int32_t line = s.first + lane;
+  const auto raw = [&](std::int32_t v) { return static_cast<float>(difference(s, line, v)); };
+  const auto over_background = [&](std::int32_t v) { return raw(v) / (background(s, line, v) + floor()); };
+  const float found = narrow ? peak_about(narrow_taps, centre, raw) : centre;
+  if (!background_steps(s, line, row)) return found;
+  return narrow ? peak_about(narrow_taps, found, over_background) : peak_about(wide_taps, found, over_background);
 }
 
 // A wide stripe's noisy top has several maxima that are one stripe: those within `exclusion` of the peak, or of its plateau.
@@ -265,6 +289,29 @@ auto BasicPeakDetector<Pixel, MaxLength>::next_maximum(const Strip& s, std::int3
     highest_row = row;
   }
   return highest > 0 ? maximum_at(s, lane, highest_row, static_cast<float>(highest)) : Maximum{};
+}
+
+// Whether the laser-off image has a step there, by the means of four pixels to each side.
+template <class Pixel, std::int32_t MaxLength>
+bool BasicPeakDetector<Pixel, MaxLength>::background_steps(const Strip& s, std::int32_t line, std::int32_t row) const {
+  if (!s.off.valid() || row < 5 || row + 5 >= s.length) return false;
+  std::int32_t before = 0, after = 0;
+  for (std::int32_t i = 2; i <= 5; ++i) {
+    before += pixel(s.off, line, row - i);
+    after += pixel(s.off, line, row + i);
+  }
+  const auto step = static_cast<float>(std::abs(before - after));
+  return step > background_step * static_cast<float>(before + after) && step > 6 * floor();
+}
+
+// The laser-off image's mean over the line and its neighbours.
+template <class Pixel, std::int32_t MaxLength>
+float BasicPeakDetector<Pixel, MaxLength>::background(const Strip& s, std::int32_t line, std::int32_t row) const {
+  const std::int32_t inside = std::clamp(row, 0, s.length - 1);
+  const std::int32_t last_line = (config_.axis == PeakAxis::column ? s.off.width : s.off.height) - 1;
+  const std::int32_t sum =
+      pixel(s.off, std::max(line - 1, 0), inside) + pixel(s.off, line, inside) + pixel(s.off, std::min(line + 1, last_line), inside);
+  return static_cast<float>(sum) / 3;
 }
 
 template <class Pixel, std::int32_t MaxLength>

@@ -5,6 +5,8 @@
 // second derivative in place of the first: on a backscatter skirt the zero-mean Laplacian-of-Gaussian of sigma 2.5-3 px erred a third as much).
 // The filter here is the cubic B-spline's second difference, sigma 2.83 px, 19 taps: -(1 - z^5)^4 / (1 - z)^2, so five shifted rows and two
 // running sums in place of 19 multiplications; its sums wrap around in 16 bits, and the result, below 255 * 68, is exact all the same.
+// A stripe across a step of albedo (a marker's border) is pulled to the bright side; where the background shows such a step, the difference is
+// divided by the background before the last look: 0.166 px rms became 0.135 over the sweep of a panel in clear water. Without ambient light there is no background.
 #pragma once
 
 #include <array>
@@ -52,6 +54,7 @@ struct PixelView {
 };
 
 inline constexpr std::int32_t max_peaks_per_line = 4;
+inline constexpr float background_floor = 4.0f / 255;  // of full scale: below it a background is noise, not albedo
 
 enum class PeakAxis : std::uint8_t { column, row };
 
@@ -128,6 +131,9 @@ class BasicPeakDetector {
   Maximum next_maximum(const Strip& s, std::int32_t lane, std::span<const Maximum> before) const;
   void measure(const Strip& s, std::int32_t lane, const Maximum& maximum, float ratio, Peak& peak);
   float response_peak(const Strip& s, std::int32_t lane, std::int32_t row) const;
+  bool background_steps(const Strip& s, std::int32_t line, std::int32_t row) const;
+  float background(const Strip& s, std::int32_t line, std::int32_t row) const;
+  float floor() const { return background_floor * static_cast<float>(config_.full_scale); }
   std::int32_t pixel(const PixelView<Pixel>& image, std::int32_t line, std::int32_t row) const;
   std::int32_t difference(const Strip& s, std::int32_t line, std::int32_t row) const;
   Plateau find_plateau(const Strip& s, std::int32_t line, std::int32_t row) const;

@@ -132,6 +132,36 @@ TEST(Peaks, DifferencingRemovesATextureThatMisleadsTheImageAlone) {
   EXPECT_LT(with.rms_px, 0.5 * without.rms_px);
 }
 
+// The stripe's true centre lies on a marker's border: black above, white below, lit evenly by daylight and by the laser.
+TEST(Peaks, AStepOfAlbedoUnderTheStripeIsUndone) {
+  constexpr int width = 128, height = 120;
+  constexpr double sigma_px = 1.5, daylight = 60, laser = 150;
+  std::vector<std::uint8_t> on(width * height), off(on.size());
+  const auto centre = [](int u) { return 60.0 + 0.013 * u; };
+  for (int v = 0; v < height; ++v) {
+    for (int u = 0; u < width; ++u) {
+      const double albedo = v < 60 ? 0.2 : 1.0;
+      const double stripe = laser * std::exp(-0.5 * std::pow((v - centre(u)) / sigma_px, 2));
+      off[v * width + u] = static_cast<std::uint8_t>(std::lround(albedo * daylight));
+      on[v * width + u] = static_cast<std::uint8_t>(std::lround(albedo * (daylight + stripe)));
+    }
+  }
+  auto detector = std::make_unique<PeakDetector>();
+  std::vector<Peak> peaks(width);
+  const auto largest_error = [&](ImageView background) {
+    const std::size_t n = detector->detect(ImageView{on.data(), width, height, width}, background, peaks);
+    EXPECT_EQ(n, static_cast<std::size_t>(width));
+    double largest = 0;
+    for (std::size_t i = 0; i < n; ++i) largest = std::max(largest, std::abs(peaks[i].v_px - centre(static_cast<int>(peaks[i].u_px))));
+    return largest;
+  };
+  EXPECT_LT(largest_error(ImageView{off.data(), width, height, width}), 0.2);
+  // The same difference before an even background says nothing of the albedo, and the stripe is pulled.
+  std::vector<std::uint8_t> even(on.size(), 12);
+  for (std::size_t i = 0; i < on.size(); ++i) on[i] = static_cast<std::uint8_t>(on[i] - off[i] + 12);
+  EXPECT_GT(largest_error(ImageView{even.data(), width, height, width}), 0.5);
+}
+
 TEST(Peaks, AColumnOfNoiseHasNone) {
   const test::StripeImage image = test::make_stripe_image({.amplitude = 0, .noise = 3, .seed = 6});
   auto detector = std::make_unique<PeakDetector>();
