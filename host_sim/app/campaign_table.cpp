@@ -24,7 +24,7 @@ double valve_error(const record::RunResult& result) {
   return worst;
 }
 
-const std::array<Figure, 11> figures{{{"plane_normal_deg", "deg", [](const record::RunResult& r) { return r.errors.plane_normal_deg; }},
+const std::array<Figure, 12> figures{{{"plane_normal_deg", "deg", [](const record::RunResult& r) { return r.errors.plane_normal_deg; }},
                                       {"plane_offset_mm", "mm", [](const record::RunResult& r) { return r.errors.plane_offset_mm; }},
                                       {"valve_base_mm", "mm", [](const record::RunResult& r) { return r.errors.valve_base_mm; }},
                                       {"handle_angle_deg", "deg", [](const record::RunResult& r) { return r.errors.handle_angle_deg; }},
@@ -32,6 +32,7 @@ const std::array<Figure, 11> figures{{{"plane_normal_deg", "deg", [](const recor
                                       {"cloud_rms_mm", "mm", [](const record::RunResult& r) { return r.errors.cloud_rms_mm; }},
                                       {"cloud_truth_p95_mm", "mm", [](const record::RunResult& r) { return r.errors.cloud_truth_p95_mm; }},
                                       {"peak_rms_px", "px", [](const record::RunResult& r) { return r.errors.peak_rms_px; }},
+                                      {"peak_rms_smooth_px", "px", [](const record::RunResult& r) { return r.errors.peak_rms_smooth_px; }},
                                       {"peak_recall", "", [](const record::RunResult& r) { return r.errors.peak_recall; }, true},
                                       {"simulated_s", "s", [](const record::RunResult& r) { return r.time.simulated_s; }},
                                       {"real_time_factor", "x", [](const record::RunResult& r) { return r.time.real_time_factor; }, true}}};

@@ -64,6 +64,7 @@ void tell(const record::RunResult& result, const std::string& folder) {
   tell_error("cloud to its plane, rms", result.errors.cloud_rms_mm, "mm");
   tell_error("cloud to the true surface, p95", result.errors.cloud_truth_p95_mm, "mm");
   tell_error("peaks, rms", result.errors.peak_rms_px, "px");
+  tell_error("peaks away from edges, rms", result.errors.peak_rms_smooth_px, "px");
   tell_error("peaks, recall", result.errors.peak_recall, "");
   print("%.1f s simulated in %.1f s, %.1f x real time\n", result.time.simulated_s, result.time.wall_s, result.time.real_time_factor);
   if (result.success) {

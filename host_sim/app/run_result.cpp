@@ -80,6 +80,7 @@ std::vector<record::TaskRecord> task_records(const Controller& controller, const
 record::ErrorRecord score(const RunRecorder& recorder, const hal::SimConfig& truth) {
   record::ErrorRecord errors;
   errors.peak_rms_px = recorder.peaks().rms_px();
+  errors.peak_rms_smooth_px = recorder.peaks().smooth_rms_px();
   errors.peak_recall = recorder.peaks().recall();
   if (!recorder.located()) return errors;
   const Located& located = *recorder.located();

@@ -21,6 +21,19 @@ double cylinder_distance(const Vec3& p, double radius, double half_height) {
   return q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0);
 }
 
+// Whether the depth has no jump and no crease within the stripe's width about a pixel.
+bool on_smooth_surface(const optics::Frame& truth, std::int32_t u, std::int32_t v) {
+  constexpr std::int32_t reach = 5;  // px: three standard deviations of a stripe in clear water
+  constexpr double bend_m = 2e-3;    // a face of the panel seen at a slant bends by 0.1 mm over the reach, its arris by 5 mm
+  if (u < reach || v < reach || u + reach >= truth.width || v + reach >= truth.height) return false;
+  const auto depth_m = [&](std::int32_t x, std::int32_t y) {
+    return double(truth.depth_m[static_cast<std::size_t>(y) * static_cast<std::size_t>(truth.width) + static_cast<std::size_t>(x)]);
+  };
+  const double centre_m = depth_m(u, v);
+  return std::abs(depth_m(u, v - reach) + depth_m(u, v + reach) - 2 * centre_m) < bend_m &&
+         std::abs(depth_m(u - reach, v) + depth_m(u + reach, v) - 2 * centre_m) < bend_m;
+}
+
 }  // namespace
 
 double plane_normal_error_deg(const Plane& found, const Pose& true_base_from_panel) {
@@ -72,16 +85,23 @@ void PeakScore::add(const optics::Frame& truth, std::span<const scan::Peak> peak
     const double error = double(peak.v_px) - double(truth.stripe_v[column]);
     if (std::abs(error) < std::abs(errors[column])) errors[column] = error;
   }
+  const bool has_depth = truth.depth_m.size() == width * static_cast<std::size_t>(truth.height);
   for (std::size_t u = 0; u < width; ++u) {
     if (!std::isfinite(truth.stripe_v[u]) || !(truth.stripe_grey[u] >= visible_grey)) continue;
     ++visible_;
     if (!(std::abs(errors[u]) <= match_px)) continue;
     ++matched_;
     squares_ += errors[u] * errors[u];
+    if (!has_depth || !on_smooth_surface(truth, static_cast<std::int32_t>(u), static_cast<std::int32_t>(std::lround(truth.stripe_v[u]))))
+      continue;
+    ++smooth_;
+    smooth_squares_ += errors[u] * errors[u];
   }
 }
 
 double PeakScore::rms_px() const { return matched_ > 0 ? std::sqrt(squares_ / static_cast<double>(matched_)) : not_known; }
+
+double PeakScore::smooth_rms_px() const { return smooth_ > 0 ? std::sqrt(smooth_squares_ / static_cast<double>(smooth_)) : not_known; }
 
 double PeakScore::recall() const { return visible_ > 0 ? static_cast<double>(matched_) / static_cast<double>(visible_) : not_known; }
 

@@ -36,12 +36,15 @@ class PeakScore {
 
   void add(const optics::Frame& truth, std::span<const scan::Peak> peaks);
   double rms_px() const;  // of matched peaks; NaN without any
+  // Of matched peaks whose stripe lies on one smooth surface: at a silhouette, a crease or a shadow's end the light itself is no longer even about its
+  // true centre. NaN without any, or without depth in the truth.
+  double smooth_rms_px() const;
   double recall() const;  // matched over visible columns; NaN without any
   std::uint64_t visible() const { return visible_; }
 
  private:
-  std::uint64_t visible_ = 0, matched_ = 0;
-  double squares_ = 0;
+  std::uint64_t visible_ = 0, matched_ = 0, smooth_ = 0;
+  double squares_ = 0, smooth_squares_ = 0;
 };
 
 // Nearest-rank percentile, NaN without values.

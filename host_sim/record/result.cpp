@@ -26,10 +26,15 @@ Json to_json(const TaskRecord& task) {
 }
 
 Json to_json(const ErrorRecord& errors) {
-  return {{"plane_normal_deg", number(errors.plane_normal_deg)}, {"plane_offset_mm", number(errors.plane_offset_mm)},
-          {"valve_base_mm", number(errors.valve_base_mm)},       {"handle_angle_deg", number(errors.handle_angle_deg)},
-          {"cloud_rms_mm", number(errors.cloud_rms_mm)},         {"cloud_truth_p95_mm", number(errors.cloud_truth_p95_mm)},
-          {"peak_rms_px", number(errors.peak_rms_px)},           {"peak_recall", number(errors.peak_recall)}};
+  return {{"plane_normal_deg", number(errors.plane_normal_deg)},
+          {"plane_offset_mm", number(errors.plane_offset_mm)},
+          {"valve_base_mm", number(errors.valve_base_mm)},
+          {"handle_angle_deg", number(errors.handle_angle_deg)},
+          {"cloud_rms_mm", number(errors.cloud_rms_mm)},
+          {"cloud_truth_p95_mm", number(errors.cloud_truth_p95_mm)},
+          {"peak_rms_px", number(errors.peak_rms_px)},
+          {"peak_rms_smooth_px", number(errors.peak_rms_smooth_px)},
+          {"peak_recall", number(errors.peak_recall)}};
 }
 
 Json to_json(const DockingRecord& docking) {

@@ -39,8 +39,9 @@ struct ErrorRecord {
   double handle_angle_deg = unknown;
   double cloud_rms_mm = unknown;        // to the fitted plane
   double cloud_truth_p95_mm = unknown;  // to the true surface
-  double peak_rms_px = unknown;
-  double peak_recall = unknown;  // 0..1
+  double peak_rms_px = unknown;         // of all columns, those at edges of the scene included
+  double peak_rms_smooth_px = unknown;  // of those whose stripe lies on one smooth surface
+  double peak_recall = unknown;         // 0..1
 };
 
 struct DockingRecord {

@@ -64,6 +64,7 @@ ErrorRecord errors_from(const Json& json) {
   read(json, "cloud_rms_mm", errors.cloud_rms_mm);
   read(json, "cloud_truth_p95_mm", errors.cloud_truth_p95_mm);
   read(json, "peak_rms_px", errors.peak_rms_px);
+  read(json, "peak_rms_smooth_px", errors.peak_rms_smooth_px);
   read(json, "peak_recall", errors.peak_recall);
   return errors;
 }

@@ -56,6 +56,26 @@ TEST(Scoring, PeaksAreHeldAgainstTheRenderedStripe) {
   EXPECT_NEAR(score.rms_px(), 0.3, 1e-6);
 }
 
+TEST(Scoring, PeaksAtAStepOfDepthAreScoredApartFromThoseOnASmoothSurface) {
+  optics::Frame frame;
+  frame.width = 60;
+  frame.height = 60;
+  frame.stripe_v.assign(60, 30);
+  frame.stripe_grey.assign(60, 100);
+  frame.depth_m.resize(3600);
+  // A slope, and beyond column 30 another thing 50 mm nearer.
+  for (int v = 0; v < 60; ++v) {
+    for (int u = 0; u < 60; ++u)
+      frame.depth_m[static_cast<std::size_t>(v * 60 + u)] = 1 + 0.004f * static_cast<float>(v) - (u > 30 ? 0.05f : 0);
+  }
+  std::vector<scan::Peak> peaks;
+  for (int u = 0; u < 60; ++u) peaks.push_back({static_cast<float>(u), u > 25 && u < 36 ? 31.0f : 30.1f, 100, 0, 0});
+  PeakScore score;
+  score.add(frame, peaks);
+  EXPECT_NEAR(score.smooth_rms_px(), 0.1, 1e-5);
+  EXPECT_NEAR(score.rms_px(), std::sqrt((10 * 1.0 + 50 * 0.01) / 60), 1e-5);
+}
+
 TEST(Scoring, PercentilesAreNearestRank) {
   EXPECT_EQ(percentile({5, 1, 4, 2, 3}, 0.5), 3);
   EXPECT_EQ(percentile({5, 1, 4, 2, 3}, 0.95), 5);
