@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware/arm/planar_chain.hpp"
 #include "firmware/arm/trajectory.hpp"
 
 namespace lf::arm {
@@ -18,20 +19,31 @@ struct Rates {
   JointVector second = JointVector::Zero();
 };
 
-Mat3 position_jacobian(const JointVector& q_rad) { return jacobian(q_rad).topLeftCorner<3, 3>(); }
-
+// The tool's place in the arm's plane is r e(psi) + z k. A straight way gives r', psi' and z' by its parts along e, across it and along k; that it is
+// straight, so that nothing of it changes, gives the second derivatives.
 Rates rates(const JointVector& q_rad, const Vec3& way_m, double turn_rad) {
   Rates rates;
   rates.first[3] = turn_rad;
   if (way_m.squaredNorm() == 0) return rates;
-  const Mat3 inverse = position_jacobian(q_rad).inverse();
-  rates.first.head<3>() = inverse * way_m;
-  // J q' = way is constant, so J q'' = -J' q'. J' by a central difference along q'; a step of 1e-5 rad leaves 1e-10 of it.
-  JointVector step = JointVector::Zero();
-  step.head<3>() = rates.first.head<3>();
-  const double scale = 1e-5 / step.norm();
-  const Mat3 change = (position_jacobian(q_rad + scale * step) - position_jacobian(q_rad - scale * step)) / (2 * scale);
-  rates.second.head<3>() = -inverse * (change * rates.first.head<3>());
+  const PlanarChain chain(q_rad);
+  const double r1 = chain.elbow_r_m - a0_m, z1 = chain.elbow_z_m;                             // shoulder to elbow
+  const double r2 = chain.tool_r_m - chain.elbow_r_m, z2 = chain.tool_z_m - chain.elbow_z_m;  // elbow to tool
+  const double determinant = r1 * z2 - r2 * z1;
+  // The angles beta of the upper arm and gamma of the forearm that change r and z by so much: (r, z)' = beta' (-z1, r1) + gamma' (-z2, r2).
+  const auto solve = [&](double r, double z, double& beta, double& gamma) {
+    beta = (r * r2 + z * z2) / determinant;
+    gamma = -(r * r1 + z * z1) / determinant;
+  };
+  const double along = way_m.x() * chain.cos_psi + way_m.y() * chain.sin_psi;
+  const double across = way_m.y() * chain.cos_psi - way_m.x() * chain.sin_psi;
+  const double psi = across / chain.tool_r_m;
+  double beta = 0, gamma = 0;
+  solve(along, way_m.z(), beta, gamma);
+  rates.first.head<3>() = Vec3(psi, beta, gamma - beta);
+
+  double beta2 = 0, gamma2 = 0;
+  solve(chain.tool_r_m * psi * psi + r1 * beta * beta + r2 * gamma * gamma, z1 * beta * beta + z2 * gamma * gamma, beta2, gamma2);
+  rates.second.head<3>() = Vec3(-2 * along * psi / chain.tool_r_m, beta2, gamma2 - beta2);
   return rates;
 }
 
@@ -43,69 +55,85 @@ IkOutcome limit_passed(const JointVector& q_rad, const JointLimits& limits) {
   return IkOutcome::ok;
 }
 
-// The fraction's own limits, drawn in so that every joint keeps to its own: half of each acceleration for the path's, half for its curvature.
-struct FractionLimits {
-  double velocity = HUGE_VAL, acceleration = HUGE_VAL, jerk = HUGE_VAL;
-
-  void respect(const Rates& rates, const JointLimits& limits) {
-    for (std::size_t i = 0; i < arm_joint_count; ++i) {
-      const double second = std::abs(rates.second[i]);
-      // The largest within half a step of this check, to second order.
-      const double first = std::abs(rates.first[i]) + second / (2 * CartesianLine::checks);
-      if (first > 0) {
-        velocity = std::min(velocity, limits.velocity_rad_s[i] / first);
-        acceleration = std::min(acceleration, limits.acceleration_rad_s2[i] / (2 * first));
-        jerk = std::min(jerk, limits.jerk_rad_s3[i] / first);
-      }
-      if (second > 0) velocity = std::min(velocity, std::sqrt(limits.acceleration_rad_s2[i] / (2 * second)));
+// Lowers the fraction's own limits so that every joint keeps to its own: half of each acceleration for the path's, half for its curvature.
+void respect(const Rates& rates, const JointLimits& limits, double& velocity, double& acceleration, double& jerk) {
+  for (std::size_t i = 0; i < arm_joint_count; ++i) {
+    const double second = std::abs(rates.second[i]);
+    // The largest within half a step of this check, to second order.
+    const double first = std::abs(rates.first[i]) + second / (2 * CartesianLine::checks);
+    if (first > 0) {
+      velocity = std::min(velocity, limits.velocity_rad_s[i] / first);
+      acceleration = std::min(acceleration, limits.acceleration_rad_s2[i] / (2 * first));
+      jerk = std::min(jerk, limits.jerk_rad_s3[i] / first);
     }
+    if (second > 0) velocity = std::min(velocity, std::sqrt(limits.acceleration_rad_s2[i] / (2 * second)));
   }
-};
+}
 
 }  // namespace
 
 LinePlan CartesianLine::plan(const JointVector& start_rad, const Vec3& goal_m, double goal_roll_rad, const LineLimits& line,
                              const JointLimits& limits) {
-  LinePlan result;
+  begin(start_rad, goal_m, goal_roll_rad, line, limits);
+  (void)advance(checks + 1);
+  return result_;
+}
+
+void CartesianLine::begin(const JointVector& start_rad, const Vec3& goal_m, double goal_roll_rad, const LineLimits& line,
+                          const JointLimits& limits) {
+  *this = CartesianLine();
   start_rad_ = start_rad;
   goal_roll_rad_ = start_rad[3];
-  curve_ = SCurve();
-  if (!start_rad.allFinite()) return result;
+  if (!start_rad.allFinite()) return;
   start_m_ = goal_m_ = base_from_tool(start_rad).translation();
-  const Vec3 way = goal_m - start_m_;
-  const double turn = goal_roll_rad - start_rad[3];
-  if (!way.allFinite() || !std::isfinite(turn)) return result;
-
-  FractionLimits fraction_limits;
-  const double length = way.norm();
-  if (length > 0) fraction_limits = {line.speed_m_s / length, line.acceleration_m_s2 / length, line.jerk_m_s3 / length};
-  JointVector last_rad = start_rad;
-  for (int i = 0; i <= checks; ++i) {
-    const double fraction = static_cast<double>(i) / checks;
-    const IkResult ik = inverse_kinematics(start_m_ + fraction * way, start_rad[3] + fraction * turn, no_limit_margin_rad);
-    result.fraction = fraction;
-    result.ik = ik.ok() ? limit_passed(ik.q_rad, limits) : ik.outcome;
-    result.outcome = PlanOutcome::unreachable;
-    // The start is where the arm is: a motion may lead back inside from there.
-    if (result.ik != IkOutcome::ok && (i > 0 || !ik.ok())) return result;
-    // Past the slew axis the arm would have to turn about between two checks.
-    result.ik = IkOutcome::slew_limit;
-    if ((ik.q_rad - last_rad).head<3>().cwiseAbs().maxCoeff() > max_step_rad) return result;
-    last_rad = ik.q_rad;
-    const Rates rates_here = rates(ik.q_rad, way, turn);
-    result.ik = IkOutcome::too_far;  // the stretched arm is singular
-    if (!rates_here.first.allFinite() || !rates_here.second.allFinite()) return result;
-    fraction_limits.respect(rates_here, limits);
-  }
-  result.ik = IkOutcome::ok;
-  const bool moves = length > 0 || turn != 0;
-  const bool planned = moves ? curve_.plan(1, fraction_limits.velocity, fraction_limits.acceleration, fraction_limits.jerk) : true;
-  result.outcome = planned ? PlanOutcome::ok : PlanOutcome::not_a_number;
-  if (!planned) return result;
-  goal_m_ = start_m_ + way;
+  way_m_ = goal_m - start_m_;
+  if (!way_m_.allFinite() || !std::isfinite(goal_roll_rad - start_rad[3])) return;
   goal_roll_rad_ = goal_roll_rad;
-  result.speed_m_s = curve_.peak_velocity() * length;
-  return result;
+  const double length = way_m_.norm();
+  velocity_ = length > 0 ? line.speed_m_s / length : HUGE_VAL;
+  acceleration_ = length > 0 ? line.acceleration_m_s2 / length : HUGE_VAL;
+  jerk_ = length > 0 ? line.jerk_m_s3 / length : HUGE_VAL;
+  limits_ = limits;
+  last_rad_ = start_rad;
+  planned_ = false;
+}
+
+bool CartesianLine::advance(int checks_now) {
+  for (int i = 0; i < checks_now && !planned_; ++i) planned_ = check();
+  return planned_;
+}
+
+bool CartesianLine::finish(PlanOutcome outcome, IkOutcome ik) {
+  result_.outcome = outcome;
+  result_.ik = ik;
+  return true;
+}
+
+// Looks at one point of the way. True when the plan has ended with it.
+bool CartesianLine::check() {
+  const int i = next_check_++;
+  const double fraction = static_cast<double>(i) / checks;
+  const double turn = goal_roll_rad_ - start_rad_[3];
+  result_.fraction = fraction;
+  const IkResult ik = inverse_kinematics(start_m_ + fraction * way_m_, start_rad_[3] + fraction * turn, no_limit_margin_rad);
+  const IkOutcome reached = ik.ok() ? limit_passed(ik.q_rad, limits_) : ik.outcome;
+  // The start is where the arm is: a motion may lead back inside from there.
+  if (reached != IkOutcome::ok && (i > 0 || !ik.ok())) return finish(PlanOutcome::unreachable, reached);
+  // Past the slew axis the arm would have to turn about between two checks.
+  if ((ik.q_rad - last_rad_).head<3>().cwiseAbs().maxCoeff() > max_step_rad) return finish(PlanOutcome::unreachable, IkOutcome::slew_limit);
+  last_rad_ = ik.q_rad;
+  const Rates here = rates(ik.q_rad, way_m_, turn);
+  // The stretched arm is singular.
+  if (!here.first.allFinite() || !here.second.allFinite()) return finish(PlanOutcome::unreachable, IkOutcome::too_far);
+  respect(here, limits_, velocity_, acceleration_, jerk_);
+  if (i < checks) return false;
+
+  const double length = way_m_.norm();
+  if ((length > 0 || turn != 0) && !curve_.plan(1, velocity_, acceleration_, jerk_))
+    return finish(PlanOutcome::not_a_number, IkOutcome::ok);
+  goal_m_ = start_m_ + way_m_;
+  result_.speed_m_s = curve_.peak_velocity() * length;
+  return finish(PlanOutcome::ok, IkOutcome::ok);
 }
 
 Vec3 CartesianLine::tool_m(double t_s) const { return start_m_ + curve_.sample(t_s).position * (goal_m_ - start_m_); }

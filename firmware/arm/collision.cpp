@@ -6,78 +6,70 @@
 namespace lf::arm {
 namespace {
 
-// Smallest value over t in [0, 1] of a convex function: golden section, `length` (its greatest possible slope) to 1e-7.
-template <class Function>
-double smallest(double length, const Function& f) {
-  constexpr double ratio = 0.6180339887498949;
-  double low = 0, high = 1;
-  double x1 = 1 - ratio, x2 = ratio;
-  double f1 = f(x1), f2 = f(x2);
-  // 40 steps shrink 1 to 4e-9; a segment is shorter than a metre.
-  for (int i = 0; i < 40 && (high - low) * length > 1e-7; ++i) {
-    if (f1 < f2) {
-      high = x2;
-      x2 = x1;
-      f2 = f1;
-      x1 = high - ratio * (high - low);
-      f1 = f(x1);
-    } else {
-      low = x1;
-      x1 = x2;
-      f1 = f2;
-      x2 = low + ratio * (high - low);
-      f2 = f(x2);
-    }
-  }
-  return std::min({f1, f2, f(0.0), f(1.0)});
-}
-
 double distance_to_box(const Vec3& p, const Vec3& half) { return (p.cwiseAbs() - half).cwiseMax(0.0).norm(); }
 
 double distance_to_cylinder(const Vec3& p, double radius_m, double half_height_m) {
-  return std::hypot(std::max(0.0, p.head<2>().norm() - radius_m), std::max(0.0, std::abs(p.z()) - half_height_m));
+  const double outward = std::max(0.0, p.head<2>().norm() - radius_m);
+  const double upward = std::max(0.0, std::abs(p.z()) - half_height_m);
+  return std::sqrt(outward * outward + upward * upward);
 }
 
-// Distance of a capsule's surface from a convex solid, given the distance of a point in the solid's frame.
-template <class Distance>
-double clearance(const Capsule& capsule, const Pose& base_from_solid, const Distance& distance) {
-  const Pose solid_from_base = base_from_solid.inverse(Eigen::Isometry);
-  const Vec3 a = solid_from_base * capsule.a_m;
-  const Vec3 way = solid_from_base.linear() * (capsule.b_m - capsule.a_m);
-  return smallest(way.norm(), [&](double t) { return distance(Vec3(a + t * way)); }) - capsule.radius_m;
-}
-
-// A solid of the panel: a box, or a cylinder about z when `size_m.y()` is 0 (radius in x, height in z).
-struct Solid {
-  PanelPart part;
-  Vec3 centre_m;  // panel frame
-  Vec3 size_m;
-
-  double distance(const Vec3& p) const {
-    return size_m.y() > 0 ? distance_to_box(p, size_m / 2) : distance_to_cylinder(p, size_m.x(), size_m.z() / 2);
+// Least distance of the segment from `a` by `way` to a box. Half the squared distance has a slope that rises along the segment, linearly between the
+// places where it passes a face's plane: so its zero is found exactly.
+double segment_to_box(const Vec3& a, const Vec3& way, const Vec3& half) {
+  const auto slope = [&](double t) {
+    const Vec3 p = a + t * way;
+    return way.dot(p - p.cwiseMax(-half).cwiseMin(half));
+  };
+  double low = 0, high = 1;
+  double slope_low = slope(low), slope_high = slope(high);
+  if (slope_low >= 0) return distance_to_box(a, half);
+  if (slope_high <= 0) return distance_to_box(a + way, half);
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    for (const double face : {-half[axis], half[axis]}) {
+      const double t = (face - a[axis]) / way[axis];
+      if (!(t > low && t < high)) continue;  // nor where the segment is parallel to the face
+      const double slope_here = slope(t);
+      (slope_here < 0 ? low : high) = t;
+      (slope_here < 0 ? slope_low : slope_high) = slope_here;
+    }
   }
-};
+  return distance_to_box(a + (low - slope_low * (high - low) / (slope_high - slope_low)) * way, half);
+}
 
-constexpr std::size_t solid_count = 4 + PanelLayout::button_count;
-
-std::array<Solid, solid_count> solids_of(const PanelLayout& layout) {
-  const Vec2 plate_centre = (layout.plate_min_m + layout.plate_max_m) / 2;
-  const Vec2 plate_size = layout.plate_max_m - layout.plate_min_m;
-  const auto box = [](PanelPart part, const Vec2& centre, double foot, const Vec3& size) {
-    return Solid{part, Vec3(centre.x(), centre.y(), foot + size.z() / 2), size};
+// The same slope's zero for a cylinder, by regula falsi with the Illinois rule; the way left to 1e-7 m.
+double segment_to_cylinder(const Vec3& a, const Vec3& way, double radius_m, double half_height_m) {
+  const auto slope = [&](double t) {
+    const Vec3 p = a + t * way;
+    const double axial = p.z() - std::clamp(p.z(), -half_height_m, half_height_m);
+    const double radial = p.head<2>().norm();
+    const double outward = radial > radius_m ? (1 - radius_m / radial) * way.head<2>().dot(p.head<2>()) : 0.0;
+    return outward + axial * way.z();
   };
-  const auto button = [&](PanelPart part, std::size_t i) {
-    return box(part, layout.buttons_m[i], 0, Vec3(layout.button_width_m, layout.button_width_m, layout.button_height_m));
-  };
-  const double sweep_radius = std::hypot(layout.handle_length_m, layout.handle_thickness_m) / 2;
-  return {box(PanelPart::plate, plate_centre, -layout.plate_thickness_m, Vec3(plate_size.x(), plate_size.y(), layout.plate_thickness_m)),
-          box(PanelPart::marker_plate, layout.marker_centre_m, 0,
-              Vec3(layout.marker_plate_m, layout.marker_plate_m, layout.marker_plate_thickness_m)),
-          button(PanelPart::button_left, 0),
-          button(PanelPart::button_centre, 1),
-          button(PanelPart::button_right, 2),
-          Solid{PanelPart::handle, Vec3(0, 0, layout.handle_height_m), Vec3(sweep_radius, 0, layout.handle_thickness_m)},
-          Solid{PanelPart::stem, Vec3(0, 0, layout.handle_height_m / 2), Vec3(layout.stem_radius_m, 0, layout.handle_height_m)}};
+  const auto distance = [&](double t) { return distance_to_cylinder(a + t * way, radius_m, half_height_m); };
+  double low = 0, high = 1;
+  double slope_low = slope(low), slope_high = slope(high);
+  if (slope_low >= 0) return distance(low);
+  if (slope_high <= 0) return distance(high);
+  const double resolution = 1e-7 / way.norm();
+  double t = high;
+  for (int i = 0, same = 0; i < 60 && high - low > resolution; ++i) {
+    t = low - slope_low * (high - low) / (slope_high - slope_low);
+    const double here = slope(t);
+    if (here == 0) break;
+    if (here < 0) {
+      low = t;
+      slope_low = here;
+      same = same < 0 ? same - 1 : -1;
+      if (same < -1) slope_high /= 2;
+    } else {
+      high = t;
+      slope_high = here;
+      same = same > 0 ? same + 1 : 1;
+      if (same > 1) slope_low /= 2;
+    }
+  }
+  return distance(t);
 }
 
 // Links as scene::BodyId counts them.
@@ -107,11 +99,15 @@ double clearance_between(const Capsule& a, const Capsule& b) {
 }
 
 double clearance_to_box(const Capsule& capsule, const Pose& base_from_box, const Vec3& size_m) {
-  return clearance(capsule, base_from_box, [half = Vec3(size_m / 2)](const Vec3& p) { return distance_to_box(p, half); });
+  const Pose box_from_base = base_from_box.inverse(Eigen::Isometry);
+  const Vec3 way = box_from_base.linear() * (capsule.b_m - capsule.a_m);
+  return segment_to_box(box_from_base * capsule.a_m, way, size_m / 2) - capsule.radius_m;
 }
 
 double clearance_to_cylinder(const Capsule& capsule, const Pose& base_from_cylinder, double radius_m, double height_m) {
-  return clearance(capsule, base_from_cylinder, [=](const Vec3& p) { return distance_to_cylinder(p, radius_m, height_m / 2); });
+  const Pose cylinder_from_base = base_from_cylinder.inverse(Eigen::Isometry);
+  const Vec3 way = cylinder_from_base.linear() * (capsule.b_m - capsule.a_m);
+  return segment_to_cylinder(cylinder_from_base * capsule.a_m, way, radius_m, height_m / 2) - capsule.radius_m;
 }
 
 const char* name(PanelPart part) {
@@ -120,19 +116,46 @@ const char* name(PanelPart part) {
   return names[static_cast<std::size_t>(part)];
 }
 
-Clearance clearance_to_panel(const LinkCapsules& capsules, const Pose& base_from_panel, const PanelLayout& layout, PanelParts ignored) {
+PanelShape::Solid PanelShape::box(PanelPart part, const Vec2& centre_m, double foot_m, const Vec3& size_m) {
+  return {part, Vec3(centre_m.x(), centre_m.y(), foot_m + size_m.z() / 2), size_m / 2, 0};
+}
+
+PanelShape::Solid PanelShape::cylinder(PanelPart part, double height_of_centre_m, double radius_m, double height_m) {
+  return {part, Vec3(0, 0, height_of_centre_m), Vec3(radius_m, radius_m, height_m / 2), radius_m};
+}
+
+PanelShape::PanelShape(const PanelLayout& layout) {
+  const Vec2 plate_centre = (layout.plate_min_m + layout.plate_max_m) / 2;
+  const Vec2 plate_size = layout.plate_max_m - layout.plate_min_m;
+  const Vec3 marker_size(layout.marker_plate_m, layout.marker_plate_m, layout.marker_plate_thickness_m);
+  const Vec3 button_size(layout.button_width_m, layout.button_width_m, layout.button_height_m);
+  const double sweep_radius = std::hypot(layout.handle_length_m, layout.handle_thickness_m) / 2;
+  solids_ = {box(PanelPart::plate, plate_centre, -layout.plate_thickness_m, Vec3(plate_size.x(), plate_size.y(), layout.plate_thickness_m)),
+             box(PanelPart::marker_plate, layout.marker_centre_m, 0, marker_size),
+             box(PanelPart::button_left, layout.buttons_m[0], 0, button_size),
+             box(PanelPart::button_centre, layout.buttons_m[1], 0, button_size),
+             box(PanelPart::button_right, layout.buttons_m[2], 0, button_size),
+             cylinder(PanelPart::handle, layout.handle_height_m, sweep_radius, layout.handle_thickness_m),
+             cylinder(PanelPart::stem, layout.handle_height_m / 2, layout.stem_radius_m, layout.handle_height_m)};
+}
+
+Clearance PanelShape::clearance(const LinkCapsules& capsules, const Pose& base_from_panel, PanelParts ignored) const {
   const Pose panel_from_base = base_from_panel.inverse(Eigen::Isometry);
   Clearance least{HUGE_VAL, 0, PanelPart::none};
-  for (const Solid& solid : solids_of(layout)) {
-    if ((ignored & bit(solid.part)) != 0) continue;
-    for (const Capsule& capsule : capsules) {
-      const Vec3 a = panel_from_base * capsule.a_m - solid.centre_m;
-      const Vec3 way = panel_from_base.linear() * (capsule.b_m - capsule.a_m);
-      const double length = way.norm();
-      // No point of the capsule is nearer than its middle less half its length.
-      if (solid.distance(a + way / 2) - length / 2 - capsule.radius_m >= least.distance_m) continue;
-      const double distance = smallest(length, [&](double t) { return solid.distance(a + t * way); }) - capsule.radius_m;
-      if (distance < least.distance_m) least = {distance, capsule.link, solid.part};
+  // From the fingers up: what is near first, so that the rest need not be looked at closely.
+  for (std::size_t i = capsules.size(); i-- > 0;) {
+    const Capsule& capsule = capsules[i];
+    const Vec3 a = panel_from_base * capsule.a_m;
+    const Vec3 b = panel_from_base * capsule.b_m;
+    const Vec3 low = a.cwiseMin(b), high = a.cwiseMax(b);
+    for (const Solid& solid : solids_) {
+      if ((ignored & bit(solid.part)) != 0) continue;
+      const Vec3 gap = (low - solid.centre_m).cwiseMax(solid.centre_m - high) - solid.half_m;
+      if (gap.cwiseMax(0.0).norm() - capsule.radius_m >= least.distance_m) continue;
+      const Vec3 from_centre = a - solid.centre_m;
+      const double distance = solid.radius_m > 0 ? segment_to_cylinder(from_centre, b - a, solid.radius_m, solid.half_m.z())
+                                                 : segment_to_box(from_centre, b - a, solid.half_m);
+      if (distance - capsule.radius_m < least.distance_m) least = {distance - capsule.radius_m, capsule.link, solid.part};
     }
   }
   return least;
@@ -143,21 +166,6 @@ double clearance_to_itself(const LinkCapsules& capsules) {
   for (const Capsule& a : capsules)
     for (const Capsule& b : capsules)
       if (can_meet(a.link, b.link)) least = std::min(least, clearance_between(a, b));
-  return least;
-}
-
-Clearance clearance_on_way(const JointVector& from_rad, const JointVector& to_rad, double jaw_rad, const Pose& base_from_panel,
-                           const PanelLayout& layout, PanelParts ignored, double step_rad) {
-  constexpr int max_steps = 128;  // half a turn of the wrist at 0.05 rad, and a bound on the time
-  const JointVector way = to_rad - from_rad;
-  const double longest = way.cwiseAbs().maxCoeff();
-  const int steps = std::clamp(static_cast<int>(std::ceil(longest / step_rad)), 1, max_steps);
-  Clearance least{HUGE_VAL, 0, PanelPart::none};
-  for (int i = 0; i <= steps; ++i) {
-    const LinkCapsules capsules = link_capsules(from_rad + way * (static_cast<double>(i) / steps), jaw_rad);
-    const Clearance here = clearance_to_panel(capsules, base_from_panel, layout, ignored);
-    if (here.distance_m < least.distance_m) least = here;
-  }
   return least;
 }
 

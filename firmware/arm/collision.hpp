@@ -4,8 +4,8 @@
 // to be.
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <span>
 
 #include "firmware/arm/kinematics.hpp"
 #include "shared/panel/panel_layout.hpp"
@@ -33,14 +33,29 @@ struct Clearance {
   PanelPart part = PanelPart::none;  // nearest to it
 };
 
-// The arm against the panel at `base_from_panel`. The handle counts at every angle: as the disc it sweeps.
-Clearance clearance_to_panel(const LinkCapsules& capsules, const Pose& base_from_panel, const PanelLayout& layout, PanelParts ignored = 0);
+// The panel's solids, worked out once for all the questions to come. The handle counts at every angle: as the disc it sweeps.
+class PanelShape {
+ public:
+  explicit PanelShape(const PanelLayout& layout);
+
+  // The arm against the panel at `base_from_panel`. 0.5 us on a desktop: most pairs are told apart by their bounding boxes.
+  Clearance clearance(const LinkCapsules& capsules, const Pose& base_from_panel, PanelParts ignored = 0) const;
+
+ private:
+  // In the panel frame: a box, or, where there is a radius, a cylinder about z within the box.
+  struct Solid {
+    PanelPart part = PanelPart::none;
+    Vec3 centre_m = Vec3::Zero();
+    Vec3 half_m = Vec3::Zero();
+    double radius_m = 0;
+  };
+  static Solid box(PanelPart part, const Vec2& centre_m, double foot_m, const Vec3& size_m);
+  static Solid cylinder(PanelPart part, double height_of_centre_m, double radius_m, double height_m);
+
+  std::array<Solid, 4 + PanelLayout::button_count> solids_;
+};
 
 // The smallest clearance between links that are not neighbours: forearm, wrist and fingers against the slew, fingers and wrist against the upper arm.
 double clearance_to_itself(const LinkCapsules& capsules);
-
-// The smallest clearance to the panel on the straight joint-space way from `from_rad` to `to_rad`, checked at steps of at most `step_rad` of any joint.
-Clearance clearance_on_way(const JointVector& from_rad, const JointVector& to_rad, double jaw_rad, const Pose& base_from_panel,
-                           const PanelLayout& layout, PanelParts ignored = 0, double step_rad = 0.05);
 
 }  // namespace lf::arm

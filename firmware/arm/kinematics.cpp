@@ -12,10 +12,15 @@ Pose pose_of(const arm_geometry::Transform& transform) {
   return pose;
 }
 
-// A child's frame: its joint's place on the parent, turned by `angle_rad` about the joint's z (or y, for the fingers).
-Pose turned(const Pose& base_from_parent, std::size_t origin, double angle_rad, const Vec3& axis) {
+// A child's frame: its joint's place on the parent, turned by `angle_rad` about the joint's own axis, which takes `from` to `to`: x to y about z.
+Pose turned(const Pose& base_from_parent, std::size_t origin, double angle_rad, Eigen::Index from, Eigen::Index to) {
   Pose pose = base_from_parent * pose_of(arm_geometry::joint_origins[origin]);
-  pose.linear() = pose.linear() * Eigen::AngleAxisd(angle_rad, axis).toRotationMatrix();
+  const double c = std::cos(angle_rad);
+  const double s = std::sin(angle_rad);
+  const Vec3 a = pose.linear().col(from);
+  const Vec3 b = pose.linear().col(to);
+  pose.linear().col(from) = c * a + s * b;
+  pose.linear().col(to) = c * b - s * a;
   return pose;
 }
 
@@ -67,11 +72,12 @@ Jacobian jacobian(const JointVector& q_rad) {
 }
 
 LinkPoses base_from_links(const JointVector& q_rad, double jaw_rad) {
+  constexpr Eigen::Index x = 0, y = 1, z = 2;
   LinkPoses links;
   Pose parent = Pose::Identity();
-  for (std::size_t i = 0; i < arm_joint_count; ++i) parent = links[i] = turned(parent, i, q_rad[i], Vec3::UnitZ());
-  links[4] = turned(parent, 4, jaw_rad, -Vec3::UnitY());
-  links[5] = turned(parent, 5, jaw_rad, Vec3::UnitY());
+  for (std::size_t i = 0; i < arm_joint_count; ++i) parent = links[i] = turned(parent, i, q_rad[i], x, y);
+  links[4] = turned(parent, 4, jaw_rad, x, z);  // about -y
+  links[5] = turned(parent, 5, jaw_rad, z, x);
   return links;
 }
 

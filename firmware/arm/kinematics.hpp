@@ -49,7 +49,8 @@ LinkCapsules link_capsules(const JointVector& q_rad, double jaw_rad);
 
 // What each joint may do; from the URDF by default.
 struct JointLimits {
-  JointVector lower_rad, upper_rad, velocity_rad_s, acceleration_rad_s2, jerk_rad_s3;
+  JointVector lower_rad = JointVector::Zero(), upper_rad = JointVector::Zero();
+  JointVector velocity_rad_s = JointVector::Zero(), acceleration_rad_s2 = JointVector::Zero(), jerk_rad_s3 = JointVector::Zero();
 };
 
 // The URDF's limits: positions drawn in by `position_margin_rad` on both sides, speeds times `speed_fraction`. The jerk takes `jerk_time_s` to reach

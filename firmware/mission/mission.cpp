@@ -29,7 +29,7 @@ Mission::Mission(const ControllerConfig& config)
     : config_(config),
       watch_(config.mission_limits),
       camera_(camera_config(config)),
-      motion_(config.mission_limits),
+      motion_(config.mission_limits, config.mission.layout, config.mission.park_rad),
       map_(config.mission.layout, config.marker, config.camera) {
   for (const Task& task : config.mission.tasks) {
     TaskResult result;
@@ -246,7 +246,7 @@ void Mission::finish_step(const Tick& tick, Status status) {
 void Mission::begin(const Tick& tick) {
   entered_ = true;
   switch (step_) {
-    case Step::boot: tick.network.start_boot(tick.now); return;
+    case Step::boot: begin_boot(tick); return;
     case Step::deploy: begin_deploy(); return;
     case Step::verify_reach: begin_verify_reach(); return;
     case Step::scan:
@@ -323,6 +323,7 @@ bool Mission::settled(bool condition, Duration for_how_long, Time now) {
 
 Mission::Status Mission::run_motion() {
   if (failure_ != StepFailure::none) return Status::failed;
+  if (motion_.failure() != StepFailure::none) return fail(motion_.failure());
   return motion_.done() ? Status::done : Status::running;
 }
 

@@ -94,6 +94,7 @@ class Mission {
   bool in_contact_phase() const { return row(step_).phase == safety::Phase::contact || row(step_).phase == safety::Phase::gripping; }
 
   // mission_start.cpp: power up and the way home
+  void begin_boot(const Tick& tick);
   Status run_boot(const Tick& tick);
   Status run_enable(const Tick& tick);
   Status run_home(const Tick& tick);
@@ -105,6 +106,7 @@ class Mission {
   // mission_look.cpp: sweeps, stills and what is made of them
   void begin_deploy();
   void begin_verify_reach();
+  void go_to_sweep(const scan::SweepRequest& request);
   void begin_scan(const Tick& tick);
   Status run_scan(const Tick& tick);
   Status run_look(const Tick& tick);
@@ -135,8 +137,8 @@ class Mission {
   // True once the condition has held for `for_how_long`.
   bool settled(bool condition, Duration for_how_long, Time now);
   Status run_motion();  // done when the motion is
-  // Goes there straight if that keeps clear of the panel, else by the park position.
-  bool go_clear(const arm::JointVector& goal_rad);
+  void go_clear(const arm::JointVector& goal_rad);
+  Room room() const;  // around the arm, as far as it is known
   void guard_with(const arm::GuardConfig& config) { guard_ = arm::GuardedMotion(config); }
   arm::JointVector measured_rad() const;
   const Task& task() const { return config_.mission.tasks[task_index_]; }

@@ -34,10 +34,11 @@ void Mission::begin_reach_button() {
   const Vec3 tip = map_.button_m(task().button) + map_.normal() * config_.mission.approach_distance_m;
   arm::JointVector q;
   const double tip_beyond = arm::tip_beyond_tool_m(arm::jaw_from_gap(0));
-  if (!tool_for_tip(tip, tip_beyond, tool_roll_rad_, q) || !go_clear(q)) {
+  if (!tool_for_tip(tip, tip_beyond, tool_roll_rad_, q)) {
     failure_ = StepFailure::unreachable;
     return;
   }
+  go_clear(q);
   standoff_m_ = arm::base_from_tool(q).translation();
 }
 
@@ -57,13 +58,16 @@ void Mission::begin_press() {
   arm::JointVector q;
   const double tip_beyond = arm::tip_beyond_tool_m(arm::jaw_from_gap(0));
   const bool reachable = tool_for_tip(map_.button_m(task().button) - map_.normal() * depth, tip_beyond, tool_roll_rad_, q);
-  if (!reachable || !motion_.line(arm::base_from_tool(q).translation(), tool_roll_rad_, config_.mission.press_speed_m_s)) {
+  if (!reachable) {
     failure_ = StepFailure::unreachable;
+    return;
   }
+  motion_.line(arm::base_from_tool(q).translation(), tool_roll_rad_, config_.mission.press_speed_m_s);
 }
 
 Mission::Status Mission::run_press(const Tick& tick) {
   if (pressed_) return settled(motion_.done(), press_time, tick.now) ? Status::done : Status::running;
+  if (motion_.planning()) return Status::running;
   const safety::JointStates& joints = watch_.joints();
   arm::JointVector torque;
   for (std::size_t i = 0; i < arm_joint_count; ++i) torque[static_cast<Eigen::Index>(i)] = joints.torque_nm[i];

@@ -1,4 +1,3 @@
-#include "firmware/arm/collision.hpp"
 #include "firmware/mission/mission.hpp"
 
 namespace lf::mission {
@@ -7,23 +6,20 @@ namespace {
 
 // The last image is on its way for up to a tenth of a second after the arm has stopped.
 constexpr Duration last_image = Duration::from_ms(120);
-// Between links and panel on a free way; links are known to their capsules, the panel before the first look to the docking error of 20 mm.
-constexpr double free_clearance_m = 0.015;
 
 }  // namespace
 
-bool Mission::go_clear(const arm::JointVector& goal_rad) {
-  const Pose base_from_panel = map_.known() ? map_.base_from_panel() : config_.mission.layout.nominal_base_from_panel();
-  const double jaw_rad = watch_.joints().position_rad[static_cast<std::size_t>(Joint::jaw)];
-  const double speed = config_.mission.move_speed_fraction;
-  const arm::JointVector& park = config_.mission.park_rad;
-  const auto clear = [&](const arm::JointVector& from, const arm::JointVector& to) {
-    return arm::clearance_on_way(from, to, jaw_rad, base_from_panel, config_.mission.layout).distance_m >= free_clearance_m;
-  };
-  if (clear(motion_.target(), goal_rad) || !clear(park, goal_rad)) return motion_.go(std::array{goal_rad}, speed);
-  arm::JointVector via = park;
-  via[3] = goal_rad[3];
-  return motion_.go(std::array{via, goal_rad}, speed);
+Room Mission::room() const {
+  Room room;
+  room.base_from_panel = map_.known() ? map_.base_from_panel() : config_.mission.layout.nominal_base_from_panel();
+  room.jaw_rad = watch_.joints().position_rad[static_cast<std::size_t>(Joint::jaw)];
+  return room;
+}
+
+void Mission::go_clear(const arm::JointVector& goal_rad) { motion_.go_clear(goal_rad, room(), config_.mission.move_speed_fraction); }
+
+void Mission::go_to_sweep(const scan::SweepRequest& request) {
+  motion_.go_to_sweep(request, config_.laser, room(), config_.mission.move_speed_fraction);
 }
 
 void Mission::order(const Tick& tick, ScanCommand::Kind kind) {
@@ -37,8 +33,7 @@ void Mission::begin_deploy() {
   gripper_.close();
   scan::SweepRequest request;
   request.base_from_panel = config_.mission.layout.nominal_base_from_panel();
-  const bool planned = motion_.plan_sweep(scan::plan_sweep(request, config_.laser));
-  if (!planned || !go_clear(motion_.sweep_start_rad())) failure_ = StepFailure::unreachable;
+  go_to_sweep(request);
 }
 
 // The second look needs only the handle's surroundings, and knows where they are.
@@ -51,8 +46,7 @@ void Mission::begin_verify_reach() {
   request.margin_m = 0.010;
   request.docking_shift_m = 0.003;    // thrice the valve base's usual error
   request.docking_turn_rad = 0.0035;  // 0.2 degrees
-  const bool planned = motion_.plan_sweep(scan::plan_sweep(request, config_.laser));
-  if (!planned || !go_clear(motion_.sweep_start_rad())) failure_ = StepFailure::unreachable;
+  go_to_sweep(request);
 }
 
 void Mission::begin_scan(const Tick& tick) {

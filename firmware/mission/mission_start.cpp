@@ -2,13 +2,14 @@
 
 namespace lf::mission {
 
-Mission::Status Mission::run_boot(const Tick& tick) {
+void Mission::begin_boot(const Tick& tick) {
   const safety::LimitsVerdict verdict = safety::check(config_.limits);
   const bool tighter = safety::is_tighter(config_.mission_limits, config_.limits);
-  if (verdict != safety::LimitsVerdict::good || !tighter) {
-    raise(tick, safety::Fault::limits_refused, verdict != safety::LimitsVerdict::good ? static_cast<std::int32_t>(verdict) : 100);
-    return Status::running;
-  }
+  if (verdict == safety::LimitsVerdict::good && tighter) return tick.network.start_boot(tick.now);
+  raise(tick, safety::Fault::limits_refused, verdict != safety::LimitsVerdict::good ? static_cast<std::int32_t>(verdict) : 100);
+}
+
+Mission::Status Mission::run_boot(const Tick& tick) {
   switch (tick.network.boot().state) {
     case canopen::BootState::done: return Status::done;
     case canopen::BootState::failed: return Status::failed;
@@ -53,7 +54,7 @@ Mission::Status Mission::run_home(const Tick& tick) {
 
 void Mission::begin_stow() {
   gripper_.close();
-  if (!go_clear(config_.mission.park_rad)) failure_ = StepFailure::no_motion;
+  go_clear(config_.mission.park_rad);
 }
 
 Mission::Status Mission::run_stow() {

@@ -47,7 +47,8 @@ void Mission::begin_reach_valve() {
   if (!roll) return;
   tool_roll_rad_ = *roll;
   const arm::IkResult start = arm::inverse_kinematics(standoff_m_, tool_roll_rad_, limit_margin_rad);
-  if (!start.ok() || !go_clear(start.q_rad)) return;
+  if (!start.ok()) return;
+  go_clear(start.q_rad);
   failure_ = StepFailure::none;
 }
 
@@ -62,12 +63,12 @@ void Mission::begin_advance() {
   arm::GuardConfig config;
   config.contact_torque_nm = arm::JointVector(8, 8, 8, 3);  // 20 N at the tool; the pads may brush the bar
   guard_with(config);
-  if (!motion_.line(map_.handle_centre_m(), tool_roll_rad_, config_.mission.approach_speed_m_s)) failure_ = StepFailure::unreachable;
+  motion_.line(map_.handle_centre_m(), tool_roll_rad_, config_.mission.approach_speed_m_s);
 }
 
 Mission::Status Mission::run_advance(const Tick& tick) {
   const Status status = run_motion();
-  if (status != Status::running) return status;
+  if (status != Status::running || motion_.planning()) return status;
   const safety::JointStates& joints = watch_.joints();
   arm::JointVector torque;
   for (std::size_t i = 0; i < arm_joint_count; ++i) torque[static_cast<Eigen::Index>(i)] = joints.torque_nm[i];
@@ -89,9 +90,7 @@ Mission::Status Mission::run_grip() {
 }
 
 void Mission::begin_turn() {
-  if (!motion_.turn(map_.base_from_panel().linear(), map_.handle_rad(), task().to_rad, config_.mission.turn_speed_rad_s)) {
-    failure_ = StepFailure::unreachable;
-  }
+  motion_.turn(map_.base_from_panel().linear(), map_.handle_rad(), task().to_rad, config_.mission.turn_speed_rad_s);
 }
 
 Mission::Status Mission::run_turn(const Tick& tick) {
@@ -111,8 +110,6 @@ Mission::Status Mission::run_let_go() {
   return gripper_.state() == arm::GripperState::open ? Status::done : Status::running;
 }
 
-void Mission::begin_back_off() {
-  if (!motion_.line(standoff_m_, motion_.target()[3], config_.mission.approach_speed_m_s)) failure_ = StepFailure::unreachable;
-}
+void Mission::begin_back_off() { motion_.line(standoff_m_, motion_.target()[3], config_.mission.approach_speed_m_s); }
 
 }  // namespace lf::mission

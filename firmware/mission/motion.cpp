@@ -4,6 +4,12 @@
 
 namespace lf::mission {
 
+namespace {
+
+constexpr int line_checks_a_share = 16;
+
+}  // namespace
+
 arm::JointLimits Motion::limits(double speed_fraction) const {
   arm::JointLimits limits = arm::joint_limits(0, speed_fraction);
   for (std::size_t i = 0; i < arm_joint_count; ++i) {
@@ -23,63 +29,103 @@ void Motion::start_at(const arm::JointVector& q_rad) {
 
 void Motion::begin(Kind kind, double duration_s) {
   kind_ = kind;
+  failure_ = StepFailure::none;
   t_s_ = 0;
   duration_s_ = duration_s;
 }
 
-bool Motion::go(std::span<const arm::JointVector> points_rad, double speed_fraction) {
-  if (path_.plan(target_.q_rad, points_rad, limits(speed_fraction)) != arm::PlanOutcome::ok) return false;
-  begin(Kind::path, path_.duration_s());
-  return true;
+void Motion::refuse(StepFailure failure) {
+  begin(Kind::rest, 0);
+  failure_ = failure;
 }
 
-bool Motion::line(const Vec3& goal_m, double goal_roll_rad, double speed_m_s) {
+void Motion::go(std::span<const arm::JointVector> points_rad, double speed_fraction) {
+  if (path_.plan(target_.q_rad, points_rad, limits(speed_fraction)) != arm::PlanOutcome::ok) return refuse(StepFailure::unreachable);
+  begin(Kind::path, path_.duration_s());
+}
+
+void Motion::go_clear(const arm::JointVector& goal_rad, const Room& room, double speed_fraction) {
+  room_ = room;
+  speed_fraction_ = speed_fraction;
+  plan_route(goal_rad);
+}
+
+void Motion::plan_route(const arm::JointVector& goal_rad) {
+  route_.begin(target_.q_rad, goal_rad, room_);
+  begin(Kind::plan_route, 0);
+}
+
+void Motion::advance_route() {
+  switch (route_.advance()) {
+    case ClearRoute::State::looking: return;
+    case ClearRoute::State::found: return go(route_.points_rad(), speed_fraction_);
+    case ClearRoute::State::none: return refuse(StepFailure::no_motion);
+  }
+}
+
+void Motion::line(const Vec3& goal_m, double goal_roll_rad, double speed_m_s) {
   arm::LineLimits line;
   line.speed_m_s = speed_m_s;
-  if (line_.plan(target_.q_rad, goal_m, goal_roll_rad, line, limits(1)).outcome != arm::PlanOutcome::ok) return false;
+  line_.begin(target_.q_rad, goal_m, goal_roll_rad, line, limits(1));
+  begin(Kind::plan_line, 0);
+}
+
+void Motion::advance_line() {
+  if (!line_.advance(line_checks_a_share)) return;
+  if (line_.result().outcome != arm::PlanOutcome::ok) return refuse(StepFailure::unreachable);
   begin(Kind::line, line_.duration_s());
-  return true;
 }
 
-bool Motion::plan_sweep(const scan::SweepPlan& plan) {
-  if (plan.outcome != scan::SweepOutcome::ok) return false;
-  arm::JointVector from = target_.q_rad;
-  arm::JointVector to = target_.q_rad;
-  for (std::size_t i = 0; i < arm_joint_count; ++i) {
-    from[static_cast<Eigen::Index>(i)] = plan.start_rad[i];
-    to[static_cast<Eigen::Index>(i)] = plan.end_rad[i];
-  }
-  return sweep_.plan(from, to, plan.duration.s(), limits(1)) == arm::PlanOutcome::ok;
+void Motion::go_to_sweep(const scan::SweepRequest& request, const LaserCalibration& laser, const Room& room, double speed_fraction) {
+  room_ = room;
+  speed_fraction_ = speed_fraction;
+  sweep_planner_.begin(request, laser);
+  begin(Kind::plan_sweep, 0);
 }
 
-bool Motion::sweep() {
-  begin(Kind::sweep, sweep_.duration_s());
-  return true;
+void Motion::advance_sweep() {
+  if (!sweep_planner_.advance()) return;
+  const scan::SweepPlan& plan = sweep_planner_.plan();
+  if (plan.outcome != scan::SweepOutcome::ok) return refuse(StepFailure::unreachable);
+  const auto joints = [](const std::array<double, arm_joint_count>& q) { return arm::JointVector(q[0], q[1], q[2], q[3]); };
+  const arm::PlanOutcome outcome = sweep_.plan(joints(plan.start_rad), joints(plan.end_rad), plan.duration.s(), limits(1));
+  if (outcome != arm::PlanOutcome::ok) return refuse(StepFailure::unreachable);
+  plan_route(sweep_.start_rad());
 }
 
-bool Motion::turn(const Mat3& base_from_panel, double from_rad, double to_rad, double speed_rad_s) {
+void Motion::sweep() { begin(Kind::sweep, sweep_.duration_s()); }
+
+void Motion::turn(const Mat3& base_from_panel, double from_rad, double to_rad, double speed_rad_s) {
   const arm::JointLimits limits = this->limits(1);
   BarTurn::Limits bar;
   bar.speed_rad_s = speed_rad_s;
-  if (!turn_.plan(target_.q_rad, base_from_panel, from_rad, to_rad, bar, limits.lower_rad[3], limits.upper_rad[3])) return false;
+  if (!turn_.plan(target_.q_rad, base_from_panel, from_rad, to_rad, bar, limits.lower_rad[3], limits.upper_rad[3])) {
+    return refuse(StepFailure::unreachable);
+  }
   begin(Kind::turn, turn_.duration_s());
-  return true;
 }
 
 void Motion::stop() {
-  if (kind_ == Kind::rest) return;
+  if (kind_ == Kind::rest || planning()) return freeze();
   stop_ = arm::JointStop(target_, limits(1));
   begin(Kind::stop, stop_.duration_s());
 }
 
 void Motion::freeze() {
   kind_ = Kind::rest;
+  failure_ = StepFailure::none;
   target_.qd_rad_s.setZero();
   target_.qdd_rad_s2.setZero();
 }
 
 void Motion::step(double dt_s) {
-  if (kind_ == Kind::rest) return;
+  switch (kind_) {
+    case Kind::rest: return;
+    case Kind::plan_route: return advance_route();
+    case Kind::plan_line: return advance_line();
+    case Kind::plan_sweep: return advance_sweep();
+    default: break;
+  }
   t_s_ += dt_s;
   switch (kind_) {
     case Kind::path: target_ = path_.sample(t_s_); break;
@@ -87,7 +133,7 @@ void Motion::step(double dt_s) {
     case Kind::sweep: target_ = sweep_.sample(t_s_); break;
     case Kind::turn: target_.q_rad = turn_.sample(t_s_); break;
     case Kind::stop: target_ = stop_.sample(t_s_); break;
-    case Kind::rest: break;
+    default: break;
   }
   if (t_s_ >= duration_s_) freeze();
 }

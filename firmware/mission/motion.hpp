@@ -1,4 +1,4 @@
-// What moves the arm: one planned motion at a time, stepped once a control period, its target always defined.
+// What moves the arm: one motion at a time, planned a share a tick and then stepped once a control period, its target always defined.
 #pragma once
 
 #include <cstdint>
@@ -6,8 +6,10 @@
 
 #include "firmware/arm/trajectory.hpp"
 #include "firmware/mission/bar_turn.hpp"
+#include "firmware/mission/clear_route.hpp"
 #include "firmware/safety/limits.hpp"
 #include "firmware/scan/sweep.hpp"
+#include "firmware/telemetry.hpp"
 #include "shared/geometry/pose.hpp"
 #include "shared/panel/panel_layout.hpp"
 
@@ -15,20 +17,22 @@ namespace lf::mission {
 
 class Motion {
  public:
-  // `limits` bound every motion's positions and speeds.
-  explicit Motion(const safety::Limits& limits) : limits_(limits) {}
+  // `limits` bound every motion's positions and speeds. Ways through free space keep clear of a panel of this layout, and may lead by `park_rad`.
+  Motion(const safety::Limits& limits, const PanelLayout& layout, const arm::JointVector& park_rad)
+      : limits_(limits), route_(layout, park_rad) {}
 
   // Where the joints are when power comes on.
   void start_at(const arm::JointVector& q_rad);
 
-  // Each plans from the present target and begins with the next step. False, and at rest where it is, when it cannot be planned.
-  bool go(std::span<const arm::JointVector> points_rad, double speed_fraction);
-  bool line(const Vec3& goal_m, double goal_roll_rad, double speed_m_s);
-  // Plans the sweep; `sweep_start_rad` is where to go before, `sweep` carries it out.
-  bool plan_sweep(const scan::SweepPlan& plan);
-  arm::JointVector sweep_start_rad() const { return sweep_.start_rad(); }
-  bool sweep();
-  bool turn(const Mat3& base_from_panel, double from_rad, double to_rad, double speed_rad_s);
+  // Orders. Each is planned from the present target, at most 10 us of it a tick on a desktop, and begins when that is done. What cannot be planned
+  // leaves the arm at rest where it is, with its reason in failure().
+  void go(std::span<const arm::JointVector> points_rad, double speed_fraction);                // through these points, whatever is there
+  void go_clear(const arm::JointVector& goal_rad, const Room& room, double speed_fraction);    // past the panel
+  void line(const Vec3& goal_m, double goal_roll_rad, double speed_m_s);                       // of the tool
+  void turn(const Mat3& base_from_panel, double from_rad, double to_rad, double speed_rad_s);  // of the held bar
+  // Plans a sweep and goes where it begins; `sweep` carries it out.
+  void go_to_sweep(const scan::SweepRequest& request, const LaserCalibration& laser, const Room& room, double speed_fraction);
+  void sweep();
 
   void stop();    // to rest, as fast as the joints' limits allow
   void freeze();  // the target stays as it is
@@ -36,16 +40,24 @@ class Motion {
   void step(double dt_s);
   const arm::JointVector& target() const { return target_.q_rad; }
   bool done() const { return kind_ == Kind::rest; }
+  bool planning() const { return kind_ == Kind::plan_route || kind_ == Kind::plan_line || kind_ == Kind::plan_sweep; }
+  StepFailure failure() const { return failure_; }  // of the last order
   double elapsed_s() const { return t_s_; }
   double duration_s() const { return duration_s_; }
+  const scan::SweepPlan& sweep_plan() const { return sweep_planner_.plan(); }
   // The sweep is between its run-up and its run-out.
   bool cruising() const { return kind_ == Kind::sweep && t_s_ >= sweep_.cruise_start_s() && t_s_ <= sweep_.cruise_end_s(); }
 
   arm::JointLimits limits(double speed_fraction) const;
 
  private:
-  enum class Kind : std::uint8_t { rest, path, line, sweep, turn, stop };
+  enum class Kind : std::uint8_t { rest, plan_route, plan_line, plan_sweep, path, line, sweep, turn, stop };
   void begin(Kind kind, double duration_s);
+  void refuse(StepFailure failure);
+  void plan_route(const arm::JointVector& goal_rad);
+  void advance_route();
+  void advance_line();
+  void advance_sweep();
 
   safety::Limits limits_;
   Kind kind_ = Kind::rest;
@@ -57,6 +69,12 @@ class Motion {
   arm::ConstantSpeedSweep sweep_;
   BarTurn turn_;
   arm::JointStop stop_;
+  ClearRoute route_;
+  scan::SweepPlanner sweep_planner_;
+  // Of the order that is being planned.
+  Room room_;
+  double speed_fraction_ = 0;
+  StepFailure failure_ = StepFailure::none;
 };
 
 }  // namespace lf::mission

@@ -9,8 +9,10 @@
 #include <array>
 #include <cstdint>
 
+#include "firmware/arm/kinematics.hpp"
 #include "shared/calibration/calibration.hpp"
 #include "shared/messages/joint_io.hpp"
+#include "shared/messages/static_vector.hpp"
 #include "shared/messages/time.hpp"
 #include "shared/panel/panel_layout.hpp"
 
@@ -50,8 +52,60 @@ struct SweepPlan {
   double widest_spacing_m = 0;                        // between stripes on the region at `stripe_period`
 };
 
-// Start and end stay 0.05 rad and the run-up inside the URDF's limits.
-// Some 300 kinematics, 50 us.
+// Plans in shares, so that no control tick bears it all: begin(), then advance() until it is true.
+// Start and end stay 0.05 rad and the run-up inside the URDF's limits. Some 300 poses of the arm, 0.1 us each on a desktop.
+class SweepPlanner {
+ public:
+  void begin(const SweepRequest& request, const LaserCalibration& laser);
+  // Looks at some 25 poses more, at most 55. True when plan() stands.
+  bool advance();
+  const SweepPlan& plan() const { return best_; }
+
+ private:
+  // Shoulder angles tried. At less than 0.7 rad the elbow's stroke does not lift the stripe over the panel; beyond 1.5 the tool reaches it.
+  static constexpr std::size_t shoulder_steps = 8;
+  static constexpr int poses_a_share = 25;
+
+  struct Laser {
+    Vec3 origin_m, normal;
+  };
+  using Points = StaticVector<Vec3, 3>;  // base frame
+  struct Ends {
+    double start = 0, end = 0;  // the elbow at the start and the end for a shoulder angle; NaN where there is none
+  };
+  struct Candidate {
+    std::size_t from = 0, to = 0;
+    double duration_s = 0;
+    double mean_spacing_m = 0;
+  };
+
+  static double shoulder(std::size_t i);
+  Points points_to_pass(double border_m, double outward) const;
+  Laser at(double shoulder_rad, double elbow_rad);
+  double beyond(const Laser& laser, const Points& points, double side) const;
+  double elbow_for(double shoulder_rad, const Points& points, double side);
+  double height_m(const Laser& laser) const;
+  bool fan_reaches(const Laser& laser, double y_m) const;
+  void find_ends(std::size_t i);
+  bool have_ends();
+  bool candidate(std::size_t from, std::size_t to, Candidate& out);
+  bool better(double widest_m, double duration_s) const;
+  void consider(std::size_t from, std::size_t to);
+  SweepOutcome check_way(const Candidate& c, double& widest_m);
+  SweepPlan result(const Candidate& c, double widest_m) const;
+
+  SweepRequest request_;
+  LaserCalibration laser_;
+  arm::JointLimits limits_;
+  Points above_, below_;
+  std::array<Ends, shoulder_steps> ends_{};
+  std::size_t next_ = 0;  // shoulder angles first, then pairs of them
+  int poses_ = 0;         // of this share
+  bool planned_ = true;
+  SweepPlan best_;
+};
+
+// All of it at once.
 SweepPlan plan_sweep(const SweepRequest& request, const LaserCalibration& laser);
 
 }  // namespace lf::scan

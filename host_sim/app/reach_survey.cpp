@@ -24,6 +24,7 @@ ReachTarget survey_target(const scenario::Scenario& scenario, const std::string&
   target.nominal = reach_of_tip(scenario.panel.nominal_base_from_panel(), point_m, tip_m);
   target.handle_clearance_m = std::numeric_limits<double>::infinity();
   target.draws = draws;
+  const arm::PanelShape shape(scenario.panel);
   for (int seed = 1; seed <= draws; ++seed) {
     const Pose base_from_panel = scenario::true_base_from_panel(scenario.panel, scenario::draw(scenario, static_cast<std::uint64_t>(seed)));
     const arm::Reach reach = reach_of_tip(base_from_panel, point_m, tip_m);
@@ -32,7 +33,7 @@ ReachTarget survey_target(const scenario::Scenario& scenario, const std::string&
     target.worst_tilt_rad = std::max(target.worst_tilt_rad, reach.tilt_rad);
     if (!is_button) continue;
     const arm::Clearance clearance =
-        arm::clearance_to_panel(arm::link_capsules(reach.q_rad, arm::jaw_from_gap(0)), base_from_panel, scenario.panel, all_but_handle);
+        shape.clearance(arm::link_capsules(reach.q_rad, arm::jaw_from_gap(0)), base_from_panel, all_but_handle);
     target.handle_clearance_m = std::min(target.handle_clearance_m, clearance.distance_m);
   }
   return target;

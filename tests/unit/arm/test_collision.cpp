@@ -95,22 +95,22 @@ TEST(ClearanceToItself, IsPositiveInEveryPoseOfTheMission) {
     for (const double gap : {0.0, 0.09}) EXPECT_GT(clearance_to_itself(link_capsules(q, jaw_from_gap(gap))), 0.02) << q.transpose();
 }
 
-TEST(ClearanceToPanel, NamesWhatIsNearest) {
+TEST(PanelShape, NamesWhatIsNearest) {
   const PanelLayout layout;
   const Pose base_from_panel = layout.nominal_base_from_panel();
-  const Clearance parked = clearance_to_panel(link_capsules({0, 0.60, 1.90, 0}, 0), base_from_panel, layout);
+  const Clearance parked = PanelShape(layout).clearance(link_capsules({0, 0.60, 1.90, 0}, 0), base_from_panel);
   EXPECT_GT(parked.distance_m, 0.15);
-  const Clearance grasp = clearance_to_panel(link_capsules({0, 1.307, 1.151, 0}, 0), base_from_panel, layout);
+  const Clearance grasp = PanelShape(layout).clearance(link_capsules({0, 1.307, 1.151, 0}, 0), base_from_panel);
   EXPECT_LT(grasp.distance_m, 0);
   EXPECT_EQ(grasp.part, PanelPart::handle);
   EXPECT_GE(grasp.link, 5u) << "a finger";
   const JointVector press = inverse_kinematics({0.395, 0, 0.407}, 0).q_rad;
-  const Clearance button = clearance_to_panel(link_capsules(press, jaw_from_gap(0)), base_from_panel, layout);
+  const Clearance button = PanelShape(layout).clearance(link_capsules(press, jaw_from_gap(0)), base_from_panel);
   EXPECT_EQ(button.part, PanelPart::button_centre);
 }
 
 // The layout's promise: 20 mm between the closed tool and the handle at any angle while a button is pressed.
-TEST(ClearanceToPanel, OfTheHandleIsTwentyMillimetresAtEveryButton) {
+TEST(PanelShape, OfTheHandleIsTwentyMillimetresAtEveryButton) {
   const PanelLayout layout;
   const Pose base_from_panel = layout.nominal_base_from_panel();
   const double jaw_rad = jaw_from_gap(0);
@@ -119,21 +119,40 @@ TEST(ClearanceToPanel, OfTheHandleIsTwentyMillimetresAtEveryButton) {
     const IkResult ik = inverse_kinematics(cap - Vec3(tip_beyond_tool_m(jaw_rad), 0, 0), pi / 2, 0.02);
     ASSERT_TRUE(ik.ok()) << name(ik.outcome);
     PanelParts others = ~(bit(PanelPart::handle) | bit(PanelPart::stem));
-    const Clearance handle = clearance_to_panel(link_capsules(ik.q_rad, jaw_rad), base_from_panel, layout, others);
+    const Clearance handle = PanelShape(layout).clearance(link_capsules(ik.q_rad, jaw_rad), base_from_panel, others);
     EXPECT_GT(handle.distance_m, 0.020) << "button " << i << ", link " << handle.link;
   }
 }
 
-TEST(ClearanceOnWay, IsTheSmallestOnTheWay) {
+// Its bounding boxes may only save work.
+TEST(PanelShape, IsAsFarAsTheNearestOfItsSolids) {
+  SCOPED_TRACE(testing::Message() << "seed " << seed);
+  RandomJoints random(seed);
   const PanelLayout layout;
-  const Pose base_from_panel = layout.nominal_base_from_panel();
-  const JointVector park{0, 0.60, 1.90, 0}, low{0, 0.945, 0.920, 0};
-  const Clearance way = clearance_on_way(park, low, 0, base_from_panel, layout);
-  double least = 1e9;
-  for (int i = 0; i <= 2000; ++i)
-    least = std::min(least, clearance_to_panel(link_capsules(park + (low - park) * (i / 2000.0), 0), base_from_panel, layout).distance_m);
-  EXPECT_NEAR(way.distance_m, least, 0.003);
-  EXPECT_GE(way.distance_m, least - 1e-9);
+  const PanelShape shape(layout);
+  const double disc = std::hypot(layout.handle_length_m, layout.handle_thickness_m) / 2;
+  for (int k = 0; k < 2000; ++k) {
+    Pose base_from_panel = layout.nominal_base_from_panel();
+    base_from_panel.translation() += Vec3(random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2));
+    base_from_panel.rotate(Eigen::AngleAxisd(random.uniform(-0.5, 0.5), Vec3(1, random.uniform(-1, 1), 0.3).normalized()));
+    const LinkCapsules capsules = link_capsules(random.next(), random.uniform(0, 1));
+    const auto at = [&](double x, double y, double z) { return Pose(base_from_panel * Eigen::Translation3d(x, y, z)); };
+    double least = 1e9;
+    for (const Capsule& c : capsules) {
+      const Vec2 size = layout.plate_max_m - layout.plate_min_m, middle = (layout.plate_max_m + layout.plate_min_m) / 2;
+      const double thick = layout.plate_thickness_m, marker = layout.marker_plate_m, high = layout.marker_plate_thickness_m;
+      least = std::min(least, clearance_to_box(c, at(middle.x(), middle.y(), -thick / 2), Vec3(size.x(), size.y(), thick)));
+      least = std::min(
+          least, clearance_to_box(c, at(layout.marker_centre_m.x(), layout.marker_centre_m.y(), high / 2), Vec3(marker, marker, high)));
+      for (const Vec2& button : layout.buttons_m) {
+        const Vec3 cap(layout.button_width_m, layout.button_width_m, layout.button_height_m);
+        least = std::min(least, clearance_to_box(c, at(button.x(), button.y(), layout.button_height_m / 2), cap));
+      }
+      least = std::min(least, clearance_to_cylinder(c, at(0, 0, layout.handle_height_m), disc, layout.handle_thickness_m));
+      least = std::min(least, clearance_to_cylinder(c, at(0, 0, layout.handle_height_m / 2), layout.stem_radius_m, layout.handle_height_m));
+    }
+    ASSERT_NEAR(shape.clearance(capsules, base_from_panel).distance_m, least, 1e-12) << "draw " << k;
+  }
 }
 
 }  // namespace

@@ -161,6 +161,24 @@ TEST(CartesianLine, RatesAreTheDerivativesOfTheJoints) {
   }
 }
 
+TEST(CartesianLine, PlannedInSharesIsTheSame) {
+  const JointVector start{0, 1.083, 1.355, 0};
+  CartesianLine at_once, in_shares;
+  const LinePlan plan = at_once.plan(start, {0.34, 0.05, 0.592}, 1.2, {}, joint_limits());
+  ASSERT_EQ(plan.outcome, PlanOutcome::ok);
+  in_shares.begin(start, {0.34, 0.05, 0.592}, 1.2, {}, joint_limits());
+  int shares = 1;
+  for (; !in_shares.advance(16); ++shares) {
+    EXPECT_EQ(in_shares.duration_s(), 0);
+    EXPECT_EQ(in_shares.sample(1).q_rad, start);
+  }
+  EXPECT_EQ(shares, 5);
+  EXPECT_EQ(in_shares.result().outcome, PlanOutcome::ok);
+  EXPECT_EQ(in_shares.result().speed_m_s, plan.speed_m_s);
+  EXPECT_EQ(in_shares.duration_s(), at_once.duration_s());
+  EXPECT_EQ(in_shares.sample(1).q_rad, at_once.sample(1).q_rad);
+}
+
 TEST(CartesianLine, SaysWhereAndWhyItCannotGo) {
   CartesianLine motion;
   const JointVector start{0, 1.083, 1.355, 0};

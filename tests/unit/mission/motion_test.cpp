@@ -23,6 +23,20 @@ safety::Limits limits() {
   return limits;
 }
 
+const arm::JointVector park{0, 0.6, 1.9, 0};
+
+Motion at_park(const PanelLayout& layout = {}) {
+  Motion motion(limits(), layout, park);
+  motion.start_at(park);
+  return motion;
+}
+
+// Until the order is planned; false when it cannot be.
+bool planned(Motion& motion) {
+  while (motion.planning()) motion.step(period_s);
+  return motion.failure() == StepFailure::none;
+}
+
 // Steps to the end and returns the largest joint speed seen, relative to its limit.
 double run(Motion& motion, int max_steps = 100'000) {
   double fastest = 0;
@@ -40,7 +54,7 @@ TEST(Motion, RandomWaysArriveExactlyAndKeepTheSpeedLimits) {
   constexpr unsigned seed = 20261121;
   SCOPED_TRACE(testing::Message() << "seed " << seed);
   std::mt19937 random(seed);
-  Motion motion(limits());
+  Motion motion = at_park();
   const arm::JointLimits bounds = motion.limits(1);
   const auto draw = [&] {
     arm::JointVector q;
@@ -50,28 +64,30 @@ TEST(Motion, RandomWaysArriveExactlyAndKeepTheSpeedLimits) {
   motion.start_at(draw());
   for (int i = 0; i < 100; ++i) {
     const std::array way{draw(), draw()};
-    ASSERT_TRUE(motion.go(way, 0.6));
+    motion.go(way, 0.6);
+    ASSERT_EQ(motion.failure(), StepFailure::none);
     EXPECT_LE(run(motion), 0.6 * 1.001);
     EXPECT_LT((motion.target() - way[1]).norm(), 1e-9);
   }
 }
 
 TEST(Motion, RefusesGoalsOutsideTheSafetyLimitsAndStaysWhereItIs) {
-  Motion motion(limits());
-  motion.start_at({0, 0.6, 1.9, 0});
-  EXPECT_FALSE(motion.go(std::array{arm::JointVector(0, 0.005, 1.9, 0)}, 0.6));  // inside the URDF's, outside the mission's
+  Motion motion = at_park();
+  motion.go(std::array{arm::JointVector(0, 0.005, 1.9, 0)}, 0.6);  // inside the URDF's, outside the mission's
+  EXPECT_EQ(motion.failure(), StepFailure::unreachable);
   EXPECT_TRUE(motion.done());
-  EXPECT_EQ(motion.target(), arm::JointVector(0, 0.6, 1.9, 0));
+  EXPECT_EQ(motion.target(), park);
 }
 
 TEST(Motion, ALineStaysOnTheLine) {
-  Motion motion(limits());
+  Motion motion = at_park();
   const arm::IkResult start = arm::inverse_kinematics({0.25, 0, 0.59}, 0.3);
   ASSERT_TRUE(start.ok());
   motion.start_at(start.q_rad);
   const Vec3 from = arm::base_from_tool(start.q_rad).translation();
   const Vec3 to(0.34, 0.01, 0.592);
-  ASSERT_TRUE(motion.line(to, 0.3, 0.04));
+  motion.line(to, 0.3, 0.04);
+  ASSERT_TRUE(planned(motion));
   while (!motion.done()) {
     motion.step(period_s);
     const Vec3 tool = arm::base_from_tool(motion.target()).translation();
@@ -81,9 +97,8 @@ TEST(Motion, ALineStaysOnTheLine) {
 }
 
 TEST(Motion, AStopEndsAtRestWithoutAJump) {
-  Motion motion(limits());
-  motion.start_at({0, 0.6, 1.9, 0});
-  ASSERT_TRUE(motion.go(std::array{arm::JointVector(0.3, 1.2, 1.0, 1.0)}, 1.0));
+  Motion motion = at_park();
+  motion.go(std::array{arm::JointVector(0.3, 1.2, 1.0, 1.0)}, 1.0);
   for (int i = 0; i < 300; ++i) motion.step(period_s);
   ASSERT_FALSE(motion.done());
   motion.stop();
@@ -97,14 +112,13 @@ TEST(Motion, TheSweepIsStrictlyAtConstantSpeedBetweenRunUpAndRunOut) {
   request.base_from_panel = layout.nominal_base_from_panel();
   LaserCalibration laser;
   laser.tool_from_laser.translation() = Vec3(-0.090, 0, -0.365);
-  Motion motion(limits());
-  motion.start_at({0, 0.6, 1.9, 0});
-  const scan::SweepPlan plan = scan::plan_sweep(request, laser);
+  Motion motion = at_park();
+  motion.go_to_sweep(request, laser, {request.base_from_panel, 0}, 0.6);
+  ASSERT_TRUE(planned(motion));
+  const scan::SweepPlan plan = motion.sweep_plan();
   ASSERT_EQ(plan.outcome, scan::SweepOutcome::ok);
-  ASSERT_TRUE(motion.plan_sweep(plan));
-  ASSERT_TRUE(motion.go(std::array{motion.sweep_start_rad()}, 0.6));
   run(motion);
-  ASSERT_TRUE(motion.sweep());
+  motion.sweep();
   int cruising = 0;
   while (!motion.done()) {
     const bool before = motion.cruising();
@@ -117,6 +131,124 @@ TEST(Motion, TheSweepIsStrictlyAtConstantSpeedBetweenRunUpAndRunOut) {
     }
   }
   EXPECT_NEAR(cruising * period_s, plan.duration.s(), 0.02);
+}
+
+// A board of 100 x 400 mm stands in the arm's space: nothing else of the panel is anywhere near.
+PanelLayout board() {
+  PanelLayout layout;
+  layout.plate_min_m = Vec2(-0.05, -0.2);
+  layout.plate_max_m = Vec2(0.05, 0.2);
+  layout.plate_thickness_m = 0.02;
+  for (Vec2& button : layout.buttons_m) button = Vec2(0, 0);
+  layout.button_width_m = layout.button_height_m = 0.001;
+  layout.marker_centre_m = Vec2(0, 0);
+  layout.marker_plate_m = layout.marker_plate_thickness_m = 0.001;
+  layout.handle_length_m = layout.handle_thickness_m = layout.handle_height_m = layout.stem_radius_m = 0.001;
+  return layout;
+}
+
+Room board_at(double x_m, double y_m, double z_m) {
+  Room room;
+  room.base_from_panel = board().nominal_base_from_panel();
+  room.base_from_panel.translation() = Vec3(x_m, y_m, z_m);
+  return room;
+}
+
+// The nearest that the arm comes to the board on its way to rest.
+double nearest_m(Motion& motion, const Room& room) {
+  const arm::PanelShape panel(board());
+  double nearest = 1e9;
+  for (int i = 0; i < 100'000 && !motion.done(); ++i) {
+    motion.step(period_s);
+    nearest = std::min(nearest, panel.clearance(arm::link_capsules(motion.target(), room.jaw_rad), room.base_from_panel).distance_m);
+  }
+  EXPECT_TRUE(motion.done());
+  return nearest;
+}
+
+const arm::JointVector behind_board{-0.3, 0.2, 1.1, 0}, past_board{0.1, 1.5, 1.9, 0};
+
+double straight_s() {
+  Motion motion = at_park(board());
+  motion.start_at(behind_board);
+  motion.go(std::array{past_board}, 0.6);
+  return motion.duration_s();
+}
+
+TEST(MotionPastThePanel, IsStraightWhereThatIsClear) {
+  Motion motion = at_park(board());
+  motion.start_at(behind_board);
+  motion.go_clear(past_board, board_at(1.5, 0, 0.55), 0.6);
+  ASSERT_TRUE(planned(motion));
+  EXPECT_EQ(motion.duration_s(), straight_s());
+}
+
+TEST(MotionPastThePanel, LeadsByTheParkPositionWhereTheStraightWayIsBarred) {
+  const Room room = board_at(0.30, -0.05, 0.55);
+  Motion straight = at_park(board());
+  straight.start_at(behind_board);
+  straight.go(std::array{past_board}, 0.6);
+  EXPECT_LT(nearest_m(straight, room), 0.010) << "nothing bars the straight way";
+
+  Motion motion = at_park(board());
+  motion.start_at(behind_board);
+  motion.go_clear(past_board, room, 0.6);
+  ASSERT_TRUE(planned(motion));
+  EXPECT_GT(motion.duration_s(), straight_s());
+  EXPECT_GE(nearest_m(motion, room), ClearRoute::clearance_m - arm::ClearWay::resolution_m);
+  EXPECT_LT((motion.target() - past_board).norm(), 1e-9);
+}
+
+// From the park position all would be clear, but the way there is barred.
+TEST(MotionPastThePanel, LooksAtTheWayToTheParkPositionToo) {
+  const arm::JointVector from{-0.5, 0.9, 2.0, 0}, to{0.3, 1.2, 0.5, 0};
+  const Room room = board_at(0.15, 0.05, 0.40);
+  Motion from_park = at_park(board());
+  from_park.go_clear(to, room, 0.6);
+  EXPECT_TRUE(planned(from_park));
+
+  Motion motion = at_park(board());
+  motion.start_at(from);
+  motion.go_clear(to, room, 0.6);
+  EXPECT_FALSE(planned(motion));
+  EXPECT_EQ(motion.failure(), StepFailure::no_motion);
+  EXPECT_TRUE(motion.done());
+  EXPECT_EQ(motion.target(), from);
+}
+
+TEST(MotionPastThePanel, MayLeaveFromNearerThanItWouldGo) {
+  Motion motion = at_park(board());
+  const arm::JointVector near{0, 1.2, 1.2, 0};
+  motion.start_at(near);
+  Room room = board_at(0.5, 0, 0.55);
+  const arm::PanelShape panel(board());
+  // The board comes up until the arm is 5 mm off it.
+  while (panel.clearance(arm::link_capsules(near, 0), room.base_from_panel).distance_m > 0.005)
+    room.base_from_panel.translation().x() -= 0.0005;
+  motion.go_clear(park, room, 0.6);
+  EXPECT_TRUE(planned(motion));
+  motion.stop();
+  motion.go_clear({0, 1.25, 1.1, 0}, room, 0.6);
+  EXPECT_FALSE(planned(motion)) << "on into the board";
+}
+
+TEST(Motion, IsPlannedInSharesAndStoppedMeanwhileStaysWhereItIs) {
+  Motion motion = at_park();
+  scan::SweepRequest request;
+  request.base_from_panel = PanelLayout{}.nominal_base_from_panel();
+  LaserCalibration laser;
+  laser.tool_from_laser.translation() = Vec3(-0.090, 0, -0.365);
+  motion.go_to_sweep(request, laser, {request.base_from_panel, 0}, 0.6);
+  for (int tick = 0; tick < 5; ++tick) {
+    motion.step(period_s);
+    EXPECT_TRUE(motion.planning());
+    EXPECT_FALSE(motion.done());
+    EXPECT_EQ(motion.target(), park);
+  }
+  motion.stop();
+  EXPECT_TRUE(motion.done());
+  motion.step(period_s);
+  EXPECT_EQ(motion.target(), park);
 }
 
 }  // namespace

@@ -137,6 +137,9 @@ TEST(Sweep, SaysWhatStandsInItsWay) {
   SweepRequest request = whole_panel();
   request.top_m = 1.0;
   EXPECT_EQ(plan_sweep(request, laser).outcome, SweepOutcome::top_unreachable);
+  LaserCalibration upward = laser;
+  upward.tool_from_laser.rotate(Eigen::AngleAxisd(1.4, Vec3::UnitY()));
+  EXPECT_EQ(plan_sweep(whole_panel(), upward).outcome, SweepOutcome::bottom_unreachable);
   LaserCalibration narrow = laser;
   narrow.fan_half_angle_rad = 0.4;
   EXPECT_EQ(plan_sweep(whole_panel(), narrow).outcome, SweepOutcome::fan_too_narrow);
