@@ -118,6 +118,14 @@ RayPacket CameraRays::row(const CameraPlace& place, int u, int v) const {
   return to_base(place, origin, {at(node_.direction_x, i), at(node_.direction_y, i), all_lanes(1.f)}, slopes);
 }
 
+RayLines CameraRays::lines(const CameraPlace& place, int u, int v) const {
+  const std::size_t i = index(u, v);
+  const auto at = [i](const std::vector<float>& values) { return load_lanes(values.data() + i); };
+  RayLines rays{place.position, place.rotation * Lanes3{at(node_.direction_x), at(node_.direction_y), all_lanes(1.f)}};
+  if (port_) rays.origin = rays.origin + place.rotation * Lanes3{at(node_.origin_x), at(node_.origin_y), all_lanes(origin_z_)};
+  return rays;
+}
+
 RayPacket CameraRays::shifted_row(const CameraPlace& place, int u, int v, Lanes offset_v) const {
   const std::size_t i = index(u, v);
   const auto values = [](const std::vector<float>& f, std::size_t k) { return load_lanes(f.data() + k); };

@@ -23,9 +23,13 @@ std::optional<Vec2> undistort(const CameraIntrinsics& intrinsics, const Vec2& di
 // nullopt where the distortion folds over or the port reflects totally.
 std::optional<CameraRay> camera_ray(const CameraIntrinsics& intrinsics, const std::optional<FlatPort>& port, double u, double v);
 
-// Eight rays side by side, in the base frame, with their change from one pixel to the next.
-struct RayPacket {
+// Eight rays side by side, in the base frame.
+struct RayLines {
   Lanes3 origin, direction;
+};
+
+// The same with their change from one pixel to the next.
+struct RayPacket : RayLines {
   Lanes3 origin_du, origin_dv;  // zero without a port
   Lanes3 direction_du, direction_dv;
 };
@@ -45,7 +49,9 @@ class CameraRays {
   // The rays of pixels (u .. u + 7, v); u a multiple of eight; lanes past the right edge hold rays of their own that nobody needs.
   RayPacket row(const CameraPlace& place, int u, int v) const;
 
-  // The same moved down the image by up to a pixel, each lane by its own `offset_v`.
+  RayLines lines(const CameraPlace& place, int u, int v) const;  // their lines only
+
+  // row() moved down the image by up to a pixel, each lane by its own `offset_v`.
   RayPacket shifted_row(const CameraPlace& place, int u, int v, Lanes offset_v) const;
 
   // Eight rays through image points within about a pixel of pixel (u, v), each at its own offset.
@@ -55,7 +61,7 @@ class CameraRays {
   float origin_depth_m() const { return origin_z_; }
 
   // Range along a ray for each metre of its parameter.
-  static Lanes slope(const RayPacket& rays) { return norm(rays.direction); }
+  static Lanes slope(const RayLines& rays) { return norm(rays.direction); }
 
  private:
   // x and y of direction and origin over the image and one pixel more on each side.

@@ -26,6 +26,14 @@ inline Lanes load_lanes(const float* from) {
 
 inline void store_lanes(float* to, Lanes lanes) { std::memcpy(to, &lanes, sizeof lanes); }
 
+inline LaneMask load_mask(const std::int32_t* from) {
+  LaneMask lanes;
+  std::memcpy(&lanes, from, sizeof lanes);
+  return lanes;
+}
+
+inline void store_mask(std::int32_t* to, LaneMask lanes) { std::memcpy(to, &lanes, sizeof lanes); }
+
 inline bool any(LaneMask mask) {
   std::int32_t bits = 0;
   for (int i = 0; i < lane_count; ++i) bits |= mask[i];

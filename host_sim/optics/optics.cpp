@@ -15,15 +15,18 @@ namespace {
 
 constexpr float grain = 0.05f;  // of the albedo: anodised plates and paint
 
-struct Camera {
-  explicit Camera(const CameraConfig& camera) : config(camera), rays(camera.intrinsics, camera.port), sensor(camera) {}
-  CameraConfig config;
-  CameraRays rays;
-  Sensor sensor;
+// A camera with all that is kept for it from frame to frame.
+struct Viewer {
+  Viewer(const CameraConfig& config, const scene::Scene& scene, bool edge_sampling)
+      : camera(config), tiles(camera), still(camera, tiles, scene, edge_sampling), live(camera, tiles) {}
+  Camera camera;
+  Tiles tiles;
+  StillView still;
+  LiveView live;
 };
 
 std::vector<std::uint16_t> objects_of_shapes(const scene::Scene& scene) {
-  std::vector<std::uint16_t> objects;
+  std::vector<std::uint16_t> objects{0};  // of open water, shape -1
   for (std::size_t body = 0; body < scene.size(); ++body)
     objects.insert(objects.end(), scene[body].shapes.size(), static_cast<std::uint16_t>(body + 1));
   return objects;
@@ -40,9 +43,10 @@ struct Optics::Impl {
         water(config.water),
         scene(config.scene),
         look(config.scene, grain),
+        arm(config.scene, moves),
         object_of_shape(objects_of_shapes(config.scene)),
         pool(config.threads) {
-    for (const CameraConfig& camera : config.cameras) cameras.emplace_back(camera);
+    for (const CameraConfig& camera : config.cameras) viewers.push_back(std::make_unique<Viewer>(camera, config.scene, edge_sampling));
     for (const LaserConfig& laser : lasers) {
       patterns.push_back(laser.pattern ? std::optional<PatternTable>(*laser.pattern) : std::nullopt);
     }
@@ -59,26 +63,33 @@ struct Optics::Impl {
     }
   }
 
-  void size(const Camera& camera, const Shot& shot, Frame& frame) {
-    frame.width = camera.config.intrinsics.width;
-    frame.height = camera.config.intrinsics.height;
-    frame.channels = camera.config.colour ? 3 : 1;
+  std::vector<scene::BodyId> lamp_bodies(const Shot& shot) const {
+    std::vector<scene::BodyId> bodies;
+    if (shot.lamps) {
+      for (const LampConfig& lamp : lamps) bodies.push_back(lamp.body);
+    }
+    return bodies;
+  }
+
+  void size(const Camera& camera, const Shot& shot, Frame& frame) const {
+    frame.width = camera.width();
+    frame.height = camera.height();
+    frame.channels = static_cast<std::int32_t>(camera.channels());
     const auto count = static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(frame.height);
-    frame.pixels.resize(count * static_cast<std::size_t>(frame.channels));
+    frame.pixels.resize(count * camera.channels());
     frame.depth_m.resize(shot.truth ? count : 0);
     frame.object.resize(shot.truth ? count : 0);
     const std::size_t stripes = shot.truth ? lasers.size() * static_cast<std::size_t>(frame.width) : 0;
     frame.stripe_v.assign(stripes, std::numeric_limits<float>::quiet_NaN());
     frame.stripe_grey.assign(stripes, 0.f);
-    store.resize(frame.width, frame.height, frame.channels);
   }
 
   // Of several centres in a column the brightest counts, as it does for a peak detector.
-  void find_stripes(const RenderPass& pass, const Shader& shader, Frame& frame) {
+  void find_stripes(const RenderPass& pass, const Shader& shader, int tile_rows, Frame& frame) {
     for (std::size_t laser = 0; laser < shader.sheets.size(); ++laser) {
       if (patterns[laser]) continue;
-      std::vector<std::vector<RenderPass::StripeCentre>> found(static_cast<std::size_t>(pass.blocks()));
-      pool.run(pass.blocks(), [&](int block) { found[static_cast<std::size_t>(block)] = pass.stripe_centres(block, laser); });
+      std::vector<std::vector<RenderPass::StripeCentre>> found(static_cast<std::size_t>(tile_rows));
+      pool.run(tile_rows, [&](int row) { found[static_cast<std::size_t>(row)] = pass.stripe_centres(row, laser); });
       for (const auto& centres : found) {
         for (const RenderPass::StripeCentre& centre : centres) {
           const std::size_t column = laser * static_cast<std::size_t>(frame.width) + static_cast<std::size_t>(centre.u);
@@ -91,29 +102,28 @@ struct Optics::Impl {
   }
 
   void render(const Shot& shot, Frame& frame) {
-    const Camera& camera = cameras.at(shot.camera);
+    Viewer& viewer = *viewers.at(shot.camera);
     for (const Pose& pose : shot.poses) {
       if (!pose.matrix().allFinite()) throw InputError("optics: a body's pose is not finite");
     }
     scene.set_poses(shot.poses);
     look.set_poses(shot.poses);
+    arm.set_poses(shot.poses);
     Shader shader(scene, look, water);
     light(shot, shader);
-    size(camera, shot, frame);
-    std::optional<LampHaze> haze;
-    if (!shader.lamps.empty()) {
-      haze.emplace(camera.rays, CameraPlace(camera.config.base_from_camera), frame.width, frame.height, shader.lamps, water);
-    }
-    const RenderPass pass(camera.config, camera.rays, camera.sensor, shader, haze ? &*haze : nullptr, store);
+    size(viewer.camera, shot, frame);
+    if (viewer.still.update(shader, shot.poses, lamp_bodies(shot), pool)) viewer.live.forget();
+
+    const RenderPass pass(viewer.camera, viewer.tiles, viewer.still, shader, arm, viewer.live);
     const std::uint64_t key = noise_key(seed, shot.camera, shot.frame_number);
-    pool.run(pass.blocks(), [&](int block) { pass.sample_block(block); });
-    if (edge_sampling) resampled.resize(store.grey.size());
-    pool.run(pass.blocks(), [&](int block) {
-      if (edge_sampling) pass.resample_edges(block, resampled);
-      pass.expose_block(block, edge_sampling ? resampled : store.grey, key, frame);
-      if (shot.truth) pass.write_geometry(block, object_of_shape, frame);
+    const int tile_rows = viewer.tiles.rows();
+    pool.run(tile_rows, [&](int row) { pass.sample(row); });
+    pool.run(tile_rows, [&](int row) {
+      if (edge_sampling) pass.resample_edges(row);
+      pass.expose(row, key, frame);
+      if (shot.truth) pass.write_geometry(row, object_of_shape, frame);
     });
-    if (shot.truth) find_stripes(pass, shader, frame);
+    if (shot.truth) find_stripes(pass, shader, tile_rows, frame);
   }
 
   std::vector<LaserConfig> lasers;
@@ -121,14 +131,13 @@ struct Optics::Impl {
   std::uint64_t seed;
   bool edge_sampling;
   Water water;
-  RayScene scene;
+  SplitScene scene;
   SurfaceLook look;
+  BodyBounds arm;
   std::vector<std::uint16_t> object_of_shape;
-  std::vector<Camera> cameras;
+  std::vector<std::unique_ptr<Viewer>> viewers;
   std::vector<std::optional<PatternTable>> patterns;
   WorkerPool pool;
-  PixelStore store;
-  std::vector<float> resampled;
   std::mutex mutex;
 };
 

@@ -2,7 +2,6 @@
 
 #include <embree3/rtcore.h>
 
-#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -113,7 +112,7 @@ struct RayScene::Impl {
   }
 };
 
-RayScene::RayScene(const scene::Scene& scene) : impl_(std::make_unique<Impl>()) {
+RayScene::RayScene(const scene::Scene& scene, const std::function<bool(scene::BodyId)>& has) : impl_(std::make_unique<Impl>()) {
   // One thread builds (two milliseconds); 16-wide coherent occlusion was seen to hang on AVX-512, so AVX2 with packets of eight.
   impl_->device = rtcNewDevice("isa=avx2,threads=1,user_threads=1");
   if (impl_->device == nullptr) throw std::runtime_error("Embree: no device (does this processor have AVX2?)");
@@ -123,7 +122,7 @@ RayScene::RayScene(const scene::Scene& scene) : impl_(std::make_unique<Impl>()) 
   for (std::size_t body = 0; body < scene.size(); ++body) {
     impl_->first_shape[body] = shapes;
     shapes += static_cast<std::int32_t>(scene[body].shapes.size());
-    impl_->add_body(body, scene[body]);
+    if (has(static_cast<scene::BodyId>(body))) impl_->add_body(body, scene[body]);
   }
   scene::BodyPoses poses;
   poses.fill(Pose::Identity());
@@ -132,6 +131,8 @@ RayScene::RayScene(const scene::Scene& scene) : impl_(std::make_unique<Impl>()) 
 }
 
 RayScene::~RayScene() = default;
+RayScene::RayScene(RayScene&&) noexcept = default;
+RayScene& RayScene::operator=(RayScene&&) noexcept = default;
 
 void RayScene::set_poses(const scene::BodyPoses& base_from_body) {
   for (std::size_t body = 0; body < base_from_body.size(); ++body) {
@@ -144,10 +145,10 @@ void RayScene::set_poses(const scene::BodyPoses& base_from_body) {
   rtcCommitScene(impl_->top);
 }
 
-HitPacket RayScene::intersect(const Lanes3& origin, const Lanes3& direction, float near) const {
+HitPacket RayScene::intersect(const Lanes3& origin, const Lanes3& direction, float near, Lanes far) const {
   alignas(32) RTCRayHit8 query{};
   alignas(32) static constexpr int valid[lane_count] = {-1, -1, -1, -1, -1, -1, -1, -1};
-  set_rays(query.ray, origin, direction, all_lanes(near), all_lanes(std::numeric_limits<float>::infinity()));
+  set_rays(query.ray, origin, direction, all_lanes(near), far);
   for (int i = 0; i < lane_count; ++i) query.hit.geomID[i] = query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
   RTCIntersectContext context = make_context(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
   rtcIntersect8(valid, impl_->top, &context, &query);

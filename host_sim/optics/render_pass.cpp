@@ -2,163 +2,186 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace lf::optics {
-namespace {
 
-constexpr float crease_cosine = 0.97f;  // 14 degrees: beyond the facets of any tessellated curve
-constexpr float depth_step = 0.04f;     // of the depth; a plane seen at 45 degrees changes by 0.003 a pixel
-
-void store_mask(std::int32_t* to, LaneMask lanes) { std::memcpy(to, &lanes, sizeof lanes); }
-
-LaneMask load_mask(const std::int32_t* from) {
-  LaneMask lanes;
-  std::memcpy(&lanes, from, sizeof lanes);
-  return lanes;
+LiveView::LiveView(const Camera& camera, const Tiles& image_tiles) : tiles(image_tiles.count()) {
+  pixels.resize(camera.width(), camera.height(), camera.channels());
+  packets.assign(pixels.stride / lane_count * static_cast<std::size_t>(camera.height()), hidden);
 }
 
-}  // namespace
+RenderPass::RenderPass(const Camera& camera, const Tiles& tiles, const StillView& still, const Shader& shader, const BodyBounds& arm,
+                       LiveView& live)
+    : camera_(camera), tiles_(tiles), still_(still), shader_(shader), arm_(arm), live_(live) {}
 
-void PixelStore::resize(int width, int height, int channels) {
-  stride = static_cast<std::size_t>((width + lane_count - 1) / lane_count * lane_count);
-  plane = stride * static_cast<std::size_t>(height) + 2 * lane_count;
-  for (auto* values : {&depth_m, &normal_x, &normal_y, &normal_z}) values->resize(plane);
-  for (auto* values : {&shape, &reached, &lit}) values->resize(plane);
-  grey.resize(plane * static_cast<std::size_t>(channels));
+// Says what moving bodies may do to each tile of the row, and what to any of them.
+Changes RenderPass::judge_tiles(int tile_row) const {
+  Changes in_row = 0;
+  for (int column = 0; column < tiles_.columns(); ++column) {
+    const std::size_t tile = tiles_.at(column * Tiles::width_px, tiles_.first_row(tile_row));
+    const bool may_hide = arm_.may_meet(tiles_.view(tile)), may_shade = still_.may_be_shaded(tile, arm_);
+    live_.tiles[tile] = static_cast<Changes>((may_hide ? hidden : 0) | (may_shade ? shaded : 0));
+    in_row |= live_.tiles[tile];
+  }
+  return in_row;
 }
 
-RenderPass::RenderPass(const CameraConfig& camera, const CameraRays& rays, const Sensor& sensor, const Shader& shader, const LampHaze* haze,
-                       PixelStore& store)
-    : camera_(camera),
-      place_(camera.base_from_camera),
-      rays_(rays),
-      sensor_(sensor),
-      shader_(shader),
-      haze_(haze),
-      store_(store),
-      channel_count_(camera.colour ? 3 : 1) {}
-
-std::array<Lanes, 3> RenderPass::channels(const RgbLanes& radiance) const {
-  const float scale = sensor_.grey_per_radiance();
-  if (camera_.colour) return {radiance[0] * scale, radiance[1] * scale, radiance[2] * scale};
-  return {scale * (camera_.response[0] * radiance[0] + camera_.response[1] * radiance[1] + camera_.response[2] * radiance[2]), Lanes{},
-          Lanes{}};
-}
-
-void RenderPass::sample_block(int block) const {
-  const auto blur = static_cast<float>(camera_.blur_px);
-  for (int v = first_row(block); v < end_row(block); ++v) {
-    const std::vector<float> haze_row = haze_ != nullptr ? haze_->row(v) : std::vector<float>{};
-    for (int u = 0; u < camera_.intrinsics.width; u += lane_count) {
-      const RayPacket rays = rays_.row(place_, u, v);
-      const Sample sample = shader_.sample(rays, 1.f, blur, haze_ != nullptr ? &haze_row : nullptr, static_cast<float>(u), 1.f);
-      const std::size_t i = store_.index(u, v);
-      store_lanes(&store_.depth_m[i], sample.hit.parameter);
-      store_lanes(&store_.normal_x[i], sample.hit.normal.x);
-      store_lanes(&store_.normal_y[i], sample.hit.normal.y);
-      store_lanes(&store_.normal_z[i], sample.hit.normal.z);
-      store_mask(&store_.shape[i], sample.hit.shape);
-      store_mask(&store_.reached[i], sample.reached);
-      store_mask(&store_.lit[i], sample.lit);
-      const auto values = channels(sample.radiance);
-      for (int c = 0; c < channel_count_; ++c)
-        store_lanes(&store_.grey[static_cast<std::size_t>(c) * store_.plane + i], values[static_cast<std::size_t>(c)]);
-    }
+void RenderPass::sample(int tile_row) const {
+  const Changes possible = judge_tiles(tile_row);
+  for (int v = tiles_.first_row(tile_row); v < tiles_.end_row(tile_row); ++v) {
+    const std::vector<float> haze = possible != 0 ? still_.haze_row(v) : std::vector<float>{};
+    for (int u = 0; u < camera_.width(); u += lane_count) sample_packet(u, v, haze.empty() ? nullptr : &haze);
   }
 }
 
-LaneMask RenderPass::edge_between(std::size_t a, std::size_t b) const {
-  const PixelStore& s = store_;
-  const LaneMask shape = load_mask(&s.shape[a]), other_shape = load_mask(&s.shape[b]);
-  const LaneMask shadow = (load_mask(&s.lit[a]) ^ load_mask(&s.lit[b])) & load_mask(&s.reached[a]) & load_mask(&s.reached[b]);
-  const Lanes cosine = load_lanes(&s.normal_x[a]) * load_lanes(&s.normal_x[b]) + load_lanes(&s.normal_y[a]) * load_lanes(&s.normal_y[b]) +
-                       load_lanes(&s.normal_z[a]) * load_lanes(&s.normal_z[b]);
-  const Lanes depth = load_lanes(&s.depth_m[a]), other_depth = load_lanes(&s.depth_m[b]);
-  const LaneMask bend = (cosine < crease_cosine) | (abs(depth - other_depth) > depth_step * min(depth, other_depth));
-  return (shape != other_shape) | ((shape >= 0) & ((shadow != 0) | bend));
+void RenderPass::sample_packet(int u, int v, const std::vector<float>* haze_row) const {
+  const std::size_t i = live_.pixels.index(u, v);
+  const Changes possible = live_.tiles[tiles_.at(u, v)];
+  Changes& changes = live_.packets[packet(u, v)];
+  const Changes before = std::exchange(changes, Changes{0});
+  if (possible == 0 && shader_.sheets.empty()) {
+    live_.pixels.set_grey(i, still_.pixels().grey_at(i));
+  } else if (possible == 0 && still_.open_water(u, v)) {
+    GreyLanes grey = still_.pixels().grey_at(i);
+    add_glow(camera_.lines(u, v), all_lanes(open_water_m), grey);
+    live_.pixels.set_grey(i, grey);
+  } else {
+    const RayPacket rays = camera_.row(u, v);
+    Sample sample = still_.pixels().sample(i);
+    changes = put_in_moving(rays, possible, 1.f, {haze_row, static_cast<float>(u), 1.f}, sample);
+    if (add_stripes(rays, 1.f, sample)) changes |= striped;
+    add_glow(rays, water_range_m(rays, sample.hit), sample.grey);
+    if (changes != 0) return live_.pixels.set(i, sample);
+    live_.pixels.set_grey(i, sample.grey);
+  }
+  if (before != 0) live_.pixels.copy_surface(i, still_.pixels());
 }
 
-// Which of eight pixels differ from a neighbour in the image.
-LaneMask RenderPass::edges(int u, int v) const {
-  const std::size_t i = store_.index(u, v);
-  LaneMask column;
-  for (int lane = 0; lane < lane_count; ++lane) column[lane] = u + lane;
-  const int width = camera_.intrinsics.width;
-  LaneMask edge = (edge_between(i, i - 1) & (column > 0)) | (edge_between(i, i + 1) & (column < width - 1));
-  if (v > 0) edge |= edge_between(i, i - store_.stride);
-  if (v + 1 < camera_.intrinsics.height) edge |= edge_between(i, i + store_.stride);
-  return edge & (column < width);
+// Lanes that a moving body hides or shades get its base light instead. Returns what was changed.
+Changes RenderPass::put_in_moving(const RayPacket& rays, Changes possible, float footprint, const HazePlace& haze, Sample& sample) const {
+  const HitPacket hit = (possible & hidden) != 0 ? shader_.scene().nearest(rays, sample.hit) : sample.hit;
+  const LaneMask behind = hit.parameter < sample.hit.parameter;
+  const LaneMask in_shadow = (possible & shaded) != 0 ? shader_.unshaded(rays, sample.hit, sample.lit) != sample.lit : LaneMask{};
+  const auto changes = static_cast<Changes>((any(behind) ? hidden : 0) | (any(in_shadow) ? shaded : 0));
+  if (changes == 0) return changes;
+  const Light base = shader_.base(rays, hit, footprint, haze, Casters::all);
+  const LaneMask touched = behind | in_shadow;
+  const GreyLanes grey = camera_.grey(base.radiance);
+  for (std::size_t c = 0; c < camera_.channels(); ++c) sample.grey[c] = touched ? grey[c] : sample.grey[c];
+  sample.reached = touched ? base.reached : sample.reached;
+  sample.lit = touched ? base.lit : sample.lit;
+  sample.hit = hit;
+  return changes;
 }
 
-void RenderPass::resample_edges(int block, std::vector<float>& grey) const {
-  for (int v = first_row(block); v < end_row(block); ++v) {
-    const std::vector<float> haze_row = haze_ != nullptr ? haze_->row(v) : std::vector<float>{};
-    for (int c = 0; c < channel_count_; ++c) {
-      const std::size_t from = static_cast<std::size_t>(c) * store_.plane + store_.index(0, v);
-      std::copy_n(store_.grey.begin() + static_cast<std::ptrdiff_t>(from), store_.stride, grey.begin() + static_cast<std::ptrdiff_t>(from));
-    }
-    for (int u = 0; u < camera_.intrinsics.width; u += lane_count) {
-      const LaneMask edge = edges(u, v);
+// Returns whether there were any.
+bool RenderPass::add_stripes(const RayPacket& rays, float footprint, Sample& sample) const {
+  if (shader_.sheets.empty()) return false;
+  const Light light = shader_.stripes(rays, sample.hit, footprint, camera_.blur_px());
+  if (!any(light.reached)) return false;
+  const GreyLanes grey = camera_.grey(light.radiance);
+  for (std::size_t c = 0; c < camera_.channels(); ++c) sample.grey[c] += grey[c];
+  sample.reached |= light.reached;
+  sample.lit |= light.lit;
+  return true;
+}
+
+void RenderPass::add_glow(const RayLines& rays, Lanes range_m, GreyLanes& grey) const {
+  if (shader_.sheets.empty()) return;
+  const GreyLanes glow = camera_.grey(shader_.glow(rays, range_m));
+  for (std::size_t c = 0; c < camera_.channels(); ++c) grey[c] += glow[c];
+}
+
+// What has changed in the packet or in one of the eight about it.
+Changes RenderPass::changes_about(int u, int v) const {
+  const int first_u = std::max(0, u - lane_count), last_u = std::min(camera_.width() - 1, u + lane_count);
+  Changes changes = 0;
+  for (int row = std::max(0, v - 1); row <= std::min(camera_.height() - 1, v + 1); ++row) {
+    for (std::size_t p = packet(first_u, row); p <= packet(last_u, row); ++p) changes |= live_.packets[p];
+  }
+  return changes;
+}
+
+void RenderPass::resample_edges(int tile_row) const {
+  for (int v = tiles_.first_row(tile_row); v < tiles_.end_row(tile_row); ++v) {
+    std::vector<float> haze;
+    for (int u = 0; u < camera_.width(); u += lane_count) {
+      const Changes changes = changes_about(u, v);
+      const LaneMask edge = changes != 0 ? live_.pixels.edges(u, v) : still_.edges(u, v);
+      if (!any(edge)) continue;
+      if (changes != 0 && haze.empty()) haze = still_.haze_row(v);
       for (int lane = 0; lane < lane_count; ++lane) {
-        if (edge[lane] != 0) resample(u + lane, v, haze_ != nullptr ? &haze_row : nullptr, grey);
+        if (edge[lane] != 0) resample(u + lane, v, changes, haze.empty() ? nullptr : &haze);
       }
     }
   }
 }
 
-void RenderPass::resample(int u, int v, const std::vector<float>* haze_row, std::vector<float>& grey) const {
-  Lanes offset_u, offset_v;  // the upper eight of 4x4 sub-pixels; the lower ones lie half a pixel further down
-  for (int i = 0; i < lane_count; ++i) {
-    offset_u[i] = 0.25f * static_cast<float>(i % 4) - 0.375f;
-    offset_v[i] = 0.25f * static_cast<float>(i / 4) - 0.375f;
-  }
-  std::array<float, 3> sum{};
-  for (int half = 0; half < 2; ++half) {
-    const RayPacket rays = rays_.around(place_, u, v, offset_u, offset_v + 0.5f * static_cast<float>(half));
-    const Sample sample = shader_.sample(rays, 0.25f, static_cast<float>(camera_.blur_px), haze_row, static_cast<float>(u), 0.f);
-    const auto values = channels(sample.radiance);
-    for (std::size_t c = 0; c < 3; ++c) {
-      for (int lane = 0; lane < lane_count; ++lane) sum[c] += values[c][lane];
+// A pixel's sub-pixels in base light. Whether to look for moving bodies and their shadows the samples about it tell.
+SubPixels RenderPass::sub_pixels(int u, int v, Changes changes, const std::vector<float>* haze_row) const {
+  const HazePlace haze{haze_row, static_cast<float>(u), 0.f};
+  if (const SubPixels* kept = still_.sub_pixels(u, v)) {
+    SubPixels samples = *kept;
+    for (int half = 0; half < 2 && (changes & (hidden | shaded)) != 0; ++half) {
+      put_in_moving(camera_.sub_pixels(u, v, half), changes, 0.25f, haze, samples[static_cast<std::size_t>(half)]);
     }
+    return samples;
   }
-  for (int c = 0; c < channel_count_; ++c)
-    grey[static_cast<std::size_t>(c) * store_.plane + store_.index(u, v)] = sum[static_cast<std::size_t>(c)] / 16.f;
+  SubPixels samples;
+  for (int half = 0; half < 2; ++half) {
+    const RayPacket rays = camera_.sub_pixels(u, v, half);
+    Sample& sample = samples[static_cast<std::size_t>(half)];
+    sample.hit = shader_.scene().all(rays);
+    sample.grey = camera_.grey(shader_.base(rays, sample.hit, 0.25f, haze, Casters::all).radiance);
+  }
+  return samples;
 }
 
-void RenderPass::expose_block(int block, const std::vector<float>& grey, std::uint64_t key, Frame& frame) const {
-  const auto width = static_cast<std::size_t>(camera_.intrinsics.width), channel_count = static_cast<std::size_t>(channel_count_);
-  std::vector<float> interleaved(width * channel_count);
-  for (int v = first_row(block); v < end_row(block); ++v) {
-    const std::size_t first = static_cast<std::size_t>(v) * width * channel_count;
-    const float* values = grey.data() + store_.index(0, v);
-    if (channel_count > 1) {
+void RenderPass::resample(int u, int v, Changes changes, const std::vector<float>* haze_row) const {
+  SubPixels samples = sub_pixels(u, v, changes, haze_row);
+  std::array<float, 3> sum{};
+  for (int half = 0; half < 2; ++half) {
+    Sample& sample = samples[static_cast<std::size_t>(half)];
+    if (!shader_.sheets.empty()) {
+      const RayPacket rays = camera_.sub_pixels(u, v, half);
+      if ((changes & striped) != 0) add_stripes(rays, 0.25f, sample);
+      add_glow(rays, water_range_m(rays, sample.hit), sample.grey);
+    }
+    for (std::size_t c = 0; c < camera_.channels(); ++c) {
+      for (int lane = 0; lane < lane_count; ++lane) sum[c] += sample.grey[c][lane];
+    }
+  }
+  PixelStore& pixels = live_.pixels;
+  for (std::size_t c = 0; c < camera_.channels(); ++c) pixels.grey[c * pixels.plane + pixels.index(u, v)] = sum[c] / 16.f;
+}
+
+void RenderPass::expose(int tile_row, std::uint64_t key, Frame& frame) const {
+  const PixelStore& pixels = live_.pixels;
+  const std::size_t width = static_cast<std::size_t>(camera_.width()), channels = camera_.channels();
+  std::vector<float> interleaved(channels > 1 ? width * channels : 0);
+  for (int v = tiles_.first_row(tile_row); v < tiles_.end_row(tile_row); ++v) {
+    const std::size_t first = static_cast<std::size_t>(v) * width * channels;
+    const float* values = pixels.grey.data() + pixels.index(0, v);
+    if (channels > 1) {
       for (std::size_t u = 0; u < width; ++u) {
-        for (std::size_t c = 0; c < channel_count; ++c) interleaved[u * channel_count + c] = values[c * store_.plane + u];
+        for (std::size_t c = 0; c < channels; ++c) interleaved[u * channels + c] = values[c * pixels.plane + u];
       }
       values = interleaved.data();
     }
-    sensor_.expose(values, frame.pixels.data() + first, width * channel_count, static_cast<std::uint32_t>(first), key);
+    camera_.sensor.expose(values, frame.pixels.data() + first, width * channels, static_cast<std::uint32_t>(first), key);
   }
 }
 
-void RenderPass::write_geometry(int block, const std::vector<std::uint16_t>& object_of_shape, Frame& frame) const {
-  for (int v = first_row(block); v < end_row(block); ++v) {
-    for (int u = 0; u < camera_.intrinsics.width; ++u) {
-      const std::size_t from = store_.index(u, v),
-                        to = static_cast<std::size_t>(v) * static_cast<std::size_t>(frame.width) + static_cast<std::size_t>(u);
-      const std::int32_t shape = store_.shape[from];
-      frame.depth_m[to] = store_.depth_m[from] + rays_.origin_depth_m();
-      frame.object[to] = shape < 0 ? std::uint16_t{0} : object_of_shape[static_cast<std::size_t>(shape)];
-    }
+void RenderPass::write_geometry(int tile_row, const std::vector<std::uint16_t>& object_of_shape, Frame& frame) const {
+  const PixelStore& pixels = live_.pixels;
+  const auto width = static_cast<std::size_t>(frame.width);
+  for (int v = tiles_.first_row(tile_row); v < tiles_.end_row(tile_row); ++v) {
+    const std::size_t from = pixels.index(0, v), to = static_cast<std::size_t>(v) * width;
+    const float ahead_m = camera_.rays.origin_depth_m();
+    for (std::size_t u = 0; u < width; ++u) frame.depth_m[to + u] = pixels.depth_m[from + u] + ahead_m;
+    for (std::size_t u = 0; u < width; ++u) frame.object[to + u] = object_of_shape[static_cast<std::size_t>(pixels.shape[from + u] + 1)];
   }
-}
-
-SurfacePacket RenderPass::stored_surface(const RayPacket& rays, int u, int v, HitPacket& hit) const {
-  const std::size_t i = store_.index(u, v);
-  hit.parameter = load_lanes(&store_.depth_m[i]);
-  hit.normal = {load_lanes(&store_.normal_x[i]), load_lanes(&store_.normal_y[i]), load_lanes(&store_.normal_z[i])};
-  hit.shape = load_mask(&store_.shape[i]);
-  return make_surface(rays, hit);
 }
 
 // Newton's method down the column on the surfaces that the rays really meet; what does not settle on a lit surface is no centre.
@@ -168,32 +191,33 @@ void RenderPass::refine_stripe(std::size_t laser, int u, int v, Lanes offset_v, 
   StripePacket stripe;
   HitPacket hit;
   for (int i = 0; i < 4; ++i) {
-    const RayPacket rays = rays_.shifted_row(place_, u, v, offset_v);
-    hit = shader_.scene().intersect(rays.origin, rays.direction, near_m);
+    const RayPacket rays = camera_.rays.shifted_row(camera_.place, u, v, offset_v);
+    hit = shader_.scene().all(rays);
     surface = make_surface(rays, hit);
-    stripe = sheet.on_surface(surface, shader_.water(), 1.f, static_cast<float>(camera_.blur_px));
+    stripe = sheet.on_surface(surface, shader_.water(), 1.f, camera_.blur_px());
     if (i < 3) offset_v = clamp(offset_v - stripe.offset_px / (abs(stripe.slope_v) > 0.02f ? stripe.slope_v : all_lanes(0.02f)), -1.f, 1.f);
   }
   const LaneMask settled = wanted & stripe.reached & (abs(stripe.offset_px) < 2e-3f) & (abs(offset_v) <= 0.75f);
-  const LaneMask lit = shader_.visible_from(sheet.emitter(), surface, settled);
+  const LaneMask lit = shader_.scene().clear_of_all(sheet.emitter(), surface, settled);
   const RgbLanes albedo = shader_.look().albedo(surface, hit.shape, 1.f);
   RgbLanes radiance;
   for (std::size_t band = 0; band < 3; ++band) radiance[band] = albedo[band] * static_cast<float>(1 / pi) * stripe.irradiance[band];
-  const auto grey = channels(radiance);
+  const GreyLanes grey = camera_.grey(radiance);
   const Lanes height = max(grey[0], max(grey[1], grey[2]));
-  for (int lane = 0; lane < lane_count && u + lane < camera_.intrinsics.width; ++lane) {
+  for (int lane = 0; lane < lane_count && u + lane < camera_.width(); ++lane) {
     if (lit[lane] != 0) centres.push_back({u + lane, static_cast<float>(v) + offset_v[lane], height[lane]});
   }
 }
 
-std::vector<RenderPass::StripeCentre> RenderPass::stripe_centres(int block, std::size_t laser) const {
+std::vector<RenderPass::StripeCentre> RenderPass::stripe_centres(int tile_row, std::size_t laser) const {
   std::vector<StripeCentre> centres;
-  for (int v = first_row(block); v < end_row(block); ++v) {
-    for (int u = 0; u < camera_.intrinsics.width; u += lane_count) {
-      if (!any(load_mask(&store_.reached[store_.index(u, v)]) & (1 << laser))) continue;
-      HitPacket hit;
-      const SurfacePacket surface = stored_surface(rays_.row(place_, u, v), u, v, hit);
-      const StripePacket stripe = shader_.sheets[laser].on_surface(surface, shader_.water(), 1.f, static_cast<float>(camera_.blur_px));
+  const PixelStore& pixels = live_.pixels;
+  for (int v = tiles_.first_row(tile_row); v < tiles_.end_row(tile_row); ++v) {
+    for (int u = 0; u < camera_.width(); u += lane_count) {
+      const Sample sample = pixels.sample(pixels.index(u, v));
+      if (!any(sample.reached & (1 << laser))) continue;
+      const SurfacePacket surface = make_surface(camera_.row(u, v), sample.hit);
+      const StripePacket stripe = shader_.sheets[laser].on_surface(surface, shader_.water(), 1.f, camera_.blur_px());
       const Lanes offset_v = -stripe.offset_px / (abs(stripe.slope_v) > 0.02f ? stripe.slope_v : all_lanes(0.02f));
       const LaneMask near = stripe.reached & (abs(offset_v) < 0.75f);
       if (any(near)) refine_stripe(laser, u, v, offset_v, near, centres);

@@ -1,66 +1,65 @@
-// The passes that make one frame: a sample a pixel, sixteen where there is an edge, the sensor, and the ground truth. Each works on blocks of rows.
+// The passes that make one frame of a still view: moving bodies and laser put in, sixteen samples where there is an edge, the sensor, and the ground truth.
+// Each works on rows of tiles.
 #pragma once
 
-#include <algorithm>
 #include <vector>
 
-#include "host_sim/optics/sensor.hpp"
-#include "host_sim/optics/shader.hpp"
+#include "host_sim/optics/still_view.hpp"
 
 namespace lf::optics {
 
-// What the first pass keeps of each pixel, padded to whole packets. Planes of grey values, one a channel, follow each other.
-struct PixelStore {
-  void resize(int width, int height, int channels);
-  // A packet's worth of room before the first and after the last pixel, so that neighbours can be read without asking.
-  std::size_t index(int u, int v) const { return static_cast<std::size_t>(v) * stride + static_cast<std::size_t>(u) + lane_count; }
+// What of a frame is not its still view's, bit by bit: of a tile what may be, of a packet what is.
+enum Change : std::uint8_t { hidden = 1, shaded = 2, striped = 4 };
+using Changes = std::uint8_t;
 
-  std::size_t stride = 0, plane = 0;
-  std::vector<float> depth_m, normal_x, normal_y, normal_z, grey;
-  std::vector<std::int32_t> shape, reached, lit;
+// The frame being made. Packets whose `changes` are 0 hold the still view's surfaces, left from earlier frames.
+struct LiveView {
+  LiveView(const Camera& camera, const Tiles& tiles);
+  void forget() { packets.assign(packets.size(), hidden); }  // the still view is another
+  PixelStore pixels;
+  std::vector<Changes> packets, tiles;
 };
 
 class RenderPass {
  public:
-  static constexpr int block_rows = 8;
+  RenderPass(const Camera& camera, const Tiles& tiles, const StillView& still, const Shader& shader, const BodyBounds& arm, LiveView& live);
 
-  RenderPass(const CameraConfig& camera, const CameraRays& rays, const Sensor& sensor, const Shader& shader, const LampHaze* haze,
-             PixelStore& store);
+  // Each tile row of a pass must be done before the next pass begins.
+  void sample(int tile_row) const;          // first: a sample a pixel
+  void resample_edges(int tile_row) const;  // second, where edge sampling is wanted
+  void expose(int tile_row, std::uint64_t key, Frame& frame) const;
 
-  int blocks() const { return (camera_.intrinsics.height + block_rows - 1) / block_rows; }
+  // Depth and object of each pixel centre; `object_of_shape` begins with open water's.
+  void write_geometry(int tile_row, const std::vector<std::uint16_t>& object_of_shape, Frame& frame) const;
 
-  void sample_block(int block) const;                              // first
-  void resample_edges(int block, std::vector<float>& grey) const;  // reads the store, writes whole rows of `grey`
-  void expose_block(int block, const std::vector<float>& grey, std::uint64_t key, Frame& frame) const;
-
-  // Depth and object of each pixel centre.
-  void write_geometry(int block, const std::vector<std::uint16_t>& object_of_shape, Frame& frame) const;
-
-  // The true centres of `laser`'s stripe among this block's rows.
+  // The true centres of `laser`'s stripe among this tile row's pixels.
   struct StripeCentre {
     std::int32_t u;
     float v, grey;
   };
-  std::vector<StripeCentre> stripe_centres(int block, std::size_t laser) const;
+  std::vector<StripeCentre> stripe_centres(int tile_row, std::size_t laser) const;
 
  private:
-  std::array<Lanes, 3> channels(const RgbLanes& radiance) const;
-  LaneMask edge_between(std::size_t a, std::size_t b) const;
+  Changes judge_tiles(int tile_row) const;
+  void sample_packet(int u, int v, const std::vector<float>* haze_row) const;
+  Changes put_in_moving(const RayPacket& rays, Changes possible, float footprint, const HazePlace& haze, Sample& sample) const;
+  bool add_stripes(const RayPacket& rays, float footprint, Sample& sample) const;
+  void add_glow(const RayLines& rays, Lanes range_m, GreyLanes& grey) const;
+  Changes changes_about(int u, int v) const;
   LaneMask edges(int u, int v) const;
-  void resample(int u, int v, const std::vector<float>* haze_row, std::vector<float>& grey) const;
-  SurfacePacket stored_surface(const RayPacket& rays, int u, int v, HitPacket& hit) const;
+  SubPixels sub_pixels(int u, int v, Changes changes, const std::vector<float>* haze_row) const;
+  void resample(int u, int v, Changes changes, const std::vector<float>* haze_row) const;
   void refine_stripe(std::size_t laser, int u, int v, Lanes offset_v, LaneMask wanted, std::vector<StripeCentre>& centres) const;
-  int first_row(int block) const { return block * block_rows; }
-  int end_row(int block) const { return std::min(camera_.intrinsics.height, (block + 1) * block_rows); }
+  std::size_t packet(int u, int v) const {
+    return static_cast<std::size_t>(v) * live_.pixels.stride / lane_count + static_cast<std::size_t>(u / lane_count);
+  }
 
-  const CameraConfig& camera_;
-  CameraPlace place_;
-  const CameraRays& rays_;
-  const Sensor& sensor_;
+  const Camera& camera_;
+  const Tiles& tiles_;
+  const StillView& still_;
   const Shader& shader_;
-  const LampHaze* haze_;
-  PixelStore& store_;
-  int channel_count_;
+  const BodyBounds& arm_;
+  LiveView& live_;
 };
 
 }  // namespace lf::optics

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "host_sim/optics/lanes.hpp"
 #include "host_sim/optics/optics.hpp"
 
 namespace lf::optics {
@@ -20,6 +21,8 @@ class Sensor {
   void expose(const float* grey, std::uint8_t* pixels, std::size_t count, std::uint32_t first, std::uint64_t key) const;
 
  private:
+  void expose_packet(Lanes grey, std::uint8_t* pixels, std::uint32_t first, std::uint64_t key) const;
+
   float grey_per_radiance_, read_variance_, variance_per_grey_;
 };
 

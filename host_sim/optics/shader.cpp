@@ -1,7 +1,5 @@
 #include "host_sim/optics/shader.hpp"
 
-#include <limits>
-
 namespace lf::optics {
 namespace {
 
@@ -10,12 +8,8 @@ const Vec3 up_in_base(0, 0, -1);
 
 }  // namespace
 
-LaneMask Shader::visible_from(const Lanes3& light, const SurfacePacket& surface, LaneMask wanted) const {
-  if (!any(wanted)) return wanted;
-  const Lanes3 start = off_surface(surface);
-  const Lanes3 way = light - start;
-  const Lanes far = max(1.f - near_m / max(norm(way), all_lanes(1e-3f)), Lanes{});
-  return wanted & ~scene_.occluded(wanted, start, way, far);
+Lanes water_range_m(const RayLines& rays, const HitPacket& hit) {
+  return hit.shape >= 0 ? hit.parameter * CameraRays::slope(rays) : all_lanes(open_water_m);
 }
 
 // Downwelling light as a bright hemisphere above and a dim one below.
@@ -25,28 +19,18 @@ void Shader::add_ambient(const SurfacePacket& surface, RgbLanes& irradiance) con
   for (std::size_t band = 0; band < 3; ++band) irradiance[band] += water_.ambient_w_m2[band] * weight;
 }
 
-void Shader::add_lamps(const SurfacePacket& surface, RgbLanes& irradiance, Sample& sample) const {
+void Shader::add_lamps(const SurfacePacket& surface, Casters casters, RgbLanes& irradiance, Light& light) const {
   for (std::size_t i = 0; i < lamps.size(); ++i) {
-    const RgbLanes light = lamps[i].on_surface(surface, water_);
-    const LaneMask reached = surface.met & ((light[0] + light[1] + light[2]) > 0.f);
-    const LaneMask lit = lamps[i].casts_shadows() ? visible_from(lamps[i].position(), surface, reached) : reached;
-    sample.reached |= reached & (1 << (16 + i));
-    sample.lit |= lit & (1 << (16 + i));
-    for (std::size_t band = 0; band < 3; ++band) irradiance[band] += lit ? light[band] : Lanes{};
-  }
-}
-
-void Shader::add_sheets(const SurfacePacket& surface, const RgbLanes& albedo, float footprint, float blur_px, Sample& sample) const {
-  for (std::size_t i = 0; i < sheets.size(); ++i) {
-    const StripePacket stripe = sheets[i].on_surface(surface, water_, footprint, blur_px);
-    if (!any(stripe.reached)) continue;
-    const LaneMask lit = visible_from(sheets[i].emitter(), surface, stripe.reached);
-    sample.reached |= stripe.reached & (1 << i);
-    sample.lit |= lit & (1 << i);
-    for (std::size_t band = 0; band < 3; ++band) {
-      const Lanes light = albedo[band] * one_over_pi * stripe.irradiance[band];
-      sample.radiance[band] += lit ? light : Lanes{};
+    const RgbLanes falling = lamps[i].on_surface(surface, water_);
+    const LaneMask reached = surface.met & ((falling[0] + falling[1] + falling[2]) > 0.f);
+    LaneMask lit = reached;
+    if (lamps[i].casts_shadows()) {
+      lit = casters == Casters::all ? scene_.clear_of_all(lamps[i].position(), surface, reached)
+                                    : scene_.clear_of_resting(lamps[i].position(), surface, reached);
     }
+    light.reached |= reached & (1 << (16 + i));
+    light.lit |= lit & (1 << (16 + i));
+    for (std::size_t band = 0; band < 3; ++band) irradiance[band] += lit ? falling[band] : Lanes{};
   }
 }
 
@@ -58,26 +42,60 @@ void Shader::add_water(const RayPacket& rays, Lanes range, RgbLanes& radiance) c
     radiance[band] += water_.water_w_m2_sr[band] * gradient * (1.f - water_.transmission(band, range));
 }
 
-Sample Shader::sample(const RayPacket& rays, float footprint, float blur_px, const std::vector<float>* haze_row, float u,
-                      float u_step) const {
-  Sample sample;
-  sample.hit = scene_.intersect(rays.origin, rays.direction, near_m);
-  const SurfacePacket surface = make_surface(rays, sample.hit);
-  const RgbLanes albedo = look_.albedo(surface, sample.hit.shape, footprint);
+Light Shader::base(const RayPacket& rays, const HitPacket& hit, float footprint, const HazePlace& haze, Casters casters) const {
+  Light light;
+  const SurfacePacket surface = make_surface(rays, hit);
   if (any(surface.met)) {
     RgbLanes irradiance{};
     add_ambient(surface, irradiance);
-    add_lamps(surface, irradiance, sample);
+    add_lamps(surface, casters, irradiance, light);
+    const RgbLanes albedo = look_.albedo(surface, hit.shape, footprint);
     for (std::size_t band = 0; band < 3; ++band) {
-      sample.radiance[band] = albedo[band] * one_over_pi * irradiance[band] * water_.transmission(band, surface.range);
+      light.radiance[band] = albedo[band] * one_over_pi * irradiance[band] * water_.transmission(band, surface.range);
     }
-    add_sheets(surface, albedo, footprint, blur_px, sample);
   }
-  const Lanes range = surface.met ? surface.range : all_lanes(1e6f);
-  add_water(rays, range, sample.radiance);
-  for (const SheetLight& sheet : sheets) sheet.add_backscatter(rays, range, water_, sample.radiance);
-  if (haze_row != nullptr) LampHaze::add(*haze_row, u, u_step, range, sample.radiance);
-  return sample;
+  const Lanes range = water_range_m(rays, hit);
+  add_water(rays, range, light.radiance);
+  if (haze.row != nullptr) LampHaze::add(*haze.row, haze.u, haze.step, range, light.radiance);
+  return light;
+}
+
+LaneMask Shader::unshaded(const RayPacket& rays, const HitPacket& hit, LaneMask lit) const {
+  if (!any(lit)) return lit;
+  const SurfacePacket surface = make_surface(rays, hit);
+  for (std::size_t i = 0; i < lamps.size(); ++i) {
+    if (!lamps[i].casts_shadows()) continue;
+    const LaneMask bit = LaneMask{} + (1 << (16 + i));
+    const LaneMask wanted = (lit & bit) != 0;
+    const LaneMask shaded = wanted & ~scene_.clear_of_moving(lamps[i].position(), surface, wanted);
+    lit &= ~(shaded & bit);
+  }
+  return lit;
+}
+
+Light Shader::stripes(const RayPacket& rays, const HitPacket& hit, float footprint, float blur_px) const {
+  Light light;
+  if (!any(hit.shape >= 0)) return light;
+  const SurfacePacket surface = make_surface(rays, hit);
+  for (std::size_t i = 0; i < sheets.size(); ++i) {
+    const StripePacket stripe = sheets[i].on_surface(surface, water_, footprint, blur_px);
+    if (!any(stripe.reached)) continue;
+    const RgbLanes albedo = look_.albedo(surface, hit.shape, footprint);
+    const LaneMask lit = scene_.clear_of_all(sheets[i].emitter(), surface, stripe.reached);
+    light.reached |= stripe.reached & (1 << i);
+    light.lit |= lit & (1 << i);
+    for (std::size_t band = 0; band < 3; ++band) {
+      const Lanes reflected = albedo[band] * one_over_pi * stripe.irradiance[band];
+      light.radiance[band] += lit ? reflected : Lanes{};
+    }
+  }
+  return light;
+}
+
+RgbLanes Shader::glow(const RayLines& rays, Lanes range_m) const {
+  RgbLanes radiance{};
+  for (const SheetLight& sheet : sheets) sheet.add_backscatter(rays, range_m, water_, radiance);
+  return radiance;
 }
 
 }  // namespace lf::optics

@@ -1,36 +1,50 @@
-// One packet of rays from geometry to light: what the camera's rays meet, what lights it, and what the water adds and takes.
+// From geometry to light: what falls on the surfaces that a packet of rays meets, and what the water adds and takes.
+//
+// The base light (ambient light, lamps and their haze, the water's own colour) changes only with the bodies and the lamps; the laser light (the sheets'
+// stripes on the surfaces and their glow in the water) with every move of the arm.
 #pragma once
 
-#include <memory>
-#include <optional>
 #include <vector>
 
-#include "host_sim/optics/ray_scene.hpp"
 #include "host_sim/optics/sheet_light.hpp"
+#include "host_sim/optics/split_scene.hpp"
 #include "host_sim/optics/spot_light.hpp"
 #include "host_sim/optics/surface_look.hpp"
 
 namespace lf::optics {
 
-// A sampled packet. Bit i of `reached` says that light i could reach the lane, of `lit` that it does: lasers from bit 0, lamps from bit 16.
-struct Sample {
-  HitPacket hit;
+// Radiance toward the camera. Bit i of `reached` says that light i could reach the lane, of `lit` that it does: lasers from bit 0, lamps from bit 16.
+struct Light {
   LaneMask reached{}, lit{};
   RgbLanes radiance{};
 };
 
+// The lamps' haze along a packet of rays: a row of its grid, and where in the row the first lane lies and how far it is to the next.
+struct HazePlace {
+  const std::vector<float>* row = nullptr;  // without lamps none
+  float u = 0, step = 0;
+};
+
+inline constexpr float open_water_m = 1e6f;  // the range of a ray that meets nothing
+Lanes water_range_m(const RayLines& rays, const HitPacket& hit);
+
+enum class Casters { resting, all };  // the bodies whose shadows count
+
 // All that lights one frame.
 class Shader {
  public:
-  Shader(const RayScene& scene, const SurfaceLook& look, const Water& water) : scene_(scene), look_(look), water_(water) {}
+  Shader(const SplitScene& scene, const SurfaceLook& look, const Water& water) : scene_(scene), look_(look), water_(water) {}
 
-  // `haze_row` is the lamps' haze along the packet's row, from pixel `u` on in steps of `u_step`; nullptr without lamps.
-  Sample sample(const RayPacket& rays, float footprint, float blur_px, const std::vector<float>* haze_row, float u, float u_step) const;
+  // `footprint`: side of the sample's square, px (1, or 1/4 for sub-pixels).
+  Light base(const RayPacket& rays, const HitPacket& hit, float footprint, const HazePlace& haze, Casters casters) const;
+  // Of `lit`, bits of lamps that light resting surfaces, those that no moving body shades.
+  LaneMask unshaded(const RayPacket& rays, const HitPacket& hit, LaneMask lit) const;
 
-  // Which of the wanted lanes see the light, nothing in between.
-  LaneMask visible_from(const Lanes3& light, const SurfacePacket& surface, LaneMask wanted) const;
+  Light stripes(const RayPacket& rays, const HitPacket& hit, float footprint, float blur_px) const;
+  // The sheets' along rays that go `range_m` through the water.
+  RgbLanes glow(const RayLines& rays, Lanes range_m) const;
 
-  const RayScene& scene() const { return scene_; }
+  const SplitScene& scene() const { return scene_; }
   const SurfaceLook& look() const { return look_; }
   const Water& water() const { return water_; }
 
@@ -39,15 +53,12 @@ class Shader {
 
  private:
   void add_ambient(const SurfacePacket& surface, RgbLanes& irradiance) const;
-  void add_lamps(const SurfacePacket& surface, RgbLanes& irradiance, Sample& sample) const;
-  void add_sheets(const SurfacePacket& surface, const RgbLanes& albedo, float footprint, float blur_px, Sample& sample) const;
+  void add_lamps(const SurfacePacket& surface, Casters casters, RgbLanes& irradiance, Light& light) const;
   void add_water(const RayPacket& rays, Lanes range, RgbLanes& radiance) const;
 
-  const RayScene& scene_;
+  const SplitScene& scene_;
   const SurfaceLook& look_;
   const Water& water_;
 };
-
-inline constexpr float near_m = 0.03f;  // closer to a camera or a light is its own housing
 
 }  // namespace lf::optics

@@ -132,7 +132,7 @@ StripePacket SheetLight::picture(const SurfacePacket& s, const Water& water, flo
   return stripe;
 }
 
-void SheetLight::add_backscatter(const RayPacket& rays, Lanes range_m, const Water& water, RgbLanes& radiance) const {
+void SheetLight::add_backscatter(const RayLines& rays, Lanes range_m, const Water& water, RgbLanes& radiance) const {
   if (pattern_.has_value()) return;
   const Lanes approach = dot(base_from_laser_.column_x, rays.direction);
   const Lanes safe = abs(approach) > 1e-4f ? approach : all_lanes(1e-4f);

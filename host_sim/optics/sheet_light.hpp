@@ -30,7 +30,7 @@ class SheetLight {
   StripePacket on_surface(const SurfacePacket& surface, const Water& water, float footprint, float blur_px) const;
 
   // Radiance scattered into the camera where its rays cross the sheet before they have gone `range_m` (single scattering, the sheet thin).
-  void add_backscatter(const RayPacket& rays, Lanes range_m, const Water& water, RgbLanes& radiance) const;
+  void add_backscatter(const RayLines& rays, Lanes range_m, const Water& water, RgbLanes& radiance) const;
 
   const Lanes3& emitter() const { return emitter_; }
 

@@ -22,6 +22,7 @@ class SpotLight {
   RgbLanes scattered(const Lanes3& point, const Lanes3& unit_direction, Lanes camera_range_m, const Water& water) const;
 
   const Lanes3& position() const { return position_; }
+  Vec3 place_m() const { return {position_.x[0], position_.y[0], position_.z[0]}; }
   bool casts_shadows() const { return casts_shadows_; }
 
  private:

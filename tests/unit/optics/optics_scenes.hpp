@@ -94,12 +94,15 @@ struct Bench {
   // Green radiance at pixel (u, v), one sample of a whole pixel.
   float green(const CameraConfig& camera, const CameraRays& rays, int u, int v) const {
     const RayPacket packet = rays.around(CameraPlace(camera.base_from_camera), u, v, Lanes{}, Lanes{});
-    return shader.sample(packet, 1.f, static_cast<float>(camera.blur_px), nullptr, 0, 0).radiance[1][0];
+    const HitPacket hit = scene.all(packet);
+    return shader.base(packet, hit, 1.f, {}, Casters::all).radiance[1][0] +
+           shader.stripes(packet, hit, 1.f, static_cast<float>(camera.blur_px)).radiance[1][0] +
+           shader.glow(packet, water_range_m(packet, hit))[1][0];
   }
 
   std::optional<PatternTable> no_pattern;
   Water water;
-  RayScene scene;
+  SplitScene scene;
   SurfaceLook look;
   Shader shader;
 };

@@ -1,0 +1,44 @@
+// What an image's pixel centres meet and how bright they are, and which of them lie at an edge.
+#pragma once
+
+#include <vector>
+
+#include "host_sim/optics/camera.hpp"
+#include "host_sim/optics/ray_scene.hpp"
+
+namespace lf::optics {
+
+// What eight rays meet and bring back.
+struct Sample {
+  HitPacket hit;
+  LaneMask reached{}, lit{};  // as Light's
+  GreyLanes grey{};
+};
+
+// Samples of every pixel, padded to whole packets. Planes of grey values, one a channel, follow each other.
+struct PixelStore {
+  void resize(int width, int height, std::size_t channels);
+  // A packet's worth of room before the first and after the last pixel, so that neighbours can be read without asking.
+  std::size_t index(int u, int v) const { return static_cast<std::size_t>(v) * stride + static_cast<std::size_t>(u) + lane_count; }
+
+  Sample sample(std::size_t i) const;
+  void set(std::size_t i, const Sample& sample);
+  GreyLanes grey_at(std::size_t i) const;
+  void set_grey(std::size_t i, const GreyLanes& values);
+  // All of a packet but its grey, from a store of the same size.
+  void copy_surface(std::size_t i, const PixelStore& from);
+
+  // Which of the pixels (u .. u + 7, v) differ from a neighbour in shape, depth, slope, or in what of the light that reaches both falls on them.
+  LaneMask edges(int u, int v) const;
+
+  int width = 0, height = 0;
+  std::size_t stride = 0, plane = 0, channels = 0;
+  std::vector<float> depth_m, normal_x, normal_y, normal_z, grey;  // depth past the ray's origin
+  std::vector<std::int32_t> shape, reached, lit;                   // Sample::reached and lit
+
+ private:
+  void set_surface(std::size_t i, const HitPacket& hit, LaneMask reached_lanes, LaneMask lit_lanes);
+  LaneMask edge_between(std::size_t a, std::size_t b) const;
+};
+
+}  // namespace lf::optics

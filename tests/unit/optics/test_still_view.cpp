@@ -1,0 +1,178 @@
+// A frame is a kept still view with moving bodies and laser put in: it must be the frame that would be made from nothing.
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "host_sim/optics/still_view.hpp"
+#include "shared/input_error.hpp"
+#include "tests/unit/optics/mission_scene.hpp"
+
+namespace lf::optics::test {
+namespace {
+
+template <class T>
+bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+}
+
+void expect_same(const Frame& a, const Frame& b) {
+  EXPECT_TRUE(same_bytes(a.pixels, b.pixels));
+  EXPECT_TRUE(same_bytes(a.depth_m, b.depth_m));
+  EXPECT_TRUE(same_bytes(a.object, b.object));
+  EXPECT_TRUE(same_bytes(a.stripe_v, b.stripe_v));
+  EXPECT_TRUE(same_bytes(a.stripe_grey, b.stripe_grey));
+}
+
+// Any order of arm poses, handle and buttons, laser and lamps; now and then the panel itself moves, or a lamp's body.
+void compare_with_fresh(OpticsConfig config, std::uint32_t seed, int frames) {
+  const MissionScene mission;
+  std::mt19937 random(seed);
+  config.threads = 2;
+  Optics kept(config);
+  Frame frame, fresh_frame;
+  scene::BodyPoses drift = resting(), undrifted;
+  for (int i = 0; i < frames; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(seed) + ", frame " + std::to_string(i));
+    Shot shot;
+    shot.frame_number = static_cast<std::uint64_t>(i);
+    const scene::BodyPoses now = mission.random_poses(random);
+    const bool touched = random() % 2 == 0;  // handle and buttons
+    for (std::size_t body = 0; body < scene::body_count; ++body) {
+      if (i == 0 || touched || !yields(static_cast<scene::BodyId>(body))) undrifted[body] = now[body];
+    }
+    shot.poses = undrifted;
+    if (i % 7 == 5) drift[std::size_t(scene::BodyId::panel)] = Eigen::Translation3d(1e-9 * i, 0, 0) * Pose::Identity();
+    if (i % 11 == 9) drift[std::size_t(scene::BodyId::vehicle)] = Eigen::Translation3d(0, 1e-3 * i, 0) * Pose::Identity();
+    for (std::size_t body = 0; body < scene::body_count; ++body) shot.poses[body] = drift[body] * shot.poses[body];
+    shot.laser = random() % 3 != 0;
+    shot.lamps = random() % 3 == 0;
+    shot.truth = true;
+    kept.render(shot, frame);
+    config.threads = 1;
+    Optics fresh(config);
+    fresh.render(shot, fresh_frame);
+    expect_same(frame, fresh_frame);
+  }
+}
+
+TEST(StillView, KeptOrMadeAnewGivesTheSameBytes) { compare_with_fresh(MissionScene().config(), 11, 24); }
+
+TEST(StillView, KeptOrMadeAnewGivesTheSameBytesInColourThroughAPort) {
+  OpticsConfig config = MissionScene().config();
+  config.cameras[0].colour = true;
+  config.cameras[0].port.emplace();
+  config.cameras[0].intrinsics.width = 313;  // not a whole number of packets
+  config.lamps[0].body = scene::BodyId::wrist;
+  compare_with_fresh(config, 12, 12);
+}
+
+TEST(StillView, TwoCamerasKeepTheirOwn) {
+  OpticsConfig config = MissionScene().config();
+  config.cameras.push_back(config.cameras[0]);
+  config.cameras[1].base_from_camera = looking({0.1, 0.3, -0.2}, {0.5, -0.3, 0.8});
+  const MissionScene mission;
+  std::mt19937 random(13);
+  Optics both(config);
+  Frame frame, fresh_frame;
+  for (int i = 0; i < 6; ++i) {
+    Shot shot;
+    shot.camera = static_cast<std::size_t>(i % 2);
+    shot.poses = mission.random_poses(random);
+    both.render(shot, frame);
+    Optics(config).render(shot, fresh_frame);
+    expect_same(frame, fresh_frame);
+  }
+}
+
+// The parts of the renderer about one camera, to ask what it leaves out.
+struct Inside {
+  explicit Inside(const OpticsConfig& config)
+      : camera(config.cameras[0]),
+        tiles(camera),
+        bench(config.scene, config.water),
+        arm(config.scene, moves),
+        still(camera, tiles, config.scene, true),
+        pool(1) {}
+  void set_poses(const OpticsConfig& config, const scene::BodyPoses& poses) {
+    bench.scene.set_poses(poses);
+    bench.look.set_poses(poses);
+    arm.set_poses(poses);
+    bench.shader.lamps.clear();
+    std::vector<scene::BodyId> lamp_bodies;
+    for (const LampConfig& lamp : config.lamps) {
+      bench.add(lamp, poses);
+      lamp_bodies.push_back(lamp.body);
+    }
+    still.update(bench.shader, poses, lamp_bodies, pool);
+  }
+  Camera camera;
+  Tiles tiles;
+  Bench bench;
+  BodyBounds arm;
+  StillView still;
+  WorkerPool pool;
+};
+
+TEST(StillView, NoMovingBodyIsSeenOrCastsAShadowInATileThatIsNotAskedForThem) {
+  const MissionScene mission;
+  OpticsConfig config = mission.config();
+  for (const bool port : {false, true}) {
+    if (port) config.cameras[0].port.emplace();
+    Inside inside(config);
+    std::mt19937 random(14);
+    std::size_t asked = 0, shown = 0, shaded = 0, of_tiles = 0;
+    for (int arm = 0; arm < 12; ++arm) {
+      const scene::BodyPoses poses = mission.random_poses(random);
+      inside.set_poses(config, poses);
+      for (int v = 0; v < inside.camera.height(); ++v) {
+        for (int u = 0; u < inside.camera.width(); u += lane_count) {
+          const std::size_t tile = inside.tiles.at(u, v);
+          const bool may_be_seen = inside.arm.may_meet(inside.tiles.view(tile));
+          const bool may_be_shaded = inside.still.may_be_shaded(tile, inside.arm);
+          const RayPacket rays = inside.camera.row(u, v);
+          const Sample still = inside.still.pixels().sample(inside.still.pixels().index(u, v));
+          const HitPacket hit = inside.bench.scene.nearest(rays, still.hit);
+          const bool seen = any(hit.parameter < still.hit.parameter);
+          const LaneMask lit = inside.bench.shader.base(rays, still.hit, 1.f, {}, Casters::all).lit;
+          const bool in_shadow = any(lit ^ still.lit);
+          ASSERT_TRUE(may_be_seen || !seen) << "seed 14, arm " << arm << ", pixel " << u << " " << v;
+          ASSERT_TRUE(may_be_shaded || !in_shadow) << "seed 14, arm " << arm << ", pixel " << u << " " << v;
+          asked += may_be_seen, shown += seen, shaded += in_shadow, ++of_tiles;
+        }
+      }
+    }
+    EXPECT_GT(shown, 1000u);
+    EXPECT_GT(shaded, 300u);
+    EXPECT_LT(asked, of_tiles / 2);  // or it spares nothing
+  }
+}
+
+TEST(StillView, TheScenesPartsAreTheWholeScene) {
+  const MissionScene mission;
+  const OpticsConfig config = mission.config();
+  const Camera camera(config.cameras[0]);
+  SplitScene parts(config.scene);
+  std::mt19937 random(15);
+  int hits = 0;
+  for (int arm = 0; arm < 5; ++arm) {
+    const scene::BodyPoses poses = mission.random_poses(random);
+    parts.set_poses(poses);
+    for (int v = 0; v < camera.height(); v += 3) {
+      for (int u = 0; u < camera.width(); u += lane_count) {
+        const RayPacket rays = camera.row(u, v);
+        const HitPacket one = parts.all(rays);
+        const HitPacket two = parts.nearest(rays, parts.resting(rays));
+        for (int lane = 0; lane < lane_count; ++lane) {
+          ASSERT_EQ(one.shape[lane] >= 0, two.shape[lane] >= 0) << "seed 15, pixel " << u + lane << " " << v;
+          if (one.shape[lane] < 0) continue;
+          ASSERT_NEAR(one.parameter[lane], two.parameter[lane], 1e-6) << "seed 15, pixel " << u + lane << " " << v;
+          ++hits;
+        }
+      }
+    }
+  }
+  EXPECT_GT(hits, 10000);
+}
+
+}  // namespace
+}  // namespace lf::optics::test
