@@ -36,6 +36,7 @@ done
 cp "$here/qemu_start.sh" "$private/start"
 {
   export -p
+  echo "export LANTERNFISH_GUEST=qemu"
   printf 'project=%q here=%q out=(%s) command=(%s)\n' "$project" "$PWD" "$([ ${#out[@]} -eq 0 ] || printf '%q ' "${out[@]}")" "$(printf '%q ' "$@")"
 } >"$private/settings"
 

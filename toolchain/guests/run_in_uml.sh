@@ -34,6 +34,7 @@ private=$(mktemp -d)
 trap 'rm -rf "$private"' EXIT
 {
   export -p
+  echo "export LANTERNFISH_GUEST=uml"
   printf 'project=%q here=%q out=(%s) command=(%s)\n' "$(realpath "$here/../..")" "$PWD" \
     "$([ ${#out[@]} -eq 0 ] || printf '%q ' "${out[@]}")" "$(printf '%q ' "$@")"
 } >"$private/settings"

@@ -29,7 +29,7 @@ for folder in "${out[@]}"; do host_folder "$folder" rw; done
 
 modules=/lib/modules/$(uname -r)/kernel
 [ -d "$modules" ] || modules=/usr/lib/uml/modules/$(uname -r)/kernel
-for module in net/can/can net/can/can-raw drivers/net/can/dev/can-dev drivers/net/can/vcan drivers/net/can/vxcan net/can/can-gw; do
+for module in net/can/can net/can/can-raw drivers/net/can/dev/can-dev drivers/net/can/vcan drivers/net/can/vxcan net/can/can-gw net/sched/sch_tbf; do
   insmod "$modules/$module.ko" || echo "uml_init: no module $module"
 done
 ip link set lo up

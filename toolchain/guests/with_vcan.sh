@@ -2,7 +2,8 @@
 # Runs a command as root of a network of its own in which vcan0 is up: with this machine's kernel where that has CAN, else in User Mode Linux.
 # Usage: with_vcan.sh [--time-limit S] [--memory 512M] [--out FOLDER]... [--mmapper FILE] COMMAND [ARGUMENT]...
 #
-# Options, exit status: those of run_in_uml.sh. LANTERNFISH_SHARED_FILE names to the command what FILE is there: FILE itself, or /dev/mmapper.
+# Options, exit status: those of run_in_uml.sh. The command finds LANTERNFISH_GUEST=kernel or uml in its environment, and in LANTERNFISH_SHARED_FILE
+# what FILE is there: FILE itself, or /dev/mmapper.
 # Environment: LANTERNFISH_VCAN=kernel or uml asks for the one; LANTERNFISH_NO_UML=REASON forbids the other.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -30,7 +31,7 @@ if [ -z "$which" ]; then
 fi
 
 if [ "$which" = kernel ]; then
-  export LANTERNFISH_SHARED_FILE=$shared_file
+  export LANTERNFISH_SHARED_FILE=$shared_file LANTERNFISH_GUEST=kernel
   status=0
   # shellcheck disable=SC2016  # for the shell inside
   timeout -s KILL "$time_limit" "${own[@]}" bash -c 'ip link set lo up; ip link add dev vcan0 type vcan; ip link set vcan0 up; exec "$@"' \
