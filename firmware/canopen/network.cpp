@@ -119,11 +119,20 @@ void Network::on_frame(const CanFrame& frame, Time now) {
     ++stats_.time_backwards;
     now = last_sync_;
   }
-  if ((frame.id & CanFrame::error_flag) != 0) return refuse(Refusal::error_frame);
+  if ((frame.id & CanFrame::error_flag) != 0) return on_error_frame(frame);
+  bus_off_ = false;
   if ((frame.id & (CanFrame::extended_flag | CanFrame::remote_flag)) != 0 || frame.id > 0x7FF) return refuse(Refusal::not_classic);
   if (frame.length > 8) return refuse(Refusal::bad_length);
   stats_.bits_on_bus += bus_load::exact_bits(frame);
   dispatch(frame, now);
+}
+
+// SocketCAN's classes (linux/can/error.h).
+void Network::on_error_frame(const CanFrame& frame) {
+  constexpr std::uint32_t is_off = 0x40, restarted = 0x100;
+  if ((frame.id & is_off) != 0) bus_off_ = true;
+  if ((frame.id & restarted) != 0) bus_off_ = false;
+  refuse(Refusal::error_frame);
 }
 
 void Network::dispatch(const CanFrame& frame, Time now) {

@@ -4,6 +4,13 @@
 
 namespace lf::mission {
 
+namespace {
+
+// From full speed to rest and back: 0.42 rad/s of the slew in half a second are 0.84 rad/s^2, within the joints' own accelerations.
+constexpr double hold_ramp_s = 0.5;
+
+}  // namespace
+
 arm::JointLimits Motion::limits(double speed_fraction) const {
   arm::JointLimits limits = arm::joint_limits(0, speed_fraction);
   for (std::size_t i = 0; i < arm_joint_count; ++i) {
@@ -23,6 +30,8 @@ void Motion::start_at(const arm::JointVector& q_rad) {
 
 void Motion::begin(Kind kind, double duration_s) {
   kind_ = kind;
+  holding_ = false;
+  rate_ = 1;
   t_s_ = 0;
   duration_s_ = duration_s;
 }
@@ -74,13 +83,18 @@ void Motion::stop() {
 
 void Motion::freeze() {
   kind_ = Kind::rest;
+  holding_ = false;
+  rate_ = 1;
   target_.qd_rad_s.setZero();
   target_.qdd_rad_s2.setZero();
 }
 
 void Motion::step(double dt_s) {
   if (kind_ == Kind::rest) return;
-  t_s_ += dt_s;
+  const double rate_before = rate_;
+  const double rate_change = dt_s / hold_ramp_s;
+  rate_ = holding_ ? std::max(0.0, rate_ - rate_change) : std::min(1.0, rate_ + rate_change);
+  t_s_ += dt_s * 0.5 * (rate_before + rate_);
   switch (kind_) {
     case Kind::path: target_ = path_.sample(t_s_); break;
     case Kind::line: target_ = line_.sample(t_s_); break;
@@ -89,6 +103,9 @@ void Motion::step(double dt_s) {
     case Kind::stop: target_ = stop_.sample(t_s_); break;
     case Kind::rest: break;
   }
+  // Chain rule of q(t(clock)); what the change of the rate adds is left out of the acceleration: it is what a stop from here would take off.
+  target_.qd_rad_s *= rate_;
+  target_.qdd_rad_s2 *= rate_ * rate_;
   if (t_s_ >= duration_s_) freeze();
 }
 

@@ -32,10 +32,14 @@ class Motion {
 
   void stop();    // to rest, as fast as the joints' limits allow
   void freeze();  // the target stays as it is
+  // To rest on the motion's own way, by stretching its time, and on again. A motion that is begun meanwhile is not held.
+  void hold() { holding_ = true; }
+  void resume() { holding_ = false; }
 
   void step(double dt_s);
   const arm::JointVector& target() const { return target_.q_rad; }
   bool done() const { return kind_ == Kind::rest; }
+  bool paused() const { return rate_ == 0; }
   double elapsed_s() const { return t_s_; }
   double duration_s() const { return duration_s_; }
   // The sweep is between its run-up and its run-out.
@@ -51,6 +55,8 @@ class Motion {
   Kind kind_ = Kind::rest;
   double t_s_ = 0;
   double duration_s_ = 0;
+  bool holding_ = false;
+  double rate_ = 1;  // of the motion's time to the clock's
   arm::JointState target_;
   arm::JointPath path_;
   arm::CartesianLine line_;
