@@ -123,6 +123,7 @@ struct SocketCan::State {
   std::array<Waiting, queue> waiting{};
   std::size_t first_waiting = 0, waiting_count = 0;
   bool dropped = false;  // since the last answer
+  bool down = false;     // as the last call found it
 };
 
 PortStatus SocketCan::State::configure() {
@@ -172,8 +173,8 @@ PortStatus SocketCan::State::open() {
   waiting_count = 0;
   if (was_open) ++stats.reopened;
   was_open = true;
-  if (calls.ioctl(fd, SIOCGIFFLAGS, &request) >= 0 && (request.ifr_flags & IFF_UP) == 0) return ENETDOWN;
-  return port_ok;
+  down = calls.ioctl(fd, SIOCGIFFLAGS, &request) >= 0 && (request.ifr_flags & IFF_UP) == 0;
+  return down ? ENETDOWN : port_ok;
 }
 
 PortStatus SocketCan::State::look_for_it() {
@@ -186,6 +187,8 @@ PortStatus SocketCan::State::look_for_it() {
 PortStatus SocketCan::State::fail(int error) {
   stats.refused += waiting_count;
   waiting_count = 0;
+  // The kernel tells whoever asks first, sender or receiver, that it went down.
+  if (error == ENETDOWN && !std::exchange(down, true)) ++stats.downs;
   if (is_gone(error)) {
     ++stats.losses;
     searched_ns = calls.monotonic_ns();
@@ -232,10 +235,8 @@ PortStatus SocketCan::State::fill() {
     drained_ns = before_ns;
     return port_empty;
   }
-  if (count < 0) {
-    if (count == -ENETDOWN) ++stats.downs;
-    return fail(-count);
-  }
+  if (count < 0) return fail(-count);
+  down = false;
   const std::int64_t realtime_ns = calls.realtime_ns(), monotonic_ns = calls.monotonic_ns();
   inbox.count = static_cast<unsigned>(count);
   for (unsigned i = 0; i < inbox.count; ++i) read_control(inbox.messages[i].msg_hdr, realtime_ns, monotonic_ns, stamps[i]);
@@ -266,6 +267,7 @@ PortStatus SocketCan::State::flush() {
       break;
     }
     if (sent < 0) return fail(-sent);
+    down = false;
     for (int i = 0; i < sent; ++i) {
       if (tap != nullptr) tap->on_frame(waiting[first_waiting].frame, Time::from_ns(now_ns), true);
       first_waiting = (first_waiting + 1) % queue;

@@ -219,6 +219,21 @@ TEST_F(SocketCanTest, TellsOfAnInterfaceThatWentDownAndWorksAgainWhenItIsUp) {
   EXPECT_EQ(can.stats().losses, 0u);
 }
 
+TEST_F(SocketCanTest, CountsTheInterfaceDownOnceWhoeverMeetsItFirst) {
+  SocketCan can(config());
+  ASSERT_EQ(can.open(), port_ok);
+  for (std::uint32_t times = 1; times <= 2; ++times) {
+    ASSERT_TRUE(shell("ip link set lftest0 down"));
+    EXPECT_EQ(can.send(std::vector{frame(0x80)}), ENETDOWN);
+    ReceivedFrame ignored;
+    (void)can.receive(ignored);
+    EXPECT_EQ(can.send(std::vector{frame(0x80)}), ENETDOWN);
+    EXPECT_EQ(can.stats().downs, times);
+    ASSERT_TRUE(shell("ip link set lftest0 up"));
+    EXPECT_EQ(can.send(std::vector{frame(0x80)}), port_ok);
+  }
+}
+
 TEST_F(SocketCanTest, OpensAnInterfaceThatIsStillDown) {
   ASSERT_TRUE(shell("ip link set lftest0 down"));
   SocketCan can(config());
