@@ -160,7 +160,7 @@ void Network::dispatch(const CanFrame& frame, Time now) {
 }
 
 void Network::on_tpdo(std::size_t node, const CanFrame& frame) {
-  const std::uint8_t length = node == io_index ? IoModule::tpdo_length : std::uint8_t{8};
+  const std::uint8_t length = node == io_index ? IoModule::tpdo_length : can_map::drive_tpdo1::length;
   if (frame.length < length) return refuse(Refusal::pdo_too_short);
   if (frame.length > length) return refuse(Refusal::pdo_too_long);
   if (!nodes_[node].started()) return refuse(Refusal::pdo_before_start);
