@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Makes what run_in_qemu.sh boots: Debian's kernel, and an initramfs with the drivers of a CAN card and of the V4L2 loopback device.
+# Makes what run_in_qemu.sh boots: Debian's kernel, and an initramfs with the drivers of a CAN card, of the V4L2 loopback device and of vivid, a V4L2
+# camera that can be told to fail.
 # Usage: make_qemu_guest.sh FOLDER
 #
 # Nothing is installed and root is not needed: the kernel and its headers are downloaded with apt-get and unpacked in FOLDER, and v4l2loopback is
@@ -53,7 +54,7 @@ depmod -b root "$version"
 rm -rf initramfs && mkdir -p initramfs/{bin,proc,sys,dev,root} "initramfs/lib/modules"
 cp "$(command -v busybox)" initramfs/bin/busybox
 cp "$here/qemu_init.sh" initramfs/init
-for module in virtio_pci 9pnet_virtio 9p can-raw can-gw vcan vxcan kvaser_pci v4l2loopback; do
+for module in virtio_pci 9pnet_virtio 9p can-raw can-gw vcan vxcan sch_tbf kvaser_pci v4l2loopback vivid; do
   # In the order of insmod; each once.
   modprobe -d root -S "$version" --show-depends "$module" | awk '$1 == "insmod" { print $2 }'
 done | awk '!seen[$0]++' | while read -r file; do

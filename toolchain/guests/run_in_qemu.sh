@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Runs a command in an emulated PC with Debian's kernel, two SJA1000 controllers (kvaser_pci) as can0 and can1 on one bus, and /dev/video0 and
-# /dev/video1 that loop back (v4l2loopback). Its clock counts instructions, so what is timed in it does not depend on what else this machine does.
+# /dev/video1 that loop back (v4l2loopback); `insmod /run/modules/vivid.ko` gives it a camera that can be told to fail. Its clock counts
+# instructions, so what is timed in it does not depend on what else this machine does.
 # Usage: run_in_qemu.sh --guest FOLDER [--time-limit S] [--memory MB] [--out FOLDER]... COMMAND [ARGUMENT]...
 #
 # --guest is the folder of make_qemu_guest.sh, which is filled at the first use. The guest sees this machine's files, in the same places, read-only;
