@@ -50,6 +50,7 @@ class Controller {
   const mission::Mission& mission() const { return mission_; }
   const canopen::Network& network() const { return network_; }
   const std::array<std::uint32_t, port_count>& port_errors() const { return port_errors_; }
+  const ScanStats& scan_stats() const { return mission_.scan_stats(); }
   std::uint32_t orders_refused() const { return orders_refused_; }
   std::uint32_t rejected_inputs() const { return rejected_inputs_; }
 

@@ -56,6 +56,9 @@ class Mission {
 
   Step step() const { return step_; }
   Standing standing() const { return mission::standing(step_, on_hold_); }
+  const ScanStats& scan_stats() const { return scan_stats_; }
+  // Nothing is under power any more. A held arm is, and is watched on.
+  bool over() const { return is_end(step_) && step_ != Step::held; }
   const Outcome& outcome() const { return outcome_; }
   const StaticVector<TaskResult, MissionConfig::max_tasks>& tasks() const { return tasks_; }
   const PanelMap& map() const { return map_; }
@@ -90,8 +93,6 @@ class Mission {
   void report(const Tick& tick);
   void event(const Tick& tick, Event::Kind kind, double value = 0);
   Status fail(StepFailure failure);
-  // Nothing is under power any more. A held arm is, and is watched on.
-  bool over() const { return is_end(step_) && step_ != Step::held; }
   bool in_contact_phase() const { return row(step_).phase == safety::Phase::contact || row(step_).phase == safety::Phase::gripping; }
 
   // mission_orders.cpp: what an operator wants

@@ -33,7 +33,7 @@ LAYERS = {
     "host_sim/optics/": ["host_sim/optics/", "shared/"],
     "host_sim/devices/": ["host_sim/devices/", "shared/"],
     "host_sim/record/": ["host_sim/record/", "hal/vision/", "firmware/", "shared/"],
-    "host_sim/scenario/": ["host_sim/scenario/", "host_sim/world/", "host_sim/optics/", "host_sim/devices/", "hal/sim/sim_config.hpp",
+    "host_sim/scenario/": ["hal/config/", "host_sim/scenario/", "host_sim/world/", "host_sim/optics/", "host_sim/devices/", "hal/sim/sim_config.hpp",
                            "hal/vision/", "firmware/", "shared/"],
     "host_sim/app/": ["host_sim/", "hal/", "firmware/", "shared/", "tests/bench/"],
 }

@@ -1,12 +1,12 @@
-#include "host_sim/scenario/limits_file.hpp"
+#include "hal/config/limits_file.hpp"
 
 #include <cstdio>
 #include <set>
 
-#include "host_sim/scenario/text_file.hpp"
-#include "host_sim/scenario/yaml_reader.hpp"
+#include "hal/config/text_file.hpp"
+#include "hal/config/yaml_reader.hpp"
 
-namespace lf::scenario {
+namespace lf::config {
 
 namespace {
 
@@ -70,4 +70,4 @@ safety::Limits read_limits(const std::string& path) {
   return limits;
 }
 
-}  // namespace lf::scenario
+}  // namespace lf::config

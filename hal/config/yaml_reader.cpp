@@ -1,14 +1,15 @@
-#include "host_sim/scenario/yaml_reader.hpp"
+#include "hal/config/yaml_reader.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <concepts>
 #include <set>
 
-#include "host_sim/scenario/nearest.hpp"
+#include "hal/config/nearest.hpp"
 #include "shared/input_error.hpp"
 
-namespace lf::scenario {
+namespace lf::config {
 
 namespace {
 
@@ -219,25 +220,36 @@ std::string suggest_path(const std::string& path, const std::vector<Key>& table)
   return "";
 }
 
-void read_map(const YAML::Node& node, const std::string& prefix, const std::string& shown, const std::vector<Key>& table,
-              const Source& source) {
+namespace {
+
+void read_entry(const YAML::Node& name, const YAML::Node& value, const std::string& path, const std::string& shown, const Keys& table,
+                const Source& source) {
+  const auto exact = std::find_if(table.begin(), table.end(), [&](const Key& key) { return key.path == path; });
+  if (exact != table.end()) {
+    if (value.IsNull()) source.refuse(name.Mark(), "'" + shown + path + "' takes " + type_name(*exact) + ", not nothing");
+    return read_value(value, shown + path, *exact, source);
+  }
+  const bool section = std::any_of(table.begin(), table.end(), [&](const Key& key) { return key.path.starts_with(path + "."); });
+  if (!section) source.refuse(name.Mark(), "unknown key '" + shown + path + "'" + suggest_path(path, table));
+  if (value.IsNull()) return;
+  if (!value.IsMap()) source.refuse(value.Mark(), "'" + shown + path + "' takes a group of keys, not " + shape_of(value));
+  read_map(value, path + ".", shown, table, source);
+}
+
+}  // namespace
+
+void read_map(const YAML::Node& node, const std::string& prefix, const std::string& shown, const Keys& table, const Source& source) {
   std::set<std::string> seen;
   for (const auto& entry : node) {
-    if (!entry.first.IsScalar()) source.refuse(entry.first.Mark(), "a key must be a word");
-    const std::string path = prefix + entry.first.Scalar();
-    if (!seen.insert(path).second) source.refuse(entry.first.Mark(), "'" + shown + path + "' is given twice");
-    const auto exact = std::find_if(table.begin(), table.end(), [&](const Key& key) { return key.path == path; });
-    if (exact != table.end()) {
-      if (entry.second.IsNull()) source.refuse(entry.first.Mark(), "'" + shown + path + "' takes " + type_name(*exact) + ", not nothing");
-      read_value(entry.second, shown + path, *exact, source);
-      continue;
+    try {
+      if (!entry.first.IsScalar()) source.refuse(entry.first.Mark(), "a key must be a word");
+      const std::string path = prefix + entry.first.Scalar();
+      if (!seen.insert(path).second) source.refuse(entry.first.Mark(), "'" + shown + path + "' is given twice");
+      read_entry(entry.first, entry.second, path, shown, table, source);
+    } catch (const InputError& problem) {
+      if (source.problems() == nullptr) throw;
+      source.problems()->emplace_back(problem.what());
     }
-    const bool section = std::any_of(table.begin(), table.end(), [&](const Key& key) { return key.path.starts_with(path + "."); });
-    if (!section) source.refuse(entry.first.Mark(), "unknown key '" + shown + path + "'" + suggest_path(path, table));
-    if (entry.second.IsNull()) continue;
-    if (!entry.second.IsMap())
-      source.refuse(entry.second.Mark(), "'" + shown + path + "' takes a group of keys, not " + shape_of(entry.second));
-    read_map(entry.second, path + ".", shown, table, source);
   }
 }
 
@@ -245,4 +257,4 @@ void read_value(const YAML::Node& node, const std::string& shown_path, const Key
   std::visit(ValueReader(node, shown_path, key, source), key.value);
 }
 
-}  // namespace lf::scenario
+}  // namespace lf::config

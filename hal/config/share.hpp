@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-namespace lf::scenario {
+namespace lf::config {
 
 // The first of these that holds scenarios/default.yaml: $LANTERNFISH_SHARE, share/lanternfish beside the program's bin folder, the source tree's shared/.
 // Throws InputError when $LANTERNFISH_SHARE is set and has none, or when there is none at all.
@@ -13,4 +13,4 @@ std::filesystem::path share_folder();
 // `name` as a path: itself when absolute, else beside `folder` if it is there, else in the share folder (whether or not it exists).
 std::filesystem::path find_file(const std::string& name, const std::filesystem::path& folder);
 
-}  // namespace lf::scenario
+}  // namespace lf::config

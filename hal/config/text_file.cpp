@@ -1,4 +1,4 @@
-#include "host_sim/scenario/text_file.hpp"
+#include "hal/config/text_file.hpp"
 
 #include <fstream>
 #include <iterator>
@@ -6,7 +6,7 @@
 
 #include "shared/input_error.hpp"
 
-namespace lf::scenario {
+namespace lf::config {
 
 namespace fs = std::filesystem;
 
@@ -24,4 +24,4 @@ std::string read_text_file(const fs::path& path) {
   return text;
 }
 
-}  // namespace lf::scenario
+}  // namespace lf::config

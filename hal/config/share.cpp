@@ -1,11 +1,11 @@
-#include "host_sim/scenario/share.hpp"
+#include "hal/config/share.hpp"
 
 #include <cstdlib>
 #include <system_error>
 
 #include "shared/input_error.hpp"
 
-namespace lf::scenario {
+namespace lf::config {
 
 namespace fs = std::filesystem;
 
@@ -42,4 +42,4 @@ fs::path find_file(const std::string& name, const fs::path& folder) {
   return share_folder() / path;
 }
 
-}  // namespace lf::scenario
+}  // namespace lf::config

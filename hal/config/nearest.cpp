@@ -1,9 +1,9 @@
-#include "host_sim/scenario/nearest.hpp"
+#include "hal/config/nearest.hpp"
 
 #include <algorithm>
 #include <cctype>
 
-namespace lf::scenario {
+namespace lf::config {
 
 namespace {
 
@@ -42,4 +42,4 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& kn
   return "; did you mean '" + *nearest + "'?";
 }
 
-}  // namespace lf::scenario
+}  // namespace lf::config

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace lf::scenario {
+namespace lf::config {
 
 // Edits between two words: insertions, deletions, substitutions and swaps of neighbours (Damerau-Levenshtein, restricted), letters' case ignored.
 // O(|a| |b|).
@@ -15,4 +15,4 @@ int edit_distance(std::string_view a, std::string_view b);
 // Equal distances go to the one that comes first.
 std::string suggestion(std::string_view word, const std::vector<std::string>& known);
 
-}  // namespace lf::scenario
+}  // namespace lf::config

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace lf::scenario {
+namespace lf::config {
 
 // Uniform between `min` and `max`; a fixed number when they are equal.
 struct Spread {
@@ -18,4 +18,4 @@ struct Spread {
 // Something that is there or not; `either` is drawn with even odds.
 enum class Chance : std::uint8_t { no, yes, either };
 
-}  // namespace lf::scenario
+}  // namespace lf::config
