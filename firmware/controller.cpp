@@ -36,13 +36,16 @@ void Controller::on_port_error(Port port, std::int32_t, Time) {
   mission_.on_port_error(static_cast<std::int32_t>(port));
 }
 
-void Controller::on_command(Command command, Time) {
-  switch (command) {
-    case Command::start: mission_.start(); return;
-    case Command::emergency_stop: mission_.stop(); return;
-    case Command::abort: mission_.abort(); return;
-  }
-  ++rejected_inputs_;
+bool Controller::on_order(const mission::Order& order, Time t) {
+  const bool taken = mission_.order(order, t);
+  orders_refused_ += taken ? 0 : 1;
+  return taken;
+}
+
+bool Controller::on_command(Command command, Time t) {
+  mission::Order order;
+  order.command = command;
+  return on_order(order, t);
 }
 
 void Controller::tick(Time t, TickOutput& out) {

@@ -19,9 +19,6 @@ namespace lf {
 inline constexpr std::uint8_t bus_count = 1;
 inline constexpr std::uint8_t camera_count = 1;
 
-// An operator's order.
-enum class Command : std::uint8_t { start, emergency_stop, abort };
-
 // What one tick asks of the platform.
 struct TickOutput {
   std::array<canopen::Outbox, bus_count> can;
@@ -43,7 +40,9 @@ class Controller {
   void on_panel(const PanelResult& result, Time t);
   void on_scan(const ScanStats& stats, Time t);
   void on_port_error(Port port, std::int32_t code, Time t);
-  void on_command(Command command, Time t);
+  // False, and counted, when the mission's table of orders (mission/orders.hpp) or the order's own numbers do not allow it.
+  bool on_order(const mission::Order& order, Time t);
+  bool on_command(Command command, Time t);  // an order without arguments
 
   // One control period. `out` is cleared by the caller; what does not fit into it is counted, never lost silently.
   void tick(Time t, TickOutput& out);
@@ -51,12 +50,15 @@ class Controller {
   const mission::Mission& mission() const { return mission_; }
   const canopen::Network& network() const { return network_; }
   const std::array<std::uint32_t, port_count>& port_errors() const { return port_errors_; }
+  const ScanStats& scan_stats() const { return mission_.scan_stats(); }
+  std::uint32_t orders_refused() const { return orders_refused_; }
   std::uint32_t rejected_inputs() const { return rejected_inputs_; }
 
  private:
   canopen::Network network_;
   mission::Mission mission_;
   std::array<std::uint32_t, port_count> port_errors_{};
+  std::uint32_t orders_refused_ = 0;
   std::uint32_t rejected_inputs_ = 0;
 };
 

@@ -8,9 +8,6 @@
 namespace lf {
 namespace {
 
-// The camera's stamp against the SYNC that triggered it; exposures are 40 ms apart.
-constexpr Duration match_window = Duration::from_ms(2);
-
 // The jaw is closed while the arm scans.
 constexpr double jaw_while_scanning_rad = 0;
 // Of the links only forearm, wrist and fingers come before the panel.
@@ -67,7 +64,8 @@ void ScanPipeline::expect(const ScanCommand& command) {
   any_order_ = true;
   last_order_ = command.exposure_start;
   if (exposures_.full()) forget_exposures(1);
-  (void)exposures_.push_back({.start = command.exposure_start, .kind = command.exposure_kind, .in_sweep = sweeping_});
+  (void)exposures_.push_back(
+      {.start = command.exposure_start, .kind = command.exposure_kind, .trigger = command.trigger, .in_sweep = sweeping_});
 }
 
 // The image of a dropped exposure may be on its way, or have come already.
@@ -98,10 +96,15 @@ void ScanPipeline::forget_exposures(std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) exposures_.pop_back();
 }
 
-// Takes the exposure ordered for `start` off the list, with those before it: images come in the order of their exposures.
-bool ScanPipeline::match(Time start, Exposure& exposure) {
+bool ScanPipeline::is_of(const Image& image, const Exposure& exposure) const {
+  if (image.trigger >= 0) return image.trigger == exposure.trigger;
+  return distance(exposure.start, image.exposure_start) <= config_.match_window;
+}
+
+// Takes the exposure that `image` is of off the list, with those before it: images come in the order of their exposures.
+bool ScanPipeline::match(const Image& image, Exposure& exposure) {
   for (std::size_t i = 0; i < exposures_.size(); ++i) {
-    if (distance(exposures_[i].start, start) > match_window) continue;
+    if (!is_of(image, exposures_[i])) continue;
     exposure = exposures_[i];
     forget_exposures(i);
     std::copy(exposures_.begin() + 1, exposures_.end(), exposures_.begin());
@@ -120,13 +123,15 @@ void ScanPipeline::store(const Image& image, Time start, StoredImage& out) {
   out.present = true;
 }
 
-void ScanPipeline::on_image(std::uint8_t camera, const Image& image) {
+void ScanPipeline::on_image(std::uint8_t camera, const Image& received) {
   if (camera != config_.camera_index) return;
   Exposure exposure;
-  if (!match(image.exposure_start, exposure)) {
+  if (!match(received, exposure)) {
     ++stats_.images_unexpected;
     return;
   }
+  Image image = received;
+  if (image.trigger >= 0) image.exposure_start = exposure.start;  // joints are sampled at the same SYNC, and are known by the same time
   const bool well_formed =
       image.view.valid() && image.view.width == image_width && image.view.height == image_height && image.exposure > Duration();
   if (!well_formed || exposure.dropped) {

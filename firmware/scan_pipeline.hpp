@@ -30,6 +30,9 @@ struct ScanConfig {
   std::uint8_t camera_index = 0;  // whose images are measured
   scan::PeakConfig peaks{.peaks_per_line = 4};
   scan::Triangulator::Config triangulation;
+  // An image without a trigger counter belongs to the exposure ordered within this of its start; exposures are 40 ms apart. It covers the tick's lateness, the
+  // camera's own delay, and how well its clock is known.
+  Duration match_window = Duration::from_ms(2);
   // At 0.5 mm rms the marker's plate, 2 mm proud, is outside of the window.
   scan::PlaneFitter::Config plane{.tight_sigmas = 3.0};
 };
@@ -48,7 +51,8 @@ class ScanPipeline {
   // missing, and stripes still waiting for joint samples make do with those there are.
   void on_command(const ScanCommand& command);
 
-  // An image of camera `camera`; only read during the call. It is matched with the exposure ordered within 2 ms of its start; without one it is
+  // An image of camera `camera`; only read during the call. It is matched with the exposure of its trigger counter, or, when it has none,
+  // with the one ordered within `match_window` of its start; without one it is
   // refused and counted, as is one of another size than 640x480. Images of other cameras are passed over.
   void on_image(std::uint8_t camera, const Image& image);
 
@@ -69,6 +73,7 @@ class ScanPipeline {
   struct Exposure {
     Time start;
     ExposureKind kind = ExposureKind::laser_on;
+    std::uint8_t trigger = 0;
     bool in_sweep = false;
     bool dropped = false;
   };
@@ -93,7 +98,8 @@ class ScanPipeline {
   void expect(const ScanCommand& command);
   void drop(Time start);
   void forget_exposures(std::size_t count);
-  bool match(Time start, Exposure& exposure);
+  bool is_of(const Image& image, const Exposure& exposure) const;
+  bool match(const Image& image, Exposure& exposure);
   void measure(const Image& image, const Exposure& exposure);
   void add_points(bool final);
   bool add_points(const Stripe& stripe, bool final);

@@ -38,6 +38,12 @@ void Gripper::open_to(double gap_m) {
 void Gripper::close() { order_ = Order::close; }
 void Gripper::stay() { order_ = Order::stay; }
 
+void Gripper::wait(Duration d) {
+  still_since_ = still_since_ + d;
+  began_ = began_ + d;
+  last_ = last_ + d;
+}
+
 void Gripper::begin(Time t, double jaw_rad) {
   if (order_ == Order::close) goal_rad_ = lower_rad;
   state_ = order_ == Order::open ? GripperState::opening : order_ == Order::close ? GripperState::closing : GripperState::idle;

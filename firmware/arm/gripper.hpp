@@ -52,6 +52,8 @@ class Gripper {
   void open_to(double gap_m);
   void close();
   void stay();  // idle at the present position
+  // `d` passes without update() being called, and does not count for stalls and time-outs: the operator holds the arm.
+  void wait(Duration d);
 
   // One SYNC: the jaw's measured angle and torque in; the angle to command out. A sample that is not a number, or not later than the one before,
   // is refused and counted, and the last target stands.

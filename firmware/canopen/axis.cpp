@@ -151,9 +151,10 @@ void Axis::lose_node() {
 void Axis::forget_home() { homed_ = setup_.homing_method == 0; }
 
 void Axis::on_tpdo(const CanFrame& frame, Time sync) {
-  statusword_ = get<std::uint16_t>(frame, 0);
-  actual_counts_ = get<std::int32_t>(frame, 2);
-  torque_permille_ = get<std::int16_t>(frame, 6);
+  statusword_ = get<std::uint16_t>(frame, can_map::drive_tpdo1::statusword);
+  actual_counts_ =
+      static_cast<std::int32_t>(std::int64_t{get<std::int32_t>(frame, can_map::drive_tpdo1::position)} - setup_.encoder_zero_counts);
+  torque_permille_ = get<std::int16_t>(frame, can_map::drive_tpdo1::torque);
   actual_time_ = sync;
   if (!seen_) target_counts_ = wanted_counts_ = actual_counts_;
   seen_ = true;
@@ -350,10 +351,10 @@ void Axis::step_target() {
 
 bool Axis::make_rpdo(CanFrame& frame) const {
   if (!online_ || !seen_) return false;
-  frame = empty_frame(cob_id::rpdo1 + setup_.node, 8);
-  put(frame, 0, controlword_);
-  put(frame, 2, target_counts_);
-  put(frame, 6, torque_offset_permille_);
+  frame = empty_frame(cob_id::rpdo1 + setup_.node, can_map::drive_rpdo1::length);
+  put(frame, can_map::drive_rpdo1::controlword, controlword_);
+  put(frame, can_map::drive_rpdo1::target_position, static_cast<std::int32_t>(std::int64_t{target_counts_} + setup_.encoder_zero_counts));
+  put(frame, can_map::drive_rpdo1::torque_offset, torque_offset_permille_);
   return true;
 }
 

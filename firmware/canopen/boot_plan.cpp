@@ -40,6 +40,9 @@ constexpr std::uint16_t rpdo(int n) { return static_cast<std::uint16_t>(0x1400 +
 constexpr std::uint16_t tpdo(int n) { return static_cast<std::uint16_t>(0x1800 + n - 1); }
 constexpr std::uint16_t rpdo_map = 0x1600;
 constexpr std::uint16_t tpdo_map = 0x1A00;
+// The rows below write as many entries as the map has.
+static_assert(can_map::drive_rpdo1::entries.size() == 3 && can_map::drive_tpdo1::entries.size() == 3);
+static_assert(can_map::io_rpdo1::entries.size() == 3 && can_map::io_tpdo1::entries.size() == 4);
 
 // CiA 402 drives.
 constexpr std::array drive_plan{
@@ -80,18 +83,18 @@ constexpr std::array drive_plan{
     // RPDO1: controlword, target position, torque offset.
     invalidate(rpdo(1)),
     literal(rpdo_map, 0, 1, 0),
-    literal(rpdo_map, 1, 4, 0x60400010),
-    literal(rpdo_map, 2, 4, 0x607A0020),
-    literal(rpdo_map, 3, 4, 0x60B20010),
+    literal(rpdo_map, 1, 4, can_map::drive_rpdo1::entries[0]),
+    literal(rpdo_map, 2, 4, can_map::drive_rpdo1::entries[1]),
+    literal(rpdo_map, 3, 4, can_map::drive_rpdo1::entries[2]),
     literal(rpdo_map, 0, 1, 3),
     literal(rpdo(1), 2, 1, every_sync),
     setting(rpdo(1), 1, 4, V::rpdo1_cob_id, id_and_valid),
     // TPDO1: statusword, actual position, actual torque.
     invalidate(tpdo(1)),
     literal(tpdo_map, 0, 1, 0),
-    literal(tpdo_map, 1, 4, 0x60410010),
-    literal(tpdo_map, 2, 4, 0x60640020),
-    literal(tpdo_map, 3, 4, 0x60770010),
+    literal(tpdo_map, 1, 4, can_map::drive_tpdo1::entries[0]),
+    literal(tpdo_map, 2, 4, can_map::drive_tpdo1::entries[1]),
+    literal(tpdo_map, 3, 4, can_map::drive_tpdo1::entries[2]),
     literal(tpdo_map, 0, 1, 3),
     literal(tpdo(1), 2, 1, every_sync),
     setting(tpdo(1), 1, 4, V::tpdo1_cob_id, id_and_valid),
@@ -126,19 +129,19 @@ constexpr std::array io_plan{
     // RPDO1: outputs, trigger counter, exposure.
     invalidate(rpdo(1)),
     literal(rpdo_map, 0, 1, 0),
-    literal(rpdo_map, 1, 4, 0x62000108),
-    literal(rpdo_map, 2, 4, 0x21000108),
-    literal(rpdo_map, 3, 4, 0x21000210),
+    literal(rpdo_map, 1, 4, can_map::io_rpdo1::entries[0]),
+    literal(rpdo_map, 2, 4, can_map::io_rpdo1::entries[1]),
+    literal(rpdo_map, 3, 4, can_map::io_rpdo1::entries[2]),
     literal(rpdo_map, 0, 1, 3),
     literal(rpdo(1), 2, 1, every_sync),
     setting(rpdo(1), 1, 4, V::rpdo1_cob_id, id_and_valid),
     // TPDO1: inputs, outputs as they are, last trigger counter, last exposure.
     invalidate(tpdo(1)),
     literal(tpdo_map, 0, 1, 0),
-    literal(tpdo_map, 1, 4, 0x60000108),
-    literal(tpdo_map, 2, 4, 0x21010108),
-    literal(tpdo_map, 3, 4, 0x21010208),
-    literal(tpdo_map, 4, 4, 0x21010310),
+    literal(tpdo_map, 1, 4, can_map::io_tpdo1::entries[0]),
+    literal(tpdo_map, 2, 4, can_map::io_tpdo1::entries[1]),
+    literal(tpdo_map, 3, 4, can_map::io_tpdo1::entries[2]),
+    literal(tpdo_map, 4, 4, can_map::io_tpdo1::entries[3]),
     literal(tpdo_map, 0, 1, 4),
     literal(tpdo(1), 2, 1, every_sync),
     setting(tpdo(1), 1, 4, V::tpdo1_cob_id, id_and_valid),
@@ -188,8 +191,8 @@ Number drive_value(V value, const DriveSetup& drive) {
     case V::quick_stop_deceleration: return unless_zero(drive.quick_stop_counts_s2);
     case V::following_window: return drive.following_window_counts;
     case V::following_timeout: return drive.following_timeout_ms;
-    case V::min_position: return static_cast<std::uint32_t>(drive.min_counts);
-    case V::max_position: return static_cast<std::uint32_t>(drive.max_counts);
+    case V::min_position: return static_cast<std::uint32_t>(drive.min_counts + drive.encoder_zero_counts);
+    case V::max_position: return static_cast<std::uint32_t>(drive.max_counts + drive.encoder_zero_counts);
     case V::max_torque: return drive.max_torque_permille;
     case V::max_speed: return drive.max_speed_counts_s;
     case V::max_motor_speed: return unless_zero(drive.max_motor_speed_rpm);

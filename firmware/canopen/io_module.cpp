@@ -41,10 +41,10 @@ void IoModule::go_offline() {
 }
 
 void IoModule::on_tpdo(const CanFrame& frame, Time sync) {
-  const auto outputs = get<std::uint8_t>(frame, 1);
-  inputs_ = get<std::uint8_t>(frame, 0);
-  last_trigger_counter_ = get<std::uint8_t>(frame, 2);
-  last_exposure_ = Duration::from_us(get<std::uint16_t>(frame, 3));
+  const auto outputs = get<std::uint8_t>(frame, can_map::io_tpdo1::outputs_actual);
+  inputs_ = get<std::uint8_t>(frame, can_map::io_tpdo1::inputs);
+  last_trigger_counter_ = get<std::uint8_t>(frame, can_map::io_tpdo1::last_trigger_counter);
+  last_exposure_ = Duration::from_us(get<std::uint16_t>(frame, can_map::io_tpdo1::last_exposure));
   if (!seen_) trigger_counter_ = last_trigger_counter_;
 
   const bool gap = seen_ && sync - actual_time_ > sync_period_ + sync_period_ / 2;  // what happened in a lost cycle is not known
@@ -76,9 +76,9 @@ void IoModule::step(Time now) {
 bool IoModule::make_rpdo(CanFrame& frame, std::uint8_t node) const {
   if (!online_ || !seen_) return false;
   frame = empty_frame(cob_id::rpdo1 + node, rpdo_length);
-  put(frame, 0, sent_outputs_);
-  put(frame, 1, trigger_counter_);
-  put(frame, 2, exposure_us_);
+  put(frame, can_map::io_rpdo1::outputs, sent_outputs_);
+  put(frame, can_map::io_rpdo1::trigger_counter, trigger_counter_);
+  put(frame, can_map::io_rpdo1::exposure, exposure_us_);
   return true;
 }
 

@@ -16,8 +16,8 @@ namespace lf::canopen {
 
 class IoModule {
  public:
-  static constexpr std::uint8_t rpdo_length = 4;
-  static constexpr std::uint8_t tpdo_length = 5;
+  static constexpr std::uint8_t rpdo_length = can_map::io_rpdo1::length;
+  static constexpr std::uint8_t tpdo_length = can_map::io_tpdo1::length;
 
   struct Stats {
     std::uint32_t triggers = 0;          // asked for

@@ -119,11 +119,20 @@ void Network::on_frame(const CanFrame& frame, Time now) {
     ++stats_.time_backwards;
     now = last_sync_;
   }
-  if ((frame.id & CanFrame::error_flag) != 0) return refuse(Refusal::error_frame);
+  if ((frame.id & CanFrame::error_flag) != 0) return on_error_frame(frame);
+  bus_off_ = false;
   if ((frame.id & (CanFrame::extended_flag | CanFrame::remote_flag)) != 0 || frame.id > 0x7FF) return refuse(Refusal::not_classic);
   if (frame.length > 8) return refuse(Refusal::bad_length);
   stats_.bits_on_bus += bus_load::exact_bits(frame);
   dispatch(frame, now);
+}
+
+// SocketCAN's classes (linux/can/error.h).
+void Network::on_error_frame(const CanFrame& frame) {
+  constexpr std::uint32_t is_off = 0x40, restarted = 0x100;
+  if ((frame.id & is_off) != 0) bus_off_ = true;
+  if ((frame.id & restarted) != 0) bus_off_ = false;
+  refuse(Refusal::error_frame);
 }
 
 void Network::dispatch(const CanFrame& frame, Time now) {
@@ -151,7 +160,7 @@ void Network::dispatch(const CanFrame& frame, Time now) {
 }
 
 void Network::on_tpdo(std::size_t node, const CanFrame& frame) {
-  const std::uint8_t length = node == io_index ? IoModule::tpdo_length : std::uint8_t{8};
+  const std::uint8_t length = node == io_index ? IoModule::tpdo_length : can_map::drive_tpdo1::length;
   if (frame.length < length) return refuse(Refusal::pdo_too_short);
   if (frame.length > length) return refuse(Refusal::pdo_too_long);
   if (!nodes_[node].started()) return refuse(Refusal::pdo_before_start);

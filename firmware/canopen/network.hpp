@@ -100,6 +100,8 @@ class Network {
   // Quick stop, outputs off, and NMT stop of every node when the axes had three SYNCs to hear of it. Only `start_boot` leads back.
   void shut_down();
 
+  // The CAN controller said in an error frame that it is off the bus, and neither that it restarted nor any other frame came since.
+  bool bus_off() const { return bus_off_; }
   Time last_sync() const { return last_sync_; }
   const NetworkStats& stats() const { return stats_; }
   const SdoClient& sdo(std::size_t node) const { return nodes_[node].sdo(); }
@@ -109,6 +111,7 @@ class Network {
   void refuse(Refusal cause) { ++stats_.refused[static_cast<std::size_t>(cause)]; }
   std::optional<std::size_t> index_of(std::uint8_t node) const;
   BootContext context(std::size_t node) const;
+  void on_error_frame(const CanFrame& frame);
   void dispatch(const CanFrame& frame, Time now);
   void on_tpdo(std::size_t node, const CanFrame& frame);
   void on_emcy(std::size_t node, const CanFrame& frame, Time now);
@@ -134,6 +137,7 @@ class Network {
   bool running_ = false;  // SYNC and heartbeat are produced
   bool nodes_started_ = false;
   bool boot_up_sent_ = false;
+  bool bus_off_ = false;
   std::size_t misconfigured_node_ = node_count;  // what `check` found; node_count: nothing
   std::uint8_t shut_down_syncs_ = 0;             // left until NMT stop; 0: not shutting down
   std::array<std::optional<NmtCommand>, node_count> nmt_due_{};

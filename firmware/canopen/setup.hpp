@@ -33,6 +33,9 @@ struct DriveSetup {
   std::int16_t quick_stop_option = 6;  // 605A: 1, 2 stop and lose power; 5, 6 stop and stay powered. 6: on the quick-stop ramp, holding
   std::int16_t abort_option = 3;       // 6007, the master is gone: 3 is a quick stop
 
+  // What the drive counts where the arm's own count is 0; found at commissioning. All counts beside it are the arm's: the axis adds and takes it off.
+  std::int32_t encoder_zero_counts = 0;
+
   std::int8_t homing_method = 0;  // 6098; 0: absolute encoder, nothing to home. 35, 37: here is home. Negative: the maker's, to a hard stop
   std::int32_t home_offset_counts = 0;       // 607C
   std::uint32_t homing_speed_counts_s = 0;   // 6099:01, toward the stop or switch; 6099:02 is a quarter of it

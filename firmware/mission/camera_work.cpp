@@ -8,8 +8,6 @@ namespace {
 
 // Lamps are LEDs: a tenth of a second covers their drivers' soft start.
 constexpr Duration lamps_settle = Duration::from_ms(100);
-// From the still's start until its image has surely been received: exposure, readout and transfer take 30 to 60 ms.
-constexpr Duration image_due = Duration::from_ms(100);
 
 }  // namespace
 
@@ -21,7 +19,7 @@ void CameraWork::set_mode(Mode mode, Time now) {
   inhibited_ = false;
 }
 
-bool CameraWork::still_taken(Time now) const { return mode_ == Mode::still && still_done_ && now - still_start_ >= image_due; }
+bool CameraWork::still_taken(Time now) const { return mode_ == Mode::still && still_done_ && now - still_start_ >= config_.image_due; }
 
 std::uint8_t CameraWork::lamps() const { return config_.use_lamps ? can_map::output_lamps : std::uint8_t{0}; }
 
@@ -61,6 +59,7 @@ void CameraWork::expose(Time now, canopen::IoModule& io, ExposureKind kind, std:
   order.kind = ScanCommand::Kind::exposure;
   order.exposure_start = now + config_.sync_period;
   order.exposure_kind = kind;
+  order.trigger = io.trigger_counter();
   ++exposures_;
   if (pending_.full() || !orders.push_back(order) || !pending_.push_back({order.exposure_start, outputs})) ++dropped_;
 }

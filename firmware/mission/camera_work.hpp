@@ -32,6 +32,7 @@ class CameraWork {
     bool use_lamps = true;
     bool always_on = false;
     Duration sync_period = Duration::from_ms(4);
+    Duration image_due = Duration::from_ms(100);
   };
 
   explicit CameraWork(const Config& config) : config_(config) {}

@@ -19,6 +19,7 @@ CameraWork::Config camera_config(const ControllerConfig& config) {
   camera.frames_per_background = config.mission.frames_per_background;
   camera.use_lamps = config.mission.use_lamps;
   camera.always_on = config.mission.camera_always_on;
+  camera.image_due = config.mission.image_due;
   camera.sync_period = config.network.sync_period;
   return camera;
 }
@@ -31,11 +32,7 @@ Mission::Mission(const ControllerConfig& config)
       camera_(camera_config(config)),
       motion_(config.mission_limits, config.mission.layout, config.mission.park_rad),
       map_(config.mission.layout, config.marker, config.camera) {
-  for (const Task& task : config.mission.tasks) {
-    TaskResult result;
-    result.task = task;
-    if (!tasks_.push_back(result)) break;  // the same capacity on both sides
-  }
+  list_tasks();
 }
 
 void Mission::on_panel(const PanelResult& result) {
@@ -47,10 +44,12 @@ void Mission::on_panel(const PanelResult& result) {
 void Mission::tick(Time now, canopen::Network& network, ScanOrders& orders, Telemetry& telemetry) {
   const Tick tick{now, network, orders, telemetry};
   observe(tick);
+  take_shut_down(tick);
   watch_faults(tick);
+  if (on_hold_) wait_on_hold(network.config().sync_period);
   // After a fault the arm comes to rest first: a motion is planned from rest.
-  if (!entered_ && (!powered_ || motion_.done())) begin(tick);
-  const Status status = entered_ ? run(tick) : Status::running;
+  if (!entered_ && !on_hold_ && (!powered_ || motion_.done())) begin(tick);
+  const Status status = entered_ && !on_hold_ ? run(tick) : Status::running;
   if (status != Status::running) finish_step(tick, status);
   camera_.tick(now, network.io(), orders);
   drive(tick);
@@ -129,6 +128,9 @@ void Mission::raise(const Tick& tick, Fault fault, std::int32_t code) {
   Reaction reaction = safety::reaction(fault, row(step_).phase);
   if (reaction == Reaction::retry && !may_retry()) reaction = Reaction::retreat;
   if (reaction == Reaction::retreat && !powered_) reaction = Reaction::power_off;  // there is no way back without power
+  // An arm that the operator holds does not set out by itself.
+  const bool sets_out = reaction == Reaction::retry || reaction == Reaction::retreat;
+  if (on_hold_ && sets_out && fault != Fault::aborted) reaction = Reaction::hold;
   Event fault_event;
   fault_event.kind = Event::Kind::fault;
   fault_event.t = tick.now;
@@ -199,6 +201,7 @@ void Mission::enter(const Tick& tick, Step next) {
   step_ = next;
   step_since_ = tick.now;
   entered_ = false;
+  on_hold_ = false;
   failure_ = StepFailure::none;
   const CameraWork::Mode camera = is_end(next) ? CameraWork::Mode::off : CameraWork::Mode::idle;
   if (camera_.mode() != camera) camera_.set_mode(camera, tick.now);
@@ -247,6 +250,7 @@ void Mission::begin(const Tick& tick) {
   entered_ = true;
   switch (step_) {
     case Step::boot: begin_boot(tick); return;
+    case Step::jog: begin_jog(); return;
     case Step::deploy: begin_deploy(); return;
     case Step::verify_reach: begin_verify_reach(); return;
     case Step::scan:
@@ -270,16 +274,19 @@ void Mission::begin(const Tick& tick) {
     case Step::abandon: begin_abandon(); return;
     case Step::abandon_back: begin_back_off(); return;
     case Step::stow: begin_stow(); return;
+    case Step::shut_down: begin_shut_down(tick); return;
     default: return;
   }
 }
 
 Mission::Status Mission::run(const Tick& tick) {
   switch (step_) {
-    case Step::idle: return start_ordered_ ? Status::done : Status::running;
+    case Step::idle: return start_ordered_ || home_ordered_ ? Status::done : Status::running;
     case Step::boot: return run_boot(tick);
     case Step::enable: return run_enable(tick);
     case Step::home: return run_home(tick);
+    case Step::ready: return run_ready();
+    case Step::jog: return run_jog();
     case Step::deploy:
     case Step::verify_reach: return run_motion();
     case Step::scan:
@@ -301,6 +308,7 @@ Mission::Status Mission::run(const Tick& tick) {
     case Step::abandon: return run_abandon();
     case Step::abandon_back: return run_motion() == Status::running ? Status::running : (retrying_ ? Status::branch : Status::done);
     case Step::stow: return run_stow();
+    case Step::shut_down: return run_shut_down(tick);
     default: return Status::running;
   }
 }
@@ -337,7 +345,7 @@ void Mission::drive(const Tick& tick) {
     const auto joint = static_cast<Joint>(i);
     tick.network.axis(joint).set_target_counts(arm::counts_from_rad(joint, target[static_cast<Eigen::Index>(i)]));
   }
-  if (!joints.valid) return;
+  if (!joints.valid || on_hold_) return;
   const auto jaw = static_cast<std::size_t>(Joint::jaw);
   const double jaw_rad = gripper_.update(joints.t, joints.position_rad[jaw], joints.torque_nm[jaw]);
   tick.network.axis(Joint::jaw).set_target_counts(arm::counts_from_rad(Joint::jaw, jaw_rad));

@@ -13,6 +13,7 @@
 #include "firmware/config.hpp"
 #include "firmware/mission/camera_work.hpp"
 #include "firmware/mission/motion.hpp"
+#include "firmware/mission/orders.hpp"
 #include "firmware/mission/panel_map.hpp"
 #include "firmware/mission/steps.hpp"
 #include "firmware/safety/watch.hpp"
@@ -44,9 +45,8 @@ class Mission {
  public:
   explicit Mission(const ControllerConfig& config);
 
-  void start() { start_ordered_ = true; }
-  void abort() { abort_ordered_ = true; }
-  void stop() { stop_ordered_ = true; }
+  // False, and nothing changes, when the table of orders or the order's own numbers do not allow it. Takes effect with the next tick.
+  bool order(const Order& order, Time now);
   void on_panel(const PanelResult& result);
   void on_scan(const ScanStats& stats) { scan_stats_ = stats; }
   void on_port_error(std::int32_t port);
@@ -55,6 +55,10 @@ class Mission {
   void tick(Time now, canopen::Network& network, ScanOrders& orders, Telemetry& telemetry);
 
   Step step() const { return step_; }
+  Standing standing() const { return mission::standing(step_, on_hold_); }
+  const ScanStats& scan_stats() const { return scan_stats_; }
+  // Nothing is under power any more. A held arm is, and is watched on.
+  bool over() const { return is_end(step_) && step_ != Step::held; }
   const Outcome& outcome() const { return outcome_; }
   const StaticVector<TaskResult, MissionConfig::max_tasks>& tasks() const { return tasks_; }
   const PanelMap& map() const { return map_; }
@@ -89,9 +93,22 @@ class Mission {
   void report(const Tick& tick);
   void event(const Tick& tick, Event::Kind kind, double value = 0);
   Status fail(StepFailure failure);
-  // Nothing is under power any more. A held arm is, and is watched on.
-  bool over() const { return is_end(step_) && step_ != Step::held; }
   bool in_contact_phase() const { return row(step_).phase == safety::Phase::contact || row(step_).phase == safety::Phase::gripping; }
+
+  // mission_orders.cpp: what an operator wants
+  void hold(Time now);
+  void resume(Time now);
+  void wait_on_hold(Duration period);
+  bool order_jog(const Order& order);
+  void begin_jog();
+  Status run_jog();
+  Status run_ready();
+  bool set_tasks(const Tasks& tasks);
+  void list_tasks();
+  void forget(const Tick& tick);
+  void take_shut_down(const Tick& tick);
+  void begin_shut_down(const Tick& tick);
+  Status run_shut_down(const Tick& tick);
 
   // mission_start.cpp: power up and the way home
   void begin_boot(const Tick& tick);
@@ -167,10 +184,14 @@ class Mission {
   Outcome outcome_;
 
   // Orders and answers from outside, taken at the next tick.
-  bool start_ordered_ = false, abort_ordered_ = false, stop_ordered_ = false;
-  std::int32_t port_error_ = 0;        // 1 + the port that failed since the last tick
-  bool clock_failed_ = false;          // since the last tick
-  std::uint32_t clockless_ticks_ = 0;  // in a row
+  bool start_ordered_ = false, home_ordered_ = false, jog_ordered_ = false, abort_ordered_ = false, stop_ordered_ = false;
+  bool reset_ordered_ = false, shut_down_ordered_ = false;
+  Order jog_;  // the last one
+  bool on_hold_ = false;
+  CameraWork::Mode held_camera_ = CameraWork::Mode::idle;  // what it did when it was held
+  std::int32_t port_error_ = 0;                            // 1 + the port that failed since the last tick
+  bool clock_failed_ = false;                              // since the last tick
+  std::uint32_t clockless_ticks_ = 0;                      // in a row
   ScanStats scan_stats_;
   std::uint32_t images_missing_ = 0;  // known of
   PanelResult panel_;

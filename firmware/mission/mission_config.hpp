@@ -7,6 +7,7 @@
 #include "firmware/arm/kinematics.hpp"
 #include "shared/geometry/pose.hpp"
 #include "shared/messages/static_vector.hpp"
+#include "shared/messages/time.hpp"
 #include "shared/panel/panel_layout.hpp"
 
 namespace lf::mission {
@@ -31,6 +32,8 @@ struct MissionConfig {
   // The camera: every tenth SYNC is 25 Hz. Of five frames one is taken without the laser, the background of the other four.
   std::uint32_t camera_syncs = 10;
   std::uint32_t frames_per_background = 5;
+  // From the start of an exposure until its image has surely been received: exposure, readout and transfer take 30 to 60 ms.
+  Duration image_due = Duration::from_ms(100);
   // The laser plane's speed on the panel comes from the sweep's plan; joints keep this much above the real joints' stiction of 0.06 rad/s.
   double sweep_speed_rad_s = 0.065;
   double verify_band_m = 0.055;  // half height of the verification's sweep around the valve: the handle's half length and 7 mm

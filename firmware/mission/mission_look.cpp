@@ -4,8 +4,8 @@ namespace lf::mission {
 
 namespace {
 
-// The last image is on its way for up to a tenth of a second after the arm has stopped.
-constexpr Duration last_image = Duration::from_ms(120);
+// The last exposure may have been asked for as the arm came to rest, and acts a SYNC later.
+constexpr Duration last_exposure = Duration::from_ms(20);
 
 }  // namespace
 
@@ -59,7 +59,7 @@ void Mission::begin_scan(const Tick& tick) {
 Mission::Status Mission::run_scan(const Tick& tick) {
   if (!motion_.done()) return Status::running;
   if (camera_.mode() == CameraWork::Mode::sweep) camera_.set_mode(CameraWork::Mode::idle, tick.now);
-  if (!settled(true, last_image, tick.now)) return Status::running;
+  if (!settled(true, config_.mission.image_due + last_exposure, tick.now)) return Status::running;
   order(tick, ScanCommand::Kind::end_sweep);
   return Status::done;
 }

@@ -49,7 +49,9 @@ Mission::Status Mission::run_home(const Tick& tick) {
   if (!all || !watch_.joints().valid) return Status::running;
   gripper_.stay();
   powered_ = true;
-  return Status::done;
+  const bool only_home = home_ordered_;
+  start_ordered_ = home_ordered_ = false;
+  return only_home ? Status::branch : Status::done;
 }
 
 void Mission::begin_stow() {

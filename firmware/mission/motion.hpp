@@ -36,12 +36,16 @@ class Motion {
 
   void stop();    // to rest, as fast as the joints' limits allow
   void freeze();  // the target stays as it is
+  // To rest on the motion's own way, by stretching its time, and on again; what is still being planned waits. A motion that is ordered meanwhile is not held.
+  void hold() { holding_ = true; }
+  void resume() { holding_ = false; }
 
   void step(double dt_s);
   const arm::JointVector& target() const { return target_.q_rad; }
   bool done() const { return kind_ == Kind::rest; }
   bool planning() const { return kind_ == Kind::plan_route || kind_ == Kind::plan_line || kind_ == Kind::plan_sweep; }
   StepFailure failure() const { return failure_; }  // of the last order
+  bool paused() const { return rate_ == 0; }
   double elapsed_s() const { return t_s_; }
   double duration_s() const { return duration_s_; }
   const scan::SweepPlan& sweep_plan() const { return sweep_planner_.plan(); }
@@ -55,6 +59,7 @@ class Motion {
   void begin(Kind kind, double duration_s);
   void refuse(StepFailure failure);
   void plan_route(const arm::JointVector& goal_rad);
+  void advance_plan();
   void advance_route();
   void advance_line();
   void advance_sweep();
@@ -63,6 +68,8 @@ class Motion {
   Kind kind_ = Kind::rest;
   double t_s_ = 0;
   double duration_s_ = 0;
+  bool holding_ = false;
+  double rate_ = 1;  // of the motion's time to the clock's
   arm::JointState target_;
   arm::JointPath path_;
   arm::CartesianLine line_;

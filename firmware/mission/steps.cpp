@@ -12,7 +12,9 @@ constexpr std::array<StepRow, step_count> table{{
     {Step::idle, "idle", "boot", Phase::boot, 0, Step::boot, Step::boot, never},
     {Step::boot, "boot", "boot", Phase::boot, 15, Step::enable, Step::enable, Step::boot},
     {Step::enable, "enable", "boot", Phase::boot, 5, Step::home, Step::home, Step::enable},
-    {Step::home, "home", "boot", Phase::free, 30, Step::deploy, Step::deploy, Step::enable},
+    {Step::home, "home", "boot", Phase::free, 30, Step::deploy, Step::ready, Step::enable},
+    {Step::ready, "ready", "ready", Phase::free, 0, Step::deploy, Step::jog, never},
+    {Step::jog, "jog", "ready", Phase::free, 60, Step::ready, Step::ready, Step::ready},
     {Step::deploy, "deploy", "deploy", Phase::free, 40, Step::scan, Step::scan, Step::deploy},
     {Step::scan, "scan", "scan", Phase::scan, 60, Step::look, Step::look, Step::deploy},
     {Step::look, "look", "scan", Phase::scan, 5, Step::perceive, Step::perceive, Step::look},
@@ -34,6 +36,7 @@ constexpr std::array<StepRow, step_count> table{{
     {Step::abandon, "abandon", "stow", Phase::stow, 20, Step::abandon_back, Step::abandon_back, never},
     {Step::abandon_back, "abandon, back", "stow", Phase::stow, 20, Step::stow, Step::reach_valve, never},
     {Step::stow, "stow", "stow", Phase::stow, 60, Step::done, Step::failed, never},
+    {Step::shut_down, "shut down", "stow", Phase::stow, 5, Step::off, Step::off, never},
     {Step::done, "done", "end", Phase::ended, 0, Step::done, Step::done, never},
     {Step::failed, "failed, stowed", "end", Phase::ended, 0, Step::failed, Step::failed, never},
     // Still under power: what stops the arm on its way to the park stops it here.

@@ -16,6 +16,8 @@ enum class Step : std::uint8_t {
   boot,
   enable,
   home,
+  ready,
+  jog,
   deploy,
   scan,
   look,
@@ -37,6 +39,7 @@ enum class Step : std::uint8_t {
   abandon,
   abandon_back,
   stow,
+  shut_down,
   done,
   failed,
   held,
@@ -49,7 +52,7 @@ inline constexpr std::size_t step_count = static_cast<std::size_t>(Step::count);
 struct StepRow {
   Step step;
   const char* name;
-  const char* stage;    // the part of the mission a user follows: boot, deploy, scan, perceive, turn_valve, press_buttons, stow, end
+  const char* stage;    // the part of the mission a user follows: boot, ready, deploy, scan, perceive, turn_valve, press_buttons, stow, end
   safety::Phase phase;  // column of the table of faults
   double timeout_s;     // 0: none
   Step on_done;

@@ -34,6 +34,7 @@ enum class Fault : std::uint8_t {
   step_failed,         // a step ended without its aim: no contact, no click, unreachable
   aborted,             // the operator ended the mission
   port_error,          // a call of the platform failed
+  bus_off,             // the CAN controller went off the bus: nothing that is sent arrives
   clock_lost,          // three ticks in a row without the platform's clock: nothing is known to be fresh
   count
 };

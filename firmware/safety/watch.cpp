@@ -52,6 +52,7 @@ void Watch::raise(bool present, Fault fault, std::int32_t code, FaultReports& be
 void Watch::check(const canopen::Network& network, const Vec3& tool_m, bool armed, Time now, FaultReports& began) {
   const canopen::IoModule& io = network.io();
   raise(io.seen() && io.fresh(now) && !io.estop_closed(), Fault::estop, 0, began);
+  raise(network.bus_off(), Fault::bus_off, 0, began);
   if (!armed) return;
   raise(!io.fresh(now), Fault::io_lost, 0, began);
   for (std::size_t node = 0; node < canopen::Network::node_count; ++node) {

@@ -3,7 +3,7 @@
 
 #include "host_sim/app/bench_areas.hpp"
 #include "host_sim/app/command.hpp"
-#include "host_sim/scenario/nearest.hpp"
+#include "hal/config/nearest.hpp"
 #include "shared/input_error.hpp"
 
 namespace lf::app {
@@ -22,7 +22,7 @@ void refuse_unknown(const std::vector<std::string>& names) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     std::string list;
     for (const std::string& one : known) list += (list.empty() ? "" : ", ") + one;
-    const std::string near = scenario::suggestion(name, known);
+    const std::string near = config::suggestion(name, known);
     throw InputError("no benchmark '" + name + "'" + (near.empty() ? "; there are " + list : near));
   }
 }

@@ -12,8 +12,8 @@
 #include "host_sim/app/command.hpp"
 #include "host_sim/app/version.hpp"
 #include "host_sim/scenario/instance.hpp"
-#include "host_sim/scenario/limits_file.hpp"
-#include "host_sim/scenario/share.hpp"
+#include "hal/config/limits_file.hpp"
+#include "hal/config/share.hpp"
 
 namespace lf::app {
 
@@ -71,7 +71,7 @@ Finding libraries() {
 
 Finding share() {
   try {
-    const std::string folder = scenario::share_folder();
+    const std::string folder = config::share_folder();
     return {"shipped files", true, folder, ""};
   } catch (const std::exception& error) {
     return {"shipped files", false, error.what(), "set LANTERNFISH_SHARE to the folder that holds scenarios/"};

@@ -8,7 +8,7 @@
 
 #include "host_sim/app/command.hpp"
 #include "host_sim/record/file_sink.hpp"
-#include "host_sim/scenario/nearest.hpp"
+#include "hal/config/nearest.hpp"
 #include "shared/input_error.hpp"
 
 namespace lf::app {
@@ -41,7 +41,7 @@ void refuse_unknown_command(const CLI::App& app, int argc, char** argv) {
     if (command->get_name() == argv[1]) return;
     names.push_back(command->get_name());
   }
-  const std::string near = scenario::suggestion(argv[1], names);
+  const std::string near = config::suggestion(argv[1], names);
   throw InputError(std::string("no command '") + argv[1] + "'" + (near.empty() ? "; `lanternfish --help` lists them" : near));
 }
 

@@ -29,7 +29,9 @@ std::uint64_t nominal_bits(const CanFrame& frame) { return 47u + 8u * frame.leng
 
 RunRecorder::RunRecorder(const record::RunFolder* folder, const scene::Scene& scene, Say say)
     : folder_(folder), say_(std::move(say)), scene_(scene) {
-  if (folder_ != nullptr) can_log_.emplace(folder_->file("can0.log"));
+  if (folder_ == nullptr) return;
+  can_log_.emplace(folder_->file("can0.log"));
+  joint_log_.emplace(folder_->file("joints.csv"));
 }
 
 void RunRecorder::on_bus_frame(const devices::BusRecord& record) {
@@ -57,6 +59,7 @@ void RunRecorder::on_telemetry(const Telemetry& telemetry) {
 }
 
 void RunRecorder::sample_curves(const Telemetry& telemetry) {
+  if (joint_log_ && !joint_log_->write(telemetry) && write_error_.empty()) write_error_ = joint_log_->sink().error();
   t_s_.push_back(telemetry.t.s());
   for (std::size_t i = 0; i < joint_count; ++i) {
     target_rad_[i].push_back(telemetry.target_rad[i]);
@@ -214,6 +217,7 @@ void RunRecorder::finish(const world::World& world, const std::string& failure) 
   digest_.decision(Time::from_s(world.time_s()), std::string("final state ") + state);
   digest_.decision(Time::from_s(world.time_s()), "ended: " + failure);
   if (can_log_ && !can_log_->close() && write_error_.empty()) write_error_ = can_log_->sink().error();
+  if (joint_log_ && !joint_log_->close() && write_error_.empty()) write_error_ = joint_log_->sink().error();
 }
 
 const std::vector<record::ReportChart> RunRecorder::charts() const {

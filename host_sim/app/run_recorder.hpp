@@ -16,6 +16,7 @@
 #include "host_sim/record/candump_log.hpp"
 #include "host_sim/record/cloud_file.hpp"
 #include "host_sim/record/digest.hpp"
+#include "host_sim/record/joint_log.hpp"
 #include "host_sim/record/png.hpp"
 #include "host_sim/record/report.hpp"
 #include "host_sim/record/run_folder.hpp"
@@ -83,6 +84,7 @@ class RunRecorder : public hal::SimObserver {
   Say say_;
   scene::Scene scene_;
   std::optional<record::CandumpLog> can_log_;
+  std::optional<record::JointLog> joint_log_;
   record::RunDigest digest_;
   std::vector<record::PhaseRecord> phases_;
   bool phase_retried_ = false;

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "host_sim/devices/actuator.hpp"
+#include "shared/can/object_tables.hpp"
 #include "shared/input_error.hpp"
 
 namespace lf::devices {
@@ -60,7 +61,7 @@ void check_fault(const DeviceFault& fault, const DevicesConfig& config) {
 DriveConfig drive_config(const ArmJoint& joint, std::uint8_t node) {
   DriveConfig drive;
   drive.node = node;
-  drive.name = "LF servo drive, " + joint.name;
+  drive.name = std::string(can_map::servo_drive_title()) + ", " + joint.name;
   drive.actuator = joint.actuator;
   drive.lower_rad = joint.lower_rad;
   drive.upper_rad = joint.upper_rad;

@@ -1,8 +1,8 @@
 // The objects of a servo drive's profile (CiA 402-2), with the defaults this motor has.
 //
 // Units: positions in counts, velocities in counts/s, accelerations in counts/s^2, torques in thousandths of the rated torque 6076 (mNm at the joint).
-// Beyond the profile: 2080 torque at which a homing run takes a stop for hard (thousandths, default 400), 2081 winding temperature (0.1 degrees),
-// 2082 part of the over-current guard used up (percent).
+// Beyond the profile: 2080 torque at which a homing run takes a stop for hard (thousandths), 2081 winding temperature (0.1 degrees),
+// 2082 part of the over-current guard used up (percent). The list is that of shared/can/can_map.yaml.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,6 @@
 
 namespace lf::devices {
 
-inline constexpr std::uint32_t servo_drive_type = 0x00020192;
 inline constexpr std::int64_t mode_profile_position = 1, mode_profile_velocity = 3, mode_homing = 6, mode_cyclic_position = 8;
 
 // All of them, 1000 to 6502.

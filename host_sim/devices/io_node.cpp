@@ -6,40 +6,13 @@
 namespace lf::devices {
 namespace {
 
-constexpr std::uint32_t io_device_type = 0x00030191;  // CiA 401, digital inputs and outputs
-
-std::vector<Object> io_objects(std::uint8_t node) {
-  PdoDefaults pdos;
-  pdos.receive[0] = {0x62000108};
-  pdos.transmit[0] = {0x60000108};
-  std::vector<Object> objects = communication_objects(node, io_device_type, "LF output node", pdos);
-  const auto add = [&](std::uint16_t index, std::uint8_t sub, Type type, Access access, Mapping mapping, std::int64_t value) {
-    objects.push_back({.index = index, .sub = sub, .type = type, .access = access, .mapping = mapping, .value = value});
-  };
-  const auto count = [&](std::uint16_t index, std::int64_t subs) { add(index, 0, Type::u8, Access::constant, Mapping::none, subs); };
-  count(0x6000, 1);
-  add(0x6000, 1, Type::u8, Access::read_only, Mapping::transmit, 0);
-  count(0x6200, 1);
-  add(0x6200, 1, Type::u8, Access::read_write, Mapping::receive, 0);
-  // What an output does in the stopped state (CiA 401): where 6206 has a bit, it takes that of 6207; otherwise it goes off with the node.
-  count(0x6206, 1);
-  add(0x6206, 1, Type::u8, Access::read_write, Mapping::none, 0xFF);
-  count(0x6207, 1);
-  add(0x6207, 1, Type::u8, Access::read_write, Mapping::none, 0);
-  count(0x2100, 2);
-  add(0x2100, 1, Type::u8, Access::read_write, Mapping::receive, 0);
-  add(0x2100, 2, Type::u16, Access::read_write, Mapping::receive, 0);
-  count(0x2101, 3);
-  add(0x2101, 1, Type::u8, Access::read_only, Mapping::transmit, 0);
-  add(0x2101, 2, Type::u8, Access::read_only, Mapping::transmit, 0);
-  add(0x2101, 3, Type::u16, Access::read_only, Mapping::transmit, 0);
-  return objects;
-}
+std::int64_t no_figure(can_map::Figure) { return 0; }
 
 }  // namespace
 
 IoNode::IoNode(const IoConfig& config, Duration boot_time)
-    : node_(config.node, io_objects(config.node), boot_time, *this),
+    : node_(config.node, node_objects(can_map::output_node_objects(), config.node, can_map::output_node_title(), no_figure), boot_time,
+            *this),
       inputs_(node_.objects().at(0x6000, 1)),
       outputs_(node_.objects().at(0x6200, 1)),
       error_mode_(node_.objects().at(0x6206, 1)),

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "shared/can/object_tables.hpp"
+
 namespace lf::devices {
 
 // SDO abort codes (CiA 301, table 22).
@@ -37,9 +39,9 @@ enum class Abort : std::uint32_t {
   device_state = 0x08000022,
 };
 
-enum class Type : std::uint8_t { u8, u16, u32, i8, i16, i32, text };
-enum class Access : std::uint8_t { constant, read_only, write_only, read_write };
-enum class Mapping : std::uint8_t { none = 0, receive = 1, transmit = 2, both = 3 };  // in which PDOs an object may stand
+using can_map::Access;
+using can_map::Mapping;
+using can_map::Type;
 
 constexpr std::size_t size_of(Type type) {
   switch (type) {

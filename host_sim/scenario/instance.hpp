@@ -11,10 +11,7 @@
 namespace lf::scenario {
 
 // What the core is told: nominal calibrations, the survey of the panel, the job, drives and limits.
-struct Nominal {
-  ControllerConfig controller;
-  ScanConfig scan;
-};
+using Nominal = config::Core;
 
 // Reads the arm's URDF and the file of limits. Throws InputError for these, and for a job that the machine as it is described cannot do: a valve or button
 // out of the arm's reach, a panel that the camera does not see.
@@ -25,8 +22,5 @@ hal::SimConfig make_truth(const Scenario& scenario, const Sample& sample, const 
 
 // base_from_panel with the sample's docking error: shifted along the base's axes, turned about them at the panel's origin (roll, then pitch, then yaw).
 Pose true_base_from_panel(const PanelLayout& layout, const Sample& sample);
-
-// Where the camera is and looks for the scenario's angles: first to the right, then down.
-Pose base_from_camera(const Camera& camera);
 
 }  // namespace lf::scenario

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "hal/config/nearest.hpp"
+#include "hal/config/share.hpp"
+#include "hal/config/text_file.hpp"
+#include "hal/config/yaml_reader.hpp"
 #include "hal/sim/sim_config.hpp"
 #include "host_sim/scenario/keys.hpp"
-#include "host_sim/scenario/nearest.hpp"
-#include "host_sim/scenario/share.hpp"
-#include "host_sim/scenario/text_file.hpp"
-#include "host_sim/scenario/yaml_reader.hpp"
 #include "shared/input_error.hpp"
 
 namespace lf::scenario {
@@ -19,7 +19,7 @@ namespace {
 
 std::vector<std::string> shipped_names() {
   std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(share_folder() / "scenarios")) {
+  for (const auto& entry : fs::directory_iterator(config::share_folder() / "scenarios")) {
     if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem());
   }
   std::sort(names.begin(), names.end());
@@ -33,22 +33,23 @@ bool looks_like_a_file(const std::string& name) {
 fs::path find_scenario(const std::string& file_or_name) {
   if (looks_like_a_file(file_or_name)) return file_or_name;
   const std::vector<std::string> names = shipped_names();
-  if (std::find(names.begin(), names.end(), file_or_name) != names.end()) return share_folder() / "scenarios" / (file_or_name + ".yaml");
+  if (std::find(names.begin(), names.end(), file_or_name) != names.end())
+    return config::share_folder() / "scenarios" / (file_or_name + ".yaml");
   std::string list;
   for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-  const std::string near = suggestion(file_or_name, names);
+  const std::string near = config::suggestion(file_or_name, names);
   throw InputError("no scenario '" + file_or_name + "'" + (near.empty() ? "; there are " + list + ", or give a file" : near));
 }
 
 void apply_override(Scenario& scenario, const std::string& text) {
-  const Source source = Source::of_override(text);
+  const config::Source source = config::Source::of_override(text);
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0) source.refuse(YAML::Mark::null_mark(), "needs the form path.to.key=value");
   const std::string path = text.substr(0, equals);
   const std::vector<Key> table = keys(scenario);
   const auto found = std::find_if(table.begin(), table.end(), [&](const Key& key) { return key.path == path; });
-  if (found == table.end()) source.refuse(YAML::Mark::null_mark(), "unknown key '" + path + "'" + suggest_path(path, table));
-  read_value(parse_yaml(text.substr(equals + 1), source), path, *found, source);
+  if (found == table.end()) source.refuse(YAML::Mark::null_mark(), "unknown key '" + path + "'" + config::suggest_path(path, table));
+  config::read_value(parse_yaml(text.substr(equals + 1), source), path, *found, source);
 }
 
 // What no single key can tell.
@@ -104,11 +105,11 @@ Scenario load_scenario(const std::string& file_or_name, const std::vector<std::s
   Scenario scenario;
   scenario.name = path.stem();
   scenario.file = path;
-  const Source source = Source::of_file(path);
-  const YAML::Node root = parse_yaml(read_text_file(path), source);
+  const config::Source source = config::Source::of_file(path);
+  const YAML::Node root = config::parse_yaml(config::read_text_file(path), source);
   if (!root.IsNull()) {
     if (!root.IsMap()) source.refuse(root.Mark(), "a scenario is a group of keys");
-    read_map(root, "", "", keys(scenario), source);
+    config::read_map(root, "", "", keys(scenario), source);
   }
   for (const std::string& text : overrides) apply_override(scenario, text);
   check_together(scenario, overrides.empty() ? source.name() : source.name() + " with --set");

@@ -11,14 +11,19 @@
 #include <vector>
 
 #include "firmware/mission/mission_config.hpp"
+#include "hal/config/machine.hpp"
 #include "host_sim/devices/devices_config.hpp"
 #include "host_sim/optics/optics.hpp"
-#include "host_sim/scenario/spread.hpp"
 #include "host_sim/world/world.hpp"
 #include "shared/calibration/calibration.hpp"
 #include "shared/panel/panel_layout.hpp"
 
 namespace lf::scenario {
+
+using config::Chance;
+using config::Fault;
+using config::Spread;
+using config::Task;
 
 // How far the panel stands from its nominal place once the vehicle is docked: shifted along the base's axes, turned about them at the valve's base.
 struct Docking {
@@ -52,23 +57,15 @@ struct Lamps {
   double power = 1.0;           // over the default's
 };
 
-struct Camera {
+struct Camera : config::Camera {
   bool always_on = false;  // a frame every camera period, needed or not
   Spread noise_grey{1, 3};
-  std::int64_t exposure_us = 2000;
   double blur_px = optics::CameraConfig{}.blur_px;
-  std::array<double, 3> position_m{0.015, -0.245, 0.060};
-  double down_deg = 43.5;
-  double right_deg = 20.75;
-  double focal_px = CameraIntrinsics{}.fx;
-  std::vector<double> distortion{-0.06, 0.02, 0.0005, -0.0005, 0.0};
 };
 
-struct Laser {
+struct Laser : config::Laser {
   double power_w = optics::LaserConfig{}.power_w;
   double waist_sigma_m = optics::LaserConfig{}.waist_sigma_m;
-  double fan_half_angle_deg = 40.0;                       // 38.5 is needed at the worst docking error
-  std::array<double, 3> position_m{-0.090, 0.0, -0.365};  // in the tool frame
 };
 
 // Assembly errors that nobody measured: between the machine as it is and as its calibration says. Drawn for each axis and joint on its own.
@@ -111,22 +108,6 @@ struct Sensors {
 
 struct Safety {
   std::string limits = "safety/limits.yaml";
-};
-
-struct Task {
-  enum class Kind : std::uint8_t { turn_valve, press_buttons };
-  Kind kind = Kind::turn_valve;
-  double to_deg = 90;
-  std::vector<std::string> order{"left", "centre", "right"};
-};
-
-// Something that goes wrong during the run; devices::DeviceFault says what each kind does.
-struct Fault {
-  double at_s = 0;
-  std::string kind = "overcurrent";
-  std::string node;         // slew, shoulder, elbow, roll, jaw, io or master, where the kind is a node's
-  double duration_s = 0;    // 0: for the rest of the run
-  std::int64_t can_id = 0;  // drop_frames only
 };
 
 struct Scenario {

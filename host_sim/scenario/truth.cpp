@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <array>
 
+#include "hal/config/share.hpp"
 #include "host_sim/scenario/instance.hpp"
-#include "host_sim/scenario/share.hpp"
 #include "shared/arm/arm_description.hpp"
 #include "shared/input_error.hpp"
 #include "shared/scene/panel_scene.hpp"
@@ -21,7 +21,7 @@ Pose small_pose(const Vec3& shift_m, const Vec3& turn_rad) {
 }
 
 ArmDescription true_arm(const Scenario& scenario) {
-  ArmDescription arm = load_arm_urdf(find_file(scenario.arm.urdf, std::filesystem::path(scenario.file).parent_path()));
+  ArmDescription arm = load_arm_urdf(config::find_file(scenario.arm.urdf, std::filesystem::path(scenario.file).parent_path()));
   if (scenario.jaw.torque_nm > 0) arm.joints[std::size_t(Joint::jaw)].effort_nm = arm.finger_b.effort_nm = scenario.jaw.torque_nm;
   if (scenario.jaw.pad_friction > 0) {
     for (const scene::BodyId finger : {scene::BodyId::finger_a, scene::BodyId::finger_b}) {

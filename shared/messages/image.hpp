@@ -26,6 +26,9 @@ struct Image {
   Time exposure_start;
   Duration exposure;
   std::uint32_t sequence = 0;  // counts the camera's exposures; a gap is a lost frame
+  // Trigger counter of the output node that asked for this exposure, where the platform knows it: then it names the exposure, and its time is the one
+  // that was ordered, whatever the camera's clock says. -1: known by its time alone.
+  std::int32_t trigger = -1;
 
   Time mid_exposure() const { return exposure_start + exposure / 2; }
 };

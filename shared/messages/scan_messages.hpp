@@ -27,7 +27,7 @@ enum class ExposureKind : std::uint8_t {
 struct ScanCommand {
   enum class Kind : std::uint8_t {
     joint_sample,   // `joints`
-    exposure,       // `exposure_start`, `exposure_kind`: an image with this start is coming
+    exposure,       // `exposure_start`, `exposure_kind`, `trigger`: an image with this start is coming
     begin_sweep,    // empties the cloud; `sweep` names what follows
     end_sweep,      // no stripe after this one belongs to `sweep`
     analyse,        // fit the plane to the cloud and hand plane, cloud and still image on; `sweep` comes back as PanelRequest::id
@@ -37,6 +37,7 @@ struct ScanCommand {
   JointSample joints;
   Time exposure_start;
   ExposureKind exposure_kind = ExposureKind::laser_on;
+  std::uint8_t trigger = 0;  // exposure: the output node's counter that asks for it
   std::uint32_t sweep = 0;
 };
 

@@ -26,12 +26,14 @@ LAYERS = {
     "hal/heap_guard/": ["hal/heap_guard/"],
     "hal/mock/": ["hal/mock/", "hal/ports.hpp", "firmware/", "shared/"],
     "hal/vision/": ["hal/vision/", "firmware/", "shared/"],
+    "hal/vehicle/": ["hal/vehicle/", "hal/config/", "hal/vision/", "hal/heap_guard/", "hal/ports.hpp", "hal/core_loop.hpp", "firmware/", "shared/"],
+    "hal/config/": ["hal/config/", "hal/vision/", "firmware/", "shared/"],
     "hal/sim/": ["hal/", "firmware/", "shared/", "host_sim/world/", "host_sim/optics/", "host_sim/devices/"],
     "host_sim/world/": ["host_sim/world/", "shared/"],
     "host_sim/optics/": ["host_sim/optics/", "shared/"],
     "host_sim/devices/": ["host_sim/devices/", "shared/"],
     "host_sim/record/": ["host_sim/record/", "hal/vision/", "firmware/", "shared/"],
-    "host_sim/scenario/": ["host_sim/scenario/", "host_sim/world/", "host_sim/optics/", "host_sim/devices/", "hal/sim/sim_config.hpp",
+    "host_sim/scenario/": ["hal/config/", "host_sim/scenario/", "host_sim/world/", "host_sim/optics/", "host_sim/devices/", "hal/sim/sim_config.hpp",
                            "hal/vision/", "firmware/", "shared/"],
     "host_sim/app/": ["host_sim/", "hal/", "firmware/", "shared/", "tests/bench/"],
 }
@@ -42,7 +44,7 @@ OWNERS = {
     r"^pcl/": ["hal/vision/", "host_sim/record/"],
     r"^apriltag": ["hal/vision/", "host_sim/optics/"],
     r"^opencv2/": ["hal/vision/", "host_sim/record/", "host_sim/optics/", "host_sim/app/"],
-    r"^linux/|^sys/socket": ["hal/vehicle/"],
+    r"^linux/|^sys/socket|^net/": ["hal/vehicle/"],
     r"^kdl/": [],
 }
 

@@ -7,6 +7,7 @@
 #include <sstream>
 #include <string>
 
+#include "firmware/mission/orders.hpp"
 #include "firmware/mission/steps.hpp"
 #include "firmware/safety/faults.hpp"
 
@@ -69,6 +70,22 @@ std::string faults_table() {
   return out.str();
 }
 
+std::string orders_table() {
+  std::ostringstream out;
+  out << "| order |";
+  for (std::size_t s = 0; s < standing_count; ++s) out << " " << name(static_cast<Standing>(s)) << " |";
+  out << "\n|---|";
+  for (std::size_t s = 0; s < standing_count; ++s) out << "---|";
+  out << "\n";
+  for (std::size_t c = 0; c < command_count; ++c) {
+    const auto command = static_cast<Command>(c);
+    out << "| " << lf::name(command) << " |";
+    for (std::size_t s = 0; s < standing_count; ++s) out << (may(command, static_cast<Standing>(s)) ? " yes |" : " |");
+    out << "\n";
+  }
+  return out.str();
+}
+
 const std::string page = std::string(LANTERNFISH_SOURCE_DIR) + "/docs/mission.md";
 
 std::string read_page() {
@@ -95,6 +112,7 @@ void expect_on_page(const std::string& mark, const std::string& drawn) {
 
 TEST(Drawing, OfTheStepsIsTheTable) { expect_on_page("steps", steps_drawing()); }
 TEST(Drawing, OfTheStepsTimesIsTheTable) { expect_on_page("step table", steps_table()); }
+TEST(Drawing, OfTheOrdersIsTheTable) { expect_on_page("orders", orders_table()); }
 TEST(Drawing, OfTheFaultsIsTheTable) { expect_on_page("faults", faults_table()); }
 
 }  // namespace

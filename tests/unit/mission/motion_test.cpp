@@ -232,6 +232,36 @@ TEST(MotionPastThePanel, MayLeaveFromNearerThanItWouldGo) {
   EXPECT_FALSE(planned(motion)) << "on into the board";
 }
 
+TEST(Motion, HeldOnItsWayComesToRestThereAndGoesOnToTheSameEnd) {
+  Motion motion = at_park();
+  const arm::JointVector goal = park + arm::JointVector(0.3, 0.2, -0.2, 0.1);
+  motion.go(std::array{goal}, 0.5);
+  while (motion.elapsed_s() < 0.3 * motion.duration_s()) motion.step(period_s);
+  motion.hold();
+  for (int i = 0; i < 200; ++i) motion.step(period_s);
+  EXPECT_TRUE(motion.paused());
+  const arm::JointVector held = motion.target();
+  for (int i = 0; i < 200; ++i) motion.step(period_s);
+  EXPECT_EQ(motion.target(), held);
+  motion.resume();
+  EXPECT_LE(run(motion), 0.5 + 1e-9);
+  EXPECT_LT((motion.target() - goal).norm(), 1e-9);
+}
+
+TEST(Motion, HeldWhileItIsPlannedDoesNotSetOut) {
+  Motion motion = at_park();
+  const arm::JointVector goal = park + arm::JointVector(0.1, 0.1, -0.1, 0);
+  motion.go_clear(goal, {}, 0.5);
+  ASSERT_TRUE(motion.planning());
+  motion.hold();
+  for (int i = 0; i < 500; ++i) motion.step(period_s);
+  EXPECT_EQ(motion.target(), park);
+  EXPECT_TRUE(motion.paused());
+  motion.resume();
+  (void)run(motion);
+  EXPECT_LT((motion.target() - goal).norm(), 1e-9);
+}
+
 TEST(Motion, IsPlannedInSharesAndStoppedMeanwhileStaysWhereItIs) {
   Motion motion = at_park();
   scan::SweepRequest request;

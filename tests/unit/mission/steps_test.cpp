@@ -19,7 +19,7 @@ TEST(Steps, EveryStepCanBeReachedFromIdle) {
   std::vector<bool> reached(step_count, false);
   std::vector<Step> open{Step::idle};
   // Where faults lead: out of contact, to the park position, or to an end where it stands.
-  for (const Step step : {Step::abandon, Step::stow, Step::held, Step::stopped, Step::off}) open.push_back(step);
+  for (const Step step : {Step::abandon, Step::stow, Step::shut_down, Step::held, Step::stopped, Step::off}) open.push_back(step);
   while (!open.empty()) {
     const Step step = open.back();
     open.pop_back();
@@ -40,6 +40,7 @@ TEST(Steps, EndsLeadNowhere) {
 
 TEST(Steps, EveryStepThatMovesOrWaitsHasATimeOut) {
   for (std::size_t i = 1; i < static_cast<std::size_t>(Step::done); ++i) {
+    if (static_cast<Step>(i) == Step::ready) continue;  // waits for the operator
     EXPECT_GT(row(static_cast<Step>(i)).timeout_s, 0) << row(static_cast<Step>(i)).name;
   }
 }

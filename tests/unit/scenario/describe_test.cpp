@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "hal/config/share.hpp"
 #include "host_sim/scenario/keys.hpp"
-#include "host_sim/scenario/share.hpp"
 #include "tests/unit/scenario/scenario_file.hpp"
 
 namespace lf::scenario {

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "host_sim/scenario/text_file.hpp"
+#include "hal/config/text_file.hpp"
 #include "tests/unit/scenario/scenario_file.hpp"
 
 namespace lf::scenario {
@@ -22,7 +22,7 @@ std::string refusal(const Scenario& scenario) {
 }  // namespace
 
 TEST(Nominal, TheCameraLooksWhereItsAnglesSay) {
-  const Pose pose = base_from_camera(Camera());
+  const Pose pose = config::base_from_camera(Camera());
   EXPECT_LT((pose.linear().col(2) - Vec3(0.678, 0.257, 0.688)).norm(), 1e-3) << "the survey's axis";
   EXPECT_NEAR(pose.linear().col(0).z(), 0, 1e-12) << "no roll";
   EXPECT_NEAR((pose.linear() * pose.linear().transpose() - Mat3::Identity()).norm(), 0, 1e-12);

@@ -1,12 +1,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "host_sim/scenario/limits_file.hpp"
-#include "host_sim/scenario/share.hpp"
-#include "host_sim/scenario/text_file.hpp"
+#include "hal/config/limits_file.hpp"
+#include "hal/config/share.hpp"
+#include "hal/config/text_file.hpp"
 #include "tests/unit/scenario/scenario_file.hpp"
 
-namespace lf::scenario {
+namespace lf::config {
 
 namespace {
 
@@ -20,7 +20,7 @@ std::string changed(const std::string& from, const std::string& to) {
 }
 
 std::string said_of(const std::string& text) {
-  const ScenarioFile file(text);
+  const scenario::ScenarioFile file(text);
   try {
     (void)read_limits(file.path());
     return "";
@@ -53,4 +53,4 @@ TEST(Limits, MisspeltAndSenselessOnesAreRefusedWithTheirLine) {
   EXPECT_THAT(said_of("3"), ::testing::HasSubstr(":1: not a file of safety limits"));
 }
 
-}  // namespace lf::scenario
+}  // namespace lf::config

@@ -1,8 +1,8 @@
-#include "host_sim/scenario/nearest.hpp"
+#include "hal/config/nearest.hpp"
 
 #include <gtest/gtest.h>
 
-namespace lf::scenario {
+namespace lf::config {
 
 TEST(Nearest, CountsEditsAsDamerauLevenshtein) {
   EXPECT_EQ(edit_distance("", ""), 0);
@@ -34,4 +34,4 @@ TEST(Nearest, SuggestsWhatWasProbablyMeantAndNothingElse) {
   EXPECT_EQ(suggestion("x", {}), "");
 }
 
-}  // namespace lf::scenario
+}  // namespace lf::config

@@ -1,0 +1,234 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <tuple>
+
+#include "firmware/arm/actuator.hpp"
+#include "firmware/arm/reach.hpp"
+#include "firmware/scan/camera_model.hpp"
+#include "hal/config/limits_file.hpp"
+#include "hal/config/machine.hpp"
+#include "hal/config/share.hpp"
+#include "hal/vision/calibration_file.hpp"
+#include "shared/arm/arm_description.hpp"
+#include "shared/input_error.hpp"
+
+namespace lf::config {
+
+namespace {
+
+// A joint that lags this far behind its target is stuck: at full speed the position loop of 20 rad/s lags 0.035 rad, and the gripper leads by 0.05.
+constexpr double following_window_rad = 0.15;
+
+canopen::DriveSetup drive_setup(const ArmJoint& joint, Joint which, const safety::JointLimit& limit) {
+  canopen::DriveSetup setup;
+  const auto index = static_cast<std::size_t>(which);
+  setup.node = can_map::drive_nodes[index];
+  setup.min_counts = arm::counts_from_rad(which, limit.min_rad);
+  setup.max_counts = arm::counts_from_rad(which, limit.max_rad);
+  // The rated torque can be held for ever, and is several times what free motion takes: with the peak torque a grip off the bar's middle pushes three
+  // times as hard, and trips the drives' over-current guard.
+  setup.max_torque_permille = static_cast<std::uint16_t>(std::clamp(1000.0 * joint.effort_nm / joint.rated_torque_nm, 1.0, 1000.0));
+  // Screws have their fewest counts a radian at the ends of the stroke and their most within it; the limits hold everywhere.
+  double least = 1e9;
+  for (int i = 0; i <= 64; ++i) least = std::min(least, arm::rad_per_count(which, std::lerp(limit.min_rad, limit.max_rad, i / 64.0)));
+  setup.max_speed_counts_s = static_cast<std::uint32_t>(joint.velocity_rad_s / least);
+  setup.following_window_counts = static_cast<std::uint32_t>(following_window_rad / least);
+  return setup;
+}
+
+canopen::NetworkConfig network_config(const ArmDescription& description, const safety::Limits& limits) {
+  canopen::NetworkConfig network;
+  for (std::size_t i = 0; i < joint_count; ++i)
+    network.drives[i] = drive_setup(description.joints[i], static_cast<Joint>(i), limits.joints[i]);
+  return network;
+}
+
+CameraCalibration camera_calibration(const Camera& camera) {
+  CameraCalibration calibration;
+  calibration.intrinsics.fx = calibration.intrinsics.fy = camera.focal_px;
+  std::copy(camera.distortion.begin(), camera.distortion.end(), calibration.intrinsics.distortion.begin());
+  calibration.base_from_camera = base_from_camera(camera);
+  calibration.exposure = Duration::from_us(camera.exposure_us);
+  return calibration;
+}
+
+// A calibration of another image size is one of another camera.
+void read_intrinsics(const std::string& path, CameraIntrinsics& intrinsics) {
+  CameraIntrinsics read = vision::read_camera_calibration(path);
+  if (read.width == 0) std::tie(read.width, read.height) = std::tie(intrinsics.width, intrinsics.height);
+  if (read.width != intrinsics.width || read.height != intrinsics.height) {
+    throw InputError(path + ": is of a " + std::to_string(read.width) + "x" + std::to_string(read.height) + " camera; the core takes " +
+                     std::to_string(intrinsics.width) + "x" + std::to_string(intrinsics.height));
+  }
+  intrinsics = read;
+}
+
+LaserCalibration laser_calibration(const Laser& laser) {
+  LaserCalibration calibration;
+  calibration.tool_from_laser.translation() = Vec3(laser.position_m[0], laser.position_m[1], laser.position_m[2]);
+  calibration.fan_half_angle_rad = rad_from_deg(laser.fan_half_angle_deg);
+  return calibration;
+}
+
+std::uint8_t button_index(const std::string& name) { return name == "left" ? 0 : name == "centre" ? 1 : 2; }
+
+mission::MissionConfig mission_config(const Machine& machine) {
+  mission::MissionConfig config = machine.mission;
+  config.layout = machine.panel;
+  config.use_lamps = machine.lamps_lit;
+  config.camera_always_on = machine.camera_always_on;
+  config.tasks = core_tasks(machine.tasks, machine.file);
+  return config;
+}
+
+[[noreturn]] void refuse(const Machine& machine, const std::string& message) { throw InputError(machine.file + ": " + message); }
+
+std::string excess_text(const arm::IkResult& ik) {
+  char text[48];
+  const bool length = ik.outcome == arm::IkOutcome::too_far || ik.outcome == arm::IkOutcome::too_near;
+  std::snprintf(text, sizeof text, length ? "%s by %.0f mm" : "%s by %.1f deg", arm::name(ik.outcome),
+                length ? 1e3 * ik.excess : deg_from_rad(ik.excess));
+  return text;
+}
+
+void check_reach(const Machine& machine, const std::string& what, const Vec3& panel_point_m) {
+  const arm::IkResult ik = arm::inverse_kinematics(machine.panel.nominal_base_from_panel() * panel_point_m, 0);
+  if (!ik.ok()) refuse(machine, what + " is out of the arm's reach at its nominal place: " + excess_text(ik));
+}
+
+void check_reach_of_tasks(const Machine& machine) {
+  const PanelLayout& panel = machine.panel;
+  for (const Task& task : machine.tasks) {
+    if (task.kind == Task::Kind::turn_valve) {
+      check_reach(machine, "the valve", Vec3(0, 0, panel.handle_height_m));
+      continue;
+    }
+    for (const std::string& name : task.order) {
+      const Vec2& centre = panel.buttons_m[button_index(name)];
+      check_reach(machine, "the " + name + " button", Vec3(centre.x(), centre.y(), panel.button_height_m));
+    }
+  }
+}
+
+void check_seen(const Machine& machine, const CameraCalibration& camera, const std::string& what, const Vec3& panel_point_m) {
+  const Vec3 in_camera = camera.base_from_camera.inverse() * (machine.panel.nominal_base_from_panel() * panel_point_m);
+  const std::optional<Vec2> pixel = scan::CameraModel(camera.intrinsics).project(in_camera);
+  if (!pixel) refuse(machine, what + " is behind the camera");
+  const bool inside =
+      pixel->x() >= 0 && pixel->x() <= camera.intrinsics.width - 1 && pixel->y() >= 0 && pixel->y() <= camera.intrinsics.height - 1;
+  if (inside) return;
+  char text[64];
+  std::snprintf(text, sizeof text, " is out of the camera's view, at pixel %.0f, %.0f", pixel->x(), pixel->y());
+  refuse(machine, what + text);
+}
+
+void check_view(const Machine& machine, const CameraCalibration& camera) {
+  const PanelLayout& panel = machine.panel;
+  const Vec2 low = panel.plate_min_m, high = panel.plate_max_m;
+  check_seen(machine, camera, "the panel's upper left corner", Vec3(low.x(), high.y(), 0));
+  check_seen(machine, camera, "the panel's upper right corner", Vec3(high.x(), high.y(), 0));
+  check_seen(machine, camera, "the panel's lower right corner", Vec3(high.x(), low.y(), 0));
+  check_seen(machine, camera, "the panel's lower left corner", Vec3(low.x(), low.y(), 0));
+  check_seen(machine, camera, "the marker", Vec3(panel.marker_centre_m.x(), panel.marker_centre_m.y(), 0));
+  check_seen(machine, camera, "the valve", Vec3(0, 0, panel.handle_height_m));
+}
+
+// Where the panel and what stands proud of it can be: the worst docking error moves a corner of the plate by 20 mm and, over half a metre, by
+// 2 degrees about two axes.
+void set_region(const PanelLayout& panel, scan::Triangulator::Config& triangulation) {
+  constexpr double docking_m = 0.060;
+  const Pose base_from_panel = panel.nominal_base_from_panel();
+  const double proud_m = panel.handle_height_m + 0.5 * panel.handle_thickness_m;
+  const Vec3 low = base_from_panel * Vec3(panel.plate_min_m.x(), panel.plate_min_m.y(), 0);
+  const Vec3 high = base_from_panel * Vec3(panel.plate_max_m.x(), panel.plate_max_m.y(), proud_m);
+  triangulation.region_min_m = low.cwiseMin(high).array() - docking_m;
+  triangulation.region_max_m = low.cwiseMax(high).array() + docking_m;
+}
+
+}  // namespace
+
+Pose base_from_camera(const Camera& camera) {
+  Mat3 forward;  // camera z along base x, camera x along base y, camera y along base z
+  forward << 0, 0, 1, 1, 0, 0, 0, 1, 0;
+  Pose pose = Pose::Identity();
+  pose.translation() = Vec3(camera.position_m[0], camera.position_m[1], camera.position_m[2]);
+  pose.linear() = Eigen::AngleAxisd(rad_from_deg(camera.right_deg), Vec3::UnitZ()).toRotationMatrix() *
+                  Eigen::AngleAxisd(-rad_from_deg(camera.down_deg), Vec3::UnitY()).toRotationMatrix() * forward;
+  return pose;
+}
+
+mission::Tasks core_tasks(const std::vector<Task>& tasks, const std::string& where) {
+  std::vector<mission::Task> all;
+  for (const Task& task : tasks) {
+    if (task.kind == Task::Kind::turn_valve) {
+      all.push_back({mission::Task::Kind::turn_valve, rad_from_deg(task.to_deg), 0});
+      continue;
+    }
+    for (const std::string& name : task.order) all.push_back({mission::Task::Kind::press_button, 0, button_index(name)});
+  }
+  if (all.empty()) throw InputError(where + ": 'tasks' is empty: there is nothing to do");
+  mission::Tasks core;
+  for (const mission::Task& task : all) {
+    if (core.push_back(task)) continue;
+    throw InputError(where + ": 'tasks' has " + std::to_string(all.size()) + " turns and presses; the core holds " +
+                     std::to_string(mission::Tasks::capacity()));
+  }
+  return core;
+}
+
+namespace {
+
+// Runs the steps of a set-up; without a list the first problem ends it.
+class Steps {
+ public:
+  explicit Steps(std::vector<std::string>* problems) : problems_(problems) {}
+  template <class Step>
+  bool take(Step step) const {
+    try {
+      step();
+      return true;
+    } catch (const InputError& problem) {
+      if (problems_ == nullptr) throw;
+      problems_->emplace_back(problem.what());
+      return false;
+    }
+  }
+
+ private:
+  std::vector<std::string>* problems_;
+};
+
+Core assemble(const Machine& machine, const Steps& steps) {
+  const std::filesystem::path folder = std::filesystem::path(machine.file).parent_path();
+  Core core;
+  ControllerConfig& controller = core.controller;
+  ArmDescription description;
+  const bool arm = steps.take([&] { description = load_arm_urdf(find_file(machine.arm_urdf, folder)); });
+  const bool limits = steps.take([&] { controller.limits = read_limits(find_file(machine.safety_limits, folder)); });
+  controller.mission_limits = controller.limits;
+  if (arm && limits) controller.network = network_config(description, controller.limits);
+  controller.camera = camera_calibration(machine.camera);
+  const bool camera = steps.take([&] {
+    if (machine.camera_calibration.empty()) return;
+    read_intrinsics(find_file(machine.camera_calibration, folder), controller.camera.intrinsics);
+  });
+  controller.laser = laser_calibration(machine.laser);
+  controller.marker = {machine.panel.marker_id, machine.panel.marker_size_m, machine.panel.panel_from_tag()};
+  steps.take([&] { controller.mission = mission_config(machine); });
+  core.scan.camera = controller.camera;
+  core.scan.laser = controller.laser;
+  set_region(machine.panel, core.scan.triangulation);
+  steps.take([&] { check_reach_of_tasks(machine); });
+  if (camera) steps.take([&] { check_view(machine, controller.camera); });
+  return core;
+}
+
+}  // namespace
+
+Core make_core(const Machine& machine) { return assemble(machine, Steps(nullptr)); }
+Core make_core(const Machine& machine, std::vector<std::string>& problems) { return assemble(machine, Steps(&problems)); }
+
+}  // namespace lf::config

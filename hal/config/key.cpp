@@ -1,0 +1,56 @@
+#include "hal/config/key.hpp"
+
+namespace lf::config {
+
+namespace {
+
+// The alternatives of KeyValue, in their order.
+struct TypeName {
+  const Key& key;
+  std::string operator()(double*) const { return "a number"; }
+  std::string operator()(std::int64_t*) const { return "a whole number"; }
+  std::string operator()(std::int32_t*) const { return "a whole number"; }
+  std::string operator()(std::uint32_t*) const { return "a whole number"; }
+  std::string operator()(bool*) const { return "true or false"; }
+  std::string operator()(std::string*) const { return key.words.empty() ? "text" : "one of " + words(); }
+  std::string operator()(Spread*) const { return "a number or {min: , max: }"; }
+  std::string operator()(Chance*) const { return "true, false or either"; }
+  std::string operator()(std::array<double, 3>*) const { return "a list of 3 numbers"; }
+  std::string operator()(Vec2*) const { return "a list of 2 numbers"; }
+  std::string operator()(std::array<Vec2, 3>*) const { return "a list of 3 lists of 2 numbers"; }
+  std::string operator()(std::vector<double>*) const { return "a list of numbers"; }
+  std::string operator()(std::vector<std::string>*) const { return key.words.empty() ? "a list of texts" : "a list of " + words(); }
+  std::string operator()(std::vector<Task>*) const { return "a list of tasks"; }
+  std::string operator()(std::vector<Fault>*) const { return "a list of faults"; }
+  std::string words() const {
+    std::string list;
+    for (std::size_t i = 0; i < key.words.size(); ++i) list += (i == 0 ? "" : i + 1 == key.words.size() ? " or " : ", ") + key.words[i];
+    return list;
+  }
+};
+
+}  // namespace
+
+Key key(std::string path, std::string unit, double min, double max, KeyValue value, std::string doc, std::vector<std::string> words) {
+  return {std::move(path), std::move(doc), std::move(unit), min, max, value, std::move(words)};
+}
+
+Keys keys(Task& task) {
+  return {key("turn_valve.to_deg", "deg", -180, 180, &task.to_deg, "turn the handle to this angle"),
+          key("press_buttons.order", "", 0, 0, &task.order, "press these buttons, one after the other", {"left", "centre", "right"})};
+}
+
+Keys keys(Fault& fault) {
+  return {key("at_s", "s", 0, 7200, &fault.at_s, "when it happens"),
+          key("kind", "", 0, 0, &fault.kind, "what happens",
+              {"overcurrent", "hot", "following", "stuck_encoder", "silent", "reboot", "estop", "interlock_open", "drop_frames",
+               "error_frames", "bus_off"}),
+          key("node", "", 0, 0, &fault.node, "to which node, where the kind is a node's",
+              {"slew", "shoulder", "elbow", "roll", "jaw", "io", "master"}),
+          key("duration_s", "s", 0, 7200, &fault.duration_s, "how long; 0 for the rest of the run"),
+          key("can_id", "", 0, 0x7FF, &fault.can_id, "drop_frames: the identifier whose frames are lost")};
+}
+
+std::string type_name(const Key& key) { return std::visit(TypeName{key}, key.value); }
+
+}  // namespace lf::config

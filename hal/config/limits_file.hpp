@@ -1,0 +1,14 @@
+// The safety limits' own file: YAML with a checksum of its values, which the core computes again.
+#pragma once
+
+#include <string>
+
+#include "firmware/safety/limits.hpp"
+
+namespace lf::config {
+
+// Throws InputError with file and line: unreadable or malformed, a key missing, unknown or repeated, a value that is not a finite number, limits out of
+// order or not positive, and a checksum that is not that of the values.
+safety::Limits read_limits(const std::string& path);
+
+}  // namespace lf::config

@@ -1,0 +1,71 @@
+// The machine, the place it works at and the job, as a user writes them down, and what the core is told of them. The same tables serve simulated runs
+// and the vehicle. Every default is the initial value of its member; the unit is in the name; angles that a user thinks of are in degrees.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "firmware/config.hpp"
+#include "firmware/mission/orders.hpp"
+#include "firmware/scan_pipeline.hpp"
+#include "hal/config/key.hpp"
+#include "shared/geometry/pose.hpp"
+#include "shared/panel/panel_layout.hpp"
+
+namespace lf::config {
+
+struct Camera {
+  std::int64_t exposure_us = 2000;
+  std::array<double, 3> position_m{0.015, -0.245, 0.060};  // in the arm's base frame
+  double down_deg = 43.5;
+  double right_deg = 20.75;
+  double focal_px = CameraIntrinsics{}.fx;
+  std::vector<double> distortion{-0.06, 0.02, 0.0005, -0.0005, 0.0};
+};
+
+struct Laser {
+  double fan_half_angle_deg = 40.0;                       // 38.5 is needed at the worst docking error
+  std::array<double, 3> position_m{-0.090, 0.0, -0.365};  // in the tool frame
+};
+
+struct Machine {
+  std::string file;  // where it was read; the files it names are looked for beside it, then among the shipped ones
+  PanelLayout panel;
+  Camera camera;
+  std::string camera_calibration;  // YAML of OpenCV or ROS that overrules `camera.focal_px` and `camera.distortion`; empty: none
+  Laser laser;
+  std::string arm_urdf = "arm/arm5e.urdf";
+  std::string safety_limits = "safety/limits.yaml";
+  mission::MissionConfig mission;  // its speeds, distances and tries; layout, lamps and tasks are filled from the rest
+  std::vector<Task> tasks{Task{}, Task{Task::Kind::press_buttons}};
+  bool lamps_lit = true;
+  bool camera_always_on = false;
+};
+
+// Parts of the tables, in the order of the documentation. The pointers are into the arguments.
+void add_panel(Keys& all, PanelLayout& panel);
+void add_camera(Keys& all, Camera& camera);
+void add_laser(Keys& all, Laser& laser);
+void add_mission(Keys& all, mission::MissionConfig& mission);
+
+// What the core is told: nominal calibrations, the survey of the panel, the job, drives and limits.
+struct Core {
+  ControllerConfig controller;
+  ScanConfig scan;
+};
+
+// Reads the arm's URDF, the file of limits and the camera's calibration. Throws InputError for these, and for a job that the machine as it is described
+// cannot do: a valve or button out of the arm's reach, a panel that the camera does not see, more tasks than the core holds.
+Core make_core(const Machine& machine);
+// The same, but goes on after each problem and adds it to `problems`; what comes back is of use only when there is none.
+Core make_core(const Machine& machine, std::vector<std::string>& problems);
+
+// Where the camera is and looks for the file's angles: first to the right, then down.
+Pose base_from_camera(const Camera& camera);
+
+// As the core has them. Throws InputError, beginning with `where`, when there are more than it holds, or none.
+mission::Tasks core_tasks(const std::vector<Task>& tasks, const std::string& where);
+
+}  // namespace lf::config

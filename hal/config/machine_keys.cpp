@@ -1,0 +1,61 @@
+#include "hal/config/machine.hpp"
+
+namespace lf::config {
+
+void add_panel(Keys& all, PanelLayout& p) {
+  all.push_back(key("panel.ahead_m", "m", 0.1, 1.2, &p.nominal_x_m, "nominal distance of the panel's plane from the arm's base"));
+  all.push_back(key("panel.right_m", "m", -1, 1, &p.nominal_y_m, "nominal place of the valve, to the right"));
+  all.push_back(key("panel.down_m", "m", -1, 1.5, &p.nominal_z_m, "nominal place of the valve, downward"));
+  all.push_back(
+      key("panel.plate_min_m", "m", -2, 2, &p.plate_min_m, "lower left corner of the plate as the robot sees it, from the valve"));
+  all.push_back(key("panel.plate_max_m", "m", -2, 2, &p.plate_max_m, "upper right corner"));
+  all.push_back(key("panel.handle_length_m", "m", 0.02, 0.5, &p.handle_length_m, "length of the T-bar"));
+  all.push_back(key("panel.handle_thickness_m", "m", 0.004, 0.05, &p.handle_thickness_m, "its thickness"));
+  all.push_back(key("panel.handle_height_m", "m", 0.03, 0.3, &p.handle_height_m, "its centre line's height over the panel"));
+  all.push_back(key("panel.buttons_m", "m", -1, 1, &p.buttons_m, "left, centre and right button's [right, up] from the valve"));
+  all.push_back(key("panel.button_width_m", "m", 0.005, 0.2, &p.button_width_m, "diameter of a button's cap"));
+  all.push_back(key("panel.button_height_m", "m", 0.005, 0.1, &p.button_height_m, "its height over the panel"));
+  all.push_back(key("panel.button_stroke_m", "m", 0.001, 0.05, &p.button_stroke_m, "how far it goes in"));
+  all.push_back(key("panel.marker_id", "", 0, 586, &p.marker_id, "the AprilTag 36h11 beside the valve"));
+  all.push_back(key("panel.marker_size_m", "m", 0.01, 0.5, &p.marker_size_m, "side of its black square"));
+  all.push_back(key("panel.marker_plate_m", "m", 0.01, 0.6, &p.marker_plate_m, "side of its plate"));
+  all.push_back(key("panel.marker_centre_m", "m", -1, 1, &p.marker_centre_m, "its centre's [right, up] from the valve"));
+}
+
+void add_camera(Keys& all, Camera& camera) {
+  all.push_back(key("camera.exposure_us", "us", 10, 30000, &camera.exposure_us, "exposure"));
+  all.push_back(key("camera.position_m", "m", -2, 2, &camera.position_m, "[x, y, z] in the arm's base frame"));
+  all.push_back(key("camera.down_deg", "deg", -90, 90, &camera.down_deg, "how far it looks down"));
+  all.push_back(key("camera.right_deg", "deg", -180, 180, &camera.right_deg, "how far it looks to the right"));
+  all.push_back(key("camera.focal_px", "px", 50, 5000, &camera.focal_px, "focal length in water; the image is 640x480"));
+  all.push_back(key("camera.distortion", "", -2, 2, &camera.distortion, "k1, k2, p1, p2, k3 as OpenCV has them"));
+}
+
+void add_laser(Keys& all, Laser& laser) {
+  all.push_back(key("laser.fan_half_angle_deg", "deg", 5, 80, &laser.fan_half_angle_deg, "half of the fan's angle in water"));
+  all.push_back(key("laser.position_m", "m", -1, 1, &laser.position_m, "[x, y, z] in the tool frame; the plane's normal is the tool's x"));
+}
+
+void add_mission(Keys& all, mission::MissionConfig& m) {
+  const double rad_s = 3;
+  all.push_back(key("mission.camera_syncs", "SYNC", 1, 250, &m.camera_syncs, "SYNCs from one exposure to the next; 10 are 25 Hz"));
+  all.push_back(
+      key("mission.frames_per_background", "", 2, 100, &m.frames_per_background, "one frame in so many is taken without the laser"));
+  all.push_back(key("mission.sweep_speed_rad_s", "rad/s", 0.001, rad_s, &m.sweep_speed_rad_s, "of the joints while scanning"));
+  all.push_back(key("mission.verify_band_m", "m", 0.01, 0.5, &m.verify_band_m, "half height of the second look's sweep around the valve"));
+  all.push_back(key("mission.move_speed_fraction", "", 0.01, 1, &m.move_speed_fraction, "of the joints' speed limits, in free motion"));
+  all.push_back(key("mission.approach_distance_m", "m", 0.01, 0.3, &m.approach_distance_m,
+                    "where straight approaches start, along the panel's normal"));
+  all.push_back(key("mission.approach_speed_m_s", "m/s", 0.001, 0.5, &m.approach_speed_m_s, "of straight guarded motions"));
+  all.push_back(key("mission.press_speed_m_s", "m/s", 0.001, 0.2, &m.press_speed_m_s, "of a press"));
+  all.push_back(
+      key("mission.press_overtravel_m", "m", 0, 0.05, &m.press_overtravel_m, "beyond a button's bottom before the press counts as missed"));
+  all.push_back(
+      key("mission.press_torque_nm", "N m", 0.1, 100, &m.press_torque_nm, "rise of a joint's torque that says the button has bottomed"));
+  all.push_back(key("mission.turn_speed_rad_s", "rad/s", 0.01, rad_s, &m.turn_speed_rad_s, "of the handle"));
+  all.push_back(
+      key("mission.valve_tolerance_rad", "rad", 0.001, 0.5, &m.valve_tolerance_rad, "what the second look accepts without turning again"));
+  all.push_back(key("mission.tries", "", 1, 20, &m.tries, "of a step that may be taken again"));
+}
+
+}  // namespace lf::config

@@ -1,0 +1,45 @@
+#include "hal/config/nearest.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+namespace lf::config {
+
+namespace {
+
+char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
+
+}  // namespace
+
+int edit_distance(std::string_view a, std::string_view b) {
+  std::vector<int> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) last[j] = static_cast<int>(j);
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    row[0] = static_cast<int>(i);
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const int change = lower(a[i - 1]) == lower(b[j - 1]) ? 0 : 1;
+      row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + change});
+      if (i > 1 && j > 1 && lower(a[i - 1]) == lower(b[j - 2]) && lower(a[i - 2]) == lower(b[j - 1]))
+        row[j] = std::min(row[j], before[j - 2] + 1);
+    }
+    before.swap(last);
+    last.swap(row);
+  }
+  return last[b.size()];
+}
+
+std::string suggestion(std::string_view word, const std::vector<std::string>& known) {
+  const std::string* nearest = nullptr;
+  int fewest = 0;
+  for (const std::string& name : known) {
+    const int edits = edit_distance(word, name);
+    if (nearest == nullptr || edits < fewest) {
+      nearest = &name;
+      fewest = edits;
+    }
+  }
+  if (nearest == nullptr || fewest > std::max(2, static_cast<int>(nearest->size()) / 3)) return "";
+  return "; did you mean '" + *nearest + "'?";
+}
+
+}  // namespace lf::config

@@ -1,0 +1,18 @@
+// "did you mean ...": the known name closest to a misspelt one.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lf::config {
+
+// Edits between two words: insertions, deletions, substitutions and swaps of neighbours (Damerau-Levenshtein, restricted), letters' case ignored.
+// O(|a| |b|).
+int edit_distance(std::string_view a, std::string_view b);
+
+// "; did you mean 'x'?" for the nearest of `known` if it is near enough to be meant (a third of its letters, at least two), otherwise "".
+// Equal distances go to the one that comes first.
+std::string suggestion(std::string_view word, const std::vector<std::string>& known);
+
+}  // namespace lf::config

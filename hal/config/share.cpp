@@ -1,0 +1,45 @@
+#include "hal/config/share.hpp"
+
+#include <cstdlib>
+#include <system_error>
+
+#include "shared/input_error.hpp"
+
+namespace lf::config {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+bool holds_scenarios(const fs::path& folder) {
+  std::error_code ignored;
+  return fs::exists(folder / "scenarios" / "default.yaml", ignored);
+}
+
+}  // namespace
+
+fs::path share_folder() {
+  if (const char* set = std::getenv("LANTERNFISH_SHARE"); set != nullptr && *set != '\0') {
+    if (holds_scenarios(set)) return set;
+    throw InputError(std::string(set) + ": LANTERNFISH_SHARE names this folder, but scenarios/default.yaml is not in it");
+  }
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  if (!error) {
+    const fs::path installed = program.parent_path().parent_path() / "share" / "lanternfish";
+    if (holds_scenarios(installed)) return installed;
+  }
+  if (const fs::path source = fs::path(LANTERNFISH_SOURCE_DIR) / "shared"; holds_scenarios(source)) return source;
+  throw InputError("the shipped scenarios are not beside the program, nor in " LANTERNFISH_SOURCE_DIR
+                   "/shared; set LANTERNFISH_SHARE to their folder");
+}
+
+fs::path find_file(const std::string& name, const fs::path& folder) {
+  const fs::path path(name);
+  if (path.is_absolute()) return path;
+  std::error_code ignored;
+  if (fs::exists(folder / path, ignored)) return folder / path;
+  return share_folder() / path;
+}
+
+}  // namespace lf::config

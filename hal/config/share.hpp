@@ -1,0 +1,16 @@
+// Where the files that ship with the program are: scenarios, the arm's URDF, safety limits.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace lf::config {
+
+// The first of these that holds scenarios/default.yaml: $LANTERNFISH_SHARE, share/lanternfish beside the program's bin folder, the source tree's shared/.
+// Throws InputError when $LANTERNFISH_SHARE is set and has none, or when there is none at all.
+std::filesystem::path share_folder();
+
+// `name` as a path: itself when absolute, else beside `folder` if it is there, else in the share folder (whether or not it exists).
+std::filesystem::path find_file(const std::string& name, const std::filesystem::path& folder);
+
+}  // namespace lf::config

@@ -1,0 +1,260 @@
+#include "hal/config/yaml_reader.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <concepts>
+#include <set>
+
+#include "hal/config/nearest.hpp"
+#include "shared/input_error.hpp"
+
+namespace lf::config {
+
+namespace {
+
+std::string number_text(double value) {
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, value);
+  return std::string(text, end.ptr);
+}
+
+std::string last_name(const std::string& path) { return path.substr(path.rfind('.') + 1); }
+
+// The first name of `path` after `prefix`.
+std::string next_name(const std::string& path, const std::string& prefix) {
+  const std::size_t dot = path.find('.', prefix.size());
+  return path.substr(prefix.size(), dot == std::string::npos ? dot : dot - prefix.size());
+}
+
+// "text 'abc'", "a list": what stands there instead of what should.
+std::string shape_of(const YAML::Node& node) {
+  if (!node.IsDefined() || node.IsNull()) return "nothing";
+  if (node.IsSequence()) return "a list";
+  if (node.IsMap()) return "a group of keys";
+  return "'" + node.Scalar() + "'";
+}
+
+class ValueReader {
+ public:
+  ValueReader(const YAML::Node& node, const std::string& path, const Key& key, const Source& source)
+      : node_(node), path_(path), key_(key), source_(source) {}
+
+  void operator()(double* value) const { *value = number(node_); }
+  template <std::integral Integer>
+  void operator()(Integer* value) const {
+    const double read = number(node_);
+    if (read != std::floor(read)) wrong_type(node_);
+    *value = static_cast<Integer>(read);
+  }
+  void operator()(bool* value) const {
+    if (!node_.IsScalar() || !YAML::convert<bool>::decode(node_, *value)) wrong_type(node_);
+  }
+  void operator()(std::string* value) const { *value = text(node_); }
+  void operator()(Spread* value) const;
+  void operator()(Chance* value) const;
+  void operator()(std::array<double, 3>* value) const {
+    const std::vector<double> read = numbers(node_, 3);
+    std::copy(read.begin(), read.end(), value->begin());
+  }
+  void operator()(Vec2* value) const { *value = point(node_); }
+  void operator()(std::array<Vec2, 3>* value) const {
+    if (!node_.IsSequence() || node_.size() != value->size()) wrong_type(node_);
+    for (std::size_t i = 0; i < value->size(); ++i) (*value)[i] = point(node_[i]);
+  }
+  void operator()(std::vector<double>* value) const { *value = numbers(node_, 0); }
+  void operator()(std::vector<std::string>* value) const;
+  void operator()(std::vector<Task>* value) const;
+  void operator()(std::vector<Fault>* value) const;
+
+ private:
+  [[noreturn]] void wrong_type(const YAML::Node& node) const {
+    source_.refuse(node.Mark(), "'" + path_ + "' takes " + type_name(key_) + ", not " + shape_of(node));
+  }
+
+  double number(const YAML::Node& node) const;
+  std::vector<double> numbers(const YAML::Node& node, std::size_t count) const;
+  Vec2 point(const YAML::Node& node) const {
+    const std::vector<double> read = numbers(node, 2);
+    return {read[0], read[1]};
+  }
+  std::string text(const YAML::Node& node) const;
+
+  const YAML::Node& node_;
+  const std::string& path_;
+  const Key& key_;
+  const Source& source_;
+};
+
+double ValueReader::number(const YAML::Node& node) const {
+  if (!node.IsScalar() || node.Tag() == "!") wrong_type(node);  // "!" is what a quoted text is tagged with
+  std::string_view text = node.Scalar();
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (text == ".nan" || text == ".NaN" || text == ".NAN")
+    value = std::nan("");
+  else if (text.ends_with(".inf") || text.ends_with(".Inf") || text.ends_with(".INF"))
+    value = INFINITY;
+  else if (error == std::errc::result_out_of_range)
+    value = INFINITY;
+  else if (error != std::errc() || end != text.data() + text.size())
+    wrong_type(node);
+  if (!std::isfinite(value)) source_.refuse(node.Mark(), "'" + path_ + "' must be a finite number, not " + node.Scalar());
+  if (value < key_.min || value > key_.max) {
+    const std::string unit = key_.unit.empty() ? "" : " " + key_.unit;
+    source_.refuse(node.Mark(), "'" + path_ + "' is " + node.Scalar() + ", out of its range " + number_text(key_.min) + " to " +
+                                    number_text(key_.max) + unit);
+  }
+  return value;
+}
+
+// `count` 0: any number of them.
+std::vector<double> ValueReader::numbers(const YAML::Node& node, std::size_t count) const {
+  if (!node.IsSequence() || (count > 0 && node.size() != count)) wrong_type(node);
+  std::vector<double> values;
+  for (const YAML::Node& item : node) values.push_back(number(item));
+  return values;
+}
+
+std::string ValueReader::text(const YAML::Node& node) const {
+  if (!node.IsScalar()) wrong_type(node);
+  const std::string& value = node.Scalar();
+  if (value.find('\0') != std::string::npos) source_.refuse(node.Mark(), "'" + path_ + "' has a zero byte in it");
+  if (key_.words.empty()) return value;
+  for (const std::string& word : key_.words) {
+    if (word == value) return value;
+  }
+  const std::string nearest = suggestion(value, key_.words);
+  if (nearest.empty()) wrong_type(node);
+  source_.refuse(node.Mark(), "'" + path_ + "' has no '" + value + "'" + nearest);
+}
+
+void ValueReader::operator()(Spread* value) const {
+  if (node_.IsScalar()) {
+    *value = Spread::fixed(number(node_));
+    return;
+  }
+  if (!node_.IsMap()) wrong_type(node_);
+  Spread read;
+  const std::vector<Key> ends{{"min", "", key_.unit, key_.min, key_.max, &read.min}, {"max", "", key_.unit, key_.min, key_.max, &read.max}};
+  read_map(node_, "", path_ + ".", ends, source_);
+  if (!node_["min"] || !node_["max"]) source_.refuse(node_.Mark(), "'" + path_ + "' needs both min and max");
+  if (read.min > read.max) source_.refuse(node_.Mark(), "'" + path_ + "' has its min above its max");
+  *value = read;
+}
+
+void ValueReader::operator()(Chance* value) const {
+  if (!node_.IsScalar()) wrong_type(node_);
+  bool lit = false;
+  if (node_.Scalar() == "either")
+    *value = Chance::either;
+  else if (YAML::convert<bool>::decode(node_, lit))
+    *value = lit ? Chance::yes : Chance::no;
+  else
+    wrong_type(node_);
+}
+
+void ValueReader::operator()(std::vector<std::string>* value) const {
+  if (!node_.IsSequence()) wrong_type(node_);
+  value->clear();
+  for (const YAML::Node& item : node_) value->push_back(text(item));
+}
+
+void ValueReader::operator()(std::vector<Task>* value) const {
+  if (!node_.IsSequence()) wrong_type(node_);
+  value->clear();
+  for (std::size_t i = 0; i < node_.size(); ++i) {
+    const YAML::Node item = node_[i];
+    const std::string shown = path_ + "[" + std::to_string(i) + "]";
+    if (!item.IsMap() || item.size() != 1)
+      source_.refuse(item.Mark(), "'" + shown + "' takes one task, turn_valve or press_buttons, not " + shape_of(item));
+    Task task;
+    read_map(item, "", shown + ".", keys(task), source_);
+    task.kind = item["turn_valve"] ? Task::Kind::turn_valve : Task::Kind::press_buttons;
+    if (task.kind == Task::Kind::press_buttons && task.order.empty())
+      source_.refuse(item.Mark(), "'" + shown + ".press_buttons.order' names no button");
+    value->push_back(task);
+  }
+}
+
+void ValueReader::operator()(std::vector<Fault>* value) const {
+  if (!node_.IsSequence()) wrong_type(node_);
+  value->clear();
+  for (std::size_t i = 0; i < node_.size(); ++i) {
+    const YAML::Node item = node_[i];
+    const std::string shown = path_ + "[" + std::to_string(i) + "]";
+    if (!item.IsMap()) source_.refuse(item.Mark(), "'" + shown + "' takes a group of keys, not " + shape_of(item));
+    Fault fault;
+    read_map(item, "", shown + ".", keys(fault), source_);
+    if (!item["kind"]) source_.refuse(item.Mark(), "'" + shown + "' has no kind");
+    value->push_back(fault);
+  }
+}
+
+}  // namespace
+
+void Source::refuse(const YAML::Mark& mark, const std::string& message) const {
+  throw InputError(name_, has_lines_ && mark.line >= 0 ? mark.line + 1 : 0, message);
+}
+
+YAML::Node parse_yaml(const std::string& text, const Source& source) {
+  try {
+    return YAML::Load(text);
+  } catch (const YAML::Exception& error) {
+    source.refuse(error.mark, "not YAML: " + error.msg);
+  }
+}
+
+std::string suggest_path(const std::string& path, const std::vector<Key>& table) {
+  const std::string prefix = path.substr(0, path.rfind('.') == std::string::npos ? 0 : path.rfind('.') + 1);
+  std::vector<std::string> here, elsewhere;
+  for (const Key& key : table) {
+    if (key.path.starts_with(prefix)) here.push_back(prefix + next_name(key.path, prefix));
+    if (edit_distance(last_name(path), last_name(key.path)) <= 1) elsewhere.push_back(key.path);
+  }
+  std::vector<std::string> names;
+  for (const std::string& candidate : here) names.push_back(last_name(candidate));
+  if (const std::string near = suggestion(last_name(path), names); !near.empty()) return near;
+  if (!elsewhere.empty()) return "; did you mean '" + elsewhere.front() + "'?";
+  return "";
+}
+
+namespace {
+
+void read_entry(const YAML::Node& name, const YAML::Node& value, const std::string& path, const std::string& shown, const Keys& table,
+                const Source& source) {
+  const auto exact = std::find_if(table.begin(), table.end(), [&](const Key& key) { return key.path == path; });
+  if (exact != table.end()) {
+    if (value.IsNull()) source.refuse(name.Mark(), "'" + shown + path + "' takes " + type_name(*exact) + ", not nothing");
+    return read_value(value, shown + path, *exact, source);
+  }
+  const bool section = std::any_of(table.begin(), table.end(), [&](const Key& key) { return key.path.starts_with(path + "."); });
+  if (!section) source.refuse(name.Mark(), "unknown key '" + shown + path + "'" + suggest_path(path, table));
+  if (value.IsNull()) return;
+  if (!value.IsMap()) source.refuse(value.Mark(), "'" + shown + path + "' takes a group of keys, not " + shape_of(value));
+  read_map(value, path + ".", shown, table, source);
+}
+
+}  // namespace
+
+void read_map(const YAML::Node& node, const std::string& prefix, const std::string& shown, const Keys& table, const Source& source) {
+  std::set<std::string> seen;
+  for (const auto& entry : node) {
+    try {
+      if (!entry.first.IsScalar()) source.refuse(entry.first.Mark(), "a key must be a word");
+      const std::string path = prefix + entry.first.Scalar();
+      if (!seen.insert(path).second) source.refuse(entry.first.Mark(), "'" + shown + path + "' is given twice");
+      read_entry(entry.first, entry.second, path, shown, table, source);
+    } catch (const InputError& problem) {
+      if (source.problems() == nullptr) throw;
+      source.problems()->emplace_back(problem.what());
+    }
+  }
+}
+
+void read_value(const YAML::Node& node, const std::string& shown_path, const Key& key, const Source& source) {
+  std::visit(ValueReader(node, shown_path, key, source), key.value);
+}
+
+}  // namespace lf::config

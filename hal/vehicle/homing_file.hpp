@@ -1,0 +1,24 @@
+// What commissioning found: for each joint, what its drive's absolute encoder counts where the arm's own count is 0. YAML, written and read here.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "shared/messages/joint_io.hpp"
+
+namespace lf::hal {
+
+struct HomingOffsets {
+  std::array<std::int32_t, joint_count> zero_counts{};
+  std::array<std::string, joint_count> found;  // how and when, a line for people
+};
+
+const char* joint_name(std::size_t joint);  // "slew" ...
+
+// Throws InputError with file and line: unreadable or malformed, a joint missing or unknown, a number out of range.
+HomingOffsets read_homing_file(const std::string& path);
+// Replaces the file as a whole or not at all. Throws InputError with the cause.
+void write_homing_file(const std::string& path, const HomingOffsets& offsets);
+
+}  // namespace lf::hal

@@ -1,0 +1,32 @@
+// One master a bus: a lock file keyed by interface and network namespace, and an ear for masters that know nothing of it.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "hal/vehicle/socket_can.hpp"
+#include "shared/messages/time.hpp"
+
+namespace lf::hal {
+
+class InstanceLock {
+ public:
+  InstanceLock() = default;
+  ~InstanceLock();
+  InstanceLock(const InstanceLock&) = delete;
+  InstanceLock& operator=(const InstanceLock&) = delete;
+
+  // Locks FOLDER/lanternfishd-INTERFACE-NAMESPACE.lock (flock(2): gone with the process, however it ends). An empty text when it is ours, else what is
+  // in the way, with the other's process number where the file has it.
+  std::string take(const std::string& folder, const std::string& interface);
+  const std::string& path() const { return path_; }
+
+ private:
+  int fd_ = -1;
+  std::string path_;
+};
+
+// Listens for `how_long` to a bus that should be silent of masters. What gives another one away, in words: a SYNC or a master's heartbeat.
+std::optional<std::string> hear_another_master(SocketCan& can, Duration how_long);
+
+}  // namespace lf::hal

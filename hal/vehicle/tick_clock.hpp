@@ -1,0 +1,36 @@
+// The control thread's beat: absolute sleeps on CLOCK_MONOTONIC, on a grid that does not drift and that no jump of the wall clock moves.
+#pragma once
+
+#include <cstdint>
+
+#include "hal/vehicle/latency_histogram.hpp"
+#include "shared/messages/time.hpp"
+
+namespace lf::hal {
+
+Time monotonic_now();
+// Sleeps until `t` on CLOCK_MONOTONIC; returns at once when it is past. Signals do not shorten it.
+void sleep_until(Time t);
+
+class TickClock {
+ public:
+  explicit TickClock(Duration period) : period_(period) {}
+
+  // The first tick is a period from now.
+  void start();
+  // Blocks until the next tick and returns its time on the grid. After a stall the ticks that have passed altogether are left out and counted: what they
+  // would have sent is stale.
+  Time wait();
+  Time next() const { return next_; }
+
+  std::uint64_t missed() const { return missed_; }
+  const LatencyHistogram& lateness() const { return lateness_; }  // of waking up
+
+ private:
+  Duration period_;
+  Time next_;
+  std::uint64_t missed_ = 0;
+  LatencyHistogram lateness_;
+};
+
+}  // namespace lf::hal

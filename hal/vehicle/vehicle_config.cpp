@@ -1,0 +1,166 @@
+#include "hal/vehicle/vehicle_config.hpp"
+
+#include <net/if.h>
+
+#include <filesystem>
+#include <limits>
+
+#include "hal/config/share.hpp"
+#include "hal/config/text_file.hpp"
+#include "hal/config/yaml_reader.hpp"
+#include "hal/vehicle/homing_file.hpp"
+#include "shared/input_error.hpp"
+
+namespace lf::hal {
+
+namespace {
+
+using config::key;
+using config::Keys;
+
+constexpr double largest = std::numeric_limits<std::int32_t>::max();
+
+void add_bus(Keys& all, VehicleConfig& c) {
+  all.push_back(key("can.interface", "", 0, 0, &c.interface, "the CAN interface, real or virtual"));
+  all.push_back(
+      key("can.transmit_deadline_ms", "ms", 0.5, 100, &c.transmit_deadline_ms, "frames that could not be sent for so long are dropped"));
+}
+
+void add_camera_source(Keys& all, VehicleConfig& c) {
+  all.push_back(
+      key("camera.source", "", 0, 0, &c.camera_source, "a V4L2 device, a shared frame ring, or no camera", {"device", "ring", "none"}));
+  all.push_back(key("camera.device", "", 0, 0, &c.device, "the V4L2 device"));
+  all.push_back(key("camera.gain", "", 0, largest, &c.gain, "in the driver's units"));
+  all.push_back(
+      key("camera.stamp_delay_us", "us", -100000, 100000, &c.stamp_delay_us, "from the start of an exposure to its image's time stamp"));
+  all.push_back(key("camera.ring", "", 0, 0, &c.ring, "the frame ring: a file, or /dev/mmapper in User Mode Linux"));
+  all.push_back(key("camera.ring_bytes", "bytes", 4096, 1e9, &c.ring_bytes, "size of the ring's file"));
+  all.push_back(key("camera.ring_offset", "bytes", 0, 1e9, &c.ring_offset, "where in the file the ring begins"));
+  all.push_back(key("camera.match_window_us", "us", 100, 20000, &c.match_window_us,
+                    "an image belongs to the exposure ordered within this of its start"));
+  all.push_back(
+      key("camera.image_due_ms", "ms", 10, 2000, &c.image_due_ms, "from the start of an exposure until its image has surely come"));
+  all.push_back(key("camera.calibration", "", 0, 0, &c.machine.camera_calibration,
+                    "YAML of OpenCV's or ROS's calibration, instead of focal_px and distortion"));
+  all.push_back(key("camera.always_on", "", 0, 0, &c.machine.camera_always_on, "a frame every camera period throughout, for the record"));
+}
+
+void add_machine(Keys& all, VehicleConfig& c) {
+  config::add_panel(all, c.machine.panel);
+  config::add_camera(all, c.machine.camera);
+  config::add_laser(all, c.machine.laser);
+  all.push_back(key("lamps.lit", "", 0, 0, &c.machine.lamps_lit, "stills are taken with the lamps on"));
+  all.push_back(key("arm.urdf", "", 0, 0, &c.machine.arm_urdf, "the arm; relative to this file's folder, then to the shipped files"));
+  all.push_back(key("safety.limits", "", 0, 0, &c.machine.safety_limits, "the checksummed file of limits; found as arm.urdf is"));
+  config::add_mission(all, c.machine.mission);
+}
+
+void add_running(Keys& all, VehicleConfig& c) {
+  all.push_back(key("realtime.priority", "", 0, 98, &c.realtime.priority, "SCHED_FIFO priority of the control thread; 0: not asked for"));
+  all.push_back(key("realtime.cpu", "", -1, 1023, &c.realtime.cpu, "the control thread's CPU; -1: any"));
+  all.push_back(key("realtime.vision_cpu", "", -1, 1023, &c.vision_cpu, "the vision thread's CPU; -1: any"));
+  all.push_back(key("realtime.lock_memory", "", 0, 0, &c.realtime.lock_memory, "nothing is paged out, nothing comes late"));
+  all.push_back(key("operator.socket", "", 0, 0, &c.operator_socket, "the operator interface's Unix socket"));
+  all.push_back(key("operator.operators", "", 0, 0, &c.operators, "users and @groups that may run missions"));
+  all.push_back(key("operator.engineers", "", 0, 0, &c.engineers, "users and @groups that may do everything"));
+  all.push_back(
+      key("estop.input", "", 0, 0, &c.estop_input, "a file that reads 1 while the emergency-stop chain is whole, as a GPIO's value does"));
+  all.push_back(key("log.folder", "", 0, 0, &c.log_folder, "can0.log and log.jsonl are written here"));
+  all.push_back(key("lock_folder", "", 0, 0, &c.lock_folder, "where lock files may be"));
+  all.push_back(key("homing.file", "", 0, 0, &c.homing_file, "what `lanternfishd commission` found; relative to this file's folder"));
+}
+
+bool page_sized(std::int64_t bytes) { return bytes % static_cast<std::int64_t>(frame_ring_page) == 0; }
+
+// What no single key can tell.
+void check_together(const VehicleConfig& c, const std::string& file, std::vector<std::string>& problems) {
+  const auto refuse = [&](const std::string& message) { problems.push_back(file + ": " + message); };
+  if (c.interface.empty() || c.interface.size() >= IF_NAMESIZE)
+    refuse("'can.interface' takes a name of 1 to 15 letters, not '" + c.interface + "'");
+  if (c.camera_source == "ring" && c.ring.empty()) refuse("'camera.source' is ring, but 'camera.ring' names no file");
+  if (c.camera_source == "device" && c.device.empty()) refuse("'camera.source' is device, but 'camera.device' names none");
+  if (!page_sized(c.ring_bytes)) refuse("'camera.ring_bytes' is not a multiple of 4096");
+  if (!page_sized(c.ring_offset) || c.ring_offset >= c.ring_bytes)
+    refuse("'camera.ring_offset' is not a multiple of 4096 below 'camera.ring_bytes'");
+  if (c.operator_socket.empty() || c.operator_socket.size() > 107) refuse("'operator.socket' takes a path of 1 to 107 letters");
+  if (c.machine.camera.distortion.size() != 5) refuse("'camera.distortion' takes 5 numbers: k1, k2, p1, p2, k3");
+  const PanelLayout& panel = c.machine.panel;
+  if ((panel.plate_min_m.array() >= panel.plate_max_m.array()).any()) refuse("'panel.plate_min_m' is not below 'panel.plate_max_m'");
+  if (panel.marker_plate_m <= panel.marker_size_m) refuse("'panel.marker_plate_m' is not larger than 'panel.marker_size_m'");
+  const double between_ms = c.machine.mission.camera_syncs * can_map::sync_period.s() * 1e3;
+  if (c.match_window_us * 1e-3 >= between_ms / 2)
+    refuse("'camera.match_window_us' is half the time between two exposures or more: an image could belong to either");
+}
+
+void read_homing(VehicleConfig& c, std::vector<std::string>& problems) {
+  if (c.homing_file.empty()) return;
+  const std::filesystem::path given(c.homing_file);
+  if (given.is_relative()) c.homing_file = (std::filesystem::path(c.machine.file).parent_path() / given).string();
+  if (!std::filesystem::exists(c.homing_file)) return;  // not commissioned yet: the drives' own zeros
+  try {
+    const HomingOffsets offsets = read_homing_file(c.homing_file);
+    for (std::size_t i = 0; i < joint_count; ++i) c.core.controller.network.drives[i].encoder_zero_counts = offsets.zero_counts[i];
+  } catch (const InputError& problem) {
+    problems.emplace_back(problem.what());
+  }
+}
+
+std::string joined(const std::vector<std::string>& problems) {
+  std::string text;
+  for (const std::string& problem : problems) text += (text.empty() ? "" : "\n") + problem;
+  return text;
+}
+
+}  // namespace
+
+SocketCan::Config VehicleConfig::can() const {
+  SocketCan::Config can;
+  can.interface = interface;
+  can.filters = core_filters();
+  can.transmit_deadline = Duration::from_s(transmit_deadline_ms * 1e-3);
+  return can;
+}
+
+V4l2Camera::Config VehicleConfig::v4l2() const {
+  V4l2Camera::Config camera;
+  camera.device = device;
+  camera.width = core.controller.camera.intrinsics.width;
+  camera.height = core.controller.camera.intrinsics.height;
+  camera.exposure = core.controller.camera.exposure;
+  camera.gain = gain;
+  camera.stamp_delay = Duration::from_us(stamp_delay_us);
+  return camera;
+}
+
+RingCamera::Config VehicleConfig::ring_camera() const {
+  return {ring, static_cast<std::size_t>(ring_bytes), static_cast<std::size_t>(ring_offset)};
+}
+
+Keys keys(VehicleConfig& config) {
+  Keys all;
+  add_bus(all, config);
+  add_camera_source(all, config);
+  all.push_back(key("tasks", "", 0, 0, &config.machine.tasks, "the job, in order"));
+  add_machine(all, config);
+  add_running(all, config);
+  return all;
+}
+
+VehicleConfig load_vehicle_config(const std::string& path) {
+  VehicleConfig config;
+  config.machine.file = path;
+  std::vector<std::string> problems;
+  const config::Source source = config::Source::of_file(path, problems);
+  const YAML::Node root = config::parse_yaml(config::read_text_file(path), source);
+  if (!root.IsNull() && !root.IsMap()) source.refuse(root.Mark(), "a vehicle's configuration is a group of keys");
+  if (root.IsMap()) config::read_map(root, "", "", keys(config), source);
+  check_together(config, path, problems);
+  config.core = config::make_core(config.machine, problems);
+  read_homing(config, problems);
+  if (!problems.empty()) throw InputError(joined(problems));
+  config.core.scan.match_window = Duration::from_us(config.match_window_us);
+  config.core.controller.mission.image_due = Duration::from_ms(config.image_due_ms);
+  return config;
+}
+
+}  // namespace lf::hal

@@ -1,0 +1,56 @@
+// vehicle.yaml: the machine (hal/config/machine.hpp, the same keys as a scenario's), and what it stands on: bus, camera, threads, operator, files.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "hal/config/machine.hpp"
+#include "hal/vehicle/realtime.hpp"
+#include "hal/vehicle/ring_camera.hpp"
+#include "hal/vehicle/socket_can.hpp"
+#include "hal/vehicle/v4l2_camera.hpp"
+
+namespace lf::hal {
+
+struct VehicleConfig {
+  config::Machine machine;
+  config::Core core;  // made of it, with the homing file's offsets
+
+  std::string interface = "can0";
+  double transmit_deadline_ms = 4;  // a SYNC period
+
+  std::string camera_source = "device";  // device, ring or none
+  std::string device = "/dev/video0";
+  std::int32_t gain = 0;
+  std::int32_t stamp_delay_us = 0;
+  std::string ring;
+  std::int64_t ring_bytes = static_cast<std::int64_t>(frame_ring_bytes(camera_ring_slots, camera_ring_payload));
+  std::int64_t ring_offset = 0;
+  std::int32_t match_window_us = 2000;
+  std::int32_t image_due_ms = 100;
+
+  RealtimeConfig realtime;
+  std::int32_t vision_cpu = -1;
+
+  std::string operator_socket = "/run/lanternfishd/operator.sock";
+  std::vector<std::string> operators;  // users or groups beside root and the daemon's own user
+  std::vector<std::string> engineers;
+
+  std::string estop_input;  // a file that reads 1 while the chain is whole: a GPIO's value; empty: none beside the output node's
+  std::string log_folder = "/var/log/lanternfishd";
+  std::string lock_folder = "/run/lock";
+  std::string homing_file;  // written by `lanternfishd commission`; empty: the drives count from the arm's own zero
+
+  SocketCan::Config can() const;
+  V4l2Camera::Config v4l2() const;
+  RingCamera::Config ring_camera() const;
+};
+
+// In the order of the documentation. The pointers are into the argument.
+config::Keys keys(VehicleConfig& config);
+
+// Throws InputError whose text has every problem on a line of its own, each with file and line where it has one.
+VehicleConfig load_vehicle_config(const std::string& path);
+
+}  // namespace lf::hal

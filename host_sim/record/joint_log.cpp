@@ -1,0 +1,36 @@
+#include "host_sim/record/joint_log.hpp"
+
+#include <array>
+#include <cstdio>
+#include <string>
+
+namespace lf::record {
+
+namespace {
+
+constexpr std::array<const char*, joint_count> names{"slew", "shoulder", "elbow", "roll", "jaw"};
+
+}  // namespace
+
+JointLog::JointLog(const std::filesystem::path& path) : sink_(path) {
+  std::string header = "t_s";
+  for (const char* name : names) {
+    for (const char* what : {"_rad", "_target_rad", "_torque_nm"}) header += std::string(",") + name + what;
+  }
+  sink_.write(header + "\n");
+}
+
+bool JointLog::write(const Telemetry& telemetry) noexcept {
+  std::array<char, 512> line;
+  int length = std::snprintf(line.data(), line.size(), "%.6f", telemetry.t.s());
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    const auto used = static_cast<std::size_t>(length);
+    length += std::snprintf(line.data() + used, line.size() - used, ",%.7f,%.7f,%.3f", telemetry.actual_rad[i], telemetry.target_rad[i],
+                            telemetry.torque_nm[i]);
+    if (static_cast<std::size_t>(length) + 1 >= line.size()) return false;  // no number is that long
+  }
+  line[static_cast<std::size_t>(length)] = '\n';
+  return sink_.write({line.data(), static_cast<std::size_t>(length) + 1});
+}
+
+}  // namespace lf::record

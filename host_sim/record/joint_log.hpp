@@ -1,0 +1,28 @@
+// What the core knew of its joints over a run, as CSV: t_s, then of each joint its angle and target in rad and its torque in N m.
+//
+//   t_s,slew_rad,slew_target_rad,slew_torque_nm,shoulder_rad,...
+//   4.240000,0.1234567,0.1240000,3.210,...
+#pragma once
+
+#include <filesystem>
+
+#include "firmware/telemetry.hpp"
+#include "host_sim/record/file_sink.hpp"
+
+namespace lf::record {
+
+class JointLog {
+ public:
+  // Throws InputError when the file cannot be opened.
+  explicit JointLog(const std::filesystem::path& path);
+
+  // Never throws; after a failed write nothing more is written and sink().error() has the cause.
+  bool write(const Telemetry& telemetry) noexcept;
+  bool close() noexcept { return sink_.close(); }
+  const FileSink& sink() const { return sink_; }
+
+ private:
+  FileSink sink_;
+};
+
+}  // namespace lf::record
