@@ -23,6 +23,11 @@ RenderWorker::Ticket RenderWorker::submit(const optics::Shot& shot) {
   return next_++;
 }
 
+bool RenderWorker::ready(Ticket ticket) {
+  const std::lock_guard lock(mutex_);
+  return !done_.empty() && done_.front().ticket >= ticket;
+}
+
 void RenderWorker::wait(Ticket ticket, optics::Frame& frame) {
   std::unique_lock lock(mutex_);
   rendered_.wait(lock, [&] { return !done_.empty() && done_.front().ticket >= ticket; });

@@ -26,6 +26,9 @@ class RenderWorker {
 
   Ticket submit(const optics::Shot& shot);
 
+  // True when wait() would return at once.
+  bool ready(Ticket ticket);
+
   // Blocks until the shot is rendered and moves it into `frame`, whose memory is taken for later shots. Tickets are joined in their order, each once.
   // Rethrows what rendering threw.
   void wait(Ticket ticket, optics::Frame& frame);

@@ -26,6 +26,8 @@ using Action = std::function<int()>;
 void add_run(CLI::App& app, Action& action);
 void add_campaign(CLI::App& app, Action& action);
 void add_scenarios(CLI::App& app, Action& action);
+void add_serve(CLI::App& app, Action& action);
+void add_render_frames(CLI::App& app, Action& action);
 void add_reach(CLI::App& app, Action& action);
 void add_peaks(CLI::App& app, Action& action);
 void add_plane(CLI::App& app, Action& action);

@@ -11,6 +11,8 @@ constexpr std::uint8_t ccs_initiate_download = 1;
 constexpr std::uint8_t ccs_initiate_upload = 2;
 constexpr std::uint8_t ccs_upload_segment = 3;
 constexpr std::uint8_t cs_abort = 4;
+constexpr std::uint8_t ccs_block_upload = 5;
+constexpr std::uint8_t ccs_block_download = 6;
 constexpr std::uint8_t expedited = 0x02;
 constexpr std::uint8_t size_indicated = 0x01;
 constexpr std::uint8_t toggle_bit = 0x10;
@@ -36,7 +38,9 @@ bool SdoServer::on_request(std::span<const std::uint8_t> request, Time now, Answ
     transfer_ = Transfer::none;
     return false;
   }
-  if (specifier == ccs_initiate_download || specifier == ccs_initiate_upload) {
+  const bool names_object = specifier == ccs_initiate_download || specifier == ccs_initiate_upload || specifier == ccs_block_upload ||
+                            specifier == ccs_block_download;
+  if (names_object) {
     transfer_ = Transfer::none;
     index_ = static_cast<std::uint16_t>(request[1] | (request[2] << 8));
     sub_ = request[3];

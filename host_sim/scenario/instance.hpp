@@ -20,6 +20,9 @@ Nominal make_nominal(const Scenario& scenario, bool lamps_lit);
 // The world, the optics, the devices with the sample's errors in them.
 hal::SimConfig make_truth(const Scenario& scenario, const Sample& sample, const Nominal& nominal, int render_threads);
 
+// A scenario's fault as the devices take it. Throws InputError for a kind that there is not.
+devices::DeviceFault device_fault(const Fault& fault);
+
 // base_from_panel with the sample's docking error: shifted along the base's axes, turned about them at the panel's origin (roll, then pitch, then yaw).
 Pose true_base_from_panel(const PanelLayout& layout, const Sample& sample);
 

@@ -139,14 +139,15 @@ devices::DevicesConfig device_config(const Scenario& scenario, const Sample& sam
     drive.torque_noise_ratio = scenario.physics.torque_noise_ratio;
     drive.water_celsius = scenario.physics.water_celsius;
   }
-  for (const Fault& fault : scenario.faults) {
-    config.faults.push_back(
-        {fault.at_s, fault_kind(fault.kind), node_number(fault.node), fault.duration_s, static_cast<std::uint32_t>(fault.can_id)});
-  }
+  for (const Fault& fault : scenario.faults) config.faults.push_back(device_fault(fault));
   return config;
 }
 
 }  // namespace
+
+devices::DeviceFault device_fault(const Fault& fault) {
+  return {fault.at_s, fault_kind(fault.kind), node_number(fault.node), fault.duration_s, static_cast<std::uint32_t>(fault.can_id)};
+}
 
 Pose true_base_from_panel(const PanelLayout& layout, const Sample& sample) {
   Pose pose = layout.nominal_base_from_panel();

@@ -35,6 +35,8 @@ LAYERS = {
     "host_sim/record/": ["host_sim/record/", "hal/vision/", "firmware/", "shared/"],
     "host_sim/scenario/": ["hal/config/", "host_sim/scenario/", "host_sim/world/", "host_sim/optics/", "host_sim/devices/", "hal/sim/sim_config.hpp",
                            "hal/vision/", "firmware/", "shared/"],
+    "host_sim/serve/": ["host_sim/serve/", "host_sim/scenario/", "host_sim/record/", "host_sim/world/", "host_sim/optics/", "host_sim/devices/",
+                        "hal/sim/", "hal/vehicle/", "hal/ports.hpp", "firmware/", "shared/"],
     "host_sim/app/": ["host_sim/", "hal/", "firmware/", "shared/", "tests/bench/"],
 }
 # who alone may know a library
@@ -44,7 +46,7 @@ OWNERS = {
     r"^pcl/": ["hal/vision/", "host_sim/record/"],
     r"^apriltag": ["hal/vision/", "host_sim/optics/"],
     r"^opencv2/": ["hal/vision/", "host_sim/record/", "host_sim/optics/", "host_sim/app/"],
-    r"^linux/|^sys/socket|^net/": ["hal/vehicle/"],
+    r"^linux/|^sys/socket|^net/": ["hal/vehicle/", "host_sim/serve/v4l2_target"],
     r"^kdl/": [],
 }
 

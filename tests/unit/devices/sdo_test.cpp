@@ -55,6 +55,15 @@ TEST(Sdo, an_expedited_download_without_a_size_takes_the_objects_own) {
   EXPECT_EQ(rig.client.read(0x6066, 0), 0x4321u);
 }
 
+TEST(Sdo, the_refusal_of_a_block_transfer_names_the_object_that_was_asked_for) {
+  DriveRig rig;
+  rig.client.read(0x1A00, 1);
+  const CanFrame up = rig.client.sdo({0xA0, 0x08, 0x10, 0x00, 0, 0, 0, 0});
+  EXPECT_EQ(up.data, (std::array<std::uint8_t, 8>{0x80, 0x08, 0x10, 0x00, 0x01, 0x00, 0x04, 0x05}));
+  const CanFrame down = rig.client.sdo({0xC2, 0x00, 0x20, 0x00, 5, 0, 0, 0});
+  EXPECT_EQ(down.data, (std::array<std::uint8_t, 8>{0x80, 0x00, 0x20, 0x00, 0x01, 0x00, 0x04, 0x05}));
+}
+
 TEST(Sdo, a_repeated_toggle_is_aborted_05030000) {
   DriveRig rig;
   rig.client.sdo({0x40, 0x08, 0x10, 0x00, 0, 0, 0, 0});

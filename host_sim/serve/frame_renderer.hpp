@@ -1,0 +1,60 @@
+// Makes the picture of an exposure, while the world goes on: on a thread of this process, or in another one (render_rings.hpp).
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <vector>
+
+#include "hal/sim/render_worker.hpp"
+#include "host_sim/optics/optics.hpp"
+#include "shared/frame_ring/frame_ring.hpp"
+#include "shared/scene/scene.hpp"
+
+namespace lf::serve {
+
+// What is to be drawn. `info` is handed on with the picture; its sequence picks the camera's noise.
+struct PictureOrder {
+  RecordInfo info;
+  scene::BodyPoses poses;  // at mid-exposure
+};
+
+struct Picture {
+  RecordInfo info;
+  std::vector<std::uint8_t> pixels;
+};
+
+class FrameRenderer {
+ public:
+  virtual ~FrameRenderer() = default;
+  // False when it is too far behind to take another one.
+  virtual bool submit(const PictureOrder& order) = 0;
+  // Takes a finished picture, in the order of their orders; false when there is none. Never waits.
+  virtual bool take(Picture& picture) = 0;
+};
+
+class ThreadRenderer : public FrameRenderer {
+ public:
+  // Throws what optics::Optics throws.
+  explicit ThreadRenderer(const optics::OpticsConfig& config) : worker_(config) {}
+
+  bool submit(const PictureOrder& order) override;
+  bool take(Picture& picture) override;
+
+ private:
+  // Two pictures are being made or wait at most: the third would be older than a camera period when it comes.
+  static constexpr std::size_t most_waiting = 3;
+  struct Waiting {
+    RecordInfo info;
+    hal::RenderWorker::Ticket ticket = 0;
+  };
+  hal::RenderWorker worker_;
+  std::deque<Waiting> waiting_;
+  optics::Frame frame_;
+};
+
+// The exposure as the optics take it.
+optics::Shot shot_of(const PictureOrder& order);
+void fill_size(RecordInfo& info, const optics::Frame& frame);
+
+}  // namespace lf::serve

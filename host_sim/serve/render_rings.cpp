@@ -1,0 +1,104 @@
+#include "host_sim/serve/render_rings.hpp"
+
+#include <chrono>
+#include <cstring>
+#include <thread>
+
+#include "hal/vehicle/linux_calls.hpp"
+#include "shared/input_error.hpp"
+
+namespace lf::serve {
+
+namespace {
+
+constexpr std::chrono::microseconds look_again{300};
+
+std::int64_t now_ns() { return hal::linux_calls().monotonic_ns(); }
+
+}  // namespace
+
+ExposurePayload pack(const scene::BodyPoses& poses) {
+  ExposurePayload payload;
+  double* to = payload.numbers.data();
+  for (const Pose& pose : poses) {
+    const Mat3 rotation = pose.linear();
+    const Vec3 translation = pose.translation();
+    std::copy_n(rotation.data(), 9, to);
+    std::copy_n(translation.data(), 3, to + 9);
+    to += 12;
+  }
+  return payload;
+}
+
+scene::BodyPoses unpack(const ExposurePayload& payload) {
+  scene::BodyPoses poses;
+  const double* from = payload.numbers.data();
+  for (Pose& pose : poses) {
+    pose = Pose::Identity();
+    pose.linear() = Eigen::Map<const Mat3>(from);
+    pose.translation() = Eigen::Map<const Vec3>(from + 9);
+    from += 12;
+  }
+  return poses;
+}
+
+std::size_t exposure_ring_bytes() { return frame_ring_bytes(exposure_slots, sizeof(ExposurePayload)); }
+std::size_t render_rings_bytes() { return exposure_ring_bytes() + frame_ring_bytes(camera_ring_slots, camera_ring_payload); }
+
+MappedFile map_render_rings(const std::string& file) {
+  MappedFile mapped;
+  if (const int error = mapped.open(file, render_rings_bytes()); error != 0) {
+    throw InputError(file + ": cannot be mapped: " + std::strerror(error));
+  }
+  return mapped;
+}
+
+RemoteRenderer::RemoteRenderer(const std::string& file)
+    : file_(map_render_rings(file)), pictures_(std::as_bytes(file_.bytes().subspan(exposure_ring_bytes()))) {
+  exposures_.open(file_.bytes().first(exposure_ring_bytes()), exposure_slots, sizeof(ExposurePayload));
+}
+
+bool RemoteRenderer::submit(const PictureOrder& order) {
+  RecordInfo info = order.info;
+  info.kind = kind_exposure;
+  const ExposurePayload payload = pack(order.poses);
+  return exposures_.write(info, std::as_bytes(std::span(&payload, 1)), now_ns());
+}
+
+bool RemoteRenderer::take(Picture& picture) {
+  picture.pixels.resize(camera_ring_payload);
+  if (pictures_.take(picture.info, std::as_writable_bytes(std::span(picture.pixels))) != FrameRingReader::Answer::record) return false;
+  picture.pixels.resize(std::min<std::size_t>(picture.info.bytes, camera_ring_payload));
+  return true;
+}
+
+RenderServer render_frames(const optics::OpticsConfig& config, const std::string& file, bool (*stop)()) {
+  MappedFile mapped = map_render_rings(file);
+  FrameRingReader exposures(std::as_bytes(mapped.bytes().first(exposure_ring_bytes())));
+  FrameRingWriter pictures;
+  pictures.open(mapped.bytes().subspan(exposure_ring_bytes()));
+  optics::Optics optics(config);
+  optics::Frame frame;
+  RenderServer server;
+  while (!stop()) {
+    PictureOrder order;
+    ExposurePayload payload;
+    if (exposures.take(order.info, std::as_writable_bytes(std::span(&payload, 1))) != FrameRingReader::Answer::record) {
+      pictures.beat(now_ns());
+      std::this_thread::sleep_for(look_again);
+      continue;
+    }
+    if (order.info.kind != kind_exposure || order.info.bytes != sizeof payload) continue;
+    order.poses = unpack(payload);
+    const std::int64_t start = now_ns();
+    optics.render(shot_of(order), frame);
+    fill_size(order.info, frame);
+    pictures.write(order.info, std::as_bytes(std::span(frame.pixels)), now_ns());
+    server.render_ms.push_back(1e-6 * static_cast<double>(now_ns() - start));
+    ++server.pictures;
+  }
+  server.missed = exposures.stats().missed;
+  return server;
+}
+
+}  // namespace lf::serve

@@ -1,0 +1,60 @@
+// Two rings in one file, so that poses are published in one place and pictures made in another: `lanternfish serve --renderer FILE` in a guest with one
+// processor, `lanternfish render-frames ... FILE` on its host.
+//
+//   0                    ring of exposures with the bodies' poses, written by serve
+//   exposure_ring_bytes  ring of pictures, written by the renderer
+//
+// In User Mode Linux the guest's FILE is /dev/mmapper, and the host's the one that was given with iomem=mmapper,/absolute/file: it has to be there, in its
+// full size, before the guest starts, which is why render-frames is started first.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "host_sim/serve/frame_renderer.hpp"
+#include "shared/frame_ring/frame_ring.hpp"
+#include "shared/frame_ring/mapped_file.hpp"
+
+namespace lf::serve {
+
+inline constexpr std::uint32_t kind_exposure = 1;  // RecordInfo::kind of what follows here
+
+// base_from_body of every body: rotation column by column, then translation in metres. Doubles, so that the picture is the very one of a single process.
+struct ExposurePayload {
+  std::array<double, 12 * scene::body_count> numbers{};
+};
+ExposurePayload pack(const scene::BodyPoses& poses);
+scene::BodyPoses unpack(const ExposurePayload& payload);
+
+inline constexpr std::uint32_t exposure_slots = 16;
+std::size_t exposure_ring_bytes();
+std::size_t render_rings_bytes();
+
+// Throws InputError when the file cannot be mapped.
+MappedFile map_render_rings(const std::string& file);
+
+// Serve's side.
+class RemoteRenderer : public FrameRenderer {
+ public:
+  explicit RemoteRenderer(const std::string& file);
+  bool submit(const PictureOrder& order) override;
+  bool take(Picture& picture) override;
+
+ private:
+  MappedFile file_;
+  FrameRingWriter exposures_;
+  FrameRingReader pictures_;
+};
+
+// The renderer's side: makes pictures until `stop` says so. Returns how many.
+struct RenderServer {
+  std::uint64_t pictures = 0;
+  std::uint64_t missed = 0;       // exposures that were overwritten before they were drawn
+  std::vector<double> render_ms;  // of each picture
+};
+RenderServer render_frames(const optics::OpticsConfig& config, const std::string& file, bool (*stop)());
+
+}  // namespace lf::serve

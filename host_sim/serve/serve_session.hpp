@@ -1,0 +1,32 @@
+// `lanternfish serve` from its options to its result.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "host_sim/scenario/scenario.hpp"
+#include "host_sim/serve/node_set.hpp"
+#include "host_sim/serve/serve_result.hpp"
+
+namespace lf::serve {
+
+struct ServeRequest {
+  scenario::Scenario scenario;
+  std::uint64_t seed = 1;
+  std::string can;  // SocketCAN interface
+  NodeSet nodes = NodeSet::all();
+  std::string camera = "none";  // see open_frame_target()
+  std::string renderer;         // file of a renderer elsewhere (render_rings.hpp); empty: a thread here
+  int render_threads = 1;
+  std::string orders;                           // FIFO of orders (serve_orders.hpp); empty: none
+  std::filesystem::path out;                    // gets result.json and can0.log; empty keeps nothing
+  double for_s = 0;                             // 0: until it is told to stop
+  std::function<void(const std::string&)> say;  // what happens on the way
+};
+
+// Serves until `stop` says so. Throws InputError for what cannot be served, std::runtime_error when this machine's CAN cannot be used.
+ServeResult serve(const ServeRequest& request, bool (*stop)());
+
+}  // namespace lf::serve

@@ -1,0 +1,180 @@
+// What `serve` is made of: the choice of nodes, the pace, what is overheard, the rings between world and renderer.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "firmware/arm/actuator.hpp"
+#include "firmware/canopen/codec.hpp"
+#include "host_sim/serve/node_set.hpp"
+#include "host_sim/serve/overheard.hpp"
+#include "host_sim/serve/pace.hpp"
+#include "host_sim/serve/render_rings.hpp"
+#include "shared/can/can_map.hpp"
+#include "shared/input_error.hpp"
+
+namespace lf::serve {
+namespace {
+
+Time ms(double t) { return Time::from_s(1e-3 * t); }
+
+TEST(NodeSet, reads_lists_and_ranges) {
+  EXPECT_EQ(NodeSet::parse("all").text(), "1, 2, 3, 4, 5, 6");
+  EXPECT_EQ(NodeSet::parse("1-3,6").text(), "1, 2, 3, 6");
+  EXPECT_EQ(NodeSet::parse("5").text(), "5");
+  EXPECT_TRUE(NodeSet::parse("none").empty());
+}
+
+TEST(NodeSet, refuses_what_no_node_has) {
+  for (const char* text : {"", "7", "0", "1-7", "3-1", "1,x", "1;2", "-1", "1-", ","})
+    EXPECT_THROW(NodeSet::parse(text), InputError) << text;
+}
+
+TEST(Pace, holds_real_time_when_steps_begin_in_time) {
+  Pace pace(ms(500));
+  for (int i = 1; i <= 1000; ++i) {
+    EXPECT_EQ(pace.due(), ms(500 + i));
+    EXPECT_EQ(pace.begin(ms(500 + i + 0.5)), ms(i));
+    EXPECT_FALSE(pace.second_report(ms(500 + i)) && pace.stats().seconds_not_held > 0);
+  }
+  EXPECT_TRUE(pace.stats().held());
+  EXPECT_EQ(pace.stats().late_1_ms, 0u);
+  EXPECT_EQ(pace.stats().seconds, 1u);
+}
+
+TEST(Pace, catches_up_a_short_delay_and_says_so) {
+  Pace pace(ms(0));
+  pace.begin(ms(1));
+  pace.begin(ms(12));  // due at 2
+  EXPECT_EQ(pace.due(), ms(3)) << "what is late is caught up";
+  EXPECT_EQ(pace.stats().worst, Duration::from_ms(10));
+  EXPECT_EQ(pace.stats().lost, Duration{});
+  EXPECT_FALSE(pace.stats().held());
+  EXPECT_FALSE(pace.second_report(ms(999)));
+  const std::optional<std::string> report = pace.second_report(ms(1000));
+  ASSERT_TRUE(report);
+  EXPECT_NE(report->find("up to 10.0 ms"), std::string::npos) << *report;
+  EXPECT_EQ(pace.stats().seconds_not_held, 1u);
+}
+
+TEST(Pace, loses_time_beyond_a_backlog_and_counts_it) {
+  Pace pace(ms(0));
+  pace.begin(ms(1));
+  EXPECT_EQ(pace.begin(ms(1002)), ms(2));  // 1000 ms late: 100 are caught up
+  EXPECT_EQ(pace.stats().lost, Duration::from_ms(900));
+  EXPECT_EQ(pace.due(), ms(903));
+  EXPECT_EQ(pace.clock_at(ms(2)), ms(902));
+  EXPECT_EQ(pace.simulated_at(ms(902.4)), ms(2.4));
+}
+
+TEST(Pace, an_instant_between_steps_is_between_their_times) {
+  Pace pace(ms(100));
+  pace.begin(ms(101));
+  EXPECT_EQ(pace.simulated_at(ms(101.25)), ms(1.25));
+  EXPECT_EQ(pace.simulated_at(ms(100.5)), ms(1)) << "not before the last step";
+  EXPECT_EQ(pace.simulated_at(ms(150)), ms(2)) << "not after the next";
+}
+
+CanFrame frame(std::uint32_t id, std::initializer_list<std::uint8_t> data) {
+  CanFrame f;
+  f.id = id;
+  f.length = static_cast<std::uint8_t>(data.size());
+  std::copy(data.begin(), data.end(), f.data.begin());
+  return f;
+}
+
+TEST(OverheardDrives, the_world_follows_a_real_drive_and_holds_before_it_spoke) {
+  OverheardDrives drives;
+  EXPECT_EQ(drives.follow(2, 0.5).velocity_rad_s, 0);
+  CanFrame tpdo = frame(0x183, {0x37, 0x02, 0, 0, 0, 0, 0, 0});
+  canopen::put(tpdo, can_map::drive_tpdo1::position, arm::counts_from_rad(Joint::elbow, 1.2));
+  drives.hear(tpdo, ms(4));
+  ASSERT_TRUE(drives.position_rad(2));
+  EXPECT_NEAR(*drives.position_rad(2), 1.2, 4e-4);  // half a count at the screw's ends
+  EXPECT_GT(drives.follow(2, 1.19).velocity_rad_s, 0);
+  EXPECT_LT(drives.follow(2, 1.21).velocity_rad_s, 0);
+  EXPECT_LE(std::abs(drives.follow(2, 0.0).velocity_rad_s), arm::numbers(Joint::elbow).velocity_rad_s) << "no faster than the joint can";
+  tpdo.length = 7;
+  canopen::put(tpdo, can_map::drive_tpdo1::position, 0);
+  drives.hear(tpdo, ms(8));
+  EXPECT_NEAR(*drives.position_rad(2), 1.2, 4e-4) << "a short frame is not believed";
+}
+
+TEST(OverheardOutputs, a_changed_counter_is_an_exposure_at_the_next_sync) {
+  OverheardOutputs outputs;
+  const CanFrame sync = frame(0x080, {});
+  outputs.hear(frame(0x186, {0x03, 0x00, 7, 0, 0}), ms(1));  // interlock closed; the node saw trigger 7 last
+  outputs.hear(frame(0x206, {0x01, 7, 0xD0, 0x07}), ms(2));  // laser on, no trigger
+  outputs.hear(sync, ms(4));
+  EXPECT_FALSE(outputs.take_exposure());
+  outputs.hear(frame(0x206, {0x01, 8, 0xD0, 0x07}), ms(5));
+  EXPECT_FALSE(outputs.take_exposure()) << "not before the SYNC";
+  outputs.hear(sync, ms(8));
+  const std::optional<devices::Exposure> exposure = outputs.take_exposure();
+  ASSERT_TRUE(exposure);
+  EXPECT_EQ(exposure->start, ms(8));
+  EXPECT_EQ(exposure->duration, Duration::from_us(2000));
+  EXPECT_EQ(exposure->counter, 8);
+  EXPECT_TRUE(exposure->laser);
+  EXPECT_FALSE(exposure->lamps);
+  outputs.hear(sync, ms(12));
+  EXPECT_FALSE(outputs.take_exposure());
+}
+
+TEST(OverheardOutputs, an_open_interlock_keeps_the_laser_out_of_the_picture) {
+  OverheardOutputs outputs;
+  outputs.hear(frame(0x186, {0x01, 0x00, 0, 0, 0}), ms(1));
+  outputs.hear(frame(0x206, {0x03, 1, 0xD0, 0x07}), ms(2));
+  outputs.hear(frame(0x080, {}), ms(4));
+  const std::optional<devices::Exposure> exposure = outputs.take_exposure();
+  ASSERT_TRUE(exposure);
+  EXPECT_FALSE(exposure->laser);
+  EXPECT_TRUE(exposure->lamps);
+}
+
+TEST(RenderRings, poses_arrive_bit_for_bit) {
+  scene::BodyPoses poses;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    poses[i] = Pose::Identity();
+    poses[i].linear() = Eigen::AngleAxisd(0.1 * static_cast<double>(i) + 1e-9, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+    poses[i].translation() = Vec3(0.1, -0.2, 1.0 / 3.0) * static_cast<double>(i);
+  }
+  const scene::BodyPoses back = unpack(pack(poses));
+  for (std::size_t i = 0; i < poses.size(); ++i) EXPECT_EQ(back[i].matrix(), poses[i].matrix());
+}
+
+TEST(RenderRings, an_order_crosses_the_file_and_nothing_comes_back_by_itself) {
+  const std::filesystem::path file = std::filesystem::temp_directory_path() / ("lf_rings_" + std::to_string(::getpid()));
+  {
+    RemoteRenderer remote(file.string());
+    MappedFile other = map_render_rings(file.string());
+    FrameRingReader reader(std::as_bytes(other.bytes().first(exposure_ring_bytes())));
+    RecordInfo info;
+    ExposurePayload payload;
+    EXPECT_EQ(reader.take(info, std::as_writable_bytes(std::span(&payload, 1))), FrameRingReader::Answer::empty);
+    PictureOrder order;
+    for (Pose& pose : order.poses) pose = Pose::Identity();
+    order.poses[3].translation() = Vec3(1, 2, 3);
+    order.info.sequence = 42;
+    order.info.flags = frame_laser;
+    ASSERT_TRUE(remote.submit(order));
+    ASSERT_EQ(reader.take(info, std::as_writable_bytes(std::span(&payload, 1))), FrameRingReader::Answer::record);
+    EXPECT_EQ(info.kind, kind_exposure);
+    EXPECT_EQ(info.sequence, 42u);
+    EXPECT_EQ(unpack(payload)[3].translation(), Vec3(1, 2, 3));
+    Picture picture;
+    EXPECT_FALSE(remote.take(picture));
+    FrameRingWriter pictures;
+    ASSERT_TRUE(pictures.open(other.bytes().subspan(exposure_ring_bytes())));
+    EXPECT_FALSE(remote.take(picture));
+    const std::vector<std::uint8_t> pixels(640 * 480, 77);
+    ASSERT_TRUE(pictures.write(info, std::as_bytes(std::span(pixels)), 1));
+    ASSERT_TRUE(remote.take(picture));
+    EXPECT_EQ(picture.info.sequence, 42u);
+    EXPECT_EQ(picture.pixels, pixels);
+  }
+  std::filesystem::remove(file);
+}
+
+}  // namespace
+}  // namespace lf::serve
