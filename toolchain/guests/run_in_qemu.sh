@@ -53,7 +53,7 @@ cat "$private/stdout" 2>/dev/null || true
 cat "$private/stderr" >&2 2>/dev/null || true
 if [ -s "$private/status" ]; then
   exit "$(cat "$private/status")"
-elif [ "$status" -ge 124 ]; then
+elif [ "$status" -eq 124 ] || [ "$status" -eq 137 ]; then
   echo "run_in_qemu: not done after $time_limit s: $*" >&2
   status=124
 else
