@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "hal/vehicle/linux_calls.hpp"
+#include "host_sim/serve/come_first.hpp"
 #include "shared/input_error.hpp"
 
 namespace lf::serve {
@@ -77,6 +78,7 @@ RenderServer render_frames(const optics::OpticsConfig& config, const std::string
   FrameRingReader exposures(std::as_bytes(mapped.bytes().first(exposure_ring_bytes())));
   FrameRingWriter pictures;
   pictures.open(mapped.bytes().subspan(exposure_ring_bytes()));
+  come_first();
   optics::Optics optics(config);
   optics::Frame frame;
   RenderServer server;

@@ -1,12 +1,11 @@
 #include "host_sim/serve/serve_session.hpp"
 
-#include <sys/resource.h>
-
 #include <memory>
 #include <optional>
 
 #include "host_sim/record/candump_log.hpp"
 #include "host_sim/record/run_folder.hpp"
+#include "host_sim/serve/come_first.hpp"
 #include "host_sim/serve/render_rings.hpp"
 #include "host_sim/serve/serve_orders.hpp"
 #include "host_sim/serve/socket_can_link.hpp"
@@ -32,10 +31,6 @@ void say_what_cannot_be(const devices::DevicesConfig& devices, const ServeLoop::
     }
   }
 }
-
-// Before all that is not real-time, where that is allowed; this thread only, so that the renderer does not come along. Not SCHED_FIFO: catching up after a
-// delay, it would keep a single processor from the very master that waits for its answers.
-void come_first() { (void)setpriority(PRIO_PROCESS, 0, -20); }
 
 // The first steps read the program's pages in, which takes milliseconds: a world that nobody sees pays for it.
 void warm_up(const world::WorldConfig& config) {
