@@ -51,6 +51,12 @@ inline Lanes sqrt(Lanes x) {
   return root;
 }
 
+inline Lanes floor(Lanes x) {
+  Lanes whole;
+  for (int i = 0; i < lane_count; ++i) whole[i] = std::floor(x[i]);
+  return whole;
+}
+
 // Relative error below 3e-7 over [-87, 87], outside it is held there: Cephes' expf, split at multiples of ln 2.
 inline Lanes exp(Lanes x) {
   x = clamp(x, -87.f, 87.f);
@@ -87,6 +93,23 @@ struct Lanes3 {
   explicit Lanes3(const Vec3& v)
       : x(all_lanes(static_cast<float>(v.x()))), y(all_lanes(static_cast<float>(v.y()))), z(all_lanes(static_cast<float>(v.z()))) {}
 };
+
+inline Lanes select(LaneMask mask, Lanes a, Lanes b) { return mask ? a : b; }
+inline Lanes3 select(LaneMask mask, const Lanes3& a, const Lanes3& b) {
+  return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
+}
+
+// Calls visit(value, lanes) once for each different value among the lanes.
+template <class Visit>
+void visit_values(LaneMask values, Visit visit) {
+  LaneMask left = LaneMask{} - 1;
+  for (int i = 0; i < lane_count; ++i) {
+    if (left[i] == 0) continue;
+    const LaneMask alike = values == values[i];
+    visit(values[i], alike);
+    left &= ~alike;
+  }
+}
 
 inline Lanes3 operator+(const Lanes3& a, const Lanes3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 inline Lanes3 operator-(const Lanes3& a, const Lanes3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }

@@ -86,26 +86,17 @@ struct RayScene::Impl {
 
   // Normals come in the body's frame: turned into the base frame, to unit length and against the ray.
   void finish_normals(const RTCHit8& hit, const Lanes3& direction, HitPacket& out) const {
-    Lanes3 normal(load_lanes(hit.Ng_x), load_lanes(hit.Ng_y), load_lanes(hit.Ng_z));
-    std::array<unsigned, lane_count> body{};
-    bool uniform = true;
-    for (int i = 0; i < lane_count; ++i) {
-      body[i] = hit.instID[0][i];
-      uniform &= body[i] == body[0];
-      out.shape[i] = body[i] < scene::body_count ? first_shape[body[i]] + static_cast<std::int32_t>(hit.geomID[i]) : -1;
-    }
-    if (uniform && body[0] < scene::body_count) {
-      normal = rotations[body[0]] * normal;
-    } else {
-      for (int i = 0; i < lane_count; ++i) {
-        if (body[i] >= scene::body_count) continue;
-        const Rotation& r = rotations[body[i]];
-        const Vec3 local(normal.x[i], normal.y[i], normal.z[i]);
-        normal.x[i] = static_cast<float>(r.column_x.x[0] * local.x() + r.column_y.x[0] * local.y() + r.column_z.x[0] * local.z());
-        normal.y[i] = static_cast<float>(r.column_x.y[0] * local.x() + r.column_y.y[0] * local.y() + r.column_z.y[0] * local.z());
-        normal.z[i] = static_cast<float>(r.column_x.z[0] * local.x() + r.column_y.z[0] * local.y() + r.column_z.z[0] * local.z());
-      }
-    }
+    const Lanes3 local(load_lanes(hit.Ng_x), load_lanes(hit.Ng_y), load_lanes(hit.Ng_z));
+    Lanes3 normal;
+    LaneMask bodies, geometries;
+    std::memcpy(&bodies, hit.instID[0], sizeof bodies);
+    std::memcpy(&geometries, hit.geomID, sizeof geometries);
+    out.shape = LaneMask{} - 1;
+    visit_values(bodies, [&](std::int32_t body, LaneMask lanes) {
+      if (body < 0) return;  // RTC_INVALID_GEOMETRY_ID: nothing was met
+      normal = select(lanes, rotations[static_cast<std::size_t>(body)] * local, normal);
+      out.shape = lanes ? first_shape[static_cast<std::size_t>(body)] + geometries : out.shape;
+    });
     const Lanes length = max(norm(normal), all_lanes(1e-30f));
     const Lanes sign = dot(normal, direction) > 0 ? -1.f / length : 1.f / length;
     out.normal = normal * sign;

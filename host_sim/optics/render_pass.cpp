@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace lf::optics {
@@ -44,14 +45,14 @@ void RenderPass::sample_packet(int u, int v, const std::vector<float>* haze_row)
     live_.pixels.set_grey(i, still_.pixels().grey_at(i));
   } else if (possible == 0 && still_.open_water(u, v)) {
     GreyLanes grey = still_.pixels().grey_at(i);
-    add_glow(camera_.lines(u, v), all_lanes(open_water_m), grey);
+    add_glow(camera_.lines(u, v), all_lanes(std::numeric_limits<float>::infinity()), grey);
     live_.pixels.set_grey(i, grey);
   } else {
     const RayPacket rays = camera_.row(u, v);
     Sample sample = still_.pixels().sample(i);
     changes = put_in_moving(rays, possible, 1.f, {haze_row, static_cast<float>(u), 1.f}, sample);
     if (add_stripes(rays, 1.f, sample)) changes |= striped;
-    add_glow(rays, water_range_m(rays, sample.hit), sample.grey);
+    add_glow(rays, sample.hit.parameter, sample.grey);
     if (changes != 0) return live_.pixels.set(i, sample);
     live_.pixels.set_grey(i, sample.grey);
   }
@@ -87,10 +88,12 @@ bool RenderPass::add_stripes(const RayPacket& rays, float footprint, Sample& sam
   return true;
 }
 
-void RenderPass::add_glow(const RayLines& rays, Lanes range_m, GreyLanes& grey) const {
-  if (shader_.sheets.empty()) return;
-  const GreyLanes glow = camera_.grey(shader_.glow(rays, range_m));
-  for (std::size_t c = 0; c < camera_.channels(); ++c) grey[c] += glow[c];
+void RenderPass::add_glow(const RayLines& rays, Lanes surface_parameter, GreyLanes& grey) const {
+  for (const SheetLight& sheet : shader_.sheets) {
+    const Glow glow = sheet.glow(rays, shader_.water());
+    const GreyLanes values = camera_.grey(glow.radiance);
+    for (std::size_t c = 0; c < camera_.channels(); ++c) grey[c] += glow.parameter < surface_parameter ? values[c] : Lanes{};
+  }
 }
 
 // What has changed in the packet or in one of the eight about it.
@@ -106,54 +109,61 @@ Changes RenderPass::changes_about(int u, int v) const {
 void RenderPass::resample_edges(int tile_row) const {
   for (int v = tiles_.first_row(tile_row); v < tiles_.end_row(tile_row); ++v) {
     std::vector<float> haze;
+    std::vector<Glow> glows;
     for (int u = 0; u < camera_.width(); u += lane_count) {
       const Changes changes = changes_about(u, v);
       const LaneMask edge = changes != 0 ? live_.pixels.edges(u, v) : still_.edges(u, v);
       if (!any(edge)) continue;
       if (changes != 0 && haze.empty()) haze = still_.haze_row(v);
+      glows.clear();
+      for (const SheetLight& sheet : shader_.sheets) glows.push_back(sheet.glow(camera_.lines(u, v), shader_.water()));
       for (int lane = 0; lane < lane_count; ++lane) {
-        if (edge[lane] != 0) resample(u + lane, v, changes, haze.empty() ? nullptr : &haze);
+        if (edge[lane] != 0) resample(u + lane, v, changes, glows, haze.empty() ? nullptr : &haze);
       }
     }
   }
 }
 
-// A pixel's sub-pixels in base light. Whether to look for moving bodies and their shadows the samples about it tell.
-SubPixels RenderPass::sub_pixels(int u, int v, Changes changes, const std::vector<float>* haze_row) const {
-  const HazePlace haze{haze_row, static_cast<float>(u), 0.f};
-  if (const SubPixels* kept = still_.sub_pixels(u, v)) {
-    SubPixels samples = *kept;
-    for (int half = 0; half < 2 && (changes & (hidden | shaded)) != 0; ++half) {
-      put_in_moving(camera_.sub_pixels(u, v, half), changes, 0.25f, haze, samples[static_cast<std::size_t>(half)]);
-    }
-    return samples;
+// The mean of the sub-pixels. A sheet's glow is even over a pixel: the sub-pixels count that meet no surface before it.
+void RenderPass::resample(int u, int v, Changes changes, const std::vector<Glow>& glows, const std::vector<float>* haze_row) const {
+  const SubPixels* pixel = still_.sub_pixels(u, v);
+  SubPixels sampled;
+  if (changes != 0 || pixel == nullptr) {
+    sampled = sample_sub_pixels(u, v, changes, haze_row);
+    pixel = &sampled;
   }
-  SubPixels samples;
-  for (int half = 0; half < 2; ++half) {
-    const RayPacket rays = camera_.sub_pixels(u, v, half);
-    Sample& sample = samples[static_cast<std::size_t>(half)];
-    sample.hit = shader_.scene().all(rays);
-    sample.grey = camera_.grey(shader_.base(rays, sample.hit, 0.25f, haze, Casters::all).radiance);
-  }
-  return samples;
-}
-
-void RenderPass::resample(int u, int v, Changes changes, const std::vector<float>* haze_row) const {
-  SubPixels samples = sub_pixels(u, v, changes, haze_row);
-  std::array<float, 3> sum{};
-  for (int half = 0; half < 2; ++half) {
-    Sample& sample = samples[static_cast<std::size_t>(half)];
-    if (!shader_.sheets.empty()) {
-      const RayPacket rays = camera_.sub_pixels(u, v, half);
-      if ((changes & striped) != 0) add_stripes(rays, 0.25f, sample);
-      add_glow(rays, water_range_m(rays, sample.hit), sample.grey);
-    }
-    for (std::size_t c = 0; c < camera_.channels(); ++c) {
-      for (int lane = 0; lane < lane_count; ++lane) sum[c] += sample.grey[c][lane];
-    }
+  std::array<float, 3> grey = pixel->grey;
+  for (const Glow& glow : glows) {
+    const auto lane = static_cast<std::size_t>(u % lane_count);
+    const LaneMask behind = (pixel->half[0].hit.parameter > glow.parameter[lane]) + (pixel->half[1].hit.parameter > glow.parameter[lane]);
+    std::int32_t count = 0;
+    for (int i = 0; i < lane_count; ++i) count -= behind[i];
+    const GreyLanes values = camera_.grey(glow.radiance);
+    for (std::size_t c = 0; c < camera_.channels(); ++c) grey[c] += values[c][lane] * static_cast<float>(count) / (2 * lane_count);
   }
   PixelStore& pixels = live_.pixels;
-  for (std::size_t c = 0; c < camera_.channels(); ++c) pixels.grey[c * pixels.plane + pixels.index(u, v)] = sum[c] / 16.f;
+  for (std::size_t c = 0; c < camera_.channels(); ++c) pixels.grey[c * pixels.plane + pixels.index(u, v)] = grey[c];
+}
+
+// Without the glow. Whether to look for the arm, its shadows and stripes the samples about the pixel have told.
+SubPixels RenderPass::sample_sub_pixels(int u, int v, Changes changes, const std::vector<float>* haze_row) const {
+  const HazePlace haze{haze_row, static_cast<float>(u), 0.f};
+  const SubPixels* kept = still_.sub_pixels(u, v);
+  SubPixels pixel;
+  if (kept != nullptr) pixel = *kept;
+  for (int half = 0; half < 2; ++half) {
+    const RayPacket rays = camera_.sub_pixels(u, v, half);
+    Sample& sample = pixel.half[static_cast<std::size_t>(half)];
+    if (kept != nullptr) {
+      put_in_moving(rays, changes, 0.25f, haze, sample);
+    } else {
+      sample.hit = shader_.scene().all(rays);
+      sample.grey = camera_.grey(shader_.base(rays, sample.hit, 0.25f, haze, Casters::all).radiance);
+    }
+    if ((changes & striped) != 0) add_stripes(rays, 0.25f, sample);
+  }
+  pixel.average(camera_.channels());
+  return pixel;
 }
 
 void RenderPass::expose(int tile_row, std::uint64_t key, Frame& frame) const {
@@ -180,7 +190,7 @@ void RenderPass::write_geometry(int tile_row, const std::vector<std::uint16_t>& 
     const std::size_t from = pixels.index(0, v), to = static_cast<std::size_t>(v) * width;
     const float ahead_m = camera_.rays.origin_depth_m();
     for (std::size_t u = 0; u < width; ++u) frame.depth_m[to + u] = pixels.depth_m[from + u] + ahead_m;
-    for (std::size_t u = 0; u < width; ++u) frame.object[to + u] = object_of_shape[static_cast<std::size_t>(pixels.shape[from + u] + 1)];
+    for (std::size_t u = 0; u < width; ++u) frame.object[to + u] = object_of_shape[static_cast<std::size_t>(1L + pixels.shape[from + u])];
   }
 }
 
@@ -190,12 +200,12 @@ void RenderPass::refine_stripe(std::size_t laser, int u, int v, Lanes offset_v, 
   SurfacePacket surface;
   StripePacket stripe;
   HitPacket hit;
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < 4 && (i == 0 || any(wanted & (abs(stripe.offset_px) > 1e-4f))); ++i) {
+    if (i > 0) offset_v = clamp(offset_v - stripe.offset_px / (abs(stripe.slope_v) > 0.02f ? stripe.slope_v : all_lanes(0.02f)), -1.f, 1.f);
     const RayPacket rays = camera_.rays.shifted_row(camera_.place, u, v, offset_v);
     hit = shader_.scene().all(rays);
     surface = make_surface(rays, hit);
     stripe = sheet.on_surface(surface, shader_.water(), 1.f, camera_.blur_px());
-    if (i < 3) offset_v = clamp(offset_v - stripe.offset_px / (abs(stripe.slope_v) > 0.02f ? stripe.slope_v : all_lanes(0.02f)), -1.f, 1.f);
   }
   const LaneMask settled = wanted & stripe.reached & (abs(stripe.offset_px) < 2e-3f) & (abs(offset_v) <= 0.75f);
   const LaneMask lit = shader_.scene().clear_of_all(sheet.emitter(), surface, settled);

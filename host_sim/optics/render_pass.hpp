@@ -44,11 +44,11 @@ class RenderPass {
   void sample_packet(int u, int v, const std::vector<float>* haze_row) const;
   Changes put_in_moving(const RayPacket& rays, Changes possible, float footprint, const HazePlace& haze, Sample& sample) const;
   bool add_stripes(const RayPacket& rays, float footprint, Sample& sample) const;
-  void add_glow(const RayLines& rays, Lanes range_m, GreyLanes& grey) const;
+  void add_glow(const RayLines& rays, Lanes surface_parameter, GreyLanes& grey) const;
   Changes changes_about(int u, int v) const;
   LaneMask edges(int u, int v) const;
-  SubPixels sub_pixels(int u, int v, Changes changes, const std::vector<float>* haze_row) const;
-  void resample(int u, int v, Changes changes, const std::vector<float>* haze_row) const;
+  void resample(int u, int v, Changes changes, const std::vector<Glow>& glows, const std::vector<float>* haze_row) const;
+  SubPixels sample_sub_pixels(int u, int v, Changes changes, const std::vector<float>* haze_row) const;
   void refine_stripe(std::size_t laser, int u, int v, Lanes offset_v, LaneMask wanted, std::vector<StripeCentre>& centres) const;
   std::size_t packet(int u, int v) const {
     return static_cast<std::size_t>(v) * live_.pixels.stride / lane_count + static_cast<std::size_t>(u / lane_count);

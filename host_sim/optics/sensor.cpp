@@ -50,7 +50,7 @@ const std::array<float, quantile_count>& quantiles() {
 }
 
 typedef std::uint32_t WordLanes __attribute__((vector_size(32)));
-typedef std::uint8_t ByteLanes __attribute__((vector_size(8)));
+typedef std::uint8_t Bytes __attribute__((vector_size(32)));
 
 // Wellons' lowbias32: every input bit flips each output bit with probability 0.5 +/- 0.17 %.
 WordLanes mix(WordLanes x) {
@@ -96,8 +96,11 @@ void Sensor::expose_packet(Lanes grey, std::uint8_t* pixels, std::uint32_t first
   for (int lane = 0; lane < lane_count; ++lane) deviate[lane] = table[share[lane]];
   const Lanes sigma = sqrt(read_variance_ + variance_per_grey_ * max(grey, Lanes{}));
   const Lanes value = clamp(grey + sigma * deviate + 0.5f, 0.f, 255.f);
-  const auto bytes = __builtin_convertvector(__builtin_convertvector(value, LaneMask), ByteLanes);
-  std::memcpy(pixels, &bytes, sizeof bytes);
+  const LaneMask levels = __builtin_convertvector(value, LaneMask);
+  Bytes bytes;
+  std::memcpy(&bytes, &levels, sizeof bytes);
+  const auto low_bytes = __builtin_shufflevector(bytes, bytes, 0, 4, 8, 12, 16, 20, 24, 28);
+  std::memcpy(pixels, &low_bytes, sizeof low_bytes);
 }
 
 std::uint64_t noise_key(std::uint64_t seed, std::uint64_t camera, std::uint64_t frame_number) {

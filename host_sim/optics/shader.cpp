@@ -4,13 +4,10 @@ namespace lf::optics {
 namespace {
 
 constexpr float one_over_pi = 0.318309886f;
+constexpr float open_water_m = 1e6f;
 const Vec3 up_in_base(0, 0, -1);
 
 }  // namespace
-
-Lanes water_range_m(const RayLines& rays, const HitPacket& hit) {
-  return hit.shape >= 0 ? hit.parameter * CameraRays::slope(rays) : all_lanes(open_water_m);
-}
 
 // Downwelling light as a bright hemisphere above and a dim one below.
 void Shader::add_ambient(const SurfacePacket& surface, RgbLanes& irradiance) const {
@@ -54,7 +51,7 @@ Light Shader::base(const RayPacket& rays, const HitPacket& hit, float footprint,
       light.radiance[band] = albedo[band] * one_over_pi * irradiance[band] * water_.transmission(band, surface.range);
     }
   }
-  const Lanes range = water_range_m(rays, hit);
+  const Lanes range = surface.met ? surface.range : all_lanes(open_water_m);
   add_water(rays, range, light.radiance);
   if (haze.row != nullptr) LampHaze::add(*haze.row, haze.u, haze.step, range, light.radiance);
   return light;
@@ -90,12 +87,6 @@ Light Shader::stripes(const RayPacket& rays, const HitPacket& hit, float footpri
     }
   }
   return light;
-}
-
-RgbLanes Shader::glow(const RayLines& rays, Lanes range_m) const {
-  RgbLanes radiance{};
-  for (const SheetLight& sheet : sheets) sheet.add_backscatter(rays, range_m, water_, radiance);
-  return radiance;
 }
 
 }  // namespace lf::optics

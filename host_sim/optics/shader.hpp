@@ -25,9 +25,6 @@ struct HazePlace {
   float u = 0, step = 0;
 };
 
-inline constexpr float open_water_m = 1e6f;  // the range of a ray that meets nothing
-Lanes water_range_m(const RayLines& rays, const HitPacket& hit);
-
 enum class Casters { resting, all };  // the bodies whose shadows count
 
 // All that lights one frame.
@@ -41,8 +38,6 @@ class Shader {
   LaneMask unshaded(const RayPacket& rays, const HitPacket& hit, LaneMask lit) const;
 
   Light stripes(const RayPacket& rays, const HitPacket& hit, float footprint, float blur_px) const;
-  // The sheets' along rays that go `range_m` through the water.
-  RgbLanes glow(const RayLines& rays, Lanes range_m) const;
 
   const SplitScene& scene() const { return scene_; }
   const SurfaceLook& look() const { return look_; }

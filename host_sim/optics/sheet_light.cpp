@@ -65,6 +65,16 @@ StripePacket SheetLight::line(const SurfacePacket& s, const Water& water, float 
   stripe.offset_px = distance * s.facing / gradient;
   stripe.slope_v = w_dv / gradient;
 
+  // What lies beyond the core's and the skirt's reach gets nothing.
+  const Lanes place_range = max(norm(place), all_lanes(least_range_m));
+  const Lanes place_px_per_m = -s.facing / gradient;
+  const Lanes spot_m2 = waist_m_ * waist_m_ + divergence_rad_ * divergence_rad_ * place_range * place_range;
+  const Lanes skirt_m2 = water.halo_rad * water.halo_rad * place_range * place_range;
+  const Lanes core_px2 = spot_m2 * place_px_per_m * place_px_per_m + (blur_px * blur_px + 1.f / 12.f);
+  const Lanes halo_px2 = skirt_m2 * place_px_per_m * place_px_per_m + core_px2;
+  const LaneMask near = s.met & (abs(stripe.offset_px) < max(core_reach * sqrt(core_px2) + 1.f, halo_reach * sqrt(halo_px2)));
+  if (!any(near)) return stripe;
+
   // The stripe's centre in this pixel's column (its row, if the stripe is steep): there on the tangent plane, exactly.
   const LaneMask down = abs(w_dv) >= abs(w_du);
   const Lanes3 step = {down ? s.point_dv.x : s.point_du.x, down ? s.point_dv.y : s.point_du.y, down ? s.point_dv.z : s.point_du.z};
@@ -89,8 +99,7 @@ StripePacket SheetLight::line(const SurfacePacket& s, const Water& water, float 
   const Lanes sigma = sqrt(sigma_px * sigma_px + blur_px * blur_px + narrow * narrow * (1.f / 12.f));
   const Lanes halo_m = water.halo_rad * range;
   const Lanes halo_sigma = sqrt(sigma * sigma + halo_m * halo_m * px_per_m * px_per_m);
-  stripe.reached =
-      s.met & (weight > 0.f) & ((abs(stripe.offset_px) < core_reach * sigma + 1.f) | (abs(stripe.offset_px) < halo_reach * halo_sigma));
+  stripe.reached = near & (weight > 0.f);
   if (!any(stripe.reached)) return stripe;
 
   const Lanes peak = w_per_rad_ / (range * root_two_pi * sigma_m) * weight;
@@ -132,26 +141,29 @@ StripePacket SheetLight::picture(const SurfacePacket& s, const Water& water, flo
   return stripe;
 }
 
-void SheetLight::add_backscatter(const RayLines& rays, Lanes range_m, const Water& water, RgbLanes& radiance) const {
-  if (pattern_.has_value()) return;
+Glow SheetLight::glow(const RayLines& rays, const Water& water) const {
+  Glow glow;
+  if (pattern_.has_value()) return glow;
   const Lanes approach = dot(base_from_laser_.column_x, rays.direction);
   const Lanes safe = abs(approach) > 1e-4f ? approach : all_lanes(1e-4f);
-  const Lanes t = -dot(base_from_laser_.column_x, rays.origin - emitter_) / safe;
-  const Lanes slope = CameraRays::slope(rays);
-  const LaneMask crossed = (t > 0.f) & (t * slope < range_m);
-  if (!any(crossed)) return;
-  const Lanes3 beam = rays.origin + rays.direction * t - emitter_;
+  glow.parameter = -dot(base_from_laser_.column_x, rays.origin - emitter_) / safe;
+  const LaneMask crossed = glow.parameter > 0.f;
+  if (!any(crossed)) return glow;
+  const Lanes3 beam = rays.origin + rays.direction * glow.parameter - emitter_;
   const Lanes3 place = base_from_laser_.transposed_times(beam);
-  const Lanes range = max(norm(beam), all_lanes(least_range_m));
   const Lanes weight = fan_weight(place.y, place.z);
+  if (!any(crossed & (weight > 0.f))) return glow;
+  const Lanes slope = CameraRays::slope(rays);
+  const Lanes range = max(norm(beam), all_lanes(least_range_m));
   // Light flows along the beam and turns back along the ray.
   const Lanes cosine = -dot(beam, rays.direction) / (range * slope);
   const Lanes crossing = w_per_rad_ / range * weight * slope / abs(safe);
   for (std::size_t band = 0; band < 3; ++band) {
     if (band_[band] == 0.f) continue;
-    const Lanes light = crossing * band_[band] * water.scattering(band, cosine) * water.transmission(band, range + t * slope);
-    radiance[band] += crossed ? light : Lanes{};
+    const Lanes light = crossing * band_[band] * water.scattering(band, cosine) * water.transmission(band, range + glow.parameter * slope);
+    glow.radiance[band] = crossed ? light : Lanes{};
   }
+  return glow;
 }
 
 }  // namespace lf::optics

@@ -21,6 +21,12 @@ struct StripePacket {
   RgbLanes irradiance{};  // W/m2 there times the way back to the camera, unoccluded
 };
 
+// The light that a sheet scatters in the water into a packet of rays, seen where no surface comes before it.
+struct Glow {
+  Lanes parameter{};  // of the rays where they cross the sheet
+  RgbLanes radiance{};
+};
+
 class SheetLight {
  public:
   // `pattern` (not owned, outlives this) takes the line's place where it has a value.
@@ -29,8 +35,8 @@ class SheetLight {
   // `footprint`: side of the sample's square, px (1, or 1/4 for sub-samples).
   StripePacket on_surface(const SurfacePacket& surface, const Water& water, float footprint, float blur_px) const;
 
-  // Radiance scattered into the camera where its rays cross the sheet before they have gone `range_m` (single scattering, the sheet thin).
-  void add_backscatter(const RayLines& rays, Lanes range_m, const Water& water, RgbLanes& radiance) const;
+  // Where the rays cross the sheet (single scattering, the sheet thin). A pattern has no glow.
+  Glow glow(const RayLines& rays, const Water& water) const;
 
   const Lanes3& emitter() const { return emitter_; }
 

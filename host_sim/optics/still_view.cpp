@@ -12,6 +12,16 @@ const std::vector<float>* if_any(const std::vector<float>& row) { return row.emp
 
 }  // namespace
 
+void SubPixels::average(std::size_t channels) {
+  for (std::size_t c = 0; c < channels; ++c) {
+    float sum = 0;
+    for (const Sample& samples : half) {
+      for (int i = 0; i < lane_count; ++i) sum += samples.grey[c][i];
+    }
+    grey[c] = sum / (2 * lane_count);
+  }
+}
+
 StillView::StillView(const Camera& camera, const Tiles& tiles, const scene::Scene& scene, bool edge_sampling)
     : camera_(camera),
       tiles_(tiles),
@@ -80,7 +90,7 @@ bool StillView::update(const Shader& shader, const scene::BodyPoses& poses, cons
 bool StillView::stale_about(int column, int tile_row) const {
   for (int row = std::max(0, tile_row - 1); row <= std::min(tiles_.rows() - 1, tile_row + 1); ++row) {
     for (int c = std::max(0, column - 1); c <= std::min(tiles_.columns() - 1, column + 1); ++c) {
-      if (stale_[static_cast<std::size_t>(row * tiles_.columns() + c)] != 0) return true;
+      if (stale_[tiles_.at(c * Tiles::width_px, row * Tiles::height_px)] != 0) return true;
     }
   }
   return false;
@@ -129,16 +139,17 @@ void StillView::keep_edges(const Shader& shader, int column, int tile_row) {
 }
 
 SubPixels StillView::trace_sub_pixels(const Shader& shader, int u, int v, const std::vector<float>* haze_row) const {
-  SubPixels samples;
+  SubPixels pixel;
   for (int half = 0; half < 2; ++half) {
     const RayPacket rays = camera_.sub_pixels(u, v, half);
-    Sample& sample = samples[static_cast<std::size_t>(half)];
+    Sample& sample = pixel.half[static_cast<std::size_t>(half)];
     sample.hit = shader.scene().resting(rays);
     const Light light = shader.base(rays, sample.hit, 0.25f, {haze_row, static_cast<float>(u), 0.f}, Casters::resting);
     sample.reached = light.reached, sample.lit = light.lit;
     sample.grey = camera_.grey(light.radiance);
   }
-  return samples;
+  pixel.average(camera_.channels());
+  return pixel;
 }
 
 // From each lamp a cone about what it reaches of the tile and of a ring of packets and rows round it, which holds the tile's sub-pixels too.

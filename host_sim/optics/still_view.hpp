@@ -17,8 +17,12 @@
 
 namespace lf::optics {
 
-// A pixel's 4x4 sub-pixels, as Camera::sub_pixels has them.
-using SubPixels = std::array<Sample, 2>;
+// A pixel's 4x4 sub-pixels, as Camera::sub_pixels has them, and their mean.
+struct SubPixels {
+  void average(std::size_t channels);
+  std::array<Sample, 2> half;
+  std::array<float, 3> grey{};
+};
 
 class StillView {
  public:

@@ -7,7 +7,7 @@
 namespace lf::optics {
 namespace {
 
-constexpr int tile = 128;                 // cells of the grain, then it repeats
+constexpr int tile = 128;                 // cells of the grain, then it repeats; a power of two
 constexpr float fine_per_m = 1 / 0.004f;  // cells of 4 mm: 2 px on the panel
 constexpr float coarse_per_m = 1 / 0.023f;
 
@@ -19,17 +19,19 @@ std::uint32_t hash(std::uint32_t x) {
 
 // Value noise in -1 .. 1 at (a, b) in cells, bilinear between random corners.
 Lanes value_noise(const std::vector<float>& corners, Lanes a, Lanes b) {
-  Lanes value;
-  for (int i = 0; i < lane_count; ++i) {
-    const float floor_a = std::floor(a[i]), floor_b = std::floor(b[i]);
-    const float fa = a[i] - floor_a, fb = b[i] - floor_b;
-    const auto ia = static_cast<unsigned>(static_cast<int>(floor_a)) % tile, ib = static_cast<unsigned>(static_cast<int>(floor_b)) % tile;
-    const unsigned ja = (ia + 1) % tile, jb = (ib + 1) % tile;
-    const float low = corners[ib * tile + ia] * (1 - fa) + corners[ib * tile + ja] * fa;
-    const float high = corners[jb * tile + ia] * (1 - fa) + corners[jb * tile + ja] * fa;
-    value[i] = low * (1 - fb) + high * fb;
-  }
-  return value;
+  const Lanes floor_a = floor(a), floor_b = floor(b);
+  const Lanes fa = a - floor_a, fb = b - floor_b;
+  const LaneMask column = __builtin_convertvector(floor_a, LaneMask) & (tile - 1), next_column = (column + 1) & (tile - 1);
+  const LaneMask row = (__builtin_convertvector(floor_b, LaneMask) & (tile - 1)) * tile;
+  const LaneMask next_row = (row + tile) & (tile * tile - 1);
+  const auto at = [&](LaneMask cell) {
+    Lanes value;
+    for (int i = 0; i < lane_count; ++i) value[i] = corners[static_cast<std::size_t>(cell[i])];
+    return value;
+  };
+  const Lanes low = at(row + column) * (1.f - fa) + at(row + next_column) * fa;
+  const Lanes high = at(next_row + column) * (1.f - fa) + at(next_row + next_column) * fa;
+  return low * (1.f - fb) + high * fb;
 }
 
 }  // namespace
@@ -69,18 +71,10 @@ void SurfaceLook::set_poses(const scene::BodyPoses& base_from_body) {
 
 Lanes SurfaceLook::grain(const SurfacePacket& surface, LaneMask shape, float footprint) const {
   Lanes3 local;
-  const auto body_of = [&](int lane) { return shape[lane] < 0 ? std::size_t{0} : looks_[static_cast<std::size_t>(shape[lane])].body; };
-  bool uniform = true;
-  for (int i = 1; i < lane_count; ++i) uniform &= body_of(i) == body_of(0);
-  if (uniform) {
-    local = rotations_[body_of(0)].transposed_times(surface.point - positions_[body_of(0)]);
-  } else {
-    for (int i = 0; i < lane_count; ++i) {
-      const Pose& pose = poses_[body_of(i)];
-      const Vec3 p = pose.linear().transpose() * (Vec3(surface.point.x[i], surface.point.y[i], surface.point.z[i]) - pose.translation());
-      local.x[i] = static_cast<float>(p.x()), local.y[i] = static_cast<float>(p.y()), local.z[i] = static_cast<float>(p.z());
-    }
-  }
+  visit_values(shape, [&](std::int32_t of, LaneMask lanes) {
+    const std::size_t body = of < 0 ? 0 : looks_[static_cast<std::size_t>(of)].body;
+    local = select(lanes, rotations_[body].transposed_times(surface.point - positions_[body]), local);
+  });
   // An oblique map to two dimensions: no face of a box is degenerate, no seam runs through a surface.
   const Lanes a = local.x + 0.7f * local.z, b = local.y + 0.6f * local.z;
   const Lanes pixel_m = footprint * sqrt(dot(surface.point_dv, surface.point_dv));
@@ -103,17 +97,12 @@ void SurfaceLook::draw_marker(const SurfacePacket& surface, int lane, const Look
 
 RgbLanes SurfaceLook::albedo(const SurfacePacket& surface, LaneMask shape, float footprint) const {
   RgbLanes albedo{};
-  bool uniform = true;
-  for (int i = 1; i < lane_count; ++i) uniform &= shape[i] == shape[0];
-  if (uniform) {
-    if (shape[0] < 0) return albedo;
-    for (std::size_t band = 0; band < 3; ++band) albedo[band] = all_lanes(looks_[static_cast<std::size_t>(shape[0])].albedo[band]);
-  } else {
-    for (int i = 0; i < lane_count; ++i) {
-      if (shape[i] < 0) continue;
-      for (std::size_t band = 0; band < 3; ++band) albedo[band][i] = looks_[static_cast<std::size_t>(shape[i])].albedo[band];
+  visit_values(shape, [&](std::int32_t of, LaneMask lanes) {
+    if (of < 0) return;
+    for (std::size_t band = 0; band < 3; ++band) {
+      albedo[band] = select(lanes, all_lanes(looks_[static_cast<std::size_t>(of)].albedo[band]), albedo[band]);
     }
-  }
+  });
   if (grain_ > 0) {
     const Lanes factor = grain(surface, shape, footprint);
     for (Lanes& band : albedo) band *= factor;

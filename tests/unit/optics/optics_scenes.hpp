@@ -95,9 +95,13 @@ struct Bench {
   float green(const CameraConfig& camera, const CameraRays& rays, int u, int v) const {
     const RayPacket packet = rays.around(CameraPlace(camera.base_from_camera), u, v, Lanes{}, Lanes{});
     const HitPacket hit = scene.all(packet);
-    return shader.base(packet, hit, 1.f, {}, Casters::all).radiance[1][0] +
-           shader.stripes(packet, hit, 1.f, static_cast<float>(camera.blur_px)).radiance[1][0] +
-           shader.glow(packet, water_range_m(packet, hit))[1][0];
+    float green = shader.base(packet, hit, 1.f, {}, Casters::all).radiance[1][0] +
+                  shader.stripes(packet, hit, 1.f, static_cast<float>(camera.blur_px)).radiance[1][0];
+    for (const SheetLight& sheet : shader.sheets) {
+      const Glow glow = sheet.glow(packet, water);
+      if (glow.parameter[0] < hit.parameter[0]) green += glow.radiance[1][0];
+    }
+    return green;
   }
 
   std::optional<PatternTable> no_pattern;
