@@ -224,6 +224,7 @@ std::vector<RenderPass::StripeCentre> RenderPass::stripe_centres(int tile_row, s
   const PixelStore& pixels = live_.pixels;
   for (int v = tiles_.first_row(tile_row); v < tiles_.end_row(tile_row); ++v) {
     for (int u = 0; u < camera_.width(); u += lane_count) {
+      if ((live_.packets[packet(u, v)] & striped) == 0) continue;
       const Sample sample = pixels.sample(pixels.index(u, v));
       if (!any(sample.reached & (1 << laser))) continue;
       const SurfacePacket surface = make_surface(camera_.row(u, v), sample.hit);

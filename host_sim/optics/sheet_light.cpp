@@ -46,39 +46,50 @@ StripePacket SheetLight::on_surface(const SurfacePacket& surface, const Water& w
   return line(surface, water, footprint, blur_px);
 }
 
-StripePacket SheetLight::line(const SurfacePacket& s, const Water& water, float footprint, float blur_px) const {
+// Distance to the stripe in the image: w = distance * facing is linear in the image plane for a pinhole.
+SheetLight::ImageDistance SheetLight::image_distance(const SurfacePacket& s) const {
+  ImageDistance d;
   const Lanes3 place = base_from_laser_.transposed_times(s.point - emitter_);
-  const Lanes radius = max(sqrt(place.y * place.y + place.z * place.z), all_lanes(1e-4f));
-  const Lanes distance = (place.x - tan_cone_ * radius) * cos_cone_;
-  // The sheet's normal at this place: of the plane, or of the cone's tangent plane.
-  Lanes3 normal = base_from_laser_.column_x;
+  d.range2 = dot(place, place);
+  // The sheet's distance and its normal at this place: of the plane, or of the cone's tangent plane.
+  d.distance = place.x;
+  d.normal = base_from_laser_.column_x;
   if (tan_cone_ != 0.f) {
+    const Lanes radius = max(sqrt(place.y * place.y + place.z * place.z), all_lanes(1e-4f));
     const Lanes3 outward = base_from_laser_.column_y * (place.y / radius) + base_from_laser_.column_z * (place.z / radius);
-    normal = (normal - outward * all_lanes(tan_cone_)) * all_lanes(cos_cone_);
+    d.normal = (d.normal - outward * all_lanes(tan_cone_)) * all_lanes(cos_cone_);
+    d.distance = (place.x - tan_cone_ * radius) * cos_cone_;
   }
+  d.w = d.distance * s.facing;
+  d.w_du = s.facing * dot(d.normal, s.point_du) + d.distance * dot(s.normal, s.direction_du);
+  d.w_dv = s.facing * dot(d.normal, s.point_dv) + d.distance * dot(s.normal, s.direction_dv);
+  d.gradient2 = d.w_du * d.w_du + d.w_dv * d.w_dv;
+  return d;
+}
 
-  // Distance to the stripe in the image: w = distance * facing is linear in the image plane for a pinhole.
+// Lanes that core or skirt reach, both as wide as they are at this place; compared as squares.
+LaneMask SheetLight::within_reach(const SurfacePacket& s, const ImageDistance& d, const Water& water, float blur_px) const {
+  const Lanes facing2 = s.facing * s.facing;
+  const Lanes spot =
+      (waist_m_ * waist_m_ + divergence_rad_ * divergence_rad_ * d.range2) * facing2 + (blur_px * blur_px + 1.f) * d.gradient2;
+  const Lanes skirt = spot + water.halo_rad * water.halo_rad * d.range2 * facing2;
+  return s.met & (d.w * d.w < max(core_reach * core_reach * spot, halo_reach * halo_reach * skirt));
+}
+
+StripePacket SheetLight::line(const SurfacePacket& s, const Water& water, float footprint, float blur_px) const {
   StripePacket stripe;
-  const Lanes w_du = s.facing * dot(normal, s.point_du) + distance * dot(s.normal, s.direction_du);
-  const Lanes w_dv = s.facing * dot(normal, s.point_dv) + distance * dot(s.normal, s.direction_dv);
-  const Lanes gradient = max(sqrt(w_du * w_du + w_dv * w_dv), all_lanes(1e-9f));
-  stripe.offset_px = distance * s.facing / gradient;
-  stripe.slope_v = w_dv / gradient;
-
-  // What lies beyond the core's and the skirt's reach gets nothing.
-  const Lanes place_range = max(norm(place), all_lanes(least_range_m));
-  const Lanes place_px_per_m = -s.facing / gradient;
-  const Lanes spot_m2 = waist_m_ * waist_m_ + divergence_rad_ * divergence_rad_ * place_range * place_range;
-  const Lanes skirt_m2 = water.halo_rad * water.halo_rad * place_range * place_range;
-  const Lanes core_px2 = spot_m2 * place_px_per_m * place_px_per_m + (blur_px * blur_px + 1.f / 12.f);
-  const Lanes halo_px2 = skirt_m2 * place_px_per_m * place_px_per_m + core_px2;
-  const LaneMask near = s.met & (abs(stripe.offset_px) < max(core_reach * sqrt(core_px2) + 1.f, halo_reach * sqrt(halo_px2)));
+  const ImageDistance d = image_distance(s);
+  const LaneMask near = within_reach(s, d, water, blur_px);
   if (!any(near)) return stripe;
+  const Lanes w_du = d.w_du, w_dv = d.w_dv, distance = d.distance;
+  const Lanes gradient = max(sqrt(d.gradient2), all_lanes(1e-9f));
+  stripe.offset_px = d.w / gradient;
+  stripe.slope_v = w_dv / gradient;
 
   // The stripe's centre in this pixel's column (its row, if the stripe is steep): there on the tangent plane, exactly.
   const LaneMask down = abs(w_dv) >= abs(w_du);
   const Lanes3 step = {down ? s.point_dv.x : s.point_du.x, down ? s.point_dv.y : s.point_du.y, down ? s.point_dv.z : s.point_du.z};
-  const Lanes approach = dot(normal, step);
+  const Lanes approach = dot(d.normal, step);
   const Lanes3 centre = s.point - step * (distance / (abs(approach) > 1e-9f ? approach : all_lanes(1e-9f)));
   const Lanes w_step = down ? w_dv : w_du;
   const Lanes turn = dot(s.normal, {down ? s.direction_dv.x : s.direction_du.x, down ? s.direction_dv.y : s.direction_du.y,
@@ -144,24 +155,24 @@ StripePacket SheetLight::picture(const SurfacePacket& s, const Water& water, flo
 Glow SheetLight::glow(const RayLines& rays, const Water& water) const {
   Glow glow;
   if (pattern_.has_value()) return glow;
-  const Lanes approach = dot(base_from_laser_.column_x, rays.direction);
-  const Lanes safe = abs(approach) > 1e-4f ? approach : all_lanes(1e-4f);
-  glow.parameter = -dot(base_from_laser_.column_x, rays.origin - emitter_) / safe;
-  const LaneMask crossed = glow.parameter > 0.f;
-  if (!any(crossed)) return glow;
-  const Lanes3 beam = rays.origin + rays.direction * glow.parameter - emitter_;
-  const Lanes3 place = base_from_laser_.transposed_times(beam);
-  const Lanes weight = fan_weight(place.y, place.z);
-  if (!any(crossed & (weight > 0.f))) return glow;
-  const Lanes slope = CameraRays::slope(rays);
-  const Lanes range = max(norm(beam), all_lanes(least_range_m));
+  // In the laser's frame; x is zero where the rays cross.
+  const Lanes3 start = base_from_laser_.transposed_times(rays.origin - emitter_);
+  const Lanes3 direction = base_from_laser_.transposed_times(rays.direction);
+  const Lanes per_approach = 1.f / (abs(direction.x) > 1e-4f ? direction.x : all_lanes(1e-4f));
+  glow.parameter = -start.x * per_approach;
+  const Lanes y = start.y + glow.parameter * direction.y, z = start.z + glow.parameter * direction.z;
+  const Lanes weight = glow.parameter > 0.f ? fan_weight(y, z) : Lanes{};
+  if (!any(weight > 0.f)) return glow;
+  const Lanes range = max(sqrt(y * y + z * z), all_lanes(least_range_m));
+  const Lanes slope2 = dot(direction, direction), slope = sqrt(slope2);
+  const Lanes per_length2 = 1.f / (range * slope);
   // Light flows along the beam and turns back along the ray.
-  const Lanes cosine = -dot(beam, rays.direction) / (range * slope);
-  const Lanes crossing = w_per_rad_ / range * weight * slope / abs(safe);
+  const Lanes cosine = -(y * direction.y + z * direction.z) * per_length2;
+  const Lanes crossing = w_per_rad_ * weight * slope2 * per_length2 * abs(per_approach);
   for (std::size_t band = 0; band < 3; ++band) {
     if (band_[band] == 0.f) continue;
-    const Lanes light = crossing * band_[band] * water.scattering(band, cosine) * water.transmission(band, range + glow.parameter * slope);
-    glow.radiance[band] = crossed ? light : Lanes{};
+    glow.radiance[band] =
+        crossing * band_[band] * water.scattering(band, cosine) * water.transmission(band, range + glow.parameter * slope);
   }
   return glow;
 }

@@ -41,6 +41,13 @@ class SheetLight {
   const Lanes3& emitter() const { return emitter_; }
 
  private:
+  struct ImageDistance {
+    Lanes3 normal;                   // of the sheet
+    Lanes distance, range2;          // to the sheet; to the emitter, squared
+    Lanes w, w_du, w_dv, gradient2;  // w / gradient: distance to the stripe, px
+  };
+  ImageDistance image_distance(const SurfacePacket& surface) const;
+  LaneMask within_reach(const SurfacePacket& surface, const ImageDistance& distance, const Water& water, float blur_px) const;
   StripePacket line(const SurfacePacket& surface, const Water& water, float footprint, float blur_px) const;
   StripePacket picture(const SurfacePacket& surface, const Water& water, float footprint) const;
   Lanes fan_weight(Lanes y, Lanes z) const;

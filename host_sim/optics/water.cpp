@@ -15,10 +15,4 @@ Water::Water(const WaterConfig& config)
   }
 }
 
-Lanes Water::scattering(std::size_t band, Lanes cosine) const {
-  const float g = asymmetry;
-  const Lanes base = max(1.f + g * g - 2.f * g * cosine, all_lanes(1e-4f));
-  return scattering_per_m[band] * (1.f - g * g) / (static_cast<float>(4 * pi) * base * sqrt(base));
-}
-
 }  // namespace lf::optics
