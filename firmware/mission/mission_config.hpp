@@ -34,9 +34,8 @@ struct MissionConfig {
   std::uint32_t frames_per_background = 5;
   // From the start of an exposure until its image has surely been received: exposure, readout and transfer take 30 to 60 ms.
   Duration image_due = Duration::from_ms(100);
-  // The laser plane's speed on the panel comes from the sweep's plan; joints keep this much above the real joints' stiction of 0.06 rad/s.
-  double sweep_speed_rad_s = 0.065;
-  double verify_band_m = 0.055;  // half height of the verification's sweep around the valve: the handle's half length and 7 mm
+  double sweep_speed_rad_s = 0.065;  // of the slowest joint that moves in a sweep: above the real joints' stiction of 0.06 rad/s
+  double verify_band_m = 0.055;      // half height of the verification's sweep around the valve: the handle's half length and 7 mm
 
   double move_speed_fraction = 0.6;    // of the joints' own speed limits, in free motion
   double approach_distance_m = 0.080;  // pre-grasp and pre-press stand this far off along the panel's normal
