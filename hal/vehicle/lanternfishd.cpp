@@ -5,14 +5,20 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
+#include <filesystem>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "hal/vehicle/commissioning.hpp"
 #include "hal/vehicle/daemon.hpp"
 #include "hal/vehicle/operator_client.hpp"
 #include "shared/input_error.hpp"
@@ -130,6 +136,94 @@ void add_task(CLI::App& app, const Options& options, Action& action) {
   });
 }
 
+struct CommissionOptions {
+  std::vector<std::string> joints;
+  bool here = false;
+  bool sure = false;
+};
+
+// A clock and a bus, without the rest of a vehicle.
+struct BusOnly {
+  SocketCan can;
+  TickClock clock;
+  PortStatus wait_for_tick(Time& tick) {
+    tick = clock.wait();
+    return port_ok;
+  }
+  PortStatus receive_can(std::uint8_t, ReceivedFrame& received) { return can.receive(received); }
+  PortStatus send_can(std::uint8_t, std::span<const CanFrame> frames) { return can.send(frames); }
+};
+
+std::array<bool, joint_count> chosen(const CommissionOptions& options) {
+  std::array<bool, joint_count> joints{};
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    const auto named = std::find(options.joints.begin(), options.joints.end(), joint_name(i)) != options.joints.end();
+    joints[i] = options.joints.empty() || named;
+  }
+  for (const std::string& name : options.joints) {
+    bool known = false;
+    for (std::size_t i = 0; i < joint_count; ++i) known = known || name == joint_name(i);
+    if (!known) throw InputError("no joint '" + name + "': slew, shoulder, elbow, roll or jaw");
+  }
+  return joints;
+}
+
+void keep_offsets(const std::string& file, const Commissioning& commissioning, bool here) {
+  HomingOffsets offsets;
+  if (std::filesystem::exists(file)) offsets = read_homing_file(file);
+  char day[32] = "";
+  const std::time_t now = std::time(nullptr);
+  std::strftime(day, sizeof day, "%Y-%m-%d %H:%M", std::gmtime(&now));
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    if (!commissioning.found()[i]) continue;
+    offsets.zero_counts[i] = commissioning.zero_counts()[i];
+    offsets.found[i] = std::string(here ? "in the jig, " : "at its lower stop, ") + day + " UTC";
+    std::printf("%-9s zero at %d counts\n", joint_name(i), offsets.zero_counts[i]);
+  }
+  write_homing_file(file, offsets);
+  std::printf("written to %s\n", file.c_str());
+}
+
+int commission(const Options& options, const CommissionOptions& wanted) {
+  if (options.config.empty()) throw InputError("--config FILE is needed");
+  const VehicleConfig config = load_vehicle_config(options.config);
+  if (config.homing_file.empty()) throw InputError(options.config + ": 'homing.file' names no file to write to");
+  Commissioning::Config setup;
+  setup.network = config.core.controller.network;
+  setup.joints = chosen(wanted);
+  setup.here = wanted.here;
+  if (!wanted.sure && !wanted.here)
+    throw InputError("commissioning moves the arm against its stops: clear its reach, then say so with --clear");
+  InstanceLock lock;
+  if (const std::string taken = lock.take(config.lock_folder, config.interface); !taken.empty()) throw EnvironmentLacks(taken);
+  BusOnly bus{SocketCan(config.can()), TickClock(setup.network.sync_period)};
+  if (const PortStatus error = bus.can.open(); error != port_ok) throw EnvironmentLacks(SocketCan::explain(error, config.interface));
+  if (const auto other = hear_another_master(bus.can, Duration::from_ms(350))) throw EnvironmentLacks(config.interface + ": " + *other);
+  const int signals = take_signals();
+  Commissioning commissioning(setup);
+  bus.clock.start();
+  const auto cancelled = [signals] {
+    signalfd_siginfo info{};
+    return read(signals, &info, sizeof info) > 0;
+  };
+  run_commissioning(bus, commissioning, cancelled, [](std::size_t joint) { std::fprintf(stderr, "%s ...\n", joint_name(joint)); });
+  if (commissioning.state() == Commissioning::State::failed) {
+    complain("nothing was written: " + commissioning.failure());
+    return failed;
+  }
+  keep_offsets(config.homing_file, commissioning, wanted.here);
+  return done;
+}
+
+void add_commission(CLI::App& app, const Options& options, Action& action) {
+  auto wanted = std::make_shared<CommissionOptions>();
+  CLI::App* command = app.add_subcommand("commission", "find and store the zeros of the joints' absolute encoders");
+  command->add_option("--joint", wanted->joints, "only this one; may be given again")->allow_extra_args(false);
+  command->add_flag("--here", wanted->here, "the arm stands at its zero, in a jig: nothing moves");
+  command->add_flag("--clear", wanted->sure, "nobody and nothing is within the arm's reach");
+  command->callback([&options, &action, wanted] { action = [&options, wanted] { return commission(options, *wanted); }; });
+}
+
 int run(int argc, char** argv) {
   CLI::App app{"Lanternfish's control core on the vehicle: SocketCAN, camera, real time", "lanternfishd"};
   Options options;
@@ -144,6 +238,7 @@ int run(int argc, char** argv) {
   add_simple_requests(app, options, action);
   add_jog(app, options, action);
   add_task(app, options, action);
+  add_commission(app, options, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {

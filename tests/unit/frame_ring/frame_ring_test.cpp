@@ -225,13 +225,19 @@ TEST(MappedFile, IsTheSameMemoryForTwoProcessesAndOutlivesAKilledWriter) {
     MappedFile own;
     FrameRingWriter writer;
     if (own.open(file.path, bytes) != 0 || !writer.open(own.bytes(), slots, payload)) _exit(1);
-    for (std::uint32_t n = 0;; ++n) (void)writer.write(info_of(n), pattern(n, payload), n);
+    for (std::uint32_t n = 0;; ++n) {
+      (void)writer.write(info_of(n), pattern(n, payload), n);
+      usleep(200);
+    }
   }
   std::vector<std::byte> out(payload);
   RecordInfo info;
   int read = 0;
-  for (int look = 0; look < 2'000'000 && read < 100; ++look) {
-    if (reader.take(info, out) != Answer::record) continue;
+  for (int look = 0; look < 200'000 && read < 100; ++look) {
+    if (reader.take(info, out) != Answer::record) {
+      usleep(50);
+      continue;
+    }
     ASSERT_EQ(out, pattern(info.sequence, payload));
     ++read;
   }

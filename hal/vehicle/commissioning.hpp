@@ -1,0 +1,94 @@
+// Commissioning: what each drive's absolute encoder counts where the arm's own count is 0.
+//
+// One joint after the other is powered, moved slowly against its lower stop with a third of its rated torque, read there, backed off and released: the stop's angle
+// is known from the arm's description. The drives' own references are not touched. A plain object like the core: frames and the time in, frames out.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "firmware/canopen/network.hpp"
+#include "hal/ports.hpp"
+#include "hal/vehicle/homing_file.hpp"
+#include "shared/messages/joint_io.hpp"
+#include "shared/messages/time.hpp"
+
+namespace lf::hal {
+
+class Commissioning {
+ public:
+  struct Config {
+    canopen::NetworkConfig network;
+    std::array<bool, joint_count> joints{true, true, true, true, true};
+    bool here = false;                             // the arm stands at its zero, in a jig: nothing is moved
+    double speed_fraction = 0.3;                   // of each drive's maximum: 0.13 rad/s of the slew, above its stiction of 0.06
+    std::uint16_t torque_permille = 350;           // of the rated torque: free motion under water takes less than a fifth
+    Duration stall = Duration::from_ms(600);       // pressing without a count for so long is standing at the stop
+    Duration longest = Duration::from_ms(90'000);  // of one joint
+  };
+
+  enum class State : std::uint8_t { booting, enabling, seeking, backing_off, releasing, stopping, done, failed };
+
+  explicit Commissioning(const Config& config);
+
+  void on_frame(const CanFrame& frame, Time t) { network_.on_frame(frame, t); }
+  void tick(Time now, canopen::Outbox& outbox);
+  // Stops what moves and ends as failed.
+  void cancel() { cancelled_ = true; }
+
+  State state() const { return state_; }
+  bool ended() const { return state_ == State::done || state_ == State::failed; }
+  const std::string& failure() const { return failure_; }
+  std::size_t joint() const { return joint_; }  // under work
+  const std::array<std::int32_t, joint_count>& zero_counts() const { return zero_counts_; }
+  const std::array<bool, joint_count>& found() const { return found_; }
+
+ private:
+  canopen::Axis& axis() { return network_.axis(static_cast<Joint>(joint_)); }
+  void go(State state, Time now);
+  void fail(const std::string& why, Time now);
+  void watch(Time now);
+  void step(Time now);
+  void next_joint(Time now);
+  void take_here(Time now);
+  void seek(Time now);
+  void back_off(Time now);
+
+  Config config_;
+  canopen::Network network_;
+  State state_ = State::booting;
+  bool booted_ = false;
+  bool cancelled_ = false;
+  std::string failure_;
+  std::size_t joint_ = 0;
+  std::array<std::int32_t, joint_count> zero_counts_{};
+  std::array<bool, joint_count> found_{};
+  Time since_;        // in this state
+  Time joint_since_;  // with this joint
+  Time moved_;        // when it last counted
+  std::int32_t last_counts_ = 0;
+  double target_ = 0;  // counts
+  std::int32_t stop_counts_ = 0;
+};
+
+// Runs it on a platform's clock and bus 0; `cancelled` is looked at once a tick, `tell` hears of each joint that is begun.
+template <class P, class Cancelled, class Tell>
+void run_commissioning(P& platform, Commissioning& commissioning, Cancelled cancelled, Tell tell) {
+  std::size_t told = joint_count;
+  while (!commissioning.ended()) {
+    Time now;
+    (void)platform.wait_for_tick(now);
+    for (ReceivedFrame received; platform.receive_can(0, received) == port_ok;) commissioning.on_frame(received.frame, received.t);
+    if (cancelled()) commissioning.cancel();
+    canopen::Outbox outbox;
+    commissioning.tick(now, outbox);
+    (void)platform.send_can(0, {outbox.data(), outbox.size()});
+    if (commissioning.state() == Commissioning::State::seeking && told != commissioning.joint()) {
+      told = commissioning.joint();
+      tell(told);
+    }
+  }
+}
+
+}  // namespace lf::hal

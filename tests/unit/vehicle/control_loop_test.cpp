@@ -1,0 +1,117 @@
+// The vehicle's control loop on a scripted platform: orders in, answers and reports out, and an orderly end.
+#include "hal/vehicle/control_loop.hpp"
+
+#include <gtest/gtest.h>
+
+#include "hal/mock/failing_platform.hpp"
+#include "hal/mock/scripted_platform.hpp"
+#include "hal/vehicle/status_json.hpp"
+
+namespace lf::hal {
+namespace {
+
+class Loop : public testing::Test {
+ protected:
+  Loop() {
+    for (std::size_t i = 0; i < joint_count; ++i) config.network.drives[i].node = can_map::drive_nodes[i];
+    config.mission.tasks.clear();
+    EXPECT_TRUE(config.mission.tasks.push_back({}));
+    loop = std::make_unique<ControlLoop<FailingPlatform<ScriptedPlatform>>>(failing, config, *rings);
+  }
+
+  OrderAnswer give(Command command) {
+    mission::Order order;
+    order.command = command;
+    EXPECT_TRUE(rings->orders.push({++number, order}));
+    turn();
+    OrderAnswer answer;
+    EXPECT_TRUE(rings->answers.pop(answer));
+    EXPECT_EQ(answer.number, number);
+    return answer;
+  }
+  void turn() {
+    loop->turn([](ControlReport&) {});
+  }
+
+  ControllerConfig config;
+  ScriptedPlatform platform;
+  FailingPlatform<ScriptedPlatform> failing{platform};
+  std::unique_ptr<LoopRings> rings = std::make_unique<LoopRings>();
+  std::unique_ptr<ControlLoop<FailingPlatform<ScriptedPlatform>>> loop;
+  std::uint64_t number = 0;
+};
+
+TEST_F(Loop, AnswersEachOrderWithWhereTheMissionStood) {
+  const OrderAnswer resumed = give(Command::resume);
+  EXPECT_FALSE(resumed.taken);
+  EXPECT_EQ(resumed.standing, mission::Standing::idle);
+  EXPECT_TRUE(give(Command::start).taken);
+  EXPECT_EQ(loop->controller().orders_refused(), 1u);
+}
+
+TEST_F(Loop, EndsByShutDownAndNotBefore) {
+  for (int i = 0; i < 50; ++i) turn();
+  EXPECT_FALSE(loop->stopped());
+  EXPECT_TRUE(give(Command::shut_down).taken);
+  int turns = 0;
+  while (!loop->stopped() && turns < 1000) {
+    turn();
+    ++turns;
+  }
+  EXPECT_LT(turns, 50);
+  EXPECT_EQ(loop->controller().mission().step(), mission::Step::off);
+}
+
+TEST_F(Loop, ReportsTenTimesASecond) {
+  for (int i = 0; i < 100; ++i) turn();
+  int reports = 0;
+  for (ControlReport report; rings->reports.pop(report);) ++reports;
+  EXPECT_EQ(reports, 4);
+}
+
+TEST_F(Loop, FaultsOfTheVisionThreadReachTheCore) {
+  ASSERT_TRUE(rings->vision_faults.push({Port::camera, 19}));
+  turn();
+  EXPECT_EQ(loop->controller().port_errors()[static_cast<std::size_t>(Port::camera)], 1u);
+}
+
+TEST_F(Loop, CountsEveryFailedCallByItsPort) {
+  failing.fail(Call::send_can, 0, 105, 1'000'000);
+  EXPECT_TRUE(give(Command::start).taken);
+  for (int i = 0; i < 10; ++i) turn();
+  EXPECT_GE(loop->controller().port_errors()[static_cast<std::size_t>(Port::can_send)], 9u);
+  ControlReport report, newest;
+  loop->report([](ControlReport&) {});
+  while (rings->reports.pop(report)) newest = report;
+  const Json counted = counters_json(newest, {}, {});
+  EXPECT_GE(counted["platform calls failed"]["can send"].get<int>(), 9);
+  EXPECT_FALSE(counted["platform calls failed"].contains("camera"));
+}
+
+TEST_F(Loop, MakesNoHeapCall) {
+  const std::uint64_t before = HeapGuard::calls();
+  EXPECT_TRUE(give(Command::start).taken);
+  for (int i = 0; i < 500; ++i) {
+    turn();
+    for (ControlReport report; rings->reports.pop(report);) {
+    }
+  }
+  // The scripted platform keeps what is sent in a vector of its own: that is all.
+  if (HeapGuard::available()) {
+    EXPECT_LT(HeapGuard::calls() - before, 40u);
+  }
+}
+
+TEST_F(Loop, AnEmergencyStopIsTakenAnywhere) {
+  EXPECT_TRUE(give(Command::emergency_stop).taken);
+  turn();
+  EXPECT_EQ(loop->controller().mission().step(), mission::Step::off);
+  EXPECT_FALSE(give(Command::start).taken);
+  EXPECT_TRUE(give(Command::reset).taken);
+  turn();
+  EXPECT_EQ(loop->controller().mission().standing(), mission::Standing::idle);
+  EXPECT_TRUE(give(Command::start).taken);
+}
+
+}  // namespace
+}  // namespace lf::hal

@@ -1,0 +1,75 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "hal/vehicle/latency_histogram.hpp"
+#include "hal/vehicle/tick_clock.hpp"
+
+namespace lf::hal {
+namespace {
+
+TEST(LatencyHistogram, PercentilesAreWithinABucketOfTheSortedSamples) {
+  constexpr unsigned seed = 7;
+  SCOPED_TRACE(seed);
+  std::mt19937 random(seed);
+  std::lognormal_distribution<double> us(4, 1.5);
+  LatencyHistogram histogram;
+  std::vector<double> samples;
+  for (int i = 0; i < 20'000; ++i) {
+    samples.push_back(std::floor(us(random) * 1000) / 1000);
+    histogram.add(Duration::from_ns(std::llround(samples.back() * 1000)));
+  }
+  std::sort(samples.begin(), samples.end());
+  for (const double p : {0.01, 0.5, 0.9, 0.99, 0.999}) {
+    const double exact = samples[static_cast<std::size_t>(std::ceil(p * 20'000)) - 1];
+    EXPECT_GE(histogram.percentile_us(p), std::min(exact, 1.0)) << p;
+    if (exact > 1) {
+      EXPECT_GE(histogram.percentile_us(p), exact * 0.9999) << p;
+      EXPECT_LE(histogram.percentile_us(p), exact * 1.07) << p;
+    }
+  }
+  EXPECT_DOUBLE_EQ(histogram.max_us(), samples.back());
+  EXPECT_EQ(histogram.count(), 20'000u);
+}
+
+TEST(LatencyHistogram, EveryBucketEndsWhereTheNextBegins) {
+  for (std::size_t i = 0; i + 1 < LatencyHistogram::bucket_count; ++i) {
+    LatencyHistogram histogram;
+    const double edge_ns = LatencyHistogram::upper_edge_us(i) * 1000;
+    if (edge_ns != std::floor(edge_ns)) continue;
+    histogram.add(Duration::from_ns(static_cast<std::int64_t>(edge_ns)));
+    EXPECT_EQ(histogram.bucket(i), 0u) << i;
+    EXPECT_EQ(histogram.bucket(i + 1), 1u) << i;
+  }
+}
+
+TEST(LatencyHistogram, TakesWhatIsTooShortAndTooLong) {
+  LatencyHistogram histogram;
+  EXPECT_EQ(histogram.percentile_us(0.5), 0);
+  histogram.add(Duration::from_ns(-5));
+  histogram.add(Duration::from_ns(0));
+  histogram.add(Duration::from_s(100));
+  EXPECT_EQ(histogram.count(), 3u);
+  EXPECT_DOUBLE_EQ(histogram.percentile_us(1), 1e8);
+}
+
+TEST(TickClock, KeepsItsGridAndCountsWhatItMissed) {
+  TickClock clock(Duration::from_ms(2));
+  clock.start();
+  const Time first = clock.wait();
+  const Time second = clock.wait();
+  EXPECT_EQ((second - first).ns() % 2'000'000, 0);
+  const std::uint64_t before = clock.missed();
+  sleep_until(second + Duration::from_ms(9));
+  const Time late = clock.wait();
+  EXPECT_GE(clock.missed() - before, 3u);
+  EXPECT_EQ((late - first).ns() % 2'000'000, 0);
+  EXPECT_GT(clock.wait(), late);
+  EXPECT_EQ(clock.lateness().count(), 4u);
+}
+
+}  // namespace
+}  // namespace lf::hal

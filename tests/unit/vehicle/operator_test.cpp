@@ -1,0 +1,230 @@
+// The operator's interface: who may do what (and the page that says so), the socket, the lock, and the service manager.
+// To bring the page up to date: LANTERNFISH_UPDATE_DOCS=1 build/release/tests/test_vehicle --gtest_filter='Page.*'
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <array>
+#include <charconv>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <thread>
+
+#include "hal/vehicle/estop_input.hpp"
+#include "hal/vehicle/instance_lock.hpp"
+#include "hal/vehicle/operator_client.hpp"
+#include "hal/vehicle/operator_rights.hpp"
+#include "hal/vehicle/operator_server.hpp"
+#include "hal/vehicle/service_manager.hpp"
+#include "hal/vehicle/tick_clock.hpp"
+#include "hal/vehicle/vehicle_config.hpp"
+#include "tests/unit/vehicle/fake_linux.hpp"
+#include "tests/unit/vehicle/temporary_folder.hpp"
+
+namespace lf::hal {
+namespace {
+
+using test::TemporaryFolder;
+
+std::string rights_table() {
+  std::ostringstream out;
+  out << "| request | " << name(Role::watcher) << " | " << name(Role::op) << " | " << name(Role::engineer)
+      << " | does |\n|---|---|---|---|---|\n";
+  for (const Right& right : operator_rights()) {
+    out << "| `" << right.request << "` |";
+    for (std::size_t r = 0; r < role_count; ++r) out << (static_cast<Role>(r) >= right.least ? " yes |" : " |");
+    out << " " << right.does << " |\n";
+  }
+  return out.str();
+}
+
+std::string number_text(double value) {
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
+std::string keys_table() {
+  std::ostringstream out;
+  out << "| key | takes | range | meaning |\n|---|---|---|---|\n";
+  VehicleConfig config;
+  for (const config::Key& key : keys(config)) {
+    out << "| `" << key.path << "` | " << config::type_name(key) << " | ";
+    if (key.min != key.max) out << number_text(key.min) << " to " << number_text(key.max) << (key.unit.empty() ? "" : " " + key.unit);
+    out << " | " << key.doc << " |\n";
+  }
+  return out.str();
+}
+
+void expect_on_page(const std::string& mark, const std::string& drawn) {
+  const std::string page = LANTERNFISH_SOURCE_DIR "/docs/operating.md";
+  std::ifstream file(page);
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  const std::string begin = "<!-- " + mark + ": drawn from the code -->\n";
+  const std::size_t first = text.find(begin);
+  ASSERT_NE(first, std::string::npos) << page << " has no mark for the " << mark;
+  const std::size_t start = first + begin.size(), stop = text.find("<!-- end -->", start);
+  if (std::getenv("LANTERNFISH_UPDATE_DOCS") != nullptr) {
+    text.replace(start, stop - start, drawn);
+    std::ofstream(page) << text;
+    return;
+  }
+  EXPECT_EQ(text.substr(start, stop - start), drawn) << page << " is not up to date";
+}
+
+TEST(Page, OfTheRightsIsTheTable) { expect_on_page("rights", rights_table()); }
+TEST(Page, OfTheKeysIsTheTable) { expect_on_page("keys", keys_table()); }
+
+TEST(Rights, EveryoneMayStopTheArmAndNobodyUnknownMayMoveIt) {
+  EXPECT_EQ(right_of("estop")->least, Role::watcher);
+  for (const char* moves : {"start", "home", "resume", "jog"}) EXPECT_GT(right_of(moves)->least, Role::watcher) << moves;
+  EXPECT_EQ(right_of("format-disk"), nullptr);
+}
+
+TEST(Rights, RolesFollowTheUserAndItsGroups) {
+  EXPECT_EQ(role_of_user(0, {}, {}), Role::engineer);
+  EXPECT_EQ(role_of_user(geteuid(), {}, {}), Role::engineer);
+  constexpr unsigned nobody = 65534;
+  EXPECT_EQ(role_of_user(nobody, {}, {}), Role::watcher);
+  EXPECT_EQ(role_of_user(nobody, {"nobody"}, {}), Role::op);
+  EXPECT_EQ(role_of_user(nobody, {"@nogroup"}, {}), Role::op);
+  EXPECT_EQ(role_of_user(nobody, {"@nogroup"}, {"nobody"}), Role::engineer);
+  EXPECT_EQ(role_of_user(4'000'000, {"nobody"}, {}), Role::watcher);  // a number without a name
+}
+
+class Server : public testing::Test {
+ protected:
+  void start() {
+    ASSERT_EQ(server.open(path), 0);
+    thread = std::thread([this] {
+      while (!stop) server.serve(Duration::from_ms(5), -1);
+    });
+  }
+  ~Server() override {
+    stop = true;
+    if (thread.joinable()) thread.join();
+  }
+
+  TemporaryFolder folder;
+  std::string path = folder / "run/operator.sock";
+  OperatorServer server{[](unsigned) { return Role::op; },
+                        [](const std::string& line, Role role) {
+                          return Json{{"ok", true}, {"line", line}, {"role", name(role)}}.dump();
+                        }};
+  std::atomic<bool> stop{false};
+  std::thread thread;
+};
+
+TEST_F(Server, AnswersEveryLineOfEveryClient) {
+  start();
+  for (int i = 0; i < 30; ++i) {
+    const Json reply = ask_daemon(path, {{"do", "status"}, {"n", i}});
+    EXPECT_EQ(reply["role"], "operator");
+    EXPECT_EQ(Json::parse(reply["line"].get<std::string>())["n"], i);
+  }
+}
+
+TEST_F(Server, LetsGoOfWhoSendsNoLine) {
+  start();
+  const int fd = socket(AF_UNIX, SOCK_STREAM, 0);
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  path.copy(address.sun_path, sizeof address.sun_path - 1);
+  ASSERT_EQ(connect(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  const std::string endless(4096, 'x');
+  ssize_t sent = 0;
+  for (int i = 0; i < 1000 && sent >= 0; ++i) {
+    sent = send(fd, endless.data(), endless.size(), MSG_NOSIGNAL);
+    sleep_until(monotonic_now() + Duration::from_ms(1));
+  }
+  EXPECT_LT(sent, 0);
+  close(fd);
+  EXPECT_EQ(ask_daemon(path, {{"do", "status"}})["ok"], true);
+}
+
+TEST_F(Server, ASecondOneFindsTheSocketInUseAndADeadOneIsReplaced) {
+  start();
+  OperatorServer second([](unsigned) { return Role::op; }, [](const std::string&, Role) { return std::string(); });
+  EXPECT_EQ(second.open(path), EADDRINUSE);
+  const std::string dead = folder / "dead.sock";
+  const int fd = socket(AF_UNIX, SOCK_STREAM, 0);
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  dead.copy(address.sun_path, sizeof address.sun_path - 1);
+  ASSERT_EQ(bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  close(fd);
+  EXPECT_EQ(second.open(dead), 0);
+}
+
+TEST(InstanceLock, OneMasterABus) {
+  const TemporaryFolder folder;
+  InstanceLock first, second, other;
+  EXPECT_EQ(first.take(folder.path(), "can0"), "");
+  EXPECT_NE(second.take(folder.path(), "can0").find("(process " + std::to_string(getpid()) + ")"), std::string::npos);
+  EXPECT_EQ(other.take(folder.path(), "can1"), "");
+  {
+    InstanceLock gone;
+    EXPECT_EQ(gone.take(folder.path(), "can2"), "");
+  }
+  InstanceLock after;
+  EXPECT_EQ(after.take(folder.path(), "can2"), "");
+  InstanceLock nowhere;
+  EXPECT_NE(nowhere.take("/no/such/folder", "can0").find("lock_folder"), std::string::npos);
+}
+
+TEST(EstopInput, OnlyAOneIsWhole) {
+  const TemporaryFolder folder;
+  EXPECT_TRUE(EstopInput().whole());
+  EXPECT_TRUE(EstopInput(folder.write("a", "1\n")).whole());
+  for (const char* broken : {"0\n", "", "2", "x"}) EXPECT_FALSE(EstopInput(folder.write("b", broken)).whole()) << broken;
+  EXPECT_FALSE(EstopInput(folder / "none").whole());
+}
+
+TEST(ServiceManager, HearsWhatIsSaid) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "notify";
+  const int fd = socket(AF_UNIX, SOCK_DGRAM, 0);
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  path.copy(address.sun_path, sizeof address.sun_path - 1);
+  ASSERT_EQ(bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  setenv("NOTIFY_SOCKET", path.c_str(), 1);
+  EXPECT_TRUE(notify_service_manager("READY=1\nSTATUS=here"));
+  std::array<char, 64> text{};
+  ASSERT_GT(recv(fd, text.data(), text.size(), MSG_DONTWAIT), 0);
+  EXPECT_STREQ(text.data(), "READY=1\nSTATUS=here");
+  close(fd);
+  EXPECT_FALSE(notify_service_manager("WATCHDOG=1"));
+  unsetenv("NOTIFY_SOCKET");
+  EXPECT_TRUE(notify_service_manager("READY=1"));
+}
+
+TEST(ServiceManager, WantsItsWatchdogFedByThisProcessOnly) {
+  unsetenv("WATCHDOG_USEC");
+  EXPECT_FALSE(watchdog_interval());
+  setenv("WATCHDOG_USEC", "1000000", 1);
+  EXPECT_EQ(watchdog_interval()->ns(), 500'000'000);
+  setenv("WATCHDOG_PID", "1", 1);
+  EXPECT_FALSE(watchdog_interval());
+  unsetenv("WATCHDOG_USEC");
+  unsetenv("WATCHDOG_PID");
+}
+
+TEST(AnotherMaster, IsHeardByItsSyncOrItsHeartbeat) {
+  test::FakeLinux linux_;
+  SocketCan::Config config;
+  config.filters = core_filters();
+  for (const std::uint32_t id : {0x080U, 0x77FU, 0x181U}) {
+    SocketCan can(config, linux_);
+    ASSERT_EQ(can.open(), port_ok);
+    test::FakeLinux::Arriving frame;
+    frame.frame.can_id = id;
+    linux_.arriving.push_back(frame);
+    linux_.polled = POLLIN;
+    EXPECT_EQ(hear_another_master(can, Duration::from_ms(20)).has_value(), id != 0x181U) << std::hex << id;
+  }
+}
+
+}  // namespace
+}  // namespace lf::hal

@@ -1,0 +1,127 @@
+#include "hal/vehicle/v4l2_camera.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/vehicle/fake_linux.hpp"
+
+namespace lf::hal {
+namespace {
+
+using test::FakeLinux;
+
+V4l2Camera::Config small() {
+  V4l2Camera::Config config;
+  config.width = 8;
+  config.height = 4;
+  config.exposure = Duration::from_us(2050);
+  config.gain = 7;
+  return config;
+}
+
+TEST(V4l2Camera, SetsExposureAndGainByHand) {
+  FakeLinux linux_;
+  V4l2Camera camera(small(), linux_);
+  ASSERT_EQ(camera.open(), port_ok);
+  const std::vector<std::pair<std::uint32_t, std::int32_t>> expected{
+      {V4L2_CID_EXPOSURE_AUTO, V4L2_EXPOSURE_MANUAL}, {V4L2_CID_EXPOSURE_ABSOLUTE, 21}, {V4L2_CID_AUTOGAIN, 0}, {V4L2_CID_GAIN, 7}};
+  EXPECT_EQ(linux_.controls, expected);
+  EXPECT_TRUE(linux_.streaming);
+}
+
+class EveryFormat : public testing::TestWithParam<std::uint32_t> {};
+
+TEST_P(EveryFormat, BecomesGreyAndKeepsTheDriversTime) {
+  FakeLinux linux_;
+  linux_.camera_format = GetParam();
+  V4l2Camera::Config config = small();
+  config.stamp_delay = Duration::from_us(500);
+  V4l2Camera camera(config, linux_);
+  ASSERT_EQ(camera.open(), port_ok);
+  linux_.frames.push_back({.sequence = 3, .stamp_ns = 2'000'000'000, .value = 201});
+  Image image;
+  ASSERT_EQ(camera.receive(image), port_ok);
+  ASSERT_TRUE(image.view.valid());
+  EXPECT_EQ(image.view.width, 8);
+  EXPECT_EQ(image.view.height, 4);
+  for (std::int32_t v = 0; v < 4; ++v) {
+    for (std::int32_t u = 0; u < 8; ++u) EXPECT_EQ(image.view.at(u, v), 201) << u << "," << v;
+  }
+  EXPECT_EQ(image.exposure_start.ns(), 2'000'000'000 - 500'000);
+  EXPECT_EQ(image.exposure, config.exposure);
+  EXPECT_EQ(image.trigger, -1);
+  EXPECT_EQ(camera.receive(image), port_empty);
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, EveryFormat, testing::Values(V4L2_PIX_FMT_GREY, V4L2_PIX_FMT_Y10, V4L2_PIX_FMT_Y16, V4L2_PIX_FMT_YUYV));
+
+TEST(V4l2Camera, CountsGapsRepeatsAndBrokenFrames) {
+  FakeLinux linux_;
+  V4l2Camera camera(small(), linux_);
+  ASSERT_EQ(camera.open(), port_ok);
+  linux_.frames.push_back({.sequence = 0, .stamp_ns = 1});
+  linux_.frames.push_back({.sequence = 4, .stamp_ns = 2});                                            // 1, 2 and 3 never came
+  linux_.frames.push_back({.sequence = 4, .stamp_ns = 2});                                            // again
+  linux_.frames.push_back({.sequence = 5, .stamp_ns = 3, .flags = V4L2_BUF_FLAG_ERROR});              // broken
+  linux_.frames.push_back({.sequence = 6, .stamp_ns = 4, .whole = false});                            // cut short
+  linux_.frames.push_back({.sequence = 7, .stamp_ns = 5, .flags = V4L2_BUF_FLAG_TIMESTAMP_UNKNOWN});  // of unknown time
+  std::vector<std::uint32_t> sequences;
+  for (int look = 0; look < 10; ++look) {
+    Image image;
+    if (camera.receive(image) == port_ok) sequences.push_back(image.sequence);
+  }
+  ASSERT_EQ(sequences.size(), 3u);
+  EXPECT_EQ(sequences[1] - sequences[0], 4u);
+  EXPECT_EQ(sequences[2] - sequences[1], 3u);
+  EXPECT_EQ(camera.stats().skipped, 3u);
+  EXPECT_EQ(camera.stats().repeated, 1u);
+  EXPECT_EQ(camera.stats().broken, 2u);
+  EXPECT_EQ(camera.stats().stamps_missed, 1u);
+  EXPECT_EQ(camera.stats().images, 3u);
+}
+
+TEST(V4l2Camera, EveryBufferComesBackToTheDriver) {
+  FakeLinux linux_;
+  V4l2Camera camera(small(), linux_);
+  ASSERT_EQ(camera.open(), port_ok);
+  for (std::uint32_t n = 0; n < 50; ++n) {
+    linux_.frames.push_back({.sequence = n, .stamp_ns = n + 1});
+    Image image;
+    ASSERT_EQ(camera.receive(image), port_ok);
+    EXPECT_EQ(linux_.queued.size(), 3u);  // one is lent
+  }
+}
+
+TEST(V4l2Camera, ACameraThatGoesAwayIsFoundAgain) {
+  FakeLinux linux_;
+  V4l2Camera camera(small(), linux_);
+  ASSERT_EQ(camera.open(), port_ok);
+  Image image;
+  linux_.frames.push_back({.sequence = 0, .stamp_ns = 1});
+  ASSERT_EQ(camera.receive(image), port_ok);
+  linux_.camera_there = false;
+  EXPECT_EQ(camera.receive(image), ENODEV);
+  EXPECT_EQ(camera.receive(image), ENODEV);
+  EXPECT_EQ(camera.stats().losses, 1u);
+  linux_.camera_there = true;
+  EXPECT_EQ(camera.receive(image), ENODEV);  // not looked for at every call
+  linux_.pass(600'000'000);
+  linux_.frames.push_back({.sequence = 0, .stamp_ns = 2});
+  EXPECT_EQ(camera.receive(image), port_ok);
+  EXPECT_EQ(image.sequence, 2u);  // goes on
+  EXPECT_EQ(camera.stats().reopened, 1u);
+}
+
+TEST(V4l2Camera, SaysWhatItLacks) {
+  FakeLinux linux_;
+  linux_.camera_there = false;
+  V4l2Camera none(small(), linux_);
+  EXPECT_EQ(none.open(), ENOENT);
+  linux_.camera_there = true;
+  linux_.camera_format = V4L2_PIX_FMT_MJPEG;
+  V4l2Camera colour(small(), linux_);
+  EXPECT_EQ(colour.open(), EINVAL);
+  EXPECT_NE(V4l2Camera::explain(EINVAL, small()).find("8x4"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace lf::hal

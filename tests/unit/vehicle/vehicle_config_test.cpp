@@ -1,0 +1,118 @@
+#include "hal/vehicle/vehicle_config.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "firmware/arm/actuator.hpp"
+#include "hal/vehicle/homing_file.hpp"
+#include "shared/input_error.hpp"
+#include "tests/unit/vehicle/temporary_folder.hpp"
+
+namespace lf::hal {
+namespace {
+
+using test::TemporaryFolder;
+using testing::ElementsAre;
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+std::vector<std::string> problems_of(const std::string& file) {
+  std::vector<std::string> lines;
+  try {
+    (void)load_vehicle_config(file);
+  } catch (const InputError& error) {
+    std::istringstream text(error.what());
+    for (std::string line; std::getline(text, line);) lines.push_back(line);
+  }
+  return lines;
+}
+
+TEST(VehicleConfig, TheShippedOnesAreSound) {
+  for (const char* name : {"vehicle.yaml", "vcan.yaml"})
+    EXPECT_THAT(problems_of(std::string(LANTERNFISH_SOURCE_DIR "/shared/vehicle/") + name), IsEmpty()) << name;
+}
+
+TEST(VehicleConfig, AnEmptyFileIsTheDefault) {
+  const TemporaryFolder folder;
+  const VehicleConfig config = load_vehicle_config(folder.write("v.yaml", ""));
+  EXPECT_EQ(config.interface, "can0");
+  EXPECT_EQ(config.core.controller.mission.tasks.size(), 4u);
+  EXPECT_EQ(config.core.scan.match_window.ns(), 2'000'000);
+}
+
+TEST(VehicleConfig, EveryProblemIsListedWithItsLine) {
+  const TemporaryFolder folder;
+  const std::string file = folder.write("v.yaml",
+                                        "can: {interfce: can0, transmit_deadline_ms: soon}\n"
+                                        "camera:\n"
+                                        "  source: rnig\n"
+                                        "  gain: -4\n"
+                                        "  gain: 3\n"
+                                        "  ring_bytes: 5000\n"
+                                        "  match_window_us: 20000\n"
+                                        "tasks: [{turn_valve: {to_deg: 900}}]\n"
+                                        "panel: {ahead_m: 1.1}\n"
+                                        "arm: {urdf: no_such.urdf}\n"
+                                        "safety: {limits: nothing.yaml}\n"
+                                        "realtime: 7\n"
+                                        "operator: {socket: \"\"}\n"
+                                        "wheels: 4\n");
+  EXPECT_THAT(
+      problems_of(file),
+      ElementsAre(EndsWith("v.yaml:1: unknown key 'can.interfce'; did you mean 'interface'?"),
+                  HasSubstr("v.yaml:1: 'can.transmit_deadline_ms' takes a number, not 'soon'"),
+                  HasSubstr("v.yaml:3: 'camera.source' has no 'rnig'; did you mean 'ring'?"), HasSubstr("v.yaml:4: 'camera.gain' is -4"),
+                  HasSubstr("v.yaml:5: 'camera.gain' is given twice"), HasSubstr("v.yaml:8: 'tasks[0].turn_valve.to_deg' is 900"),
+                  HasSubstr("v.yaml:12: 'realtime' takes a group of keys, not '7'"), HasSubstr("v.yaml:14: unknown key 'wheels'"),
+                  HasSubstr("'camera.ring_bytes' is not a multiple of 4096"), HasSubstr("'operator.socket' takes a path"),
+                  HasSubstr("'camera.match_window_us' is half the time"), HasSubstr("no_such.urdf"), HasSubstr("nothing.yaml"),
+                  HasSubstr("out of the arm's reach")));
+}
+
+TEST(VehicleConfig, TextThatIsNoYamlIsToldWithItsLine) {
+  const TemporaryFolder folder;
+  EXPECT_THAT(problems_of(folder.write("v.yaml", "can: [\n")), ElementsAre(HasSubstr("v.yaml:2: not YAML")));
+  EXPECT_THAT(problems_of(folder.write("w.yaml", "- a\n- b\n")),
+              ElementsAre(HasSubstr("w.yaml:1: a vehicle's configuration is a group of keys")));
+  EXPECT_THAT(problems_of(folder / "none.yaml"), ElementsAre(HasSubstr("none.yaml: No such file")));
+}
+
+TEST(VehicleConfig, LimitsWithAnotherChecksumAreRefused) {
+  const TemporaryFolder folder;
+  std::ifstream shipped(LANTERNFISH_SOURCE_DIR "/shared/safety/limits.yaml");
+  std::string text{std::istreambuf_iterator<char>(shipped), {}};
+  text.replace(text.find("max_torque_nm: 70"), 17, "max_torque_nm: 71");
+  folder.write("limits.yaml", text);
+  EXPECT_THAT(problems_of(folder.write("v.yaml", "safety: {limits: limits.yaml}\n")), ElementsAre(HasSubstr("checksum")));
+}
+
+TEST(VehicleConfig, TheHomingFileReachesTheDrives) {
+  const TemporaryFolder folder;
+  HomingOffsets offsets;
+  offsets.zero_counts = {10, -20, 30, 0, 123456};
+  write_homing_file(folder / "homing.yaml", offsets);
+  const VehicleConfig config = load_vehicle_config(folder.write("v.yaml", "homing: {file: homing.yaml}\n"));
+  for (std::size_t i = 0; i < joint_count; ++i)
+    EXPECT_EQ(config.core.controller.network.drives[i].encoder_zero_counts, offsets.zero_counts[i]);
+}
+
+TEST(HomingFile, ComesBackAsItWentAndRefusesWhatIsNotWhole) {
+  const TemporaryFolder folder;
+  HomingOffsets offsets;
+  offsets.zero_counts = {1, 2, -3, 4, 5};
+  offsets.found[2] = "at its lower stop";
+  write_homing_file(folder / "h.yaml", offsets);
+  const HomingOffsets read = read_homing_file(folder / "h.yaml");
+  EXPECT_EQ(read.zero_counts, offsets.zero_counts);
+  EXPECT_EQ(read.found, offsets.found);
+  EXPECT_THROW((void)read_homing_file(folder.write("a.yaml", "slew: {zero_counts: 3}\n")), InputError);
+  EXPECT_THROW((void)read_homing_file(folder.write("b.yaml", "slew: {zero_counts: x}\n")), InputError);
+  EXPECT_THROW((void)read_homing_file(folder.write("c.yaml", "neck: {zero_counts: 1}\n")), InputError);
+  EXPECT_THROW(write_homing_file(folder / "no/such/folder.yaml", offsets), InputError);
+}
+
+}  // namespace
+}  // namespace lf::hal
