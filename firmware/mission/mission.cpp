@@ -61,7 +61,8 @@ void Mission::tick(Time now, canopen::Network& network, ScanOrders& orders, Tele
   observe(tick);
   take_shut_down(tick);
   watch_faults(tick);
-  if (on_hold_) wait_on_hold(network.config().sync_period);
+  if (on_hold_) wait_on_hold(now - last_tick_);
+  last_tick_ = now;
   // After a fault the arm comes to rest first: a motion is planned from rest.
   if (!entered_ && !on_hold_ && (!powered_ || motion_.done())) begin(tick);
   const Status status = entered_ && !on_hold_ ? run(tick) : Status::running;

@@ -177,6 +177,7 @@ class Mission {
   std::array<std::uint32_t, safety::fault_count> fault_counts_{};
 
   Step step_ = Step::idle;
+  Time last_tick_;
   Time step_since_;
   bool entered_ = false;                           // begin() has run
   std::array<std::uint32_t, step_count> tries_{};  // of the task under way
@@ -192,7 +193,8 @@ class Mission {
   // Orders and answers from outside, taken at the next tick.
   bool start_ordered_ = false, home_ordered_ = false, jog_ordered_ = false, abort_ordered_ = false, stop_ordered_ = false;
   bool reset_ordered_ = false, shut_down_ordered_ = false;
-  Order jog_;  // the last one
+  bool closing_ = false;  // shut down is under way, or over: no other order is taken
+  Order jog_;             // the last one
   bool on_hold_ = false;
   CameraWork::Mode held_camera_ = CameraWork::Mode::idle;  // what it did when it was held
   std::int32_t port_error_ = 0;                            // 1 + the port that failed since the last tick

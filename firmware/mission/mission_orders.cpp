@@ -15,7 +15,7 @@ constexpr Duration power_down = Duration::from_ms(1000);
 }  // namespace
 
 bool Mission::order(const Order& order, Time now) {
-  if (!may(order.command, standing())) return false;
+  if (!may(order.command, standing()) || (closing_ && order.command != Command::emergency_stop)) return false;
   switch (order.command) {
     case Command::start: start_ordered_ = true; return true;
     case Command::home: home_ordered_ = true; return true;
@@ -25,7 +25,7 @@ bool Mission::order(const Order& order, Time now) {
     case Command::set_tasks: return set_tasks(order.tasks);
     case Command::abort: abort_ordered_ = true; return true;
     case Command::reset: reset_ordered_ = true; return true;
-    case Command::shut_down: shut_down_ordered_ = true; return true;
+    case Command::shut_down: shut_down_ordered_ = closing_ = true; return true;
     case Command::emergency_stop: stop_ordered_ = true; return true;
     case Command::count: break;
   }

@@ -11,26 +11,27 @@ namespace fs = std::filesystem;
 
 namespace {
 
-bool holds_scenarios(const fs::path& folder) {
+// The arm is what both programs need; scenarios come with one of them only.
+bool holds_files(const fs::path& folder) {
   std::error_code ignored;
-  return fs::exists(folder / "scenarios" / "default.yaml", ignored);
+  return fs::exists(folder / "arm" / "arm5e.urdf", ignored);
 }
 
 }  // namespace
 
 fs::path share_folder() {
   if (const char* set = std::getenv("LANTERNFISH_SHARE"); set != nullptr && *set != '\0') {
-    if (holds_scenarios(set)) return set;
-    throw InputError(std::string(set) + ": LANTERNFISH_SHARE names this folder, but scenarios/default.yaml is not in it");
+    if (holds_files(set)) return set;
+    throw InputError(std::string(set) + ": LANTERNFISH_SHARE names this folder, but arm/arm5e.urdf is not in it");
   }
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   if (!error) {
     const fs::path installed = program.parent_path().parent_path() / "share" / "lanternfish";
-    if (holds_scenarios(installed)) return installed;
+    if (holds_files(installed)) return installed;
   }
-  if (const fs::path source = fs::path(LANTERNFISH_SOURCE_DIR) / "shared"; holds_scenarios(source)) return source;
-  throw InputError("the shipped scenarios are not beside the program, nor in " LANTERNFISH_SOURCE_DIR
+  if (const fs::path source = fs::path(LANTERNFISH_SOURCE_DIR) / "shared"; holds_files(source)) return source;
+  throw InputError("the shipped files are not beside the program, nor in " LANTERNFISH_SOURCE_DIR
                    "/shared; set LANTERNFISH_SHARE to their folder");
 }
 

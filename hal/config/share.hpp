@@ -6,7 +6,7 @@
 
 namespace lf::config {
 
-// The first of these that holds scenarios/default.yaml: $LANTERNFISH_SHARE, share/lanternfish beside the program's bin folder, the source tree's shared/.
+// The first of these that holds arm/arm5e.urdf: $LANTERNFISH_SHARE, share/lanternfish beside the program's bin folder, the source tree's shared/.
 // Throws InputError when $LANTERNFISH_SHARE is set and has none, or when there is none at all.
 std::filesystem::path share_folder();
 

@@ -134,7 +134,10 @@ void Daemon::stop_threads() {
   order.command = Command::shut_down;
   send_order(order);
   const Time end = monotonic_now() + stop_within;
-  while (control_runs_ && monotonic_now() < end) sleep_until(monotonic_now() + Duration::from_ms(5));
+  while (control_runs_ && monotonic_now() < end) {
+    sleep_until(monotonic_now() + Duration::from_ms(5));
+    feed_watchdog();
+  }
   control_gives_up_ = true;
   control_thread_.join();
   vision_stops_ = true;
@@ -146,12 +149,15 @@ void Daemon::send_order(const mission::Order& order) { (void)loop_rings_.orders.
 
 void Daemon::watch_estop() {
   const Time now = monotonic_now();
-  if (!estop_.present() || estop_.whole() || now < next_estop_) return;
+  const bool open = estop_.present() && !estop_.whole();
+  if (open != estop_open_)
+    writer_.say({{"t_s", now.s()}, {"kind", open ? "emergency stop" : "emergency-stop chain closed"}, {"input", config_.estop_input}});
+  estop_open_ = open;
+  if (!open || now < next_estop_) return;
   next_estop_ = now + estop_every;
   mission::Order order;
   order.command = Command::emergency_stop;
   send_order(order);
-  writer_.say({{"t_s", now.s()}, {"kind", "emergency stop"}, {"input", config_.estop_input}});
 }
 
 // Only while the control thread beats: one that hangs is the service manager's to see.

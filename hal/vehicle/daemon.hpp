@@ -77,6 +77,7 @@ class Daemon {
   std::uint64_t first_heap_calls_ = 0;
   std::thread control_thread_, vision_thread_;
 
+  bool estop_open_ = false;
   std::uint64_t orders_sent_ = 0;
   Time next_estop_, next_feed_;
   std::uint64_t last_beats_ = 0;
