@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <optional>
 
 namespace lf::scan {
@@ -300,7 +299,7 @@ bool BasicPeakDetector<Pixel, MaxLength>::background_steps(const Strip& s, std::
     before += pixel(s.off, line, row - i);
     after += pixel(s.off, line, row + i);
   }
-  const auto step = static_cast<float>(std::abs(before - after));
+  const auto step = static_cast<float>(std::max(before - after, after - before));
   return step > background_step * static_cast<float>(before + after) && step > 6 * floor();
 }
 

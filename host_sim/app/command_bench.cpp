@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <memory>
 
+#include "hal/config/nearest.hpp"
 #include "host_sim/app/bench_areas.hpp"
 #include "host_sim/app/command.hpp"
-#include "hal/config/nearest.hpp"
 #include "shared/input_error.hpp"
 
 namespace lf::app {

@@ -159,8 +159,10 @@ void pass(S& s, ControllerConfig& v) {
 // What comes from the vision side.
 template <class S>
 void pass(S& s, ScanStats& v) {
-  auto& [images, unexpected, refused, missing, peaks, weak, saturated, ambiguous, points, overflowed, no_joints, commands] = v;
-  pass_all(s, images, unexpected, refused, missing, peaks, weak, saturated, ambiguous, points, overflowed, no_joints, commands);
+  auto& [images, unexpected, refused, missing, repeated, peaks, weak, saturated, ambiguous, points, overflowed, no_joints, commands,
+         newest] = v;
+  pass_all(s, images, unexpected, refused, missing, repeated, peaks, weak, saturated, ambiguous, points, overflowed, no_joints, commands,
+           newest);
 }
 template <class S>
 void pass(S& s, PlaneFit& v) {
