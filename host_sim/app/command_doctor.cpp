@@ -9,11 +9,11 @@
 #include <sstream>
 #include <thread>
 
+#include "hal/config/limits_file.hpp"
+#include "hal/config/share.hpp"
 #include "host_sim/app/command.hpp"
 #include "host_sim/app/version.hpp"
 #include "host_sim/scenario/instance.hpp"
-#include "hal/config/limits_file.hpp"
-#include "hal/config/share.hpp"
 
 namespace lf::app {
 

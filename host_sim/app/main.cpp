@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "hal/config/nearest.hpp"
 #include "host_sim/app/command.hpp"
 #include "host_sim/record/file_sink.hpp"
-#include "hal/config/nearest.hpp"
 #include "shared/input_error.hpp"
 
 namespace lf::app {
