@@ -122,12 +122,12 @@ TEST_P(Abort, EndsStowed) {
 INSTANTIATE_TEST_SUITE_P(InEveryPhase, Abort, testing::Values(free_motion, scanning, in_contact, gripping, pressing),
                          [](const testing::TestParamInfo<Moment>& test) { return std::string(test.param.name); });
 
-TEST(AbortBeforeTheStart, EndsOffAtOnce) {
+TEST(AbortBeforeTheStart, IsRefusedAndChangesNothing) {
   Rig rig;
-  rig.controller().on_command(Command::abort, rig.now());
+  EXPECT_FALSE(rig.controller().on_command(Command::abort, rig.now()));
   rig.run_for(0.1);
-  EXPECT_EQ(rig.step_now(), Step::off) << rig.story();
-  EXPECT_EQ(rig.outcome().fault, Fault::aborted);
+  EXPECT_EQ(rig.step_now(), Step::idle) << rig.story();
+  EXPECT_EQ(rig.controller().orders_refused(), 1u);
 }
 
 TEST(AbortAtBoot, EndsOff) {
@@ -188,7 +188,7 @@ INSTANTIATE_TEST_SUITE_P(
                     NodeCase{"RebootedDriveInFreeMotion", "kind: reboot, node: shoulder", free_motion, Fault::stale_position},
                     NodeCase{"HeartbeatOfOneNodeLost", "kind: drop_frames, can_id: 1794", free_motion, Fault::node_lost},
                     NodeCase{"PositionsLostInFreeMotion", "kind: drop_frames, can_id: 386", free_motion, Fault::stale_position},
-                    NodeCase{"MasterOffTheBus", "kind: bus_off, node: master", free_motion, Fault::io_lost}),
+                    NodeCase{"MasterOffTheBus", "kind: bus_off, node: master", free_motion, Fault::bus_off}),
     [](const testing::TestParamInfo<NodeCase>& test) { return std::string(test.param.name); });
 
 // ---- what stands in the way ----
