@@ -306,10 +306,10 @@ bool BasicPeakDetector<Pixel, MaxLength>::background_steps(const Strip& s, std::
 // The laser-off image's mean over the line and its neighbours.
 template <class Pixel, std::int32_t MaxLength>
 float BasicPeakDetector<Pixel, MaxLength>::background(const Strip& s, std::int32_t line, std::int32_t row) const {
-  const std::int32_t inside = std::clamp(row, 0, s.length - 1);
+  const std::int32_t inside = std::clamp(row, std::int32_t{0}, s.length - 1);
   const std::int32_t last_line = (config_.axis == PeakAxis::column ? s.off.width : s.off.height) - 1;
-  const std::int32_t sum =
-      pixel(s.off, std::max(line - 1, 0), inside) + pixel(s.off, line, inside) + pixel(s.off, std::min(line + 1, last_line), inside);
+  const std::int32_t sum = pixel(s.off, std::max(line - 1, std::int32_t{0}), inside) + pixel(s.off, line, inside) +
+                           pixel(s.off, std::min(line + 1, last_line), inside);
   return static_cast<float>(sum) / 3;
 }
 
