@@ -188,14 +188,18 @@ bool V4l2Camera::State::sound(const v4l2_buffer& buffer) {
   return whole && !repeated;
 }
 
-// A copied stamp is the writer's of a loopback device; both kinds are CLOCK_MONOTONIC.
+// A copied stamp is the writer's of a loopback device; both kinds are CLOCK_MONOTONIC. So is that of v4l2loopback 0.12, which leaves the kind open: such a
+// stamp is believed when it is of the last second, which no wall clock's is.
 Time V4l2Camera::State::start_of(const v4l2_buffer& buffer) {
   const std::uint32_t clock = buffer.flags & V4L2_BUF_FLAG_TIMESTAMP_MASK;
   const bool monotonic = clock == V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC || clock == V4L2_BUF_FLAG_TIMESTAMP_COPY;
   const std::int64_t stamp_ns = buffer.timestamp.tv_sec * std::int64_t{1'000'000'000} + buffer.timestamp.tv_usec * std::int64_t{1'000};
-  if (!monotonic || stamp_ns == 0) {
+  const std::int64_t now_ns = calls.monotonic_ns();
+  const bool recent = stamp_ns <= now_ns && now_ns - stamp_ns < 1'000'000'000;
+  const bool open_kind = clock == V4L2_BUF_FLAG_TIMESTAMP_UNKNOWN && recent;
+  if (stamp_ns == 0 || !(monotonic || open_kind)) {
     ++stats.stamps_missed;
-    return Time::from_ns(calls.monotonic_ns()) - config.stamp_delay;
+    return Time::from_ns(now_ns) - config.stamp_delay;
   }
   return Time::from_ns(stamp_ns) - config.stamp_delay;
 }

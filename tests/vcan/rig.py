@@ -161,8 +161,9 @@ class Sea:
         if not self.orders.exists():
             os.mkfifo(self.orders)
         self.output = open(folder / "sea.err", "w+")
-        self.process = start([programs / "lanternfish", "serve", scenario, "--seed", str(seed), "--can", interface,
-                                         "--camera", f"ring:{camera}" if camera else "none", "--orders", str(self.orders), "--out", str(folder / "out"), *options], self.output)
+        target = f"ring:{camera}" if camera else "none"
+        self.process = start([programs / "lanternfish", "serve", scenario, "--seed", seed, "--can", interface, "--camera", target,
+                              "--orders", self.orders, "--out", folder / "out", *options], self.output)
         self.fifo = os.open(self.orders, os.O_RDWR)
 
     def order(self, line):

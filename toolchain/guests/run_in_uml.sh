@@ -2,9 +2,10 @@
 # Runs a command in User Mode Linux, a kernel of its own that is an ordinary process: it has SocketCAN where the machine's kernel has none.
 # Usage: run_in_uml.sh [--time-limit S] [--memory 512M] [--out FOLDER]... [--mmapper FILE] COMMAND [ARGUMENT]...
 #
-# The guest has one processor and keeps this machine's time. It sees this machine's files, in the same places, read-only; /tmp, /var/tmp, /run and /dev/shm are its own and empty, and each FOLDER
-# of --out is this machine's and may be written. The command runs as the guest's root, in the present folder and environment, with vcan0 up and
-# the modules for vcan, vxcan and can-gw loaded. FILE, a multiple of the page size, is the guest's /dev/mmapper, shared both ways.
+# The guest has one processor and keeps this machine's time. It sees this machine's files, in the same places, read-only; /tmp, /var/tmp, /run
+# and /dev/shm are its own and empty, and each FOLDER of --out is this machine's and may be written. The command runs as the guest's root, in
+# the present folder and environment, with vcan0 up and the modules for vcan, vxcan and can-gw loaded. FILE, a multiple of the page size, is
+# the guest's /dev/mmapper, shared both ways.
 # Exit status: the command's; 3 when something has to be installed; 124 when the time limit (60 s) is over; 125 when the guest itself failed.
 # Environment: LANTERNFISH_GUEST_CPU, the processor to run on (default: the last one allowed).
 set -euo pipefail

@@ -1,0 +1,55 @@
+#!/usr/bin/env python3
+"""The control loop at 250 Hz with five drives and the output node over the driver of a CAN card, on a clock that counts instructions: no frame is lost.
+
+Usage: loop_test.py FOLDER_OF_PROGRAMS NODES_ON_CAN; inside the guest of run_in_qemu.sh. The daemon is on can0, the simulator's nodes on can1 of the same
+bus, without a world.
+Prints how late the loop woke up and how long its ticks took; leaves both in LANTERNFISH_GUEST_OUT.
+"""
+import json
+import os
+import pathlib
+import sys
+import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "vcan"))
+import rig  # noqa: E402
+from rig import expect  # noqa: E402
+
+SECONDS = 2.0  # of motion
+
+
+def loop(programs):
+    folder = pathlib.Path("/tmp/rig")
+    folder.mkdir()
+    os.environ["LANTERNFISH_SHARE"] = str(rig.ROOT / "shared")
+    said = open(folder / "nodes.out", "w+")
+    nodes = rig.start([sys.argv[2], "can1"], said)
+    rig.wait_for("the nodes", lambda: "serving" in (folder / "nodes.out").read_text(), 60)
+    daemon = rig.Daemon(pathlib.Path(programs), folder / "run", "can0", None)
+    daemon.wait_ready(120)
+    daemon.order("start")
+    daemon.wait_step("deploy", 60)
+    before = daemon.status()
+    time.sleep(SECONDS)
+    after = daemon.status()
+    expect(daemon.stop(60) == 0, daemon.text())
+    nodes.terminate()
+    expect(nodes.wait(60) == 0, "a frame of the nodes could not be sent")
+    print(daemon.text() + (folder / "nodes.out").read_text())
+
+    latency = after["latency"]
+    for what in ("wake_up_us", "tick_us"):
+        print(f"{what}: " + ", ".join(f"{k} {v:.0f}" for k, v in latency[what].items()))
+    if out := os.environ.get("LANTERNFISH_GUEST_OUT"):
+        (pathlib.Path(out) / "loop.json").write_text(json.dumps(after, indent=1))
+    ticks = after["ticks"] - before["ticks"]
+    received = after["frames"]["received"] - before["frames"]["received"]
+    expect(after["standing"] == "working", f"the mission is {after['standing']}: {after.get('failure')}")
+    expect("ticks missed" not in after["counters"], f"{after['counters'].get('ticks missed')} ticks missed")
+    expect(not after["counters"]["can"], f"on the bus: {after['counters']['can']}")
+    # Every SYNC is answered by six nodes; heartbeats come besides. A status is up to 0.1 s old at either end.
+    expect(received >= 6 * (ticks - 1), f"{received} frames for {ticks} ticks of six nodes")
+    expect(latency["wake_up_us"]["p999"] <= 200, f"woken up {latency['wake_up_us']['p999']:.0f} us late (p99.9)")
+
+
+rig.main(loop)
