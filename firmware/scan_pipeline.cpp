@@ -24,12 +24,14 @@ scan::PlaneFitter::Config toward_camera(scan::PlaneFitter::Config config, const 
 
 }  // namespace
 
-ScanPipeline::ScanPipeline(const ScanConfig& config)
+template <ScanCapacity capacity>
+BasicScanPipeline<capacity>::BasicScanPipeline(const ScanConfig& config)
     : config_(config), detector_(config.peaks), triangulator_(config.camera, config.laser, config.triangulation) {
   config_.plane = toward_camera(config.plane, config.camera);
 }
 
-void ScanPipeline::on_command(const ScanCommand& command) {
+template <ScanCapacity capacity>
+void BasicScanPipeline<capacity>::on_command(const ScanCommand& command) {
   switch (command.kind) {
     case ScanCommand::Kind::joint_sample:
       if (!joints_.add(command.joints)) ++stats_.commands_refused;
@@ -44,7 +46,8 @@ void ScanPipeline::on_command(const ScanCommand& command) {
   ++stats_.commands_refused;
 }
 
-void ScanPipeline::begin_sweep(std::uint32_t sweep) {
+template <ScanCapacity capacity>
+void BasicScanPipeline<capacity>::begin_sweep(std::uint32_t sweep) {
   forget_exposures(exposures_.size());
   stripes_.clear();
   cloud_.clear();
@@ -56,7 +59,8 @@ void ScanPipeline::begin_sweep(std::uint32_t sweep) {
   sweeping_ = true;
 }
 
-void ScanPipeline::expect(const ScanCommand& command) {
+template <ScanCapacity capacity>
+void BasicScanPipeline<capacity>::expect(const ScanCommand& command) {
   if (any_order_ && command.exposure_start <= last_order_) {
     ++stats_.commands_refused;
     return;
@@ -69,7 +73,8 @@ void ScanPipeline::expect(const ScanCommand& command) {
 }
 
 // The image of a dropped exposure may be on its way, or have come already.
-void ScanPipeline::drop(Time start) {
+template <ScanCapacity capacity>
+void BasicScanPipeline<capacity>::drop(Time start) {
   for (Exposure& exposure : exposures_) {
     if (exposure.start != start) continue;
     exposure.dropped = true;
@@ -90,19 +95,22 @@ void ScanPipeline::drop(Time start) {
 }
 
 // The oldest `count` exposures have no image.
-void ScanPipeline::forget_exposures(std::size_t count) {
+template <ScanCapacity capacity>
+void BasicScanPipeline<capacity>::forget_exposures(std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) stats_.images_missing += exposures_[i].dropped ? 0 : 1;
   std::copy(exposures_.begin() + count, exposures_.end(), exposures_.begin());
   for (std::size_t i = 0; i < count; ++i) exposures_.pop_back();
 }
 
-bool ScanPipeline::is_of(const Image& image, const Exposure& exposure) const {
+template <ScanCapacity capacity>
+bool BasicScanPipeline<capacity>::is_of(const Image& image, const Exposure& exposure) const {
   if (image.trigger >= 0) return image.trigger == exposure.trigger;
   return distance(exposure.start, image.exposure_start) <= config_.match_window;
 }
 
 // Takes the exposure that `image` is of off the list, with those before it: images come in the order of their exposures.
-bool ScanPipeline::match(const Image& image, Exposure& exposure) {
+template <ScanCapacity capacity>
+bool BasicScanPipeline<capacity>::match(const Image& image, Exposure& exposure) {
   for (std::size_t i = 0; i < exposures_.size(); ++i) {
     if (!is_of(image, exposures_[i])) continue;
     exposure = exposures_[i];
@@ -115,7 +123,8 @@ bool ScanPipeline::match(const Image& image, Exposure& exposure) {
 }
 
 // `start` is the instant that was ordered, by which a later `drop_exposure` calls it, not the camera's stamp.
-void ScanPipeline::store(const Image& image, Time start, StoredImage& out) {
+template <ScanCapacity capacity>
+void BasicScanPipeline<capacity>::store(const Image& image, Time start, StoredImage& out) {
   for (std::int32_t v = 0; v < image_height; ++v)
     std::copy_n(image.view.row(v), image_width, out.pixels.data() + static_cast<std::ptrdiff_t>(v) * image_width);
   out.start = start;
@@ -123,7 +132,8 @@ void ScanPipeline::store(const Image& image, Time start, StoredImage& out) {
   out.present = true;
 }
 
-void ScanPipeline::on_image(std::uint8_t camera, const Image& received) {
+template <ScanCapacity capacity>
+void BasicScanPipeline<capacity>::on_image(std::uint8_t camera, const Image& received) {
   if (camera != config_.camera_index) return;
   Exposure exposure;
   if (!match(received, exposure)) {
@@ -151,7 +161,8 @@ void ScanPipeline::on_image(std::uint8_t camera, const Image& received) {
 }
 
 // The stripe's peaks; those of a sweep wait for their joints.
-void ScanPipeline::measure(const Image& image, const Exposure& exposure) {
+template <ScanCapacity capacity>
+void BasicScanPipeline<capacity>::measure(const Image& image, const Exposure& exposure) {
   const scan::PixelView<std::uint8_t> background = background_.present ? view(background_) : ImageView{};
   last_peaks_count_ = detector_.detect(image.view, background, last_peaks_);
   last_peaks_time_ = image.mid_exposure();
@@ -161,8 +172,7 @@ void ScanPipeline::measure(const Image& image, const Exposure& exposure) {
   stats_.peaks_saturated = static_cast<std::uint32_t>(counters.saturated);
   if (!exposure.in_sweep) return;
   if (stripes_.full()) add_points(true);
-  (void)stripes_.push_back({});
-  Stripe& stripe = stripes_.back();
+  Stripe& stripe = *stripes_.extend();
   stripe.start = exposure.start;
   stripe.mid_exposure = image.mid_exposure();
   stripe.count = last_peaks_count_;
@@ -170,7 +180,8 @@ void ScanPipeline::measure(const Image& image, const Exposure& exposure) {
 }
 
 // Stripes whose joints are known become points, oldest first; `final` leaves none waiting.
-void ScanPipeline::add_points(bool final) {
+template <ScanCapacity capacity>
+void BasicScanPipeline<capacity>::add_points(bool final) {
   std::size_t done = 0;
   while (done < stripes_.size() && add_points(stripes_[done], final)) ++done;
   if (done == 0) return;
@@ -179,7 +190,8 @@ void ScanPipeline::add_points(bool final) {
 }
 
 // False when the stripe has to wait.
-bool ScanPipeline::add_points(const Stripe& stripe, bool final) {
+template <ScanCapacity capacity>
+bool BasicScanPipeline<capacity>::add_points(const Stripe& stripe, bool final) {
   if (stripe.count == 0) return true;
   std::array<double, arm_joint_count> q_rad;
   const scan::JointHistory::Outcome outcome = joints_.at(stripe.mid_exposure, final, q_rad);
@@ -202,7 +214,8 @@ bool ScanPipeline::add_points(const Stripe& stripe, bool final) {
 }
 
 // Whether the arm's hand stands in the line of sight: what is seen there is the hand, lit by its own laser, or the edge that it moved.
-bool ScanPipeline::behind_arm(const Vec3& point_m) const {
+template <ScanCapacity capacity>
+bool BasicScanPipeline<capacity>::behind_arm(const Vec3& point_m) const {
   const arm::Capsule sight{.link = 0, .a_m = config_.camera.base_from_camera.translation(), .b_m = point_m, .radius_m = 0};
   return std::any_of(arm_.begin(), arm_.end(), [&](const arm::Capsule& link) {
     return link.link >= first_seen_link && arm::clearance_between(sight, link) < silhouette_margin_m;
@@ -210,7 +223,8 @@ bool ScanPipeline::behind_arm(const Vec3& point_m) const {
 }
 
 // A column shows the panel and at most one proud part in the laser's plane; where more of its peaks could be points, none is believed.
-void ScanPipeline::add_column(std::span<const scan::Peak> peaks, const Pose& base_from_laser) {
+template <ScanCapacity capacity>
+void BasicScanPipeline<capacity>::add_column(std::span<const scan::Peak> peaks, const Pose& base_from_laser) {
   constexpr std::size_t most = 2;
   StaticVector<CloudPoint, scan::max_peaks_per_line> points;
   for (const scan::Peak& peak : peaks) {
@@ -224,7 +238,8 @@ void ScanPipeline::add_column(std::span<const scan::Peak> peaks, const Pose& bas
   for (const CloudPoint& point : points) ++(cloud_.add(point) ? stats_.points : stats_.points_overflowed);
 }
 
-void ScanPipeline::analyse(std::uint32_t sweep) {
+template <ScanCapacity capacity>
+void BasicScanPipeline<capacity>::analyse(std::uint32_t sweep) {
   forget_exposures(exposures_.size());
   add_points(true);
   sweeping_ = false;
@@ -235,11 +250,16 @@ void ScanPipeline::analyse(std::uint32_t sweep) {
   request_ready_ = true;
 }
 
-bool ScanPipeline::take_request(PanelRequest& request) {
+template <ScanCapacity capacity>
+bool BasicScanPipeline<capacity>::take_request(PanelRequest& request) {
   if (!request_ready_) return false;
   request = request_;
   request_ready_ = false;
   return true;
 }
+
+template class BasicScanPipeline<full_scan>;
+template class BasicScanPipeline<compact_scan>;
+template class BasicScanPipeline<small_scan>;
 
 }  // namespace lf

@@ -5,6 +5,7 @@
 // stripes that follow it.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -37,14 +38,25 @@ struct ScanConfig {
   scan::PlaneFitter::Config plane{.tight_sigmas = 3.0};
 };
 
-class ScanPipeline {
+// What the vision thread's memory is made for.
+struct ScanCapacity {
+  std::int32_t image_width = 640;  // px; images of another size are refused
+  std::int32_t image_height = 480;
+  // A sweep of 18.1 s at 25 Hz with one frame of five for the background and 640 columns gives at most 231,680 points.
+  std::size_t cloud_points = 262'144;
+  // A stripe waits for eight SYNCs, 32 ms: one frame's time. One beyond that is for joint samples that come late.
+  std::size_t stripes = 4;
+};
+
+template <ScanCapacity capacity>
+class BasicScanPipeline {
  public:
-  static constexpr std::int32_t image_width = 640;
-  static constexpr std::int32_t image_height = 480;
+  static constexpr std::int32_t image_width = capacity.image_width;
+  static constexpr std::int32_t image_height = capacity.image_height;
   static constexpr std::size_t max_peaks = scan::max_peaks_per_line * image_width;  // of an image
 
   // The planes' normals point to the side of the camera, whatever `config.plane.toward_m` says.
-  explicit ScanPipeline(const ScanConfig& config);
+  explicit BasicScanPipeline(const ScanConfig& config);
 
   // Orders in the order of their times; what is not is refused and counted. `begin_sweep` empties cloud, background and still.
   // A sweep takes in the stripes ordered between its `begin_sweep` and `end_sweep`; `analyse` closes it: images that have not come by then count as
@@ -53,7 +65,7 @@ class ScanPipeline {
 
   // An image of camera `camera`; only read during the call. It is matched with the exposure of its trigger counter, or, when it has none,
   // with the one ordered within `match_window` of its start; without one it is
-  // refused and counted, as is one of another size than 640x480. Images of other cameras are passed over.
+  // refused and counted, as is one of another size than the capacity's. Images of other cameras are passed over.
   void on_image(std::uint8_t camera, const Image& image);
 
   // Once after each `analyse`: the plane of the cloud, and whether `still()` holds a picture for the marker.
@@ -109,17 +121,15 @@ class ScanPipeline {
 
   // At 25 Hz and less than 0.1 s from trigger to image three are on their way; more are images that never came.
   static constexpr std::size_t max_exposures = 16;
-  // A stripe waits for eight SYNCs, 32 ms: one frame's time.
-  static constexpr std::size_t max_stripes = 4;
 
   ScanConfig config_;
-  scan::PeakDetector detector_;
+  scan::BasicPeakDetector<std::uint8_t, std::max(image_width, image_height)> detector_;
   scan::Triangulator triangulator_;
   scan::JointHistory joints_;
   scan::PlaneFitter fitter_;
-  scan::Cloud cloud_;
+  scan::BasicCloud<capacity.cloud_points> cloud_;
   StaticVector<Exposure, max_exposures> exposures_;  // oldest first
-  StaticVector<Stripe, max_stripes> stripes_;        // oldest first
+  StaticVector<Stripe, capacity.stripes> stripes_;   // oldest first
   Time last_order_;
   bool any_order_ = false;
   bool sweeping_ = false;
@@ -134,7 +144,18 @@ class ScanPipeline {
   Time last_peaks_time_;
 };
 
-// The cloud is 4.2 MB of it, two stored images 0.6, the detector 0.1.
-static_assert(sizeof(ScanPipeline) < 6 * 1024 * 1024, "the vision thread's memory");
+// Every point of the slowest sweep. The cloud is 4.2 MB of it, two stored images 0.6, stripes 0.2, the detector 0.1.
+inline constexpr ScanCapacity full_scan{};
+using ScanPipeline = BasicScanPipeline<full_scan>;
+static_assert(sizeof(ScanPipeline) <= 6 * 1024 * 1024, "a computer's, or a board's external 8 MB");
+
+// Whole images, a quarter of the points: the camera triggered at 6.25 Hz (mission.camera_syncs 40) fills it in the same sweep.
+inline constexpr ScanCapacity compact_scan{.cloud_points = 65'536, .stripes = 2};
+static_assert(sizeof(BasicScanPipeline<compact_scan>) <= 2 * 1024 * 1024, "a board's external 2 MB of static memory");
+
+// Images of half the size, binned by the camera, at the same 6.25 Hz.
+inline constexpr ScanCapacity small_scan{.image_width = 320, .image_height = 240, .cloud_points = 32'768, .stripes = 2};
+static_assert(sizeof(BasicScanPipeline<small_scan>) <= 896 * 1024,
+              "inside of the chip: an STM32H7A3's contiguous 1 MB, with an eighth to spare");
 
 }  // namespace lf

@@ -81,8 +81,8 @@ void control_turn(P& platform, Controller& controller, CoreRings& rings, TickOut
 }
 
 // `report_error(port, code)` tells the control side of a failed call; on the vehicle it crosses a ring.
-template <Platform P, class Probe, class ReportError>
-void vision_turn(P& platform, ScanPipeline& pipeline, CoreRings& rings, Probe& probe, ReportError report_error) {
+template <Platform P, class Pipeline, class Probe, class ReportError>
+void vision_turn(P& platform, Pipeline& pipeline, CoreRings& rings, Probe& probe, ReportError report_error) {
   {
     CoreSection core;
     for (ScanCommand command; rings.scan_commands.pop(command);) pipeline.on_command(command);

@@ -10,10 +10,10 @@
 
 namespace lf::scan {
 
-class Cloud {
+template <std::size_t Capacity>
+class BasicCloud {
  public:
-  // A sweep of 18.1 s at 25 Hz with one frame of five for the background and 640 columns gives at most 231,680 points.
-  static constexpr std::size_t capacity = 262'144;
+  static constexpr std::size_t capacity = Capacity;
 
   // False when full: the caller counts what it lost.
   [[nodiscard]] bool add(const CloudPoint& point) {

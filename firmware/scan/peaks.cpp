@@ -175,7 +175,7 @@ void BasicPeakDetector<Pixel, MaxLength>::sweep(const Strip& s) {
       load_row(s, row);
     else
       rows_[row & 31] = rows_[(s.length - 1) & 31];
-    Response* response = response_[std::max(row - delay, 0)].data();
+    Response* response = response_[std::max<std::int32_t>(row - delay, 0)].data();
     filter_step(rows_[row & 31].data(), rows_[(row - 5) & 31].data(), rows_[(row - 10) & 31].data(), rows_[(row - 15) & 31].data(),
                 rows_[(row - 20) & 31].data(), sum_.data(), sum_of_sums_.data(), response);
     const std::int32_t middle = row - delay - 1;
@@ -206,7 +206,7 @@ std::size_t BasicPeakDetector<Pixel, MaxLength>::finish(const Strip& s, std::int
     const bool too_wide = next.last - next.first - 2 * exclusion >= config_.max_clipped;
     if (too_wide && !several) break;
     if (!too_wide) (void)stripes.push_back(next);
-    if (static_cast<std::int32_t>(stripes.size()) >= std::max(2, config_.peaks_per_line)) break;
+    if (static_cast<std::int32_t>(stripes.size()) >= std::max<std::int32_t>(2, config_.peaks_per_line)) break;
     if (!stripes.empty() && second <= share * stripes[0].response) break;
     next = next_maximum(s, lane, std::span<const Maximum>(known.data(), known.size()));
     second = next.response;
@@ -245,7 +245,7 @@ void BasicPeakDetector<Pixel, MaxLength>::measure(const Strip& s, std::int32_t l
   peak.v_px = config_.axis == PeakAxis::column ? position : static_cast<float>(line);
   peak.amplitude = amplitude(s, line, maximum.row);
   peak.ratio = ratio;
-  peak.clipped = static_cast<std::uint8_t>(std::min(plateau.length, 255));
+  peak.clipped = static_cast<std::uint8_t>(std::min<std::int32_t>(plateau.length, 255));
   ++counters_.found;
 }
 
@@ -321,7 +321,7 @@ std::int32_t BasicPeakDetector<Pixel, MaxLength>::pixel(const PixelView<Pixel>& 
 
 template <class Pixel, std::int32_t MaxLength>
 std::int32_t BasicPeakDetector<Pixel, MaxLength>::difference(const Strip& s, std::int32_t line, std::int32_t row) const {
-  const std::int32_t inside = std::clamp(row, 0, s.length - 1);
+  const std::int32_t inside = std::clamp<std::int32_t>(row, 0, s.length - 1);
   return pixel(s.on, line, inside) - (s.off.valid() ? pixel(s.off, line, inside) : 0);
 }
 
@@ -363,6 +363,7 @@ float BasicPeakDetector<Pixel, MaxLength>::amplitude(const Strip& s, std::int32_
   return static_cast<float>(top) - 0.25f * static_cast<float>(below);
 }
 
+template class BasicPeakDetector<std::uint8_t, 320>;
 template class BasicPeakDetector<std::uint8_t, 640>;
 template class BasicPeakDetector<std::uint8_t, 4096>;
 template class BasicPeakDetector<std::uint16_t, 4096>;

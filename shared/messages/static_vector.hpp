@@ -22,6 +22,8 @@ class StaticVector {
     items_[size_++] = value;
     return true;
   }
+  // One more element, holding what was last in its place; for elements too big to pass through the stack. Null when full.
+  [[nodiscard]] T* extend() { return full() ? nullptr : &items_[size_++]; }
   void pop_back() {
     if (size_ > 0) --size_;
   }

@@ -355,8 +355,8 @@ TEST_F(ScanOrders, AFullCloudCountsWhatItLoses) {
     bench_->send(ScanBench::time(10 * i + 10), stripe_);
   }
   joints_until(6020);
-  EXPECT_EQ(points(), scan::Cloud::capacity);
-  EXPECT_EQ(stats().points, scan::Cloud::capacity);
+  EXPECT_EQ(points(), full_scan.cloud_points);
+  EXPECT_EQ(stats().points, full_scan.cloud_points);
   EXPECT_GT(stats().points_overflowed, 1000u);
   begin();
   EXPECT_EQ(points(), 0u);

@@ -1,0 +1,221 @@
+// A recorded mission as a byte stream: what the controller was told, what came in at every tick, and what it answered.
+//
+// `pass` walks a struct's fields in their order, for the writer and for the reader alike; structured bindings let it not compile when a field is
+// added and forgotten here. Little-endian; nothing whose size depends on the processor.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <type_traits>
+
+#include "firmware/config.hpp"
+#include "firmware/telemetry.hpp"
+#include "shared/messages/can_frame.hpp"
+#include "shared/messages/panel_vision.hpp"
+#include "shared/messages/scan_messages.hpp"
+#include "shared/messages/static_vector.hpp"
+
+namespace lf::test {
+
+inline constexpr std::uint32_t record_magic = 0x314D464Cu;  // "LFM1"
+
+// A stream has bytes(void*, size): a writer takes from there, a reader puts there; and broken(), which ends the program. It derives from this one, by
+// which argument-dependent lookup finds every `pass`.
+struct RecordStream {};
+
+template <class S, class T>
+requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+void pass(S& s, T& value) {
+  static_assert(sizeof(T) <= 8 && !std::is_same_v<T, long double>);
+  s.bytes(&value, sizeof value);
+}
+
+template <class S>
+void pass(S& s, Time& t) {
+  std::int64_t ns = t.ns();
+  pass(s, ns);
+  t = Time::from_ns(ns);
+}
+template <class S>
+void pass(S& s, Duration& d) {
+  std::int64_t ns = d.ns();
+  pass(s, ns);
+  d = Duration::from_ns(ns);
+}
+template <class S, class Derived>
+void pass(S& s, Eigen::PlainObjectBase<Derived>& m) {
+  for (auto& coefficient : m.reshaped()) pass(s, coefficient);
+}
+template <class S>
+void pass(S& s, Pose& pose) {
+  pass(s, pose.matrix());
+}
+template <class S, class T, std::size_t N>
+void pass(S& s, std::array<T, N>& items) {
+  for (T& item : items) pass(s, item);
+}
+template <class S, class T, std::size_t N>
+void pass(S& s, StaticVector<T, N>& items) {
+  std::uint32_t size = static_cast<std::uint32_t>(items.size());
+  pass(s, size);
+  StaticVector<T, N> passed;
+  for (std::uint32_t i = 0; i < size; ++i) {
+    T item = i < items.size() ? items[i] : T{};
+    pass(s, item);
+    if (!passed.push_back(item)) s.broken();
+  }
+  items = passed;
+}
+
+template <class S, class... Fields>
+void pass_all(S& s, Fields&... fields) {
+  (pass(s, fields), ...);
+}
+
+template <class S>
+void pass(S& s, CanFrame& v) {
+  auto& [id, length, data] = v;
+  pass_all(s, id, length, data);
+}
+
+// The configuration.
+template <class S>
+void pass(S& s, canopen::Identity& v) {
+  auto& [vendor, product] = v;
+  pass_all(s, vendor, product);
+}
+template <class S>
+void pass(S& s, canopen::DriveSetup& v) {
+  auto& [node, identity, min_counts, max_counts, max_torque, max_speed, motor_speed, quick_stop, window, timeout, quick_stop_option,
+         abort_option, encoder_zero, homing_method, home_offset, homing_speed, homing_accel, homing_timeout] = v;
+  pass_all(s, node, identity, min_counts, max_counts, max_torque, max_speed, motor_speed, quick_stop, window, timeout, quick_stop_option,
+           abort_option, encoder_zero, homing_method, home_offset, homing_speed, homing_accel, homing_timeout);
+}
+template <class S>
+void pass(S& s, canopen::IoSetup& v) {
+  auto& [node, identity] = v;
+  pass_all(s, node, identity);
+}
+template <class S>
+void pass(S& s, canopen::NetworkConfig& v) {
+  auto& [drives, io, sync_period, sdo_timeout, retries, boot_up_timeout, start_timeout, transition_timeout] = v;
+  pass_all(s, drives, io, sync_period, sdo_timeout, retries, boot_up_timeout, start_timeout, transition_timeout);
+}
+template <class S>
+void pass(S& s, CameraIntrinsics& v) {
+  auto& [width, height, fx, fy, cx, cy, distortion] = v;
+  pass_all(s, width, height, fx, fy, cx, cy, distortion);
+}
+template <class S>
+void pass(S& s, CameraCalibration& v) {
+  auto& [intrinsics, base_from_camera, exposure] = v;
+  pass_all(s, intrinsics, base_from_camera, exposure);
+}
+template <class S>
+void pass(S& s, LaserCalibration& v) {
+  auto& [tool_from_laser, fan] = v;
+  pass_all(s, tool_from_laser, fan);
+}
+template <class S>
+void pass(S& s, MarkerCalibration& v) {
+  auto& [id, size_m, panel_from_tag] = v;
+  pass_all(s, id, size_m, panel_from_tag);
+}
+template <class S>
+void pass(S& s, mission::Task& v) {
+  auto& [kind, to_rad, button] = v;
+  pass_all(s, kind, to_rad, button);
+}
+template <class S>
+void pass(S& s, PanelLayout& v) {
+  auto& [x, y, z, plate_min, plate_max, plate_thickness, handle_length, handle_thickness, handle_height, stem, buttons, button_width,
+         button_height, button_stroke, marker_id, marker_size, marker_plate, marker_thickness, marker_centre] = v;
+  pass_all(s, x, y, z, plate_min, plate_max, plate_thickness, handle_length, handle_thickness, handle_height, stem, buttons, button_width,
+           button_height, button_stroke, marker_id, marker_size, marker_plate, marker_thickness, marker_centre);
+}
+template <class S>
+void pass(S& s, mission::MissionConfig& v) {
+  auto& [tasks, layout, park, lamps, always_on, camera_syncs, frames_per_background, image_due, sweep_speed, verify_band, move_speed,
+         approach_distance, approach_speed, press_speed, press_overtravel, press_torque, turn_speed, jaw_open, valve_tolerance, tries] = v;
+  pass_all(s, tasks, layout, park, lamps, always_on, camera_syncs, frames_per_background, image_due, sweep_speed, verify_band, move_speed,
+           approach_distance, approach_speed, press_speed, press_overtravel, press_torque, turn_speed, jaw_open, valve_tolerance, tries);
+}
+template <class S>
+void pass(S& s, safety::JointLimit& v) {
+  auto& [min_rad, max_rad, speed, torque] = v;
+  pass_all(s, min_rad, max_rad, speed, torque);
+}
+template <class S>
+void pass(S& s, safety::Limits& v) {
+  auto& [joints, low, high, stale_position, stale_image, vision_timeout, contact_torque, checksum] = v;
+  pass_all(s, joints, low, high, stale_position, stale_image, vision_timeout, contact_torque, checksum);
+}
+template <class S>
+void pass(S& s, ControllerConfig& v) {
+  auto& [network, camera, laser, marker, mission, limits, mission_limits] = v;
+  pass_all(s, network, camera, laser, marker, mission, limits, mission_limits);
+}
+
+// What comes from the vision side.
+template <class S>
+void pass(S& s, ScanStats& v) {
+  auto& [images, unexpected, refused, missing, peaks, weak, saturated, ambiguous, points, overflowed, no_joints, commands] = v;
+  pass_all(s, images, unexpected, refused, missing, peaks, weak, saturated, ambiguous, points, overflowed, no_joints, commands);
+}
+template <class S>
+void pass(S& s, PlaneFit& v) {
+  auto& [valid, plane, points, inliers, rms_m] = v;
+  pass_all(s, valid, plane.normal, plane.offset_m, points, inliers, rms_m);
+}
+template <class S>
+void pass(S& s, MarkerObservation& v) {
+  auto& [found, id, corners, centre, pose, rms, ambiguity, margin] = v;
+  pass_all(s, found, id, corners, centre, pose, rms, ambiguity, margin);
+}
+template <class S>
+void pass(S& s, ProudCluster& v) {
+  auto& [centroid, axis, length, width, height, height_max, points] = v;
+  pass_all(s, centroid, axis, length, width, height, height_max, points);
+}
+template <class S>
+void pass(S& s, PanelResult& v) {
+  auto& [id, measured, answered, fit, marker, clusters, dropped, confidence] = v;
+  pass_all(s, id, measured, answered, fit, marker, clusters, dropped, confidence);
+}
+
+// What goes to it.
+template <class S>
+void pass(S& s, ScanCommand& v) {
+  auto& [kind, joints, exposure_start, exposure_kind, trigger, sweep] = v;
+  pass_all(s, kind, joints.t, joints.q_rad, exposure_start, exposure_kind, trigger, sweep);
+}
+
+// One control period.
+struct RecordedFrame {
+  CanFrame frame;
+  Time t;
+};
+struct RecordedTick {
+  Time t;
+  // In.
+  StaticVector<RecordedFrame, 72> received;
+  StaticVector<PanelResult, 1> panel;
+  StaticVector<ScanStats, 16> stats;
+  // Out.
+  StaticVector<CanFrame, 64> sent;
+  StaticVector<ScanCommand, 16> orders;
+  mission::Step step = mission::Step::idle;
+  std::uint32_t events = 0;
+  std::uint8_t last = 0;  // nothing follows
+};
+template <class S>
+void pass(S& s, RecordedFrame& v) {
+  pass_all(s, v.frame, v.t);
+}
+template <class S>
+void pass(S& s, RecordedTick& v) {
+  auto& [t, received, panel, stats, sent, orders, step, events, last] = v;
+  pass_all(s, t, received, panel, stats, sent, orders, step, events, last);
+}
+
+}  // namespace lf::test
