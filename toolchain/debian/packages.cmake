@@ -1,0 +1,60 @@
+# Two Debian packages from one build: `cpack -G DEB --config build/release/CPackConfig.cmake -B build/packages`.
+#
+# lanternfish: the desktop program and the files both programs read. lanternfishd: the vehicle's program, with its unit, udev rule and configuration.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_VENDOR "Lanternfish developers")
+set(CPACK_PACKAGE_CONTACT "Lanternfish developers <lanternfish@invalid>")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENTS_ALL lanternfish)
+if(TARGET lanternfishd)
+  list(APPEND CPACK_COMPONENTS_ALL lanternfishd)
+endif()
+set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+
+set(CPACK_DEBIAN_LANTERNFISH_PACKAGE_NAME lanternfish)
+set(CPACK_COMPONENT_LANTERNFISH_DESCRIPTION "simulator of an underwater robot that works on panels
+ Flies the robot's own control core against simulated physics, drives and camera:
+ missions, campaigns, and each stage of the perception on its own.
+ Built for processors with AVX2.")
+set(CPACK_DEBIAN_LANTERNFISHD_PACKAGE_NAME lanternfishd)
+set(CPACK_COMPONENT_LANTERNFISHD_DESCRIPTION "control program of an underwater robot that works on panels
+ Runs the control core against CANopen drives on SocketCAN and a V4L2 camera, in
+ real time. Installing it starts nothing: set /etc/lanternfish/vehicle.yaml first.")
+# The arm, the limits and the CAN map of both are one set of files.
+set(CPACK_DEBIAN_LANTERNFISHD_PACKAGE_DEPENDS "lanternfish (= ${PROJECT_VERSION}), passwd")
+set(CPACK_DEBIAN_LANTERNFISHD_PACKAGE_SUGGESTS "can-utils")
+set(CPACK_DEBIAN_LANTERNFISHD_PACKAGE_CONTROL_EXTRA
+  ${CMAKE_CURRENT_LIST_DIR}/postinst ${CMAKE_CURRENT_LIST_DIR}/prerm ${CMAKE_CURRENT_LIST_DIR}/postrm ${CMAKE_CURRENT_LIST_DIR}/conffiles)
+
+# What Debian expects in /usr/share: manual pages and the changelog, packed so that two builds are the same.
+find_program(GZIP gzip REQUIRED)
+function(install_packed source destination name component)
+  set(packed ${CMAKE_BINARY_DIR}/share/${component}/${name}.gz)
+  cmake_path(GET packed PARENT_PATH folder)
+  add_custom_command(OUTPUT ${packed} COMMAND ${CMAKE_COMMAND} -E make_directory ${folder}
+    COMMAND sh -c "${GZIP} -9nc '${source}' > '${packed}'" DEPENDS ${source} VERBATIM)
+  string(MAKE_C_IDENTIFIER packed_${component}_${name} target)
+  add_custom_target(${target} ALL DEPENDS ${packed})
+  install(FILES ${packed} DESTINATION ${destination} COMPONENT ${component})
+endfunction()
+foreach(component ${CPACK_COMPONENTS_ALL})
+  install_packed(${CMAKE_SOURCE_DIR}/CHANGELOG.md share/doc/${component} changelog ${component})
+  install(FILES ${CMAKE_CURRENT_LIST_DIR}/copyright DESTINATION share/doc/${component} COMPONENT ${component})
+endforeach()
+install_packed(${CMAKE_SOURCE_DIR}/docs/man/lanternfish.1 share/man/man1 lanternfish.1 lanternfish)
+install_packed(${CMAKE_SOURCE_DIR}/docs/man/lanternfish-scenario.5 share/man/man5 lanternfish-scenario.5 lanternfish)
+install(FILES ${CMAKE_SOURCE_DIR}/docs/scenarios.md ${CMAKE_SOURCE_DIR}/docs/commands.md DESTINATION share/doc/lanternfish COMPONENT lanternfish)
+if(TARGET lanternfishd)
+  install_packed(${CMAKE_SOURCE_DIR}/docs/man/lanternfishd.8 share/man/man8 lanternfishd.8 lanternfishd)
+  install_packed(${CMAKE_SOURCE_DIR}/docs/man/lanternfish-vehicle.5 share/man/man5 lanternfish-vehicle.5 lanternfishd)
+  install(FILES ${CMAKE_SOURCE_DIR}/shared/vehicle/vehicle.yaml DESTINATION /etc/lanternfish COMPONENT lanternfishd)
+endif()
+
+include(CPack)
