@@ -59,11 +59,12 @@ TEST(V4l2Camera, CountsGapsRepeatsAndBrokenFrames) {
   V4l2Camera camera(small(), linux_);
   ASSERT_EQ(camera.open(), port_ok);
   linux_.frames.push_back({.sequence = 0, .stamp_ns = 1'000'000});
-  linux_.frames.push_back({.sequence = 4, .stamp_ns = 2'000'000});                                            // 1, 2 and 3 never came
-  linux_.frames.push_back({.sequence = 4, .stamp_ns = 2'000'000});                                            // again
-  linux_.frames.push_back({.sequence = 5, .stamp_ns = 3'000'000, .flags = V4L2_BUF_FLAG_ERROR});              // broken
-  linux_.frames.push_back({.sequence = 6, .stamp_ns = 4'000'000, .whole = false});                            // cut short
-  linux_.frames.push_back({.sequence = 7, .stamp_ns = 5'000'000, .flags = V4L2_BUF_FLAG_TIMESTAMP_UNKNOWN});  // of unknown time
+  linux_.frames.push_back({.sequence = 4, .stamp_ns = 2'000'000});                                // 1, 2 and 3 never came
+  linux_.frames.push_back({.sequence = 4, .stamp_ns = 2'000'000});                                // again
+  linux_.frames.push_back({.sequence = 5, .stamp_ns = 3'000'000, .flags = V4L2_BUF_FLAG_ERROR});  // broken
+  linux_.frames.push_back({.sequence = 6, .stamp_ns = 4'000'000, .whole = false});                // cut short
+  // Of an open kind of clock, and not of the last second: no time that can be believed.
+  linux_.frames.push_back({.sequence = 7, .stamp_ns = 1'700'000'000'000'000'000, .flags = V4L2_BUF_FLAG_TIMESTAMP_UNKNOWN});
   std::vector<std::uint32_t> sequences;
   for (int look = 0; look < 10; ++look) {
     Image image;
