@@ -1,6 +1,7 @@
 #include "firmware/scan_pipeline.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 #include "firmware/arm/collision.hpp"
 #include "firmware/arm/kinematics.hpp"
@@ -17,6 +18,9 @@ constexpr double jaw_while_scanning_rad = 0;
 constexpr std::size_t first_seen_link = 3;
 // Around the arm's outline: since the newest background, 0.16 s ago at most, the hand has moved by 6 mm at 40 mm/s.
 constexpr double silhouette_margin_m = 0.010;
+
+// Of every eighth row: noise in 38,400 pixels. FNV-1a by eight pixels at a time, 5 us on a desktop.
+constexpr std::int32_t rows_a_sample = 8;
 
 Duration distance(Time a, Time b) { return a < b ? b - a : a - b; }
 
@@ -120,6 +124,21 @@ void ScanPipeline::store(const Image& image, Time start, StoredImage& out) {
   out.present = true;
 }
 
+bool ScanPipeline::repeats(const Image& image) {
+  std::uint64_t pixels = 0xcbf29ce484222325u;
+  for (std::int32_t v = 0; v < image_height; v += rows_a_sample) {
+    const std::uint8_t* row = image.view.row(v);
+    for (std::int32_t u = 0; u < image_width; u += 8) {
+      std::uint64_t eight = 0;
+      std::memcpy(&eight, row + u, sizeof eight);
+      pixels = (pixels ^ eight) * 0x100000001b3u;
+    }
+  }
+  const bool again = pixels == last_pixels_;
+  last_pixels_ = pixels;
+  return again;
+}
+
 void ScanPipeline::on_image(std::uint8_t camera, const Image& image) {
   if (camera != config_.camera_index) return;
   Exposure exposure;
@@ -129,6 +148,11 @@ void ScanPipeline::on_image(std::uint8_t camera, const Image& image) {
   }
   const bool well_formed =
       image.view.valid() && image.view.width == image_width && image.view.height == image_height && image.exposure > Duration();
+  if (well_formed && repeats(image)) {
+    ++stats_.images_repeated;
+    return;
+  }
+  stats_.newest_exposure = exposure.start;
   if (!well_formed || exposure.dropped) {
     ++stats_.images_refused;
     return;

@@ -49,7 +49,8 @@ class ScanPipeline {
   void on_command(const ScanCommand& command);
 
   // An image of camera `camera`; only read during the call. It is matched with the exposure ordered within 2 ms of its start; without one it is
-  // refused and counted, as is one of another size than 640x480. Images of other cameras are passed over.
+  // refused and counted, as is one of another size than 640x480, or one whose pixels are those of the image before: the noise of a sensor at work never
+  // repeats itself. Images of other cameras are passed over.
   void on_image(std::uint8_t camera, const Image& image);
 
   // Once after each `analyse`: the plane of the cloud, and whether `still()` holds a picture for the marker.
@@ -88,6 +89,7 @@ class ScanPipeline {
 
   static ImageView view(const StoredImage& image) { return {image.pixels.data(), image_width, image_height, image_width}; }
   static void store(const Image& image, Time start, StoredImage& out);
+  bool repeats(const Image& image);
 
   void begin_sweep(std::uint32_t sweep);
   void expect(const ScanCommand& command);
@@ -117,6 +119,7 @@ class ScanPipeline {
   Time last_order_;
   bool any_order_ = false;
   bool sweeping_ = false;
+  std::uint64_t last_pixels_ = 0;  // what repeats() made of the image before
   StoredImage background_;
   StoredImage still_;
   PanelRequest request_;

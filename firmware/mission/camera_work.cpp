@@ -1,5 +1,7 @@
 #include "firmware/mission/camera_work.hpp"
 
+#include <utility>
+
 #include "shared/can/can_map.hpp"
 
 namespace lf::mission {
@@ -8,8 +10,6 @@ namespace {
 
 // Lamps are LEDs: a tenth of a second covers their drivers' soft start.
 constexpr Duration lamps_settle = Duration::from_ms(100);
-// From the still's start until its image has surely been received: exposure, readout and transfer take 30 to 60 ms.
-constexpr Duration image_due = Duration::from_ms(100);
 
 }  // namespace
 
@@ -21,12 +21,38 @@ void CameraWork::set_mode(Mode mode, Time now) {
   inhibited_ = false;
 }
 
-bool CameraWork::still_taken(Time now) const { return mode_ == Mode::still && still_done_ && now - still_start_ >= image_due; }
+void CameraWork::on_image(Time exposure_start) {
+  if (exposure_start <= newest_image_) return;
+  newest_image_ = exposure_start;
+  std::size_t come = 0;
+  while (come < awaited_.size() && awaited_[come] <= exposure_start) {
+    images_lost_ += awaited_[come] < exposure_start ? 1 : 0;
+    ++come;
+  }
+  forget(come);
+}
+
+void CameraWork::forget(std::size_t count) {
+  for (std::size_t i = count; i < awaited_.size(); ++i) awaited_[i - count] = awaited_[i];
+  for (std::size_t i = 0; i < count; ++i) awaited_.pop_back();
+}
+
+void CameraWork::watch_images(Time now) {
+  if (awaited_.empty() || now - awaited_[0] <= config_.exposure + config_.stale_image) return;
+  const bool still = mode_ == Mode::still && still_done_ && awaited_[0] == still_start_;
+  silent_ = still || awaited_.size() >= silent_after;
+  const std::size_t lost = silent_ ? awaited_.size() : 1;
+  images_lost_ += static_cast<std::uint32_t>(lost);
+  forget(lost);
+}
+
+bool CameraWork::take_silence() { return std::exchange(silent_, false); }
 
 std::uint8_t CameraWork::lamps() const { return config_.use_lamps ? can_map::output_lamps : std::uint8_t{0}; }
 
 void CameraWork::tick(Time now, canopen::IoModule& io, ScanOrders& orders) {
   check_outputs(now, io, orders);
+  watch_images(now);
   const bool slot = ++syncs_ >= config_.camera_syncs;
   if (slot) syncs_ = 0;
   switch (mode_) {
@@ -46,23 +72,31 @@ void CameraWork::tick(Time now, canopen::IoModule& io, ScanOrders& orders) {
     case Mode::still:
       io.set_outputs(lamps());
       if (slot && !still_done_ && now - mode_since_ >= lamps_settle) {
-        expose(now, io, ExposureKind::still, lamps(), orders);
-        still_done_ = true;
-        still_start_ = now;
+        still_done_ = expose(now, io, ExposureKind::still, lamps(), orders);
+        still_start_ = now + config_.sync_period;
       }
       return;
     case Mode::off: io.set_outputs(0); return;
   }
 }
 
-void CameraWork::expose(Time now, canopen::IoModule& io, ExposureKind kind, std::uint8_t outputs, ScanOrders& orders) {
-  if (!io.trigger_camera(config_.exposure)) return;
+// True when the camera was triggered and the vision thread told of it.
+bool CameraWork::expose(Time now, canopen::IoModule& io, ExposureKind kind, std::uint8_t outputs, ScanOrders& orders) {
+  if (!io.trigger_camera(config_.exposure)) return false;
   ScanCommand order;
   order.kind = ScanCommand::Kind::exposure;
   order.exposure_start = now + config_.sync_period;
   order.exposure_kind = kind;
   ++exposures_;
-  if (pending_.full() || !orders.push_back(order) || !pending_.push_back({order.exposure_start, outputs})) ++dropped_;
+  if (pending_.full() || !orders.push_back(order) || !pending_.push_back({order.exposure_start, outputs})) {
+    ++dropped_;
+    return false;
+  }
+  if (awaited_.full()) {
+    ++images_lost_;
+    forget(1);
+  }
+  return awaited_.push_back(order.exposure_start);
 }
 
 // A report tells of the SYNC before it, so an exposure at one SYNC is confirmed by the reports from the next SYNC on.

@@ -1,5 +1,8 @@
 #include "firmware/mission/mission.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "firmware/arm/actuator.hpp"
 
 namespace lf::mission {
@@ -20,7 +23,19 @@ CameraWork::Config camera_config(const ControllerConfig& config) {
   camera.use_lamps = config.mission.use_lamps;
   camera.always_on = config.mission.camera_always_on;
   camera.sync_period = config.network.sync_period;
+  camera.stale_image = Duration::from_s(config.mission_limits.stale_image_s);
   return camera;
+}
+
+// What free motion takes of torque is learned on the way; how much more is a contact, the limits say, and for the wrist half of its own limit if that is
+// less. The overload is the watch's.
+arm::GuardConfig free_motion(const safety::Limits& limits) {
+  arm::GuardConfig guard;
+  for (std::size_t i = 0; i < arm_joint_count; ++i) {
+    guard.contact_torque_nm[static_cast<Eigen::Index>(i)] = std::min(limits.max_contact_torque_nm, 0.5 * limits.joints[i].max_torque_nm);
+  }
+  guard.overload_torque_nm.setConstant(HUGE_VAL);
+  return guard;
 }
 
 }  // namespace
@@ -30,6 +45,7 @@ Mission::Mission(const ControllerConfig& config)
       watch_(config.mission_limits),
       camera_(camera_config(config)),
       motion_(config.mission_limits, config.mission.layout, config.mission.park_rad),
+      free_guard_(free_motion(config.mission_limits)),
       map_(config.mission.layout, config.marker, config.camera) {
   for (const Task& task : config.mission.tasks) {
     TaskResult result;
@@ -84,6 +100,7 @@ void Mission::watch_faults(const Tick& tick) {
   take_orders(tick);
   watch_ports(tick);
   watch_images(tick);
+  watch_contact(tick);
   if (camera_.laser_inhibited()) raise(tick, Fault::interlock, 0);
   const StepRow& now = row(step_);
   if (now.timeout_s > 0 && tick.now - step_since_ > Duration::from_s(now.timeout_s)) raise(tick, Fault::step_timeout, 0);
@@ -110,12 +127,22 @@ void Mission::watch_ports(const Tick& tick) {
   }
 }
 
-// A sweep bears a lost frame; the plane's fit says when too many are.
+// A sweep bears a lost frame, but not a camera that is silent.
 void Mission::watch_images(const Tick& tick) {
-  if (scan_stats_.images_missing > images_missing_) {
-    raise(tick, Fault::image_lost, static_cast<std::int32_t>(scan_stats_.images_missing - images_missing_));
-  }
-  images_missing_ = scan_stats_.images_missing;
+  if (camera_.images_lost() != images_lost_)
+    raise(tick, Fault::image_lost, static_cast<std::int32_t>(camera_.images_lost() - images_lost_));
+  images_lost_ = camera_.images_lost();
+  if (camera_.take_silence()) raise(tick, Fault::camera_lost, 0);
+}
+
+// Where nothing may be touched. Out of a contact or a grip the arm's load is another: what is free is learned anew.
+void Mission::watch_contact(const Tick& tick) {
+  const safety::Phase phase = row(step_).phase;
+  const bool free = phase == safety::Phase::free || phase == safety::Phase::scan || step_ == Step::stow;
+  if (!powered_ || !free) return free_guard_.reset();
+  if (!watch_.joints().valid) return;
+  free_guard_.update(watch_.joints().t, motion_.target(), measured_rad(), measured_nm());
+  if (free_guard_.touched()) raise(tick, Fault::unexpected_contact, static_cast<std::int32_t>(free_guard_.joint()));
 }
 
 void Mission::on_port_error(std::int32_t port) {
@@ -285,7 +312,7 @@ Mission::Status Mission::run(const Tick& tick) {
     case Step::scan:
     case Step::verify_scan: return run_scan(tick);
     case Step::look:
-    case Step::verify_look: return run_look(tick);
+    case Step::verify_look: return run_look();
     case Step::perceive: return run_perceive(tick);
     case Step::next_task: return run_next_task(tick);
     case Step::reach_valve: return run_reach_valve();
@@ -309,6 +336,12 @@ arm::JointVector Mission::measured_rad() const {
   arm::JointVector q;
   for (std::size_t i = 0; i < arm_joint_count; ++i) q[static_cast<Eigen::Index>(i)] = watch_.joints().position_rad[i];
   return q;
+}
+
+arm::JointVector Mission::measured_nm() const {
+  arm::JointVector torque;
+  for (std::size_t i = 0; i < arm_joint_count; ++i) torque[static_cast<Eigen::Index>(i)] = watch_.joints().torque_nm[i];
+  return torque;
 }
 
 bool Mission::settled(bool condition, Duration for_how_long, Time now) {

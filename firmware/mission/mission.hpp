@@ -48,7 +48,7 @@ class Mission {
   void abort() { abort_ordered_ = true; }
   void stop() { stop_ordered_ = true; }
   void on_panel(const PanelResult& result);
-  void on_scan(const ScanStats& stats) { scan_stats_ = stats; }
+  void on_scan(const ScanStats& stats) { camera_.on_image(stats.newest_exposure); }
   void on_port_error(std::int32_t port);
 
   // One control period: reads the network's answers, sets its targets and outputs, and adds orders and events.
@@ -77,6 +77,7 @@ class Mission {
   void take_orders(const Tick& tick);
   void watch_ports(const Tick& tick);
   void watch_images(const Tick& tick);
+  void watch_contact(const Tick& tick);
   void raise(const Tick& tick, safety::Fault fault, std::int32_t code);
   void react(const Tick& tick, safety::Reaction reaction);
   void enter(const Tick& tick, Step next);
@@ -109,7 +110,7 @@ class Mission {
   void go_to_sweep(const scan::SweepRequest& request);
   void begin_scan(const Tick& tick);
   Status run_scan(const Tick& tick);
-  Status run_look(const Tick& tick);
+  Status run_look();
   Status run_perceive(const Tick& tick);
   Status run_verify(const Tick& tick);
   void order(const Tick& tick, ScanCommand::Kind kind);
@@ -141,6 +142,7 @@ class Mission {
   Room room() const;  // around the arm, as far as it is known
   void guard_with(const arm::GuardConfig& config) { guard_ = arm::GuardedMotion(config); }
   arm::JointVector measured_rad() const;
+  arm::JointVector measured_nm() const;
   const Task& task() const { return config_.mission.tasks[task_index_]; }
 
   ControllerConfig config_;
@@ -148,7 +150,8 @@ class Mission {
   CameraWork camera_;
   Motion motion_;
   arm::Gripper gripper_;
-  arm::GuardedMotion guard_;
+  arm::GuardedMotion guard_;       // of approaches and presses, where touching is meant to happen
+  arm::GuardedMotion free_guard_;  // of everything else
   PanelMap map_;
   safety::FaultReports faults_now_;
   std::array<std::uint32_t, safety::fault_count> fault_counts_{};
@@ -171,8 +174,7 @@ class Mission {
   std::int32_t port_error_ = 0;        // 1 + the port that failed since the last tick
   bool clock_failed_ = false;          // since the last tick
   std::uint32_t clockless_ticks_ = 0;  // in a row
-  ScanStats scan_stats_;
-  std::uint32_t images_missing_ = 0;  // known of
+  std::uint32_t images_lost_ = 0;      // known of
   PanelResult panel_;
   bool panel_arrived_ = false;
 

@@ -68,10 +68,7 @@ void Mission::begin_press() {
 Mission::Status Mission::run_press(const Tick& tick) {
   if (pressed_) return settled(motion_.done(), press_time, tick.now) ? Status::done : Status::running;
   if (motion_.planning()) return Status::running;
-  const safety::JointStates& joints = watch_.joints();
-  arm::JointVector torque;
-  for (std::size_t i = 0; i < arm_joint_count; ++i) torque[static_cast<Eigen::Index>(i)] = joints.torque_nm[i];
-  guard_.update(tick.now, motion_.target(), measured_rad(), torque);
+  guard_.update(tick.now, motion_.target(), measured_rad(), measured_nm());
   if (guard_.touched()) {
     motion_.stop();
     const Pose base_from_tool = arm::base_from_tool(measured_rad());

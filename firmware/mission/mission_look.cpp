@@ -64,7 +64,7 @@ Mission::Status Mission::run_scan(const Tick& tick) {
   return Status::done;
 }
 
-Mission::Status Mission::run_look(const Tick& tick) { return camera_.still_taken(tick.now) ? Status::done : Status::running; }
+Mission::Status Mission::run_look() { return camera_.still_taken() ? Status::done : Status::running; }
 
 Mission::Status Mission::run_perceive(const Tick& tick) {
   if (!panel_arrived_) {

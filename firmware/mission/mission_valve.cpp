@@ -69,10 +69,7 @@ void Mission::begin_advance() {
 Mission::Status Mission::run_advance(const Tick& tick) {
   const Status status = run_motion();
   if (status != Status::running || motion_.planning()) return status;
-  const safety::JointStates& joints = watch_.joints();
-  arm::JointVector torque;
-  for (std::size_t i = 0; i < arm_joint_count; ++i) torque[static_cast<Eigen::Index>(i)] = joints.torque_nm[i];
-  guard_.update(tick.now, motion_.target(), measured_rad(), torque);
+  guard_.update(tick.now, motion_.target(), measured_rad(), measured_nm());
   if (!guard_.touched()) return Status::running;
   motion_.stop();
   if (motion_.elapsed_s() < contact_expected * motion_.duration_s()) return fail(StepFailure::early_contact);

@@ -39,6 +39,7 @@ constexpr std::array<Row, fault_count> table{{
     {Fault::io_lost, "output node lost", {off, back, back, back, back, count_, count_}},
     {Fault::interlock, "laser interlock open", {count_, count_, retry, count_, count_, count_, count_}},
     {Fault::image_lost, "image lost", {count_, count_, count_, count_, count_, count_, count_}},
+    {Fault::camera_lost, "camera silent", {count_, count_, retry, count_, count_, count_, count_}},
     {Fault::vision_late, "panel vision late", {count_, retry, retry, count_, count_, count_, count_}},
     {Fault::vision_poor, "panel vision unsure", {count_, retry, retry, count_, count_, count_, count_}},
     {Fault::grip_lost, "grip lost", {count_, count_, count_, retry, retry, count_, count_}},

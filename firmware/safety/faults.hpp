@@ -27,6 +27,7 @@ enum class Fault : std::uint8_t {
   io_lost,             // the output node is silent: laser, lamps and trigger are not ours
   interlock,           // the laser's interlock is open
   image_lost,          // an exposure without its image
+  camera_lost,         // no image comes any more, or always the same
   vision_late,         // no answer of panel vision in time
   vision_poor,         // an answer that cannot be used
   grip_lost,           // the handle slipped out of the jaw

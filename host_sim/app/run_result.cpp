@@ -104,6 +104,7 @@ std::map<std::string, std::uint64_t> rejected_inputs(const Controller& controlle
   all["controller"] = controller.rejected_inputs();
   all["images unexpected"] = pipeline.stats().images_unexpected;
   all["images refused"] = pipeline.stats().images_refused;
+  all["images repeated"] = pipeline.stats().images_repeated;
   all["images missing"] = pipeline.stats().images_missing;
   all["scan orders refused"] = pipeline.stats().commands_refused;
   all["points overflowed"] = pipeline.stats().points_overflowed;

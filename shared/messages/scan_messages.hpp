@@ -46,6 +46,7 @@ struct ScanStats {
   std::uint32_t images_unexpected = 0;  // no exposure was ordered at their time
   std::uint32_t images_refused = 0;     // malformed, stale, or dropped by order
   std::uint32_t images_missing = 0;     // exposures whose image did not come before the sweep's end
+  std::uint32_t images_repeated = 0;    // the picture before once more: the camera is frozen
   std::uint32_t peaks = 0;
   std::uint32_t peaks_weak = 0;
   std::uint32_t peaks_saturated = 0;
@@ -54,6 +55,7 @@ struct ScanStats {
   std::uint32_t points_overflowed = 0;  // the cloud was full
   std::uint32_t points_no_joints = 0;   // no joint samples around mid-exposure
   std::uint32_t commands_refused = 0;   // out of order, or not a number
+  Time newest_exposure;                 // as ordered, of the newest image that came and was no repetition
 };
 
 }  // namespace lf

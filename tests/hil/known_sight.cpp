@@ -52,7 +52,21 @@ PanelResult panel_as_it_is(const Pose& base_from_panel, double handle_rad, const
 
 hal::PortStatus KnownSight::receive_image(std::uint8_t camera, Image& image) {
   const hal::PortStatus status = inner_.receive_image(camera, image);
-  return lose_images_ && status == hal::port_ok ? hal::port_empty : status;
+  if (status != hal::port_ok) return status;
+  if (images_to_lose_ > 0) {
+    --images_to_lose_;
+    return hal::port_empty;
+  }
+  if (frozen_ == Frozen::camera && last_image_) {
+    image.exposure_start = last_image_->exposure_start;
+    image.sequence = last_image_->sequence;
+  }
+  if (frozen_ == Frozen::sensor) {
+    hanging_.resize(static_cast<std::size_t>(ScanPipeline::image_width) * ScanPipeline::image_height, 40);
+    image.view = {hanging_.data(), ScanPipeline::image_width, ScanPipeline::image_height, ScanPipeline::image_width};
+  }
+  last_image_ = image;
+  return status;
 }
 
 hal::PortStatus KnownSight::submit_panel(const PanelRequest& request, ImageView, std::span<const CloudPoint>) {

@@ -5,8 +5,10 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "firmware/config.hpp"
+#include "firmware/scan_pipeline.hpp"
 #include "hal/sim/sim_platform.hpp"
 
 namespace lf::test {
@@ -19,8 +21,11 @@ class KnownSight {
 
   // Whether questions from now on are answered.
   void answer(bool answers) { answers_ = answers; }
-  // Whether pictures taken from now on get lost on their way.
-  void lose_images(bool lose) { lose_images_ = lose; }
+  // So many of the pictures that come from now on get lost.
+  void lose_images(std::uint32_t count) { images_to_lose_ = count; }
+  // From now on the camera hands out the same picture: with its old number and stamp, or, when it is only the sensor that hangs, with new ones.
+  enum class Frozen { no, camera, sensor };
+  void freeze(Frozen frozen) { frozen_ = frozen; }
 
   hal::PortStatus wait_for_tick(Time& tick) { return inner_.wait_for_tick(tick); }
   hal::PortStatus receive_can(std::uint8_t bus, hal::ReceivedFrame& received) { return inner_.receive_can(bus, received); }
@@ -39,7 +44,10 @@ class KnownSight {
   PanelLayout layout_;
   Pose base_from_panel_;
   bool answers_ = true;
-  bool lose_images_ = false;
+  std::uint32_t images_to_lose_ = 0;
+  Frozen frozen_ = Frozen::no;
+  std::optional<Image> last_image_;
+  std::vector<std::uint8_t> hanging_;  // the sensor's picture
   std::uint32_t questions_ = 0;
   std::optional<PanelResult> answer_;
   Time answer_due_;

@@ -25,7 +25,12 @@ class Bench {
     report();  // the answer to the last SYNC
     ScanOrders orders;
     work.tick(now_, io_, orders);
-    for (const ScanCommand& order : orders) all.push_back(order);
+    for (const ScanCommand& order : orders) {
+      all.push_back(order);
+      if (order.kind == ScanCommand::Kind::exposure) coming_.push_back(order.exposure_start);
+    }
+    deliver();
+    silences += work.take_silence();
     io_.step(now_);
     CanFrame rpdo;
     if (io_.make_rpdo(rpdo, can_map::io_node)) asked_ = rpdo;
@@ -46,6 +51,8 @@ class Bench {
   CameraWork work;
   std::vector<ScanCommand> all;
   int break_at_cycle = -1;
+  int images_to_lose = 0;
+  int silences = 0;
   Time now() const { return now_; }
   const canopen::IoModule& io() const { return io_; }
 
@@ -53,6 +60,17 @@ class Bench {
   static canopen::IoModule make_io() {
     canopen::NetworkConfig config;
     return canopen::IoModule(config);
+  }
+
+  // Images come 30 ms after their exposure.
+  void deliver() {
+    if (coming_.empty() || now_ < coming_.front() + Duration::from_ms(30)) return;
+    if (images_to_lose > 0) {
+      --images_to_lose;
+    } else {
+      work.on_image(coming_.front());
+    }
+    coming_.erase(coming_.begin());
   }
 
   void report() {
@@ -76,6 +94,7 @@ class Bench {
   std::array<CanFrame, 3> shown_next_{};
   bool interlock_ = true;
   int cycles_ = 0;
+  std::vector<Time> coming_;
 };
 
 TEST(CameraWork, SweepsAtTwentyFiveHertzWithEveryFifthFrameDark) {
@@ -123,11 +142,60 @@ TEST(CameraWork, FramesWhoseLaserWasNotAsAskedAreDropped) {
 TEST(CameraWork, AStillIsTakenOnceWithLampsAndWithoutLaser) {
   Bench bench({});
   bench.work.set_mode(CameraWork::Mode::still, bench.now());
-  EXPECT_FALSE(bench.work.still_taken(bench.now()));
+  EXPECT_FALSE(bench.work.still_taken());
   bench.run(100);
-  EXPECT_TRUE(bench.work.still_taken(bench.now()));
+  EXPECT_TRUE(bench.work.still_taken());
   EXPECT_EQ(bench.count(ScanCommand::Kind::exposure), 1);
   EXPECT_EQ(bench.io().wanted_outputs(), can_map::output_lamps);
+}
+
+TEST(CameraWork, AnImageThatIsLostIsCountedAndTheNextIsWaitedFor) {
+  Bench bench({});
+  bench.work.set_mode(CameraWork::Mode::sweep, bench.now());
+  bench.run(50);
+  bench.images_to_lose = 1;
+  bench.run(200);
+  EXPECT_EQ(bench.work.images_lost(), 1u);
+  EXPECT_EQ(bench.silences, 0);
+}
+
+TEST(CameraWork, ACameraWithoutImagesIsSilentAfterTheStaleTime) {
+  Bench bench({});
+  bench.work.set_mode(CameraWork::Mode::sweep, bench.now());
+  bench.images_to_lose = 1000;
+  bench.run(10 + 50);  // the first exposure comes with the tenth SYNC
+  EXPECT_EQ(bench.silences, 0);
+  bench.run(5);
+  EXPECT_EQ(bench.silences, 1);
+  bench.images_to_lose = 0;
+  bench.run(100);
+  EXPECT_EQ(bench.silences, 1) << "it is back";
+}
+
+TEST(CameraWork, TheLastImageOfASweepMayBeLost) {
+  Bench bench({});
+  bench.work.set_mode(CameraWork::Mode::sweep, bench.now());
+  bench.run(105);
+  bench.work.set_mode(CameraWork::Mode::idle, bench.now());
+  bench.images_to_lose = 1;
+  bench.run(30);
+  bench.work.set_mode(CameraWork::Mode::still, bench.now());
+  bench.run(100);
+  EXPECT_EQ(bench.work.images_lost(), 1u);
+  EXPECT_EQ(bench.silences, 0);
+  EXPECT_TRUE(bench.work.still_taken());
+}
+
+TEST(CameraWork, AStillWhoseImageDoesNotComeIsNotTaken) {
+  Bench bench({});
+  bench.work.set_mode(CameraWork::Mode::still, bench.now());
+  bench.images_to_lose = 1;
+  bench.run(150);
+  EXPECT_FALSE(bench.work.still_taken());
+  EXPECT_EQ(bench.silences, 1);
+  bench.work.set_mode(CameraWork::Mode::still, bench.now());
+  bench.run(100);
+  EXPECT_TRUE(bench.work.still_taken());
 }
 
 TEST(CameraWork, InIdleItIsDarkAndTakesNothingUnlessAskedToRunAlways) {

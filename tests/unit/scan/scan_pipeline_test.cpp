@@ -58,9 +58,16 @@ class ScanBench {
     c.exposure_start = start;
     pipeline_->on_command(c);
   }
+  // With a corner of its own, as no two pictures of a sensor are the same.
   void send(Time start, const std::vector<std::uint8_t>& pixels) {
-    pipeline_->on_image(0, {.view = {pixels.data(), width, height, width}, .exposure_start = start, .exposure = exposure});
+    sent_ = pixels;
+    sent_[0] = ++images_sent_;
+    send_again(start);
   }
+  void send_again(Time start) {
+    pipeline_->on_image(0, {.view = {sent_.data(), width, height, width}, .exposure_start = start, .exposure = exposure});
+  }
+  const std::vector<std::uint8_t>& sent() const { return sent_; }
 
   // The stripe on the panel as the camera sees it with the arm at `q`: a Gaussian of sigma 1.2 px and 120 grey levels on a scene of 40.
   std::vector<std::uint8_t> picture(const Angles& q, bool laser_on) {
@@ -145,6 +152,8 @@ class ScanBench {
   ScanConfig config_;
   Pose base_from_panel_;
   std::mt19937_64 random_;
+  std::vector<std::uint8_t> sent_;
+  std::uint8_t images_sent_ = 0;
   std::unique_ptr<ScanPipeline> pipeline_;
 };
 
@@ -242,6 +251,20 @@ TEST_F(ScanOrders, ImagesWithoutAnOrderAreUnexpected) {
   EXPECT_EQ(points(), stats().points);
 }
 
+TEST_F(ScanOrders, ThePictureBeforeOnceMoreIsRefused) {
+  begin();
+  for (int i = 1; i <= 4; ++i) bench_->order(ScanBench::time(10 * i), ExposureKind::laser_on);
+  bench_->send(ScanBench::time(10), stripe_);
+  bench_->send_again(ScanBench::time(20));
+  bench_->send_again(ScanBench::time(30));
+  EXPECT_EQ(stats().images, 1u);
+  EXPECT_EQ(stats().images_repeated, 2u);
+  EXPECT_EQ(stats().newest_exposure, ScanBench::time(10));
+  bench_->send(ScanBench::time(40) + Duration::from_us(300), stripe_);
+  EXPECT_EQ(stats().images, 2u);
+  EXPECT_EQ(stats().newest_exposure, ScanBench::time(40)) << "as it was ordered";
+}
+
 TEST_F(ScanOrders, ADroppedExposureIsRefusedBeforeAndAfterItsImageCame) {
   begin();
   joints_until(10);
@@ -279,7 +302,7 @@ TEST_F(ScanOrders, TheStillIsKeptForTheRequestWithItsTime) {
   EXPECT_TRUE(request.has_still);
   EXPECT_EQ(request.still_time, ScanBench::time(5) + exposure / 2);
   const ImageView still = bench_->pipeline().still();
-  EXPECT_TRUE(std::equal(dark_.begin(), dark_.end(), still.data));
+  EXPECT_TRUE(std::equal(bench_->sent().begin(), bench_->sent().end(), still.data));
 }
 
 TEST_F(ScanOrders, StripesAfterTheSweepsEndAreNotItsPoints) {
