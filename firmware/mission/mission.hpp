@@ -107,7 +107,7 @@ class Mission {
   // mission_look.cpp: sweeps, stills and what is made of them
   void begin_deploy();
   void begin_verify_reach();
-  void go_to_sweep(const scan::SweepRequest& request);
+  void go_to_sweep(scan::SweepRequest request);
   void begin_scan(const Tick& tick);
   Status run_scan(const Tick& tick);
   Status run_look();

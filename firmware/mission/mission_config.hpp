@@ -31,9 +31,8 @@ struct MissionConfig {
   // The camera: every tenth SYNC is 25 Hz. Of five frames one is taken without the laser, the background of the other four.
   std::uint32_t camera_syncs = 10;
   std::uint32_t frames_per_background = 5;
-  // The laser plane's speed on the panel comes from the sweep's plan; joints keep this much above the real joints' stiction of 0.06 rad/s.
-  double sweep_speed_rad_s = 0.065;
-  double verify_band_m = 0.055;  // half height of the verification's sweep around the valve: the handle's half length and 7 mm
+  double sweep_speed_rad_s = 0.065;  // of the slowest joint that moves in a sweep: above the real joints' stiction of 0.06 rad/s
+  double verify_band_m = 0.055;      // half height of the verification's sweep around the valve: the handle's half length and 7 mm
 
   double move_speed_fraction = 0.6;    // of the joints' own speed limits, in free motion
   double approach_distance_m = 0.080;  // pre-grasp and pre-press stand this far off along the panel's normal

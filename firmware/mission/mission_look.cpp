@@ -18,7 +18,8 @@ Room Mission::room() const {
 
 void Mission::go_clear(const arm::JointVector& goal_rad) { motion_.go_clear(goal_rad, room(), config_.mission.move_speed_fraction); }
 
-void Mission::go_to_sweep(const scan::SweepRequest& request) {
+void Mission::go_to_sweep(scan::SweepRequest request) {
+  request.slowest_rad_s = config_.mission.sweep_speed_rad_s;
   motion_.go_to_sweep(request, config_.laser, room(), config_.mission.move_speed_fraction);
 }
 

@@ -7,12 +7,10 @@
 namespace lf::scan {
 namespace {
 
-// Below 0.06 rad/s the arm's real joints do not move (ARM 5E, UJI's drivers): 8 % above it.
-constexpr double slowest_rad_s = 0.065;
 // The groups' own drivers stop the arm within 0.05 rad of a limit.
 constexpr double soft_margin_rad = 0.05;
 // Half the speed times a ramp of 0.18 s is 6 mrad at 0.065 rad/s and 0.8 rad/s^2; twice that for coordinated motions.
-constexpr double run_up_rad = 0.012;
+constexpr double run_up_s = 0.012 / 0.065;
 constexpr double no_motion_rad = 1e-6;
 // The tool point to the panel's nominal plane: the handle's 107 mm, 10 mm of fingers beyond the tool point, 35 mm of docking error there, 30 mm spare.
 constexpr double tool_distance_m = 0.180;
@@ -21,20 +19,13 @@ constexpr double shoulder_first_rad = 0.75, shoulder_step_rad = 0.10;
 constexpr int way_samples = 8;
 
 bool sound(const SweepRequest& r, const LaserCalibration& laser) {
-  const std::array values{r.top_m,
-                          r.bottom_m,
-                          r.left_m,
-                          r.right_m,
-                          r.margin_m,
-                          r.handle_radius_m,
-                          r.handle_height_m,
-                          r.docking_shift_m,
-                          r.docking_turn_rad,
-                          r.line_spacing_m,
-                          laser.fan_half_angle_rad};
+  const std::array values{
+      r.top_m,           r.bottom_m,        r.left_m,           r.right_m,        r.margin_m,      r.handle_radius_m,
+      r.handle_height_m, r.docking_shift_m, r.docking_turn_rad, r.line_spacing_m, r.slowest_rad_s, laser.fan_half_angle_rad};
   if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); })) return false;
   if (!r.base_from_panel.matrix().allFinite() || !laser.tool_from_laser.matrix().allFinite()) return false;
-  return r.top_m > r.bottom_m && r.right_m > r.left_m && r.docking_shift_m >= 0 && r.docking_turn_rad >= 0 && r.stripe_period > Duration();
+  return r.top_m > r.bottom_m && r.right_m > r.left_m && r.docking_shift_m >= 0 && r.docking_turn_rad >= 0 &&
+         r.stripe_period > Duration() && r.slowest_rad_s > 0;
 }
 
 }  // namespace
@@ -114,8 +105,8 @@ bool SweepPlanner::have_ends() {
 bool SweepPlanner::candidate(std::size_t from, std::size_t to, Candidate& out) {
   const double elbow_way = std::abs(ends_[to].end - ends_[from].start), shoulder_way = std::abs(shoulder(to) - shoulder(from));
   if (!(elbow_way > no_motion_rad)) return false;
-  double longest_s = elbow_way / slowest_rad_s;
-  if (shoulder_way > no_motion_rad) longest_s = std::min(longest_s, shoulder_way / slowest_rad_s);
+  double longest_s = elbow_way / request_.slowest_rad_s;
+  if (shoulder_way > no_motion_rad) longest_s = std::min(longest_s, shoulder_way / request_.slowest_rad_s);
   const double shortest_s = std::max(elbow_way / limits_.velocity_rad_s[2], shoulder_way / limits_.velocity_rad_s[1]);
   if (longest_s < shortest_s) return false;
   const double height = height_m(at(shoulder(from), ends_[from].start)) - height_m(at(shoulder(to), ends_[to].end));
@@ -182,7 +173,7 @@ void SweepPlanner::begin(const SweepRequest& request, const LaserCalibration& la
   if (planned_) return;
   request_ = request;
   laser_ = laser;
-  limits_ = arm::joint_limits(soft_margin_rad + run_up_rad);
+  limits_ = arm::joint_limits(soft_margin_rad + run_up_s * request.slowest_rad_s);
   above_ = points_to_pass(request.top_m, 1);
   below_ = points_to_pass(request.bottom_m, -1);
 }

@@ -32,6 +32,7 @@ struct SweepRequest {
   double docking_turn_rad = 0.0349;  // either way about each of them, at the panel's origin
   double line_spacing_m = 0.0026;    // wanted between stripes
   Duration stripe_period = Duration::from_ms(40);
+  double slowest_rad_s = 0.065;  // of a joint that moves: below 0.06 rad/s the arm's real joints stick (ARM 5E, UJI's drivers)
 };
 
 enum class SweepOutcome : std::uint8_t {
@@ -47,7 +48,7 @@ struct SweepPlan {
   SweepOutcome outcome = SweepOutcome::bad_request;
   std::array<double, arm_joint_count> start_rad{};
   std::array<double, arm_joint_count> end_rad{};
-  std::array<double, arm_joint_count> speed_rad_s{};  // signed; 0 for joints at rest, else at or above 0.065 rad/s
+  std::array<double, arm_joint_count> speed_rad_s{};  // signed; 0 for joints at rest, else at or above `slowest_rad_s`
   Duration duration;                                  // start to end at that speed; run-up and run-out come on top
   double widest_spacing_m = 0;                        // between stripes on the region at `stripe_period`
 };

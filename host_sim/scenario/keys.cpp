@@ -112,7 +112,8 @@ void add_mission(Keys& all, mission::MissionConfig& m) {
   all.push_back(key("mission.camera_syncs", "SYNC", 1, 250, &m.camera_syncs, "SYNCs from one exposure to the next; 10 are 25 Hz"));
   all.push_back(
       key("mission.frames_per_background", "", 2, 100, &m.frames_per_background, "one frame in so many is taken without the laser"));
-  all.push_back(key("mission.sweep_speed_rad_s", "rad/s", 0.001, rad_s, &m.sweep_speed_rad_s, "of the joints while scanning"));
+  all.push_back(key("mission.sweep_speed_rad_s", "rad/s", 0.001, rad_s, &m.sweep_speed_rad_s,
+                    "of the slowest moving joint while scanning: slower is denser, down to the joints' stiction"));
   all.push_back(key("mission.verify_band_m", "m", 0.01, 0.5, &m.verify_band_m, "half height of the second look's sweep around the valve"));
   all.push_back(key("mission.move_speed_fraction", "", 0.01, 1, &m.move_speed_fraction, "of the joints' speed limits, in free motion"));
   all.push_back(key("mission.approach_distance_m", "m", 0.01, 0.3, &m.approach_distance_m,

@@ -113,6 +113,21 @@ TEST(Sweep, OfABandIsDenserWhenAskedForWithShoulderAndElbowTogether) {
   EXPECT_LT(plan.speed_rad_s[2], -0.06);
 }
 
+TEST(Sweep, IsAsSlowAsItIsAskedToBe) {
+  SweepRequest request = whole_panel();
+  const SweepPlan slow = plan_sweep(request, test::nominal_laser());
+  request.slowest_rad_s = 0.1;
+  const SweepPlan fast = plan_sweep(request, test::nominal_laser());
+  ASSERT_EQ(fast.outcome, SweepOutcome::ok);
+  EXPECT_NEAR(std::abs(slow.speed_rad_s[2]), 0.065, 1e-9);
+  EXPECT_NEAR(std::abs(fast.speed_rad_s[2]), 0.1, 1e-9);
+  EXPECT_NEAR(fast.widest_spacing_m / slow.widest_spacing_m, 0.1 / 0.065, 0.02);
+  request.slowest_rad_s = 0.5;
+  EXPECT_NE(plan_sweep(request, test::nominal_laser()).outcome, SweepOutcome::ok) << "faster than the joints go";
+  request.slowest_rad_s = 0;
+  EXPECT_EQ(plan_sweep(request, test::nominal_laser()).outcome, SweepOutcome::bad_request);
+}
+
 TEST(Sweep, SpacingIsWhatItSays) {
   const LaserCalibration laser = test::nominal_laser();
   const SweepRequest request = whole_panel();
