@@ -46,7 +46,7 @@ constexpr std::array<Row, fault_count> table{{
     {Fault::step_timeout, "step timed out", {off, back, retry, back, back, quick, count_}},
     {Fault::step_failed, "step failed", {off, retry, retry, retry, retry, quick, count_}},
     {Fault::aborted, "aborted", {off, back, back, back, back, count_, count_}},
-    {Fault::port_error, "platform call failed", {retry, count_, count_, count_, count_, count_, count_}},
+    {Fault::port_error, "platform call failed", {count_, count_, count_, count_, count_, count_, count_}},
     {Fault::clock_lost, "clock lost", {off, quick, quick, quick, quick, quick, count_}},
 }};
 
