@@ -95,13 +95,13 @@ GreyImage read_image_file(const std::string& path, Channel channel) {
   return {grey.cols, grey.rows, {grey.begin<std::uint8_t>(), grey.end<std::uint8_t>()}};
 }
 
-GreyImage16 read_image_file_16(const std::string& path, Channel channel) {
+DeepImage read_deep_image(const std::string& path, Channel channel) {
   const cv::Mat grey = decode(path, channel);
-  GreyImage16 image{grey.cols, grey.rows, grey.depth() == CV_16U ? 65535 : 255, {}};
-  if (grey.depth() == CV_16U) {
-    image.pixels.assign(grey.begin<std::uint16_t>(), grey.end<std::uint16_t>());
+  DeepImage image{grey.cols, grey.rows, grey.depth() == CV_16U, {}, {}};
+  if (image.deep) {
+    image.pixels16.assign(grey.begin<std::uint16_t>(), grey.end<std::uint16_t>());
   } else {
-    image.pixels.assign(grey.begin<std::uint8_t>(), grey.end<std::uint8_t>());
+    image.pixels8.assign(grey.begin<std::uint8_t>(), grey.end<std::uint8_t>());
   }
   return image;
 }

@@ -27,13 +27,14 @@ struct GreyImage {
 // Throws InputError for a file that is missing, no image, or truncated (also where the decoder would have filled up with grey).
 GreyImage read_image_file(const std::string& path, Channel channel = Channel::grey);
 
-// The same with all its bits.
-struct GreyImage16 {
+// The same with all its bits, 8 or 16.
+struct DeepImage {
   std::int32_t width = 0;
   std::int32_t height = 0;
-  std::int32_t full_scale = 255;  // 65535 for a 16-bit file
-  std::vector<std::uint16_t> pixels;
+  bool deep = false;                  // 16 bits a pixel in the file
+  std::vector<std::uint8_t> pixels8;  // one of the two is filled
+  std::vector<std::uint16_t> pixels16;
 };
-GreyImage16 read_image_file_16(const std::string& path, Channel channel = Channel::grey);
+DeepImage read_deep_image(const std::string& path, Channel channel = Channel::grey);
 
 }  // namespace lf::vision

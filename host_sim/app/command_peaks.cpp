@@ -6,7 +6,6 @@
 #include "firmware/scan/peaks.hpp"
 #include "hal/vision/image_file.hpp"
 #include "host_sim/app/command.hpp"
-#include "host_sim/app/deep_image.hpp"
 #include "host_sim/record/file_sink.hpp"
 #include "host_sim/record/png.hpp"
 #include "shared/input_error.hpp"
@@ -43,7 +42,7 @@ std::int32_t full_scale(const std::vector<std::uint16_t>& pixels) {
   return (1 << bits) - 1;
 }
 
-Found detect(const DeepImage& image, const std::optional<DeepImage>& off, scan::PeakConfig config) {
+Found detect(const vision::DeepImage& image, const std::optional<vision::DeepImage>& off, scan::PeakConfig config) {
   if (!image.deep) {
     const scan::PixelView<std::uint8_t> on(image.pixels8.data(), image.width, image.height, image.width);
     return detect<std::uint8_t>(
@@ -59,7 +58,7 @@ Found detect(const DeepImage& image, const std::optional<DeepImage>& off, scan::
       config);
 }
 
-void check_sizes(const Options& options, const DeepImage& image, const std::optional<DeepImage>& off) {
+void check_sizes(const Options& options, const vision::DeepImage& image, const std::optional<vision::DeepImage>& off) {
   constexpr std::int32_t longest = scan::LargePeakDetector::max_length;
   constexpr std::int32_t shortest = scan::LargePeakDetector::min_length;
   const std::int32_t length = options.axis == "column" ? image.height : image.width;
@@ -80,7 +79,7 @@ void write_overlay(const Options& options, const Found& found) {
   record::write_file_atomically(options.overlay, {reinterpret_cast<const char*>(png.data()), png.size()});
 }
 
-void tell(const Options& options, const DeepImage& image, const Found& found) {
+void tell(const Options& options, const vision::DeepImage& image, const Found& found) {
   if (options.json) {
     Json peaks = Json::array();
     for (const scan::Peak& peak : found.peaks)
@@ -104,9 +103,9 @@ void tell(const Options& options, const DeepImage& image, const Found& found) {
 
 int peaks(const Options& options) {
   const vision::Channel channel = vision::channel_from_name(options.channel);
-  const DeepImage image = read_deep_image(options.image, channel);
-  std::optional<DeepImage> off;
-  if (!options.off.empty()) off = read_deep_image(options.off, channel);
+  const vision::DeepImage image = vision::read_deep_image(options.image, channel);
+  std::optional<vision::DeepImage> off;
+  if (!options.off.empty()) off = vision::read_deep_image(options.off, channel);
   check_sizes(options, image, off);
   scan::PeakConfig config;
   config.axis = options.axis == "column" ? scan::PeakAxis::column : scan::PeakAxis::row;

@@ -101,9 +101,10 @@ TEST_F(VisionFiles, SixteenBitImagesAreReadByTheirUpperBitsInUse) {
   const GreyImage image = read_image_file(path("deep.png"));
   const cv::Mat original = marker_picture();
   EXPECT_TRUE(std::equal(image.pixels.begin(), image.pixels.end(), original.begin<std::uint8_t>()));
-  const GreyImage16 all_bits = read_image_file_16(path("deep.png"));
-  EXPECT_EQ(all_bits.full_scale, 65535);
-  EXPECT_EQ(all_bits.pixels[1000], deep.at<std::uint16_t>(1000 / 640, 1000 % 640));
+  const DeepImage all_bits = read_deep_image(path("deep.png"));
+  EXPECT_TRUE(all_bits.deep);
+  EXPECT_TRUE(all_bits.pixels8.empty());
+  EXPECT_TRUE(std::equal(all_bits.pixels16.begin(), all_bits.pixels16.end(), deep.begin<std::uint16_t>()));
 }
 
 TEST_F(VisionFiles, ChannelsAreTheOnesNamed) {
