@@ -125,6 +125,45 @@ TEST_F(BadInput, AFullDiskBehindTheOutputIsNoCrash) {
   EXPECT_THAT(text_of(folder() / ".stderr"), HasSubstr("No space left on device"));
 }
 
+// In a file system of its own, which a user namespace may mount without being root.
+TEST_F(BadInput, ADiskThatFillsUpDuringARunLeavesWhatWasWritten) {
+  std::filesystem::create_directory(folder() / "disk");
+  const std::string in_namespace = "unshare --user --map-root-user --mount sh -c ";
+  const std::string mount = "mount -t tmpfs -o size=96k none '" + (folder() / "disk").string() + "'";
+  if (std::system((in_namespace + "\"" + mount + "\" 2>/dev/null").c_str()) != 0) GTEST_SKIP() << "no file system can be mounted here";
+  const std::string run = LANTERNFISH_PROGRAM " run --set time_limit_s=2 --no-outside --out disk/run >out 2>err; echo \\$? >status";
+  const std::string command =
+      "cd '" + folder().string() + "' && " + in_namespace + "\"" + mount + " && { " + run + "; cp -r disk/run kept; }\"";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  EXPECT_EQ(text_of(folder() / "status"), "3\n");
+  const std::string said = text_of(folder() / "err");
+  EXPECT_THAT(said, StartsWith("lanternfish: disk/run/"));
+  EXPECT_THAT(said, HasSubstr("No space left on device; what was recorded before is kept"));
+  EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
+  const std::string log = text_of(folder() / "kept" / "can0.log");
+  EXPECT_GT(log.size(), 50'000u);
+  EXPECT_THAT(log, ::testing::MatchesRegex("\\([0-9.]+\\) can0 .*"));
+  for (const auto& entry : std::filesystem::directory_iterator(folder() / "kept")) {
+    EXPECT_NE(entry.path().extension(), ".partial") << entry.path();
+  }
+}
+
+TEST_F(BadInput, LimitsThatAreNotThoseOfTheirChecksumAreNamedWithTheRightOne) {
+  std::filesystem::copy(LANTERNFISH_SOURCE_DIR "/shared", folder() / "share", std::filesystem::copy_options::recursive);
+  const std::filesystem::path limits = folder() / "share" / "safety" / "limits.yaml";
+  std::string text = text_of(limits);
+  const std::size_t at = text.find("max_contact_torque_nm: 25");
+  ASSERT_NE(at, std::string::npos);
+  file("share/safety/limits.yaml", text.replace(at, 25, "max_contact_torque_nm: 24"));
+  const std::string share = "LANTERNFISH_SHARE='" + (folder() / "share").string() + "'";
+  const Said doctor = run("doctor", share);
+  EXPECT_EQ(doctor.status, 3);
+  EXPECT_THAT(doctor.out, ::testing::ContainsRegex("limits.yaml:[0-9]+: the checksum is 0x[0-9a-f]+, but these limits give 0x[0-9a-f]{8}"));
+  const Said refused = run("run", share);
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("but these limits give 0x"));
+}
+
 }  // namespace
 
 }  // namespace lf::app
