@@ -23,8 +23,8 @@ ButtonBody::ButtonBody(const ButtonConfig& config, const Pose& base_from_button,
   part_.body().setupPrismatic(0, config.mass_kg, inertia, -1, btQuaternion::getIdentity(), btVector3(0, 0, -1), btVector3(0, 0, 0),
                               btVector3(0, 0, 0), false);
   part_.finish_links();
-  part_.add_collider(-1, make_collision_shape({}, Pose::Identity()), no_body, restitution);
-  part_.add_collider(0, make_collision_shape(cap, Pose::Identity()), scene_body, restitution);
+  part_.add_collider(-1, make_collision_shape({}, Pose::Identity()), no_body, restitution, Friction::anchored);
+  part_.add_collider(0, make_collision_shape(cap, Pose::Identity()), scene_body, restitution, Friction::anchored);
   rows_ = &part_.add_rows(0);
   part_.update_poses();
 }

@@ -14,7 +14,9 @@ void limit_push_out(btPersistentManifold& manifold, const btContactSolverInfo& i
     btManifoldPoint& point = manifold.getContactPoint(i);
     const double depth_m = -point.getDistance();
     if (depth_m <= 0) continue;
-    point.m_contactERP = std::min(info.m_erp2, FixedBaseSolver::push_out_m_s * info.m_timeStep / depth_m);
+    const double too_deep_m = std::max(0.0, depth_m - FixedBaseSolver::blow_m_s * info.m_timeStep);
+    const double push_out_m_s = FixedBaseSolver::push_out_m_s + too_deep_m / FixedBaseSolver::recovery_s;
+    point.m_contactERP = std::min(info.m_erp2, push_out_m_s * info.m_timeStep / depth_m);
     point.m_contactPointFlags |= BT_CONTACT_FLAG_HAS_CONTACT_ERP;
   }
 }

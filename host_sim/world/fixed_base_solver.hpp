@@ -4,7 +4,9 @@
 // coordinates of a base that does not move, and the iterations end when no row changes a speed any more. Steps with a gripped handle take half the time
 // (81 to 50 us, 21 Nov 2026). Friction is projected radially onto its cone.
 //
-// Bullet turns penetration into speed, which the bodies keep: a collision at v would rebound at up to 0.2 v. Here that speed is at most `push_out_m_s`.
+// Bullet turns penetration into speed, which the bodies keep: a collision at v would rebound at up to 0.2 v. Here that speed is at most `push_out_m_s`
+// down to the depth of a blow at `blow_m_s`; what lies deeper, as pads that are pressed into a turning bar faster than the iterations keep them out
+// (1.2 mm/s), is pushed out within `recovery_s`.
 //
 // Only for worlds whose multibodies have fixed bases and at most 6 joints, and whose rigid bodies do not move.
 #pragma once
@@ -20,6 +22,8 @@ class FixedBaseSolver : public btMultiBodyConstraintSolver {
  public:
   static constexpr int max_joints = 6;
   static constexpr double push_out_m_s = 0.0005;  // out of 0.2 mm, a step's depth of a blow at 0.2 m/s, in 0.4 s
+  static constexpr double blow_m_s = 0.5;
+  static constexpr double recovery_s = 0.05;
 
  protected:
   btScalar solveGroupCacheFriendlySetup(btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds, int manifold_count,

@@ -16,6 +16,11 @@ namespace lf::world {
 // Marks a collider that touches nothing.
 inline constexpr int no_body = -1;
 
+// What holds a touching body sideways. A friction anchor keeps a standing contact where it was: without one a pressed cap creeps. But Bullet keeps an
+// anchored point's normal, too, as long as the bodies touch, however they turn: pads that have carried a bar through a quarter turn stick to it and do
+// not let go. What is turned by contact goes without.
+enum class Friction { anchored, free };
+
 // Bullet ignores constraints on a link without a collider, so each has one.
 class MultibodyPart {
  public:
@@ -31,7 +36,7 @@ class MultibodyPart {
   // After all links are set up.
   void finish_links();
   // link -1 is the base; user index: the body of the scene, or `no_body`.
-  void add_collider(int link, CollisionShape shape, int scene_body, double restitution);
+  void add_collider(int link, CollisionShape shape, int scene_body, double restitution, Friction friction);
   JointRows& add_rows(int link, int second_link = -1);
 
   // Brings everything into the world, or takes it out.

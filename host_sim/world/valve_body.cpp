@@ -22,8 +22,8 @@ ValveBody::ValveBody(const ValveConfig& config, const Pose& base_from_panel, con
   part_.body().setupRevolute(0, 0.5, btVector3(inertia, inertia, inertia), -1, btQuaternion::getIdentity(), btVector3(0, 0, 1),
                              btVector3(0, 0, 0), btVector3(0, 0, 0), false);
   part_.finish_links();
-  part_.add_collider(-1, make_collision_shape({}, Pose::Identity()), no_body, restitution);
-  part_.add_collider(0, make_collision_shape(handle, Pose::Identity()), int(scene::BodyId::handle), restitution);
+  part_.add_collider(-1, make_collision_shape({}, Pose::Identity()), no_body, restitution, Friction::free);
+  part_.add_collider(0, make_collision_shape(handle, Pose::Identity()), int(scene::BodyId::handle), restitution, Friction::free);
   rows_ = &part_.add_rows(0);
   part_.body().setJointPos(0, config.start_rad);
   part_.update_poses();
