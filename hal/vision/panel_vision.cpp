@@ -1,8 +1,10 @@
 #include "hal/vision/panel_vision.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cfenv>
 #include <exception>
+#include <optional>
 
 namespace lf::vision {
 namespace {
@@ -28,12 +30,24 @@ double tilt_cosine(const Pose& camera_from_tag, const Pose& base_from_camera, co
   return plane.normal.dot((base_from_camera * camera_from_tag).linear().col(2));
 }
 
+// A marker that the whole picture does not show may be found in a smaller one: noise averages out. Corners are found in the whole picture all the same.
+constexpr std::array searched_decimations{1.0, 1.5, 2.0, 3.0};
+
+std::optional<DetectedMarker> find_marker(ImageView still, std::int32_t id, MarkerDetectorConfig config) {
+  const double first = config.decimate;
+  for (const double decimate : searched_decimations) {
+    config.decimate = std::min(first * decimate, 8.0);
+    const auto markers = MarkerDetector(config).detect(still);
+    const auto ours = std::find_if(markers.begin(), markers.end(), [id](const DetectedMarker& m) { return m.id == id; });
+    if (ours != markers.end()) return *ours;
+  }
+  return std::nullopt;
+}
+
 MarkerObservation observe_marker(ImageView still, const PlaneFit& fit, const PanelVisionConfig& config) {
   MarkerObservation observation;
-  MarkerDetector detector(config.detector);
-  const auto markers = detector.detect(still);
-  const auto ours = std::find_if(markers.begin(), markers.end(), [&](const DetectedMarker& m) { return m.id == config.marker.id; });
-  if (ours == markers.end()) return observation;
+  const auto ours = find_marker(still, config.marker.id, config.detector);
+  if (!ours) return observation;
   const auto pose = marker_pose(ours->corners_px, config.marker.size_m, config.camera.intrinsics);
   if (!pose) return observation;
 
