@@ -69,6 +69,7 @@ const char* name(StepFailure failure) {
     case StepFailure::panel_moved: return "the panel has moved";
     case StepFailure::not_homed: return "homing failed";
     case StepFailure::too_few_points: return "too few points of the panel";
+    case StepFailure::stalled: return "the turn stalled";
   }
   return "unknown";
 }

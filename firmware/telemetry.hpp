@@ -50,6 +50,7 @@ enum class StepFailure : std::int32_t {
   panel_moved = 10,
   not_homed = 11,
   too_few_points = 12,
+  stalled = 13,
 };
 const char* name(StepFailure failure);
 

@@ -275,6 +275,7 @@ void Mission::finish_step(const Tick& tick, Status status) {
 
 void Mission::begin(const Tick& tick) {
   entered_ = true;
+  if (!yielding() || step_ == Step::grip) stay_where_pushed();
   switch (step_) {
     case Step::boot: begin_boot(tick); return;
     case Step::jog: begin_jog(); return;
@@ -293,7 +294,7 @@ void Mission::begin(const Tick& tick) {
     case Step::advance: begin_advance(); return;
     case Step::grip: gripper_.close(); return;
     case Step::turn: begin_turn(); return;
-    case Step::let_go: gripper_.open_to(config_.mission.jaw_open_m); return;
+    case Step::let_go: begin_let_go(); return;
     case Step::back_off: begin_back_off(); return;
     case Step::reach_button: begin_reach_button(); return;
     case Step::press: begin_press(); return;
@@ -368,12 +369,27 @@ Mission::Status Mission::run_motion() {
   return motion_.done() ? Status::done : Status::running;
 }
 
+// Giving way ends at the joints' limits.
+arm::JointVector Mission::pushed_target() const {
+  const arm::JointVector& target = motion_.target();
+  if (compliance_.offset_rad().isZero()) return target;
+  const arm::JointLimits limits = motion_.limits(1);
+  return (target + compliance_.offset_rad()).cwiseMax(limits.lower_rad.cwiseMin(target)).cwiseMin(limits.upper_rad.cwiseMax(target));
+}
+
+// What the arm has given way by is from now on where it stands.
+void Mission::stay_where_pushed() {
+  if (!compliance_.offset_rad().isZero()) motion_.start_at(pushed_target());
+  compliance_.reset();
+}
+
 // Targets to the drives: the arm follows the motion, the jaw its gripper. Without power the motion follows the joints instead.
 void Mission::drive(const Tick& tick) {
   const safety::JointStates& joints = watch_.joints();
   if (!powered_) return;
   motion_.step(tick.network.config().sync_period.s());
-  const arm::JointVector& target = motion_.target();
+  if (yielding() && joints.valid && !on_hold_) compliance_.update(joints.t, measured_nm());
+  const arm::JointVector target = pushed_target();
   for (std::size_t i = 0; i < arm_joint_count; ++i) {
     const auto joint = static_cast<Joint>(i);
     tick.network.axis(joint).set_target_counts(arm::counts_from_rad(joint, target[static_cast<Eigen::Index>(i)]));

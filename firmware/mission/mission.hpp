@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 
+#include "firmware/arm/compliance.hpp"
 #include "firmware/arm/gripper.hpp"
 #include "firmware/arm/guarded_motion.hpp"
 #include "firmware/canopen/network.hpp"
@@ -97,6 +98,11 @@ class Mission {
   void report(const Tick& tick);
   void event(const Tick& tick, Event::Kind kind, double value = 0);
   Status fail(StepFailure failure);
+  // The jaw has closed on something, or is about to: the arm gives way to it.
+  bool yielding() const { return step_ == Step::grip || step_ == Step::turn || step_ == Step::let_go; }
+  arm::JointVector pushed_target() const;
+  void stay_where_pushed();
+  void let_off_roll();
   bool in_contact_phase() const { return row(step_).phase == safety::Phase::contact || row(step_).phase == safety::Phase::gripping; }
 
   // mission_orders.cpp: what an operator wants
@@ -142,9 +148,11 @@ class Mission {
   void begin_advance();
   Status run_advance(const Tick& tick);
   Status run_grip();
+  void begin_let_go();
   Status run_let_go();
   void begin_turn();
   Status run_turn(const Tick& tick);
+  bool turn_stalled(Time now);
   void begin_back_off();
 
   // mission_buttons.cpp
@@ -170,6 +178,7 @@ class Mission {
   CameraWork camera_;
   Motion motion_;
   arm::Gripper gripper_;
+  arm::Compliance compliance_;  // of the arm while it grips
   arm::GuardedMotion guard_;       // of approaches and presses, where touching is meant to happen
   arm::GuardedMotion free_guard_;  // of everything else
   PanelMap map_;
@@ -208,6 +217,7 @@ class Mission {
   std::uint32_t sweep_ = 0;
   Time settled_since_;  // of waits within a step
   bool settling_ = false;
+  Time following_since_;  // the roll was last seen to follow the turn
   Vec3 standoff_m_ = Vec3::Zero();  // where straight motions start and return to
   double tool_roll_rad_ = 0;
   bool pressed_ = false;

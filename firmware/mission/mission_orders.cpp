@@ -120,6 +120,7 @@ void Mission::forget(const Tick& tick) {
   start_ordered_ = home_ordered_ = jog_ordered_ = abort_ordered_ = stop_ordered_ = false;
   watch_ = safety::Watch(config_.mission_limits);
   gripper_ = arm::Gripper();
+  compliance_.reset();
   map_ = PanelMap(config_.mission.layout, config_.marker, config_.camera);
   motion_.freeze();
   outcome_ = {};

@@ -67,7 +67,7 @@ Mission::Status Mission::run_stow() {
 
 // Out of a contact: open the jaw, whatever it holds, before going back.
 void Mission::begin_abandon() {
-  motion_.stop();
+  let_off_roll();
   gripper_.open_to(config_.mission.jaw_open_m);
 }
 

@@ -12,6 +12,9 @@ constexpr double limit_margin_rad = 0.01;
 constexpr Duration settle = Duration::from_ms(300);
 // The bar is between the pads when this much of the way is done; touching before is running into something.
 constexpr double contact_expected = 0.8;
+// A free roll stands 0.018 rad behind its target, and the drive gives up at 0.15: what stays further behind for so long is held by something.
+constexpr double stalled_rad = 0.08;
+constexpr Duration stalled_for = Duration::from_ms(50);
 
 }  // namespace
 
@@ -87,19 +90,38 @@ Mission::Status Mission::run_grip() {
 }
 
 void Mission::begin_turn() {
+  following_since_ = last_tick_;
   motion_.turn(map_.base_from_panel().linear(), map_.handle_rad(), task().to_rad, config_.mission.turn_speed_rad_s);
 }
 
+// A turn that ends early leaves the handle on its way: the jaw lets go, and the second look finds it.
 Mission::Status Mission::run_turn(const Tick& tick) {
+  const Status status = run_motion();
+  if (status == Status::failed) return status;
+  map_.expect_handle(motion_.handle_rad());
   if (gripper_.state() == arm::GripperState::dropped || gripper_.state() == arm::GripperState::empty) {
     raise(tick, safety::Fault::grip_lost, 0);
     return Status::running;
   }
-  const Status status = run_motion();
-  if (status == Status::failed) return status;
-  if (!settled(status == Status::done, settle, tick.now)) return Status::running;
-  map_.expect_handle(task().to_rad);
-  return Status::done;
+  if (turn_stalled(tick.now)) return fail(StepFailure::stalled);
+  return settled(status == Status::done, settle, tick.now) ? Status::done : Status::running;
+}
+
+bool Mission::turn_stalled(Time now) {
+  if (std::abs(motion_.target()[3] - measured_rad()[3]) < stalled_rad) following_since_ = now;
+  return now - following_since_ > stalled_for;
+}
+
+// What the roll has wound up against the handle.
+void Mission::let_off_roll() {
+  arm::JointVector rest_rad = motion_.target();
+  rest_rad[3] = measured_rad()[3];
+  motion_.start_at(rest_rad);
+}
+
+void Mission::begin_let_go() {
+  let_off_roll();
+  gripper_.open_to(config_.mission.jaw_open_m);
 }
 
 Mission::Status Mission::run_let_go() {

@@ -23,7 +23,7 @@ constexpr std::array<StepRow, step_count> table{{
     {Step::reach_valve, "reach valve", "turn_valve", Phase::free, 60, Step::advance, Step::advance, Step::reach_valve},
     {Step::advance, "advance", "turn_valve", Phase::contact, 20, Step::grip, Step::grip, Step::abandon},
     {Step::grip, "grip", "turn_valve", Phase::contact, 20, Step::turn, Step::turn, Step::abandon},
-    {Step::turn, "turn", "turn_valve", Phase::gripping, 40, Step::let_go, Step::let_go, Step::abandon},
+    {Step::turn, "turn", "turn_valve", Phase::gripping, 40, Step::let_go, Step::let_go, Step::let_go},
     {Step::let_go, "let go", "turn_valve", Phase::gripping, 20, Step::back_off, Step::back_off, Step::let_go},
     {Step::back_off, "back off", "turn_valve", Phase::contact, 20, Step::verify_reach, Step::verify_reach, Step::back_off},
     {Step::verify_reach, "reach second look", "turn_valve", Phase::free, 40, Step::verify_scan, Step::verify_scan, Step::verify_reach},

@@ -21,6 +21,8 @@ class KnownSight {
 
   // Whether questions from now on are answered.
   void answer(bool answers) { answers_ = answers; }
+  // From now on the panel is seen shifted by so much, in its own axes.
+  void mistake(const Vec3& shift_m) { shift_m_ = shift_m; }
   // So many of the pictures that come from now on get lost.
   void lose_images(std::uint32_t count) { images_to_lose_ = count; }
   // From now on the camera hands out the same picture: with its old number and stamp, or, when it is only the sensor that hangs, with new ones.
@@ -44,6 +46,7 @@ class KnownSight {
   PanelLayout layout_;
   Pose base_from_panel_;
   bool answers_ = true;
+  Vec3 shift_m_ = Vec3::Zero();
   std::uint32_t images_to_lose_ = 0;
   Frozen frozen_ = Frozen::no;
   std::optional<Image> last_image_;
