@@ -178,7 +178,7 @@ class Mission {
   CameraWork camera_;
   Motion motion_;
   arm::Gripper gripper_;
-  arm::Compliance compliance_;  // of the arm while it grips
+  arm::Compliance compliance_;     // of the arm while it grips
   arm::GuardedMotion guard_;       // of approaches and presses, where touching is meant to happen
   arm::GuardedMotion free_guard_;  // of everything else
   PanelMap map_;
@@ -217,7 +217,7 @@ class Mission {
   std::uint32_t sweep_ = 0;
   Time settled_since_;  // of waits within a step
   bool settling_ = false;
-  Time following_since_;  // the roll was last seen to follow the turn
+  Time following_since_;            // the roll was last seen to follow the turn
   Vec3 standoff_m_ = Vec3::Zero();  // where straight motions start and return to
   double tool_roll_rad_ = 0;
   bool pressed_ = false;
