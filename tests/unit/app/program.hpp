@@ -5,11 +5,15 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
+#include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <thread>
 
 namespace lf::app {
 
@@ -41,11 +45,45 @@ class Program : public ::testing::Test {
     return {std::istreambuf_iterator<char>(in), {}};
   }
 
-  // `arguments` as a shell takes them; `before` stands before the program's name ("LANTERNFISH_SHARE=x", "timeout -s INT 1").
+  // `arguments` as a shell takes them; `before` stands before the program's name ("LANTERNFISH_SHARE=x").
   Said run(const std::string& arguments, const std::string& before = "") const {
-    const std::string command =
-        "cd '" + folder_.string() + "' && " + before + " " LANTERNFISH_PROGRAM " " + arguments + " >.stdout 2>.stderr </dev/null";
-    const int status = std::system(command.c_str());
+    return said(std::system(command(before + " " LANTERNFISH_PROGRAM " " + arguments).c_str()));
+  }
+
+  // Ctrl-C on a terminal, for the program and its children, as soon as `file` in the folder has over `bytes` bytes: not after a time, which a busy
+  // machine passes before the program has begun.
+  Said interrupt(const std::string& arguments, const std::string& file, std::uintmax_t bytes) const {
+    const std::string line = command("exec " LANTERNFISH_PROGRAM " " + arguments);
+    const pid_t child = fork();
+    if (child == 0) {
+      setpgid(0, 0);
+      execl("/bin/sh", "sh", "-c", line.c_str(), nullptr);
+      _exit(127);
+    }
+    setpgid(child, child);  // whoever of the two comes first
+    int status = 0;
+    std::error_code ignored;
+    for (int looks = 0;; ++looks) {
+      if (waitpid(child, &status, WNOHANG) == child) {
+        ADD_FAILURE() << "ended before " << file << " was there";
+        return said(status);
+      }
+      const std::uintmax_t size = std::filesystem::file_size(folder_ / file, ignored);
+      const bool there = !ignored && size > bytes;
+      EXPECT_LT(looks, 24'000) << file << " is not there after 2 minutes";
+      if (there || looks >= 24'000) break;
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    kill(-child, SIGINT);
+    waitpid(child, &status, 0);
+    return said(status);
+  }
+
+ private:
+  std::string command(const std::string& words) const {
+    return "cd '" + folder_.string() + "' && " + words + " >.stdout 2>.stderr </dev/null";
+  }
+  Said said(int status) const {
     Said said;
     said.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     said.out = text_of(folder_ / ".stdout");
@@ -53,7 +91,6 @@ class Program : public ::testing::Test {
     return said;
   }
 
- private:
   std::filesystem::path folder_;
 };
 
