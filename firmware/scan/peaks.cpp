@@ -18,11 +18,23 @@ constexpr std::int32_t few_clipped = 3;  // px at full scale that the filter doe
 constexpr float narrow_curvature = 0.2225f;
 constexpr std::int32_t narrow_half_width = 5;
 constexpr std::array<float, 2 * narrow_half_width + 1> narrow_taps = {-1, -2, -3, 0, 3, 6, 3, 0, -3, -2, -1};
+
 constexpr std::int32_t wide_half_width = 9;
 constexpr std::array<float, 2 * wide_half_width + 1> wide_taps = {-1, -2, -3, -4, -5, -2, 1, 4, 7, 10, 7, 4, 1, -2, -5, -4, -3, -2, -1};
 
-// A step of the background across the stripe, over the sum of both sides. A marker's border has 0.7; bare metal, shading and glow stay below.
-constexpr float background_step = 0.4f;
+// A step of the background across the stripe, over the sum of both sides. A panel's arris has 0.15 to 0.3, a marker's border 0.7; bare metal, shading and
+// glow stay below.
+constexpr float edge_step = 0.12f;
+constexpr float albedo_step = 0.4f;  // a mark's border: what is lit less by day is lit less by the laser
+constexpr std::int32_t step_half_width = 4;
+// A stripe at an edge. Its flank falls as that of a Gaussian this wide: 1.25 px in clear water, more in turbid, and the lens adds its blur.
+constexpr float flank_sigma = 1.6f;
+constexpr float flank_least = 8.0f / 255;      // of full scale: below it a pixel says nothing of a flank
+constexpr float flank_relative_noise = 0.03f;  // speckle and what the model leaves out
+constexpr float filter_weight = 500.0f;        // of the filter's position, as a pixel's: (grey levels x px)^2
+constexpr float largest_edge_shift_px = 0.8f;  // of flanks against filter: what differs more is no single stripe
+constexpr float texture = 0.55f;               // changes beside the step, over it: more is a texture, which the stripe need not share
+constexpr float mixed_pixel = 0.2f;            // of the step: a pixel further than this from its side's level lies on the edge
 
 // Where the parabola through three equidistant values has its vertex, from the middle one.
 float vertex(const float (&y)[3]) { return 0.5f * (y[0] - y[2]) / (y[0] - 2 * y[1] + y[2]); }
@@ -230,22 +242,31 @@ std::size_t BasicPeakDetector<Pixel, MaxLength>::finish(const Strip& s, std::int
       return 0;
     }
   }
-  const std::size_t count = alone ? 1 : stripes.size();
-  for (std::size_t i = 0; i < count; ++i) measure(s, lane, stripes[i], ratio, peaks[i]);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < (alone ? 1 : stripes.size()); ++i) count += measure(s, lane, stripes[i], ratio, peaks[count]) ? 1 : 0;
   return count;
 }
 
 template <class Pixel, std::int32_t MaxLength>
-void BasicPeakDetector<Pixel, MaxLength>::measure(const Strip& s, std::int32_t lane, const Maximum& maximum, float ratio, Peak& peak) {
+bool BasicPeakDetector<Pixel, MaxLength>::measure(const Strip& s, std::int32_t lane, const Maximum& maximum, float ratio, Peak& peak) {
   const std::int32_t line = s.first + lane;
   const Plateau plateau = find_plateau(s, line, maximum.row);
-  const float position = plateau.length > few_clipped ? plateau_centre(s, line, plateau) : response_peak(s, lane, maximum.row);
+  float position = plateau.length > few_clipped ? plateau_centre(s, line, plateau) : response_peak(s, lane, maximum.row);
+  if (background_step(s, line, static_cast<std::int32_t>(std::lround(position))) > edge_step) {
+    const float flanks = edge_peak(s, line, position);
+    if (!(std::abs(flanks - position) <= largest_edge_shift_px)) {
+      ++counters_.ambiguous;
+      return false;
+    }
+    position = flanks;
+  }
   peak.u_px = config_.axis == PeakAxis::column ? static_cast<float>(line) : position;
   peak.v_px = config_.axis == PeakAxis::column ? position : static_cast<float>(line);
   peak.amplitude = amplitude(s, line, maximum.row);
   peak.ratio = ratio;
   peak.clipped = static_cast<std::uint8_t>(std::min<std::int32_t>(plateau.length, 255));
   ++counters_.found;
+  return true;
 }
 
 // The vertex of the parabola through the response's maximum and its neighbours. A stripe found narrow is filtered again with the same spline at a
@@ -260,7 +281,7 @@ float BasicPeakDetector<Pixel, MaxLength>::response_peak(const Strip& s, std::in
   const auto raw = [&](std::int32_t v) { return static_cast<float>(difference(s, line, v)); };
   const auto over_background = [&](std::int32_t v) { return raw(v) / (background(s, line, v) + floor()); };
   const float found = narrow ? peak_about(narrow_taps, centre, raw) : centre;
-  if (!background_steps(s, line, row)) return found;
+  if (!(background_step(s, line, row) > albedo_step)) return found;
   return narrow ? peak_about(narrow_taps, found, over_background) : peak_about(wide_taps, found, over_background);
 }
 
@@ -290,17 +311,17 @@ auto BasicPeakDetector<Pixel, MaxLength>::next_maximum(const Strip& s, std::int3
   return highest > 0 ? maximum_at(s, lane, highest_row, static_cast<float>(highest)) : Maximum{};
 }
 
-// Whether the laser-off image has a step there, by the means of four pixels to each side.
+// How much the laser-off image differs between both sides of a row, over their sum; 0 where that is dark or noise.
 template <class Pixel, std::int32_t MaxLength>
-bool BasicPeakDetector<Pixel, MaxLength>::background_steps(const Strip& s, std::int32_t line, std::int32_t row) const {
-  if (!s.off.valid() || row < 5 || row + 5 >= s.length) return false;
+float BasicPeakDetector<Pixel, MaxLength>::background_step(const Strip& s, std::int32_t line, std::int32_t row) const {
+  if (!s.off.valid() || row < 5 || row + 5 >= s.length) return 0;
   std::int32_t before = 0, after = 0;
   for (std::int32_t i = 2; i <= 5; ++i) {
     before += pixel(s.off, line, row - i);
     after += pixel(s.off, line, row + i);
   }
   const auto step = static_cast<float>(std::max(before - after, after - before));
-  return step > background_step * static_cast<float>(before + after) && step > 6 * floor();
+  return step > 6 * floor() ? step / static_cast<float>(before + after) : 0;
 }
 
 // The laser-off image's mean over the line and its neighbours.
@@ -311,6 +332,51 @@ float BasicPeakDetector<Pixel, MaxLength>::background(const Strip& s, std::int32
   const std::int32_t sum = pixel(s.off, std::max(line - 1, std::int32_t{0}), inside) + pixel(s.off, line, inside) +
                            pixel(s.off, std::min(line + 1, last_line), inside);
   return static_cast<float>(sum) / 3;
+}
+
+// A stripe that crosses an edge is cut off there, or changes its height: a symmetric filter is pulled to its bright side. Each side by itself is a piece of a
+// Gaussian of known width: ln d + v^2 / (2 sigma^2) is a straight line in v with the slope centre / sigma^2. The slopes of both sides are pooled, and the
+// filter's `centre` is one more observation.
+template <class Pixel, std::int32_t MaxLength>
+float BasicPeakDetector<Pixel, MaxLength>::edge_peak(const Strip& s, std::int32_t line, float centre) const {
+  const auto middle = static_cast<std::int32_t>(std::lround(centre));
+  const auto off = [&](std::int32_t v) { return static_cast<float>(pixel(s.off, line, std::clamp(v, std::int32_t{0}, s.length - 1))); };
+  const auto change = [&](std::int32_t v) { return std::abs(off(v + 1) - off(v)); };
+  std::int32_t edge = middle;  // the step is between this row and the next
+  for (std::int32_t v = middle - step_half_width; v < middle + step_half_width; ++v) {
+    if (change(v) > change(edge)) edge = v;
+  }
+  const float step = std::abs(off(edge + 2) - off(edge - 1));
+  float elsewhere = 0;
+  for (std::int32_t v = middle - step_half_width; v < middle + step_half_width; ++v) {
+    if (v < edge - 1 || v > edge + 1) elsewhere += change(v);
+  }
+  if (elsewhere > texture * step) return centre;
+  const std::int32_t last_before = change(edge - 1) > mixed_pixel * step ? edge - 1 : edge;
+  const std::int32_t first_after = change(edge + 1) > mixed_pixel * step ? edge + 2 : edge + 1;
+
+  constexpr float variance = flank_sigma * flank_sigma;
+  float moment = filter_weight * (centre - static_cast<float>(middle)) / variance, weight = filter_weight;
+  const auto add_side = [&](std::int32_t first, std::int32_t last) {
+    float w = 0, wx = 0, wy = 0, wxx = 0, wxy = 0;
+    for (std::int32_t v = std::max(first, std::int32_t{0}); v <= std::min(last, s.length - 1); ++v) {
+      const float d = static_cast<float>(difference(s, line, v)) / static_cast<float>(config_.full_scale);
+      if (d <= flank_least || pixel(s.on, line, v) >= config_.full_scale) continue;
+      const float grey = 255 * d, x = static_cast<float>(v - middle), y = std::log(grey) + x * x / (2 * variance);
+      const float sure = grey * grey / (1 + flank_relative_noise * flank_relative_noise * grey * grey);
+      w += sure;
+      wx += sure * x;
+      wy += sure * y;
+      wxx += sure * x * x;
+      wxy += sure * x * y;
+    }
+    if (!(w > 0)) return;
+    moment += wxy - wx * wy / w;
+    weight += wxx - wx * wx / w;
+  };
+  add_side(middle - step_half_width, last_before);
+  add_side(first_after, middle + step_half_width);
+  return static_cast<float>(middle) + variance * moment / weight;
 }
 
 template <class Pixel, std::int32_t MaxLength>

@@ -162,6 +162,41 @@ TEST(Peaks, AStepOfAlbedoUnderTheStripeIsUndone) {
   EXPECT_GT(largest_error(ImageView{even.data(), width, height, width}), 0.5);
 }
 
+// The panel's edge: the stripe's true centre lies just below it, and above there is nothing to light, or another face that the sheet passes by.
+TEST(Peaks, AStripeCutOffByAnEdgeIsFoundByItsFlank) {
+  constexpr int width = 128, height = 120;
+  constexpr double sigma_px = 1.3, daylight = 70, laser = 120;
+  std::mt19937_64 random(12);
+  SCOPED_TRACE("seed 12");
+  std::normal_distribution<double> noise(0, 1);
+  for (const double beyond : {125.0, 35.0}) {  // a brighter face, and open water
+    std::vector<std::uint8_t> on(width * height), off(on.size());
+    const auto centre = [](int u) { return 60.0 + 0.013 * u; };
+    const auto edge = [&](int u) {
+      return centre(u) - 1.4 + 0.006 * u;
+    };  // 1.4 to 0.6 px above it: from one sigma down to less than a half
+    for (int v = 0; v < height; ++v) {
+      for (int u = 0; u < width; ++u) {
+        const double covered = std::clamp(v + 0.5 - edge(u), 0.0, 1.0);  // of the pixel, by the panel
+        const double scene = daylight * covered + beyond * (1 - covered);
+        const double d = v - centre(u);
+        const auto i = static_cast<std::size_t>(v) * width + u;
+        off[i] = static_cast<std::uint8_t>(std::lround(scene + noise(random)));
+        on[i] = static_cast<std::uint8_t>(
+            std::lround(scene + covered * laser * std::exp(-0.5 * d * d / (sigma_px * sigma_px)) + noise(random)));
+      }
+    }
+    auto detector = std::make_unique<PeakDetector>();
+    std::vector<Peak> peaks(width);
+    const std::size_t count =
+        detector->detect(ImageView{on.data(), width, height, width}, ImageView{off.data(), width, height, width}, peaks);
+    EXPECT_GT(count, 0.85 * width);
+    double squares = 0;
+    for (std::size_t i = 0; i < count; ++i) squares += std::pow(peaks[i].v_px - centre(static_cast<int>(peaks[i].u_px)), 2);
+    EXPECT_LT(std::sqrt(squares / static_cast<double>(count)), 0.2) << "beyond the edge " << beyond << "; the filter alone errs by 0.38";
+  }
+}
+
 TEST(Peaks, AColumnOfNoiseHasNone) {
   const test::StripeImage image = test::make_stripe_image({.amplitude = 0, .noise = 3, .seed = 6});
   auto detector = std::make_unique<PeakDetector>();
@@ -279,8 +314,11 @@ TEST(Peaks, OfBlackAndWhiteNoiseAreWhereTheConvolutionIsHighest) {
   PeakConfig config{.max_ratio = 2.0f};  // all columns are reported
   auto detector = std::make_unique<PeakDetector>(config);
   std::vector<Peak> peaks(width);
-  ASSERT_EQ(detector->detect(ImageView{on.data(), width, height, width}, ImageView{off.data(), width, height, width}, peaks), 128u);
-  for (int u = 0; u < width; ++u) {
+  const std::size_t count =
+      detector->detect(ImageView{on.data(), width, height, width}, ImageView{off.data(), width, height, width}, peaks);
+  ASSERT_GT(count, 120u) << "some look like stripes at an edge";
+  for (std::size_t i = 0; i < count; ++i) {
+    const int u = static_cast<int>(peaks[i].u_px);
     int best = 0, best_row = 0;
     std::vector<int> response(height);
     for (int v = 0; v < height; ++v)
@@ -290,7 +328,7 @@ TEST(Peaks, OfBlackAndWhiteNoiseAreWhereTheConvolutionIsHighest) {
       }
     for (int v = 1; v + 1 < height; ++v)
       if (response[v] >= response[v - 1] && response[v] > response[v + 1] && response[v] > best) best = response[best_row = v];
-    EXPECT_NEAR(peaks[u].v_px, best_row, 1.5) << "column " << u;  // the narrow filter may move it by one pixel
+    EXPECT_NEAR(peaks[i].v_px, best_row, 2.1) << "column " << u;  // the narrow filter may move it by one pixel, flanks by half of one
   }
 }
 
