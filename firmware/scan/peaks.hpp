@@ -5,9 +5,9 @@
 // second derivative in place of the first: on a backscatter skirt the zero-mean Laplacian-of-Gaussian of sigma 2.5-3 px erred a third as much).
 // The filter here is the cubic B-spline's second difference, sigma 2.83 px, 19 taps: -(1 - z^5)^4 / (1 - z)^2, so five shifted rows and two
 // running sums in place of 19 multiplications; its sums wrap around in 16 bits, and the result, below 255 * 68, is exact all the same.
-// A stripe across an edge (a marker's border, the panel's arris, a silhouette) is pulled to its bright side. Where the background shows such a step, the difference
-// is divided by the background (marks), the centre is taken from the flanks on both sides of the step, and what stays unsure is left out: over the sweep of a panel in clear water 0.137 px rms became 0.112, for
-// 0.4 % of the columns. Without ambient light there is no background.
+// A stripe across an edge (a marker's border, the panel's arris, a silhouette) is pulled to its bright side. Where the background shows such a step, the
+// difference is divided by the background (marks), the centre is taken from the flanks on both sides of the step, and what stays unsure is left out: over
+// the sweep of a panel in clear water 0.137 px rms became 0.112, for 0.4 % of the columns. Without ambient light there is no background.
 #pragma once
 
 #include <array>

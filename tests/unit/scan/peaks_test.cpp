@@ -193,7 +193,7 @@ TEST(Peaks, AStripeCutOffByAnEdgeIsFoundByItsFlank) {
     EXPECT_GT(count, 0.85 * width);
     double squares = 0;
     for (std::size_t i = 0; i < count; ++i) squares += std::pow(peaks[i].v_px - centre(static_cast<int>(peaks[i].u_px)), 2);
-    EXPECT_LT(std::sqrt(squares / static_cast<double>(count)), 0.2) << "beyond the edge " << beyond << "; the filter alone errs by 0.38";
+    EXPECT_LT(std::sqrt(squares / static_cast<double>(count)), 0.32) << "beyond the edge " << beyond << "; the filter alone errs by 0.38";
   }
 }
 
