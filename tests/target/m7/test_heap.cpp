@@ -43,6 +43,7 @@ void operator delete(void* block, std::size_t, std::align_val_t) noexcept { std:
 namespace std {
 
 void __throw_length_error(const char* what) { lf::m7::fail(what); }
+void __throw_invalid_argument(const char* what) { lf::m7::fail(what); }
 void __throw_logic_error(const char* what) { lf::m7::fail(what); }
 void __throw_out_of_range(const char* what) { lf::m7::fail(what); }
 void __throw_out_of_range_fmt(const char* what, ...) { lf::m7::fail(what); }
