@@ -5,7 +5,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 preset=${1:-release}
 [ $# -eq 0 ] || shift
-toolchain/setup.sh
+toolchain/setup.sh --tests
 cmake --preset "$preset"
 cmake --build --preset "$preset" -- --quiet
 exec ctest --preset "$preset" "$@"

@@ -5,10 +5,26 @@ for interface in can0 can1; do
   driver=$(basename "$(readlink "/sys/class/net/$interface/device/driver")")
   [ "$driver" = kvaser_pci ] || { echo "$interface is driven by $driver" >&2; exit 1; }
 done
-cangen can0 -n 1  # reads the program; the guest's clock jumps meanwhile
-candump -L -n 100 -T 20000 can1 >/tmp/heard &
-until grep -q '^ *can1 ' /proc/net/can/rcvlist_all; do sleep 0.01; done  # candump listens
+# Reads the programs: the guest's clock jumps meanwhile.
+cangen can0 -n 1
+candump -L -n 1 -T 1 can1 >/tmp/heard
+grep -c . /tmp/heard || true
+sleep 0.01
+candump -L -n 100 can1 >/tmp/heard &
+listener=$!
+# soon COMMAND...: waits until it succeeds, for some seconds.
+soon() {
+  for _ in $(seq 500); do
+    "$@" && return
+    sleep 0.01
+  done
+  echo "not within some seconds: $*" >&2
+  exit 1
+}
+soon grep -q '^ *can1 ' /proc/net/can/rcvlist_all  # candump listens
 cangen can0 -n 100 -g 1 -I i -L 8 -D i
+heard_all() { ! kill -0 "$listener" 2>/dev/null; }
+soon heard_all
 wait
 count=$(wc -l </tmp/heard)
 [ "$count" -eq 100 ] || { echo "can1 heard $count frames of 100" >&2; exit 1; }

@@ -5,7 +5,8 @@ Usage: flight_test.py FOLDER_OF_PROGRAMS; inside a guest (lanternfish_guest_test
 (with_host_renderer.sh). What was measured is left in LANTERNFISH_GUEST_OUT, with the daemon's logs.
 
 The criteria are those of the desktop's run: the valve within 3 degrees of its target and every button clicked, in the world. And those of the control
-thread: no heap call and no page fault, and not a frame lost on the bus.
+thread: no heap call and no page fault, and not a frame lost on the bus. A machine that stands still for three SYNCs stops the arm, rightly: "stale
+position". Then the attempt says nothing about the vehicle (keeping_time.py).
 """
 import json
 import os
@@ -15,11 +16,6 @@ import time
 
 import rig
 from rig import expect
-
-# A machine that stands still for three SYNCs stops the arm, rightly: "stale position". Then the attempt says nothing about the vehicle.
-STALL_US = 8000
-ATTEMPTS = 3
-
 
 def fly(programs):
     options = ["--renderer", os.environ["LANTERNFISH_SHARED_FILE"]] if os.environ.get("LANTERNFISH_SHARED_FILE") else []
@@ -50,7 +46,7 @@ def fly(programs):
 
 
 def judge(status, exit_status, sea):
-    expect(status["success"], f"the mission failed: {status.get('failure')}")
+    expect(status["success"], f"the mission failed: {status.get('failure')}; wake-ups {status['latency']['wake_up_us']}")
     expect(exit_status == 0, f"lanternfishd ended with {exit_status}")
     expect(sea["success"], f"the job is not done in the world: {sea['tasks']}")
     core = status["core"]
@@ -61,14 +57,8 @@ def judge(status, exit_status, sea):
     expect(not lost, f"frames were lost: {status['counters']['can']}")
 
 
-def fly_until_the_machine_keeps_time(programs):
-    for attempt in range(1, ATTEMPTS + 1):
-        with rig.stage():
-            status, exit_status, sea = fly(programs)
-        stalled_us = status["latency"]["wake_up_us"]["max"]
-        if status["success"] or stalled_us < STALL_US or attempt == ATTEMPTS:
-            return judge(status, exit_status, sea)
-        print(f"attempt {attempt}: this machine stood still for {1e-3 * stalled_us:.1f} ms, so the arm was stopped; again", flush=True)
+def fly_and_judge(programs):
+    judge(*fly(programs))
 
 
-rig.main(fly_until_the_machine_keeps_time)
+rig.main(fly_and_judge)

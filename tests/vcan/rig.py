@@ -15,10 +15,13 @@ import socket
 import subprocess
 import sys
 import time
+import traceback
 
 import bus_watch
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+LATE_MS = 4.0  # a SYNC period: what comes later than that came too late
 
 
 class Failed(Exception):
@@ -46,6 +49,7 @@ def shell(command):
 
 
 PROCESSES = []  # of programs under test
+LATEST = {}  # the control thread's wake-ups in the last status of each daemon: process -> ms
 
 
 def start(arguments, output):
@@ -58,6 +62,9 @@ def stage():
     """Leaves no program, rule or queue behind."""
     try:
         yield
+    except Exception:
+        time.sleep(1.1)  # the sea says once a second how late it was
+        raise
     finally:
         for process in PROCESSES:
             if process.poll() is None:
@@ -103,7 +110,9 @@ class Daemon:
 
     def status(self):
         expect(self.process.poll() is None, f"the daemon ended ({self.process.returncode}):\n{self.text()}")
-        return self.ask("status")
+        status = self.ask("status")
+        LATEST[self.process.pid] = 1e-3 * status["latency"]["wake_up_us"]["max"]
+        return status
 
     def wait_ready(self, limit_s=20):
         """Seconds from its start until it answers."""
@@ -226,14 +235,32 @@ class Rig:
         self.watch.poll()
 
 
+def out_of_time():
+    """Why it may have been the machine that failed: what was not done in real time, besides the programs under test."""
+    reasons = [f"the control thread was woken up {late_ms:.1f} ms late" for late_ms in LATEST.values() if late_ms > LATE_MS]
+    for sea in pathlib.Path("/tmp/rig").glob("*/sea.err"):
+        late_ms = [float(number) for number in re.findall(r"not in real time: .* up to ([0-9.]+) ms", sea.read_text())]
+        reasons += [f"the simulated sea was {max(late_ms):.1f} ms late"] if late_ms else []
+    for result in pathlib.Path("/tmp/rig").glob("*/out/result.json"):
+        camera = json.loads(result.read_text())["camera"]
+        if camera and camera["not_rendered"] > 0.1 * camera["exposures"]:
+            reasons.append(f"the simulated camera could not make {camera['not_rendered']} of {camera['exposures']} pictures in time")
+    return reasons
+
+
 def main(test):
-    """Runs test(programs); says why it failed and what the programs said."""
+    """Runs test(programs); says why it failed and what the programs said, and leaves what speaks for them in LANTERNFISH_GUEST_OUT (keeping_time.py)."""
     if len(sys.argv) < 2:
         sys.exit(f"usage: {sys.argv[0]} FOLDER_OF_PROGRAMS")
     try:
         test(sys.argv[1])
-    except Failed as failure:
+    except Exception as failure:  # pylint: disable=broad-except  # a socket's time-out is a failure like another
         print(f"FAILED: {failure}", file=sys.stderr)
+        if not isinstance(failure, Failed):
+            traceback.print_exc()
+        time.sleep(1.1)
         for log in sorted(pathlib.Path("/tmp/rig").glob("*/*.out")) + sorted(pathlib.Path("/tmp/rig").glob("*/*.err")):
             print(f"--- {log}\n{log.read_text()[-3000:]}", file=sys.stderr)
+        if out := os.environ.get("LANTERNFISH_GUEST_OUT"):
+            (pathlib.Path(out) / "out_of_time").write_text("".join(reason + "\n" for reason in out_of_time()))
         sys.exit(1)

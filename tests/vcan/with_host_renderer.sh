@@ -10,9 +10,11 @@ shift 3
 folder=$(mktemp -d)
 renderer=
 finish() {
+  local status=$?
   [ -z "$renderer" ] || { kill "$renderer" && wait "$renderer"; } || true
-  cat "$folder/log"
+  cat "$folder/log" || true
   rm -rf "$folder"
+  exit "$status"
 }
 trap finish EXIT
 # On the processors that the guest leaves, before what is not real-time: a picture is due 100 ms after it was asked for.

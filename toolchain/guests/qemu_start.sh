@@ -1,6 +1,7 @@
 # Run by the guest's root after qemu_init.sh: the folders to write, the CAN interfaces, the command, power off.
 export PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin
 private=/run/lanternfish_guest
+: >"$private/booted"
 ln -sf /proc/self/fd /dev/fd
 mkdir -p /dev/pts && mount -t devpts devpts /dev/pts
 # shellcheck source=/dev/null

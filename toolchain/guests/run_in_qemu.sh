@@ -8,7 +8,8 @@
 # /tmp, /var/tmp, /run and /dev/shm are its own and empty, and each FOLDER of --out is this machine's and may be written. The command runs as root
 # in the present folder and environment; its output is shown when it has ended. While the guest reads this machine's files its clock jumps: copy to
 # /tmp what a timed program opens.
-# Exit status: the command's; 3 when something has to be installed; 124 when the time limit (120 s) is over; 125 when the guest itself failed.
+# Exit status: the command's; 3 when something has to be installed, or no guest boots here; 124 when the time limit (120 s) is over; 125 when the
+# guest failed after it had booted.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 
@@ -24,7 +25,11 @@ while [[ ${1:-} == --* ]]; do
   shift 2
 done
 [ $# -gt 0 ] && [ -n "$guest" ] || { sed -n '2,/^set/s/^# \{0,1\}//p' "$0" >&2; exit 2; }
-command -v qemu-system-x86_64 >/dev/null || { echo "run_in_qemu: no qemu-system-x86_64: apt-get install qemu-system-x86" >&2; exit 3; }
+for need in qemu-system-x86_64:qemu-system-x86 candump:can-utils v4l2-ctl:v4l-utils; do
+  command -v "${need%%:*}" >/dev/null && continue
+  echo "run_in_qemu: no ${need%%:*}: apt-get install ${need##*:}" >&2
+  exit 3
+done
 "$here/make_qemu_guest.sh" "$guest"
 
 private=$(mktemp -d)
@@ -53,6 +58,11 @@ cat "$private/stdout" 2>/dev/null || true
 cat "$private/stderr" >&2 2>/dev/null || true
 if [ -s "$private/status" ]; then
   exit "$(cat "$private/status")"
+fi
+if [ ! -e "$private/booted" ]; then
+  tail -n 20 "$private/qemu.log" "$private/kernel.log" >&2 || true
+  echo "run_in_qemu: no guest boots here: QEMU ended with $status" >&2
+  exit 3
 elif [ "$status" -eq 124 ] || [ "$status" -eq 137 ]; then
   echo "run_in_qemu: not done after $time_limit s: $*" >&2
   status=124
@@ -60,5 +70,5 @@ else
   echo "run_in_qemu: the guest ended ($status) before the command did" >&2
   status=125
 fi
-tail -n 20 "$private/qemu.log" "$private/kernel.log" >&2
+tail -n 20 "$private/qemu.log" "$private/kernel.log" >&2 || true
 exit "$status"

@@ -23,6 +23,7 @@ host_folder() {
   mount -t hostfs -o "$1" hostfs "$1" && mount -o "remount,$2" "$1"
 }
 host_folder "$private" rw
+: >"$private/booted"
 eval "$settings"
 [ -e "$project" ] || host_folder "$project" ro
 for folder in "${out[@]}"; do host_folder "$folder" rw; done

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Runs a command as root of a network of its own in which vcan0 is up: with this machine's kernel where that has CAN, else in User Mode Linux.
-# Usage: with_vcan.sh [--time-limit S] [--memory 512M] [--out FOLDER]... [--mmapper FILE] COMMAND [ARGUMENT]...
+# Usage: with_vcan.sh [--time-limit S] [--memory 512M] [--out FOLDER]... [--mmapper FILE] [--slowdown N --clock LIBRARY] COMMAND [ARGUMENT]...
 #
-# Options, exit status: those of run_in_uml.sh. The command finds LANTERNFISH_GUEST=kernel or uml in its environment, and in LANTERNFISH_SHARED_FILE
+# Options, exit status: those of run_in_uml.sh; this machine's kernel keeps this machine's time, whatever N. The command finds LANTERNFISH_GUEST=kernel or uml in its environment, and in LANTERNFISH_SHARED_FILE
 # what FILE is there: FILE itself, or /dev/mmapper.
 # Environment: LANTERNFISH_VCAN=kernel or uml asks for the one; LANTERNFISH_NO_UML=REASON forbids the other.
 set -euo pipefail
@@ -19,6 +19,8 @@ while [[ ${1:-} == --* ]]; do
   shift 2
 done
 [ $# -gt 0 ] || { sed -n '2,/^set/s/^# \{0,1\}//p' "$0" >&2; exit 2; }
+
+command -v candump >/dev/null || { echo "with_vcan: no candump: apt-get install can-utils" >&2; exit 3; }
 
 # A network, and process identifiers, that end with the command. Who is not root becomes it in a user namespace.
 own=(unshare --net --pid --fork --kill-child --mount-proc)
