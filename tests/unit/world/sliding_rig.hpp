@@ -57,9 +57,9 @@ class Sled {
                                   btVector3(0, 0, 0), btVector3(0, 0, 0), false);
     }
     part_.finish_links();
-    part_.add_collider(-1, make_collision_shape({}, Pose::Identity()), no_body, restitution);
-    for (int i = 0; i < 2; ++i) part_.add_collider(i, make_collision_shape({}, Pose::Identity()), no_body, restitution);
-    part_.add_collider(2, make_collision_shape(body, Pose::Identity()), int(id), restitution);
+    part_.add_collider(-1, make_collision_shape({}, Pose::Identity()), no_body, restitution, Friction::anchored);
+    for (int i = 0; i < 2; ++i) part_.add_collider(i, make_collision_shape({}, Pose::Identity()), no_body, restitution, Friction::anchored);
+    part_.add_collider(2, make_collision_shape(body, Pose::Identity()), int(id), restitution, Friction::anchored);
     part_.update_poses();
     part_.enter(world.get());
   }

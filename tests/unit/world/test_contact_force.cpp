@@ -107,14 +107,14 @@ TEST_P(StepRates, collisionOfALeverUsesItsInertia) {
     lever.body().setupRevolute(0, 1, btVector3(inertia, inertia, inertia), -1, btQuaternion::getIdentity(), btVector3(0, 0, 1),
                                btVector3(0, 0, 0), btVector3(0, 0, 0), false);
     lever.finish_links();
-    lever.add_collider(-1, make_collision_shape({}, Pose::Identity()), no_body, restitution);
+    lever.add_collider(-1, make_collision_shape({}, Pose::Identity()), no_body, restitution, Friction::anchored);
     scene::Body tip;
     tip.shapes.resize(1);
     tip.shapes[0].kind = scene::ShapeKind::sphere;
     tip.shapes[0].size_m = Vec3(0.02, 0, 0);
     tip.shapes[0].friction = 0;
     tip.shapes[0].body_from_shape.translation() = Vec3(arm_m, 0, 0);
-    lever.add_collider(0, make_collision_shape(tip, Pose::Identity()), int(BodyId::finger_a), restitution);
+    lever.add_collider(0, make_collision_shape(tip, Pose::Identity()), int(BodyId::finger_a), restitution, Friction::anchored);
     lever.update_poses();
     lever.enter(world.get());
     Wall wall(world, box_body(Vec3(1, 0.1, 1), Pose::Identity(), 0), Pose(Eigen::Translation3d(arm_m, 0.07 + 0.002, 0)), restitution);
