@@ -38,7 +38,8 @@ class KeepingTime(unittest.TestCase):
     def run_it(self, command, late_ms="0.3", seconds=60):
         """(exit status, what was printed, how often the command was run)"""
         attempts = self.folder / "attempts"
-        done = subprocess.run([SCRIPT, "--watch", self.folder / "watch", "--out", self.folder, "--seconds", str(seconds), self.folder / "runner", "--",
+        done = subprocess.run([SCRIPT, "--watch", self.folder / "watch", "--out", self.folder, "--lost", self.folder / "lost",
+                               "--seconds", str(seconds), self.folder / "runner", "--",
                                "bash", "-c", f"echo >>{attempts}; {command}"], env={**os.environ, "LATE_MS": late_ms}, check=False, capture_output=True, text=True)
         return done.returncode, done.stdout, len(attempts.read_text())
 
@@ -66,6 +67,19 @@ class KeepingTime(unittest.TestCase):
 
     def test_no_attempt_begins_that_could_hardly_end(self):
         self.assertEqual(self.run_it("sleep 1.2; exit 1", late_ms="9", seconds=2)[2], 1)
+
+    def test_a_run_of_ctest_loses_no_more_than_some_minutes(self):
+        self.assertEqual(self.run_it("exit 1", late_ms="9")[2], 3)
+        (self.folder / "attempts").unlink()
+        for lost_s, attempts in (("200.0", 1), ("301.0", 0)):
+            run = (self.folder / "lost").read_text().split()[0]
+            (self.folder / "lost").write_text(f"{run} {lost_s}\n")
+            (self.folder / "attempts").write_text("")
+            status, said, tried = self.run_it("exit 1", late_ms="9")
+            self.assertEqual((status, tried), (77, attempts))
+            self.assertTrue(said.splitlines()[-1].startswith("no machine that keeps time: "))
+        (self.folder / "lost").write_text("1-1 301.0\n")  # another run's
+        self.assertEqual(self.run_it("exit 0")[0], 0)
 
     def test_what_the_machine_lacks_is_said_once(self):
         self.assertEqual(self.run_it("exit 3", late_ms="9"), (3, "", 1))

@@ -39,7 +39,7 @@ function(lanternfish_guest_test name guest)
   else()
     set(runner --own-clock ${guests}/run_in_qemu.sh --guest ${CMAKE_BINARY_DIR}/qemu_guest)
   endif()
-  add_test(NAME ${name} COMMAND ${guests}/keeping_time.py --watch $<TARGET_FILE:watch_time> --out ${out} --seconds ${arg_SECONDS}
+  add_test(NAME ${name} COMMAND ${guests}/keeping_time.py --watch $<TARGET_FILE:watch_time> --out ${out} --lost ${CMAKE_BINARY_DIR}/guest_out/lost --seconds ${arg_SECONDS}
     ${runner} --out ${out} -- ${arg_COMMAND})
   math(EXPR limit "${arg_SECONDS} + 900")  # the runner's own limit comes first and says more; the guest's first download and build count here
   set_tests_properties(${name} PROPERTIES LABELS ${guest} RUN_SERIAL ON TIMEOUT ${limit} ENVIRONMENT LANTERNFISH_GUEST_OUT=${out}
