@@ -35,8 +35,22 @@ void Gripper::open_to(double gap_m) {
   order_ = Order::open;
 }
 
+void Gripper::turn_to(double jaw_rad) {
+  if (!std::isfinite(jaw_rad)) return;
+  goal_rad_ = std::clamp(jaw_rad, lower_rad, upper_rad);
+  order_ = Order::open;
+}
+
 void Gripper::close() { order_ = Order::close; }
 void Gripper::stay() { order_ = Order::stay; }
+
+GripperState Gripper::state() const {
+  switch (order_) {
+    case Order::open: return GripperState::opening;
+    case Order::close: return GripperState::closing;
+    default: return state_;
+  }
+}
 
 void Gripper::wait(Duration d) {
   still_since_ = still_since_ + d;
@@ -83,18 +97,16 @@ void Gripper::move(Time t, double jaw_rad, double torque_nm, double dt_s) {
     return;
   }
   const bool pushing = target_rad_ == goal_rad_ || std::abs(target_rad_ - jaw_rad) >= 0.99 * config_.lead_rad;
-  if (pushing && t - still_since_ >= config_.stall_time) stalled(t, jaw_rad, torque_nm);
-  if (t - began_ >= config_.move_timeout && (state_ == GripperState::opening || state_ == GripperState::closing))
+  if (pushing && t - still_since_ >= config_.stall_time) stalled(jaw_rad, torque_nm);
+  if (t - began_ >= config_.move_timeout && (state_ == GripperState::opening || state_ == GripperState::closing)) {
     state_ = GripperState::jammed;
+    target_rad_ = jaw_rad;  // pressing on would only heat the motor
+  }
 }
 
 // Opening is positive, so that a closing torque is negative.
-void Gripper::stalled(Time t, double jaw_rad, double torque_nm) {
-  if (state_ == GripperState::opening) {
-    // A jaw at rest below its stiction is no jam: it gets until the time-out.
-    if (t - began_ >= config_.move_timeout) state_ = GripperState::jammed;
-    return;
-  }
+void Gripper::stalled(double jaw_rad, double torque_nm) {
+  if (state_ == GripperState::opening) return;  // a jaw at rest below its stiction is no jam: it gets until the time-out
   if (-torque_nm < config_.grip_torque_nm) return;
   const double gap = gap_from_jaw(jaw_rad);
   grip_rad_ = jaw_rad;

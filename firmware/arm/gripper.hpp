@@ -35,7 +35,7 @@ struct GripperConfig {
 
 enum class GripperState : std::uint8_t {
   idle,     // holds its position
-  opening,  //
+  opening,  // or on the way to an angle that turn_to() named
   open,     // at the wanted opening
   closing,
   held,     // stalled on something as thick as the bar
@@ -50,6 +50,7 @@ class Gripper {
 
   // Orders. The next update() begins them.
   void open_to(double gap_m);
+  void turn_to(double jaw_rad);  // an angle, either way; ends as `open` there, or `jammed`
   void close();
   void stay();  // idle at the present position
   // `d` passes without update() being called, and does not count for stalls and time-outs: the operator holds the arm.
@@ -59,7 +60,8 @@ class Gripper {
   // is refused and counted, and the last target stands.
   double update(Time t, double jaw_rad, double torque_nm);
 
-  GripperState state() const { return state_; }
+  // An order that waits for its update() counts as begun: who asks in between must not take the last one's end for its own.
+  GripperState state() const;
   double target_rad() const { return target_rad_; }
   double grip_gap_m() const { return grip_gap_m_; }  // at which it stalled; 0 before
   std::uint32_t refused() const { return refused_; }
@@ -69,7 +71,7 @@ class Gripper {
 
   void begin(Time t, double jaw_rad);
   void move(Time t, double jaw_rad, double torque_nm, double dt_s);
-  void stalled(Time t, double jaw_rad, double torque_nm);
+  void stalled(double jaw_rad, double torque_nm);
   void hold(double jaw_rad, double torque_nm);
 
   GripperConfig config_;

@@ -75,7 +75,8 @@ void Axis::request(AxisRequest request) {
 }
 
 bool Axis::set_target_counts(std::int32_t counts) {
-  if (!enabled() || counts < setup_.min_counts || counts > setup_.max_counts) {
+  const std::int32_t low = std::min(setup_.min_counts, target_counts_), high = std::max(setup_.max_counts, target_counts_);
+  if (!enabled() || counts < low || counts > high) {
     ++stats_.targets_refused;
     return false;
   }

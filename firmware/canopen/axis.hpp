@@ -72,7 +72,8 @@ class Axis {
   // The core's side. Asking once is enough; `reset_fault` and `home` asked again after they ended start again. Ignored while offline.
   void request(AxisRequest request);
   AxisRequest requested() const { return request_; }
-  // Next target, in effect while `enabled()`. False, and counted, when outside the limits or not enabled: the last target stays.
+  // Next target, in effect while `enabled()`. False, and counted, when outside the limits or not enabled: the last target stays. An axis that was enabled
+  // outside its limits may stay there or come closer to them.
   bool set_target_counts(std::int32_t counts);
   // Torque feed-forward (60B2), limited to the maximum torque; 0 unless set, and 0 again whenever the axis is not enabled.
   void set_torque_offset_permille(std::int16_t permille);

@@ -191,8 +191,8 @@ Number drive_value(V value, const DriveSetup& drive) {
     case V::quick_stop_deceleration: return unless_zero(drive.quick_stop_counts_s2);
     case V::following_window: return drive.following_window_counts;
     case V::following_timeout: return drive.following_timeout_ms;
-    case V::min_position: return static_cast<std::uint32_t>(drive.min_counts + drive.encoder_zero_counts);
-    case V::max_position: return static_cast<std::uint32_t>(drive.max_counts + drive.encoder_zero_counts);
+    case V::min_position: return static_cast<std::uint32_t>(drive.min_counts - drive.drive_margin_counts + drive.encoder_zero_counts);
+    case V::max_position: return static_cast<std::uint32_t>(drive.max_counts + drive.drive_margin_counts + drive.encoder_zero_counts);
     case V::max_torque: return drive.max_torque_permille;
     case V::max_speed: return drive.max_speed_counts_s;
     case V::max_motor_speed: return unless_zero(drive.max_motor_speed_rpm);

@@ -21,8 +21,10 @@ struct DriveSetup {
   std::uint8_t node = 0;  // 1..126
   Identity identity;
 
-  std::int32_t min_counts = 0;                // 607D:01, also what `Axis::set_target_counts` accepts
-  std::int32_t max_counts = 0;                // 607D:02
+  std::int32_t min_counts = 0;  // what `Axis::set_target_counts` accepts
+  std::int32_t max_counts = 0;  //
+  std::int32_t drive_margin_counts =
+      0;  // 607D lies so far outside of these: a drive enabled beyond its own limits jumps to them, or refuses
   std::uint16_t max_torque_permille = 1000;   // 6072, of the rated torque 6076
   std::uint32_t max_speed_counts_s = 0;       // 607F; the axis limits its target's steps to it as well
   std::uint32_t max_motor_speed_rpm = 0;      // 6080, drives that have it; 0 leaves the drive's own

@@ -90,12 +90,13 @@ void Mission::observe(const Tick& tick) {
   if (!tick.orders.push_back(sample)) raise(tick, Fault::port_error, static_cast<std::int32_t>(Port::scan_ring));
 }
 
+// After the end, too: what comes up then changes nothing, but is counted as long as the nodes are there to be heard.
 void Mission::watch_faults(const Tick& tick) {
-  if (over()) return;
   faults_now_.clear();
-  watch_.check(tick.network, arm::base_from_tool(measured_rad()).translation(), powered_, tick.now, faults_now_);
+  const bool armed = over() ? !closing_ && tick.network.boot().state == canopen::BootState::done : powered_;
+  watch_.check(tick.network, arm::base_from_tool(measured_rad()).translation(), armed, tick.now, faults_now_);
 
-  for (std::size_t i = 0; i < faults_now_.size() && !over(); ++i) raise(tick, faults_now_[i].fault, faults_now_[i].code);
+  for (const safety::FaultReport& report : faults_now_) raise(tick, report.fault, report.code);
   take_orders(tick);
   watch_ports(tick);
   watch_images(tick);
@@ -150,14 +151,20 @@ void Mission::on_port_error(std::int32_t port) {
 }
 
 void Mission::raise(const Tick& tick, Fault fault, std::int32_t code) {
-  if (over()) return;
-  ++fault_counts_[static_cast<std::size_t>(fault)];
   Reaction reaction = safety::reaction(fault, row(step_).phase);
   if (reaction == Reaction::retry && !may_retry()) reaction = Reaction::retreat;
   if (reaction == Reaction::retreat && !powered_) reaction = Reaction::power_off;  // there is no way back without power
   // An arm that the operator holds does not set out by itself.
   const bool sets_out = reaction == Reaction::retry || reaction == Reaction::retreat;
   if (on_hold_ && sets_out && fault != Fault::aborted) reaction = Reaction::hold;
+  record_fault(tick, fault, code, reaction);
+  if (reaction > Reaction::retry) give_up(fault, code);
+  react(tick, reaction);
+}
+
+void Mission::record_fault(const Tick& tick, Fault fault, std::int32_t code, Reaction reaction) {
+  ++fault_counts_[static_cast<std::size_t>(fault)];
+  if (over()) ++faults_after_end_[static_cast<std::size_t>(fault)];
   Event fault_event;
   fault_event.kind = Event::Kind::fault;
   fault_event.t = tick.now;
@@ -167,8 +174,6 @@ void Mission::raise(const Tick& tick, Fault fault, std::int32_t code) {
   fault_event.task = static_cast<std::uint8_t>(task_index_);
   fault_event.code = code;
   (void)tick.telemetry.events.push_back(fault_event);  // a full record of one tick loses details, never the counts
-  if (reaction > Reaction::retry) give_up(fault, code);
-  react(tick, reaction);
 }
 
 bool Mission::may_retry() {
@@ -228,7 +233,7 @@ void Mission::enter(const Tick& tick, Step next) {
   step_ = next;
   step_since_ = tick.now;
   entered_ = false;
-  on_hold_ = false;
+  on_hold_ = jog_ordered_ = false;
   failure_ = StepFailure::none;
   const CameraWork::Mode camera = is_end(next) ? CameraWork::Mode::off : CameraWork::Mode::idle;
   if (camera_.mode() != camera) camera_.set_mode(camera, tick.now);

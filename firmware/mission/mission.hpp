@@ -42,6 +42,8 @@ struct Outcome {
   std::int32_t code = 0;
 };
 
+using FaultCounts = std::array<std::uint32_t, safety::fault_count>;
+
 class Mission {
  public:
   explicit Mission(const ControllerConfig& config);
@@ -64,6 +66,8 @@ class Mission {
   // Nothing is under power any more. A held arm is, and is watched on.
   bool over() const { return is_end(step_) && step_ != Step::held; }
   const Outcome& outcome() const { return outcome_; }
+  // What came up when nothing was under power any more; the outcome does not know of it.
+  const FaultCounts& faults_after_end() const { return faults_after_end_; }
   const StaticVector<TaskResult, MissionConfig::max_tasks>& tasks() const { return tasks_; }
   const PanelMap& map() const { return map_; }
   const safety::JointStates& joints() const { return watch_.joints(); }
@@ -87,6 +91,7 @@ class Mission {
   void watch_images(const Tick& tick);
   void watch_contact(const Tick& tick);
   void raise(const Tick& tick, safety::Fault fault, std::int32_t code);
+  void record_fault(const Tick& tick, safety::Fault fault, std::int32_t code, safety::Reaction reaction);
   void react(const Tick& tick, safety::Reaction reaction);
   void enter(const Tick& tick, Step next);
   void begin(const Tick& tick);
@@ -109,6 +114,7 @@ class Mission {
   void hold(Time now);
   void resume(Time now);
   void wait_on_hold(Duration period);
+  bool order_start();
   bool order_jog(const Order& order);
   void begin_jog();
   Status run_jog();
@@ -125,6 +131,7 @@ class Mission {
   Status run_boot(const Tick& tick);
   Status run_enable(const Tick& tick);
   Status run_home(const Tick& tick);
+  void bear_outside(const Tick& tick);
   void begin_stow();
   Status run_stow();
   void begin_abandon();
@@ -183,7 +190,8 @@ class Mission {
   arm::GuardedMotion free_guard_;  // of everything else
   PanelMap map_;
   safety::FaultReports faults_now_;
-  std::array<std::uint32_t, safety::fault_count> fault_counts_{};
+  FaultCounts fault_counts_{};
+  FaultCounts faults_after_end_{};
 
   Step step_ = Step::idle;
   Time last_tick_;
@@ -203,7 +211,8 @@ class Mission {
   bool start_ordered_ = false, home_ordered_ = false, jog_ordered_ = false, abort_ordered_ = false, stop_ordered_ = false;
   bool reset_ordered_ = false, shut_down_ordered_ = false;
   bool closing_ = false;  // shut down is under way, or over: no other order is taken
-  Order jog_;             // the last one
+  Joint jog_joint_ = Joint::slew;
+  double jog_goal_rad_ = 0;
   bool on_hold_ = false;
   CameraWork::Mode held_camera_ = CameraWork::Mode::idle;  // what it did when it was held
   std::int32_t port_error_ = 0;                            // 1 + the port that failed since the last tick

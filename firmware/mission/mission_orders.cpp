@@ -17,7 +17,7 @@ constexpr Duration power_down = Duration::from_ms(1000);
 bool Mission::order(const Order& order, Time now) {
   if (!may(order.command, standing()) || (closing_ && order.command != Command::emergency_stop)) return false;
   switch (order.command) {
-    case Command::start: start_ordered_ = true; return true;
+    case Command::start: return order_start();
     case Command::home: home_ordered_ = true; return true;
     case Command::hold: hold(now); return true;
     case Command::resume: resume(now); return true;
@@ -53,39 +53,50 @@ void Mission::wait_on_hold(Duration period) {
   gripper_.wait(period);
 }
 
+// A job moves within the limits: a joint that was found outside of them is jogged back first.
+bool Mission::order_start() {
+  if (step_ == Step::ready && watch_.any_outside()) return false;
+  start_ordered_ = true;
+  return true;
+}
+
+// One at a time: what waits for the next tick is not replaced, and a jog is judged by where the one before has ended.
 bool Mission::order_jog(const Order& order) {
   const auto joint = static_cast<std::size_t>(order.joint);
+  if (jog_ordered_ || start_ordered_) return false;
   if (joint >= joint_count || !std::isfinite(order.by_rad) || std::abs(order.by_rad) > largest_jog_rad) return false;
-  const safety::JointLimit& limit = config_.mission_limits.joints[joint];
   const bool arm = joint < arm_joint_count;
   const double from = arm ? motion_.target()[static_cast<Eigen::Index>(joint)] : watch_.joints().position_rad[joint];
   const double to = from + order.by_rad;
-  if (to < limit.min_rad || to > limit.max_rad) return false;
-  jog_ = order;
+  const safety::JointLimit& limit = config_.mission_limits.joints[joint];
+  const arm_geometry::JointNumbers& stroke = arm::numbers(order.joint);
+  const double low = std::max(limit.min_rad, stroke.lower_rad), high = std::min(limit.max_rad, stroke.upper_rad);
+  const bool inside = to >= low && to <= high;
+  const bool toward_it = (from < low && to > from && to <= high) || (from > high && to < from && to >= low);
+  if (!inside && !toward_it) return false;
+  jog_joint_ = order.joint;
+  jog_goal_rad_ = to;
   jog_ordered_ = true;
   return true;
 }
 
 void Mission::begin_jog() {
-  if (jog_.joint == Joint::jaw) {
-    const double jaw_rad = watch_.joints().position_rad[static_cast<std::size_t>(Joint::jaw)];
-    gripper_.open_to(arm::gap_from_jaw(jaw_rad + jog_.by_rad));
-    return;
-  }
+  tries_[static_cast<std::size_t>(Step::jog)] = 0;
+  if (jog_joint_ == Joint::jaw) return gripper_.turn_to(jog_goal_rad_);
   arm::JointVector goal = motion_.target();
-  goal[static_cast<Eigen::Index>(jog_.joint)] += jog_.by_rad;
-  motion_.go(std::array{goal}, jog_speed_fraction);
+  goal[static_cast<Eigen::Index>(jog_joint_)] = jog_goal_rad_;
+  motion_.jog(goal, jog_speed_fraction);
 }
 
 Mission::Status Mission::run_jog() {
-  const arm::GripperState jaw = gripper_.state();
-  const bool jaw_moves = jaw == arm::GripperState::opening || jaw == arm::GripperState::closing;
-  return jog_.joint == Joint::jaw && jaw_moves ? Status::running : run_motion();
+  const bool jaw_moves = gripper_.state() == arm::GripperState::opening;
+  return jog_joint_ == Joint::jaw && jaw_moves ? Status::running : run_motion();
 }
 
 Mission::Status Mission::run_ready() {
   if (start_ordered_) {
     start_ordered_ = false;
+    watch_.bear_outside(false);
     return Status::done;
   }
   if (!jog_ordered_) return Status::running;
@@ -124,6 +135,7 @@ void Mission::forget(const Tick& tick) {
   map_ = PanelMap(config_.mission.layout, config_.marker, config_.camera);
   motion_.freeze();
   outcome_ = {};
+  faults_after_end_.fill(0);
   tries_.fill(0);
   task_index_ = 0;
   list_tasks();

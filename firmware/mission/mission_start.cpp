@@ -51,7 +51,16 @@ Mission::Status Mission::run_home(const Tick& tick) {
   powered_ = true;
   const bool only_home = home_ordered_;
   start_ordered_ = home_ordered_ = false;
+  if (only_home) bear_outside(tick);
   return only_home ? Status::branch : Status::done;
+}
+
+// An arm that is found outside its limits waits to be jogged back; for a job it is a fault.
+void Mission::bear_outside(const Tick& tick) {
+  watch_.bear_outside(true);
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    if (watch_.outside(i)) record_fault(tick, safety::Fault::joint_limit, static_cast<std::int32_t>(i), safety::Reaction::count_only);
+  }
 }
 
 void Mission::begin_stow() {

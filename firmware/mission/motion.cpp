@@ -1,6 +1,7 @@
 #include "firmware/mission/motion.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace lf::mission {
 
@@ -45,6 +46,14 @@ void Motion::refuse(StepFailure failure) {
 
 void Motion::go(std::span<const arm::JointVector> points_rad, double speed_fraction) {
   if (path_.plan(target_.q_rad, points_rad, limits(speed_fraction)) != arm::PlanOutcome::ok) return refuse(StepFailure::unreachable);
+  begin(Kind::path, path_.duration_s());
+}
+
+void Motion::jog(const arm::JointVector& goal_rad, double speed_fraction) {
+  arm::JointLimits widened = limits(speed_fraction);
+  widened.lower_rad = widened.lower_rad.cwiseMin(target_.q_rad);
+  widened.upper_rad = widened.upper_rad.cwiseMax(target_.q_rad);
+  if (path_.plan(target_.q_rad, std::array{goal_rad}, widened) != arm::PlanOutcome::ok) return refuse(StepFailure::unreachable);
   begin(Kind::path, path_.duration_s());
 }
 

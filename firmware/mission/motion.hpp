@@ -26,7 +26,9 @@ class Motion {
 
   // Orders. Each is planned from the present target, at most 10 us of it a tick on a desktop, and begins when that is done. What cannot be planned
   // leaves the arm at rest where it is, with its reason in failure().
-  void go(std::span<const arm::JointVector> points_rad, double speed_fraction);                // through these points, whatever is there
+  void go(std::span<const arm::JointVector> points_rad, double speed_fraction);  // through these points, whatever is there
+  // To one place; a joint that stands outside its limits may stay there, or come closer to them.
+  void jog(const arm::JointVector& goal_rad, double speed_fraction);
   void go_clear(const arm::JointVector& goal_rad, const Room& room, double speed_fraction);    // past the panel
   void line(const Vec3& goal_m, double goal_roll_rad, double speed_m_s);                       // of the tool
   void turn(const Mat3& base_from_panel, double from_rad, double to_rad, double speed_rad_s);  // of the held bar

@@ -39,8 +39,9 @@ using Tasks = StaticVector<Task, MissionConfig::max_tasks>;
 struct Order {
   Command command = Command::start;
   Joint joint = Joint::slew;  // jog
-  double by_rad = 0;          // jog: at most `largest_jog_rad`
-  Tasks tasks;                // set_tasks
+  double by_rad =
+      0;        // jog: at most `largest_jog_rad`, and not out of the joint's limits; where it stands outside of them, only toward them
+  Tasks tasks;  // set_tasks
 };
 
 // A jog is for looking and for getting free, not for working: a move of which an operator sees the end.

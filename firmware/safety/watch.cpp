@@ -1,5 +1,6 @@
 #include "firmware/safety/watch.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace lf::safety {
@@ -42,6 +43,24 @@ void Watch::observe(const canopen::Network& network, const std::array<double, jo
   observing_ = true;
 }
 
+double Watch::excursion_rad(std::size_t joint) const {
+  const double q = joints_.position_rad[joint];
+  return std::max({0.0, limits_.joints[joint].min_rad - q, q - limits_.joints[joint].max_rad});
+}
+
+bool Watch::outside(std::size_t joint) const { return excursion_rad(joint) > position_tolerance_rad; }
+
+bool Watch::any_outside() const {
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    if (outside(i)) return true;
+  }
+  return false;
+}
+
+void Watch::bear_outside(bool bear) {
+  for (std::size_t i = 0; i < joint_count; ++i) borne_rad_[i] = bear ? excursion_rad(i) : 0;
+}
+
 void Watch::raise(bool present, Fault fault, std::int32_t code, FaultReports& began) {
   std::uint8_t& known = present_[static_cast<std::size_t>(fault)];
   const auto bit = static_cast<std::uint8_t>(1u << (static_cast<unsigned>(code) & 7u));
@@ -72,8 +91,8 @@ void Watch::check(const canopen::Network& network, const Vec3& tool_m, bool arme
           Fault::drive_fault, code, began);
     if (!joints_.valid) continue;
     const JointLimit& limit = limits_.joints[i];
-    const double q = joints_.position_rad[i];
-    raise(q < limit.min_rad - position_tolerance_rad || q > limit.max_rad + position_tolerance_rad, Fault::joint_limit, code, began);
+    borne_rad_[i] = std::min(borne_rad_[i], excursion_rad(i));
+    raise(excursion_rad(i) > borne_rad_[i] + position_tolerance_rad, Fault::joint_limit, code, began);
     raise(std::abs(joints_.velocity_rad_s[i]) > limit.max_speed_rad_s * speed_tolerance, Fault::overspeed, code, began);
     overload_ticks_[i] = std::abs(joints_.torque_nm[i]) > limit.max_torque_nm ? overload_ticks_[i] + 1 : 0;
     raise(overload_ticks_[i] > overload_ticks, Fault::overload, code, began);

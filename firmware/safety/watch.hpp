@@ -44,7 +44,15 @@ class Watch {
   // `tool_m`: the tool point in the base frame.
   void check(const canopen::Network& network, const Vec3& tool_m, bool armed, Time now, FaultReports& began);
 
+  // Beyond its limits by more than noise.
+  bool outside(std::size_t joint) const;
+  bool any_outside() const;
+  // From now on a joint may stand as far outside as it does now, and then as far as it has come back since, but no farther: an operator brings it back.
+  // `false`: the limits are the limits again.
+  void bear_outside(bool bear);
+
  private:
+  double excursion_rad(std::size_t joint) const;
   void raise(bool present, Fault fault, std::int32_t code, FaultReports& began);
 
   Limits limits_;
@@ -52,6 +60,7 @@ class Watch {
   bool observing_ = false;
   JointStates joints_;
   std::array<int, joint_count> overload_ticks_{};
+  std::array<double, joint_count> borne_rad_{};  // outside of the limits
   // Which (fault, code) pairs are present: the code's low bits are an index below 8.
   std::array<std::uint8_t, fault_count> present_{};
 };

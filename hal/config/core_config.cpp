@@ -22,12 +22,17 @@ namespace {
 // A joint that lags this far behind its target is stuck: at full speed the position loop of 20 rad/s lags 0.035 rad, and the gripper leads by 0.05.
 constexpr double following_window_rad = 0.15;
 
+// The drives' own limits lie this far outside of the stroke: encoder offsets do not clip the last degrees.
+constexpr double beyond_stroke_rad = 0.01;
+
 canopen::DriveSetup drive_setup(const ArmJoint& joint, Joint which, const safety::JointLimit& limit) {
   canopen::DriveSetup setup;
   const auto index = static_cast<std::size_t>(which);
   setup.node = can_map::drive_nodes[index];
   setup.min_counts = arm::counts_from_rad(which, limit.min_rad);
   setup.max_counts = arm::counts_from_rad(which, limit.max_rad);
+  setup.drive_margin_counts = std::max({0, setup.min_counts - arm::counts_from_rad(which, joint.lower_rad - beyond_stroke_rad),
+                                        arm::counts_from_rad(which, joint.upper_rad + beyond_stroke_rad) - setup.max_counts});
   // The rated torque can be held for ever, and is several times what free motion takes: with the peak torque a grip off the bar's middle pushes three
   // times as hard, and trips the drives' over-current guard.
   setup.max_torque_permille = static_cast<std::uint16_t>(std::clamp(1000.0 * joint.effort_nm / joint.rated_torque_nm, 1.0, 1000.0));

@@ -1,6 +1,7 @@
 #include "hal/vehicle/commissioning.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "firmware/arm/actuator.hpp"
@@ -14,8 +15,19 @@ namespace {
 constexpr std::int32_t any_count = std::numeric_limits<std::int32_t>::max() / 2;
 // After the last order: quick stop, NMT stop.
 constexpr Duration stop_time = Duration::from_ms(300);
-// Off the stop, of the lead.
-constexpr double back_off_leads = 2;
+// Of the following-error window, 0.15 rad where a joint has the most counts: off the stop, and how near is there.
+constexpr double back_off_windows = 1, arrived_windows = 0.03;
+// Of the torque that is allowed: what stands still with less does not press, its encoder or its drive is at fault. Free motion takes about half of it.
+constexpr double least_pressing = 0.7;
+// Of the pressing torque. A spring's torque falls in proportion: from these two the place of none is known, well above the weight of the arm.
+constexpr double begins_to_fall = 0.9, has_fallen = 0.5;
+
+// The jaw's tips meet before its lower stop is reached.
+double direction(std::size_t joint) { return static_cast<Joint>(joint) == Joint::jaw ? 1 : -1; }
+double stop_rad(std::size_t joint) {
+  const arm_geometry::JointNumbers& stroke = arm_geometry::joints[joint];
+  return direction(joint) < 0 ? stroke.lower_rad : stroke.upper_rad;
+}
 
 canopen::NetworkConfig gentle(const Commissioning::Config& config) {
   canopen::NetworkConfig network = config.network;
@@ -63,9 +75,9 @@ void Commissioning::watch(Time now) {
   if (!network_.io().estop_closed()) return fail("the emergency-stop chain is open", now);
   for (std::size_t i = 0; i < joint_count; ++i) {
     const canopen::Axis& one = network_.axis(static_cast<Joint>(i));
-    if (one.fault() != canopen::AxisFault::none) return fail(std::string(joint_name(i)) + ": " + canopen::name(one.fault()), now);
+    if (one.fault() != canopen::AxisFault::none) return fail(std::string(config::joint_name(i)) + ": " + canopen::name(one.fault()), now);
   }
-  if (now - joint_since_ > config_.longest) fail(std::string(joint_name(joint_)) + ": no stop was found in time", now);
+  if (now - joint_since_ > config_.longest) fail(std::string(config::joint_name(joint_)) + ": no stop was found in time", now);
 }
 
 void Commissioning::step(Time now) {
@@ -83,10 +95,11 @@ void Commissioning::step(Time now) {
     case State::enabling:
       if (axis().requested() != canopen::AxisRequest::hold_enabled) axis().request(canopen::AxisRequest::hold_enabled);
       if (!axis().enabled()) return;
-      target_ = last_counts_ = axis().actual_counts();
+      target_ = last_counts_ = started_counts_ = axis().actual_counts();
       moved_ = now;
       return go(State::seeking, now);
     case State::seeking: return seek(now);
+    case State::easing: return ease(now);
     case State::backing_off: return back_off(now);
     case State::releasing:
       if (axis().state() != canopen::AxisState::disabled) return;
@@ -118,32 +131,66 @@ void Commissioning::take_here(Time now) {
   next_joint(now);
 }
 
-// The target creeps down, a lead ahead of the joint at most: at the stop the lead is what presses.
+// The target creeps on, a lead ahead of the joint at most: at the stop the lead is what presses.
 void Commissioning::seek(Time now) {
   const canopen::DriveSetup& drive = config_.network.drives[joint_];
-  const double lead = drive.following_window_counts / 2.0;
+  const double way = direction(joint_), lead = drive.following_window_counts / 2.0;
   const std::int32_t actual = axis().actual_counts();
   if (actual != last_counts_) {
     last_counts_ = actual;
     moved_ = now;
   }
-  target_ -= config_.speed_fraction * drive.max_speed_counts_s * network_.config().sync_period.s();
-  target_ = std::max(target_, actual - lead);
+  target_ += way * config_.speed_fraction * drive.max_speed_counts_s * network_.config().sync_period.s();
+  target_ = std::clamp(target_, actual - lead, actual + lead);
   (void)axis().set_target_counts(static_cast<std::int32_t>(target_));
-  const bool pressing = target_ <= actual - 0.9 * lead;
+  const bool pressing = std::abs(target_ - actual) >= 0.9 * lead;
   if (!pressing || now - moved_ < config_.stall) return;
-  stop_counts_ = actual;
-  zero_counts_[joint_] = actual - arm::counts_from_rad(static_cast<Joint>(joint_), arm_geometry::joints[joint_].lower_rad);
+  pressed_permille_ = std::abs(axis().torque_permille());
+  if (pressed_permille_ < least_pressing * config_.torque_permille) {
+    const std::string torque = std::to_string(std::lround(pressed_permille_ / 10)) + " % of its torque";
+    return fail(std::string(config::joint_name(joint_)) + ": it stands still and presses with " + torque +
+                    " only: look at its encoder and its gear",
+                now);
+  }
+  pressed_counts_ = actual;
+  easing_counts_.reset();
+  target_ = actual;
+  go(State::easing, now);
+}
+
+// Back so slowly that each reading is one at rest, until the torque is gone.
+void Commissioning::ease(Time now) {
+  const canopen::DriveSetup& drive = config_.network.drives[joint_];
+  const double way = direction(joint_);
+  const std::int32_t actual = axis().actual_counts();
+  const double torque = std::abs(axis().torque_permille()) / pressed_permille_;
+  if (!easing_counts_ && torque < begins_to_fall) easing_counts_ = actual;
+  if (torque >= has_fallen) {
+    target_ -= way * config_.ease_fraction * drive.max_speed_counts_s * network_.config().sync_period.s();
+    (void)axis().set_target_counts(static_cast<std::int32_t>(std::lround(target_)));
+    if (std::abs(target_ - pressed_counts_) > drive.following_window_counts)
+      fail(std::string(config::joint_name(joint_)) + ": it does not come off its stop", now);
+    return;
+  }
+  stop_counts_ = actual + (actual - *easing_counts_) * has_fallen / (begins_to_fall - has_fallen);
+  const double touching_rad = stop_rad(joint_) + way * 0.5 * config_.backlash_rad[joint_];
+  zero_counts_[joint_] =
+      static_cast<std::int32_t>(std::lround(stop_counts_ - arm::exact_counts_from_rad(static_cast<Joint>(joint_), touching_rad)));
   found_[joint_] = true;
+  target_ = actual;
   go(State::backing_off, now);
 }
 
+// To where it was: an arm that is left unfolded stands outside of its workspace, and no order leads it back. From a stop, off it.
 void Commissioning::back_off(Time now) {
   const canopen::DriveSetup& drive = config_.network.drives[joint_];
-  const double goal = stop_counts_ + back_off_leads * drive.following_window_counts / 2.0;
-  target_ = std::min(goal, target_ + config_.speed_fraction * drive.max_speed_counts_s * network_.config().sync_period.s());
-  (void)axis().set_target_counts(static_cast<std::int32_t>(target_));
-  if (axis().actual_counts() < stop_counts_ + (goal - stop_counts_) / 2) return;
+  const double way = direction(joint_), window = drive.following_window_counts;
+  const double off_stop = stop_counts_ - way * back_off_windows * window;
+  const double goal = way < 0 ? std::max<double>(started_counts_, off_stop) : std::min<double>(started_counts_, off_stop);
+  const double step = config_.speed_fraction * drive.max_speed_counts_s * network_.config().sync_period.s();
+  target_ += std::clamp(goal - target_, -step, step);
+  (void)axis().set_target_counts(static_cast<std::int32_t>(std::lround(target_)));
+  if (std::abs(axis().actual_counts() - goal) > std::max(3.0, arrived_windows * window)) return;  // drives hold within two counts
   axis().request(canopen::AxisRequest::disable);
   go(State::releasing, now);
 }

@@ -1,16 +1,18 @@
 // Commissioning: what each drive's absolute encoder counts where the arm's own count is 0.
 //
-// One joint after the other is powered, moved slowly against its lower stop with a third of its rated torque, read there, backed off and released: the stop's angle
-// is known from the arm's description. The drives' own references are not touched. A plain object like the core: frames and the time in, frames out.
+// One joint after the other is powered, moved slowly against a stop with a third of its rated torque, eased off until it only touches, read there, moved
+// back to where it was, and released: the stop's angle is known from the arm's description. What presses is wound up: read under a third of its torque the slew would be 0.4 deg off.
+// The drives' own references are not touched. A plain object like the core: frames and the time in, frames out.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "firmware/canopen/network.hpp"
+#include "hal/config/homing_file.hpp"
 #include "hal/ports.hpp"
-#include "hal/vehicle/homing_file.hpp"
 #include "shared/messages/joint_io.hpp"
 #include "shared/messages/time.hpp"
 
@@ -21,14 +23,17 @@ class Commissioning {
   struct Config {
     canopen::NetworkConfig network;
     std::array<bool, joint_count> joints{true, true, true, true, true};
-    bool here = false;                             // the arm stands at its zero, in a jig: nothing is moved
-    double speed_fraction = 0.3;                   // of each drive's maximum: 0.13 rad/s of the slew, above its stiction of 0.06
-    std::uint16_t torque_permille = 350;           // of the rated torque: free motion under water takes less than a fifth
-    Duration stall = Duration::from_ms(600);       // pressing without a count for so long is standing at the stop
-    Duration longest = Duration::from_ms(90'000);  // of one joint
+    std::array<double, joint_count>
+        backlash_rad{};                       // of each gear, as the arm's description has it: the motor touches half of it beyond the stop
+    bool here = false;                        // the arm stands at its zero, in a jig: nothing is moved
+    double speed_fraction = 0.3;              // of each drive's maximum: 0.13 rad/s of the slew, above its stiction of 0.06
+    std::uint16_t torque_permille = 350;      // of the rated torque: free motion under water takes less than a fifth
+    double ease_fraction = 0.02;              // of each drive's maximum speed: 0.007 rad of winding take the slew a second
+    Duration stall = Duration::from_ms(600);  // pressing without a count for so long is standing at the stop
+    Duration longest = Duration::from_ms(150'000);  // of one joint
   };
 
-  enum class State : std::uint8_t { booting, enabling, seeking, backing_off, releasing, stopping, done, failed };
+  enum class State : std::uint8_t { booting, enabling, seeking, easing, backing_off, releasing, stopping, done, failed };
 
   explicit Commissioning(const Config& config);
 
@@ -53,6 +58,7 @@ class Commissioning {
   void next_joint(Time now);
   void take_here(Time now);
   void seek(Time now);
+  void ease(Time now);
   void back_off(Time now);
 
   Config config_;
@@ -68,8 +74,12 @@ class Commissioning {
   Time joint_since_;  // with this joint
   Time moved_;        // when it last counted
   std::int32_t last_counts_ = 0;
-  double target_ = 0;  // counts
-  std::int32_t stop_counts_ = 0;
+  double target_ = 0;                // counts
+  std::int32_t started_counts_ = 0;  // where it was powered
+  double pressed_permille_ = 0;      // torque when it stood at the stop
+  std::int32_t pressed_counts_ = 0;
+  std::optional<std::int32_t> easing_counts_;  // where the torque began to fall
+  double stop_counts_ = 0;                     // where it only touches
 };
 
 // Runs it on a platform's clock and bus 0; `cancelled` is looked at once a tick, `tell` hears of each joint that is begun.

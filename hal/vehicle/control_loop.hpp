@@ -118,6 +118,7 @@ class ControlLoop {
     report_.standing = mission.standing();
     report_.step = mission.step();
     report_.outcome = mission.outcome();
+    report_.faults_after_end = mission.faults_after_end();
     report_.tasks = mission.tasks();
     const canopen::Network& network = controller_->network();
     for (std::size_t i = 0; i < joint_count; ++i) {

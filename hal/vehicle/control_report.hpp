@@ -15,6 +15,7 @@ struct ControlReport {
   mission::Standing standing = mission::Standing::idle;
   mission::Step step = mission::Step::idle;
   mission::Outcome outcome;
+  mission::FaultCounts faults_after_end{};
   StaticVector<mission::TaskResult, mission::MissionConfig::max_tasks> tasks;
   std::array<canopen::AxisState, joint_count> axes{};
   std::array<canopen::AxisFault, joint_count> axis_faults{};

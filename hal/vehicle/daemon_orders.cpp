@@ -2,10 +2,10 @@
 #include <cerrno>
 #include <cstring>
 
+#include "hal/config/homing_file.hpp"
 #include "hal/config/machine.hpp"
 #include "hal/vehicle/can_restart.hpp"
 #include "hal/vehicle/daemon.hpp"
-#include "hal/vehicle/homing_file.hpp"
 #include "shared/input_error.hpp"
 
 namespace lf::hal {
@@ -38,7 +38,7 @@ bool read_jog(const Json& arguments, mission::Order& order, std::string& why) {
     return false;
   }
   for (std::size_t i = 0; i < joint_count; ++i) {
-    if (joint.get<std::string>() != joint_name(i)) continue;
+    if (joint.get<std::string>() != config::joint_name(i)) continue;
     order.joint = static_cast<Joint>(i);
     order.by_rad = rad_from_deg(by.get<double>());
     return true;
@@ -80,6 +80,15 @@ bool read_tasks(const Json& arguments, mission::Order& order, std::string& why) 
   } catch (const InputError& error) {
     why = error.what();
     return false;
+  }
+}
+
+// Of an order that the mission's standing allows, and that was refused all the same.
+const char* why_not(Command command) {
+  switch (command) {
+    case Command::start: return "a joint stands outside its limits: jog it back first";
+    case Command::jog: return "it leads out of the joint's limits, is larger than 20 deg, or another order is being taken";
+    default: return "its numbers are out of bounds";
   }
 }
 
@@ -145,8 +154,7 @@ Json Daemon::give_order(const mission::Order& order) {
       Json reply{{"ok", answer.taken}, {"standing", mission::name(answer.standing)}};
       if (answer.taken) return reply;
       const bool possible = mission::may(order.command, answer.standing);
-      reply["why"] = possible ? std::string("its numbers are out of bounds")
-                              : std::string("not while the mission is ") + mission::name(answer.standing);
+      reply["why"] = possible ? why_not(order.command) : std::string("not while the mission is ") + mission::name(answer.standing);
       return reply;
     }
     sleep_until(monotonic_now() + Duration::from_ms(1));

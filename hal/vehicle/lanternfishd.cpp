@@ -7,9 +7,11 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <ctime>
 #include <filesystem>
 #include <functional>
@@ -18,9 +20,11 @@
 #include <string>
 #include <vector>
 
+#include "hal/config/share.hpp"
 #include "hal/vehicle/commissioning.hpp"
 #include "hal/vehicle/daemon.hpp"
 #include "hal/vehicle/operator_client.hpp"
+#include "shared/arm/arm_description.hpp"
 #include "shared/input_error.hpp"
 
 namespace lf::hal {
@@ -157,30 +161,37 @@ struct BusOnly {
 std::array<bool, joint_count> chosen(const CommissionOptions& options) {
   std::array<bool, joint_count> joints{};
   for (std::size_t i = 0; i < joint_count; ++i) {
-    const auto named = std::find(options.joints.begin(), options.joints.end(), joint_name(i)) != options.joints.end();
+    const auto named = std::find(options.joints.begin(), options.joints.end(), config::joint_name(i)) != options.joints.end();
     joints[i] = options.joints.empty() || named;
   }
   for (const std::string& name : options.joints) {
     bool known = false;
-    for (std::size_t i = 0; i < joint_count; ++i) known = known || name == joint_name(i);
+    for (std::size_t i = 0; i < joint_count; ++i) known = known || name == config::joint_name(i);
     if (!known) throw InputError("no joint '" + name + "': slew, shoulder, elbow, roll or jaw");
   }
   return joints;
 }
 
-void keep_offsets(const std::string& file, const Commissioning& commissioning, bool here) {
-  HomingOffsets offsets;
-  if (std::filesystem::exists(file)) offsets = read_homing_file(file);
+// What cannot be read or written is told before anything moves.
+config::HomingOffsets known_offsets(const std::string& file) {
+  config::HomingOffsets offsets;
+  if (std::filesystem::exists(file)) offsets = config::read_homing_file(file);
+  const std::string folder = std::filesystem::absolute(file).parent_path().string();
+  if (access(folder.c_str(), W_OK | X_OK) != 0) throw InputError(file + ": cannot be written: " + std::strerror(errno));
+  return offsets;
+}
+
+void keep_offsets(const std::string& file, config::HomingOffsets offsets, const Commissioning& commissioning, bool here) {
   char day[32] = "";
   const std::time_t now = std::time(nullptr);
   std::strftime(day, sizeof day, "%Y-%m-%d %H:%M", std::gmtime(&now));
   for (std::size_t i = 0; i < joint_count; ++i) {
     if (!commissioning.found()[i]) continue;
     offsets.zero_counts[i] = commissioning.zero_counts()[i];
-    offsets.found[i] = std::string(here ? "in the jig, " : "at its lower stop, ") + day + " UTC";
-    std::printf("%-9s zero at %d counts\n", joint_name(i), offsets.zero_counts[i]);
+    offsets.found[i] = std::string(here ? "in the jig, " : "at its stop, ") + day + " UTC";
+    std::printf("%-9s zero at %d counts\n", config::joint_name(i), offsets.zero_counts[i]);
   }
-  write_homing_file(file, offsets);
+  config::write_homing_file(file, offsets);
   std::printf("written to %s\n", file.c_str());
 }
 
@@ -191,9 +202,13 @@ int commission(const Options& options, const CommissionOptions& wanted) {
   Commissioning::Config setup;
   setup.network = config.core.controller.network;
   setup.joints = chosen(wanted);
+  const std::filesystem::path folder = std::filesystem::path(options.config).parent_path();
+  const ArmDescription arm = load_arm_urdf(config::find_file(config.machine.arm_urdf, folder));
+  for (std::size_t i = 0; i < joint_count; ++i) setup.backlash_rad[i] = arm.joints[i].backlash_rad;
   setup.here = wanted.here;
   if (!wanted.sure && !wanted.here)
     throw InputError("commissioning moves the arm against its stops: clear its reach, then say so with --clear");
+  const config::HomingOffsets known = known_offsets(config.homing_file);
   InstanceLock lock;
   if (const std::string taken = lock.take(config.lock_folder, config.interface); !taken.empty()) throw EnvironmentLacks(taken);
   BusOnly bus{SocketCan(config.can()), TickClock(setup.network.sync_period)};
@@ -206,12 +221,12 @@ int commission(const Options& options, const CommissionOptions& wanted) {
     signalfd_siginfo info{};
     return read(signals, &info, sizeof info) > 0;
   };
-  run_commissioning(bus, commissioning, cancelled, [](std::size_t joint) { std::fprintf(stderr, "%s ...\n", joint_name(joint)); });
+  run_commissioning(bus, commissioning, cancelled, [](std::size_t joint) { std::fprintf(stderr, "%s ...\n", config::joint_name(joint)); });
   if (commissioning.state() == Commissioning::State::failed) {
     complain("nothing was written: " + commissioning.failure());
     return failed;
   }
-  keep_offsets(config.homing_file, commissioning, wanted.here);
+  keep_offsets(config.homing_file, known, commissioning, wanted.here);
   return done;
 }
 

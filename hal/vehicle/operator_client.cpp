@@ -61,6 +61,7 @@ std::string status_text(const Json& status) {
     const Json& failure = status["failure"];
     text += "  failed in " + failure["step"].get<std::string>() + ": " + failure["reason"].get<std::string>() + "\n";
   }
+  if (status.contains("faults since the end")) text += "  since the end: " + status["faults since the end"].dump() + "\n";
   for (const Json& task : status["tasks"]) {
     text += "  task " + task["task"].get<std::string>();
     if (task.contains("button")) text += " " + task["button"].get<std::string>();

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "firmware/canopen/sdo_abort.hpp"
-#include "hal/vehicle/homing_file.hpp"
+#include "hal/config/homing_file.hpp"
 
 namespace lf::hal {
 
@@ -84,6 +84,12 @@ Json scan_counters(const ScanStats& s) {
   return json;
 }
 
+Json faults_json(const mission::FaultCounts& counts) {
+  Json json = Json::object();
+  for (std::size_t i = 0; i < counts.size(); ++i) count(json, safety::name(static_cast<safety::Fault>(i)), counts[i]);
+  return json;
+}
+
 Json node_json(const canopen::NodeBoot& boot) {
   Json json;
   constexpr std::array<const char*, 4> states{"idle", "running", "done", "failed"};
@@ -152,12 +158,11 @@ Json histogram_json(const LatencyHistogram& histogram) {
 
 Json counters_json(const ControlReport& control, const CameraReport& camera, const Telemetry& telemetry) {
   Json json = Json::object();
-  Json faults = Json::object(), ports = Json::object(), refused = Json::object();
-  for (std::size_t i = 0; i < safety::fault_count; ++i) count(faults, safety::name(static_cast<safety::Fault>(i)), telemetry.faults[i]);
+  Json ports = Json::object(), refused = Json::object();
   for (std::size_t i = 0; i < port_count; ++i) count(ports, name(static_cast<Port>(i)), control.port_errors[i]);
   for (std::size_t i = 0; i < canopen::refusal_count; ++i)
     count(refused, canopen::name(static_cast<canopen::Refusal>(i)), control.network.refused[i]);
-  json["faults"] = faults;
+  json["faults"] = faults_json(telemetry.faults);
   json["platform calls failed"] = ports;
   json["frames refused"] = refused;
   json["can"] = can_counters(control.can);
@@ -184,10 +189,12 @@ Json status_json(const ControlReport& control, const Telemetry& telemetry) {
                          {"step", mission::row(control.outcome.step).name},
                          {"reason", safety::name(control.outcome.fault)},
                          {"code", control.outcome.code}};
+    const Json later = faults_json(control.faults_after_end);
+    if (!later.empty()) json["faults since the end"] = later;
   }
   json["tasks"] = tasks_json(control);
   for (std::size_t i = 0; i < joint_count; ++i) {
-    Json joint{{"joint", joint_name(i)},
+    Json joint{{"joint", config::joint_name(i)},
                {"state", canopen::name(control.axes[i])},
                {"actual_rad", telemetry.actual_rad[i]},
                {"target_rad", telemetry.target_rad[i]},

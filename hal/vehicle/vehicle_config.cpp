@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <limits>
 
+#include "hal/config/homing_file.hpp"
 #include "hal/config/share.hpp"
 #include "hal/config/text_file.hpp"
 #include "hal/config/yaml_reader.hpp"
-#include "hal/vehicle/homing_file.hpp"
 #include "shared/input_error.hpp"
 
 namespace lf::hal {
@@ -98,7 +98,7 @@ void read_homing(VehicleConfig& c, std::vector<std::string>& problems) {
   if (given.is_relative()) c.homing_file = (std::filesystem::path(c.machine.file).parent_path() / given).string();
   if (!std::filesystem::exists(c.homing_file)) return;  // not commissioned yet: the drives' own zeros
   try {
-    const HomingOffsets offsets = read_homing_file(c.homing_file);
+    const config::HomingOffsets offsets = config::read_homing_file(c.homing_file);
     for (std::size_t i = 0; i < joint_count; ++i) c.core.controller.network.drives[i].encoder_zero_counts = offsets.zero_counts[i];
   } catch (const InputError& problem) {
     problems.emplace_back(problem.what());

@@ -25,6 +25,7 @@ void check_drive(const DriveConfig& drive) {
   require(std::isfinite(drive.stiction_rad_s) && drive.stiction_rad_s >= 0 && drive.stiction_rad_s < drive.max_velocity_rad_s, drive,
           "stiction speed not below the top speed");
   require(std::isfinite(drive.encoder_offset_rad) && std::abs(drive.encoder_offset_rad) < 0.1, drive, "encoder offset above 0.1 rad");
+  require(std::abs(static_cast<double>(drive.encoder_zero_counts)) < 1e9, drive, "encoder zero of more counts than 32 bits hold");
   const Actuator actuator(drive.actuator);
   const double sign = actuator.counts_per_rad(0.5 * (drive.lower_rad + drive.upper_rad));
   for (int i = 0; i <= 16; ++i) {

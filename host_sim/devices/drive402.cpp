@@ -65,7 +65,7 @@ JointDrive Drive402::tick(Time now, const JointReading& reading) {
 void Drive402::measure(const JointReading& reading) {
   const double angle_rad = reading.motor_position_rad + config_.encoder_offset_rad;
   const double counts_per_rad = actuator_.counts_per_rad(reading.motor_position_rad);
-  if (!faults_.stuck_encoder) encoder_ = std::llround(actuator_.counts(angle_rad));
+  if (!faults_.stuck_encoder) encoder_ = std::llround(actuator_.counts(angle_rad)) + config_.encoder_zero_counts;
   if (std::abs(counts_per_rad) > 1) rad_per_count_ = 1 / counts_per_rad;
   const double direction = rad_per_count_ < 0 ? -1 : 1;
   const double torque = direction * reading.torque_nm / config_.rated_torque_nm + config_.torque_noise_ratio * noise_.next();

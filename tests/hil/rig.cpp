@@ -7,7 +7,7 @@
 
 namespace lf::test {
 
-Rig::Rig(const std::vector<std::string>& overrides, std::uint64_t seed, const Tell& tell) {
+Rig::Rig(const std::vector<std::string>& overrides, std::uint64_t seed, const Tell& tell, const Make& make) {
   const scenario::Scenario scenario = scenario::load_scenario("default", overrides);
   const scenario::Sample sample = scenario::draw(scenario, seed);
   scenario::Nominal nominal = scenario::make_nominal(scenario, sample.lamps_lit);
@@ -18,6 +18,8 @@ Rig::Rig(const std::vector<std::string>& overrides, std::uint64_t seed, const Te
     camera.intrinsics.height = 12;
   }
   if (tell) tell(nominal.controller);
+  if (make) make(truth);
+  arm_ = truth.world.arm;
   platform_ = std::make_unique<hal::SimPlatform>(truth, recorder_);
   sight_ = std::make_unique<KnownSight>(*platform_, nominal.controller, scenario::true_base_from_panel(scenario.panel, sample));
   failing_ = std::make_unique<Platform>(*sight_);

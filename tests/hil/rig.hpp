@@ -20,7 +20,10 @@ class Rig {
   // Changes what the core is told before it starts.
   using Tell = std::function<void(ControllerConfig&)>;
 
-  explicit Rig(const std::vector<std::string>& overrides = {}, std::uint64_t seed = 1, const Tell& tell = {});
+  // Changes what is true.
+  using Make = std::function<void(hal::SimConfig&)>;
+
+  explicit Rig(const std::vector<std::string>& overrides = {}, std::uint64_t seed = 1, const Tell& tell = {}, const Make& make = {});
 
   void start() { controller().on_command(Command::start, now()); }
   void step();
@@ -40,6 +43,7 @@ class Rig {
   const world::World& world() const { return platform_->world(); }
   const ScanPipeline& pipeline() const { return lockstep_->pipeline(); }
   const std::vector<Event>& events() const { return recorder_.events; }
+  const ArmDescription& arm() const { return arm_; }
   Time now() const { return lockstep_->now(); }
 
   double fastest_joint_rad_s() const;              // of all five, in truth
@@ -57,6 +61,7 @@ class Rig {
   };
 
   Recorder recorder_;
+  ArmDescription arm_;
   std::unique_ptr<hal::SimPlatform> platform_;
   std::unique_ptr<KnownSight> sight_;
   std::unique_ptr<Platform> failing_;

@@ -369,6 +369,55 @@ TEST(PanelVision, WhosePortFailsForGoodIsGivenUp) {
   EXPECT_EQ(rig.outcome().fault, Fault::vision_late);
 }
 
+// ---- after the end ----
+
+TEST(AfterTheEnd, AFaultIsCountedAndTheOutcomeStays) {
+  Rig rig(press_only());
+  rig.start();
+  ASSERT_TRUE(rig.run_to_end()) << rig.story();
+  ASSERT_EQ(rig.step_now(), Step::done) << rig.story();
+  const auto later = [&rig](Fault fault) { return rig.mission().faults_after_end()[static_cast<std::size_t>(fault)]; };
+  rig.run_for(5);
+  for (const std::uint32_t count : rig.mission().faults_after_end()) EXPECT_EQ(count, 0u) << rig.story();
+  rig.devices().set_estop_closed(false);
+  rig.run_for(0.1);
+  EXPECT_EQ(later(Fault::estop), 1u);
+  rig.ports().fail(hal::Call::receive_can, rig.ports().calls(hal::Call::receive_can), 5, std::numeric_limits<std::uint64_t>::max());
+  rig.run_for(1);
+  EXPECT_EQ(later(Fault::node_lost), joint_count);
+  EXPECT_GE(later(Fault::port_error), 100u);
+  EXPECT_EQ(rig.count(Fault::estop), 1u) << "told, as an event";
+  EXPECT_EQ(rig.step_now(), Step::done);
+  EXPECT_TRUE(rig.outcome().success);
+  EXPECT_EQ(rig.outcome().fault, Fault::count);
+}
+
+TEST(AfterTheEnd, ByAQuickStopTheDrivesThatHoldAreWatchedOn) {
+  Rig rig(turn_only());
+  ASSERT_TRUE(reach(rig, free_motion)) << rig.story();
+  rig.devices().set_estop_closed(false);
+  rig.run_for(2);
+  ASSERT_EQ(rig.step_now(), Step::stopped) << rig.story();
+  rig.ports().fail(hal::Call::receive_can, rig.ports().calls(hal::Call::receive_can), 5, std::numeric_limits<std::uint64_t>::max());
+  rig.run_for(1);
+  EXPECT_GE(rig.mission().faults_after_end()[static_cast<std::size_t>(Fault::node_lost)], 1u) << rig.story();
+  EXPECT_EQ(rig.step_now(), Step::stopped);
+  EXPECT_EQ(rig.outcome().fault, Fault::estop);
+}
+
+TEST(AfterTheEnd, AResetForgetsWhatCameSince) {
+  Rig rig(press_only());
+  rig.start();
+  ASSERT_TRUE(rig.run_to_end()) << rig.story();
+  rig.devices().set_estop_closed(false);
+  rig.run_for(0.1);
+  rig.devices().set_estop_closed(true);
+  rig.run_for(0.1);
+  ASSERT_TRUE(rig.controller().on_command(Command::reset, rig.now()));
+  rig.run_for(0.1);
+  for (const std::uint32_t count : rig.mission().faults_after_end()) EXPECT_EQ(count, 0u) << rig.story();
+}
+
 // ---- limits ----
 
 TEST(Limits, WithAWrongChecksumMoveNothing) {

@@ -86,10 +86,10 @@ void pass(S& s, canopen::Identity& v) {
 }
 template <class S>
 void pass(S& s, canopen::DriveSetup& v) {
-  auto& [node, identity, min_counts, max_counts, max_torque, max_speed, motor_speed, quick_stop, window, timeout, quick_stop_option,
-         abort_option, encoder_zero, homing_method, home_offset, homing_speed, homing_accel, homing_timeout] = v;
-  pass_all(s, node, identity, min_counts, max_counts, max_torque, max_speed, motor_speed, quick_stop, window, timeout, quick_stop_option,
-           abort_option, encoder_zero, homing_method, home_offset, homing_speed, homing_accel, homing_timeout);
+  auto& [node, identity, min_counts, max_counts, drive_margin, max_torque, max_speed, motor_speed, quick_stop, window, timeout,
+         quick_stop_option, abort_option, encoder_zero, homing_method, home_offset, homing_speed, homing_accel, homing_timeout] = v;
+  pass_all(s, node, identity, min_counts, max_counts, drive_margin, max_torque, max_speed, motor_speed, quick_stop, window, timeout,
+           quick_stop_option, abort_option, encoder_zero, homing_method, home_offset, homing_speed, homing_accel, homing_timeout);
 }
 template <class S>
 void pass(S& s, canopen::IoSetup& v) {

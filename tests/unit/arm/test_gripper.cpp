@@ -140,6 +140,38 @@ TEST(Gripper, OpensToAGapAndIsJammedWhenItCannot) {
   EXPECT_EQ(run.run(8), GripperState::jammed);
 }
 
+TEST(Gripper, TurnsToAnAngleEitherWay) {
+  GripperRun run;
+  run.gripper.turn_to(0.9);
+  EXPECT_EQ(run.run(3), GripperState::open);
+  EXPECT_NEAR(run.jaw.q_rad, 0.9, 0.004);
+  run.gripper.turn_to(0.2);
+  EXPECT_EQ(run.run(3), GripperState::open);
+  EXPECT_NEAR(run.jaw.q_rad, 0.2, 0.004);
+  run.gripper.turn_to(std::numeric_limits<double>::infinity());
+  EXPECT_EQ(run.gripper.state(), GripperState::open);
+}
+
+// Whoever orders and asks in the same tick must not take the last movement's end for that of the one to come.
+TEST(Gripper, MovesFromTheOrderOn) {
+  GripperRun run;
+  run.gripper.turn_to(0.6);
+  ASSERT_EQ(run.run(3), GripperState::open);
+  run.gripper.open_to(0.09);
+  EXPECT_EQ(run.gripper.state(), GripperState::opening);
+  run.gripper.close();
+  EXPECT_EQ(run.gripper.state(), GripperState::closing);
+}
+
+TEST(Gripper, DoesNotPressOnWhenItIsJammed) {
+  GripperRun run;
+  run.jaw.q_rad = 0.3;
+  run.jaw.stop_opening_rad = 0.31;
+  run.gripper.turn_to(0.9);
+  ASSERT_EQ(run.run(10), GripperState::jammed);
+  EXPECT_NEAR(run.gripper.target_rad(), run.jaw.q_rad, 1e-9);
+}
+
 TEST(Gripper, DoesNotTakeAStallWithoutTorqueForAGrip) {
   GripperRun run;
   run.jaw.stop_closing_rad = 0.0;

@@ -142,6 +142,24 @@ TEST_F(AxisTest, TargetsOutsideTheLimitsOrWhileNotEnabledAreRefusedAndCounted) {
   EXPECT_EQ(axis().actual_counts(), 1010);
 }
 
+// Where it was powered it may stand; what brings it back is taken, what leads on is not.
+TEST_F(AxisTest, OneEnabledOutsideItsLimitsCanOnlyComeBack) {
+  drive().actual_counts = 50'300;
+  bus.step(5);
+  ASSERT_TRUE(enable(axis()));
+  EXPECT_EQ(axis().target_counts(), 50'300);
+  EXPECT_TRUE(axis().set_target_counts(50'300));
+  EXPECT_FALSE(axis().set_target_counts(50'301));
+  EXPECT_TRUE(axis().set_target_counts(50'200));
+  bus.step(20);
+  ASSERT_EQ(axis().target_counts(), 50'200);
+  EXPECT_FALSE(axis().set_target_counts(50'201)) << "it has come as far as 50,200";
+  EXPECT_TRUE(axis().set_target_counts(49'900));
+  bus.step(50);
+  EXPECT_FALSE(axis().set_target_counts(50'001)) << "the limits are the limits again";
+  EXPECT_FALSE(axis().set_target_counts(-50'001));
+}
+
 TEST_F(AxisTest, ReportsValuesWithTheSyncTheyWereLatchedAt) {
   drive().actual_counts = 4711;
   drive().torque_permille = -250;

@@ -50,6 +50,17 @@ TEST(Boot, AHealthyBusIsBootedWithinASecondAndOperational) {
   for (const ScriptedNode& node : bus.nodes) EXPECT_EQ(node.nmt(), 5);
 }
 
+// A drive that is powered beyond its own limits jumps to them or refuses: its limits lie outside of the core's.
+TEST(Boot, TheDrivesOwnLimitsLieOutsideOfTheCores) {
+  NetworkConfig config = full_config();
+  config.drives[elbow].drive_margin_counts = 300;
+  config.drives[elbow].encoder_zero_counts = 7000;
+  Bus bus(config);
+  ASSERT_TRUE(bus.boot());
+  EXPECT_EQ(static_cast<std::int32_t>(bus.nodes[elbow].object(0x607D, 1)), -50'300 + 7000);
+  EXPECT_EQ(static_cast<std::int32_t>(bus.nodes[elbow].object(0x607D, 2)), 50'300 + 7000);
+}
+
 TEST(Boot, EveryObjectHoldsItsConfiguredValue) {
   Bus bus(full_config());
   ASSERT_TRUE(bus.boot());

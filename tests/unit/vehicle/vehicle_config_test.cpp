@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "firmware/arm/actuator.hpp"
-#include "hal/vehicle/homing_file.hpp"
+#include "hal/config/homing_file.hpp"
 #include "shared/input_error.hpp"
 #include "tests/unit/vehicle/temporary_folder.hpp"
 
@@ -91,9 +91,9 @@ TEST(VehicleConfig, LimitsWithAnotherChecksumAreRefused) {
 
 TEST(VehicleConfig, TheHomingFileReachesTheDrives) {
   const TemporaryFolder folder;
-  HomingOffsets offsets;
+  config::HomingOffsets offsets;
   offsets.zero_counts = {10, -20, 30, 0, 123456};
-  write_homing_file(folder / "homing.yaml", offsets);
+  config::write_homing_file(folder / "homing.yaml", offsets);
   const VehicleConfig config = load_vehicle_config(folder.write("v.yaml", "homing: {file: homing.yaml}\n"));
   for (std::size_t i = 0; i < joint_count; ++i)
     EXPECT_EQ(config.core.controller.network.drives[i].encoder_zero_counts, offsets.zero_counts[i]);
@@ -101,17 +101,17 @@ TEST(VehicleConfig, TheHomingFileReachesTheDrives) {
 
 TEST(HomingFile, ComesBackAsItWentAndRefusesWhatIsNotWhole) {
   const TemporaryFolder folder;
-  HomingOffsets offsets;
+  config::HomingOffsets offsets;
   offsets.zero_counts = {1, 2, -3, 4, 5};
   offsets.found[2] = "at its lower stop";
-  write_homing_file(folder / "h.yaml", offsets);
-  const HomingOffsets read = read_homing_file(folder / "h.yaml");
+  config::write_homing_file(folder / "h.yaml", offsets);
+  const config::HomingOffsets read = config::read_homing_file(folder / "h.yaml");
   EXPECT_EQ(read.zero_counts, offsets.zero_counts);
   EXPECT_EQ(read.found, offsets.found);
-  EXPECT_THROW((void)read_homing_file(folder.write("a.yaml", "slew: {zero_counts: 3}\n")), InputError);
-  EXPECT_THROW((void)read_homing_file(folder.write("b.yaml", "slew: {zero_counts: x}\n")), InputError);
-  EXPECT_THROW((void)read_homing_file(folder.write("c.yaml", "neck: {zero_counts: 1}\n")), InputError);
-  EXPECT_THROW(write_homing_file(folder / "no/such/folder.yaml", offsets), InputError);
+  EXPECT_THROW((void)config::read_homing_file(folder.write("a.yaml", "slew: {zero_counts: 3}\n")), InputError);
+  EXPECT_THROW((void)config::read_homing_file(folder.write("b.yaml", "slew: {zero_counts: x}\n")), InputError);
+  EXPECT_THROW((void)config::read_homing_file(folder.write("c.yaml", "neck: {zero_counts: 1}\n")), InputError);
+  EXPECT_THROW(config::write_homing_file(folder / "no/such/folder.yaml", offsets), InputError);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "hal/vehicle/homing_file.hpp"
+#include "hal/config/homing_file.hpp"
 
 #include <cerrno>
 #include <cstdio>
@@ -10,7 +10,7 @@
 #include "hal/config/yaml_reader.hpp"
 #include "shared/input_error.hpp"
 
-namespace lf::hal {
+namespace lf::config {
 
 const char* joint_name(std::size_t joint) {
   constexpr std::array<const char*, joint_count> names{"slew", "shoulder", "elbow", "roll", "jaw"};
@@ -18,18 +18,18 @@ const char* joint_name(std::size_t joint) {
 }
 
 HomingOffsets read_homing_file(const std::string& path) {
-  const config::Source source = config::Source::of_file(path);
-  const YAML::Node root = config::parse_yaml(config::read_text_file(path), source);
+  const Source source = Source::of_file(path);
+  const YAML::Node root = parse_yaml(read_text_file(path), source);
   if (!root.IsMap()) source.refuse(root.Mark(), "not a file of homing offsets");
   HomingOffsets offsets;
-  config::Keys table;
+  Keys table;
   constexpr double low = std::numeric_limits<std::int32_t>::min() / 2, high = std::numeric_limits<std::int32_t>::max() / 2;
   for (std::size_t i = 0; i < joint_count; ++i) {
     const std::string joint = std::string(joint_name(i));
-    table.push_back(config::key(joint + ".zero_counts", "counts", low, high, &offsets.zero_counts[i], ""));
-    table.push_back(config::key(joint + ".found", "", 0, 0, &offsets.found[i], ""));
+    table.push_back(key(joint + ".zero_counts", "counts", low, high, &offsets.zero_counts[i], ""));
+    table.push_back(key(joint + ".found", "", 0, 0, &offsets.found[i], ""));
   }
-  config::read_map(root, "", "", table, source);
+  read_map(root, "", "", table, source);
   for (std::size_t i = 0; i < joint_count; ++i) {
     if (!root[joint_name(i)] || !root[joint_name(i)]["zero_counts"])
       source.refuse(root.Mark(), std::string("'") + joint_name(i) + ".zero_counts' is missing: commission this joint");
@@ -47,4 +47,4 @@ void write_homing_file(const std::string& path, const HomingOffsets& offsets) {
   if (!out || std::rename(partial.c_str(), path.c_str()) != 0) throw InputError(path + ": cannot be written: " + std::strerror(errno));
 }
 
-}  // namespace lf::hal
+}  // namespace lf::config

@@ -1,4 +1,5 @@
 // What commissioning found: for each joint, what its drive's absolute encoder counts where the arm's own count is 0. YAML, written and read here.
+// The daemon writes and reads it; a simulator that follows real drives reads it.
 #pragma once
 
 #include <array>
@@ -7,7 +8,7 @@
 
 #include "shared/messages/joint_io.hpp"
 
-namespace lf::hal {
+namespace lf::config {
 
 struct HomingOffsets {
   std::array<std::int32_t, joint_count> zero_counts{};
@@ -21,4 +22,4 @@ HomingOffsets read_homing_file(const std::string& path);
 // Replaces the file as a whole or not at all. Throws InputError with the cause.
 void write_homing_file(const std::string& path, const HomingOffsets& offsets);
 
-}  // namespace lf::hal
+}  // namespace lf::config

@@ -1,0 +1,223 @@
+// Commissioning on the simulated arm: the drives' absolute encoders count from anywhere, and afterwards the core knows where the joints stand.
+#include "hal/vehicle/commissioning.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "firmware/arm/actuator.hpp"
+#include "hal/lockstep.hpp"
+#include "hal/sim/sim_platform.hpp"
+#include "host_sim/scenario/instance.hpp"
+
+namespace lf::test {
+namespace {
+
+using hal::Commissioning;
+using Zeros = std::array<std::int32_t, joint_count>;
+using Angles = std::array<double, joint_count>;
+
+constexpr Zeros somewhere{12'345, -70'000, 7, 100'123, -54'321};
+constexpr Angles parked{0, 0.60, 1.90, 0, 0.3};
+constexpr double allowed_rad = 0.05 * pi / 180;
+
+// The arm with nothing within its reach, and drives whose zeros nobody knows.
+class Bench {
+ public:
+  explicit Bench(const Zeros& zeros, const Angles& start_rad = parked, const std::vector<devices::DeviceFault>& faults = {})
+      : zeros_(zeros) {
+    const scenario::Scenario scenario = scenario::load_scenario("default", {});
+    const scenario::Sample sample = scenario::draw(scenario, 1);
+    nominal_ = scenario::make_nominal(scenario, sample.lamps_lit);
+    hal::SimConfig truth = scenario::make_truth(scenario, sample, nominal_, 1);
+    truth.world.base_from_panel.translation().x() += 2;
+    truth.world.start_rad = start_rad;
+    truth.devices.faults = faults;
+    for (std::size_t i = 0; i < joint_count; ++i) {
+      truth.devices.drives[i].encoder_zero_counts = zeros[i];
+      truth.devices.drives[i].encoder_offset_rad = 0;
+      backlash_rad_[i] = truth.world.arm.joints[i].backlash_rad;
+    }
+    platform_ = std::make_unique<hal::SimPlatform>(truth, nobody_);
+  }
+
+  Commissioning::Config config() const {
+    Commissioning::Config config;
+    config.network = nominal_.controller.network;
+    config.backlash_rad = backlash_rad_;
+    return config;
+  }
+
+  void run(
+      Commissioning& commissioning, const std::function<bool()>& cancelled = [] { return false; }) {
+    hal::run_commissioning(*platform_, commissioning, cancelled, [](std::size_t) {});
+  }
+
+  // Half a count is what rounding costs.
+  double tolerance_rad(std::size_t joint) const {
+    return allowed_rad + 0.5 * arm::rad_per_count(static_cast<Joint>(joint), angles()[joint]);
+  }
+  // How far the angle at the joint's place is off when the zero is taken to be `zero_counts`.
+  double error_rad(std::size_t joint, std::int32_t zero_counts) const {
+    const double per_count = arm::rad_per_count(static_cast<Joint>(joint), angles()[joint]);
+    return (zero_counts - zeros_[joint]) * per_count;
+  }
+
+  Angles angles() const {
+    Angles all{};
+    for (std::size_t i = 0; i < joint_count; ++i) all[i] = platform_->world().readings()[i].position_rad;
+    return all;
+  }
+  const scenario::Nominal& nominal() const { return nominal_; }
+  const Angles& backlash_rad() const { return backlash_rad_; }
+  hal::SimPlatform& platform() { return *platform_; }
+
+ private:
+  Zeros zeros_;
+  Angles backlash_rad_{};
+  scenario::Nominal nominal_;
+  hal::SimObserver nobody_;
+  std::unique_ptr<hal::SimPlatform> platform_;
+};
+
+void expect_found(const Bench& bench, const Commissioning& commissioning) {
+  ASSERT_EQ(commissioning.state(), Commissioning::State::done) << commissioning.failure();
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    EXPECT_TRUE(commissioning.found()[i]) << config::joint_name(i);
+    EXPECT_LE(std::abs(bench.error_rad(i, commissioning.zero_counts()[i])), bench.tolerance_rad(i)) << config::joint_name(i);
+  }
+}
+
+class CommissioningFrom : public testing::TestWithParam<Angles> {};
+
+TEST_P(CommissioningFrom, FindsEveryZero) {
+  Bench bench(somewhere, GetParam());
+  Commissioning commissioning(bench.config());
+  bench.run(commissioning);
+  expect_found(bench, commissioning);
+}
+
+INSTANTIATE_TEST_SUITE_P(AnyPlace, CommissioningFrom,
+                         testing::Values(parked, Angles{-1.2, 1.3, 0.4, 2.9, 1.2}, Angles{0.5, 0.05, 1.0, -3.0, 0.0},
+                                         Angles{-1.57, 0.001, 0.001, -3.14, 1.337}),
+                         [](const testing::TestParamInfo<Angles>& test) { return "Number" + std::to_string(test.index); });
+
+// The whole way: found, written, read, and the core's angles are the arm's.
+TEST(CommissionedArm, IsWhereTheCoreTakesItToBe) {
+  Bench bench(somewhere);
+  Commissioning commissioning(bench.config());
+  bench.run(commissioning);
+  ASSERT_EQ(commissioning.state(), Commissioning::State::done) << commissioning.failure();
+  const std::string file = std::filesystem::temp_directory_path() / ("lanternfish_homing_" + std::to_string(getpid()) + ".yaml");
+  config::HomingOffsets found;
+  found.zero_counts = commissioning.zero_counts();
+  config::write_homing_file(file, found);
+  const config::HomingOffsets read = config::read_homing_file(file);
+  std::filesystem::remove(file);
+
+  ControllerConfig config = bench.nominal().controller;
+  for (std::size_t i = 0; i < joint_count; ++i) config.network.drives[i].encoder_zero_counts = read.zero_counts[i];
+  hal::Lockstep<hal::SimPlatform> lockstep(bench.platform(), config, bench.nominal().scan);
+  lockstep.step();
+  ASSERT_TRUE(lockstep.controller().on_command(Command::home, lockstep.now()));
+  for (int i = 0; i < 5000 && lockstep.controller().mission().step() != mission::Step::ready; ++i) lockstep.step();
+  ASSERT_EQ(lockstep.controller().mission().step(), mission::Step::ready);
+  for (int i = 0; i < 250; ++i) lockstep.step();
+  EXPECT_EQ(lockstep.controller().mission().step(), mission::Step::ready) << "it stands within its limits after commissioning";
+  EXPECT_EQ(lockstep.controller().mission().joints().valid, true);
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    const double told = lockstep.controller().mission().joints().position_rad[i];
+    const JointReading truth = bench.platform().world().readings()[i];
+    EXPECT_NEAR(told, truth.motor_position_rad, bench.tolerance_rad(i)) << config::joint_name(i);
+    EXPECT_NEAR(told, truth.position_rad, 0.003) << config::joint_name(i) << ", which its load may bend";
+    EXPECT_NEAR(truth.position_rad, parked[i], 0.01) << config::joint_name(i) << ", back where it was";
+  }
+}
+
+TEST(CommissioningOfOneJoint, MovesNoOther) {
+  Bench bench(somewhere);
+  Commissioning::Config config = bench.config();
+  config.joints = {false, false, true, false, false};
+  Commissioning commissioning(config);
+  bench.run(commissioning);
+  ASSERT_EQ(commissioning.state(), Commissioning::State::done) << commissioning.failure();
+  EXPECT_EQ(commissioning.found(), (std::array<bool, joint_count>{false, false, true, false, false}));
+  EXPECT_LE(std::abs(bench.error_rad(2, commissioning.zero_counts()[2])), bench.tolerance_rad(2));
+  for (const std::size_t other : {0u, 1u, 3u, 4u}) EXPECT_NEAR(bench.angles()[other], parked[other], 0.005);
+  EXPECT_NEAR(bench.angles()[2], parked[2], 0.01) << "back where it was";
+}
+
+// Wherever the arm stands is its zero then.
+TEST(CommissioningInAJig, MovesNothing) {
+  Bench bench(somewhere);
+  Commissioning::Config setup = bench.config();
+  setup.here = true;
+  Commissioning commissioning(setup);
+  bench.run(commissioning);
+  ASSERT_EQ(commissioning.state(), Commissioning::State::done) << commissioning.failure();
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    const auto joint = static_cast<Joint>(i);
+    EXPECT_TRUE(commissioning.found()[i]);
+    EXPECT_NEAR(bench.angles()[i], parked[i], 0.003) << config::joint_name(i);
+    const double counts = commissioning.zero_counts()[i] - somewhere[i] - arm::exact_counts_from_rad(joint, bench.angles()[i]);
+    EXPECT_LT(std::abs(counts) * arm::rad_per_count(joint, bench.angles()[i]), bench.tolerance_rad(i) + bench.backlash_rad()[i])
+        << config::joint_name(i);
+  }
+}
+
+// A frozen reading looks like a stop; but what stands at a stop presses.
+TEST(CommissioningWithAStuckEncoder, FindsNoZero) {
+  devices::DeviceFault stuck;
+  stuck.kind = devices::DeviceFaultKind::stuck_encoder;
+  stuck.node = can_map::drive_nodes[2];
+  stuck.at_s = 0.01;
+  Bench bench(somewhere, parked, {stuck});
+  Commissioning::Config config = bench.config();
+  config.joints = {false, false, true, false, false};
+  Commissioning commissioning(config);
+  bench.run(commissioning);
+  EXPECT_EQ(commissioning.state(), Commissioning::State::failed);
+  EXPECT_NE(commissioning.failure().find("elbow"), std::string::npos) << commissioning.failure();
+  EXPECT_FALSE(commissioning.found()[2]);
+}
+
+TEST(CommissioningCancelled, StopsAndFindsNothing) {
+  Bench bench(somewhere);
+  Commissioning::Config config = bench.config();
+  config.joints = {false, false, true, false, false};
+  Commissioning commissioning(config);
+  int ticks = 0;
+  bench.run(commissioning, [&] { return commissioning.state() == Commissioning::State::seeking && ++ticks > 250; });
+  EXPECT_EQ(commissioning.state(), Commissioning::State::failed);
+  EXPECT_EQ(commissioning.failure(), "cancelled");
+  EXPECT_FALSE(commissioning.found()[2]);
+  const double stood = bench.angles()[2];
+  EXPECT_LT(stood, parked[2] - 0.02) << "it had not begun";
+  for (int i = 0; i < 100; ++i) {
+    Time now;
+    (void)bench.platform().wait_for_tick(now);
+  }
+  EXPECT_NEAR(bench.angles()[2], stood, 0.002);
+}
+
+TEST(CommissioningWithTheEmergencyStopOpen, EndsAndSaysSo) {
+  devices::DeviceFault estop;
+  estop.kind = devices::DeviceFaultKind::estop;
+  estop.at_s = 5;
+  Bench bench(somewhere, parked, {estop});
+  Commissioning commissioning(bench.config());
+  bench.run(commissioning);
+  EXPECT_EQ(commissioning.state(), Commissioning::State::failed);
+  EXPECT_EQ(commissioning.failure(), "the emergency-stop chain is open");
+}
+
+}  // namespace
+}  // namespace lf::test
