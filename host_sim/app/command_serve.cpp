@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "hal/config/homing_file.hpp"
 #include "host_sim/app/command.hpp"
 #include "host_sim/app/interrupt.hpp"
 #include "host_sim/app/version.hpp"
@@ -22,7 +23,7 @@ struct Options {
   std::string can;
   std::string nodes = "all";
   std::string camera = "none";
-  std::string renderer, orders, out;
+  std::string homing, renderer, orders, out;
   int render_threads = 1;
   double for_s = 0;
   bool json = false;
@@ -67,6 +68,7 @@ int run(const Options& options) {
   request.seed = options.seed;
   request.can = options.can;
   request.nodes = serve::NodeSet::parse(options.nodes);
+  if (!options.homing.empty()) request.real_zero_counts = config::read_homing_file(options.homing).zero_counts;
   request.camera = options.camera;
   request.renderer = options.renderer;
   request.render_threads = options.render_threads;
@@ -101,6 +103,7 @@ void add_serve(CLI::App& app, Action& action) {
       ->capture_default_str();
   command->add_option("--nodes", options->nodes, "Nodes to serve, as 1-5 or 1,3,6, all, none; the others are real and are followed")
       ->capture_default_str();
+  command->add_option("--homing", options->homing, "Homing file of the real drives (`lanternfishd commission`): where they count from");
   command->add_option("--seed", options->seed, "Draws everything random")->check(no_sign)->capture_default_str();
   command->add_option("--set", options->set, "path.to.key=value: change the scenario")->allow_extra_args(false);
   command->add_option("--renderer", options->renderer, "FILE that `lanternfish render-frames` renders for, instead of a thread here");

@@ -19,7 +19,7 @@ void fill_size(RecordInfo& info, const optics::Frame& frame) {
 }
 
 bool ThreadRenderer::submit(const PictureOrder& order) {
-  if (waiting_.size() >= most_waiting) return false;
+  if (waiting_.size() >= most_pictures_under_way) return false;
   waiting_.push_back({order.info, worker_.submit(shot_of(order))});
   return true;
 }

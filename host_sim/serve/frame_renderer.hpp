@@ -24,6 +24,9 @@ struct Picture {
   std::vector<std::uint8_t> pixels;
 };
 
+// Pictures that are being made or wait at most: the one after would be older than three camera periods when it comes, and so would all that follow it.
+inline constexpr std::size_t most_pictures_under_way = 3;
+
 class FrameRenderer {
  public:
   virtual ~FrameRenderer() = default;
@@ -42,8 +45,6 @@ class ThreadRenderer : public FrameRenderer {
   bool take(Picture& picture) override;
 
  private:
-  // Two pictures are being made or wait at most: the third would be older than a camera period when it comes.
-  static constexpr std::size_t most_waiting = 3;
   struct Waiting {
     RecordInfo info;
     hal::RenderWorker::Ticket ticket = 0;

@@ -22,7 +22,8 @@ void OverheardDrives::hear(const CanFrame& frame, Time t) {
   for (std::size_t i = 0; i < joint_count; ++i) {
     if (frame.id != canopen::cob_id::tpdo1 + can_map::drive_nodes[i]) continue;
     Report& report = reports_[i];
-    const double position = arm::rad_from_counts(static_cast<Joint>(i), canopen::get<std::int32_t>(frame, can_map::drive_tpdo1::position));
+    const std::int64_t counts = std::int64_t{canopen::get<std::int32_t>(frame, can_map::drive_tpdo1::position)} - zero_counts_[i];
+    const double position = arm::rad_from_counts(static_cast<Joint>(i), static_cast<std::int32_t>(counts));
     const double gap_s = (t - report.t).s();
     if (report.heard && gap_s > 0 && gap_s < longest_gap_s) {
       report.velocity_rad_s += new_share * ((position - report.position_rad) / gap_s - report.velocity_rad_s);

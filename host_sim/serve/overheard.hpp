@@ -16,6 +16,9 @@ namespace lf::serve {
 
 class OverheardDrives {
  public:
+  // `zero_counts`: what each real drive's encoder counts where the arm's own count is 0.
+  explicit OverheardDrives(const std::array<std::int32_t, joint_count>& zero_counts = {}) : zero_counts_(zero_counts) {}
+
   void hear(const CanFrame& frame, Time t);
   // The joint's motor, as its drive last reported it; nothing before it did.
   std::optional<double> position_rad(std::size_t joint) const;
@@ -30,6 +33,7 @@ class OverheardDrives {
     double velocity_rad_s = 0;  // smoothed: a count in a SYNC period is up to 0.8 rad/s
     bool heard = false;
   };
+  std::array<std::int32_t, joint_count> zero_counts_;
   std::array<Report, joint_count> reports_{};
 };
 

@@ -13,6 +13,8 @@ namespace lf::serve {
 namespace {
 
 constexpr std::chrono::microseconds look_again{300};
+// A picture that has not come by then is not coming: its renderer was started anew, or is not there.
+constexpr Duration lost_after = Duration::from_ms(1000);
 
 std::int64_t now_ns() { return hal::linux_calls().monotonic_ns(); }
 
@@ -59,7 +61,14 @@ RemoteRenderer::RemoteRenderer(const std::string& file)
   exposures_.open(file_.bytes().first(exposure_ring_bytes()), exposure_slots, sizeof(ExposurePayload));
 }
 
+void RemoteRenderer::forget_lost(std::int64_t start_ns) {
+  while (!under_way_.empty() && start_ns - under_way_.front().start_ns > lost_after.ns()) under_way_.pop_front();
+}
+
 bool RemoteRenderer::submit(const PictureOrder& order) {
+  forget_lost(order.info.start_ns);
+  if (under_way_.size() >= most_pictures_under_way) return false;
+  under_way_.push_back(order.info);
   RecordInfo info = order.info;
   info.kind = kind_exposure;
   const ExposurePayload payload = pack(order.poses);
@@ -70,6 +79,8 @@ bool RemoteRenderer::take(Picture& picture) {
   picture.pixels.resize(camera_ring_payload);
   if (pictures_.take(picture.info, std::as_writable_bytes(std::span(picture.pixels))) != FrameRingReader::Answer::record) return false;
   picture.pixels.resize(std::min<std::size_t>(picture.info.bytes, camera_ring_payload));
+  // They come in the order of their exposures: what was ordered before this one is lost.
+  while (!under_way_.empty() && static_cast<std::int32_t>(picture.info.sequence - under_way_.front().sequence) >= 0) under_way_.pop_front();
   return true;
 }
 

@@ -11,6 +11,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <string>
 #include <vector>
 
@@ -36,7 +37,8 @@ std::size_t render_rings_bytes();
 // Throws InputError when the file cannot be mapped.
 MappedFile map_render_rings(const std::string& file);
 
-// Serve's side.
+// Serve's side. The ring would hold many more exposures than may be under way: a renderer that has fallen behind once, and is then just fast enough, would
+// deliver every later picture half a second late.
 class RemoteRenderer : public FrameRenderer {
  public:
   explicit RemoteRenderer(const std::string& file);
@@ -44,7 +46,10 @@ class RemoteRenderer : public FrameRenderer {
   bool take(Picture& picture) override;
 
  private:
+  void forget_lost(std::int64_t start_ns);
+
   MappedFile file_;
+  std::deque<RecordInfo> under_way_;  // oldest first
   FrameRingWriter exposures_;
   FrameRingReader pictures_;
 };

@@ -4,11 +4,12 @@
 
 namespace lf::serve {
 
-ServeLoop::ServeLoop(const hal::SimConfig& config, const NodeSet& served, CanLink& link, ServedCamera* camera, Say say)
+ServeLoop::ServeLoop(const hal::SimConfig& config, const NodeSet& served, CanLink& link, ServedCamera* camera, Say say,
+                     const std::array<std::int32_t, joint_count>& real_zero_counts)
     : world_(config.world),
       rack_(config.devices, Time{}),
       link_(link),
-      bus_(rack_, link, served),
+      bus_(rack_, link, served, real_zero_counts),
       camera_(camera),
       say_(std::move(say)),
       pace_(link.now()) {}

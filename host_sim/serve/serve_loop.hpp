@@ -4,6 +4,8 @@
 //   then                                the world moves a millisecond, drives close their loops, the camera sees
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -24,7 +26,9 @@ class ServeLoop {
   using Say = std::function<void(const std::string&)>;
 
   // `camera` may be null: then exposures are taken and nothing is seen. Power comes on at the first turn. `link`, `camera` and `say` outlive the loop.
-  ServeLoop(const hal::SimConfig& config, const NodeSet& served, CanLink& link, ServedCamera* camera, Say say);
+  // `real_zero_counts` are those of the drives that are not served.
+  ServeLoop(const hal::SimConfig& config, const NodeSet& served, CanLink& link, ServedCamera* camera, Say say,
+            const std::array<std::int32_t, joint_count>& real_zero_counts = {});
 
   // One millisecond: returns when it is done.
   void turn();

@@ -68,7 +68,7 @@ ServeResult serve(const ServeRequest& request, bool (*stop)()) {
   OrderReader orders(request.orders);
   SocketCanLink link(request.can);
   come_first();
-  ServeLoop loop(sim, request.nodes, link, camera ? &*camera : nullptr, say);
+  ServeLoop loop(sim, request.nodes, link, camera ? &*camera : nullptr, say, request.real_zero_counts);
   if (log) loop.bus().set_tap([&log](Time t, const CanFrame& frame) { log->write(t, frame); });
   say("serving nodes " + request.nodes.text() + " on " + request.can + ", camera " + request.camera);
 

@@ -1,6 +1,7 @@
 // `lanternfish serve` from its options to its result.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -9,6 +10,7 @@
 #include "host_sim/scenario/scenario.hpp"
 #include "host_sim/serve/node_set.hpp"
 #include "host_sim/serve/serve_result.hpp"
+#include "shared/messages/joint_io.hpp"
 
 namespace lf::serve {
 
@@ -17,8 +19,9 @@ struct ServeRequest {
   std::uint64_t seed = 1;
   std::string can;  // SocketCAN interface
   NodeSet nodes = NodeSet::all();
-  std::string camera = "none";  // see open_frame_target()
-  std::string renderer;         // file of a renderer elsewhere (render_rings.hpp); empty: a thread here
+  std::array<std::int32_t, joint_count> real_zero_counts{};  // of the drives that are not served, as their homing file has them
+  std::string camera = "none";                               // see open_frame_target()
+  std::string renderer;                                      // file of a renderer elsewhere (render_rings.hpp); empty: a thread here
   int render_threads = 1;
   std::string orders;                           // FIFO of orders (serve_orders.hpp); empty: none
   std::filesystem::path out;                    // gets result.json and can0.log; empty keeps nothing

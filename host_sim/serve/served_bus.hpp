@@ -25,7 +25,9 @@ class ServedBus {
     std::vector<double> answer_us;  // from a SYNC's reception to its last answer handed to the kernel; the newest 1'000'000
   };
 
-  ServedBus(devices::NodeRack& rack, CanLink& link, const NodeSet& served) : rack_(rack), link_(link), served_(served) {}
+  // `real_zero_counts`: see OverheardDrives.
+  ServedBus(devices::NodeRack& rack, CanLink& link, const NodeSet& served, const std::array<std::int32_t, joint_count>& real_zero_counts)
+      : rack_(rack), link_(link), served_(served), real_drives_(real_zero_counts) {}
 
   // Takes what is there, a bus's worst millisecond at most, and answers it. False when the link has failed: it is to be tried again a little later.
   bool receive(const Pace& pace);

@@ -1,8 +1,12 @@
 // What `serve` is made of: the choice of nodes, the pace, what is overheard, the rings between world and renderer.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "firmware/arm/actuator.hpp"
 #include "firmware/canopen/codec.hpp"
@@ -100,6 +104,15 @@ TEST(OverheardDrives, the_world_follows_a_real_drive_and_holds_before_it_spoke) 
   EXPECT_NEAR(*drives.position_rad(2), 1.2, 4e-4) << "a short frame is not believed";
 }
 
+TEST(OverheardDrives, a_real_drive_counts_from_where_its_homing_file_says) {
+  OverheardDrives drives({0, 0, -70'000, 0, 0});
+  CanFrame tpdo = frame(0x183, {0x37, 0x02, 0, 0, 0, 0, 0, 0});
+  canopen::put(tpdo, can_map::drive_tpdo1::position, arm::counts_from_rad(Joint::elbow, 1.2) - 70'000);
+  drives.hear(tpdo, ms(4));
+  ASSERT_TRUE(drives.position_rad(2));
+  EXPECT_NEAR(*drives.position_rad(2), 1.2, 4e-4);
+}
+
 TEST(OverheardOutputs, a_changed_counter_is_an_exposure_at_the_next_sync) {
   OverheardOutputs outputs;
   const CanFrame sync = frame(0x080, {});
@@ -174,6 +187,101 @@ TEST(RenderRings, an_order_crosses_the_file_and_nothing_comes_back_by_itself) {
     EXPECT_EQ(picture.pixels, pixels);
   }
   std::filesystem::remove(file);
+}
+
+// The far side of the rings, at a pace of its own.
+class ScriptedRenderer {
+ public:
+  explicit ScriptedRenderer(const std::string& file)
+      : mapped_(map_render_rings(file)), exposures_(std::as_bytes(mapped_.bytes().first(exposure_ring_bytes()))) {
+    EXPECT_TRUE(pictures_.open(mapped_.bytes().subspan(exposure_ring_bytes())));
+    (void)next();  // finds the ring
+  }
+  std::optional<RecordInfo> next() {
+    RecordInfo info;
+    ExposurePayload payload;
+    if (exposures_.take(info, std::as_writable_bytes(std::span(&payload, 1))) != FrameRingReader::Answer::record) return std::nullopt;
+    return info;
+  }
+  void deliver(const RecordInfo& info) { EXPECT_TRUE(pictures_.write(info, std::as_bytes(std::span(pixels_)), 1)); }
+
+ private:
+  MappedFile mapped_;
+  FrameRingReader exposures_;
+  FrameRingWriter pictures_;
+  std::vector<std::uint8_t> pixels_ = std::vector<std::uint8_t>(640 * 480, 50);
+};
+
+class RemoteRendererTest : public testing::Test {
+ protected:
+  RemoteRendererTest() { EXPECT_FALSE(remote.take(picture)); }  // finds the ring, too
+  ~RemoteRendererTest() override { std::filesystem::remove(file); }
+  bool submit(std::uint32_t sequence, Time start) {
+    PictureOrder order;
+    for (Pose& pose : order.poses) pose = Pose::Identity();
+    order.info.sequence = sequence;
+    order.info.start_ns = start.ns();
+    return remote.submit(order);
+  }
+
+  std::filesystem::path file = std::filesystem::temp_directory_path() / ("lf_remote_" + std::to_string(::getpid()));
+  RemoteRenderer remote{file.string()};
+  ScriptedRenderer renderer{file.string()};
+  Picture picture;
+};
+
+TEST_F(RemoteRendererTest, takes_no_more_orders_than_can_come_in_time) {
+  EXPECT_TRUE(submit(0, ms(0)));
+  EXPECT_TRUE(submit(1, ms(40)));
+  EXPECT_TRUE(submit(2, ms(80)));
+  EXPECT_FALSE(submit(3, ms(120)));
+  renderer.deliver(*renderer.next());
+  EXPECT_FALSE(submit(4, ms(160))) << "not before it was fetched";
+  ASSERT_TRUE(remote.take(picture));
+  EXPECT_EQ(picture.info.sequence, 0u);
+  EXPECT_TRUE(submit(5, ms(200)));
+  EXPECT_EQ(renderer.next()->sequence, 1u);
+  EXPECT_EQ(renderer.next()->sequence, 2u);
+  EXPECT_EQ(renderer.next()->sequence, 5u) << "what was refused is not drawn";
+}
+
+TEST_F(RemoteRendererTest, does_not_wait_for_ever_for_what_a_renderer_lost) {
+  for (std::uint32_t i = 0; i < 3; ++i) EXPECT_TRUE(submit(i, ms(40 * i)));
+  EXPECT_FALSE(submit(3, ms(900)));
+  for (int i = 0; i < 3; ++i) (void)renderer.next();  // and it dies
+  EXPECT_TRUE(submit(4, ms(1100)));
+  renderer.deliver(*renderer.next());
+  ASSERT_TRUE(remote.take(picture));
+  EXPECT_EQ(picture.info.sequence, 4u);
+  EXPECT_TRUE(submit(5, ms(1110)) && submit(6, ms(1120)) && submit(7, ms(1130))) << "the ones before the fourth were lost";
+}
+
+// Four seconds of 25 pictures each, with a renderer that stands still for one second in the beginning and then needs 38 ms a picture.
+TEST_F(RemoteRendererTest, is_on_time_again_after_a_renderer_fell_behind) {
+  std::optional<RecordInfo> drawing;
+  double drawn_ms = 1000;
+  int refused = 0, late = 0, came = 0, late_at_the_end = 0;
+  for (int t = 0; t < 4000; ++t) {
+    if (t % 40 == 0 && !submit(static_cast<std::uint32_t>(t / 40), ms(t))) ++refused;
+    if (drawing && t >= drawn_ms) {
+      renderer.deliver(*drawing);
+      drawing.reset();
+    }
+    if (!drawing) {
+      drawing = renderer.next();
+      drawn_ms = std::max(drawn_ms, double(t)) + 38;
+    }
+    while (remote.take(picture)) {
+      ++came;
+      const double took_ms = t - 1e-6 * static_cast<double>(picture.info.start_ns);
+      late += took_ms > 200;  // stale_image_s
+      late_at_the_end += took_ms > 200 && t > 2000;
+    }
+  }
+  EXPECT_LE(late, 3) << "those that were under way when it stood still";
+  EXPECT_EQ(late_at_the_end, 0);
+  EXPECT_GE(came, 100 - 25 - 4);
+  EXPECT_LE(refused, 25 + 4);
 }
 
 }  // namespace
