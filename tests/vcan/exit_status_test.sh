@@ -9,7 +9,7 @@ trap 'rm -rf "$TMPDIR"' EXIT
 ends() {
   local wanted=$1 status=0
   shift
-  "$runners/with_vcan.sh" --time-limit 120 "$@" || status=$?
+  "$runners/with_vcan.sh" --time-limit 600 "$@" || status=$?
   [ "$status" -ne 3 ] || exit 3
   [ "$status" -eq "$wanted" ] || { echo "'$*' ended with $status, not with $wanted" >&2; exit 1; }
   [ -z "$(ls -A "$TMPDIR")" ] || { echo "'$*' left $(ls "$TMPDIR")" >&2; exit 1; }
