@@ -26,7 +26,8 @@ class ServedBus {
   };
 
   // `real_zero_counts`: see OverheardDrives.
-  ServedBus(devices::NodeRack& rack, CanLink& link, const NodeSet& served, const std::array<std::int32_t, joint_count>& real_zero_counts)
+  ServedBus(devices::NodeRack& rack, CanLink& link, const NodeSet& served,
+            const std::array<std::int32_t, joint_count>& real_zero_counts = {})
       : rack_(rack), link_(link), served_(served), real_drives_(real_zero_counts) {}
 
   // Takes what is there, a bus's worst millisecond at most, and answers it. False when the link has failed: it is to be tried again a little later.
