@@ -1,11 +1,13 @@
 #include "hal/vision/image_file.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <string>
 #include <string_view>
 
 #include "hal/vision/pixels.hpp"
@@ -31,13 +33,48 @@ bool truncated_jpeg(std::string_view bytes) {
   return scan == bytes.npos || end == bytes.npos || end < scan;
 }
 
-// A PNG ends with the chunk IEND.
-bool truncated_png(std::string_view bytes) { return bytes.starts_with("\x89PNG") && bytes.find("IEND") == bytes.npos; }
+std::uint32_t big_endian(std::string_view bytes) {
+  std::uint32_t value = 0;
+  for (const char byte : bytes.substr(0, 4)) value = value << 8 | static_cast<std::uint8_t>(byte);
+  return value;
+}
+
+// CRC-32 as PNG has it (ISO 3309).
+std::uint32_t crc32(std::string_view bytes) {
+  std::uint32_t crc = 0xFFFFFFFFu;
+  for (const char byte : bytes) {
+    crc ^= static_cast<std::uint8_t>(byte);
+    for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1) ^ ((crc & 1u) != 0 ? 0xEDB88320u : 0u);
+  }
+  return ~crc;
+}
+
+// What is wrong with a PNG, chunk by chunk up to IEND; nothing when it is sound, or none. libpng would say it in its own words, on stderr.
+std::string fault_of_png(std::string_view bytes) {
+  constexpr std::size_t signature = 8, around = 12;  // length, name, CRC
+  constexpr std::uint32_t longest_side = 1'000'000;  // libpng's
+  if (!bytes.starts_with("\x89PNG")) return "";
+  for (std::size_t at = signature; at + around <= bytes.size();) {
+    const std::size_t length = big_endian(bytes.substr(at));
+    if (length > bytes.size() - at - around) break;
+    const std::string_view chunk = bytes.substr(at + 4, 4 + length);
+    if (crc32(chunk) != big_endian(bytes.substr(at + 8 + length))) return "the image is damaged: a checksum in it is wrong";
+    if (chunk.starts_with("IHDR") && length >= 8) {
+      const std::uint32_t width = big_endian(chunk.substr(4)), height = big_endian(chunk.substr(8));
+      if (width > longest_side || height > longest_side)
+        return "is an image of " + std::to_string(width) + "x" + std::to_string(height) + " pixels, more than can be decoded";
+    }
+    if (chunk.starts_with("IEND")) return "";
+    at += around + length;
+  }
+  return "the image is truncated";
+}
 
 cv::Mat decode(const std::string& path, Channel channel) {
   const std::vector<char> bytes = read_bytes(path);
   const std::string_view text(bytes.data(), bytes.size());
-  if (truncated_jpeg(text) || truncated_png(text)) throw InputError(path, 0, "the image is truncated");
+  if (truncated_jpeg(text)) throw InputError(path, 0, "the image is truncated");
+  if (const std::string fault = fault_of_png(text); !fault.empty()) throw InputError(path, 0, fault);
   cv::Mat image;
   try {
     const cv::Mat buffer(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));

@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "firmware/arm/inverse_kinematics.hpp"
+#include "host_sim/app/checks.hpp"
 #include "host_sim/app/command.hpp"
 #include "shared/input_error.hpp"
 
@@ -72,7 +73,7 @@ void add_ik(CLI::App& app, Action& action) {
   command->add_option("--y", options->y_m, "To the right, m")->required();
   command->add_option("--z", options->z_m, "Down, m")->required();
   command->add_option("--roll", options->roll_rad, "Roll of the jaw, rad");
-  command->add_option("--margin", options->margin_rad, "Distance to keep from the joints' limits, rad")->check(CLI::Range(0.0, 0.5));
+  command->add_option("--margin", options->margin_rad, "Distance to keep from the joints' limits, rad")->check(within(0, 0.5));
   command->add_flag("--json", options->json, "Print JSON");
   command->callback([options, &action] { action = [options] { return ik(*options); }; });
 }

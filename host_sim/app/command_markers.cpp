@@ -2,6 +2,7 @@
 
 #include "hal/vision/calibration_file.hpp"
 #include "hal/vision/marker_files.hpp"
+#include "host_sim/app/checks.hpp"
 #include "host_sim/app/command.hpp"
 #include "shared/input_error.hpp"
 
@@ -68,7 +69,7 @@ void add_markers(CLI::App& app, Action& action) {
   command->add_option("--family", options->family, "36h11, 25h9, 16h5 ...")->capture_default_str();
   command->add_option("--channel", options->channel, "grey, red, green or blue")->capture_default_str();
   command->add_option("--camera", options->camera, "Calibration (YAML of OpenCV or ROS): gives poses; needs --size-m");
-  command->add_option("--size-m", options->size_m, "Side of the black square, m")->check(CLI::Range(1e-4, 100.0));
+  command->add_option("--size-m", options->size_m, "Side of the black square, m")->check(within(1e-4, 100));
   command->add_option("--decimate", options->decimate, "Search on an image so many times smaller")->capture_default_str();
   command->add_option("--margin", options->min_margin, "Smallest decision margin")->capture_default_str();
   command->add_option("--overlay", options->overlay, "Write the first frame with a marker to this PNG, markers drawn in");

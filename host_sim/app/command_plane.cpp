@@ -1,6 +1,7 @@
 #include <memory>
 
 #include "firmware/scan/plane.hpp"
+#include "host_sim/app/checks.hpp"
 #include "host_sim/app/command.hpp"
 #include "host_sim/record/cloud_file.hpp"
 
@@ -47,7 +48,7 @@ void add_plane(CLI::App& app, Action& action) {
   auto options = std::make_shared<Options>();
   command->add_option("CLOUD", options->cloud, "A .pcd, .ply or .csv file, in metres")->required();
   command->add_option("--threshold-mm", options->threshold_mm, "Inliers are nearer to the plane than this")
-      ->check(CLI::Range(1e-3, 1e4))
+      ->check(within(1e-3, 1e4))
       ->capture_default_str();
   command->add_flag("--json", options->json, "Print JSON");
   command->callback([options, &action] { action = [options] { return plane(*options); }; });

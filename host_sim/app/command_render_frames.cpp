@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "host_sim/app/checks.hpp"
 #include "host_sim/app/command.hpp"
 #include "host_sim/app/interrupt.hpp"
 #include "host_sim/record/result.hpp"
@@ -48,7 +49,7 @@ void add_render_frames(CLI::App& app, Action& action) {
   auto options = std::make_shared<Options>();
   command->add_option("SCENARIO", options->scenario, "The scenario that is served")->required();
   command->add_option("FILE", options->file, "The shared file; made if need be")->required();
-  command->add_option("--seed", options->seed, "The seed that is served")->capture_default_str();
+  command->add_option("--seed", options->seed, "The seed that is served")->check(check_seed)->capture_default_str();
   command->add_option("--set", options->set, "path.to.key=value: as it is served")->allow_extra_args(false);
   command->add_option("--render-threads", options->render_threads, "Threads that render")->check(CLI::Range(1, 256))->capture_default_str();
   command->add_flag("--json", options->json, "Print what was rendered as JSON");

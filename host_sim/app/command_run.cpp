@@ -6,6 +6,7 @@
 #include <memory>
 #include <thread>
 
+#include "host_sim/app/checks.hpp"
 #include "host_sim/app/command.hpp"
 #include "host_sim/app/interrupt.hpp"
 #include "host_sim/app/run_session.hpp"
@@ -101,18 +102,11 @@ int run(const Options& options) {
 
 }  // namespace
 
-namespace {
-
-// CLI11 2.1 reads -1 as the largest unsigned number.
-std::string no_sign(const std::string& text) { return text.starts_with('-') ? "--seed takes 0 and more, not " + text : std::string(); }
-
-}  // namespace
-
 void add_run(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("run", "Run a mission in the simulator and leave a folder with its report");
   auto options = std::make_shared<Options>();
   command->add_option("SCENARIO", options->scenario, "A file or a shipped name (`lanternfish scenarios`)")->capture_default_str();
-  command->add_option("--seed", options->seed, "Draws everything random")->check(no_sign)->capture_default_str();
+  command->add_option("--seed", options->seed, "Draws everything random")->check(check_seed)->capture_default_str();
   command->add_option("--set", options->set, "path.to.key=value: change the scenario")->allow_extra_args(false);
   command->add_option("--out", options->out, "The run's folder (default runs/SCENARIO-SEED)");
   command->add_flag("--realtime", options->realtime, "No faster than the clock on the wall");

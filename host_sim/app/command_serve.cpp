@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "hal/config/homing_file.hpp"
+#include "host_sim/app/checks.hpp"
 #include "host_sim/app/command.hpp"
 #include "host_sim/app/interrupt.hpp"
 #include "host_sim/app/version.hpp"
@@ -89,8 +90,6 @@ int run(const Options& options) {
   return done;
 }
 
-std::string no_sign(const std::string& text) { return text.starts_with('-') ? "--seed takes 0 and more, not " + text : std::string(); }
-
 }  // namespace
 
 void add_serve(CLI::App& app, Action& action) {
@@ -104,13 +103,13 @@ void add_serve(CLI::App& app, Action& action) {
   command->add_option("--nodes", options->nodes, "Nodes to serve, as 1-5 or 1,3,6, all, none; the others are real and are followed")
       ->capture_default_str();
   command->add_option("--homing", options->homing, "Homing file of the real drives (`lanternfishd commission`): where they count from");
-  command->add_option("--seed", options->seed, "Draws everything random")->check(no_sign)->capture_default_str();
+  command->add_option("--seed", options->seed, "Draws everything random")->check(check_seed)->capture_default_str();
   command->add_option("--set", options->set, "path.to.key=value: change the scenario")->allow_extra_args(false);
   command->add_option("--renderer", options->renderer, "FILE that `lanternfish render-frames` renders for, instead of a thread here");
   command->add_option("--render-threads", options->render_threads, "Threads that render")->check(CLI::Range(1, 256))->capture_default_str();
   command->add_option("--orders", options->orders, "FIFO to read orders from: camera freeze 2, fault reboot elbow ...");
   command->add_option("--out", options->out, "Folder for result.json and can0.log");
-  command->add_option("--for", options->for_s, "Seconds to serve (default: until SIGTERM)")->check(CLI::PositiveNumber);
+  command->add_option("--for", options->for_s, "Seconds to serve (default: until SIGTERM)")->check(check_positive);
   command->add_flag("--json", options->json, "Print result.json");
   command->callback([options, &action] { action = [options] { return run(*options); }; });
 }

@@ -14,8 +14,11 @@ std::string cause(int error_number) { return std::generic_category().message(err
 
 }  // namespace
 
-FileSink::FileSink(const std::filesystem::path& path) : path_(path), file_(std::fopen(path.c_str(), "wb")) {
-  if (file_ == nullptr) throw InputError(path.string(), 0, "cannot be written: " + cause(errno));
+FileSink::FileSink(const std::filesystem::path& path) : FileSink(path, path) {}
+
+FileSink::FileSink(const std::filesystem::path& path, const std::filesystem::path& shown)
+    : path_(shown), file_(std::fopen(path.c_str(), "wb")) {
+  if (file_ == nullptr) throw InputError(shown.string(), 0, "cannot be written: " + cause(errno));
 }
 
 FileSink::~FileSink() { close(); }
@@ -58,9 +61,10 @@ bool FileSink::close() noexcept {
 std::string FileSink::error() const { return ok() ? "" : path_.string() + ": " + cause(error_number_); }
 
 void write_file_atomically(const std::filesystem::path& path, std::string_view bytes) {
+  if (std::filesystem::is_directory(path)) throw InputError(path.string(), 0, "is a folder, not a file");
   std::filesystem::path partial = path;
   partial += ".partial";
-  FileSink sink(partial);
+  FileSink sink(partial, path);
   sink.write(bytes);
   std::error_code error;
   if (!sink.close()) {

@@ -20,6 +20,8 @@ class FileSink {
  public:
   // Truncates or creates. Throws InputError when the file cannot be opened.
   explicit FileSink(const std::filesystem::path& path);
+  // `shown`: the name that messages have, of a file that is going to be renamed.
+  FileSink(const std::filesystem::path& path, const std::filesystem::path& shown);
   ~FileSink();  // flushes; a failure is lost here, so close() first where it matters
   FileSink(FileSink&& other) noexcept;
   FileSink& operator=(FileSink&& other) noexcept;

@@ -48,6 +48,9 @@ void apply_override(Scenario& scenario, const std::string& text) {
   const std::string path = text.substr(0, equals);
   const std::vector<Key> table = keys(scenario);
   const auto found = std::find_if(table.begin(), table.end(), [&](const Key& key) { return key.path == path; });
+  const auto within = std::find_if(table.begin(), table.end(), [&](const Key& key) { return key.path.starts_with(path + "."); });
+  if (found == table.end() && within != table.end())
+    source.refuse(YAML::Mark::null_mark(), "'" + path + "' is a group of keys: name one of them, as " + within->path + "=VALUE");
   if (found == table.end()) source.refuse(YAML::Mark::null_mark(), "unknown key '" + path + "'" + config::suggest_path(path, table));
   config::read_value(parse_yaml(text.substr(equals + 1), source), path, *found, source);
 }

@@ -35,6 +35,16 @@ TEST_F(BadInput, UnknownCommandsAndOptions) {
   expect_refused("ik --x nan --y 0 --z 0.5", "finite");
   expect_refused("run --seed -1", "--seed");
   expect_refused("run --render-threads 0", "--render-threads");
+  for (const char* seed : {"-1", "1.5", "x", "1e3", "18446744073709551616", "99999999999999999999999"})
+    expect_refused(std::string("run --seed=") + seed,
+                   "--seed: takes a whole number from 0 to 18446744073709551615, not " + std::string(seed));
+  expect_refused("render-frames default f --seed=-1", "--seed: takes");
+  for (const char* option : {"markers x.png --size-m", "plane x.pcd --threshold-mm", "ik --x 0.3 --y 0 --z 0.5 --margin"}) {
+    for (const char* number : {"nan", "inf", "1e9", "-1", "three"})
+      expect_refused(std::string(option) + "=" + number, std::string(": takes a number from "));
+  }
+  for (const char* number : {"0", "-1", "nan", "inf"})
+    expect_refused(std::string("serve --can x --for=") + number, "--for: takes a number above 0");
 }
 
 TEST_F(BadInput, ScenariosThatAreNotWhatTheyShouldBe) {
@@ -45,6 +55,14 @@ TEST_F(BadInput, ScenariosThatAreNotWhatTheyShouldBe) {
   expect_refused("run --set valve.start_deg=left", "'valve.start_deg' takes a number");
   expect_refused("run --set water.attenuation_per_m=9", "out of its range 0 to 5");
   expect_refused("run --set camera.noise_grey=.nan", "must be a finite number");
+  expect_refused("run --set valve=3", "'valve' is a group of keys: name one of them, as valve.");
+  expect_refused("run --set valve.start_deg.x=3", "unknown key 'valve.start_deg.x'");
+  for (const char* text : {"''", "foo", "=3", "valve.start_deg"}) expect_refused(std::string("run --set ") + text, "path.to.key=value");
+  expect_refused("run --set valve.start_deg=", "takes a number");
+  std::filesystem::create_directory(folder() / "a_folder");
+  expect_refused("run ./a_folder", "./a_folder: is a folder");
+  file("unended.yaml", "valve:\n  start_deg: [1, 2\n");
+  expect_refused("run ./unended.yaml", "./unended.yaml:3: not YAML");
   expect_refused("campaign ./misspelt.yaml --seeds 1-2", "./misspelt.yaml:2");
   expect_refused("reach ./misspelt.yaml", "./misspelt.yaml:2");
   expect_refused("scenarios ./misspelt.yaml", "./misspelt.yaml:2");
@@ -83,6 +101,29 @@ TEST_F(BadInput, ImagesThatAreNone) {
   }
 }
 
+// libpng's own words never reach the user.
+TEST_F(BadInput, ImagesThatAreDamaged) {
+  const std::string png = text_of(LANTERNFISH_SOURCE_DIR "/tests/data/marker_still/seed_146.png");
+  ASSERT_GT(png.size(), 1000u);
+  const auto with_byte = [&png](std::size_t at, char change) {
+    std::string changed = png;
+    changed[at] = static_cast<char>(changed[at] ^ change);
+    return changed;
+  };
+  file("header.png", with_byte(20, 1));
+  file("pixels.png", with_byte(png.size() / 2, 0x55));
+  file("cut.png", png.substr(0, png.size() - 30));
+  file("signature.png", png.substr(0, 8));
+  std::filesystem::create_directory(folder() / "a_folder");
+  for (const char* command : {"peaks", "markers"}) {
+    expect_refused(std::string(command) + " header.png", "header.png: the image is damaged");
+    expect_refused(std::string(command) + " pixels.png", "pixels.png: the image is damaged");
+    expect_refused(std::string(command) + " cut.png", "cut.png: the image is truncated");
+    expect_refused(std::string(command) + " signature.png", "signature.png: the image is truncated");
+    expect_refused(std::string(command) + " a_folder", "a_folder: is a folder");
+  }
+}
+
 TEST_F(BadInput, CloudsThatAreNone) {
   file("cut.pcd",
        "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 5\nHEIGHT 1\nPOINTS 5\nDATA ascii\n0 0 0\n1 0 "
@@ -107,7 +148,10 @@ TEST_F(BadInput, FoldersThatCannotBeWritten) {
   file("in_the_way", "");
   expect_refused("run --out in_the_way/run", "in_the_way");
   expect_refused("campaign default --seeds 1-2 --out in_the_way/c", "in_the_way");
-  expect_refused("reach --draws 1 --out in_the_way/reach.png", "in_the_way");
+  expect_refused("reach --draws 1 --out in_the_way/reach.png", "in_the_way/reach.png: cannot be written: Not a directory");
+  expect_refused("reach --draws 1 --out nowhere/reach.png", "nowhere/reach.png: cannot be written: No such file");
+  std::filesystem::create_directory(folder() / "a_folder");
+  expect_refused("reach --draws 1 --out a_folder", "a_folder: is a folder, not a file");
 }
 
 TEST_F(BadInput, AShareFolderWithoutScenarios) {

@@ -1,0 +1,49 @@
+#include "host_sim/app/checks.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <optional>
+#include <system_error>
+
+namespace lf::app {
+
+namespace {
+
+template <class Number>
+std::optional<Number> read(const std::string& text) {
+  Number number{};
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, number);
+  return error == std::errc() && rest == end ? std::optional(number) : std::nullopt;
+}
+
+std::optional<double> finite(const std::string& text) {
+  const std::optional<double> number = read<double>(text);
+  return number && std::isfinite(*number) ? number : std::nullopt;
+}
+
+}  // namespace
+
+std::string check_seed(const std::string& text) {
+  if (read<std::uint64_t>(text)) return "";
+  return "takes a whole number from 0 to 18446744073709551615, not " + text;
+}
+
+std::string check_positive(const std::string& text) {
+  const std::optional<double> number = finite(text);
+  return number && *number > 0 ? "" : "takes a number above 0, not " + text;
+}
+
+std::function<std::string(const std::string&)> within(double low, double high) {
+  return [low, high](const std::string& text) -> std::string {
+    const std::optional<double> number = finite(text);
+    if (number && *number >= low && *number <= high) return "";
+    char range[64];
+    std::snprintf(range, sizeof range, "takes a number from %g to %g, not ", low, high);
+    return range + text;
+  };
+}
+
+}  // namespace lf::app
