@@ -1,9 +1,11 @@
 #include <fcntl.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
@@ -78,6 +80,8 @@ class Campaign {
   }
 
  private:
+  static constexpr std::chrono::milliseconds look_every{20};
+
   fs::path folder(std::uint64_t seed) const { return out_ / std::to_string(seed); }
 
   // A result that is already there, unless that run was interrupted.
@@ -105,6 +109,10 @@ class Campaign {
     const pid_t child = fork();
     if (child < 0) throw EnvironmentError("no process could be started for a run");
     if (child == 0) {
+      setpgid(
+          0,
+          0);  // a terminal's Ctrl-C goes to the campaign alone, which passes it on: a second one would end a run at once, its record lost
+      prctl(PR_SET_PDEATHSIG, SIGTERM);
       const int null = open("/dev/null", O_WRONLY);
       const int errors = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
       dup2(null, STDOUT_FILENO);
@@ -117,13 +125,15 @@ class Campaign {
 
   void reap() {
     int status = 0;
-    const pid_t child = waitpid(-1, &status, 0);
-    if (child < 0) {  // an interrupt: the runs get it too when it comes from the terminal, and those started otherwise are told here
-      if (interrupted()) {
+    pid_t child = 0;
+    while ((child = waitpid(-1, &status, WNOHANG)) == 0) {
+      if (interrupted() && !told_) {
+        told_ = true;
         for (const auto& [pid, seed] : running_) kill(pid, SIGINT);
       }
-      return;
+      std::this_thread::sleep_for(look_every);
     }
+    if (child < 0) return running_.clear();  // there is none to wait for
     const auto found = running_.find(child);
     if (found == running_.end()) return;
     const std::uint64_t seed = found->second;
@@ -162,6 +172,7 @@ class Campaign {
   fs::path out_;
   std::string program_;
   std::map<pid_t, std::uint64_t> running_;
+  bool told_ = false;  // the runs, that they are interrupted
   std::map<std::uint64_t, record::RunResult> results_;
 };
 

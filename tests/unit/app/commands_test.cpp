@@ -138,6 +138,9 @@ TEST_F(Commands, CtrlCStopsACampaignAndItsRuns) {
   const Said said = interrupt("campaign turn_only --seeds 1-40 --jobs 2 --set time_limit_s=600 --out many", "many/1/can0.log", 1000);
   EXPECT_EQ(said.status, 130) << said.err;
   EXPECT_FALSE(std::filesystem::exists(folder() / "many" / "40"));
+  const Json result = Json::parse(text_of(folder() / "many" / "1" / "result.json"), nullptr, false);
+  ASSERT_FALSE(result.is_discarded()) << "the run's record is lost";
+  EXPECT_EQ(result["failure"]["reason"], "interrupted");
 }
 
 }  // namespace
