@@ -8,7 +8,8 @@ kept time during it:
   - a sleep of the guest's first process was longer by a SYNC period, 4 ms of the guest's time (not with --own-clock: that guest counts instructions); or
   - the test itself says so, in FOLDER/out_of_time, a reason a line (tests/vcan/rig.py: the control thread's wake-ups, the simulated sea); or
   - the time limit came, or the guest died, while sleeps out here were longer by 100 ms, or more programs wanted to run than there are processors for.
-There are three attempts, which together have S seconds. All tests of one run of ctest, which FILE is for, lose 180 s on attempts that were not fair, then
+A failure without an excuse has to come twice: what a guest does in real time is not the same twice, and what is wrong fails again.
+There are three attempts, not counting one failure, which together have S seconds. All tests of one run of ctest, which FILE is for, lose 180 s on attempts that were not fair, then
 there is one attempt each, and after 300 s none: such a machine is not asked for ever.
 Exit status: the test's; 77, with "no machine that keeps time: REASON" as the last line, when no attempt was a fair one.
 """
@@ -94,12 +95,12 @@ def main():
     if lost.seconds > LOST_ON_ALL_S:
         print(f"no machine that keeps time: {lost.seconds:.0f} s were lost to that in the tests before")
         return 77
-    reasons = []
-    for attempt in range(1, ATTEMPTS + 1):
+    reasons, failures = [], 0
+    for attempt in range(1, ATTEMPTS + 2):
         # What was there before an attempt was another's; an attempt that has less than half of the time left could hardly end.
         begin = time.monotonic()
         left = end - begin
-        if reasons and (left < asked.seconds / 2 or lost.seconds > LOST_ON_MORE_S):
+        if reasons and (attempt - failures > ATTEMPTS or left < asked.seconds / 2 or lost.seconds > LOST_ON_MORE_S):
             break
         for name in ("guest_late_ms", "machine_late_ms", "out_of_time"):
             (asked.out / name).unlink(missing_ok=True)
@@ -111,7 +112,11 @@ def main():
         # An attempt that was given what others had left may end for the lack of it.
         reasons = excuses(status, asked.out) or (reasons if status == OVER_TIME else [])
         if not reasons:
-            return status
+            failures += 1
+            if failures == 2 or end - time.monotonic() < asked.seconds / 2:
+                return status
+            print(f"keeping_time: attempt {attempt} failed with {status}; once more, to see whether it does again", flush=True)
+            continue
         lost.add(time.monotonic() - begin)
         print(f"keeping_time: attempt {attempt} ended with {status}, {'; '.join(reasons)}", flush=True)
     print(f"no machine that keeps time: {'; '.join(reasons)}", flush=True)
