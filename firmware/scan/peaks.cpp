@@ -57,7 +57,7 @@ float peak_about(const std::array<float, N>& taps, float centre, const Value& va
   constexpr std::int32_t reach = static_cast<std::int32_t>(N / 2) + 1;
   const auto middle = static_cast<std::int32_t>(std::lround(centre));
   std::array<float, N + 4> around;
-  for (std::int32_t i = -reach - 1; i <= reach + 1; ++i) around[static_cast<std::size_t>(i + reach + 1)] = value(middle + i);
+  for (std::size_t k = 0; k < around.size(); ++k) around[k] = value(middle - reach - 1 + static_cast<std::int32_t>(k));
   for (const std::int32_t step : {0, -1, 1}) {
     std::array<float, N + 2> window;
     std::copy_n(around.begin() + step + 1, N + 2, window.begin());

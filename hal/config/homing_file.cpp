@@ -23,7 +23,7 @@ HomingOffsets read_homing_file(const std::string& path) {
   if (!root.IsMap()) source.refuse(root.Mark(), "not a file of homing offsets");
   HomingOffsets offsets;
   Keys table;
-  constexpr double low = std::numeric_limits<std::int32_t>::min() / 2, high = std::numeric_limits<std::int32_t>::max() / 2;
+  constexpr double low = std::numeric_limits<std::int32_t>::min() / 2.0, high = std::numeric_limits<std::int32_t>::max() / 2.0;
   for (std::size_t i = 0; i < joint_count; ++i) {
     const std::string joint = std::string(joint_name(i));
     table.push_back(key(joint + ".zero_counts", "counts", low, high, &offsets.zero_counts[i], ""));

@@ -103,6 +103,7 @@ class Campaign {
                                    "--render-threads", "1",   "--no-outside",    "--json"};
     for (const std::string& set : options_.set) words.insert(words.end(), {"--set", set});
     std::vector<char*> argv;
+    argv.reserve(words.size() + 1);
     for (std::string& word : words) argv.push_back(word.data());
     argv.push_back(nullptr);
     const std::string log = folder(seed).string() + ".log";
