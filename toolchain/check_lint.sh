@@ -14,6 +14,6 @@ if [ -z "$files" ]; then
   exit 0
 fi
 # Generated headers have to be there before a file that includes them can be read.
-cmake --build build/release --target lf_arm_geometry >/dev/null
+cmake --build build/release --target lf_arm_geometry_header lf_can_map_files >/dev/null
 echo "$files" | xargs -n 1 -P 2 clang-tidy --quiet -p build/release --extra-arg=-Wno-unknown-warning-option
 echo "lint: clean"
