@@ -1,0 +1,238 @@
+// Jogs of single joints by an operator, also of an arm that was found outside its limits.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "tests/hil/operator.hpp"
+
+namespace lf::test {
+namespace {
+
+using mission::Standing;
+using mission::Step;
+using safety::Fault;
+
+// ---- jog ----
+
+class Jog : public testing::TestWithParam<Joint> {};
+
+TEST_P(Jog, MovesItsJointThereAndBackAndNoOther) {
+  Rig rig;
+  ASSERT_TRUE(home(rig)) << rig.story();
+  const auto before = angles_rad(rig);
+  const auto moved = static_cast<std::size_t>(GetParam());
+  // A quarter of the joint's own speed, or what a drive pulses with below the joint's stiction; the jaw opens and closes as fast as ever.
+  const ArmJoint& joint = rig.arm().joints[moved];
+  const double part = GetParam() == Joint::jaw ? 1 : mission::jog_speed_fraction;
+  const double fast_rad_s = 1.4 * std::max(part * joint.velocity_rad_s, joint.stiction_rad_s);
+  for (const double by_rad : {0.1, -0.2, 0.1}) {
+    const auto from = angles_rad(rig);
+    ASSERT_TRUE(jog(rig, GetParam(), by_rad));
+    rig.run_for(0.02);
+    EXPECT_EQ(rig.mission().standing(), Standing::jogging);
+    double fastest = 0;
+    const Time began = rig.now();
+    while (rig.mission().standing() == Standing::jogging && rig.now() - began < Duration::from_s(20)) {
+      rig.step();
+      fastest = std::max(fastest, rig.fastest_joint_rad_s());
+    }
+    ASSERT_EQ(rig.mission().standing(), Standing::ready) << rig.story();
+    // Where it is done is where it was to go: the jaw's play, and the arm's following at the end of a move.
+    EXPECT_NEAR(angle_rad(rig, GetParam()), from[moved] + by_rad, 0.012);
+    EXPECT_GT(fastest, standing_rad_s);
+    EXPECT_LT(fastest, fast_rad_s) << "nobody sees the end of such a move";
+    auto others = angles_rad(rig);
+    others[moved] = from[moved];
+    EXPECT_LT(farthest_apart(others, from), 0.005);
+  }
+  EXPECT_NEAR(angle_rad(rig, GetParam()), before[moved], 0.02);
+  EXPECT_EQ(rig.step_now(), Step::ready) << rig.story();
+}
+
+std::string name_of(const testing::TestParamInfo<Joint>& test) {
+  constexpr std::array names{"Slew", "Shoulder", "Elbow", "Roll", "Jaw"};
+  return names[static_cast<std::size_t>(test.param)];
+}
+
+INSTANTIATE_TEST_SUITE_P(OfEachJoint, Jog, testing::Values(Joint::slew, Joint::shoulder, Joint::elbow, Joint::roll, Joint::jaw), name_of);
+
+TEST(JogInTheSameTick, AsAnotherIsRefusedAndTheFirstIsDoneOnce) {
+  Rig rig;
+  ASSERT_TRUE(home(rig)) << rig.story();
+  const double slew_rad = angle_rad(rig, Joint::slew), roll_rad = angle_rad(rig, Joint::roll);
+  ASSERT_TRUE(jog(rig, Joint::slew, 0.1));
+  EXPECT_FALSE(jog(rig, Joint::slew, 0.1));
+  EXPECT_FALSE(jog(rig, Joint::roll, 0.2));
+  ASSERT_TRUE(finish_jog(rig));
+  rig.run_for(2);
+  EXPECT_NEAR(angle_rad(rig, Joint::slew), slew_rad + 0.1, 0.01);
+  EXPECT_NEAR(angle_rad(rig, Joint::roll), roll_rad, 0.005);
+  EXPECT_EQ(rig.controller().orders_refused(), 2u);
+}
+
+TEST(JogInTheSameTick, AsTheStartIsRefused) {
+  Rig rig(press_only());
+  ASSERT_TRUE(home(rig)) << rig.story();
+  ASSERT_TRUE(give(rig, Command::start));
+  EXPECT_FALSE(jog(rig, Joint::slew, 0.1));
+  ASSERT_TRUE(rig.run_to_end()) << rig.story();
+  EXPECT_EQ(rig.step_now(), Step::done) << rig.story();
+}
+
+TEST(JogUnderWay, IsNotReplaced) {
+  for (const Joint joint : {Joint::elbow, Joint::jaw}) {
+    Rig rig;
+    ASSERT_TRUE(home(rig)) << rig.story();
+    const double from_rad = angle_rad(rig, joint);
+    ASSERT_TRUE(jog(rig, joint, -0.2));
+    rig.run_for(0.2);
+    EXPECT_FALSE(jog(rig, joint, -0.2)) << rig.story();
+    ASSERT_TRUE(finish_jog(rig));
+    EXPECT_NEAR(angle_rad(rig, joint), from_rad - 0.2, 0.012);
+  }
+}
+
+TEST(JogByTheWrongNumbers, IsRefused) {
+  Rig rig;
+  ASSERT_TRUE(home(rig)) << rig.story();
+  const auto before = angles_rad(rig);
+  for (const double by_rad : {0.36, -0.36, 1e9, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
+    EXPECT_FALSE(jog(rig, Joint::slew, by_rad)) << by_rad;
+  EXPECT_FALSE(jog(rig, static_cast<Joint>(joint_count), 0.1));
+  rig.run_for(1);
+  EXPECT_LT(farthest_apart(angles_rad(rig), before), 0.003);
+}
+
+class JogToTheEnd : public testing::TestWithParam<Joint> {};
+
+// As far as it is let, either way: never out of the limits, nor against a stop.
+TEST_P(JogToTheEnd, StopsBeforeIt) {
+  Rig rig;
+  ASSERT_TRUE(home(rig)) << rig.story();
+  const auto i = static_cast<std::size_t>(GetParam());
+  const ArmJoint& stroke = rig.arm().joints[i];
+  for (const double direction : {1.0, -1.0}) {
+    int jogs = 0;
+    for (double by_rad = 0.35; by_rad > 0.01; by_rad /= 2) {
+      while (jog(rig, GetParam(), direction * by_rad)) {
+        ASSERT_LT(++jogs, 60);
+        ASSERT_TRUE(finish_jog(rig)) << rig.story();
+        EXPECT_GE(angle_rad(rig, GetParam()), stroke.lower_rad);
+        EXPECT_LE(angle_rad(rig, GetParam()), stroke.upper_rad);
+      }
+    }
+    const double end_rad = direction > 0 ? stroke.upper_rad : stroke.lower_rad;
+    EXPECT_NEAR(angle_rad(rig, GetParam()), end_rad, 0.07) << "it could have gone on";
+  }
+  EXPECT_EQ(rig.mission().standing(), Standing::ready) << rig.story();
+}
+
+INSTANTIATE_TEST_SUITE_P(OfTheWristAndTheJaw, JogToTheEnd, testing::Values(Joint::roll, Joint::jaw), name_of);
+
+TEST(JogOnHold, GoesOnToItsEnd) {
+  for (const Joint joint : {Joint::slew, Joint::jaw}) {
+    Rig rig;
+    ASSERT_TRUE(home(rig)) << rig.story();
+    const double from_rad = angle_rad(rig, joint);
+    ASSERT_TRUE(jog(rig, joint, 0.2));
+    rig.run_for(0.25);
+    ASSERT_TRUE(give(rig, Command::hold));
+    rig.run_for(halt_time_s);
+    const double held_rad = angle_rad(rig, joint);
+    rig.run_for(10);
+    EXPECT_NEAR(angle_rad(rig, joint), held_rad, 0.003);
+    EXPECT_LT(held_rad, from_rad + 0.19) << "there was nothing left to hold";
+    ASSERT_TRUE(give(rig, Command::resume));
+    ASSERT_TRUE(run_until(rig, Standing::ready, 20)) << rig.story();
+    EXPECT_NEAR(angle_rad(rig, joint), from_rad + 0.2, 0.012);
+  }
+}
+
+TEST(AbortOfAJog, Stows) {
+  Rig rig;
+  ASSERT_TRUE(home(rig)) << rig.story();
+  ASSERT_TRUE(jog(rig, Joint::slew, 0.3));
+  rig.run_for(0.5);
+  ASSERT_EQ(rig.mission().standing(), Standing::jogging);
+  ASSERT_TRUE(give(rig, Command::abort));
+  ASSERT_TRUE(rig.run_to_end(60)) << rig.story();
+  EXPECT_EQ(rig.step_now(), Step::failed) << rig.story();
+  EXPECT_EQ(rig.outcome().fault, Fault::aborted);
+}
+
+TEST(AJobAfterJogs, IsDone) {
+  Rig rig(turn_only());
+  ASSERT_TRUE(home(rig)) << rig.story();
+  for (const Joint joint : {Joint::slew, Joint::roll, Joint::jaw}) {
+    ASSERT_TRUE(jog(rig, joint, 0.15));
+    ASSERT_TRUE(finish_jog(rig)) << rig.story();
+  }
+  ASSERT_TRUE(give(rig, Command::start));
+  ASSERT_TRUE(rig.run_to_end()) << rig.story();
+  EXPECT_EQ(rig.step_now(), Step::done) << rig.story();
+}
+
+// ---- an arm found outside its limits ----
+
+constexpr double slew_soft_limit_rad = -1.5508;  // shared/safety/limits.yaml
+
+Rig::Make slew_at(double rad) {
+  return [rad](hal::SimConfig& truth) { truth.world.start_rad[0] = rad; };
+}
+
+TEST(AnArmOutsideItsLimits, IsJoggedBackAndThenWorks) {
+  const double found_rad = slew_soft_limit_rad - 0.016;
+  Rig rig(press_only(), 1, {}, slew_at(found_rad));
+  ASSERT_TRUE(home(rig)) << rig.story();
+  EXPECT_EQ(rig.count(Fault::joint_limit), 1u) << rig.story();
+  EXPECT_FALSE(rig.outcome().ended);
+  rig.run_for(5);
+  EXPECT_NEAR(angle_rad(rig, Joint::slew), found_rad, 0.002) << "power alone moved it";
+  EXPECT_FALSE(give(rig, Command::start)) << "a job out of there";
+  EXPECT_FALSE(jog(rig, Joint::slew, -0.003)) << "away from the limits";
+
+  ASSERT_TRUE(jog(rig, Joint::shoulder, 0.05)) << "others are not in its way";
+  ASSERT_TRUE(finish_jog(rig)) << rig.story();
+  ASSERT_TRUE(jog(rig, Joint::slew, 0.004)) << "closer, and still outside";
+  ASSERT_TRUE(finish_jog(rig)) << rig.story();
+  EXPECT_NEAR(angle_rad(rig, Joint::slew), found_rad + 0.004, 0.002);
+  EXPECT_FALSE(give(rig, Command::start));
+  ASSERT_TRUE(jog(rig, Joint::slew, 0.1));
+  ASSERT_TRUE(finish_jog(rig)) << rig.story();
+  EXPECT_NEAR(angle_rad(rig, Joint::slew), found_rad + 0.104, 0.005);
+  EXPECT_FALSE(jog(rig, Joint::slew, -0.1)) << "and out again";
+
+  ASSERT_TRUE(give(rig, Command::start));
+  ASSERT_TRUE(rig.run_to_end()) << rig.story();
+  EXPECT_EQ(rig.step_now(), Step::done) << rig.story();
+  EXPECT_EQ(rig.count(Fault::joint_limit), 1u);
+}
+
+TEST(AnArmOutsideItsLimits, DoesNotSetOutOnAJob) {
+  const double found_rad = slew_soft_limit_rad - 0.016;
+  Rig rig(press_only(), 1, {}, slew_at(found_rad));
+  rig.start();
+  ASSERT_TRUE(rig.run_to_end(60)) << rig.story();
+  EXPECT_EQ(rig.step_now(), Step::stopped) << rig.story();
+  EXPECT_EQ(rig.outcome().fault, Fault::joint_limit);
+  rig.run_for(1);
+  EXPECT_NEAR(angle_rad(rig, Joint::slew), found_rad, 0.002);
+  ASSERT_TRUE(give(rig, Command::reset));
+  ASSERT_TRUE(run_until(rig, Standing::idle, 1));
+  ASSERT_TRUE(home(rig)) << rig.story();
+  EXPECT_TRUE(jog(rig, Joint::slew, 0.1));
+}
+
+TEST(AnArmOutsideItsLimits, CanBeStowedByAnAbort) {
+  Rig rig({}, 1, {}, slew_at(slew_soft_limit_rad - 0.016));
+  ASSERT_TRUE(home(rig)) << rig.story();
+  ASSERT_TRUE(give(rig, Command::abort));
+  ASSERT_TRUE(rig.run_to_end(60)) << rig.story();
+  EXPECT_EQ(rig.step_now(), Step::failed) << rig.story();
+  EXPECT_GT(angle_rad(rig, Joint::slew), slew_soft_limit_rad);
+}
+
+}  // namespace
+}  // namespace lf::test
