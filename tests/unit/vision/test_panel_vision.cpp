@@ -117,7 +117,7 @@ TEST(AnalysePanel, WorksWithFloatingPointTrapsSet) {
   const Docked& d = docked();
   const int before = fegetexcept();
   feclearexcept(FE_ALL_EXCEPT);
-  feenableexcept(FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW);
+  if (feenableexcept(FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW) == -1) GTEST_SKIP() << "this processor has no traps";  // most of ARM's
   const PanelResult result = analyse_panel(d.request, d.still.view(), d.cloud, d.config);
   const int during = fegetexcept();
   fedisableexcept(FE_ALL_EXCEPT);
