@@ -26,6 +26,7 @@
 #include "hal/vehicle/operator_client.hpp"
 #include "shared/arm/arm_description.hpp"
 #include "shared/input_error.hpp"
+#include "shared/version/version.hpp"
 
 namespace lf::hal {
 
@@ -248,6 +249,7 @@ int run(int argc, char** argv) {
   app.add_flag("--check", options.check, "Only check the configuration");
   app.add_flag("--run", options.run_job, "Start the job at once and end with it");
   app.add_flag("--json", options.json, "Answer in JSON");
+  app.set_version_flag("--version", version_line("lanternfishd"), "Print which build this is");
   app.fallthrough();
   app.require_subcommand(0, 1);
   add_simple_requests(app, options, action);

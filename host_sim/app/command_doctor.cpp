@@ -12,8 +12,8 @@
 #include "hal/config/limits_file.hpp"
 #include "hal/config/share.hpp"
 #include "host_sim/app/command.hpp"
-#include "host_sim/app/version.hpp"
 #include "host_sim/scenario/instance.hpp"
+#include "shared/version/version.hpp"
 
 namespace lf::app {
 
@@ -122,7 +122,7 @@ int doctor(bool json) {
                 {"opencv", cv::getVersionString()},
                 {"findings", list}});
   } else {
-    print("%-14s       lanternfish %s (%s), %s, %s\n", "version", version(), revision(), compiler(), build_type());
+    print("%-14s       %s\n", "version", version_line("lanternfish").c_str());
   }
   return all ? done : environment;
 }

@@ -8,10 +8,10 @@
 #include "host_sim/app/checks.hpp"
 #include "host_sim/app/command.hpp"
 #include "host_sim/app/interrupt.hpp"
-#include "host_sim/app/version.hpp"
 #include "host_sim/record/run_folder.hpp"
 #include "host_sim/serve/serve_session.hpp"
 #include "shared/input_error.hpp"
+#include "shared/version/version.hpp"
 
 namespace lf::app {
 

@@ -1,7 +1,7 @@
 #include <memory>
 
 #include "host_sim/app/command.hpp"
-#include "host_sim/app/version.hpp"
+#include "shared/version/version.hpp"
 
 namespace lf::app {
 
@@ -14,7 +14,7 @@ void add_version(CLI::App& app, Action& action) {
       if (*json) {
         print_json({{"version", version()}, {"revision", revision()}, {"compiler", compiler()}, {"build", build_type()}});
       } else {
-        print("lanternfish %s (%s), %s, %s\n", version(), revision(), compiler(), build_type());
+        print("%s\n", version_line("lanternfish").c_str());
       }
       return int(done);
     };

@@ -10,6 +10,7 @@
 #include "host_sim/app/command.hpp"
 #include "host_sim/record/file_sink.hpp"
 #include "shared/input_error.hpp"
+#include "shared/version/version.hpp"
 
 namespace lf::app {
 
@@ -51,6 +52,7 @@ int run_command(int argc, char** argv) {
   CLI::App app{"Lanternfish: an underwater robot that works on panels, and the simulator it is proven in", "lanternfish"};
   app.require_subcommand(1);
   app.get_formatter()->column_width(34);
+  app.set_version_flag("--version", version_line("lanternfish"), "Print which build this is");
   Action action;
   add_commands(app, action);
   try {

@@ -16,8 +16,8 @@
 #include "host_sim/app/interrupt.hpp"
 #include "host_sim/app/run_recorder.hpp"
 #include "host_sim/app/run_result.hpp"
-#include "host_sim/app/version.hpp"
 #include "host_sim/scenario/instance.hpp"
+#include "shared/version/version.hpp"
 
 namespace lf::app {
 

@@ -34,8 +34,8 @@ class Commands : public Program {
 };
 
 TEST_F(Commands, EveryCommandHasHelpAndHelpIsNoFailure) {
-  for (const char* command :
-       {"", "run", "campaign", "scenarios", "reach", "peaks", "plane", "markers", "ik", "bench", "doctor", "version"}) {
+  for (const char* command : {"", "run", "campaign", "serve", "render-frames", "scenarios", "reach", "peaks", "plane", "markers", "ik",
+                              "bench", "doctor", "version"}) {
     const Said said = run(std::string(command) + " --help");
     EXPECT_EQ(said.status, 0) << command;
     EXPECT_NE(said.out.find("--help"), std::string::npos) << command;
@@ -45,6 +45,7 @@ TEST_F(Commands, EveryCommandHasHelpAndHelpIsNoFailure) {
 
 TEST_F(Commands, VersionAndScenariosTell) {
   EXPECT_TRUE(json_of("version").contains("version"));
+  EXPECT_EQ(run("--version").out, run("version").out);
   const Json scenarios = json_of("scenarios");
   ASSERT_TRUE(scenarios.is_array());
   EXPECT_GE(scenarios.size(), 7u);
