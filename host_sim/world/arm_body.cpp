@@ -12,6 +12,8 @@ constexpr std::size_t jaw = std::size_t(Joint::jaw);
 constexpr int finger_b_link = 5;
 
 // The joint that drives Bullet's link: the two fingers share the jaw's.
+// Of the arm's bodies; the base is Bullet's link -1.
+std::size_t body_of(int link) { return std::size_t(link) + 1; }
 std::size_t joint_of(int link) { return link == finger_b_link ? jaw : std::size_t(link); }
 
 // One screw turns both fingers: torques are given for each, and it holds the sum.
@@ -31,7 +33,7 @@ ArmBody::ArmBody(const ArmDescription& arm, const scene::Scene& scene, const Con
   set_up_links();
   part_.finish_links();
   for (int link = -1; link < bullet_links; ++link) {
-    const auto body = std::size_t(link + 1);
+    const auto body = body_of(link);
     part_.add_collider(link, make_collision_shape(scene[body], link_from_frame_[body]), int(body), config.restitution, Friction::free);
   }
   for (std::size_t i = 0; i < joint_count; ++i) {
@@ -46,7 +48,7 @@ void ArmBody::set_up_links() {
   link_from_frame_[0] = Pose::Identity();  // the base does not move: its mass does not matter
   principal_kg_m2_[0] = Vec3::Ones();
   for (int link = 0; link < bullet_links; ++link) {
-    const auto index = std::size_t(link + 1);
+    const auto index = body_of(link);
     const ArmLink& description = arm_.links[index];
     const Eigen::SelfAdjointEigenSolver<Mat3> axes(description.inertia_kg_m2);
     Pose com_from_frame = Pose::Identity();
@@ -58,7 +60,7 @@ void ArmBody::set_up_links() {
     const ArmJoint& joint = joint_before(arm_, link);
     const int parent = parent_of(link);
     const Pose& frame = link_from_frame_[index];
-    const Pose parent_frame_from_joint = link_from_frame_[std::size_t(parent + 1)].inverse() * joint.parent_from_joint;
+    const Pose parent_frame_from_joint = link_from_frame_[body_of(parent)].inverse() * joint.parent_from_joint;
     const Mat3 frame_from_parent_frame = (parent_frame_from_joint.linear() * frame.linear()).transpose();
     const Mat3 frame_from_link = frame.linear().transpose();
     part_.body().setupRevolute(link, description.mass_kg, to_bullet(principal_kg_m2_[index]), parent, to_bullet(frame_from_parent_frame),
@@ -102,7 +104,7 @@ void ArmBody::before_step() {
     const std::size_t joint = joint_of(link);
     const double drag_nm_s = config_.joint_drag_nm_s * (joint == jaw ? 0.1 : 1.0);
     body.addJointTorque(link, stall_nm_[joint] / driven_links(joint) - drag_nm_s * body.getJointVel(link));
-    body.addLinkForce(link, btVector3(0, 0, arm_.links[std::size_t(link) + 1].wet_weight_n));
+    body.addLinkForce(link, btVector3(0, 0, arm_.links[body_of(link)].wet_weight_n));
   }
 }
 
@@ -128,8 +130,8 @@ double ArmBody::kinetic_energy_j() const {
   turn[0] = speed[0] = Vec3::Zero();
   double energy = 0;
   for (int link = 0; link < bullet_links; ++link) {
-    const auto index = std::size_t(link + 1);
-    const auto parent = std::size_t(parent_of(link) + 1);
+    const auto index = body_of(link);
+    const auto parent = body_of(parent_of(link));
     const Pose frame = part_.base_from_link(link);
     const Pose origin = base_from_link(index);
     const Vec3 axis = origin.linear() * joint_before(arm_, link).axis.normalized();
