@@ -1,6 +1,8 @@
 #!/usr/bin/env bash
 # Installs the Debian packages of toolchain/packages.txt that are missing, says what it does, and does nothing the second time.
-# Usage: toolchain/setup.sh [--tests]    --tests: those of packages_tests.txt, too; without one of these its tests are skipped
+# Usage: toolchain/setup.sh [--tests] [--aarch64]
+#   --tests    those of packages_tests.txt, too; without one of these its tests are skipped
+#   --aarch64  those of packages_aarch64.txt, too
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 
@@ -38,7 +40,19 @@ install() {
 
 mapfile -t missing < <(missing_of "$here/packages.txt")
 [ ${#missing[@]} -eq 0 ] || install "${missing[@]}"
-if [ "${1:-}" = --tests ]; then
-  mapfile -t missing < <(missing_of "$here/packages_tests.txt")
-  [ ${#missing[@]} -eq 0 ] || install "${missing[@]}" || echo "setup: without them, the tests that need them are skipped." >&2
-fi
+for word in "$@"; do
+  case $word in
+    --tests)
+      mapfile -t missing < <(missing_of "$here/packages_tests.txt")
+      [ ${#missing[@]} -eq 0 ] || install "${missing[@]}" || echo "setup: without them, the tests that need them are skipped." >&2
+      ;;
+    --aarch64)
+      mapfile -t missing < <(missing_of "$here/packages_aarch64.txt")
+      [ ${#missing[@]} -eq 0 ] || install "${missing[@]}"
+      ;;
+    *)
+      sed -n 's/^# Usage: /usage: /p' "$0" >&2
+      exit 2
+      ;;
+  esac
+done
