@@ -19,32 +19,16 @@ constexpr float narrow_curvature = 0.2225f;
 constexpr std::int32_t narrow_half_width = 5;
 constexpr std::array<float, 2 * narrow_half_width + 1> narrow_taps = {-1, -2, -3, 0, 3, 6, 3, 0, -3, -2, -1};
 
-constexpr std::int32_t wide_half_width = 9;
-constexpr std::array<float, 2 * wide_half_width + 1> wide_taps = {-1, -2, -3, -4, -5, -2, 1, 4, 7, 10, 7, 4, 1, -2, -5, -4, -3, -2, -1};
-
-// A step of the background across the stripe, over the sum of both sides. A panel's arris has 0.15 to 0.3, a marker's border 0.7; bare metal, shading and
-// glow stay below.
-constexpr float edge_step = 0.12f;
-constexpr float albedo_step = 0.4f;  // a mark's border: what is lit less by day is lit less by the laser
-constexpr std::int32_t step_half_width = 4;
-// A stripe at an edge. Its flank falls as that of a Gaussian this wide: 1.25 px in clear water, more in turbid, and the lens adds its blur.
-constexpr float flank_sigma = 1.6f;
-constexpr float flank_least = 8.0f / 255;      // of full scale: below it a pixel says nothing of a flank
-constexpr float flank_relative_noise = 0.03f;  // speckle and what the model leaves out
-constexpr float filter_weight = 500.0f;        // of the filter's position, as a pixel's: (grey levels x px)^2
-constexpr float largest_edge_shift_px = 0.8f;  // of flanks against filter: what differs more is no single stripe
-constexpr float texture = 0.55f;               // changes beside the step, over it: more is a texture, which the stripe need not share
-constexpr float mixed_pixel = 0.2f;            // of the step: a pixel further than this from its side's level lies on the edge
-
 // Where the parabola through three equidistant values has its vertex, from the middle one.
 float vertex(const float (&y)[3]) { return 0.5f * (y[0] - y[2]) / (y[0] - 2 * y[1] + y[2]); }
 
-// Where the filter's response to `window` is highest, from the window's middle; nothing where the middle is no maximum.
-template <std::size_t N>
-std::optional<float> response_vertex(const std::array<float, N>& taps, const std::array<float, N + 2>& window) {
+using NarrowWindow = std::array<float, narrow_taps.size() + 2>;
+
+// Where the narrow filter's response to `window` is highest, from the window's middle; nothing where the middle is no maximum.
+std::optional<float> narrow_vertex(const NarrowWindow& window) {
   float response[3] = {};
   for (std::size_t shift = 0; shift < 3; ++shift) {
-    for (std::size_t k = 0; k < N; ++k) response[shift] += taps[k] * window[k + shift];
+    for (std::size_t k = 0; k < narrow_taps.size(); ++k) response[shift] += narrow_taps[k] * window[k + shift];
   }
   const bool maximum = response[1] >= response[0] && response[1] >= response[2] && 2 * response[1] > response[0] + response[2];
   if (!maximum || !(response[1] > 0)) return std::nullopt;
@@ -52,16 +36,16 @@ std::optional<float> response_vertex(const std::array<float, N>& taps, const std
 }
 
 // The same about `centre` of a line with the values `value(row)`; `centre` where there is no maximum within a pixel of it.
-template <std::size_t N, class Value>
-float peak_about(const std::array<float, N>& taps, float centre, const Value& value) {
-  constexpr std::int32_t reach = static_cast<std::int32_t>(N / 2) + 1;
+template <class Value>
+float narrow_peak_about(float centre, const Value& value) {
+  constexpr std::int32_t reach = narrow_half_width + 1;
   const auto middle = static_cast<std::int32_t>(std::lround(centre));
-  std::array<float, N + 4> around;
+  std::array<float, narrow_taps.size() + 4> around;
   for (std::size_t k = 0; k < around.size(); ++k) around[k] = value(middle - reach - 1 + static_cast<std::int32_t>(k));
   for (const std::int32_t step : {0, -1, 1}) {
-    std::array<float, N + 2> window;
-    std::copy_n(around.begin() + step + 1, N + 2, window.begin());
-    if (const auto offset = response_vertex(taps, window)) return static_cast<float>(middle + step) + *offset;
+    NarrowWindow window;
+    std::copy_n(around.begin() + step + 1, window.size(), window.begin());
+    if (const auto offset = narrow_vertex(window)) return static_cast<float>(middle + step) + *offset;
   }
   return centre;
 }
@@ -252,13 +236,17 @@ bool BasicPeakDetector<Pixel, MaxLength>::measure(const Strip& s, std::int32_t l
   const std::int32_t line = s.first + lane;
   const Plateau plateau = find_plateau(s, line, maximum.row);
   float position = plateau.length > few_clipped ? plateau_centre(s, line, plateau) : response_peak(s, lane, maximum.row);
-  if (background_step(s, line, static_cast<std::int32_t>(std::lround(position))) > edge_step) {
-    const float flanks = edge_peak(s, line, position);
-    if (!(std::abs(flanks - position) <= largest_edge_shift_px)) {
-      ++counters_.ambiguous;
-      return false;
+  const auto middle = static_cast<std::int32_t>(std::lround(position));
+  if (s.off.valid() && middle >= StripeProfile::half && middle + StripeProfile::half < s.length) {
+    if (const StripeProfile about = profile(s, line, middle); has_edges(about)) {
+      auto offset = centre_on_marks(about);
+      if (!offset) offset = centre_by_flanks(about, position - static_cast<float>(middle));
+      if (!offset) {
+        ++counters_.ambiguous;
+        return false;
+      }
+      position = static_cast<float>(middle) + *offset;
     }
-    position = flanks;
   }
   peak.u_px = config_.axis == PeakAxis::column ? static_cast<float>(line) : position;
   peak.v_px = config_.axis == PeakAxis::column ? position : static_cast<float>(line);
@@ -279,10 +267,7 @@ float BasicPeakDetector<Pixel, MaxLength>::response_peak(const Strip& s, std::in
   const bool narrow = 2 * wide[1] - wide[0] - wide[2] >= narrow_curvature * wide[1];
   const std::int32_t line = s.first + lane;
   const auto raw = [&](std::int32_t v) { return static_cast<float>(difference(s, line, v)); };
-  const auto over_background = [&](std::int32_t v) { return raw(v) / (background(s, line, v) + floor()); };
-  const float found = narrow ? peak_about(narrow_taps, centre, raw) : centre;
-  if (!(background_step(s, line, row) > albedo_step)) return found;
-  return narrow ? peak_about(narrow_taps, found, over_background) : peak_about(wide_taps, found, over_background);
+  return narrow ? narrow_peak_about(centre, raw) : centre;
 }
 
 // A wide stripe's noisy top has several maxima that are one stripe: those within `exclusion` of the peak, or of its plateau.
@@ -311,72 +296,18 @@ auto BasicPeakDetector<Pixel, MaxLength>::next_maximum(const Strip& s, std::int3
   return highest > 0 ? maximum_at(s, lane, highest_row, static_cast<float>(highest)) : Maximum{};
 }
 
-// How much the laser-off image differs between both sides of a row, over their sum; 0 where that is dark or noise.
 template <class Pixel, std::int32_t MaxLength>
-float BasicPeakDetector<Pixel, MaxLength>::background_step(const Strip& s, std::int32_t line, std::int32_t row) const {
-  if (!s.off.valid() || row < 5 || row + 5 >= s.length) return 0;
-  std::int32_t before = 0, after = 0;
-  for (std::int32_t i = 2; i <= 5; ++i) {
-    before += pixel(s.off, line, row - i);
-    after += pixel(s.off, line, row + i);
+StripeProfile BasicPeakDetector<Pixel, MaxLength>::profile(const Strip& s, std::int32_t line, std::int32_t middle) const {
+  const float grey = 255.0f / static_cast<float>(config_.full_scale);
+  StripeProfile about;
+  for (std::int32_t i = 0; i < StripeProfile::rows; ++i) {
+    const std::int32_t row = middle - StripeProfile::half + i, on = pixel(s.on, line, row), off = pixel(s.off, line, row);
+    const auto at = static_cast<std::size_t>(i);
+    about.stripe[at] = grey * static_cast<float>(on - off);
+    about.background[at] = grey * static_cast<float>(off);
+    about.clipped[at] = on >= config_.full_scale;
   }
-  const auto step = static_cast<float>(std::max(before - after, after - before));
-  return step > 6 * floor() ? step / static_cast<float>(before + after) : 0;
-}
-
-// The laser-off image's mean over the line and its neighbours.
-template <class Pixel, std::int32_t MaxLength>
-float BasicPeakDetector<Pixel, MaxLength>::background(const Strip& s, std::int32_t line, std::int32_t row) const {
-  const std::int32_t inside = std::clamp(row, std::int32_t{0}, s.length - 1);
-  const std::int32_t last_line = (config_.axis == PeakAxis::column ? s.off.width : s.off.height) - 1;
-  const std::int32_t sum = pixel(s.off, std::max(line - 1, std::int32_t{0}), inside) + pixel(s.off, line, inside) +
-                           pixel(s.off, std::min(line + 1, last_line), inside);
-  return static_cast<float>(sum) / 3;
-}
-
-// A stripe that crosses an edge is cut off there, or changes its height: a symmetric filter is pulled to its bright side. Each side by itself is a piece of a
-// Gaussian of known width: ln d + v^2 / (2 sigma^2) is a straight line in v with the slope centre / sigma^2. The slopes of both sides are pooled, and the
-// filter's `centre` is one more observation.
-template <class Pixel, std::int32_t MaxLength>
-float BasicPeakDetector<Pixel, MaxLength>::edge_peak(const Strip& s, std::int32_t line, float centre) const {
-  const auto middle = static_cast<std::int32_t>(std::lround(centre));
-  const auto off = [&](std::int32_t v) { return static_cast<float>(pixel(s.off, line, std::clamp(v, std::int32_t{0}, s.length - 1))); };
-  const auto change = [&](std::int32_t v) { return std::abs(off(v + 1) - off(v)); };
-  std::int32_t edge = middle;  // the step is between this row and the next
-  for (std::int32_t v = middle - step_half_width; v < middle + step_half_width; ++v) {
-    if (change(v) > change(edge)) edge = v;
-  }
-  const float step = std::abs(off(edge + 2) - off(edge - 1));
-  float elsewhere = 0;
-  for (std::int32_t v = middle - step_half_width; v < middle + step_half_width; ++v) {
-    if (v < edge - 1 || v > edge + 1) elsewhere += change(v);
-  }
-  if (elsewhere > texture * step) return centre;
-  const std::int32_t last_before = change(edge - 1) > mixed_pixel * step ? edge - 1 : edge;
-  const std::int32_t first_after = change(edge + 1) > mixed_pixel * step ? edge + 2 : edge + 1;
-
-  constexpr float variance = flank_sigma * flank_sigma;
-  float moment = filter_weight * (centre - static_cast<float>(middle)) / variance, weight = filter_weight;
-  const auto add_side = [&](std::int32_t first, std::int32_t last) {
-    float w = 0, wx = 0, wy = 0, wxx = 0, wxy = 0;
-    for (std::int32_t v = std::max(first, std::int32_t{0}); v <= std::min(last, s.length - 1); ++v) {
-      const float d = static_cast<float>(difference(s, line, v)) / static_cast<float>(config_.full_scale);
-      if (d <= flank_least || pixel(s.on, line, v) >= config_.full_scale) continue;
-      const float grey = 255 * d, x = static_cast<float>(v - middle), y = std::log(grey) + x * x / (2 * variance);
-      const float sure = grey * grey / (1 + flank_relative_noise * flank_relative_noise * grey * grey);
-      w += sure;
-      wx += sure * x;
-      wy += sure * y;
-      wxx += sure * x * x;
-      wxy += sure * x * y;
-    }
-    if (!(w > 0)) return;
-    moment += wxy - wx * wy / w;
-    weight += wxx - wx * wx / w;
-  };
-  add_side(middle - step_half_width, last_before);
-  add_side(first_after, middle + step_half_width);
-  return static_cast<float>(middle) + variance * moment / weight;
+  return about;
 }
 
 template <class Pixel, std::int32_t MaxLength>

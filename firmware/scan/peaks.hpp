@@ -5,9 +5,9 @@
 // second derivative in place of the first: on a backscatter skirt the zero-mean Laplacian-of-Gaussian of sigma 2.5-3 px erred a third as much).
 // The filter here is the cubic B-spline's second difference, sigma 2.83 px, 19 taps: -(1 - z^5)^4 / (1 - z)^2, so five shifted rows and two
 // running sums in place of 19 multiplications; its sums wrap around in 16 bits, and the result, below 255 * 68, is exact all the same.
-// A stripe across an edge (a marker's border, the panel's arris, a silhouette) is pulled to its bright side. Where the background shows such a step, the
-// difference is divided by the background (marks), the centre is taken from the flanks on both sides of the step, and what stays unsure is left out: over
-// the sweep of a panel in clear water 0.137 px rms became 0.112, for 0.4 % of the columns. Without ambient light there is no background.
+// A stripe across an edge (a marker's border, the panel's arris, a silhouette) is pulled to its bright side. Where the background shows such a step, its
+// centre is taken from the pattern that it lights, or from the flanks on both sides (edge_stripe.hpp), and what stays unsure is left out. Without ambient light
+// there is no background.
 #pragma once
 
 #include <array>
@@ -16,6 +16,7 @@
 #include <span>
 #include <type_traits>
 
+#include "firmware/scan/edge_stripe.hpp"
 #include "shared/messages/image.hpp"
 #include "shared/messages/static_vector.hpp"
 
@@ -55,7 +56,6 @@ struct PixelView {
 };
 
 inline constexpr std::int32_t max_peaks_per_line = 4;
-inline constexpr float background_floor = 4.0f / 255;  // of full scale: below it a background is noise, not albedo
 
 enum class PeakAxis : std::uint8_t { column, row };
 
@@ -133,10 +133,7 @@ class BasicPeakDetector {
   // False, and counted, when the stripe is at an edge that leaves its centre unsure.
   bool measure(const Strip& s, std::int32_t lane, const Maximum& maximum, float ratio, Peak& peak);
   float response_peak(const Strip& s, std::int32_t lane, std::int32_t row) const;
-  float background_step(const Strip& s, std::int32_t line, std::int32_t row) const;
-  float background(const Strip& s, std::int32_t line, std::int32_t row) const;
-  float edge_peak(const Strip& s, std::int32_t line, float centre) const;
-  float floor() const { return background_floor * static_cast<float>(config_.full_scale); }
+  StripeProfile profile(const Strip& s, std::int32_t line, std::int32_t middle) const;
   std::int32_t pixel(const PixelView<Pixel>& image, std::int32_t line, std::int32_t row) const;
   std::int32_t difference(const Strip& s, std::int32_t line, std::int32_t row) const;
   Plateau find_plateau(const Strip& s, std::int32_t line, std::int32_t row) const;

@@ -162,6 +162,48 @@ TEST(Peaks, AStepOfAlbedoUnderTheStripeIsUndone) {
   EXPECT_GT(largest_error(ImageView{even.data(), width, height, width}), 0.5);
 }
 
+// A marker's cells of 3 to 6 px, white and black, under the stripe: its true centre lies on black as often as on white.
+TEST(Peaks, AStripeAcrossAMarkersCellsIsFoundByThePatternItLights) {
+  constexpr int width = 512, height = 120;
+  constexpr double sigma_px = 1.5, daylight = 85, laser = 150;
+  std::mt19937_64 random(31);
+  SCOPED_TRACE("seed 31");
+  std::normal_distribution<double> noise(0, 1);
+  std::vector<std::uint8_t> on(width * height), off(on.size());
+  const auto centre = [](int u) { return 60.0 + 0.007 * u; };
+  std::vector<double> albedo(height);
+  for (int u = 0; u < width; ++u) {
+    if (u % 8 == 0) {
+      bool white = random() % 2 == 0;
+      double border = 0;
+      for (int v = 0; v < height; ++v) {
+        if (v > border) {
+          const double covered = std::clamp(v - border, 0.0, 1.0);  // of the pixel, by the new cell
+          albedo[v] = (white ? 1 - covered : covered) * 0.95 + 0.05;
+          white = !white;
+          border += 3 + static_cast<double>(random() % 300) / 100;
+        } else {
+          albedo[v] = white ? 1 : 0.05;
+        }
+      }
+    }
+    for (int v = 0; v < height; ++v) {
+      const double stripe = laser * std::exp(-0.5 * std::pow((v - centre(u)) / sigma_px, 2));
+      const auto i = static_cast<std::size_t>(v) * width + u;
+      off[i] = static_cast<std::uint8_t>(std::clamp<long>(std::lround(albedo[v] * daylight + noise(random)), 0, 255));
+      on[i] = static_cast<std::uint8_t>(std::clamp<long>(std::lround(albedo[v] * (daylight + stripe) + noise(random)), 0, 255));
+    }
+  }
+  auto detector = std::make_unique<PeakDetector>();
+  std::vector<Peak> peaks(width);
+  const std::size_t count =
+      detector->detect(ImageView{on.data(), width, height, width}, ImageView{off.data(), width, height, width}, peaks);
+  EXPECT_GT(count, 0.9 * width);
+  double squares = 0;
+  for (std::size_t i = 0; i < count; ++i) squares += std::pow(peaks[i].v_px - centre(static_cast<int>(peaks[i].u_px)), 2);
+  EXPECT_LT(std::sqrt(squares / static_cast<double>(count)), 0.15) << "the filter and the flanks alone err by 1.46";
+}
+
 // The panel's edge: the stripe's true centre lies just below it, and above there is nothing to light, or another face that the sheet passes by.
 TEST(Peaks, AStripeCutOffByAnEdgeIsFoundByItsFlank) {
   constexpr int width = 128, height = 120;
