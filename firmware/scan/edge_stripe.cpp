@@ -10,21 +10,21 @@ namespace {
 constexpr std::int32_t half = StripeProfile::half;
 
 // Steps of the background. Against both sides' sum, a panel's arris has 0.15 to 0.3, a marker's border 0.7; bare metal, shading and glow stay below.
-constexpr float least_change = 24.0f;      // over the four rows of either side, grey levels: below it is noise
-constexpr float edge_step = 0.12f;         // between both sides of the middle, over their sum
-constexpr float marks = 0.25f;             // all changes from row to row, over the brightest row
-constexpr float least_mark = 12.0f;        // grey levels from one row to the next
-constexpr float marks_floor = 8.0f;        // grey levels: of a background that is darker, changes are noise
+constexpr float least_change = 24.0f;  // over the four rows of either side, grey levels: below it is noise
+constexpr float edge_step = 0.12f;     // between both sides of the middle, over their sum
+constexpr float marks = 0.25f;         // all changes from row to row, over the brightest row
+constexpr float least_mark = 12.0f;    // grey levels from one row to the next
+constexpr float marks_floor = 8.0f;    // grey levels: of a background that is darker, changes are noise
 
 // A stripe on marks. Of this width in clear water, with the lens' blur; in turbid it is wider, and the fit says so.
 constexpr float marks_sigma = 1.5f;
-constexpr float pixel_noise = 2.0f;           // grey levels, of the difference of two images
-constexpr float relative_noise = 0.05f;       // speckle, and pixels that are a part of two cells
-constexpr float largest_mean_square = 5.0f;   // of what the fit leaves, over the noise's
-constexpr std::int32_t least_rows = 8;        // that are not clipped
-constexpr float largest_veil = 0.9f;          // of the darkest row: what the water itself sends back; black paint is not quite black
-constexpr std::int32_t quarters = 4;          // candidates a pixel
-constexpr std::int32_t farthest = 14;         // candidates to either side of the middle
+constexpr float pixel_noise = 3.0f;          // grey levels, of the difference of two images
+constexpr float relative_noise = 0.05f;      // speckle, and pixels that are a part of two cells
+constexpr float largest_mean_square = 3.0f;  // of what the fit leaves, over the noise's
+constexpr std::int32_t least_rows = 8;       // that are not clipped
+constexpr float largest_veil = 0.9f;         // of the darkest row: what the water itself sends back; black paint is not quite black
+constexpr std::int32_t quarters = 4;         // candidates a pixel
+constexpr std::int32_t farthest = 14;        // candidates to either side of the middle
 
 // A stripe at one edge. Its flank falls as that of a Gaussian this wide: 1.25 px in clear water, more in turbid, and the lens adds its blur.
 constexpr float flank_sigma = 1.6f;
