@@ -129,6 +129,27 @@ std::vector<std::pair<std::string, std::string>> conditions(const scenario::Samp
       {"laser's mounting error", formatted("%.2f mm, %.3f deg", 1e3 * s.laser_shift_m.norm(), deg_from_rad(s.laser_turn_rad.norm()))}};
 }
 
+record::DrawnRecord drawn(const scenario::Sample& s) {
+  const auto metres = [](const Vec3& v) { return std::vector<double>{v.x(), v.y(), v.z()}; };
+  const auto degrees = [](const Vec3& v) { return std::vector<double>{deg_from_rad(v.x()), deg_from_rad(v.y()), deg_from_rad(v.z())}; };
+  std::vector<double> joint_offset_deg;
+  for (const double offset_rad : s.joint_offset_rad) joint_offset_deg.push_back(deg_from_rad(offset_rad));
+  return {{"docking_shift_m", metres(s.docking_shift_m)},
+          {"docking_turn_deg", degrees(s.docking_turn_rad)},
+          {"valve_start_deg", {deg_from_rad(s.valve_start_rad)}},
+          {"valve_friction_nm", {s.valve_friction_nm}},
+          {"attenuation_per_m", {s.attenuation_per_m}},
+          {"camera_noise_grey", {s.camera_noise_grey}},
+          {"lamps_lit", {s.lamps_lit ? 1.0 : 0.0}},
+          {"camera_shift_m", metres(s.camera_shift_m)},
+          {"camera_turn_deg", degrees(s.camera_turn_rad)},
+          {"laser_shift_m", metres(s.laser_shift_m)},
+          {"laser_turn_deg", degrees(s.laser_turn_rad)},
+          {"joint_offset_deg", std::move(joint_offset_deg)},
+          {"marker_shift_m", metres(s.marker_shift_m)},
+          {"marker_turn_deg", {deg_from_rad(s.marker_turn_rad)}}};
+}
+
 std::string contact_note(const world::UnintendedContact& contact) {
   static constexpr std::array<const char*, scene::body_count> names{"vehicle", "slew",        "upper arm",     "forearm",
                                                                     "wrist",   "finger a",    "finger b",      "panel",

@@ -33,6 +33,7 @@ std::map<std::string, std::uint64_t> rejected_inputs(const Controller& controlle
 
 // The drawn quantities, for the report.
 std::vector<std::pair<std::string, std::string>> conditions(const scenario::Sample& sample);
+record::DrawnRecord drawn(const scenario::Sample& sample);
 
 std::string contact_note(const world::UnintendedContact& contact);
 

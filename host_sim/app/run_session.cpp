@@ -82,6 +82,7 @@ class Session {
     result.scenario = request_.scenario.name;
     result.seed = request_.seed;
     result.version = version();
+    result.drawn = drawn(sample_);
     result.failure = failure_of(*controller_, platform_->world(), recorder_, request_.scenario, interrupted());
     recorder_.finish(platform_->world(), result.failure ? result.failure->reason : "");
     result.phases = recorder_.phases();

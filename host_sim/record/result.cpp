@@ -16,6 +16,16 @@ Json to_json(const TimesRecord& times) {
   return {{"p50", number(times.p50)}, {"p99", number(times.p99)}, {"p999", number(times.p999)}, {"max", number(times.max)}};
 }
 
+Json to_json(const DrawnRecord& drawn) {
+  Json json = Json::object();
+  for (const auto& [name, numbers] : drawn) {
+    Json values = Json::array();
+    for (const double value : numbers) values.push_back(number(value));
+    json[name] = values.size() == 1 ? values[0] : values;
+  }
+  return json;
+}
+
 Json to_json(const PhaseRecord& phase) {
   return {{"name", phase.name}, {"start_s", number(phase.start_s)}, {"end_s", number(phase.end_s)}, {"outcome", phase.outcome}};
 }
@@ -81,6 +91,7 @@ std::string result_json(const RunResult& result) {
   document["success"] = result.success;
   document["failure"] = nullptr;
   if (result.failure) document["failure"] = {{"phase", result.failure->phase}, {"reason", result.failure->reason}};
+  document["drawn"] = to_json(result.drawn);
   document["phases"] = list(result.phases);
   document["tasks"] = list(result.tasks);
   document["errors"] = to_json(result.errors);

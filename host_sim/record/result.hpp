@@ -92,12 +92,16 @@ struct FailureRecord {
   std::string reason;
 };
 
+// What the seed drew, by key, the unit in its name: one number, or one an axis or a joint.
+using DrawnRecord = std::map<std::string, std::vector<double>>;
+
 struct RunResult {
   std::string scenario;
   std::uint64_t seed = 0;
   std::string version;
   bool success = false;
   std::optional<FailureRecord> failure;
+  DrawnRecord drawn;
   std::vector<PhaseRecord> phases;
   std::vector<TaskRecord> tasks;
   ErrorRecord errors;

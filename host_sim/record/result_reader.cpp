@@ -103,6 +103,17 @@ void read_host(const Json& document, RunResult& result) {
   read(time, "real_time_factor", result.time.real_time_factor);
 }
 
+DrawnRecord drawn_from(const Json& json) {
+  const auto value_of = [](const Json& value) { return value.is_null() ? unknown : value.get<double>(); };
+  DrawnRecord drawn;
+  for (const auto& [name, value] : json.items()) {
+    std::vector<double>& numbers = drawn[name];
+    if (!value.is_array()) numbers.push_back(value_of(value));
+    for (std::size_t i = 0; value.is_array() && i < value.size(); ++i) numbers.push_back(value_of(value[i]));
+  }
+  return drawn;
+}
+
 RunResult result_from(const Json& document) {
   RunResult result;
   document.at("scenario").get_to(result.scenario);
@@ -114,6 +125,7 @@ RunResult result_from(const Json& document) {
     read(failure, "phase", result.failure->phase);
     read(failure, "reason", result.failure->reason);
   }
+  result.drawn = drawn_from(section(document, "drawn"));
   for (const Json& phase : section(document, "phases")) result.phases.push_back(phase_from(phase));
   for (const Json& task : section(document, "tasks")) result.tasks.push_back(task_from(task));
   result.errors = errors_from(section(document, "errors"));

@@ -15,6 +15,7 @@ RunResult demo_result() {
   result.seed = 7;
   result.version = "0.1.0";
   result.success = true;
+  result.drawn = {{"valve_friction_nm", {1.5}}, {"docking_shift_m", {0.004, -0.012, 0.019}}};
   const char* names[] = {"boot",       "home",         "unfold",     "sweep",        "rebuild panel", "reach valve", "grip",
                          "turn valve", "verify valve", "press left", "press centre", "press right",   "look again",  "stow"};
   const double lengths_s[] = {1.2, 3.1, 6.5, 19.8, 0.7, 9.4, 2.2, 12.6, 1.4, 7.7, 5.9, 6.1, 20.3, 8.8};
@@ -26,7 +27,7 @@ RunResult demo_result() {
   result.tasks = {{"turn_valve", "", 0, 90, 89.1, true},
                   {"press_button", "left", 1, unknown, unknown, true},
                   {"press_button", "centre", 1, unknown, unknown, true}};
-  result.errors = {0.061, 0.42, 1.31, 0.44, 0.58, 1.72, 0.124, 0.991};
+  result.errors = {0.061, 0.42, 1.31, 0.44, 0.58, 1.72, 0.124, 0.083, 0.991};
   result.contact = {38.2, 0};
   result.core.heap_calls = 0;
   result.core.controller_bytes = 412'336;

@@ -21,14 +21,15 @@ TEST(Result, HasTheKeysThatUsersScriptAgainst) {
   RunResult result = test::demo_run().result;
   result.docking = DockingRecord{1, 4, 0.5, 60};
   const auto json = nlohmann::json::parse(result_json(result));
-  for (const char* key : {"scenario", "seed", "version", "success", "failure", "phases", "tasks", "errors", "docking", "contact", "core",
-                          "bus", "host", "time", "digest"}) {
+  for (const char* key : {"scenario", "seed", "version", "success", "failure", "drawn", "phases", "tasks", "errors", "docking", "contact",
+                          "core", "bus", "host", "time", "digest"}) {
     EXPECT_TRUE(json.contains(key)) << key;
   }
   for (const char* key :
        {"plane_normal_deg", "plane_offset_mm", "valve_base_mm", "handle_angle_deg", "cloud_rms_mm", "peak_rms_px", "peak_recall"}) {
     EXPECT_TRUE(json["errors"].contains(key)) << key;
   }
+  EXPECT_EQ(json["drawn"], (nlohmann::json{{"valve_friction_nm", 1.5}, {"docking_shift_m", {0.004, -0.012, 0.019}}}));
   EXPECT_EQ(json["phases"][1], (nlohmann::json{{"name", "home"}, {"start_s", 1.2}, {"end_s", 4.3}, {"outcome", "done"}}));
   EXPECT_EQ(json["tasks"][0], (nlohmann::json{{"task", "turn_valve"}, {"target_deg", 90.0}, {"reached_deg", 89.1}, {"done", true}}));
   EXPECT_EQ(json["tasks"][1], (nlohmann::json{{"task", "press_button"}, {"button", "left"}, {"presses", 1}, {"done", true}}));
