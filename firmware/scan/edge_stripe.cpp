@@ -38,6 +38,12 @@ constexpr float mixed_pixel = 0.2f;            // of the step: a pixel further t
 
 float square(float x) { return x * x; }
 
+// The place in an array of what is `places` from its middle.
+constexpr std::size_t at(std::int32_t middle, std::int32_t places) {
+  const std::int32_t index = middle + places;
+  return static_cast<std::size_t>(index);
+}
+
 // exp(-(k / 4)^2 / (2 sigma^2)) for each distance that a row and a candidate can have.
 constexpr std::size_t distances = quarters * half + farthest + 1;
 constexpr auto bell = [] {
@@ -111,7 +117,7 @@ std::optional<float> centre_on_marks(const StripeProfile& profile) {
     const float veil = height > 0 ? std::clamp(-background_free / height, 0.0f, largest_veil * darkest) : largest_veil * darkest;
     const float with_data = ad - veil * bd, with_itself = aa - 2 * veil * ab + veil * veil * bb;
     const bool sound = with_data > 0 && with_itself > 0;
-    left[static_cast<std::size_t>(candidate + farthest)] = sound ? squares - square(with_data) / with_itself : squares;
+    left[at(farthest, candidate)] = sound ? squares - square(with_data) / with_itself : squares;
   }
   const auto best = static_cast<std::size_t>(std::min_element(left.begin(), left.end()) - left.begin());
   if (best == 0 || best + 1 == left.size() || !(left[best] < largest_mean_square * static_cast<float>(used))) return std::nullopt;
@@ -122,7 +128,7 @@ std::optional<float> centre_on_marks(const StripeProfile& profile) {
 
 std::optional<float> centre_by_flanks(const StripeProfile& profile, float centre) {
   if (!(step_across(profile) > edge_step)) return centre;
-  const auto off = [&](std::int32_t row) { return profile.background[static_cast<std::size_t>(half + row)]; };
+  const auto off = [&](std::int32_t row) { return profile.background[at(half, row)]; };
   const auto change = [&](std::int32_t row) { return std::abs(off(row + 1) - off(row)); };
   std::int32_t edge = 0;  // the step is between this row and the next
   for (std::int32_t row = -flank_reach; row < flank_reach; ++row) {
@@ -142,7 +148,7 @@ std::optional<float> centre_by_flanks(const StripeProfile& profile, float centre
   const auto add_side = [&](std::int32_t first, std::int32_t last) {
     float w = 0, wx = 0, wy = 0, wxx = 0, wxy = 0;
     for (std::int32_t row = first; row <= last; ++row) {
-      const auto i = static_cast<std::size_t>(half + row);
+      const std::size_t i = at(half, row);
       const float d = profile.stripe[i];
       if (d <= flank_least || profile.clipped[i]) continue;
       const float x = static_cast<float>(row), y = std::log(d) + x * x / (2 * variance);

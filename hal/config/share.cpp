@@ -27,16 +27,16 @@ fs::path share_folder() {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   if (!error) {
-    const fs::path installed = program.parent_path().parent_path() / "share" / "lanternfish";
+    fs::path installed = program.parent_path().parent_path() / "share" / "lanternfish";
     if (holds_files(installed)) return installed;
   }
-  if (const fs::path source = fs::path(LANTERNFISH_SOURCE_DIR) / "shared"; holds_files(source)) return source;
+  if (fs::path source = fs::path(LANTERNFISH_SOURCE_DIR) / "shared"; holds_files(source)) return source;
   throw InputError("the shipped files are not beside the program, nor in " LANTERNFISH_SOURCE_DIR
                    "/shared; set LANTERNFISH_SHARE to their folder");
 }
 
 fs::path find_file(const std::string& name, const fs::path& folder) {
-  const fs::path path(name);
+  fs::path path(name);
   if (path.is_absolute()) return path;
   std::error_code ignored;
   if (fs::exists(folder / path, ignored)) return folder / path;

@@ -92,11 +92,10 @@ double ValueReader::number(const YAML::Node& node) const {
   if (text.starts_with('+')) text.remove_prefix(1);
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool infinite = text.ends_with(".inf") || text.ends_with(".Inf") || text.ends_with(".INF");
   if (text == ".nan" || text == ".NaN" || text == ".NAN")
     value = std::nan("");
-  else if (text.ends_with(".inf") || text.ends_with(".Inf") || text.ends_with(".INF"))
-    value = INFINITY;
-  else if (error == std::errc::result_out_of_range)
+  else if (infinite || error == std::errc::result_out_of_range)
     value = INFINITY;
   else if (error != std::errc() || end != text.data() + text.size())
     wrong_type(node);
@@ -214,8 +213,9 @@ std::string suggest_path(const std::string& path, const std::vector<Key>& table)
     if (edit_distance(last_name(path), last_name(key.path)) <= 1) elsewhere.push_back(key.path);
   }
   std::vector<std::string> names;
+  names.reserve(here.size());
   for (const std::string& candidate : here) names.push_back(last_name(candidate));
-  if (const std::string near = suggestion(last_name(path), names); !near.empty()) return near;
+  if (std::string near = suggestion(last_name(path), names); !near.empty()) return near;
   if (!elsewhere.empty()) return "; did you mean '" + elsewhere.front() + "'?";
   return "";
 }

@@ -75,7 +75,7 @@ std::vector<pcl::PointIndices> groups_of(const PclCloud& points, const PanelClus
 
 // `share` of the way through the sorted values; reorders them.
 double percentile(std::vector<double>& values, double share) {
-  const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1) + 0.5);
+  const auto rank = static_cast<std::ptrdiff_t>(std::lround(share * static_cast<double>(values.size() - 1)));
   std::nth_element(values.begin(), values.begin() + rank, values.end());
   return values[static_cast<std::size_t>(rank)];
 }

@@ -63,7 +63,8 @@ class Map {
     const int cell = static_cast<int>(std::lround(ReachGrid::step_m * px_per_m));
     for (int row = 0; row < grid.rows; ++row) {
       for (int column = 0; column < grid.columns; ++column) {
-        const cv::Vec3b colour = colour_of(grid.tilt_rad[static_cast<std::size_t>(row * grid.columns + column)]);
+        const cv::Vec3b colour = colour_of(
+            grid.tilt_rad[static_cast<std::size_t>(row) * static_cast<std::size_t>(grid.columns) + static_cast<std::size_t>(column)]);
         picture_(cv::Rect(corner_.x + column * cell, corner_.y + row * cell, cell, cell)).setTo(colour);
       }
     }

@@ -63,7 +63,7 @@ std::optional<CameraRay> camera_ray(const CameraIntrinsics& intrinsics, const st
 
 CameraRays::CameraRays(const CameraIntrinsics& intrinsics, const std::optional<FlatPort>& port) : port_(port.has_value()) {
   const int padded_width = (intrinsics.width + lane_count - 1) / lane_count * lane_count;
-  stride_ = static_cast<std::size_t>(padded_width + 2);
+  stride_ = static_cast<std::size_t>(padded_width) + 2;
   const std::size_t count = stride_ * static_cast<std::size_t>(intrinsics.height + 2);
   for (auto* values : {&node_.direction_x, &node_.direction_y, &node_.origin_x, &node_.origin_y}) values->assign(count, 0.f);
   origin_z_ = port ? static_cast<float>(port->distance_m + port->thickness_m) : 0.f;

@@ -10,7 +10,7 @@ constexpr float depth_step = 0.04f;     // of the depth; a plane seen at 45 degr
 
 void PixelStore::resize(int image_width, int image_height, std::size_t channel_count) {
   width = image_width, height = image_height, channels = channel_count;
-  stride = static_cast<std::size_t>((width + lane_count - 1) / lane_count * lane_count);
+  stride = (static_cast<std::size_t>(width) + lane_count - 1) / lane_count * lane_count;
   plane = stride * static_cast<std::size_t>(height) + 2 * lane_count;
   for (auto* values : {&depth_m, &normal_x, &normal_y, &normal_z}) values->resize(plane);
   for (auto* values : {&shape, &reached, &lit}) values->resize(plane);

@@ -106,8 +106,8 @@ std::vector<float> LampHaze::row(int v) const {
 void LampHaze::add(const std::vector<float>& row, float u, float step, Lanes range_m, RgbLanes& radiance) {
   const Lanes knot = clamp(range_m / (range_m + range_scale_m) * ((knots - 1) / last_share), 0.f, knots - 1.001f);
   for (int i = 0; i < lane_count; ++i) {
-    const float place =
-        std::clamp((u + step * static_cast<float>(i)) / spacing_px, 0.f, static_cast<float>(row.size() / node_size) - 1.001f);
+    const std::size_t nodes = row.size() / node_size;
+    const float place = std::clamp((u + step * static_cast<float>(i)) / spacing_px, 0.f, static_cast<float>(nodes) - 1.001f);
     const auto node = static_cast<std::size_t>(place), k = static_cast<std::size_t>(knot[i]);
     const float right = place - static_cast<float>(node), on = knot[i] - static_cast<float>(k);
     for (std::size_t band = 0; band < 3; ++band) {

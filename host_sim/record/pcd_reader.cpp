@@ -152,7 +152,8 @@ class PcdReader {
 
   void read_rows(std::string_view bytes) {
     const std::size_t size = row_size();
-    if (bytes.size() / size < header_.points) refuse_truncated(bytes.size() / size);
+    const std::size_t whole = size > 0 ? bytes.size() / size : 0;
+    if (whole < header_.points) refuse_truncated(whole);
     std::vector<std::size_t> offsets;
     std::size_t offset = 0;
     for (std::size_t i = 0; i < header_.types.size(); ++i) {

@@ -74,7 +74,7 @@ std::string V4l2Target::map_buffers() {
     void* data = calls().map(fd_, buffer.length, buffer.m.offset, error);
     if (data == nullptr) return because("its buffers cannot be mapped", error);
     buffers_[i] = {data, buffer.length, false};
-    if (buffer.length < static_cast<std::size_t>(width_ * height_)) return "its buffers are too small";
+    if (buffer.length < static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_)) return "its buffers are too small";
   }
   std::uint32_t type = output;
   if (const int e = calls().ioctl(fd_, VIDIOC_STREAMON, &type); e < 0) return because("does not start", e);
@@ -95,11 +95,7 @@ void V4l2Target::close() {
 }
 
 void V4l2Target::set_away(bool away) {
-  if (away) {
-    close();
-  } else if (fd_ < 0 && !open().empty()) {
-    close();
-  }
+  if (away || (fd_ < 0 && !open().empty())) close();
 }
 
 bool V4l2Target::deliver(const RecordInfo& info, std::span<const std::uint8_t> pixels) {
