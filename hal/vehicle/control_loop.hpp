@@ -46,16 +46,23 @@ struct LoopRings {
   SpscRing<PortFault, 64> vision_faults;  // vision -> control
 };
 
-// Times the core's work.
+// Times the core's work: by the clock, and in processor time.
 class TimingProbe {
  public:
-  void begin() { began_ = monotonic_now(); }
-  void end() { took_.add(monotonic_now() - began_); }
+  void begin() {
+    began_ = monotonic_now();
+    thread_began_ = thread_time_now();
+  }
+  void end() {
+    worked_.add(thread_time_now() - thread_began_);
+    took_.add(monotonic_now() - began_);
+  }
   const LatencyHistogram& took() const { return took_; }
+  const LatencyHistogram& worked() const { return worked_; }
 
  private:
-  Time began_;
-  LatencyHistogram took_;
+  Time began_, thread_began_;
+  LatencyHistogram took_, worked_;
 };
 
 // Reports leave every so many ticks.
@@ -86,6 +93,7 @@ class ControlLoop {
   bool stopped() const { return stopping_ && ticks_left_ == 0; }
   const Controller& controller() const { return *controller_; }
   const LatencyHistogram& tick_latency() const { return probe_.took(); }
+  const LatencyHistogram& tick_work() const { return probe_.worked(); }
   std::uint64_t ticks() const { return ticks_; }
 
   template <class Fill>

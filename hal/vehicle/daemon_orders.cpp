@@ -165,6 +165,7 @@ Json Daemon::give_order(const mission::Order& order) {
 Json Daemon::latencies() const {
   return {{"wake_up_us", histogram_json(platform_.clock().lateness())},
           {"tick_us", histogram_json(control_.tick_latency())},
+          {"tick_cpu_us", histogram_json(control_.tick_work())},
           {"image_us", histogram_json(vision_.image_latency())}};
 }
 
@@ -194,6 +195,7 @@ std::string Daemon::summary() const {
   };
   add("wake-up lateness", platform_.clock().lateness());
   add("control tick", control_.tick_latency());
+  add("tick, processor", control_.tick_work());
   add("image", vision_.image_latency());
   text += "ticks " + std::to_string(now.control.ticks) + ", missed " + std::to_string(now.control.missed_ticks) + ", page faults " +
           std::to_string(now.control.page_faults) + ", heap calls " + std::to_string(now.control.heap_calls) + "\n";

@@ -9,13 +9,16 @@ namespace {
 
 constexpr std::int64_t ns_per_s = 1'000'000'000;
 
-}  // namespace
-
-Time monotonic_now() {
+Time read(clockid_t clock) {
   timespec now{};
-  clock_gettime(CLOCK_MONOTONIC, &now);
+  clock_gettime(clock, &now);
   return Time::from_ns(now.tv_sec * ns_per_s + now.tv_nsec);
 }
+
+}  // namespace
+
+Time monotonic_now() { return read(CLOCK_MONOTONIC); }
+Time thread_time_now() { return read(CLOCK_THREAD_CPUTIME_ID); }
 
 void sleep_until(Time t) {
   const timespec until{static_cast<time_t>(t.ns() / ns_per_s), static_cast<long>(t.ns() % ns_per_s)};

@@ -9,6 +9,8 @@
 namespace lf::hal {
 
 Time monotonic_now();
+// Processor time of the calling thread. Kernels that account by the timer's ticks (User Mode Linux) have it in steps of those.
+Time thread_time_now();
 // Sleeps until `t` on CLOCK_MONOTONIC; returns at once when it is past. Signals do not shorten it.
 void sleep_until(Time t);
 

@@ -40,7 +40,7 @@ def loop(programs):
     print(daemon.text() + (folder / "nodes.out").read_text())
 
     latency = after["latency"]
-    for what in ("wake_up_us", "tick_us"):
+    for what in ("wake_up_us", "tick_us", "tick_cpu_us"):
         print(f"{what}: " + ", ".join(f"{k} {v:.0f}" for k, v in latency[what].items()))
     if out := os.environ.get("LANTERNFISH_GUEST_OUT"):
         (pathlib.Path(out) / "loop.json").write_text(json.dumps(after, indent=1))

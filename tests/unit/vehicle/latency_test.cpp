@@ -5,6 +5,7 @@
 #include <random>
 #include <vector>
 
+#include "hal/vehicle/control_loop.hpp"
 #include "hal/vehicle/latency_histogram.hpp"
 #include "hal/vehicle/tick_clock.hpp"
 
@@ -69,6 +70,23 @@ TEST(TickClock, KeepsItsGridAndCountsWhatItMissed) {
   EXPECT_EQ((late - first).ns() % 2'000'000, 0);
   EXPECT_GT(clock.wait(), late);
   EXPECT_EQ(clock.lateness().count(), 4u);
+}
+
+TEST(TimingProbe, TellsWorkFromWaiting) {
+  TimingProbe probe;
+  probe.begin();
+  sleep_until(monotonic_now() + Duration::from_ms(40));
+  probe.end();
+  EXPECT_GE(probe.took().max_us(), 40'000);
+  EXPECT_LT(probe.worked().max_us(), 20'000);
+
+  probe.begin();
+  for (const Time end = thread_time_now() + Duration::from_ms(30); thread_time_now() < end;) {
+  }
+  probe.end();
+  EXPECT_GE(probe.worked().max_us(), 30'000);
+  EXPECT_EQ(probe.took().count(), 2u);
+  EXPECT_EQ(probe.worked().count(), 2u);
 }
 
 }  // namespace
