@@ -19,7 +19,7 @@ struct StripeProfile {
   Rows<bool> clipped{};      // at full scale with the laser on
 };
 
-// Whether the background is even enough for the filter: no step across the middle, no marks.
+// Whether the background has a step across the middle, or marks: the filter alone is pulled there.
 bool has_edges(const StripeProfile& profile);
 
 // The centre, in rows from the middle, of a Gaussian that is weighted by the background, less the water's veil, as its albedo: what is lit less by day is lit

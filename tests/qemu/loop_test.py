@@ -17,6 +17,7 @@ from rig import expect  # noqa: E402
 
 SECONDS = 2.0  # of motion
 READING_S = 3600  # more than the guest's clock ever jumps while programs are read, however slow this machine is
+rig.ANSWER_S = READING_S  # the daemon reads its program while it answers
 rig.LATE_MS = 0.2  # on a clock that counts instructions, what is later than this waited for a file of this machine
 
 

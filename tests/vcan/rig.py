@@ -48,6 +48,7 @@ def shell(command):
     subprocess.run(command, shell=True, check=True)
 
 
+ANSWER_S = 5  # an answer of the daemon may take
 PROCESSES = []  # of programs under test
 LATEST = {}  # the control thread's wake-ups in the last status of each daemon: process -> ms
 
@@ -97,7 +98,7 @@ class Daemon:
 
     def ask(self, what, **arguments):
         with socket.socket(socket.AF_UNIX) as s:
-            s.settimeout(5)
+            s.settimeout(ANSWER_S)
             s.connect(str(self.socket))
             s.sendall(json.dumps({"do": what, **arguments}).encode() + b"\n")
             reply = b""
@@ -120,7 +121,7 @@ class Daemon:
             expect(self.process.poll() is None, f"the daemon ended ({self.process.returncode}):\n{self.text()}")
             try:
                 return self.ask("status")
-            except (FileNotFoundError, ConnectionRefusedError):
+            except (FileNotFoundError, ConnectionRefusedError, TimeoutError):
                 return None
         wait_for("the operator interface", answers, limit_s)
         return time.monotonic() - self.started
