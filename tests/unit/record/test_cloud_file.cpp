@@ -11,13 +11,13 @@
 
 #include "host_sim/record/cloud_file.hpp"
 #include "shared/input_error.hpp"
-#include "tests/unit/record/temporary_folder.hpp"
+#include "tests/unit/temporary_folder.hpp"
 
 namespace lf::record {
 namespace {
 
-using test::message_of;
-using test::TemporaryFolder;
+using lf::test::message_of;
+using lf::test::TemporaryFolder;
 using testing::HasSubstr;
 
 std::vector<CloudPoint> random_cloud(std::size_t count) {

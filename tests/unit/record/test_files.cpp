@@ -6,13 +6,13 @@
 #include "host_sim/record/candump_log.hpp"
 #include "host_sim/record/run_folder.hpp"
 #include "shared/input_error.hpp"
-#include "tests/unit/record/temporary_folder.hpp"
+#include "tests/unit/temporary_folder.hpp"
 
 namespace lf::record {
 namespace {
 
-using test::message_of;
-using test::TemporaryFolder;
+using lf::test::message_of;
+using lf::test::TemporaryFolder;
 using testing::EndsWith;
 using testing::HasSubstr;
 

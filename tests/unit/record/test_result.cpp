@@ -9,12 +9,12 @@
 #include "host_sim/record/result.hpp"
 #include "shared/input_error.hpp"
 #include "tests/unit/record/demo_run.hpp"
-#include "tests/unit/record/temporary_folder.hpp"
+#include "tests/unit/temporary_folder.hpp"
 
 namespace lf::record {
 namespace {
 
-using test::message_of;
+using lf::test::message_of;
 using testing::HasSubstr;
 
 TEST(Result, HasTheKeysThatUsersScriptAgainst) {

@@ -169,10 +169,10 @@ TEST(Peaks, AStripeAcrossAMarkersCellsIsFoundByThePatternItLights) {
   std::mt19937_64 random(31);
   SCOPED_TRACE("seed 31");
   std::normal_distribution<double> noise(0, 1);
-  std::vector<std::uint8_t> on(width * height), off(on.size());
-  const auto centre = [](int u) { return 60.0 + 0.007 * u; };
+  test::StripeImage image{width, height, std::vector<std::uint8_t>(width * height), std::vector<std::uint8_t>(width * height), {}};
   std::vector<double> albedo(height);
   for (int u = 0; u < width; ++u) {
+    image.centre_px.push_back(60.0 + 0.007 * u);
     if (u % 8 == 0) {
       bool white = random() % 2 == 0;
       double border = 0;
@@ -188,20 +188,16 @@ TEST(Peaks, AStripeAcrossAMarkersCellsIsFoundByThePatternItLights) {
       }
     }
     for (int v = 0; v < height; ++v) {
-      const double stripe = laser * std::exp(-0.5 * std::pow((v - centre(u)) / sigma_px, 2));
+      const double stripe = laser * std::exp(-0.5 * std::pow((v - image.centre_px[u]) / sigma_px, 2));
       const auto i = static_cast<std::size_t>(v) * width + u;
-      off[i] = static_cast<std::uint8_t>(std::clamp<long>(std::lround(albedo[v] * daylight + noise(random)), 0, 255));
-      on[i] = static_cast<std::uint8_t>(std::clamp<long>(std::lround(albedo[v] * (daylight + stripe) + noise(random)), 0, 255));
+      image.off[i] = static_cast<std::uint8_t>(std::clamp<long>(std::lround(albedo[v] * daylight + noise(random)), 0, 255));
+      image.on[i] = static_cast<std::uint8_t>(std::clamp<long>(std::lround(albedo[v] * (daylight + stripe) + noise(random)), 0, 255));
     }
   }
-  auto detector = std::make_unique<PeakDetector>();
-  std::vector<Peak> peaks(width);
-  const std::size_t count =
-      detector->detect(ImageView{on.data(), width, height, width}, ImageView{off.data(), width, height, width}, peaks);
-  EXPECT_GT(count, 0.9 * width);
-  double squares = 0;
-  for (std::size_t i = 0; i < count; ++i) squares += std::pow(peaks[i].v_px - centre(static_cast<int>(peaks[i].u_px)), 2);
-  EXPECT_LT(std::sqrt(squares / static_cast<double>(count)), 0.15) << "the filter and the flanks alone err by 1.46";
+  const Score score = ours(image);
+  EXPECT_GT(score.recall, 0.9);
+  EXPECT_EQ(score.wrong, 0);
+  EXPECT_LT(score.rms_px, 0.15) << "the filter and the flanks alone err by 1.46";
 }
 
 // The panel's edge: the stripe's true centre lies just below it, and above there is nothing to light, or another face that the sheet passes by.
@@ -212,30 +208,25 @@ TEST(Peaks, AStripeCutOffByAnEdgeIsFoundByItsFlank) {
   SCOPED_TRACE("seed 12");
   std::normal_distribution<double> noise(0, 1);
   for (const double beyond : {125.0, 35.0}) {  // a brighter face, and open water
-    std::vector<std::uint8_t> on(width * height), off(on.size());
-    const auto centre = [](int u) { return 60.0 + 0.013 * u; };
-    const auto edge = [&](int u) {
-      return centre(u) - 1.4 + 0.006 * u;
-    };  // 1.4 to 0.6 px above it: from one sigma down to less than a half
+    test::StripeImage image{width, height, std::vector<std::uint8_t>(width * height), std::vector<std::uint8_t>(width * height), {}};
+    for (int u = 0; u < width; ++u) image.centre_px.push_back(60.0 + 0.013 * u);
+    // 1.4 to 0.6 px above it: from one sigma down to less than a half.
+    const auto edge = [&](int u) { return image.centre_px[u] - 1.4 + 0.006 * u; };
     for (int v = 0; v < height; ++v) {
       for (int u = 0; u < width; ++u) {
         const double covered = std::clamp(v + 0.5 - edge(u), 0.0, 1.0);  // of the pixel, by the panel
         const double scene = daylight * covered + beyond * (1 - covered);
-        const double d = v - centre(u);
+        const double d = v - image.centre_px[u];
         const auto i = static_cast<std::size_t>(v) * width + u;
-        off[i] = static_cast<std::uint8_t>(std::lround(scene + noise(random)));
-        on[i] = static_cast<std::uint8_t>(
+        image.off[i] = static_cast<std::uint8_t>(std::lround(scene + noise(random)));
+        image.on[i] = static_cast<std::uint8_t>(
             std::lround(scene + covered * laser * std::exp(-0.5 * d * d / (sigma_px * sigma_px)) + noise(random)));
       }
     }
-    auto detector = std::make_unique<PeakDetector>();
-    std::vector<Peak> peaks(width);
-    const std::size_t count =
-        detector->detect(ImageView{on.data(), width, height, width}, ImageView{off.data(), width, height, width}, peaks);
-    EXPECT_GT(count, 0.85 * width);
-    double squares = 0;
-    for (std::size_t i = 0; i < count; ++i) squares += std::pow(peaks[i].v_px - centre(static_cast<int>(peaks[i].u_px)), 2);
-    EXPECT_LT(std::sqrt(squares / static_cast<double>(count)), 0.32) << "beyond the edge " << beyond << "; the filter alone errs by 0.38";
+    const Score score = ours(image);
+    EXPECT_GT(score.recall, 0.85);
+    EXPECT_EQ(score.wrong, 0);
+    EXPECT_LT(score.rms_px, 0.32) << "beyond the edge " << beyond << "; the filter alone errs by 0.38";
   }
 }
 

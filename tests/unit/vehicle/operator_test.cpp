@@ -20,8 +20,8 @@
 #include "hal/vehicle/service_manager.hpp"
 #include "hal/vehicle/tick_clock.hpp"
 #include "hal/vehicle/vehicle_config.hpp"
+#include "tests/unit/temporary_folder.hpp"
 #include "tests/unit/vehicle/fake_linux.hpp"
-#include "tests/unit/vehicle/temporary_folder.hpp"
 
 namespace lf::hal {
 namespace {

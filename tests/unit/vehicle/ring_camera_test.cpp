@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "hal/vehicle/tick_clock.hpp"
-#include "tests/unit/vehicle/temporary_folder.hpp"
+#include "tests/unit/temporary_folder.hpp"
 
 namespace lf::hal {
 namespace {

@@ -8,7 +8,7 @@
 #include "firmware/arm/actuator.hpp"
 #include "hal/config/homing_file.hpp"
 #include "shared/input_error.hpp"
-#include "tests/unit/vehicle/temporary_folder.hpp"
+#include "tests/unit/temporary_folder.hpp"
 
 namespace lf::hal {
 namespace {

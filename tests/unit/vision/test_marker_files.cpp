@@ -90,7 +90,7 @@ TEST_F(MarkerFiles, BadImagesAndVideosAreRefusedInOneLine) {
       {write("empty.png", ""), "neither an image nor a video"},
       {write("half.mp4", video.substr(0, video.size() / 2)), "truncated"},
       {path("missing.png"), "cannot be read"},
-      {folder_.string(), "is a folder"},
+      {folder_.path().string(), "is a folder"},
   };
   for (const auto& [file, message] : files) {
     const std::string text = refusal([&] { find_markers_in_files({file}, {}); });

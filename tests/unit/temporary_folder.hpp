@@ -10,7 +10,7 @@
 #include <iterator>
 #include <string>
 
-namespace lf::record::test {
+namespace lf::test {
 
 class TemporaryFolder {
  public:
@@ -26,6 +26,7 @@ class TemporaryFolder {
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
+  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
   std::filesystem::path write(const std::string& name, const std::string& bytes) const {
     std::ofstream(path_ / name, std::ios::binary) << bytes;
     return path_ / name;
@@ -51,4 +52,4 @@ std::string message_of(const Act& act) {
   return "";
 }
 
-}  // namespace lf::record::test
+}  // namespace lf::test
