@@ -113,8 +113,8 @@ std::optional<float> centre_on_marks(const StripeProfile& profile) {
       ad += wa * profile.stripe[i];
       bd += wb * profile.stripe[i];
     }
-    const float height = ad * bb - bd * ab, background_free = bd * aa - ad * ab;  // both times the same positive determinant
-    const float veil = height > 0 ? std::clamp(-background_free / height, 0.0f, largest_veil * darkest) : largest_veil * darkest;
+    const float height = ad * bb - bd * ab, flat = bd * aa - ad * ab;  // of a and of b, both times the same positive determinant
+    const float veil = height > 0 ? std::clamp(-flat / height, 0.0f, largest_veil * darkest) : largest_veil * darkest;
     const float with_data = ad - veil * bd, with_itself = aa - 2 * veil * ab + veil * veil * bb;
     const bool sound = with_data > 0 && with_itself > 0;
     left[at(farthest, candidate)] = sound ? squares - square(with_data) / with_itself : squares;

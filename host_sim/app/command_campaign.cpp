@@ -110,9 +110,8 @@ class Campaign {
     const pid_t child = fork();
     if (child < 0) throw EnvironmentError("no process could be started for a run");
     if (child == 0) {
-      setpgid(
-          0,
-          0);  // a terminal's Ctrl-C goes to the campaign alone, which passes it on: a second one would end a run at once, its record lost
+      // A terminal's Ctrl-C goes to the campaign alone, which passes it on: a second one would end a run at once, its record lost.
+      setpgid(0, 0);
       prctl(PR_SET_PDEATHSIG, SIGTERM);
       const int null = open("/dev/null", O_WRONLY);
       const int errors = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
