@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds everything and runs every test.
+# Installs what is missing, builds everything and runs every test. At the end it lists the tests that were skipped, with their reasons.
 # Usage: ./test.sh [PRESET [ctest arguments]]    PRESET: release (default), debug, asan, tsan; aarch64: the vehicle's side for 64-bit ARM, its unit tests under qemu-user
+# Environment: LANTERNFISH_SKIPS_ALLOWED=N, more than N skipped tests are a failure (default: any number may be).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 preset=${1:-release}
@@ -13,4 +14,9 @@ else
 fi
 cmake --preset "$preset"
 cmake --build --preset "$preset" -- --quiet
-exec ctest --preset "$preset" "$@"
+report=$PWD/build/$preset/tests.xml
+rm -f "$report"
+status=0
+ctest --preset "$preset" --output-junit "$report" "$@" || status=$?
+[ ! -e "$report" ] || tests/count_skips.py "$report" ${LANTERNFISH_SKIPS_ALLOWED:+--at-most "$LANTERNFISH_SKIPS_ALLOWED"} || status=1
+exit "$status"

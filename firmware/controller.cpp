@@ -33,11 +33,12 @@ void Controller::on_port_error(Port port, std::int32_t, Time) {
     return;
   }
   ++port_errors_[static_cast<std::size_t>(port)];
-  mission_.on_port_error(static_cast<std::int32_t>(port));
+  mission_.on_port_error(port);
 }
 
 bool Controller::on_order(const mission::Order& order, Time t) {
-  const bool taken = mission_.order(order, t);
+  const bool asks_for_power = order.command == Command::start || order.command == Command::home || order.command == Command::jog;
+  const bool taken = (!asks_for_power || network_.may_have_power()) && mission_.order(order, t);
   orders_refused_ += taken ? 0 : 1;
   return taken;
 }
@@ -52,26 +53,6 @@ void Controller::tick(Time t, TickOutput& out) {
   mission_.tick(t, network_, out.scan, out.telemetry);
   out.telemetry.rejected_inputs = rejected_inputs_ + network_.stats().refused_total();
   network_.tick(t, out.can[0]);
-}
-
-const char* name(StepFailure failure) {
-  switch (failure) {
-    case StepFailure::none: return "none";
-    case StepFailure::unreachable: return "unreachable";
-    case StepFailure::no_motion: return "no way there";
-    case StepFailure::early_contact: return "touched something before the aim";
-    case StepFailure::no_contact: return "nothing to touch where the aim should be";
-    case StepFailure::not_gripped: return "nothing held";
-    case StepFailure::wrong_angle: return "the handle is not where it was turned to";
-    case StepFailure::no_panel: return "no panel seen";
-    case StepFailure::no_marker: return "no usable marker seen";
-    case StepFailure::no_handle: return "no handle seen";
-    case StepFailure::panel_moved: return "the panel has moved";
-    case StepFailure::not_homed: return "homing failed";
-    case StepFailure::too_few_points: return "too few points of the panel";
-    case StepFailure::stalled: return "the turn stalled";
-  }
-  return "unknown";
 }
 
 }  // namespace lf

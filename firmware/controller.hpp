@@ -40,7 +40,8 @@ class Controller {
   void on_panel(const PanelResult& result, Time t);
   void on_scan(const ScanStats& stats, Time t);
   void on_port_error(Port port, std::int32_t code, Time t);
-  // False, and counted, when the mission's table of orders (mission/orders.hpp) or the order's own numbers do not allow it.
+  // False, and counted, when the mission's table of orders (mission/orders.hpp) or the order's own numbers do not allow it, or when it asks for power and a
+  // joint's zero is not known.
   bool on_order(const mission::Order& order, Time t);
   bool on_command(Command command, Time t);  // an order without arguments
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "firmware/mission/step_failure.hpp"
 #include "firmware/mission/steps.hpp"
 #include "firmware/safety/faults.hpp"
 #include "shared/messages/joint_io.hpp"
@@ -24,6 +25,7 @@ struct Event {
     located,    // the panel was found: value is the handle angle in rad
     task_done,  // value: rad reached as seen by the second look, or the button's presses
     task_failed,
+    emcy,  // node `code` sent `emcy`; 0x0000 withdraws its complaint
   };
   Kind kind = Kind::step;
   Time t;
@@ -33,26 +35,8 @@ struct Event {
   std::uint8_t task = 0;  // index of the task under way
   std::int32_t code = 0;  // what the step or port says of its failure
   double value = 0;
+  std::uint16_t emcy = 0;  // of a fault: the EMCY code with which its node reported it; 0: none
 };
-
-// The reasons a step gives when it fails, in Event::code.
-enum class StepFailure : std::int32_t {
-  none = 0,
-  unreachable = 1,
-  no_motion = 2,
-  early_contact = 3,
-  no_contact = 4,
-  not_gripped = 5,
-  wrong_angle = 6,
-  no_panel = 7,
-  no_marker = 8,
-  no_handle = 9,
-  panel_moved = 10,
-  not_homed = 11,
-  too_few_points = 12,
-  stalled = 13,
-};
-const char* name(StepFailure failure);
 
 struct Telemetry {
   Time t;

@@ -18,7 +18,11 @@ namespace lf::hal {
 struct CoreRings {
   SpscRing<ScanCommand, 1024> scan_commands;  // control -> vision
   SpscRing<ScanStats, 16> scan_stats;         // vision -> control, after every image
+  Time next_estop;                            // the control thread's own: when an open emergency-stop input is told to the core again
 };
+
+// While the platform's emergency-stop input stays open the core is told ten times a second: it forgets an order with its reset.
+inline constexpr Duration estop_repeat = Duration::from_ms(100);
 
 // Called around the core's work in each turn, for timing; the default does nothing.
 struct NoProbe {
@@ -29,8 +33,32 @@ struct NoProbe {
 // Frames taken from a bus in one tick. Six nodes answer with at most 3 frames each (TPDO, heartbeat, SDO); four ticks' worth covers a late tick.
 inline constexpr int max_frames_a_tick = 72;
 
+// Hands over what operators ordered. True when the end of the program was among it.
+template <Platform P>
+bool take_orders(P& platform, Controller& controller, CoreRings& rings, Time now) {
+  bool estop_closed = false;
+  if (platform.read_estop(estop_closed) != port_ok) estop_closed = false;
+  if (estop_closed) {
+    rings.next_estop = now;
+  } else if (now >= rings.next_estop) {
+    rings.next_estop = now + estop_repeat;
+    (void)controller.on_command(Command::emergency_stop, now);
+  }
+  bool shut_down = false;
+  for (NumberedOrder order; platform.receive_order(order) == port_ok;) {
+    OrderAnswer answer;
+    answer.number = order.number;
+    answer.standing = controller.mission().standing();
+    answer.taken = controller.on_order(order.order, now);
+    shut_down = shut_down || order.order.command == Command::shut_down;
+    (void)platform.answer_order(answer);  // an operator who does not hear of it asks for the status
+  }
+  return shut_down;
+}
+
+// One control period. True when the end of the program was ordered in it.
 template <Platform P, class Probe>
-void control_turn(P& platform, Controller& controller, CoreRings& rings, TickOutput& out, Time& now, Probe& probe) {
+bool control_turn(P& platform, Controller& controller, CoreRings& rings, TickOutput& out, Time& now, Probe& probe) {
   Time tick = now;
   const PortStatus clock = platform.wait_for_tick(tick);
   // Without a clock the last time plus a period keeps the core's watchdogs running; the fault is the core's to judge.
@@ -39,6 +67,11 @@ void control_turn(P& platform, Controller& controller, CoreRings& rings, TickOut
   probe.begin();
   out.clear();
   if (clock != port_ok) controller.on_port_error(Port::clock, clock, now);
+  bool shut_down = false;
+  {
+    CoreSection core;
+    shut_down = take_orders(platform, controller, rings, now);
+  }
   for (std::uint8_t bus = 0; bus < bus_count; ++bus) {
     for (int i = 0; i < max_frames_a_tick; ++i) {
       ReceivedFrame received;
@@ -78,6 +111,7 @@ void control_turn(P& platform, Controller& controller, CoreRings& rings, TickOut
   if (const PortStatus status = platform.publish(out.telemetry); status != port_ok) {
     controller.on_port_error(Port::telemetry, status, now);
   }
+  return shut_down;
 }
 
 // `report_error(port, code)` tells the control side of a failed call; on the vehicle it crosses a ring.

@@ -22,7 +22,7 @@ class Lockstep {
 
   // One control period, and what vision has to do in it.
   void step() {
-    control_turn(platform_, *controller_, *rings_, out_, now_, control_probe_);
+    (void)control_turn(platform_, *controller_, *rings_, out_, now_, control_probe_);
     vision_turn(platform_, *pipeline_, *rings_, vision_probe_,
                 [this](Port port, PortStatus code) { controller_->on_port_error(port, code, now_); });
   }

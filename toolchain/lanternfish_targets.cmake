@@ -11,19 +11,21 @@ endif()
 
 find_program(CCACHE ccache)
 if(CCACHE)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
+  # ccache refuses to keep what uses a precompiled header unless it is told to trust the header's own contents.
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${CCACHE})
 endif()
 
 find_package(Eigen3 REQUIRED NO_MODULE)
 
 set(LANTERNFISH_MARCH x86-64-v3 CACHE STRING "Instruction set (-march) on x86-64; empty for the compiler's default")
 set(LANTERNFISH_SANITIZE "" CACHE STRING "Sanitizers, for instance address,undefined or thread")
+option(LANTERNFISH_COVERAGE "Count what the tests execute: tests/coverage.sh" OFF)
 
 # Flags of all our code, not of others' headers.
 add_library(lanternfish_flags INTERFACE)
 target_compile_options(lanternfish_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Werror)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-  target_compile_options(lanternfish_flags INTERFACE -Wno-restrict)  # "text" + std::string sets it off falsely (GCC bug 105651)
+  target_compile_options(lanternfish_flags INTERFACE -Wno-restrict -Wno-stringop-overflow)  # "text" + std::string sets both off falsely (GCC bug 105651)
 endif()
 target_include_directories(lanternfish_flags INTERFACE ${CMAKE_SOURCE_DIR} ${CMAKE_BINARY_DIR}/generated)
 target_link_libraries(lanternfish_flags INTERFACE Eigen3::Eigen)
@@ -37,23 +39,73 @@ if(LANTERNFISH_SANITIZE)
     -fsanitize=${LANTERNFISH_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(lanternfish_flags INTERFACE -fsanitize=${LANTERNFISH_SANITIZE})
 endif()
+if(LANTERNFISH_COVERAGE)
+  target_compile_options(lanternfish_flags INTERFACE --coverage -fno-inline)
+  target_link_options(lanternfish_flags INTERFACE --coverage)
+endif()
 set(sanitizer_sources)
 if(LANTERNFISH_SANITIZE MATCHES "thread")
   set(sanitizer_sources ${CMAKE_CURRENT_LIST_DIR}/sanitizers/known_reports.cpp)
 endif()
 
-# lanternfish_library(NAME source... [LINK public...] [PRIVATE_LINK private...]): a folder's static library.
-function(lanternfish_library name)
-  cmake_parse_arguments(arg "" "" "LINK;PRIVATE_LINK" ${ARGN})
-  add_library(${name} STATIC ${arg_UNPARSED_ARGUMENTS})
-  target_link_libraries(${name} PUBLIC lanternfish_flags ${arg_LINK} PRIVATE ${arg_PRIVATE_LINK})
+# Eigen alone takes 3 s to read, and nearly every file reads it: one precompiled header for each set of flags. Cross builds go without, and
+# so prove that every header includes what it needs.
+set(precompile_default OFF)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND NOT CMAKE_CROSSCOMPILING)
+  set(precompile_default ON)
+endif()
+option(LANTERNFISH_PRECOMPILE "Precompile the headers that nearly every file includes" ${precompile_default})
+set(precompiled_headers <algorithm> <array> <cmath> <cstdint> <optional> <span> <utility> <Eigen/Core> <Eigen/Geometry>)
+set(precompiled_hosted ${precompiled_headers} <chrono> <functional> <map> <memory> <sstream> <string> <variant> <vector>)
+
+# lanternfish_precompile(TARGET KIND header...): compiles the headers once for all targets of a kind; they have to have the same flags.
+function(lanternfish_precompile target kind)
+  if(NOT LANTERNFISH_PRECOMPILE)
+    return()
+  endif()
+  set(owner lf_precompiled_${kind})
+  if(NOT TARGET ${owner})
+    file(GENERATE OUTPUT ${CMAKE_BINARY_DIR}/generated/precompiled_${kind}.cpp CONTENT "")
+    add_library(${owner} OBJECT ${CMAKE_BINARY_DIR}/generated/precompiled_${kind}.cpp)
+    target_link_libraries(${owner} PRIVATE lanternfish_flags)
+    if(kind STREQUAL "core")
+      lanternfish_core_flags(${owner})
+    elseif(kind STREQUAL "test")
+      target_link_libraries(${owner} PRIVATE GTest::gmock GTest::gtest)
+    endif()
+    target_compile_options(${owner} PRIVATE -fpch-preprocess)
+    target_precompile_headers(${owner} PRIVATE ${ARGN})
+  endif()
+  target_compile_options(${target} PRIVATE -fpch-preprocess)
+  target_precompile_headers(${target} REUSE_FROM ${owner})
+  if(NOT kind STREQUAL "core" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+    target_compile_options(${target} PRIVATE -Wno-array-bounds)  # the same bug as above, through a precompiled <string>
+  endif()
+  # A target with other macros cannot use the header and reads it as text: slower, not wrong.
+  set_target_properties(${target} PROPERTIES PCH_WARN_INVALID OFF)
 endfunction()
 
-# lanternfish_core_library(...): the same under the core's rules: no exceptions, no RTTI, no heap.
+# The core's rules: no exceptions, no RTTI, no heap.
+function(lanternfish_core_flags target)
+  target_compile_options(${target} PRIVATE -fno-exceptions -fno-rtti -fno-threadsafe-statics -Wconversion -Wno-sign-conversion)
+  target_compile_definitions(${target} PRIVATE EIGEN_NO_MALLOC EIGEN_NO_IO)
+endfunction()
+
+# lanternfish_library(NAME source... [LINK public...] [PRIVATE_LINK private...]): a folder's static library.
+function(lanternfish_library name)
+  cmake_parse_arguments(arg "CORE" "" "LINK;PRIVATE_LINK" ${ARGN})
+  add_library(${name} STATIC ${arg_UNPARSED_ARGUMENTS})
+  target_link_libraries(${name} PUBLIC lanternfish_flags ${arg_LINK} PRIVATE ${arg_PRIVATE_LINK})
+  if(NOT arg_CORE)
+    lanternfish_precompile(${name} hosted ${precompiled_hosted})
+  endif()
+endfunction()
+
+# lanternfish_core_library(...): the same under the core's rules.
 function(lanternfish_core_library name)
-  lanternfish_library(${name} ${ARGN})
-  target_compile_options(${name} PRIVATE -fno-exceptions -fno-rtti -fno-threadsafe-statics -Wconversion -Wno-sign-conversion)
-  target_compile_definitions(${name} PRIVATE EIGEN_NO_MALLOC EIGEN_NO_IO)
+  lanternfish_library(${name} CORE ${ARGN})
+  lanternfish_core_flags(${name})
+  lanternfish_precompile(${name} core ${precompiled_headers})
 endfunction()
 
 # lanternfish_test(NAME source... [LINK ...] [LABELS ...] [TIMEOUT s]): a GoogleTest program, one ctest entry a test case. Its time limit ends what hangs,
@@ -67,10 +119,25 @@ function(lanternfish_test name)
   include(GoogleTest)
   add_executable(${name} ${arg_UNPARSED_ARGUMENTS} ${sanitizer_sources})
   target_link_libraries(${name} PRIVATE lanternfish_flags ${arg_LINK} GTest::gmock GTest::gtest GTest::gtest_main)
+  lanternfish_precompile(${name} test ${precompiled_hosted} <gmock/gmock.h> <gtest/gtest.h>)
   target_compile_definitions(${name} PRIVATE
     LANTERNFISH_TEST_DATA="${CMAKE_SOURCE_DIR}/tests/data" LANTERNFISH_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 600 PROPERTIES TIMEOUT ${arg_TIMEOUT} LABELS "${arg_LABELS}")
+endfunction()
+
+# lanternfish_check_cpu(PROGRAM): it says which instructions a processor lacks, and ends with 3, in place of an illegal instruction somewhere.
+function(lanternfish_check_cpu program)
+  if(NOT LANTERNFISH_MARCH OR NOT CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64")
+    return()
+  endif()
+  add_library(${program}_cpu_check OBJECT ${CMAKE_SOURCE_DIR}/toolchain/cpu_check/cpu_check.cpp)
+  target_compile_options(${program}_cpu_check PRIVATE -std=c++20 -O2 -Wall -Wextra -march=x86-64)
+  target_compile_definitions(${program}_cpu_check PRIVATE LANTERNFISH_PROGRAM="${program}")
+  if(LANTERNFISH_MARCH MATCHES "v3|v4")
+    target_compile_definitions(${program}_cpu_check PRIVATE LANTERNFISH_NEEDS_AVX2)
+  endif()
+  target_sources(${program} PRIVATE $<TARGET_OBJECTS:${program}_cpu_check>)
 endfunction()
 
 # lanternfish_add_folders(folder...): the folders in the order of their dependencies.

@@ -10,6 +10,10 @@ constexpr arm_geometry::JawNumbers jaw = arm_geometry::jaw;
 constexpr double lower_rad = arm_geometry::joints[4].lower_rad;
 constexpr double upper_rad = arm_geometry::joints[4].upper_rad;
 
+// The handle is known to 4 mm and the tool comes to 2 mm of where it is sent; a tool 14 degrees aslant has its finger tips, 25 mm before and behind the
+// bar, 6 mm off to the side. Twice that, since a finger that meets the bar's edge pushes instead of reaching around.
+constexpr double reaching_room_m = 0.024;
+
 }  // namespace
 
 double gap_from_jaw(double jaw_rad) { return -2 * (jaw.pivot_x_m + jaw.face_x_m * std::cos(jaw_rad) - jaw.face_z_m * std::sin(jaw_rad)); }
@@ -23,6 +27,10 @@ double jaw_from_gap(double gap_m) {
 }
 
 double pad_force_n(double jaw_torque_nm) { return jaw_torque_nm / 2 / jaw.face_z_m; }
+
+double jaw_opening_m(double bar_m) { return std::min(bar_m + 2 * reaching_room_m, gap_from_jaw(upper_rad)); }
+
+double thickest_bar_m() { return gap_from_jaw(upper_rad) - 2 * reaching_room_m; }
 
 double tip_beyond_tool_m(double jaw_rad) {
   const double end = (jaw.face_z_m + jaw.pad_depth_m / 2) * std::cos(jaw_rad);

@@ -17,8 +17,15 @@ double pad_force_n(double jaw_torque_nm);
 // How far the fingers reach beyond the tool point along the tool axis, m.
 double tip_beyond_tool_m(double jaw_rad);
 
+// The thinnest bar that a closed jaw is told from: at its stop 1.3 mm stay open, and a stall within `bar_tolerance_m` of the bar counts as a grip.
+inline constexpr double thinnest_bar_m = 0.008;
+// How far the jaw opens to reach for a bar: to either side `reaching_room_m` more than the bar is thick.
+double jaw_opening_m(double bar_m);
+// The thickest bar that the jaw opens for.
+double thickest_bar_m();
+
 struct GripperConfig {
-  double bar_m = 0.0126;                  // what is to be held
+  double bar_m = 0.0126;                  // what is to be held: its thickness
   double bar_tolerance_m = 0.006;         // a stall within this of it is plausible: tilt, and the bar off the pads' middle
   double grip_torque_nm = 6.0;            // to be reached before a stall counts as a grip
   double hold_torque_nm = 2.0;            // less than this while holding, for `low_torque_samples`: nothing is between the pads

@@ -1,6 +1,7 @@
 #include "firmware/canopen/axis.hpp"
 
 #include <algorithm>
+#include <cstdint>
 
 #include "firmware/canopen/cob_id.hpp"
 #include "firmware/canopen/codec.hpp"
@@ -14,6 +15,8 @@ constexpr std::uint16_t mode_display_object = 0x6061;
 constexpr std::uint16_t word_of(Command command) { return static_cast<std::uint16_t>(command); }
 
 constexpr std::int64_t ns_per_s = 1'000'000'000;  // steps are budgeted in thousand-millionths of a count
+
+std::int16_t clamped(std::int64_t value) { return static_cast<std::int16_t>(std::clamp<std::int64_t>(value, INT16_MIN, INT16_MAX)); }
 
 bool in_fault(DriveState state) { return state == DriveState::fault || state == DriveState::fault_reaction; }
 
@@ -65,11 +68,16 @@ const char* name(AxisFault fault) {
 Axis::Axis(const DriveSetup& setup, const NetworkConfig& config)
     : setup_(setup),
       sync_period_(config.sync_period),
-      transition_timeout_(config.transition_timeout),
+      transition_timeout_(config.transition_timeout + setup.profile.brake_opens + setup.profile.brake_closes),
       step_income_(static_cast<std::int64_t>(setup.max_speed_counts_s) * config.sync_period.ns()) {}
 
 void Axis::request(AxisRequest request) {
   if (!online_) return;
+  const bool leads_to_power = request == AxisRequest::hold_enabled || request == AxisRequest::home;
+  if (leads_to_power && !setup_.may_have_power()) {
+    ++stats_.power_refused;
+    return;
+  }
   if (request == AxisRequest::reset_fault && request_ != request) reset_edges_sent_ = 0;
   request_ = request;
 }
@@ -97,11 +105,22 @@ AxisState Axis::state() const {
   switch (request_) {
     case AxisRequest::home: return AxisState::homing;
     case AxisRequest::hold_enabled:
-      return mode_settled() && drive == DriveState::operation_enabled && controlword_ == word_of(Command::enable_operation)
+      return mode_settled() && may_move() && drive == DriveState::operation_enabled && controlword_ == word_of(Command::enable_operation)
                  ? AxisState::enabled
                  : AxisState::enabling;
     case AxisRequest::quick_stop: return reached(drive, DriveGoal::quick_stop) ? AxisState::stopped : AxisState::stopping;
     default: return reached(drive, DriveGoal::disabled) || drive == DriveState::not_ready ? AxisState::disabled : AxisState::stopping;
+  }
+}
+
+bool Axis::powered() const {
+  switch (drive_state()) {
+    case DriveState::not_ready:
+    case DriveState::switch_on_disabled:
+    case DriveState::ready_to_switch_on:
+    case DriveState::switched_on:
+    case DriveState::fault: return false;
+    default: return true;
   }
 }
 
@@ -121,6 +140,7 @@ void Axis::forget_state() {
   fault_ = AxisFault::none;
   seen_ = false;
   was_enabled_ = false;
+  brake_open_ = false;
   statusword_ = 0;
   controlword_ = 0;
   torque_offset_permille_ = 0;
@@ -132,12 +152,13 @@ void Axis::forget_state() {
   homing_ = HomingPhase::idle;
 }
 
-void Axis::go_online(std::uint32_t rated_torque_mnm, Time now) {
+void Axis::go_online(const NodeBoot& boot, Time now) {
   forget_state();
   online_ = true;
-  rated_torque_mnm_ = rated_torque_mnm;
+  rated_torque_unm_ = boot.rated_torque_unm;
+  setup_.quick_stop_option = boot.quick_stop_option;
   waiting_since_ = now;
-  if (setup_.homing_method == 0) homed_ = true;
+  if (setup_.homing_method == 0) homed_ = setup_.zero_known;
 }
 
 void Axis::go_offline() {
@@ -149,13 +170,14 @@ void Axis::lose_node() {
   if (online_) latch(AxisFault::node_lost);
 }
 
-void Axis::forget_home() { homed_ = setup_.homing_method == 0; }
+void Axis::forget_home() { homed_ = setup_.homing_method == 0 && setup_.zero_known; }
 
 void Axis::on_tpdo(const CanFrame& frame, Time sync) {
   statusword_ = get<std::uint16_t>(frame, can_map::drive_tpdo1::statusword);
-  actual_counts_ =
-      static_cast<std::int32_t>(std::int64_t{get<std::int32_t>(frame, can_map::drive_tpdo1::position)} - setup_.encoder_zero_counts);
-  torque_permille_ = get<std::int16_t>(frame, can_map::drive_tpdo1::torque);
+  const DriveScale& scale = setup_.profile.scale;
+  const std::int64_t counts = scale.counts(get<std::int32_t>(frame, can_map::drive_tpdo1::position));
+  actual_counts_ = static_cast<std::int32_t>(counts - setup_.encoder_zero_counts);
+  torque_permille_ = clamped(scale.torque.over(scale.sign * get<std::int16_t>(frame, can_map::drive_tpdo1::torque)));
   actual_time_ = sync;
   if (!seen_) target_counts_ = wanted_counts_ = actual_counts_;
   seen_ = true;
@@ -165,6 +187,7 @@ void Axis::on_tpdo(const CanFrame& frame, Time sync) {
 void Axis::step(Time now, SdoClient& sdo) {
   if (syncs_since_change_ < 0xFF) ++syncs_since_change_;
   if (!online_ || !seen_) return;
+  watch_brake(now);
   supervise(now);
   step_homing(now);
   step_mode(now, sdo);
@@ -191,11 +214,31 @@ void Axis::supervise(Time now) {
   if (in_fault(drive)) return latch(AxisFault::drive_fault);
   // The controlword said "enable operation" until now, so this was not our doing.
   if (was_enabled_ && drive != DriveState::operation_enabled) return latch(AxisFault::dropped_out);
-  if (mode_step_ == ModeStep::settled && following_error()) latch(AxisFault::following_error);
+  if (mode_step_ == ModeStep::settled && (following_error() || follows_badly(now))) latch(AxisFault::following_error);
+}
+
+// A target that moves before the brake is open is a following error, or a brake worn down.
+void Axis::watch_brake(Time now) {
+  if (drive_state() != DriveState::operation_enabled) {
+    brake_open_ = false;
+    operating_since_ = now;
+    return;
+  }
+  const DriveProfile& profile = setup_.profile;
+  if (now - operating_since_ < profile.brake_opens) return;
+  if (!profile.waits_to_follow || drive_follows() || mode_ != OperationMode::cyclic_position) brake_open_ = true;
+}
+
+// For drives that do not time it themselves.
+bool Axis::follows_badly(Time now) {
+  const std::int64_t apart = following_counts() < 0 ? -following_counts() : following_counts();
+  if (!enabled() || apart <= setup_.following_window_counts) in_step_since_ = now;
+  return setup_.profile.master_times_following && now - in_step_since_ > Duration::from_ms(setup_.following_timeout_ms);
 }
 
 DriveGoal Axis::goal() const {
   if (request_ == AxisRequest::reset_fault) return DriveGoal::fault_reset;
+  if (request_ == AxisRequest::disable || request_ == AxisRequest::remove_power) return DriveGoal::disabled;
   if (fault_ != AxisFault::none) return DriveGoal::quick_stop;
   switch (request_) {
     case AxisRequest::quick_stop: return DriveGoal::quick_stop;
@@ -220,11 +263,13 @@ void Axis::choose_command(Time now) {
   last_state_ = drive;
   if (now - waiting_since_ > transition_timeout_) latch(AxisFault::transition_timeout);
 
-  const Command command = command_for(drive, goal());
+  // What a silent drive said last is no ground for a step down: it is told to go down at once.
+  const bool at_once = request_ == AxisRequest::remove_power || (goal() == DriveGoal::disabled && !fresh(now));
+  const Command command = at_once ? Command::disable_voltage : command_for(drive, goal());
   std::uint16_t word = word_of(command);
   const bool start_homing = homing_ == HomingPhase::run && drive == DriveState::operation_enabled;
   if (start_homing) word = static_cast<std::uint16_t>(word | control_homing_start);
-  if (handshake_over() || command == Command::quick_stop) set_controlword(word);
+  if (handshake_over() || at_once || command == Command::quick_stop) set_controlword(word);
 }
 
 // Bit 7 acts on its rising edge: low for a handshake, high until the fault is gone or it is time for the next edge.
@@ -352,10 +397,15 @@ void Axis::step_target() {
 
 bool Axis::make_rpdo(CanFrame& frame) const {
   if (!online_ || !seen_) return false;
-  frame = empty_frame(cob_id::rpdo1 + setup_.node, can_map::drive_rpdo1::length);
+  const DriveProfile& profile = setup_.profile;
+  const std::uint8_t length = profile.torque_offset ? can_map::drive_rpdo1::length : can_map::drive_rpdo1::torque_offset;
+  frame = empty_frame(cob_id::rpdo1 + setup_.node, length);
   put(frame, can_map::drive_rpdo1::controlword, controlword_);
-  put(frame, can_map::drive_rpdo1::target_position, static_cast<std::int32_t>(std::int64_t{target_counts_} + setup_.encoder_zero_counts));
-  put(frame, can_map::drive_rpdo1::torque_offset, torque_offset_permille_);
+  const std::int64_t counts = std::int64_t{target_counts_} + setup_.encoder_zero_counts;
+  put(frame, can_map::drive_rpdo1::target_position, profile.scale.drive_position(counts));
+  if (profile.torque_offset) {
+    put(frame, can_map::drive_rpdo1::torque_offset, clamped(profile.scale.torque.times(profile.scale.sign * torque_offset_permille_)));
+  }
   return true;
 }
 

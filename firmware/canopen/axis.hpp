@@ -1,13 +1,16 @@
 // One CiA 402 drive in operation: state machine, cyclic synchronous position, homing, and the watch over its answers.
 //
 // Synchronous RPDO data act at the next SYNC and are answered one SYNC later, so a statusword tells of a controlword three SYNCs after it was
-// decided: every handshake waits that long. Positions are motor counts, torques thousandths of the rated torque 6076.
+// decided: every handshake waits that long. Positions are the arm's counts, torques thousandths of the rated torque; what goes to the drive and comes from it
+// is in the units of its profile.
 //
-// A latched fault stops the drive (quick stop) and stays until `reset_fault` is requested; nothing restarts by itself.
+// A latched fault stops the drive (quick stop) and stays until `reset_fault` is requested; nothing restarts by itself. A latched fault never keeps the
+// power on: `disable` and `remove_power` go before it.
 #pragma once
 
 #include <cstdint>
 
+#include "firmware/canopen/boot_report.hpp"
 #include "firmware/canopen/cia402.hpp"
 #include "firmware/canopen/sdo_client.hpp"
 #include "firmware/canopen/setup.hpp"
@@ -17,10 +20,11 @@
 namespace lf::canopen {
 
 enum class AxisRequest : std::uint8_t {
-  disable,       // without power
+  disable,       // without power, on the way down through every state
   hold_enabled,  // powered in cyclic synchronous position: holds where it is, then follows `set_target_counts`
   quick_stop,    // stops on the quick-stop ramp and stays stopped
   reset_fault,   // clears a latched fault and resets the drive's with a rising edge; becomes `disable` when done
+  remove_power,  // disable voltage, from every state, at once and as long as it is asked for, whatever the drive answers or not
   home,          // runs the homing of DriveSetup; becomes `disable` in cyclic mode when done, `homed()` tells
 };
 
@@ -61,6 +65,7 @@ class Axis {
   static constexpr std::uint8_t reset_edges = 3;
 
   struct Stats {
+    std::uint32_t power_refused = 0;    // requests for power without a known zero
     std::uint32_t targets_refused = 0;  // outside the position limits, or while not enabled
     std::uint32_t targets_limited = 0;  // cycles in which the target ran ahead of the maximum speed and was held back
     std::uint32_t unknown_states = 0;   // statuswords with a pattern the standard does not have
@@ -69,7 +74,8 @@ class Axis {
   Axis() = default;
   Axis(const DriveSetup& setup, const NetworkConfig& config);
 
-  // The core's side. Asking once is enough; `reset_fault` and `home` asked again after they ended start again. Ignored while offline.
+  // The core's side. Asking once is enough; `reset_fault` and `home` asked again after they ended start again. Ignored while offline. What leads to power
+  // is refused, and counted, for a joint without a known zero.
   void request(AxisRequest request);
   AxisRequest requested() const { return request_; }
   // Next target, in effect while `enabled()`. False, and counted, when outside the limits or not enabled: the last target stays. An axis that was enabled
@@ -80,6 +86,10 @@ class Axis {
 
   AxisState state() const;
   bool enabled() const { return state() == AxisState::enabled; }
+  // The last statusword tells of current in the motor, or tells nothing that is known.
+  bool powered() const;
+  // The drive says, and no longer ago than three SYNC cycles, that there is no current in the motor.
+  bool confirmed_unpowered(Time now) const { return fresh(now) && !powered(); }
   bool homed() const { return homed_; }  // true from boot for absolute encoders
   AxisFault fault() const { return fault_; }
   // The latest values, those of the SYNC at `actual_time()`.
@@ -96,17 +106,18 @@ class Axis {
   std::uint16_t statusword() const { return statusword_; }
   std::uint16_t controlword() const { return controlword_; }
   DriveState drive_state() const { return decode_statusword(statusword_); }
-  std::uint32_t rated_torque_mnm() const { return rated_torque_mnm_; }  // 6076, read at boot
+  // The motor's rated torque in micro newton metres, found at boot: 6076 in its unit, or what the machine's file states.
+  std::uint32_t rated_torque_unm() const { return rated_torque_unm_; }
   const DriveSetup& setup() const { return setup_; }
   const Stats& stats() const { return stats_; }
 
   // The network's side.
-  void go_online(std::uint32_t rated_torque_mnm, Time now);  // configured, in cyclic mode, and started
-  void go_offline();                                         // being booted
-  void lose_node();                                          // latches node_lost
-  void forget_home();                                        // the node lost its memory
-  void on_tpdo(const CanFrame& frame, Time sync);            // `frame` has the right identifier and length
-  void step(Time now, SdoClient& sdo);                       // once a SYNC
+  void go_online(const NodeBoot& boot, Time now);  // configured, in cyclic mode, and started
+  void go_offline();                               // being booted
+  void lose_node();                                // latches node_lost
+  void forget_home();                              // the node lost its memory
+  void on_tpdo(const CanFrame& frame, Time sync);  // `frame` has the right identifier and length
+  void step(Time now, SdoClient& sdo);             // once a SYNC
   // False before the first TPDO: a target that was never seeded is never sent.
   bool make_rpdo(CanFrame& frame) const;
 
@@ -116,6 +127,9 @@ class Axis {
 
   void forget_state();
   void supervise(Time now);
+  void watch_brake(Time now);
+  bool may_move() const { return brake_open_ || (setup_.profile.brake_opens == Duration{} && !setup_.profile.waits_to_follow); }
+  bool follows_badly(Time now);
   void latch(AxisFault fault);
   DriveGoal goal() const;
   void choose_command(Time now);
@@ -142,12 +156,15 @@ class Axis {
   bool seen_ = false;
   bool homed_ = false;
   bool was_enabled_ = false;
+  bool brake_open_ = false;  // and the drive follows: targets may move
+  Time operating_since_;
+  Time in_step_since_;  // within the following-error window
   // From the drive.
   std::uint16_t statusword_ = 0;
   std::int32_t actual_counts_ = 0;
   std::int16_t torque_permille_ = 0;
   Time actual_time_;
-  std::uint32_t rated_torque_mnm_ = 0;
+  std::uint32_t rated_torque_unm_ = 0;
   // To the drive.
   std::uint16_t controlword_ = 0;
   std::int32_t target_counts_ = 0;

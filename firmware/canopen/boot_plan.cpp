@@ -44,7 +44,8 @@ constexpr std::uint16_t tpdo_map = 0x1A00;
 static_assert(can_map::drive_rpdo1::entries.size() == 3 && can_map::drive_tpdo1::entries.size() == 3);
 static_assert(can_map::io_rpdo1::entries.size() == 3 && can_map::io_tpdo1::entries.size() == 4);
 
-// CiA 402 drives.
+// CiA 402 drives. A profile's own rows stand behind the identity: the factor group is read before any number is written in the drive's units.
+constexpr std::size_t identity_rows = 7;
 constexpr std::array drive_plan{
     // Who is there.
     check(0x1000, 0, V::literal, 0x0192, type_mask),
@@ -53,12 +54,14 @@ constexpr std::array drive_plan{
     check(0x1018, 1, V::vendor, 0, all),
     check(0x1018, 2, V::product, 0, all),
     optional(record(0x1008, 0, 0)),
-    record(0x6076, 0, 4),
-    // Who hears whom. 1016 is 0 on a new drive: a dead master would go unnoticed.
+    BootStep{0x6076, 0, 4, A::record, V::rated_torque, 0, all, false},
+    // Who hears whom. 1016 is 0 on a new drive: a dead master would go unnoticed. A guarded drive has no heartbeat: CiA 301 allows one of the two.
     optional(check(0x1005, 0, V::literal, cob_id::sync, id_and_producer)),
     optional(check(0x1014, 0, V::emcy_cob_id, 0, id_and_valid)),
     setting(0x1016, 1, 4, V::master_heartbeat),
     setting(0x1017, 0, 2, V::node_heartbeat),
+    setting(0x100C, 0, 2, V::guard_time),
+    setting(0x100D, 0, 1, V::life_factor),
     optional(setting(0x1006, 0, 4, V::sync_period_us)),
     setting(0x60C2, 2, 1, V::interpolation_exponent),
     setting(0x60C2, 1, 1, V::interpolation_value),
@@ -85,12 +88,13 @@ constexpr std::array drive_plan{
     literal(rpdo_map, 0, 1, 0),
     literal(rpdo_map, 1, 4, can_map::drive_rpdo1::entries[0]),
     literal(rpdo_map, 2, 4, can_map::drive_rpdo1::entries[1]),
-    literal(rpdo_map, 3, 4, can_map::drive_rpdo1::entries[2]),
-    literal(rpdo_map, 0, 1, 3),
+    setting(rpdo_map, 3, 4, V::rpdo1_torque_offset),
+    setting(rpdo_map, 0, 1, V::rpdo1_entries),
     literal(rpdo(1), 2, 1, every_sync),
     setting(rpdo(1), 1, 4, V::rpdo1_cob_id, id_and_valid),
-    // TPDO1: statusword, actual position, actual torque.
+    // TPDO1: statusword, actual position, actual torque. Drives come with inhibit times of 1 to 100 ms, which would hold back answers.
     invalidate(tpdo(1)),
+    optional(literal(tpdo(1), 3, 2, 0)),
     literal(tpdo_map, 0, 1, 0),
     literal(tpdo_map, 1, 4, can_map::drive_tpdo1::entries[0]),
     literal(tpdo_map, 2, 4, can_map::drive_tpdo1::entries[1]),
@@ -161,6 +165,7 @@ constexpr Number unless_zero(std::uint32_t value) { return value == 0 ? Number{}
 std::uint32_t milliseconds(Duration d) { return static_cast<std::uint32_t>(d.ns() / 1'000'000); }
 
 Number bus_value(V value, const BootContext& context) {
+  const bool guarded = context.drive != nullptr && context.drive->profile.guarded;
   const Identity& identity = context.drive != nullptr ? context.drive->identity : context.config->io.identity;
   std::uint8_t period = 0;
   std::int8_t exponent = 0;
@@ -169,8 +174,14 @@ Number bus_value(V value, const BootContext& context) {
     case V::vendor: return unless_zero(identity.vendor);
     case V::product: return unless_zero(identity.product);
     case V::emcy_cob_id: return cob_id::emcy + context.node;
-    case V::master_heartbeat: return (std::uint32_t{can_map::master_node} << 16) | milliseconds(can_map::master_heartbeat_timeout);
-    case V::node_heartbeat: return milliseconds(can_map::node_heartbeat);
+    case V::master_heartbeat:
+      if (guarded) return std::nullopt;
+      return (std::uint32_t{can_map::master_node} << 16) | milliseconds(can_map::master_heartbeat_timeout);
+    case V::node_heartbeat: return guarded ? 0 : milliseconds(can_map::node_heartbeat);
+    case V::guard_time: return guarded ? Number{milliseconds(can_map::master_heartbeat)} : Number{};
+    // Guard time and life factor together are the time after which a silent master is missed, as long as by heartbeat.
+    case V::life_factor:
+      return guarded ? Number{milliseconds(can_map::master_heartbeat_timeout) / milliseconds(can_map::master_heartbeat)} : Number{};
     case V::sync_period_us: return static_cast<std::uint32_t>(context.config->sync_period.ns() / 1000);
     case V::interpolation_value: return period;
     case V::interpolation_exponent: return static_cast<std::uint8_t>(exponent);
@@ -182,33 +193,72 @@ Number bus_value(V value, const BootContext& context) {
 
 bool moves_to_home(const DriveSetup& drive) { return drive.homing_speed_counts_s != 0; }
 
+std::uint32_t position(const DriveSetup& drive, std::int64_t counts) {
+  return static_cast<std::uint32_t>(drive.profile.scale.drive_position(counts));
+}
+// Numbers of which drives take no 0.
+std::uint32_t at_least_one(std::int64_t value) { return value < 1 ? 1u : static_cast<std::uint32_t>(value); }
+
+// The lower and the upper limit of the drive, which counts the other way round where the sign is negative.
+std::uint32_t limit(const DriveSetup& drive, bool upper) {
+  const bool arms_upper = upper == (drive.profile.scale.sign > 0);
+  const std::int64_t margin = arms_upper ? drive.drive_margin_counts : -std::int64_t{drive.drive_margin_counts};
+  return position(drive, (arms_upper ? drive.max_counts : drive.min_counts) + margin + drive.encoder_zero_counts);
+}
+
 Number drive_value(V value, const DriveSetup& drive) {
   const bool homes = drive.homing_method != 0;
   const bool moves = homes && moves_to_home(drive);
+  const DriveScale& scale = drive.profile.scale;
   switch (value) {
+    case V::rated_torque: return drive.profile.rated_torque_unit_unm != 0 ? Number{0} : Number{};
+    case V::rpdo1_torque_offset: return drive.profile.torque_offset ? Number{can_map::drive_rpdo1::entries[2]} : Number{};
+    case V::rpdo1_entries: return drive.profile.torque_offset ? 3 : 2;
     case V::abort_option: return static_cast<std::uint16_t>(drive.abort_option);
     case V::quick_stop_option: return static_cast<std::uint16_t>(drive.quick_stop_option);
-    case V::quick_stop_deceleration: return unless_zero(drive.quick_stop_counts_s2);
-    case V::following_window: return drive.following_window_counts;
+    case V::quick_stop_deceleration:
+      return drive.quick_stop_counts_s2 != 0 ? Number{at_least_one(scale.acceleration.times(drive.quick_stop_counts_s2))} : Number{};
+    case V::following_window: return at_least_one(scale.position.times(drive.following_window_counts));
     case V::following_timeout: return drive.following_timeout_ms;
-    case V::min_position: return static_cast<std::uint32_t>(drive.min_counts - drive.drive_margin_counts + drive.encoder_zero_counts);
-    case V::max_position: return static_cast<std::uint32_t>(drive.max_counts + drive.drive_margin_counts + drive.encoder_zero_counts);
+    case V::min_position: return limit(drive, false);
+    case V::max_position: return limit(drive, true);
     case V::max_torque: return drive.max_torque_permille;
-    case V::max_speed: return drive.max_speed_counts_s;
+    case V::max_speed: return at_least_one(scale.speed.times(drive.max_speed_counts_s));
     case V::max_motor_speed: return unless_zero(drive.max_motor_speed_rpm);
     case V::homing_method: return homes ? Number{static_cast<std::uint8_t>(drive.homing_method)} : Number{};
-    case V::homing_speed: return moves ? Number{drive.homing_speed_counts_s} : Number{};
-    case V::homing_creep_speed: return moves ? Number{(drive.homing_speed_counts_s + 3) / 4} : Number{};
-    case V::homing_acceleration: return moves ? unless_zero(drive.homing_accel_counts_s2) : Number{};
-    case V::home_offset: return homes ? Number{static_cast<std::uint32_t>(drive.home_offset_counts)} : Number{};
+    case V::homing_speed: return moves ? Number{at_least_one(scale.speed.times(drive.homing_speed_counts_s))} : Number{};
+    case V::homing_creep_speed: return moves ? Number{at_least_one(scale.speed.times((drive.homing_speed_counts_s + 3) / 4))} : Number{};
+    case V::homing_acceleration:
+      return moves && drive.homing_accel_counts_s2 != 0 ? Number{at_least_one(scale.acceleration.times(drive.homing_accel_counts_s2))}
+                                                        : Number{};
+    case V::home_offset: return homes ? Number{position(drive, drive.home_offset_counts)} : Number{};
     default: return std::nullopt;
   }
 }
+
+std::size_t own_rows(const BootContext& context) { return context.drive != nullptr ? context.drive->profile.objects.size() : 0; }
 
 }  // namespace
 
 std::span<const BootStep> drive_boot_plan() { return drive_plan; }
 std::span<const BootStep> io_boot_plan() { return io_plan; }
+
+std::size_t boot_step_count(const BootContext& context) {
+  return context.drive != nullptr ? drive_plan.size() + own_rows(context) : io_plan.size();
+}
+
+BootStep boot_step(std::size_t i, const BootContext& context) {
+  if (context.drive == nullptr) return io_plan[i];
+  const std::size_t own = own_rows(context);
+  if (i >= identity_rows && i < identity_rows + own) return context.drive->profile.objects[i - identity_rows];
+  BootStep step = drive_plan[i < identity_rows ? i : i - own];
+  const Absence* absence = context.drive->profile.absence(step.value);
+  if (absence != nullptr && absence->by == Substitute::other_object) {
+    step.index = absence->index;
+    step.sub = absence->sub;
+  }
+  return step;
+}
 
 std::optional<std::uint32_t> boot_value(const BootStep& step, const BootContext& context) {
   if (step.value == BootValue::literal || step.value == BootValue::nothing) return step.literal;

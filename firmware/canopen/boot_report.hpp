@@ -4,7 +4,9 @@
 #include <array>
 #include <cstdint>
 
+#include "firmware/canopen/drive_profile.hpp"
 #include "shared/messages/joint_io.hpp"
+#include "shared/messages/static_vector.hpp"
 
 namespace lf::canopen {
 
@@ -17,6 +19,10 @@ enum class BootFailure : std::uint8_t {
   sdo_aborted,      // the node refused, `abort_code` says why
   sdo_timeout,      // no answer, after all retries
   wrong_identity,   // device type, vendor or product is not the expected one
+  wrong_setting,    // an object that the profile checks holds another value: the drive is not set up as the profile says
+  no_rating,        // 6076 is 0, and nothing else states the rated torque
+  wrong_rating,     // 6076 and the stated rated torque differ by more than a tenth
+  read_only,        // the object holds another value than it must, and cannot be written
   wrong_readback,   // the object holds another value than was written
   wrong_length,     // the object's value has another length than the standard's
   rebooted,         // a boot-up message while being configured
@@ -24,6 +30,13 @@ enum class BootFailure : std::uint8_t {
   no_process_data,  // operational, but no TPDO came
 };
 const char* name(BootFailure failure);
+
+// An object that the drive does not have, and what takes its place.
+struct Substitution {
+  std::uint16_t index = 0;
+  std::uint8_t sub = 0;
+  Substitute by = Substitute::none;
+};
 
 struct NodeBoot {
   BootState state = BootState::idle;
@@ -35,13 +48,15 @@ struct NodeBoot {
   std::uint16_t step = 0;    // of the node's boot table
   std::uint16_t steps = 0;
   std::uint32_t abort_code = 0;  // of `failure`, see sdo_abort::name
-  std::uint32_t expected = 0;    // for wrong_identity and wrong_readback
+  std::uint32_t expected = 0;    // for wrong_identity, wrong_setting, wrong_rating, read_only and wrong_readback
   std::uint32_t read = 0;
   std::uint32_t device_type = 0;       // 1000
   std::uint32_t vendor = 0;            // 1018:01
   std::uint32_t product = 0;           // 1018:02
-  std::uint32_t rated_torque_mnm = 0;  // 6076
+  std::uint32_t rated_torque_unm = 0;  // micro newton metres: 6076 in its unit, or as the profile states it
+  std::int16_t quick_stop_option = 0;  // 605A, as the drive took it
   std::array<char, 33> device_name{};  // 1008, zero-terminated, printable ASCII, cut at 32
+  StaticVector<Substitution, DriveProfile::max_absences> substitutions;
 };
 
 struct BootReport {

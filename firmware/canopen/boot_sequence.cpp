@@ -1,6 +1,7 @@
 #include "firmware/canopen/boot_sequence.hpp"
 
 #include <algorithm>
+#include <cstdint>
 
 #include "firmware/canopen/cob_id.hpp"
 
@@ -23,14 +24,18 @@ BootSequence::BootSequence(const NetworkConfig& config)
     : boot_up_timeout_(config.boot_up_timeout), start_timeout_(config.start_timeout), retries_allowed_(config.retries) {}
 
 void BootSequence::begin(const BootContext& context, Time now) {
-  plan_ = context.drive != nullptr ? drive_boot_plan() : io_boot_plan();
   report_ = NodeBoot{};
   report_.state = BootState::running;
   report_.node = context.node;
-  report_.steps = static_cast<std::uint16_t>(plan_.size());
+  report_.steps = static_cast<std::uint16_t>(boot_step_count(context));
+  if (context.drive != nullptr) {
+    report_.quick_stop_option = context.drive->quick_stop_option;
+    report_.rated_torque_unm = context.drive->profile.rated_torque_unm;
+  }
   phase_ = Phase::reset;
   exchange_ = Exchange::next;
   retries_left_ = retries_allowed_;
+  resets_unanswered_ = 0;
   nmt_ = NmtCommand::reset_communication;
   nmt_due_ = true;
   deadline_ = now + boot_up_timeout_;
@@ -46,7 +51,10 @@ void BootSequence::fail(BootFailure failure) {
 std::optional<NmtCommand> BootSequence::take_nmt() {
   if (!nmt_due_) return std::nullopt;
   nmt_due_ = false;
-  if (phase_ == Phase::reset) phase_ = Phase::await_boot_up;
+  if (phase_ == Phase::reset) {
+    phase_ = Phase::await_boot_up;
+    ++resets_unanswered_;
+  }
   if (phase_ == Phase::start) phase_ = Phase::await_operational;
   return nmt_;
 }
@@ -58,11 +66,16 @@ bool BootSequence::retry() {
   return true;
 }
 
-void BootSequence::on_boot_up(Time now, SdoClient& sdo) {
-  if (phase_ == Phase::reset || phase_ == Phase::idle || phase_ == Phase::failed || phase_ == Phase::done) return;
+bool BootSequence::on_boot_up(Time now, SdoClient& sdo) {
+  const bool caused = resets_unanswered_ > 0;
+  if (caused) --resets_unanswered_;
+  if (phase_ == Phase::reset || phase_ == Phase::idle || phase_ == Phase::failed || phase_ == Phase::done) return caused;
   // Again while being configured: it forgot. A second reset command may have crossed a late first boot-up, so this is tried again, boundedly.
   if (phase_ != Phase::await_boot_up && !(phase_ == Phase::configure && report_.step == 0)) {
-    if (report_.retries >= retries_allowed_) return fail(BootFailure::rebooted);
+    if (report_.retries >= retries_allowed_) {
+      fail(BootFailure::rebooted);
+      return caused;
+    }
     ++report_.retries;
   }
   sdo.reset();
@@ -70,8 +83,10 @@ void BootSequence::on_boot_up(Time now, SdoClient& sdo) {
   exchange_ = Exchange::next;
   nmt_due_ = false;
   report_.step = 0;
+  report_.substitutions.clear();
   retries_left_ = retries_allowed_;
   deadline_ = now;
+  return caused;
 }
 
 void BootSequence::on_operational(Time now) {
@@ -114,93 +129,137 @@ void BootSequence::step(Time now, SdoClient& sdo, const BootContext& context) {
     default: return;
   }
   if (sdo.busy()) return;
-  if (exchange_ != Exchange::next) take_result(sdo);
+  if (exchange_ != Exchange::next) take_result(sdo, context);
   if (phase_ == Phase::configure && exchange_ == Exchange::next) start_step(sdo, context);
 }
 
 void BootSequence::start_step(SdoClient& sdo, const BootContext& context) {
-  while (report_.step < plan_.size() && !boot_value(plan_[report_.step], context)) ++report_.step;
-  if (report_.step >= plan_.size()) {
+  while (report_.step < report_.steps && !boot_value(boot_step(report_.step, context), context)) ++report_.step;
+  if (report_.step >= report_.steps) {
     phase_ = Phase::configured;
     report_.index = 0;
     report_.sub = 0;
     return;
   }
-  const BootStep& step = plan_[report_.step];
-  report_.index = step.index;
-  report_.sub = step.sub;
+  step_ = boot_step(report_.step, context);
+  report_.index = step_.index;
+  report_.sub = step_.sub;
   mode_reads_left_ = mode_reads;
-  written_ = *boot_value(step, context);
-  const bool writes = step.action == BootAction::write || step.action == BootAction::set_mode;
-  exchange_ = writes ? Exchange::writing : Exchange::reading;
-  if (writes) sdo.download(step.index, step.sub, written_, step.width);
-  if (!writes) sdo.upload(step.index, step.sub);
+  fallback_tried_ = false;
+  written_ = *boot_value(step_, context);
+  const bool blind = step_.action == BootAction::set_mode;
+  exchange_ = blind ? Exchange::writing : Exchange::reading;
+  if (blind) sdo.download(step_.index, step_.sub, written_, step_.width);
+  if (!blind) sdo.upload(step_.index, step_.sub);
 }
 
-void BootSequence::take_result(SdoClient& sdo) {
-  const BootStep& step = plan_[report_.step];
-  if (sdo.state() != SdoClient::State::done) return take_sdo_failure(sdo, step);
-  if (exchange_ != Exchange::writing) return take_read(sdo, step);
+void BootSequence::take_result(SdoClient& sdo, const BootContext& context) {
+  if (sdo.state() != SdoClient::State::done) return take_sdo_failure(sdo, context);
+  if (exchange_ != Exchange::writing) return take_read(sdo, context);
   exchange_ = Exchange::reading_back;
-  sdo.upload(step.action == BootAction::set_mode ? mode_display : step.index, step.sub);
+  sdo.upload(step_.action == BootAction::set_mode ? mode_display : step_.index, step_.sub);
 }
 
-void BootSequence::take_sdo_failure(const SdoClient& sdo, const BootStep& step) {
+void BootSequence::take_sdo_failure(SdoClient& sdo, const BootContext& context) {
   const std::uint32_t code = sdo.state() == SdoClient::State::failed ? sdo.abort_code() : sdo_abort::timeout;
-  if (step.optional && says_absent(code)) return next_step();
+  if (says_absent(code) && (step_.optional || substituted(context))) return next_step();
   report_.abort_code = code;
   if (worth_retry(code) && retry()) {
     exchange_ = Exchange::next;
     return;
   }
+  if (exchange_ == Exchange::writing && write_fallback(code, sdo, context)) return;
+  if (exchange_ == Exchange::writing) report_.expected = written_;
+  if (code == sdo_abort::read_only) return fail(BootFailure::read_only);
   fail(code == sdo_abort::timeout && !sdo.aborted_by_server() ? BootFailure::sdo_timeout : BootFailure::sdo_aborted);
 }
 
-void BootSequence::take_read(SdoClient& sdo, const BootStep& step) {
+// The drive has no such object, and its profile says what does its work.
+bool BootSequence::substituted(const BootContext& context) {
+  if (context.drive == nullptr) return false;
+  const Absence* absence = context.drive->profile.absence(step_.value);
+  if (absence == nullptr || absence->by == Substitute::none || absence->by == Substitute::other_object) return false;
+  return report_.substitutions.push_back({step_.index, step_.sub, absence->by});
+}
+
+// 605A and 6007 take few values on many drives. The second choice of the profile is tried once.
+bool BootSequence::write_fallback(std::uint32_t code, SdoClient& sdo, const BootContext& context) {
+  const bool refused = code == sdo_abort::bad_value || code == sdo_abort::too_high || code == sdo_abort::too_low;
+  if (!refused || fallback_tried_ || context.drive == nullptr) return false;
+  const DriveProfile& profile = context.drive->profile;
+  std::int16_t fallback = 0;
+  if (step_.value == BootValue::quick_stop_option) fallback = profile.quick_stop_fallback;
+  if (step_.value == BootValue::abort_option) fallback = profile.abort_fallback;
+  if (fallback == 0) return false;
+  fallback_tried_ = true;
+  written_ = static_cast<std::uint16_t>(fallback);
+  exchange_ = Exchange::writing;
+  sdo.download(step_.index, step_.sub, written_, step_.width);
+  return true;
+}
+
+void BootSequence::take_read(SdoClient& sdo, const BootContext& context) {
   const std::size_t bytes = sdo.value().size();
-  const bool length_fits = step.width == 0 || bytes == step.width || (!sdo.size_known() && bytes > step.width);
+  const bool length_fits = step_.width == 0 || bytes == step_.width || (!sdo.size_known() && bytes > step_.width);
   if (!length_fits) return fail(BootFailure::wrong_length);
-  const std::uint32_t width_mask = step.width >= 4 || step.width == 0 ? 0xFFFFFFFFu : (1u << (8 * step.width)) - 1u;
+  const std::uint32_t width_mask = step_.width >= 4 || step_.width == 0 ? 0xFFFFFFFFu : (1u << (8 * step_.width)) - 1u;
   const std::uint32_t read = sdo.number() & width_mask;
   report_.read = read;
 
-  if (step.action == BootAction::record) {
-    record(sdo, step);
+  if (step_.action == BootAction::record) return record(sdo, context);
+  if (step_.action == BootAction::invalidate_pdo && exchange_ == Exchange::reading) written_ = read | cob_id::pdo_invalid;
+  const std::uint32_t mask = step_.mask & width_mask;
+  if ((read & mask) == (written_ & mask)) {
+    if (step_.index == 0x1000) report_.device_type = read;
+    if (step_.value == BootValue::quick_stop_option) report_.quick_stop_option = static_cast<std::int16_t>(written_);
     return next_step();
   }
-  if (step.action == BootAction::invalidate_pdo && exchange_ == Exchange::reading) {
-    if ((read & cob_id::pdo_invalid) != 0) return next_step();
-    written_ = read | cob_id::pdo_invalid;
-    exchange_ = Exchange::writing;
-    sdo.download(step.index, step.sub, written_, step.width);
+  if (step_.action == BootAction::set_mode && mode_reads_left_ > 0) {
+    --mode_reads_left_;
+    sdo.upload(mode_display, step_.sub);
     return;
   }
-  const std::uint32_t mask = step.mask & width_mask;
-  if ((read & mask) == (written_ & mask)) {
-    if (step.index == 0x1000) report_.device_type = read;
-    return next_step();
-  }
-  if (step.action == BootAction::set_mode && mode_reads_left_ > 0) {
-    --mode_reads_left_;
-    sdo.upload(mode_display, step.sub);
+  const bool writes = step_.action == BootAction::write || step_.action == BootAction::invalidate_pdo;
+  if (writes && exchange_ == Exchange::reading) {
+    exchange_ = Exchange::writing;
+    sdo.download(step_.index, step_.sub, written_, step_.width);
     return;
   }
   report_.expected = written_ & mask;
-  fail(step.action == BootAction::check ? BootFailure::wrong_identity : BootFailure::wrong_readback);
+  const bool identity = step_.value == BootValue::vendor || step_.value == BootValue::product || step_.index == 0x1000;
+  if (step_.action != BootAction::check) return fail(BootFailure::wrong_readback);
+  fail(identity ? BootFailure::wrong_identity : BootFailure::wrong_setting);
 }
 
-void BootSequence::record(const SdoClient& sdo, const BootStep& step) {
-  if (step.index == 0x1018 && step.sub == 1) report_.vendor = sdo.number();
-  if (step.index == 0x1018 && step.sub == 2) report_.product = sdo.number();
-  if (step.index == 0x6076) report_.rated_torque_mnm = sdo.number();
-  if (step.index != 0x1008) return;
-  const auto text = sdo.value();
-  const std::size_t length = std::min(text.size(), report_.device_name.size() - 1);
-  report_.device_name = {};
-  for (std::size_t i = 0; i < length && text[i] != 0; ++i) {
-    const bool printable = text[i] >= 0x20 && text[i] < 0x7F;
-    report_.device_name[i] = printable ? static_cast<char>(text[i]) : '?';
+void BootSequence::record(const SdoClient& sdo, const BootContext& context) {
+  if (step_.index == 0x1018 && step_.sub == 1) report_.vendor = sdo.number();
+  if (step_.index == 0x1018 && step_.sub == 2) report_.product = sdo.number();
+  if (step_.value == BootValue::rated_torque) return record_rating(sdo.number(), context);
+  if (step_.index == 0x1008) {
+    const auto text = sdo.value();
+    const std::size_t length = std::min(text.size(), report_.device_name.size() - 1);
+    report_.device_name = {};
+    for (std::size_t i = 0; i < length && text[i] != 0; ++i) {
+      const bool printable = text[i] >= 0x20 && text[i] < 0x7F;
+      report_.device_name[i] = printable ? static_cast<char>(text[i]) : '?';
+    }
   }
+  next_step();
+}
+
+// A torque whose unit is not known is no torque: contact, grip and overload are judged by it.
+void BootSequence::record_rating(std::uint32_t number, const BootContext& context) {
+  const DriveProfile& profile = context.drive->profile;
+  const std::uint64_t rated_unm = std::uint64_t{number} * profile.rated_torque_unit_unm;
+  if (rated_unm == 0 || rated_unm > UINT32_MAX) return fail(BootFailure::no_rating);
+  const std::uint64_t stated_unm = profile.rated_torque_unm;
+  const std::uint64_t apart_unm = rated_unm > stated_unm ? rated_unm - stated_unm : stated_unm - rated_unm;
+  if (stated_unm != 0 && apart_unm > stated_unm / 10) {
+    report_.expected = static_cast<std::uint32_t>(stated_unm / profile.rated_torque_unit_unm);
+    return fail(BootFailure::wrong_rating);
+  }
+  report_.rated_torque_unm = static_cast<std::uint32_t>(rated_unm);
+  next_step();
 }
 
 void BootSequence::next_step() {

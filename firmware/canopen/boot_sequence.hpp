@@ -30,7 +30,8 @@ class BootSequence {
   void fail(BootFailure failure);
   // Once a SYNC. Starts SDO transfers and takes their results.
   void step(Time now, SdoClient& sdo, const BootContext& context);
-  void on_boot_up(Time now, SdoClient& sdo);
+  // False when no reset command of ours caused it: the node restarted by itself, and has lost what it keeps without power.
+  bool on_boot_up(Time now, SdoClient& sdo);
   void on_operational(Time now);
   void on_process_data();
   // All nodes are configured: start this one.
@@ -53,21 +54,26 @@ class BootSequence {
   enum class Exchange : std::uint8_t { next, reading, writing, reading_back };
 
   void start_step(SdoClient& sdo, const BootContext& context);
-  void take_result(SdoClient& sdo);
-  void take_read(SdoClient& sdo, const BootStep& step);
-  void take_sdo_failure(const SdoClient& sdo, const BootStep& step);
-  void record(const SdoClient& sdo, const BootStep& step);
+  void take_result(SdoClient& sdo, const BootContext& context);
+  void take_read(SdoClient& sdo, const BootContext& context);
+  void take_sdo_failure(SdoClient& sdo, const BootContext& context);
+  bool substituted(const BootContext& context);
+  bool write_fallback(std::uint32_t code, SdoClient& sdo, const BootContext& context);
+  void record(const SdoClient& sdo, const BootContext& context);
+  void record_rating(std::uint32_t number, const BootContext& context);
   void await(Time now, Phase again, Duration timeout, BootFailure failure);
   void next_step();
   bool retry();
 
   Phase phase_ = Phase::idle;
   Exchange exchange_ = Exchange::next;
-  std::span<const BootStep> plan_;
+  BootStep step_;  // the row at work
   Duration boot_up_timeout_, start_timeout_;
   std::uint8_t retries_allowed_ = 0;
   std::uint8_t retries_left_ = 0;  // of the step or phase at work
   std::uint8_t mode_reads_left_ = 0;
+  std::uint8_t resets_unanswered_ = 0;  // reset commands sent that no boot-up message answered yet
+  bool fallback_tried_ = false;
   std::uint32_t written_ = 0;
   bool nmt_due_ = false;
   NmtCommand nmt_ = NmtCommand::reset_communication;

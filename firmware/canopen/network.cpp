@@ -77,6 +77,10 @@ bool Network::operational() const {
   return boot_ == BootState::done && std::all_of(nodes_.begin(), nodes_.end(), works);
 }
 
+bool Network::may_have_power() const {
+  return std::all_of(axes_.begin(), axes_.end(), [](const Axis& axis) { return axis.setup().may_have_power(); });
+}
+
 bool Network::any_fault() const {
   return std::any_of(nodes_.begin(), nodes_.end(), [](const Node& node) { return node.fault().any(); });
 }
@@ -97,9 +101,13 @@ void Network::disable_all() {
   for (Axis& axis : axes_) axis.request(AxisRequest::disable);
 }
 
+void Network::remove_power() {
+  for (Axis& axis : axes_) axis.request(AxisRequest::remove_power);
+}
+
 void Network::shut_down() {
   if (!running_ || shut_down_syncs_ > 0) return;
-  quick_stop_all();
+  remove_power();
   io_.set_outputs(0);
   shut_down_syncs_ = Axis::handshake_syncs + 1;
 }
@@ -139,11 +147,11 @@ void Network::dispatch(const CanFrame& frame, Time now) {
   const std::uint8_t id = cob_id::node_of(frame.id);
   const std::uint32_t function = cob_id::function_of(frame.id);
   if (frame.id == cob_id::nmt || frame.id == cob_id::sync || frame.id == cob_id::heartbeat + can_map::master_node) {
-    return refuse(Refusal::foreign_master);
+    return refuse_foreign_master(frame.id);
   }
   const bool for_nodes = function == cob_id::rpdo1 || function == cob_id::rpdo2 || function == cob_id::rpdo3 || function == cob_id::rpdo4 ||
                          function == cob_id::sdo_request;
-  if (for_nodes && id != 0) return refuse(Refusal::foreign_master);
+  if (for_nodes && id != 0) return refuse_foreign_master(frame.id);
 
   const bool from_nodes = function == cob_id::emcy || function == cob_id::tpdo1 || function == cob_id::tpdo2 || function == cob_id::tpdo3 ||
                           function == cob_id::tpdo4 || function == cob_id::sdo_answer || function == cob_id::heartbeat;
@@ -157,6 +165,11 @@ void Network::dispatch(const CanFrame& frame, Time now) {
     case cob_id::heartbeat: return on_heartbeat(*node, frame, now);
     default: return refuse(Refusal::pdo_unmapped);
   }
+}
+
+void Network::refuse_foreign_master(std::uint32_t id) {
+  foreign_id_ = id;
+  refuse(Refusal::foreign_master);
 }
 
 void Network::on_tpdo(std::size_t node, const CanFrame& frame) {
@@ -190,7 +203,6 @@ void Network::on_emcy(std::size_t node, const CanFrame& frame, Time now) {
 void Network::on_heartbeat(std::size_t node, const CanFrame& frame, Time now) {
   if (frame.length != 1) return refuse(Refusal::bad_length);
   if (!nodes_[node].on_heartbeat(frame.data[0], now)) return refuse(Refusal::heartbeat_state);
-  if (nodes_[node].fault().rebooted && node < joint_count) axes_[node].forget_home();
 }
 
 void Network::on_sdo(std::size_t node, const CanFrame& frame, Time now) {
@@ -210,19 +222,24 @@ void Network::tick(Time now, Outbox& outbox) {
   last_sync_ = now;
   ++stats_.syncs;
 
-  for (std::size_t i = 0; i < node_count; ++i) nodes_[i].step(now, context(i));
+  for (std::size_t i = 0; i < node_count; ++i) {
+    nodes_[i].step(now, context(i));
+    if (nodes_[i].take_restart() && i < joint_count) axes_[i].forget_home();
+  }
   if (boot_ == BootState::running) step_boot(now);
   if (shut_down_syncs_ > 0 && --shut_down_syncs_ == 0) stop_nodes();
   step_axes(now);
   send_process_data(outbox);
   send_heartbeat(now, outbox);
+  send_guard_requests(now, outbox);
   send_nmt(outbox);
   send_sdo(now, outbox);
 }
 
 void Network::step_boot(Time now) {
   const auto all = [this](auto&& predicate) { return std::all_of(nodes_.begin(), nodes_.end(), predicate); };
-  if (!nodes_started_ && all([](const Node& n) { return n.boot().configured(); })) start_nodes(now);
+  if (all([](const Node& n) { return n.boot().configured(); })) nodes_started_ = true;
+  if (nodes_started_) start_configured(now);
   if (all([](const Node& n) { return n.boot().done(); })) boot_ = BootState::done;
   // A node that failed does not stop the others from being configured: the report then tells of all that is wrong.
   const bool failed = !all([](const Node& n) { return !n.boot().failed(); });
@@ -230,13 +247,14 @@ void Network::step_boot(Time now) {
   if (failed && settled) give_up_boot();
 }
 
-void Network::start_nodes(Time now) {
-  nodes_started_ = true;
+// All of them at first; later one that restarted before its first data and was configured anew.
+void Network::start_configured(Time now) {
   for (std::size_t i = 0; i < node_count; ++i) {
-    if (i < joint_count) axes_[i].go_online(nodes_[i].boot().report().rated_torque_mnm, now);
+    if (!nodes_[i].boot().configured()) continue;
+    if (i < joint_count) axes_[i].go_online(nodes_[i].boot().report(), now);
+    if (i == io_index) io_.go_online();
     nodes_[i].boot().release(now);
   }
-  io_.go_online();
 }
 
 void Network::give_up_boot() {
@@ -295,6 +313,13 @@ void Network::send_heartbeat(Time now, Outbox& outbox) {
   next_heartbeat_ = (late ? now : next_heartbeat_) + can_map::master_heartbeat;
   boot_up_sent_ = true;
   send(outbox, frame);
+}
+
+void Network::send_guard_requests(Time now, Outbox& outbox) {
+  CanFrame frame;
+  for (Node& node : nodes_) {
+    if (node.take_guard_request(now, frame)) send(outbox, frame);
+  }
 }
 
 void Network::send_nmt(Outbox& outbox) {

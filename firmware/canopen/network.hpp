@@ -25,7 +25,7 @@
 
 namespace lf::canopen {
 
-// A tick sends at most SYNC + 6 RPDOs + heartbeat + 6 NMT + 6 SDO aborts + 6 SDO requests = 26.
+// A tick sends at most SYNC + 6 RPDOs + heartbeat + 5 guard requests + 6 NMT + 6 SDO aborts + 6 SDO requests = 31.
 using Outbox = StaticVector<CanFrame, 64>;
 
 // Why a frame was refused.
@@ -83,6 +83,8 @@ class Network {
   // Booted, and every node answers, is operational and has no unacknowledged fault of its link (`NodeFault`, not the drives' own faults).
   bool operational() const;
 
+  // Every joint has a known zero, or a drive that finds it.
+  bool may_have_power() const;
   Axis& axis(Joint joint) { return axes_[static_cast<std::size_t>(joint)]; }
   const Axis& axis(Joint joint) const { return axes_[static_cast<std::size_t>(joint)]; }
   IoModule& io() { return io_; }
@@ -96,10 +98,15 @@ class Network {
   std::optional<Emcy> take_emcy();
 
   void quick_stop_all();  // every axis; the laser and the lamps are the caller's
-  void disable_all();     // power off
-  // Quick stop, outputs off, and NMT stop of every node when the axes had three SYNCs to hear of it. Only `start_boot` leads back.
+  void disable_all();     // power off, each drive on its way down through every state
+  void remove_power();    // disable voltage for every axis, at once
+  // Power and outputs off, and NMT stop of every node four SYNC periods later, when the drives have heard of it. Only `start_boot` leads back.
   void shut_down();
 
+  // The identifier of the last frame that only this master may send and somebody else sent; `stats().refused` counts them. The core never receives what
+  // it sent itself.
+  std::uint32_t foreign_id() const { return foreign_id_; }
+  std::uint32_t foreign_frames() const { return stats_.refused[static_cast<std::size_t>(Refusal::foreign_master)]; }
   // The CAN controller said in an error frame that it is off the bus, and neither that it restarted nor any other frame came since.
   bool bus_off() const { return bus_off_; }
   Time last_sync() const { return last_sync_; }
@@ -113,12 +120,13 @@ class Network {
   BootContext context(std::size_t node) const;
   void on_error_frame(const CanFrame& frame);
   void dispatch(const CanFrame& frame, Time now);
+  void refuse_foreign_master(std::uint32_t id);
   void on_tpdo(std::size_t node, const CanFrame& frame);
   void on_emcy(std::size_t node, const CanFrame& frame, Time now);
   void on_heartbeat(std::size_t node, const CanFrame& frame, Time now);
   void on_sdo(std::size_t node, const CanFrame& frame, Time now);
   void step_boot(Time now);
-  void start_nodes(Time now);
+  void start_configured(Time now);
   void give_up_boot();
   void go_offline();
   void stop_nodes();
@@ -126,6 +134,7 @@ class Network {
   void send(Outbox& outbox, const CanFrame& frame);
   void send_process_data(Outbox& outbox);
   void send_heartbeat(Time now, Outbox& outbox);
+  void send_guard_requests(Time now, Outbox& outbox);
   void send_nmt(Outbox& outbox);
   void send_sdo(Time now, Outbox& outbox);
 
@@ -138,6 +147,7 @@ class Network {
   bool nodes_started_ = false;
   bool boot_up_sent_ = false;
   bool bus_off_ = false;
+  std::uint32_t foreign_id_ = 0;
   std::size_t misconfigured_node_ = node_count;  // what `check` found; node_count: nothing
   std::uint8_t shut_down_syncs_ = 0;             // left until NMT stop; 0: not shutting down
   std::array<std::optional<NmtCommand>, node_count> nmt_due_{};

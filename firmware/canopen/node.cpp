@@ -1,5 +1,10 @@
 #include "firmware/canopen/node.hpp"
 
+#include <utility>
+
+#include "firmware/canopen/cob_id.hpp"
+#include "firmware/canopen/codec.hpp"
+
 namespace lf::canopen {
 
 Node::Node(std::uint8_t id, const NetworkConfig& config) : id_(id), sdo_(id, config.sdo_timeout), boot_(config) {}
@@ -7,12 +12,15 @@ Node::Node(std::uint8_t id, const NetworkConfig& config) : id_(id), sdo_(id, con
 void Node::start_boot(Time now, const BootContext& context) {
   fault_ = NodeFault{};
   nmt_ = NmtState::unknown;
+  guarded_ = context.drive != nullptr && context.drive->profile.guarded;
+  guarding_ = false;
   sdo_.reset();
   boot_.begin(context, now);
 }
 
 bool Node::on_heartbeat(std::uint8_t state, Time now) {
-  const auto nmt = static_cast<NmtState>(state);
+  constexpr std::uint8_t toggle = 0x80;
+  const auto nmt = static_cast<NmtState>(guarded_ ? state & ~toggle : state);
   const bool valid =
       nmt == NmtState::boot_up || nmt == NmtState::stopped || nmt == NmtState::operational || nmt == NmtState::pre_operational;
   if (!valid) return false;
@@ -23,7 +31,7 @@ bool Node::on_heartbeat(std::uint8_t state, Time now) {
       fault_.rebooted = true;
       sdo_.reset();
     }
-    boot_.on_boot_up(now, sdo_);
+    if (!boot_.on_boot_up(now, sdo_)) restarted_ = true;
   }
   if (nmt == NmtState::operational) boot_.on_operational(now);
   if (boot_.done() && (nmt == NmtState::stopped || nmt == NmtState::pre_operational)) fault_.left_operational = true;
@@ -41,8 +49,22 @@ void Node::step(Time now, const BootContext& context) {
   const bool silent = boot_.done() && now - last_heartbeat_ > can_map::node_heartbeat_timeout;
   if (silent) {
     fault_.heartbeat_lost = true;
+    restarted_ = true;  // a node without power is as silent as one behind a cut cable
     nmt_ = NmtState::unknown;
   }
 }
+
+bool Node::take_guard_request(Time now, CanFrame& frame) {
+  if (!guarded_) return false;
+  if (!guarding_) next_guard_ = now;
+  guarding_ = guarding_ || boot_.started();
+  if (!guarding_ || now < next_guard_) return false;
+  next_guard_ = now + can_map::master_heartbeat;
+  frame = empty_frame(cob_id::heartbeat + id_, 1);
+  frame.id |= CanFrame::remote_flag;
+  return true;
+}
+
+bool Node::take_restart() { return std::exchange(restarted_, false); }
 
 }  // namespace lf::canopen

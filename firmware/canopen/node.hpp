@@ -14,7 +14,7 @@ namespace lf::canopen {
 enum class NmtState : std::uint8_t { boot_up = 0, stopped = 4, operational = 5, pre_operational = 127, unknown = 255 };
 
 struct NodeFault {
-  bool heartbeat_lost = false;    // none for the consumer time-out
+  bool heartbeat_lost = false;    // none for the consumer time-out, or no answer to guard requests
   bool rebooted = false;          // boot-up message in operation: the node forgot its configuration
   bool left_operational = false;  // a heartbeat says stopped or pre-operational
   std::uint16_t emcy_code = 0;    // last EMCY other than 0x0000; stays after the node withdrew it, see `emcy_active`
@@ -41,7 +41,11 @@ class Node {
   bool started() const { return boot_.started() && !fault_.rebooted; }  // its process data count
 
   void start_boot(Time now, const BootContext& context);
-  // False when `state` is not one of CiA 301's.
+  // The guard request that is due, if the node is guarded: a remote frame that the node answers with its state, and by which it knows that the master lives.
+  bool take_guard_request(Time now, CanFrame& frame);
+  // The node restarted, or may have: what it keeps without power is not known. True once.
+  bool take_restart();
+  // A heartbeat, or a guarded node's answer, whose bit 7 alternates. False when `state` is not one of CiA 301's.
   bool on_heartbeat(std::uint8_t state, Time now);
   void on_emcy(const Emcy& emcy);
   void on_process_data() { boot_.on_process_data(); }
@@ -51,6 +55,10 @@ class Node {
  private:
   std::uint8_t id_ = 0;
   NmtState nmt_ = NmtState::unknown;
+  bool guarded_ = false;
+  bool guarding_ = false;  // from its start on
+  bool restarted_ = false;
+  Time next_guard_;
   Time last_heartbeat_;
   NodeFault fault_;
   SdoClient sdo_;

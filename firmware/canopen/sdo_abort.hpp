@@ -15,10 +15,14 @@ inline constexpr std::uint32_t toggle = 0x05030000;
 inline constexpr std::uint32_t timeout = 0x05040000;
 inline constexpr std::uint32_t command = 0x05040001;
 inline constexpr std::uint32_t out_of_memory = 0x05040005;
+inline constexpr std::uint32_t read_only = 0x06010002;
 inline constexpr std::uint32_t no_object = 0x06020000;
 inline constexpr std::uint32_t length = 0x06070010;
 inline constexpr std::uint32_t length_high = 0x06070012;
 inline constexpr std::uint32_t no_sub_index = 0x06090011;
+inline constexpr std::uint32_t bad_value = 0x06090030;
+inline constexpr std::uint32_t too_high = 0x06090031;
+inline constexpr std::uint32_t too_low = 0x06090032;
 inline constexpr std::uint32_t general = 0x08000000;
 
 inline constexpr std::array<Entry, 31> table{{

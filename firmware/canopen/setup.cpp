@@ -1,5 +1,7 @@
 #include "firmware/canopen/setup.hpp"
 
+#include <cstdint>
+
 namespace lf::canopen {
 
 const char* name(ConfigError error) {
@@ -12,6 +14,7 @@ const char* name(ConfigError error) {
     case ConfigError::torque: return "maximum torque is zero";
     case ConfigError::following: return "following error window is zero";
     case ConfigError::homing: return "homing without speed, acceleration or time-out";
+    case ConfigError::profile: return "drive profile's scale is not positive, or its numbers do not fit 32 bits";
     case ConfigError::sync_period: return "SYNC period does not fit object 60C2, or is over 100 ms";
     case ConfigError::timeout: return "a time-out is not positive";
   }
@@ -19,6 +22,12 @@ const char* name(ConfigError error) {
 }
 
 bool interpolation_period(Duration period, std::uint8_t& value, std::int8_t& exponent) {
+  constexpr std::int64_t ns_per_ms = 1'000'000;
+  if (period.ns() > 0 && period.ns() % ns_per_ms == 0 && period.ns() / ns_per_ms <= 255) {
+    value = static_cast<std::uint8_t>(period.ns() / ns_per_ms);
+    exponent = -3;
+    return true;
+  }
   std::int64_t mantissa = period.ns();
   std::int8_t power = -9;
   if (mantissa <= 0) return false;
@@ -37,11 +46,19 @@ namespace {
 // Node heartbeats come every 100 ms and are watched once a SYNC.
 constexpr Duration longest_sync_period = Duration::from_ms(100);
 
+bool fits_32_bits(const DriveSetup& drive) {
+  const DriveScale& scale = drive.profile.scale;
+  return scale.speed.times(drive.max_speed_counts_s) <= UINT32_MAX && scale.acceleration.times(drive.quick_stop_counts_s2) <= UINT32_MAX &&
+         scale.acceleration.times(drive.homing_accel_counts_s2) <= UINT32_MAX &&
+         scale.position.times(drive.following_window_counts) <= UINT32_MAX;
+}
+
 ConfigError check_drive(const DriveSetup& drive) {
   if (drive.min_counts >= drive.max_counts) return ConfigError::position_limits;
   if (drive.max_speed_counts_s == 0) return ConfigError::speed;
   if (drive.max_torque_permille == 0) return ConfigError::torque;
   if (drive.following_window_counts == 0) return ConfigError::following;
+  if (!drive.profile.scale.valid() || !fits_32_bits(drive)) return ConfigError::profile;
   // 35 and 37 take the present position and need no speed.
   const bool moves = drive.homing_method != 0 && drive.homing_method != 35 && drive.homing_method != 37;
   if (moves && (drive.homing_speed_counts_s == 0 || drive.homing_accel_counts_s2 == 0)) return ConfigError::homing;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "firmware/canopen/drive_profile.hpp"
 #include "shared/can/can_map.hpp"
 #include "shared/messages/joint_io.hpp"
 #include "shared/messages/time.hpp"
@@ -16,10 +17,11 @@ struct Identity {
   std::uint32_t product = 0;
 };
 
-// One CiA 402 drive. Every number is written at boot and read back; the object is named beside it.
+// One CiA 402 drive. Every number is written at boot, in the drive's units, and read back; the object is named beside it.
 struct DriveSetup {
   std::uint8_t node = 0;  // 1..126
   Identity identity;
+  DriveProfile profile;
 
   std::int32_t min_counts = 0;  // what `Axis::set_target_counts` accepts
   std::int32_t max_counts = 0;  //
@@ -32,17 +34,25 @@ struct DriveSetup {
   std::uint32_t following_window_counts = 0;  // 6065
   std::uint16_t following_timeout_ms = 100;   // 6066
 
-  std::int16_t quick_stop_option = 6;  // 605A: 1, 2 stop and lose power; 5, 6 stop and stay powered. 6: on the quick-stop ramp, holding
-  std::int16_t abort_option = 3;       // 6007, the master is gone: 3 is a quick stop
+  // 605A: 1, 2 stop and lose power; 5, 6 stop and stay powered. 2: on the quick-stop ramp, then off. With 6 the master takes the power (safety/power.hpp),
+  // but a drive that lost its master keeps it.
+  std::int16_t quick_stop_option = 2;
+  std::int16_t abort_option = 3;  // 6007, the master is gone: 3 is a quick stop
 
-  // What the drive counts where the arm's own count is 0; found at commissioning. All counts beside it are the arm's: the axis adds and takes it off.
+  // What the drive counts, in the arm's counts and direction, where the arm's own count is 0; found at commissioning. The axis adds it to every target and
+  // subtracts it from every reading.
   std::int32_t encoder_zero_counts = 0;
+  // False for a joint that was never commissioned: `encoder_zero_counts` means nothing, and the axis takes no power. A drive that homes by itself
+  // (`homing_method`) finds its zero under power, and needs none before.
+  bool zero_known = true;
 
   std::int8_t homing_method = 0;  // 6098; 0: absolute encoder, nothing to home. 35, 37: here is home. Negative: the maker's, to a hard stop
   std::int32_t home_offset_counts = 0;       // 607C
   std::uint32_t homing_speed_counts_s = 0;   // 6099:01, toward the stop or switch; 6099:02 is a quarter of it
   std::uint32_t homing_accel_counts_s2 = 0;  // 609A
   Duration homing_timeout = Duration::from_ms(60'000);
+
+  bool may_have_power() const { return zero_known || homing_method != 0; }
 };
 
 // The CiA 401 output node.
@@ -72,6 +82,7 @@ enum class ConfigError : std::uint8_t {
   torque,
   following,
   homing,
+  profile,
   sync_period,
   timeout
 };
@@ -80,7 +91,8 @@ const char* name(ConfigError error);
 // First thing wrong with `config`. `drive` is set to the index of the offender (joint_count: the output node or the network).
 ConfigError check(const NetworkConfig& config, std::size_t& offender);
 
-// 60C2: period = value * 10^exponent s. False when no byte and exponent give the period exactly.
+// 60C2: period = value * 10^exponent s, in milliseconds (exponent -3) where these fit: many drives take no other exponent. False when no byte and exponent
+// give the period exactly.
 bool interpolation_period(Duration period, std::uint8_t& value, std::int8_t& exponent);
 
 }  // namespace lf::canopen

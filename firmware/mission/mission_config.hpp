@@ -35,7 +35,7 @@ struct MissionConfig {
   // From the start of an exposure until its image has surely been received: exposure, readout and transfer take 30 to 60 ms.
   Duration image_due = Duration::from_ms(100);
   double sweep_speed_rad_s = 0.065;  // of the slowest joint that moves in a sweep: above the real joints' stiction of 0.06 rad/s
-  double verify_band_m = 0.055;      // half height of the verification's sweep around the valve: the handle's half length and 7 mm
+  double verify_band_m = 0.055;      // half height of the verification's sweep around the valve; never less than the handle needs
 
   double move_speed_fraction = 0.6;    // of the joints' own speed limits, in free motion
   double approach_distance_m = 0.080;  // pre-grasp and pre-press stand this far off along the panel's normal
@@ -44,7 +44,7 @@ struct MissionConfig {
   double press_overtravel_m = 0.006;   // beyond the button's nominal bottom before a press counts as missed
   double press_torque_nm = 7.0;        // rise of an arm joint's torque that says the button has bottomed: about 12 N at the cap
   double turn_speed_rad_s = 0.35;      // of the handle; above the wrist's stiction of 0.2 rad/s
-  double jaw_open_m = 0.060;           // between the pads when reaching for the bar: 24 mm to either side
+  double jaw_open_m = 0.0606;          // between the pads when reaching for the bar: arm::jaw_opening_m() of its thickness
   double valve_tolerance_rad = 0.035;  // 2 degrees: what the second look accepts without turning again
   std::uint32_t tries = 3;             // of a step whose row allows a retry, per task
 };

@@ -31,6 +31,7 @@ void Motion::start_at(const arm::JointVector& q_rad) {
 }
 
 void Motion::begin(Kind kind, double duration_s) {
+  ++begun_;
   kind_ = kind;
   failure_ = StepFailure::none;
   holding_ = false;

@@ -50,6 +50,7 @@ class Motion {
   bool paused() const { return rate_ == 0; }
   double elapsed_s() const { return t_s_; }
   double duration_s() const { return duration_s_; }
+  std::uint32_t begun() const { return begun_; }                // motions, planning of them included
   double handle_rad() const { return turn_.handle_rad(t_s_); }  // where the turn under way, or just over, has the bar by now
   const scan::SweepPlan& sweep_plan() const { return sweep_planner_.plan(); }
   // The sweep is between its run-up and its run-out.
@@ -72,6 +73,7 @@ class Motion {
   double t_s_ = 0;
   double duration_s_ = 0;
   bool holding_ = false;
+  std::uint32_t begun_ = 0;
   double rate_ = 1;  // of the motion's time to the clock's
   arm::JointState target_;
   arm::JointPath path_;

@@ -10,6 +10,7 @@
 #include "firmware/mission/steps.hpp"
 #include "shared/messages/joint_io.hpp"
 #include "shared/messages/static_vector.hpp"
+#include "shared/messages/time.hpp"
 
 namespace lf {
 
@@ -42,6 +43,9 @@ struct Order {
   double by_rad =
       0;        // jog: at most `largest_jog_rad`, and not out of the joint's limits; where it stands outside of them, only toward them
   Tasks tasks;  // set_tasks
+  // An order that is not taken by then is refused, and never executed later; an emergency stop and a shut-down never expire.
+  static constexpr Time never = Time::from_ns(9223372036854775807);
+  Time expires = never;
 };
 
 // A jog is for looking and for getting free, not for working: a move of which an operator sees the end.

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "firmware/mission/mission_config.hpp"
+#include "firmware/mission/step_failure.hpp"
 #include "firmware/scan/valve_frame.hpp"
-#include "firmware/telemetry.hpp"
 #include "shared/calibration/calibration.hpp"
 #include "shared/messages/panel_vision.hpp"
 
@@ -11,17 +11,25 @@ namespace lf::mission {
 
 class PanelMap {
  public:
+  // Without a pointer mark a longer turn would leave open which of two angles half a turn apart the handle has come to: half a turn less what a look and
+  // a detent's pull add at both ends of the way.
+  static constexpr double longest_blind_turn_rad = 2.6;
+
   PanelMap(const PanelLayout& layout, const MarkerCalibration& marker, const CameraCalibration& camera)
       : layout_(layout), marker_(marker), camera_(camera) {}
 
   // Takes an answer of panel vision. On a failure what was known before stays.
-  // `expected_rad` settles which way round the bar is: a bar looks the same after half a turn.
-  StepFailure update(const PanelResult& result, double expected_rad);
+  // A bar looks the same after half a turn. Its pointer mark tells the two angles apart. Where the mark is missing or was not recognised, the handle's stops do, and
+  // after a turn of our own without a mark the way of that turn. Where two angles stay possible, the look fails: nothing is guessed.
+  StepFailure update(const PanelResult& result);
 
   bool known() const { return known_; }
   const Pose& base_from_panel() const { return frame_.base_from_panel; }
   double handle_rad() const { return handle_rad_; }
-  void expect_handle(double rad) { handle_rad_ = rad; }  // after a turn, until the next look
+  // The jaw has the handle here, if it holds it: until the next look the handle is on the way from where it was seen to here.
+  void expect_handle(double rad);
+  // How far the handle may be turned between two looks.
+  double longest_turn_rad() const { return has_pointer() ? 2 * pi : longest_blind_turn_rad; }
   const scan::ValveFrame& frame() const { return frame_; }
   const scan::HandleObservation& handle() const { return handle_; }
   const PlaneFit& plane() const { return plane_; }
@@ -34,6 +42,14 @@ class PanelMap {
   Vec3 bar(double handle_rad) const { return frame_.base_from_panel.linear() * Vec3(-std::sin(handle_rad), std::cos(handle_rad), 0); }
 
  private:
+  struct Range {
+    double low_rad, high_rad;
+  };
+  bool has_pointer() const { return layout_.pointer != PanelLayout::Pointer::none; }
+  StepFailure judge(const PanelResult& result, const scan::ValveFrame& frame, const scan::HandleObservation& handle) const;
+  StepFailure settle(const PanelResult& result, const scan::ValveFrame& frame, const scan::HandleObservation& handle,
+                     double& angle_rad) const;
+
   PanelLayout layout_;
   MarkerCalibration marker_;
   CameraCalibration camera_;
@@ -42,6 +58,7 @@ class PanelMap {
   scan::HandleObservation handle_;
   PlaneFit plane_;
   double handle_rad_ = 0;
+  Range way_{0, 0};  // of the handle since it was last seen
 };
 
 }  // namespace lf::mission

@@ -1,4 +1,4 @@
-// The mission's state machine as a table: every step, the phase it is safe or unsafe in, how long it may take, and where it leads.
+// The mission's state machine as a table: every step, the phase it is safe or unsafe in, how much longer than planned it may take, and where it leads.
 //
 // docs/mission.md holds the drawing; a test draws it again from this table and compares.
 #pragma once
@@ -18,6 +18,9 @@ enum class Step : std::uint8_t {
   home,
   ready,
   jog,
+  check_jaw,
+  free_jaw,
+  back_out,
   deploy,
   scan,
   look,
@@ -49,12 +52,16 @@ enum class Step : std::uint8_t {
 };
 inline constexpr std::size_t step_count = static_cast<std::size_t>(Step::count);
 
+// The object in charge of a step.
+enum class Activity : std::uint8_t { none, start_up, manual, empty_jaw, look, choose_task, turn_valve, press_button, way_home };
+
 struct StepRow {
   Step step;
   const char* name;
-  const char* stage;    // the part of the mission a user follows: boot, ready, deploy, scan, perceive, turn_valve, press_buttons, stow, end
+  const char* stage;  // the part of the mission a user follows: boot, ready, deploy, scan, perceive, turn_valve, press_buttons, stow, end
+  Activity activity;
   safety::Phase phase;  // column of the table of faults
-  double timeout_s;     // 0: none
+  double margin_s;      // the step times out so long after its planned duration; 0: never
   Step on_done;
   Step on_branch;             // the step's other way out; the same as on_done where it has none
   Step on_retry;              // where it is taken again from; `count` where it is not

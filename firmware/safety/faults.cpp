@@ -17,26 +17,29 @@ constexpr Reaction hold = Reaction::hold;
 constexpr Reaction quick = Reaction::quick_stop;
 constexpr Reaction off = Reaction::power_off;
 
+// A drive, a node or a bus that cannot be trusted is stopped, in every phase: with one joint dead the others cannot retreat. The output node is among
+// them, because it reads the emergency-stop chain: a chain that cannot be read is an open chain. After the end a stop is obeyed, too: what already has
+// no power stays so.
 // While gripping:
-// - a lost, rebooted or faulted drive means that letting go may be impossible or half done: the others stop and hold, the screws lock the rest;
+// - the jaw stays closed: its screw holds the handle without power;
 // - an overload lets go, since holding on is what overloads;
 // - a lost camera or vision does not matter to a turn that is already under way.
 constexpr std::array<Row, fault_count> table{{
     //                                                     boot    free   scan   contact gripping stow   ended
     {Fault::limits_refused, "limits refused", {off, off, off, off, off, off, count_}},
     {Fault::boot_failed, "boot failed", {off, off, off, off, off, off, count_}},
-    {Fault::estop, "emergency stop", {off, quick, quick, quick, quick, quick, count_}},
-    {Fault::node_lost, "node lost", {off, quick, quick, quick, quick, quick, count_}},
-    {Fault::node_rebooted, "node rebooted", {off, quick, quick, quick, quick, quick, count_}},
-    {Fault::drive_fault, "drive fault", {retry, quick, quick, quick, quick, quick, count_}},
-    {Fault::following_error, "following error", {count_, quick, quick, back, back, quick, count_}},
-    {Fault::stale_position, "stale position", {count_, quick, quick, quick, quick, quick, count_}},
+    {Fault::estop, "emergency stop", {off, quick, quick, quick, quick, quick, quick}},
+    {Fault::node_lost, "node lost", {off, quick, quick, quick, quick, quick, quick}},
+    {Fault::node_rebooted, "node rebooted", {off, quick, quick, quick, quick, quick, quick}},
+    {Fault::drive_fault, "drive fault", {retry, quick, quick, quick, quick, quick, quick}},
+    {Fault::following_error, "following error", {count_, quick, quick, quick, quick, quick, quick}},
+    {Fault::stale_position, "stale position", {count_, quick, quick, quick, quick, quick, quick}},
     {Fault::joint_limit, "joint limit", {off, quick, quick, quick, hold, quick, count_}},
     {Fault::overspeed, "overspeed", {off, quick, quick, quick, hold, quick, count_}},
     {Fault::overload, "overload", {count_, hold, hold, back, back, hold, count_}},
     {Fault::workspace, "tool outside its workspace", {count_, quick, quick, back, hold, count_, count_}},
     {Fault::unexpected_contact, "unexpected contact", {count_, hold, hold, back, count_, hold, count_}},
-    {Fault::io_lost, "output node lost", {off, back, back, back, back, count_, count_}},
+    {Fault::io_lost, "output node lost", {off, quick, quick, quick, quick, quick, quick}},
     {Fault::interlock, "laser interlock open", {count_, count_, retry, count_, count_, count_, count_}},
     {Fault::image_lost, "image lost", {count_, count_, count_, count_, count_, count_, count_}},
     {Fault::camera_lost, "camera silent", {count_, count_, retry, count_, count_, count_, count_}},
@@ -47,8 +50,9 @@ constexpr std::array<Row, fault_count> table{{
     {Fault::step_failed, "step failed", {off, retry, retry, retry, retry, quick, count_}},
     {Fault::aborted, "aborted", {off, back, back, back, back, count_, count_}},
     {Fault::port_error, "platform call failed", {count_, count_, count_, count_, count_, count_, count_}},
-    {Fault::bus_off, "CAN bus off", {off, quick, quick, quick, quick, quick, count_}},
-    {Fault::clock_lost, "clock lost", {off, quick, quick, quick, quick, quick, count_}},
+    {Fault::bus_off, "CAN bus off", {off, quick, quick, quick, quick, quick, quick}},
+    {Fault::second_master, "another master on the bus", {off, quick, quick, quick, quick, quick, quick}},
+    {Fault::clock_lost, "clock lost", {off, quick, quick, quick, quick, quick, quick}},
 }};
 
 constexpr bool in_order() {

@@ -11,7 +11,7 @@
 namespace lf::safety {
 
 enum class Fault : std::uint8_t {
-  limits_refused,      // the limits' file is not what it was signed as
+  limits_refused,      // the limits are not those that the checksum was made of, or a mission widens them
   boot_failed,         // a node did not answer, or holds another value than was written
   estop,               // the emergency-stop chain is open, or a stop was commanded
   node_lost,           // heartbeat missing
@@ -24,7 +24,7 @@ enum class Fault : std::uint8_t {
   overload,            // a joint's torque over its limit
   workspace,           // the tool outside its box
   unexpected_contact,  // torque or following error where nothing may touch
-  io_lost,             // the output node is silent: laser, lamps and trigger are not ours
+  io_lost,             // the output node is silent: the emergency-stop chain cannot be read, and laser and lamps are not ours
   interlock,           // the laser's interlock is open
   image_lost,          // an exposure without its image
   camera_lost,         // no image comes any more, or always the same
@@ -36,6 +36,7 @@ enum class Fault : std::uint8_t {
   aborted,             // the operator ended the mission
   port_error,          // a call of the platform failed
   bus_off,             // the CAN controller went off the bus: nothing that is sent arrives
+  second_master,       // somebody else sends what only the master may: set points, SYNC, NMT, SDO requests, or its heartbeat
   clock_lost,          // three ticks in a row without the platform's clock: nothing is known to be fresh
   count
 };
@@ -43,25 +44,25 @@ inline constexpr std::size_t fault_count = static_cast<std::size_t>(Fault::count
 
 // The phases in which a fault can mean different things. Every step of the mission belongs to one.
 enum class Phase : std::uint8_t {
-  boot,      // nothing is powered, or only being configured
-  free,      // the arm moves or waits clear of the panel
+  boot,      // nothing has power: the nodes are being configured
+  free,      // the drives are being enabled and homed; the arm moves or waits clear of the panel
   scan,      // the arm sweeps, the laser is on
   contact,   // a guarded approach or a press: touching is meant to happen, nothing is held
   gripping,  // the handle is in the closed jaw
   stow,      // on the way to the park position, after success or failure
-  ended,     // parked or stopped for good
+  ended,     // parked or stopped for good: the power is off or on its way down
   count
 };
 inline constexpr std::size_t phase_count = static_cast<std::size_t>(Phase::count);
 
-// From the mildest to the most severe; of several faults in one tick the most severe reaction is taken.
+// From the mildest to the most severe; of several faults in one tick the most severe reaction is taken (fault_arbiter.hpp).
 enum class Reaction : std::uint8_t {
   count_only,  // counted and reported
   retry,       // the step is taken again by its own rule; out of tries, `retreat`
   retreat,     // end the task: let go if gripping, straight back, and stow with a failure
   hold,        // stop smoothly and stay enabled where it is, jaw as it is; the mission fails here
-  quick_stop,  // the drives' own quick stop; they stay powered and hold; the mission fails here
-  power_off,   // drives disabled: the self-locking gears hold the arm; the mission fails here
+  quick_stop,  // stop category 1: the drives' own quick stop, then the power off (power.hpp); the mission fails here
+  power_off,   // stop category 0: the power off at once; the self-locking gears hold the arm; the mission fails here
 };
 
 Reaction reaction(Fault fault, Phase phase);

@@ -1,5 +1,6 @@
 #include "firmware/safety/limits.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -68,6 +69,16 @@ const char* name(LimitsVerdict verdict) {
     case LimitsVerdict::not_positive: return "not positive";
   }
   return "unknown";
+}
+
+double workspace_excursion_m(const Limits& limits, const Vec3& point_m) {
+  if (!point_m.allFinite()) return HUGE_VAL;
+  double farthest_m = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double x = point_m[static_cast<Eigen::Index>(axis)];
+    farthest_m = std::max({farthest_m, limits.workspace_min_m[axis] - x, x - limits.workspace_max_m[axis]});
+  }
+  return farthest_m;
 }
 
 bool is_tighter(const Limits& tighter, const Limits& limits) {

@@ -46,6 +46,9 @@ enum class LimitsVerdict : std::uint8_t { good, wrong_checksum, not_a_number, ou
 LimitsVerdict check(const Limits& limits);
 const char* name(LimitsVerdict verdict);
 
+// How far a point of the base frame lies outside the workspace, along the axis on which it is farthest out; 0 inside. Infinite when it is not a number.
+double workspace_excursion_m(const Limits& limits, const Vec3& point_m);
+
 // `tighter` within `limits`: every range inside the other's, every bound at most the other's. A mission's own limits are accepted only so.
 bool is_tighter(const Limits& tighter, const Limits& limits);
 

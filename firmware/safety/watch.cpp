@@ -22,9 +22,12 @@ void Watch::observe(const canopen::Network& network, const std::array<double, jo
   Time newest;
   for (std::size_t i = 0; i < joint_count; ++i) {
     const canopen::Axis& axis = network.axis(static_cast<Joint>(i));
-    joints_.fresh[i] = axis.fresh(now) && std::isfinite(rad[i]);
+    joints_.fresh[i] = is_fresh(axis, now) && std::isfinite(rad[i]);
     joints_.valid = joints_.valid && joints_.fresh[i];
     if (axis.actual_time() > newest) newest = axis.actual_time();
+  }
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    if (joints_.fresh[i]) joints_.position_rad[i] = rad[i];
   }
   if (!joints_.valid) return;
   const double dt_s = (newest - joints_.t).s();
@@ -35,12 +38,17 @@ void Watch::observe(const canopen::Network& network, const std::array<double, jo
     } else if (dt_s > 0) {
       observers_[i].update(rad[i], dt_s);
     }
-    joints_.position_rad[i] = rad[i];
     joints_.velocity_rad_s[i] = observers_[i].velocity_rad_s();
-    joints_.torque_nm[i] = axis.torque_permille() * 1e-3 * axis.rated_torque_mnm() * 1e-3;
+    joints_.torque_nm[i] = axis.torque_permille() * 1e-3 * axis.rated_torque_unm() * 1e-6;
   }
   joints_.t = newest;
   observing_ = true;
+}
+
+// Half a SYNC period more than the limit, for the loop's jitter.
+bool Watch::is_fresh(const canopen::Axis& axis, Time now) const {
+  const Duration oldest = Duration::from_s(limits_.stale_position_s) + can_map::sync_period / 2;
+  return axis.fresh(now) && now - axis.actual_time() <= oldest;
 }
 
 double Watch::excursion_rad(std::size_t joint) const {
@@ -54,55 +62,94 @@ bool Watch::any_outside() const {
   for (std::size_t i = 0; i < joint_count; ++i) {
     if (outside(i)) return true;
   }
-  return false;
+  return tool_outside_;
 }
 
-void Watch::bear_outside(bool bear) {
-  for (std::size_t i = 0; i < joint_count; ++i) borne_rad_[i] = bear ? excursion_rad(i) : 0;
+void Watch::tolerate_excursion(bool tolerate) {
+  for (std::size_t i = 0; i < joint_count; ++i) tolerated_rad_[i] = tolerate ? excursion_rad(i) : 0;
+  tolerating_ = tolerate;
+  tolerated_m_ = HUGE_VAL;  // as far as the tool is out in the next check
 }
 
-void Watch::raise(bool present, Fault fault, std::int32_t code, FaultReports& began) {
-  std::uint8_t& known = present_[static_cast<std::size_t>(fault)];
-  const auto bit = static_cast<std::uint8_t>(1u << (static_cast<unsigned>(code) & 7u));
-  if (present && (known & bit) == 0 && !began.push_back({fault, code})) return;
-  known = static_cast<std::uint8_t>(present ? known | bit : known & ~bit);
+void Watch::raise(bool present, std::size_t index, const FaultReport& report, FaultArbiter& began) {
+  bool& known = present_[static_cast<std::size_t>(report.fault)][index];
+  if (present && !known && !began.report(report)) return;  // no room: reported in the next tick
+  known = present;
 }
 
-void Watch::check(const canopen::Network& network, const Vec3& tool_m, bool armed, Time now, FaultReports& began) {
+void Watch::check(const canopen::Network& network, const Vec3& tool_m, Vigilance vigilance, Time now, FaultArbiter& began) {
+  check_bus(network, now, began);
+  if (vigilance == Vigilance::bus) return;
+  check_nodes(network, vigilance, now, began);
+  if (vigilance == Vigilance::nodes) return;
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    check_drive(network, i, began);
+    if (joints_.valid) check_joint(i, began);
+  }
+  if (joints_.valid) check_workspace(tool_m, began);
+}
+
+void Watch::check_bus(const canopen::Network& network, Time now, FaultArbiter& began) {
   const canopen::IoModule& io = network.io();
-  raise(io.seen() && io.fresh(now) && !io.estop_closed(), Fault::estop, 0, began);
-  raise(network.bus_off(), Fault::bus_off, 0, began);
-  if (!armed) return;
-  raise(!io.fresh(now), Fault::io_lost, 0, began);
+  raise(io.seen() && io.fresh(now) && !io.estop_closed(), 0, {Fault::estop}, began);
+  raise(network.bus_off(), 0, {Fault::bus_off}, began);
+  // Before the boot the bus is not this master's.
+  const std::uint32_t foreign = network.foreign_frames();
+  const bool ours = network.boot().state != canopen::BootState::idle;
+  raise(ours && foreign != foreign_frames_, 0, {Fault::second_master, static_cast<std::int32_t>(network.foreign_id())}, began);
+  foreign_frames_ = foreign;
+}
+
+// While drives are being enabled an old latched silence is being reset: only the data themselves count then.
+void Watch::check_nodes(const canopen::Network& network, Vigilance vigilance, Time now, FaultArbiter& began) {
+  const canopen::IoModule& io = network.io();
+  const canopen::NodeFault& io_link = network.fault(canopen::Network::io_index);
+  const bool io_failed = io_link.heartbeat_lost || (io_link.emcy_active && io_link.error_register != 0);
+  const auto io_code = static_cast<std::int32_t>(canopen::Network::io_index);
+  const bool io_silent = io.seen() && !io.fresh(now);
+  raise(io_failed || io_silent, 0, {Fault::io_lost, io_code, io_link.emcy_code}, began);
   for (std::size_t node = 0; node < canopen::Network::node_count; ++node) {
     const canopen::NodeFault& link = network.fault(node);
-    const bool drive = node < joint_count;
-    raise(link.heartbeat_lost, drive ? Fault::node_lost : Fault::io_lost, static_cast<std::int32_t>(node), began);
-    raise(link.rebooted || link.left_operational, Fault::node_rebooted, static_cast<std::int32_t>(node), began);
+    const auto code = static_cast<std::int32_t>(node);
+    if (node < joint_count) {
+      const canopen::Axis& axis = network.axis(static_cast<Joint>(node));
+      raise(link.heartbeat_lost, node, {Fault::node_lost, code, link.emcy_code}, began);
+      const bool latched = vigilance == Vigilance::joints && axis.fault() == canopen::AxisFault::stale;
+      const bool stale = latched || !joints_.fresh[node];
+      raise(axis.seen() && stale, node, {Fault::stale_position, code}, began);
+    }
+    raise(link.rebooted || link.left_operational, node, {Fault::node_rebooted, code, link.emcy_code}, began);
   }
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    const auto code = static_cast<std::int32_t>(i);
-    const canopen::Axis& axis = network.axis(static_cast<Joint>(i));
-    const canopen::AxisFault fault = axis.fault();
-    using canopen::AxisFault;
-    raise(fault == AxisFault::following_error, Fault::following_error, code, began);
-    raise(fault == AxisFault::stale || !joints_.fresh[i], Fault::stale_position, code, began);
-    raise(fault != AxisFault::none && fault != AxisFault::following_error && fault != AxisFault::stale && fault != AxisFault::node_lost,
-          Fault::drive_fault, code, began);
-    if (!joints_.valid) continue;
-    const JointLimit& limit = limits_.joints[i];
-    borne_rad_[i] = std::min(borne_rad_[i], excursion_rad(i));
-    raise(excursion_rad(i) > borne_rad_[i] + position_tolerance_rad, Fault::joint_limit, code, began);
-    raise(std::abs(joints_.velocity_rad_s[i]) > limit.max_speed_rad_s * speed_tolerance, Fault::overspeed, code, began);
-    overload_ticks_[i] = std::abs(joints_.torque_nm[i]) > limit.max_torque_nm ? overload_ticks_[i] + 1 : 0;
-    raise(overload_ticks_[i] > overload_ticks, Fault::overload, code, began);
-  }
-  bool outside = !tool_m.allFinite();
-  for (std::size_t axis = 0; axis < 3 && !outside; ++axis) {
-    const double x = tool_m[static_cast<Eigen::Index>(axis)];
-    outside = x < limits_.workspace_min_m[axis] - workspace_tolerance_m || x > limits_.workspace_max_m[axis] + workspace_tolerance_m;
-  }
-  raise(joints_.valid && outside, Fault::workspace, 0, began);
+}
+
+// The EMCY may come before the statusword, or after it.
+void Watch::check_drive(const canopen::Network& network, std::size_t joint, FaultArbiter& began) {
+  using canopen::AxisFault;
+  const AxisFault fault = network.axis(static_cast<Joint>(joint)).fault();
+  const canopen::NodeFault& link = network.fault(joint);
+  const auto code = static_cast<std::int32_t>(joint);
+  raise(fault == AxisFault::following_error, joint, {Fault::following_error, code, link.emcy_code}, began);
+  const bool others = fault == AxisFault::following_error || fault == AxisFault::stale || fault == AxisFault::node_lost;
+  const bool complains = link.emcy_active && link.error_register != 0;
+  raise((fault != AxisFault::none && !others) || complains, joint, {Fault::drive_fault, code, link.emcy_code}, began);
+}
+
+void Watch::check_joint(std::size_t joint, FaultArbiter& began) {
+  const auto code = static_cast<std::int32_t>(joint);
+  const JointLimit& limit = limits_.joints[joint];
+  tolerated_rad_[joint] = std::min(tolerated_rad_[joint], excursion_rad(joint));
+  raise(excursion_rad(joint) > tolerated_rad_[joint] + position_tolerance_rad, joint, {Fault::joint_limit, code}, began);
+  raise(std::abs(joints_.velocity_rad_s[joint]) > limit.max_speed_rad_s * speed_tolerance, joint, {Fault::overspeed, code}, began);
+  overload_ticks_[joint] = std::abs(joints_.torque_nm[joint]) > limit.max_torque_nm ? overload_ticks_[joint] + 1 : 0;
+  raise(overload_ticks_[joint] > overload_ticks, joint, {Fault::overload, code}, began);
+}
+
+void Watch::check_workspace(const Vec3& tool_m, FaultArbiter& began) {
+  const double excursion_m = workspace_excursion_m(limits_, tool_m);
+  if (tolerating_ && !std::isfinite(tolerated_m_)) tolerated_m_ = excursion_m;
+  tolerated_m_ = tolerating_ ? std::min(tolerated_m_, excursion_m) : 0;
+  tool_outside_ = excursion_m > workspace_tolerance_m;
+  raise(excursion_m > tolerated_m_ + workspace_tolerance_m, 0, {Fault::workspace}, began);
 }
 
 }  // namespace lf::safety

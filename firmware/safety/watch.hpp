@@ -5,12 +5,11 @@
 #include <cstdint>
 
 #include "firmware/canopen/network.hpp"
-#include "firmware/safety/faults.hpp"
+#include "firmware/safety/fault_arbiter.hpp"
 #include "firmware/safety/joint_observer.hpp"
 #include "firmware/safety/limits.hpp"
 #include "shared/geometry/pose.hpp"
 #include "shared/messages/joint_io.hpp"
-#include "shared/messages/static_vector.hpp"
 #include "shared/messages/time.hpp"
 
 namespace lf::safety {
@@ -22,47 +21,60 @@ struct JointStates {
   std::array<double, joint_count> torque_nm{};
   std::array<bool, joint_count> fresh{};
   Time t;              // of the SYNC they belong to
-  bool valid = false;  // all five are fresh
+  bool valid = false;  // all five are fresh: only then are speeds, torques and the time brought up to date
 };
 
-struct FaultReport {
-  Fault fault = Fault::count;
-  std::int32_t code = 0;  // joint or node index; 1000 + EMCY code where there is one
+// How much there is to watch.
+enum class Vigilance : std::uint8_t {
+  bus,     // the bus and, where it is heard, the emergency-stop chain: the boot watches the nodes itself
+  nodes,   // and every node: drives are being enabled and homed, and have power
+  joints,  // and what the joints do
 };
-using FaultReports = StaticVector<FaultReport, 32>;
 
 class Watch {
  public:
-  explicit Watch(const Limits& limits) : limits_(limits) {}
+  // `foreign_frames`: what the network has counted of another master's, and what was reported already.
+  explicit Watch(const Limits& limits, std::uint32_t foreign_frames = 0) : limits_(limits), foreign_frames_(foreign_frames) {}
 
   // Reads the joints; call once a tick after the frames came in. `rad` are the positions decoded from counts.
   void observe(const canopen::Network& network, const std::array<double, joint_count>& rad, Time now);
   const JointStates& joints() const { return joints_; }
 
-  // Faults that began in this tick: each is reported once, and again only after it went away.
-  // `armed`: the drives are booted and powered; before, only the links are watched by the boot itself.
-  // `tool_m`: the tool point in the base frame.
-  void check(const canopen::Network& network, const Vec3& tool_m, bool armed, Time now, FaultReports& began);
+  // Faults that began in this tick: each is reported once, and again only after it went away. `tool_m`: the tool point in the base frame.
+  void check(const canopen::Network& network, const Vec3& tool_m, Vigilance vigilance, Time now, FaultArbiter& began);
 
   // Beyond its limits by more than noise.
   bool outside(std::size_t joint) const;
   bool any_outside() const;
-  // From now on a joint may stand as far outside as it does now, and then as far as it has come back since, but no farther: an operator brings it back.
+  // From now on a joint may stand as far outside its limits as it does now, and the tool as far outside its workspace, and then as far as they have come
+  // back since, but no farther: an operator brings them back.
   // `false`: the limits are the limits again.
-  void bear_outside(bool bear);
+  void tolerate_excursion(bool tolerate);
 
  private:
   double excursion_rad(std::size_t joint) const;
-  void raise(bool present, Fault fault, std::int32_t code, FaultReports& began);
+  bool is_fresh(const canopen::Axis& axis, Time now) const;
+  void check_bus(const canopen::Network& network, Time now, FaultArbiter& began);
+  void check_nodes(const canopen::Network& network, Vigilance vigilance, Time now, FaultArbiter& began);
+  void check_drive(const canopen::Network& network, std::size_t joint, FaultArbiter& began);
+  void check_joint(std::size_t joint, FaultArbiter& began);
+  void check_workspace(const Vec3& tool_m, FaultArbiter& began);
+  // `index` tells reports of one fault apart: joint, node, or 0.
+  void raise(bool present, std::size_t index, const FaultReport& report, FaultArbiter& began);
 
   Limits limits_;
   std::array<JointObserver, joint_count> observers_;
   bool observing_ = false;
   JointStates joints_;
   std::array<int, joint_count> overload_ticks_{};
-  std::array<double, joint_count> borne_rad_{};  // outside of the limits
-  // Which (fault, code) pairs are present: the code's low bits are an index below 8.
-  std::array<std::uint8_t, fault_count> present_{};
+  bool tolerating_ = false;
+  double tolerated_m_ = 0;  // of the tool, outside of its workspace
+  bool tool_outside_ = false;
+  std::array<double, joint_count> tolerated_rad_{};  // outside of the limits
+  static constexpr std::size_t index_count = 8;      // joints and nodes
+  static_assert(joint_count <= index_count && canopen::Network::node_count <= index_count);
+  std::array<std::array<bool, index_count>, fault_count> present_{};
+  std::uint32_t foreign_frames_ = 0;  // known of
 };
 
 }  // namespace lf::safety

@@ -96,7 +96,7 @@ ValveFrame find_valve_frame(const PanelResult& result, const MarkerCalibration& 
   const double largest_m = config.max_size_error * marker.size_m;
   if (!(std::abs(square.side_m - marker.size_m) <= largest_m && square.rms_m <= 0.5 * largest_m))
     frame.outcome = ValveFrameOutcome::bad_marker;
-  else if (!(frame.centre_disagreement_m <= config.max_disagreement_m))
+  else if (!(frame.centre_disagreement_m <= config.max_disagreement_m && frame.normal_disagreement_rad <= config.max_tilt_rad))
     frame.outcome = ValveFrameOutcome::poses_disagree;
   else
     frame.outcome = ValveFrameOutcome::ok;

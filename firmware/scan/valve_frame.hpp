@@ -17,7 +17,7 @@ enum class ValveFrameOutcome : std::uint8_t {
   no_plane,        // the fit is not valid, or edge-on to the camera
   no_marker,       // none found, or another id than the calibration's
   bad_marker,      // its corners on the plane are no square of the surveyed size
-  poses_disagree,  // plane and PnP put the marker's centre more than `max_disagreement_m` apart
+  poses_disagree,  // plane and PnP put the marker's centre more than `max_disagreement_m` apart, or its normal more than `max_tilt_rad`
   not_a_number,
 };
 
@@ -46,6 +46,7 @@ struct ButtonObservation {
 struct ValveFrameConfig {
   double max_disagreement_m =
       0.030;                     // PnP's range error at 3.4 px a tag cell is 5 mm, to which a mounting error of 0.2 mm / 0.05 deg adds 1 mm
+  double max_tilt_rad = 0.35;    // PnP alone tilts a marker of 40 px by up to 10 degrees; twice that is another plane than the scanned one
   double max_size_error = 0.10;  // of the marker's side on the plane; half of it for the rms of its corners about a square
   double max_handle_offset_m = 0.030;  // cluster's centre from the valve's axis
 };

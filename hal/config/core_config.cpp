@@ -6,8 +6,11 @@
 #include <tuple>
 
 #include "firmware/arm/actuator.hpp"
+#include "firmware/arm/gripper.hpp"
 #include "firmware/arm/reach.hpp"
 #include "firmware/scan/camera_model.hpp"
+#include "hal/config/drive_kind.hpp"
+#include "hal/config/homing_file.hpp"
 #include "hal/config/limits_file.hpp"
 #include "hal/config/machine.hpp"
 #include "hal/config/share.hpp"
@@ -22,13 +25,14 @@ namespace {
 // A joint that lags this far behind its target is stuck: at full speed the position loop of 20 rad/s lags 0.035 rad, and the gripper leads by 0.05.
 constexpr double following_window_rad = 0.15;
 
+// Of a joint's best acceleration: drives refuse a ramp above what they are able to. As delivered some would take seconds to stop.
+constexpr double quick_stop_share = 0.95;
+
 // The drives' own limits lie this far outside of the stroke: encoder offsets do not clip the last degrees.
 constexpr double beyond_stroke_rad = 0.01;
 
 canopen::DriveSetup drive_setup(const ArmJoint& joint, Joint which, const safety::JointLimit& limit) {
   canopen::DriveSetup setup;
-  const auto index = static_cast<std::size_t>(which);
-  setup.node = can_map::drive_nodes[index];
   setup.min_counts = arm::counts_from_rad(which, limit.min_rad);
   setup.max_counts = arm::counts_from_rad(which, limit.max_rad);
   setup.drive_margin_counts = std::max({0, setup.min_counts - arm::counts_from_rad(which, joint.lower_rad - beyond_stroke_rad),
@@ -41,7 +45,27 @@ canopen::DriveSetup drive_setup(const ArmJoint& joint, Joint which, const safety
   for (int i = 0; i <= 64; ++i) least = std::min(least, arm::rad_per_count(which, std::lerp(limit.min_rad, limit.max_rad, i / 64.0)));
   setup.max_speed_counts_s = static_cast<std::uint32_t>(joint.velocity_rad_s / least);
   setup.following_window_counts = static_cast<std::uint32_t>(following_window_rad / least);
+  setup.quick_stop_counts_s2 = static_cast<std::uint32_t>(quick_stop_share * joint.acceleration_rad_s2 / least);
   return setup;
+}
+
+// The profile's units, objects and option codes, and the machine's node numbers.
+void set_drive(const Machine& machine, std::size_t joint, const ArmJoint& description, canopen::DriveSetup& setup) {
+  const JointDriveChoice choice = drive_of(machine.drives, joint);
+  const std::string where = machine.file + ": drives." + joint_name(joint);
+  setup.node = static_cast<std::uint8_t>(choice.node);
+  DriveKind kind;
+  try {
+    kind = find_drive_kind(choice.profile, std::filesystem::path(machine.file).parent_path());
+  } catch (const InputError& problem) {
+    throw InputError(where + ": " + problem.what());
+  }
+  // A drive that says its rated torque is only checked against a stated one; one that does not, has the arm's description's.
+  const bool described = choice.rated_torque_nm == 0 && kind.rating == "configured";
+  apply(kind,
+        {choice.counts_per_rev, described ? description.rated_torque_nm : choice.rated_torque_nm, choice.rated_current_a,
+         choice.polarity == "reversed"},
+        where, setup);
 }
 
 canopen::NetworkConfig network_config(const ArmDescription& description, const safety::Limits& limits) {
@@ -49,6 +73,15 @@ canopen::NetworkConfig network_config(const ArmDescription& description, const s
   for (std::size_t i = 0; i < joint_count; ++i)
     network.drives[i] = drive_setup(description.joints[i], static_cast<Joint>(i), limits.joints[i]);
   return network;
+}
+
+// What only the whole bus can tell: a node number twice, numbers that do not fit a drive.
+void check_network(const Machine& machine, const canopen::NetworkConfig& network) {
+  std::size_t offender = 0;
+  const canopen::ConfigError error = canopen::check(network, offender);
+  if (error == canopen::ConfigError::none) return;
+  const std::string who = offender < joint_count ? std::string("drives.") + joint_name(offender) : "outputs, or the bus";
+  throw InputError(machine.file + ": " + who + ": " + canopen::name(error));
 }
 
 CameraCalibration camera_calibration(const Camera& camera) {
@@ -83,6 +116,9 @@ std::uint8_t button_index(const std::string& name) { return name == "left" ? 0 :
 mission::MissionConfig mission_config(const Machine& machine) {
   mission::MissionConfig config = machine.mission;
   config.layout = machine.panel;
+  config.layout.handle_min_rad = rad_from_deg(machine.valve.stop_min_deg);
+  config.layout.handle_max_rad = rad_from_deg(machine.valve.stop_max_deg);
+  config.jaw_open_m = arm::jaw_opening_m(machine.panel.handle_thickness_m);
   config.use_lamps = machine.lamps_lit;
   config.camera_always_on = machine.camera_always_on;
   config.tasks = core_tasks(machine.tasks, machine.file);
@@ -116,6 +152,18 @@ void check_reach_of_tasks(const Machine& machine) {
       check_reach(machine, "the " + name + " button", Vec3(centre.x(), centre.y(), panel.button_height_m));
     }
   }
+}
+
+// The wrist turns about the tool axis, the bar about the panel's normal: 20 degrees apart at most, over which the wrist is faster than the bar by 1 / cos.
+void check_turn_speed(const Machine& machine, const ArmDescription& description, const safety::Limits& limits) {
+  constexpr double cosine_of_tilt = 0.94;
+  const auto roll = static_cast<std::size_t>(Joint::roll);
+  const double fastest = cosine_of_tilt * std::min(description.joints[roll].velocity_rad_s, limits.joints[roll].max_speed_rad_s);
+  if (machine.mission.turn_speed_rad_s <= fastest) return;
+  char text[128];
+  std::snprintf(text, sizeof text, "'mission.turn_speed_rad_s' is %.3g: with this wrist a handle turns at most at %.3g rad/s",
+                machine.mission.turn_speed_rad_s, fastest);
+  refuse(machine, text);
 }
 
 void check_seen(const Machine& machine, const CameraCalibration& camera, const std::string& what, const Vec3& panel_point_m) {
@@ -206,6 +254,17 @@ class Steps {
   std::vector<std::string>* problems_;
 };
 
+// A joint without a line in the file, and every joint without a file, takes no power.
+void set_zeros(const std::string& file, const std::filesystem::path& folder, canopen::NetworkConfig& network) {
+  for (canopen::DriveSetup& drive : network.drives) drive.zero_known = false;
+  if (file.empty()) return;
+  const HomingOffsets offsets = read_homing_file(find_file(file, folder));
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    network.drives[i].zero_known = offsets.known[i];
+    network.drives[i].encoder_zero_counts = offsets.zero_counts[i];
+  }
+}
+
 Core assemble(const Machine& machine, const Steps& steps) {
   const std::filesystem::path folder = std::filesystem::path(machine.file).parent_path();
   Core core;
@@ -214,7 +273,15 @@ Core assemble(const Machine& machine, const Steps& steps) {
   const bool arm = steps.take([&] { description = load_arm_urdf(find_file(machine.arm_urdf, folder)); });
   const bool limits = steps.take([&] { controller.limits = read_limits(find_file(machine.safety_limits, folder)); });
   controller.mission_limits = controller.limits;
-  if (arm && limits) controller.network = network_config(description, controller.limits);
+  if (arm && limits) {
+    controller.network = network_config(description, controller.limits);
+    controller.network.io.node = static_cast<std::uint8_t>(machine.drives.output_node);
+    bool drives = true;
+    for (std::size_t i = 0; i < joint_count; ++i)
+      drives = steps.take([&] { set_drive(machine, i, description.joints[i], controller.network.drives[i]); }) && drives;
+    if (drives) steps.take([&] { check_network(machine, controller.network); });
+  }
+  steps.take([&] { set_zeros(machine.homing_file, folder, controller.network); });
   controller.camera = camera_calibration(machine.camera);
   const bool camera = steps.take([&] {
     if (machine.camera_calibration.empty()) return;
@@ -227,6 +294,7 @@ Core assemble(const Machine& machine, const Steps& steps) {
   core.scan.laser = controller.laser;
   set_region(machine.panel, core.scan.triangulation);
   steps.take([&] { check_reach_of_tasks(machine); });
+  if (arm && limits) steps.take([&] { check_turn_speed(machine, description, controller.limits); });
   if (camera) steps.take([&] { check_view(machine, controller.camera); });
   return core;
 }

@@ -1,10 +1,14 @@
 #include "hal/config/homing_file.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
+#include <filesystem>
 #include <limits>
+#include <sstream>
 
 #include "hal/config/text_file.hpp"
 #include "hal/config/yaml_reader.hpp"
@@ -20,6 +24,7 @@ const char* joint_name(std::size_t joint) {
 HomingOffsets read_homing_file(const std::string& path) {
   const Source source = Source::of_file(path);
   const YAML::Node root = parse_yaml(read_text_file(path), source);
+  if (root.IsNull()) return {};
   if (!root.IsMap()) source.refuse(root.Mark(), "not a file of homing offsets");
   HomingOffsets offsets;
   Keys table;
@@ -31,20 +36,52 @@ HomingOffsets read_homing_file(const std::string& path) {
   }
   read_map(root, "", "", table, source);
   for (std::size_t i = 0; i < joint_count; ++i) {
-    if (!root[joint_name(i)] || !root[joint_name(i)]["zero_counts"])
-      source.refuse(root.Mark(), std::string("'") + joint_name(i) + ".zero_counts' is missing: commission this joint");
+    const YAML::Node joint = root[joint_name(i)];
+    if (!joint) continue;
+    if (!joint["zero_counts"])
+      source.refuse(joint.Mark(), std::string("'") + joint_name(i) + ".zero_counts' is missing: commission this joint");
+    offsets.known[i] = true;
   }
   return offsets;
 }
 
+namespace {
+
+// 0 or errno. On the disk when it returns.
+int write_through(const std::string& path, const std::string& text) {
+  const int fd = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (fd < 0) return errno;
+  errno = 0;
+  const bool written = write(fd, text.data(), text.size()) == static_cast<ssize_t>(text.size()) && fsync(fd) == 0;
+  int error = written ? 0 : errno != 0 ? errno : ENOSPC;  // a short write leaves no errno
+  if (close(fd) != 0 && error == 0) error = errno;
+  return error;
+}
+
+// The new name is on the disk when it returns.
+int rename_through(const std::string& from, const std::string& to) {
+  if (std::rename(from.c_str(), to.c_str()) != 0) return errno;
+  const std::string folder = std::filesystem::absolute(to).parent_path().string();
+  const int fd = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (fd < 0) return errno;
+  const int error = fsync(fd) == 0 ? 0 : errno;
+  close(fd);
+  return error;
+}
+
+}  // namespace
+
 void write_homing_file(const std::string& path, const HomingOffsets& offsets) {
-  const std::string partial = path + ".partial";
-  std::ofstream out(partial);
+  std::ostringstream out;
   out << "# Written by `lanternfishd commission`: what each drive's absolute encoder counts where the arm's own count is 0.\n";
-  for (std::size_t i = 0; i < joint_count; ++i)
-    out << joint_name(i) << ": {zero_counts: " << offsets.zero_counts[i] << ", found: \"" << offsets.found[i] << "\"}\n";
-  out.close();
-  if (!out || std::rename(partial.c_str(), path.c_str()) != 0) throw InputError(path + ": cannot be written: " + std::strerror(errno));
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    if (offsets.known[i])
+      out << joint_name(i) << ": {zero_counts: " << offsets.zero_counts[i] << ", found: \"" << offsets.found[i] << "\"}\n";
+  }
+  const std::string partial = path + ".partial";
+  int error = write_through(partial, out.str());
+  if (error == 0) error = rename_through(partial, path);
+  if (error != 0) throw InputError(path + ": cannot be written: " + std::strerror(error));
 }
 
 }  // namespace lf::config

@@ -1,5 +1,5 @@
 // What commissioning found: for each joint, what its drive's absolute encoder counts where the arm's own count is 0. YAML, written and read here.
-// The daemon writes and reads it; a simulator that follows real drives reads it.
+// The daemon writes and reads it; the simulator reads it. A joint that it does not have was never commissioned, and takes no power.
 #pragma once
 
 #include <array>
@@ -12,14 +12,16 @@ namespace lf::config {
 
 struct HomingOffsets {
   std::array<std::int32_t, joint_count> zero_counts{};
+  std::array<bool, joint_count> known{};
   std::array<std::string, joint_count> found;  // how and when, a line for people
 };
 
 const char* joint_name(std::size_t joint);  // "slew" ...
 
-// Throws InputError with file and line: unreadable or malformed, a joint missing or unknown, a number out of range.
+// Throws InputError with file and line: unreadable or malformed, an unknown joint, one without its number, a number out of range. An empty file knows no
+// joint.
 HomingOffsets read_homing_file(const std::string& path);
-// Replaces the file as a whole or not at all. Throws InputError with the cause.
+// Writes the joints that are known. Replaces the file as a whole or not at all, a loss of power included. Throws InputError with the cause.
 void write_homing_file(const std::string& path, const HomingOffsets& offsets);
 
 }  // namespace lf::config

@@ -1,5 +1,8 @@
 #include "hal/config/key.hpp"
 
+#include "firmware/mission/steps.hpp"
+#include "hal/config/fault_kinds.hpp"
+
 namespace lf::config {
 
 namespace {
@@ -15,6 +18,7 @@ struct TypeName {
   std::string operator()(std::string*) const { return key.words.empty() ? "text" : "one of " + words(); }
   std::string operator()(Spread*) const { return "a number or {min: , max: }"; }
   std::string operator()(Chance*) const { return "true, false or either"; }
+  std::string operator()(PanelLayout::Pointer*) const { return "one of " + words(); }
   std::string operator()(std::array<double, 3>*) const { return "a list of 3 numbers"; }
   std::string operator()(Vec2*) const { return "a list of 2 numbers"; }
   std::string operator()(std::array<Vec2, 3>*) const { return "a list of 3 lists of 2 numbers"; }
@@ -29,6 +33,12 @@ struct TypeName {
   }
 };
 
+std::vector<std::string> step_names() {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < mission::step_count; ++i) names.emplace_back(mission::row(static_cast<mission::Step>(i)).name);
+  return names;
+}
+
 }  // namespace
 
 Key key(std::string path, std::string unit, double min, double max, KeyValue value, std::string doc, std::vector<std::string> words) {
@@ -41,10 +51,10 @@ Keys keys(Task& task) {
 }
 
 Keys keys(Fault& fault) {
-  return {key("at_s", "s", 0, 7200, &fault.at_s, "when it happens"),
-          key("kind", "", 0, 0, &fault.kind, "what happens",
-              {"overcurrent", "hot", "following", "stuck_encoder", "silent", "reboot", "estop", "interlock_open", "drop_frames",
-               "error_frames", "bus_off"}),
+  return {key("at_s", "s", 0, 7200, &fault.at_s, "when it happens, from power-on"),
+          key("at_step", "", 0, 0, &fault.at_step, "in place of at_s: when the mission first enters this step", step_names()),
+          key("after_s", "s", 0, 7200, &fault.after_s, "how long after at_step began"),
+          key("kind", "", 0, 0, &fault.kind, "what happens: see the table of faults", fault_kind_names()),
           key("node", "", 0, 0, &fault.node, "to which node, where the kind is a node's",
               {"slew", "shoulder", "elbow", "roll", "jaw", "io", "master"}),
           key("duration_s", "s", 0, 7200, &fault.duration_s, "how long; 0 for the rest of the run"),

@@ -10,6 +10,7 @@
 
 #include "hal/config/spread.hpp"
 #include "shared/geometry/pose.hpp"
+#include "shared/panel/panel_layout.hpp"
 
 namespace lf::config {
 
@@ -21,18 +22,20 @@ struct Task {
   std::vector<std::string> order{"left", "centre", "right"};
 };
 
-// Something that goes wrong during a simulated run; devices::DeviceFault says what each kind does.
+// Something that goes wrong during a simulated run; fault_kinds.hpp says what each kind does.
 struct Fault {
   double at_s = 0;
+  std::string at_step;  // a step of the mission; empty: `at_s` counts from power-on
+  double after_s = 0;   // after `at_step` began for the first time
   std::string kind = "overcurrent";
   std::string node;         // slew, shoulder, elbow, roll, jaw, io or master, where the kind is a node's
   double duration_s = 0;    // 0: for the rest of the run
   std::int64_t can_id = 0;  // drop_frames only
 };
 
-using KeyValue =
-    std::variant<double*, std::int64_t*, std::int32_t*, std::uint32_t*, bool*, std::string*, Spread*, Chance*, std::array<double, 3>*,
-                 Vec2*, std::array<Vec2, 3>*, std::vector<double>*, std::vector<std::string>*, std::vector<Task>*, std::vector<Fault>*>;
+using KeyValue = std::variant<double*, std::int64_t*, std::int32_t*, std::uint32_t*, bool*, std::string*, Spread*, Chance*,
+                              PanelLayout::Pointer*, std::array<double, 3>*, Vec2*, std::array<Vec2, 3>*, std::vector<double>*,
+                              std::vector<std::string>*, std::vector<Task>*, std::vector<Fault>*>;
 
 struct Key {
   std::string path;  // "valve.start_deg"
@@ -45,6 +48,9 @@ struct Key {
 };
 
 using Keys = std::vector<Key>;
+
+// The words for a handle's pointer, in the order of the enumeration.
+inline constexpr std::array<const char*, 3> pointer_words{"none", "light_end", "dark_end"};
 
 Key key(std::string path, std::string unit, double min, double max, KeyValue value, std::string doc, std::vector<std::string> words = {});
 

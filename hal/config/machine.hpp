@@ -11,6 +11,7 @@
 #include "firmware/mission/orders.hpp"
 #include "firmware/scan_pipeline.hpp"
 #include "hal/config/key.hpp"
+#include "shared/can/can_map.hpp"
 #include "shared/geometry/pose.hpp"
 #include "shared/panel/panel_layout.hpp"
 
@@ -30,14 +31,41 @@ struct Laser {
   std::array<double, 3> position_m{-0.090, 0.0, -0.365};  // in the tool frame
 };
 
+// The drive of one joint. What is 0 or empty is as for all, see Drives.
+struct JointDriveChoice {
+  std::int64_t node = 0;
+  std::string profile;
+  std::string polarity = "forward";  // reversed: the drive counts against the joint
+  double counts_per_rev = 0;
+  double rated_torque_nm = 0;  // 0: as the drive or the arm's description says
+  double rated_current_a = 0;
+};
+
+struct Drives {
+  std::string profile = "lanternfish";  // a shipped one's name, or a file
+  double counts_per_rev = 64;           // of the arm's counts in a revolution of the motor: a hall sensor's 16 lines
+  double rated_current_a = 1.333;       // at the rated torque
+  std::array<JointDriveChoice, joint_count> joints;
+  std::int64_t output_node = can_map::io_node;
+};
+
+// Where the valve's handle can be.
+struct ValveStops {
+  double stop_min_deg = -105;  // +/-90 is clear of the stops
+  double stop_max_deg = 105;
+};
+
 struct Machine {
   std::string file;  // where it was read; the files it names are looked for beside it, then among the shipped ones
   PanelLayout panel;
+  ValveStops valve;
   Camera camera;
   std::string camera_calibration;  // YAML of OpenCV or ROS that overrules `camera.focal_px` and `camera.distortion`; empty: none
   Laser laser;
   std::string arm_urdf = "arm/arm5e.urdf";
   std::string safety_limits = "safety/limits.yaml";
+  std::string homing_file;  // of the joints' zeros; empty: none is known, and no joint takes power
+  Drives drives;
   mission::MissionConfig mission;  // its speeds, distances and tries; layout, lamps and tasks are filled from the rest
   std::vector<Task> tasks{Task{}, Task{Task::Kind::press_buttons}};
   bool lamps_lit = true;
@@ -46,9 +74,14 @@ struct Machine {
 
 // Parts of the tables, in the order of the documentation. The pointers are into the arguments.
 void add_panel(Keys& all, PanelLayout& panel);
+void add_valve_stops(Keys& all, ValveStops& valve);
 void add_camera(Keys& all, Camera& camera);
 void add_laser(Keys& all, Laser& laser);
+void add_drives(Keys& all, Drives& drives);
 void add_mission(Keys& all, mission::MissionConfig& mission);
+
+// The drive of a joint with everything stated: its node, profile's name, and figures.
+JointDriveChoice drive_of(const Drives& drives, std::size_t joint);
 
 // What the core is told: nominal calibrations, the survey of the panel, the job, drives and limits.
 struct Core {

@@ -1,3 +1,4 @@
+#include "hal/config/homing_file.hpp"
 #include "hal/config/machine.hpp"
 
 namespace lf::config {
@@ -9,9 +10,14 @@ void add_panel(Keys& all, PanelLayout& p) {
   all.push_back(
       key("panel.plate_min_m", "m", -2, 2, &p.plate_min_m, "lower left corner of the plate as the robot sees it, from the valve"));
   all.push_back(key("panel.plate_max_m", "m", -2, 2, &p.plate_max_m, "upper right corner"));
-  all.push_back(key("panel.handle_length_m", "m", 0.02, 0.5, &p.handle_length_m, "length of the T-bar"));
-  all.push_back(key("panel.handle_thickness_m", "m", 0.004, 0.05, &p.handle_thickness_m, "its thickness"));
+  all.push_back(key("panel.handle_length_m", "m", 0.06, 0.16, &p.handle_length_m,
+                    "length of the T-bar: longer than the pads are wide, and clear of buttons and marker"));
+  all.push_back(key("panel.handle_thickness_m", "m", 0.008, 0.05, &p.handle_thickness_m, "its thickness"));
   all.push_back(key("panel.handle_height_m", "m", 0.03, 0.3, &p.handle_height_m, "its centre line's height over the panel"));
+  all.push_back(key("panel.pointer", "", 0, 0, &p.pointer,
+                    "the mark at that end of the bar which points up at 0 degrees; without one a bar looks the same after half a turn",
+                    {pointer_words.begin(), pointer_words.end()}));
+  all.push_back(key("panel.pointer_length_m", "m", 0.015, 0.2, &p.pointer_length_m, "how much of the bar the mark covers, from its end"));
   all.push_back(key("panel.buttons_m", "m", -1, 1, &p.buttons_m, "left, centre and right button's [right, up] from the valve"));
   all.push_back(key("panel.button_width_m", "m", 0.005, 0.2, &p.button_width_m, "diameter of a button's cap"));
   all.push_back(key("panel.button_height_m", "m", 0.005, 0.1, &p.button_height_m, "its height over the panel"));
@@ -20,6 +26,12 @@ void add_panel(Keys& all, PanelLayout& p) {
   all.push_back(key("panel.marker_size_m", "m", 0.01, 0.5, &p.marker_size_m, "side of its black square"));
   all.push_back(key("panel.marker_plate_m", "m", 0.01, 0.6, &p.marker_plate_m, "side of its plate"));
   all.push_back(key("panel.marker_centre_m", "m", -1, 1, &p.marker_centre_m, "its centre's [right, up] from the valve"));
+}
+
+void add_valve_stops(Keys& all, ValveStops& valve) {
+  all.push_back(key("valve.stop_min_deg", "deg", -180, 180, &valve.stop_min_deg, "end stop of the handle, clockwise"));
+  all.push_back(
+      key("valve.stop_max_deg", "deg", -180, 180, &valve.stop_max_deg, "end stop, counter-clockwise; less than a turn from the other"));
 }
 
 void add_camera(Keys& all, Camera& camera) {
@@ -36,6 +48,35 @@ void add_laser(Keys& all, Laser& laser) {
   all.push_back(key("laser.position_m", "m", -1, 1, &laser.position_m, "[x, y, z] in the tool frame; the plane's normal is the tool's x"));
 }
 
+void add_drives(Keys& all, Drives& d) {
+  constexpr double most_counts = 1e6, most_nm = 1000, most_a = 1000;
+  all.push_back(key("drives.profile", "", 0, 0, &d.profile, "make of the joints' drives: a shipped profile's name, or a file"));
+  all.push_back(key("drives.counts_per_rev", "counts", 1, most_counts, &d.counts_per_rev, "the arm's counts in a revolution of a motor"));
+  all.push_back(key("drives.rated_current_a", "A", 0.001, most_a, &d.rated_current_a, "a motor's current at its rated torque"));
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    const std::string joint = std::string("drives.") + joint_name(i) + ".";
+    JointDriveChoice& one = d.joints[i];
+    all.push_back(key(joint + "node", "", 0, 126, &one.node, "node number on the bus; 0: that of the CAN map"));
+    all.push_back(key(joint + "profile", "", 0, 0, &one.profile, "make of this drive; empty: drives.profile"));
+    all.push_back(
+        key(joint + "polarity", "", 0, 0, &one.polarity, "whether the drive counts with the joint or against it", {"forward", "reversed"}));
+    all.push_back(key(joint + "counts_per_rev", "counts", 0, most_counts, &one.counts_per_rev, "0: drives.counts_per_rev"));
+    all.push_back(key(joint + "rated_torque_nm", "N m", 0, most_nm, &one.rated_torque_nm,
+                      "the motor's rated torque, for drives that do not say it, and to check those that do; 0: not stated"));
+    all.push_back(key(joint + "rated_current_a", "A", 0, most_a, &one.rated_current_a, "0: drives.rated_current_a"));
+  }
+  all.push_back(key("outputs.node", "", 1, 126, &d.output_node, "node number of the output node"));
+}
+
+JointDriveChoice drive_of(const Drives& drives, std::size_t joint) {
+  JointDriveChoice one = drives.joints[joint];
+  if (one.node == 0) one.node = can_map::drive_nodes[joint];
+  if (one.profile.empty()) one.profile = drives.profile;
+  if (one.counts_per_rev == 0) one.counts_per_rev = drives.counts_per_rev;
+  if (one.rated_current_a == 0) one.rated_current_a = drives.rated_current_a;
+  return one;
+}
+
 void add_mission(Keys& all, mission::MissionConfig& m) {
   const double rad_s = 3;
   all.push_back(key("mission.camera_syncs", "SYNC", 1, 250, &m.camera_syncs, "SYNCs from one exposure to the next; 10 are 25 Hz"));
@@ -43,7 +84,8 @@ void add_mission(Keys& all, mission::MissionConfig& m) {
       key("mission.frames_per_background", "", 2, 100, &m.frames_per_background, "one frame in so many is taken without the laser"));
   all.push_back(key("mission.sweep_speed_rad_s", "rad/s", 0.001, rad_s, &m.sweep_speed_rad_s,
                     "of the slowest moving joint while scanning: slower is denser, down to the joints' stiction"));
-  all.push_back(key("mission.verify_band_m", "m", 0.01, 0.5, &m.verify_band_m, "half height of the second look's sweep around the valve"));
+  all.push_back(key("mission.verify_band_m", "m", 0.01, 0.5, &m.verify_band_m,
+                    "half height of the second look's sweep around the valve, no less than the handle needs"));
   all.push_back(key("mission.move_speed_fraction", "", 0.01, 1, &m.move_speed_fraction, "of the joints' speed limits, in free motion"));
   all.push_back(key("mission.approach_distance_m", "m", 0.01, 0.3, &m.approach_distance_m,
                     "where straight approaches start, along the panel's normal"));
@@ -53,9 +95,10 @@ void add_mission(Keys& all, mission::MissionConfig& m) {
       key("mission.press_overtravel_m", "m", 0, 0.05, &m.press_overtravel_m, "beyond a button's bottom before the press counts as missed"));
   all.push_back(
       key("mission.press_torque_nm", "N m", 0.1, 100, &m.press_torque_nm, "rise of a joint's torque that says the button has bottomed"));
-  all.push_back(key("mission.turn_speed_rad_s", "rad/s", 0.01, rad_s, &m.turn_speed_rad_s, "of the handle"));
+  all.push_back(key("mission.turn_speed_rad_s", "rad/s", 0.01, rad_s, &m.turn_speed_rad_s, "of the handle; no faster than the wrist"));
   all.push_back(
-      key("mission.valve_tolerance_rad", "rad", 0.001, 0.5, &m.valve_tolerance_rad, "what the second look accepts without turning again"));
+      key("mission.valve_tolerance_rad", "rad", 0.015, 0.045, &m.valve_tolerance_rad,
+          "what the second look accepts without turning again: more than its own error of 0.6 degrees, less than 3 degrees with it"));
   all.push_back(key("mission.tries", "", 1, 20, &m.tries, "of a step that may be taken again"));
 }
 

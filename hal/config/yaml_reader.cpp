@@ -53,6 +53,10 @@ class ValueReader {
   void operator()(std::string* value) const { *value = text(node_); }
   void operator()(Spread* value) const;
   void operator()(Chance* value) const;
+  void operator()(PanelLayout::Pointer* value) const {
+    const auto word = std::find(pointer_words.begin(), pointer_words.end(), text(node_));
+    *value = static_cast<PanelLayout::Pointer>(word - pointer_words.begin());
+  }
   void operator()(std::array<double, 3>* value) const {
     const std::vector<double> read = numbers(node_, 3);
     std::copy(read.begin(), read.end(), value->begin());

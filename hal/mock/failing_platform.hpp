@@ -10,7 +10,20 @@
 
 namespace lf::hal {
 
-enum class Call : std::uint8_t { wait_for_tick, receive_can, send_can, receive_image, submit_panel, receive_panel, publish, count };
+enum class Call : std::uint8_t {
+  wait_for_tick,
+  receive_can,
+  send_can,
+  receive_image,
+  submit_panel,
+  receive_panel,
+  publish,
+  receive_order,
+  answer_order,
+  read_estop,
+  wait_for_image,
+  count
+};
 inline constexpr std::size_t call_count = static_cast<std::size_t>(Call::count);
 
 template <class Inner>
@@ -33,6 +46,10 @@ class FailingPlatform {
     const PortStatus status = inner_.wait_for_tick(tick);
     return fails(Call::wait_for_tick) ? code_ : status;
   }
+  PortStatus receive_order(NumberedOrder& order) { return fails(Call::receive_order) ? code_ : inner_.receive_order(order); }
+  PortStatus answer_order(const OrderAnswer& answer) { return fails(Call::answer_order) ? code_ : inner_.answer_order(answer); }
+  PortStatus read_estop(bool& closed) { return fails(Call::read_estop) ? code_ : inner_.read_estop(closed); }
+  PortStatus wait_for_image() { return fails(Call::wait_for_image) ? code_ : inner_.wait_for_image(); }
   PortStatus receive_can(std::uint8_t bus, ReceivedFrame& received) {
     return fails(Call::receive_can) ? code_ : inner_.receive_can(bus, received);
   }

@@ -20,17 +20,41 @@ class ScriptedPlatform {
     images_.push_back({std::move(pixels), width, height, exposure_start, ready});
   }
   void script_panel(const PanelResult& result, Time ready) { answers_.push_back({result, ready}); }
+  void script_order(const NumberedOrder& order) { orders_.push_back(order); }
+  void script_estop(bool closed) { estop_closed_ = closed; }  // from now on
+
+  // Room for a record of so many frames, so that a test of the loop's heap calls counts none of this platform's own.
+  void reserve_record(std::size_t frames) {
+    sent_.reserve(frames);
+    order_answers_.reserve(16);
+  }
 
   // The record.
   const std::vector<ReceivedFrame>& sent() const { return sent_; }
   const std::vector<PanelRequest>& requests() const { return requests_; }
   const Telemetry& telemetry() const { return telemetry_; }
+  std::vector<OrderAnswer>& order_answers() { return order_answers_; }
 
   PortStatus wait_for_tick(Time& tick) {
     now_ = now_ + can_map::sync_period;
     tick = now_;
     return port_ok;
   }
+  PortStatus receive_order(NumberedOrder& order) {
+    if (orders_.empty()) return port_empty;
+    order = orders_.front();
+    orders_.erase(orders_.begin());
+    return port_ok;
+  }
+  PortStatus answer_order(const OrderAnswer& answer) {
+    order_answers_.push_back(answer);
+    return port_ok;
+  }
+  PortStatus read_estop(bool& closed) const {
+    closed = estop_closed_;
+    return port_ok;
+  }
+  PortStatus wait_for_image() const { return port_ok; }
   PortStatus receive_can(std::uint8_t, ReceivedFrame& received) {
     if (frames_.empty() || frames_.front().t > now_) return port_empty;
     received = frames_.front();
@@ -80,6 +104,9 @@ class ScriptedPlatform {
   Time now_;
   std::uint32_t sequence_ = 0;
   std::deque<ReceivedFrame> frames_;
+  std::vector<NumberedOrder> orders_;
+  std::vector<OrderAnswer> order_answers_;
+  bool estop_closed_ = true;
   std::deque<ScriptedImage> images_;
   std::deque<ScriptedAnswer> answers_;
   ScriptedImage lent_;

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
+#include "hal/sim/sim_faults.hpp"
 #include "hal/vision/panel_vision.hpp"
 #include "host_sim/devices/devices.hpp"
 #include "host_sim/optics/optics.hpp"
@@ -21,6 +23,12 @@ struct SimConfig {
   Duration image_latency = Duration::from_ms(30);
   // From a question to panel vision until its answer can be received. The real one takes 20 to 100 ms on a desktop.
   Duration vision_latency = Duration::from_ms(300);
+
+  // Sight is made of the truth: nothing is rendered or looked for, and the platform has no threads of its own. For runs that are not about seeing.
+  bool given_sight = false;
+
+  // What goes wrong besides `devices.faults`.
+  std::vector<SimFault> faults;
 };
 
 }  // namespace lf::hal

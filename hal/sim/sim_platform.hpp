@@ -10,10 +10,12 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "hal/ports.hpp"
 #include "hal/sim/render_worker.hpp"
 #include "hal/sim/sim_config.hpp"
+#include "hal/sim/sim_faults.hpp"
 #include "hal/vision/panel_vision.hpp"
 #include "host_sim/devices/devices.hpp"
 #include "host_sim/optics/optics.hpp"
@@ -41,7 +43,7 @@ class SimObserver {
   virtual void on_panel_result(const PanelResult&) {}
 };
 
-class SimPlatform {
+class SimPlatform : public Unattended {
  public:
   // `observer` outlives the platform. Throws InputError for a configuration that makes no sense.
   SimPlatform(const SimConfig& config, SimObserver& observer);
@@ -53,6 +55,13 @@ class SimPlatform {
   PortStatus submit_panel(const PanelRequest& request, ImageView still, std::span<const CloudPoint> cloud);
   PortStatus receive_panel(PanelResult& result);
   PortStatus publish(const Telemetry& telemetry);
+
+  // What the operator orders in the scenario's faults.
+  PortStatus receive_order(NumberedOrder& order);
+  // False while the vision thread hangs: its turn is left out.
+  bool vision_runs() const { return !faults_.on(SimFaultKind::vision_stalled); }
+  // Another fault, besides the configured ones. Throws InputError for one of the devices that cannot be.
+  void add_fault(const SimFault& fault) { faults_.add(fault); }
 
   Time now() const { return now_; }
   const world::World& world() const { return world_; }  // ground truth: for scoring only
@@ -70,13 +79,26 @@ class SimPlatform {
 
   void step();
   void expose();
+  void picture(const PendingExposure& exposure);
+  bool spoil_image(Image& image);
+  PanelResult see_as_it_is(const PanelRequest& request) const;
+  void begin_faults();
+  void begin(const SimFault& fault);
 
   SimConfig config_;
   SimObserver& observer_;
   world::World world_;
   devices::Devices devices_;
-  RenderWorker renderer_;
-  vision::PanelVisionWorker vision_;
+  std::unique_ptr<RenderWorker> renderer_;             // none where sight is given
+  std::unique_ptr<vision::PanelVisionWorker> vision_;  // the same
+
+  FaultSchedule faults_;
+  std::deque<Command> orders_;
+  std::uint32_t images_to_lose_ = 0;
+  std::optional<Image> last_image_;
+  std::vector<std::uint8_t> hanging_;  // the sensor's last picture, while it is frozen
+  std::int32_t hanging_width_ = 0, hanging_height_ = 0;
+  std::optional<PanelResult> given_answer_;
 
   Time now_;
   std::uint32_t exposures_ = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 #include "firmware/arm/actuator.hpp"
@@ -15,6 +16,12 @@ namespace {
 constexpr std::int32_t any_count = std::numeric_limits<std::int32_t>::max() / 2;
 // After the last order: quick stop, NMT stop.
 constexpr Duration stop_time = Duration::from_ms(300);
+// The fastest joint stops within 0.3 s; after this the power goes whether it stands or not.
+// A joint that has moved by no more than a count for so long stands.
+constexpr Duration still_time = Duration::from_ms(50);
+constexpr Duration halt_time = Duration::from_ms(600);
+// Drives leave power within a second, brakes included, and a fault's reset may take three edges of 0.1 s before.
+constexpr Duration power_off_time = Duration::from_ms(1500);
 // Of the following-error window, 0.15 rad where a joint has the most counts: off the stop, and how near is there.
 constexpr double back_off_windows = 1, arrived_windows = 0.03;
 // Of the torque that is allowed: what stands still with less does not press, its encoder or its drive is at fault. Free motion takes about half of it.
@@ -33,6 +40,7 @@ canopen::NetworkConfig gentle(const Commissioning::Config& config) {
   canopen::NetworkConfig network = config.network;
   for (canopen::DriveSetup& drive : network.drives) {
     drive.encoder_zero_counts = 0;
+    drive.zero_known = true;  // what is looked for: all counts here are the encoder's own, and wide open
     drive.min_counts = -any_count;
     drive.max_counts = any_count;
     drive.max_torque_permille = std::min(drive.max_torque_permille, config.torque_permille);
@@ -50,10 +58,24 @@ void Commissioning::go(State state, Time now) {
   since_ = now;
 }
 
-void Commissioning::fail(const std::string& why, Time now) {
-  failure_ = why;
-  network_.shut_down();
-  go(State::stopping, now);
+void Commissioning::stop(const char* why) {
+  if (stop_reason_ == nullptr) stop_reason_ = why;
+}
+
+void Commissioning::fail(const char* why, Time now) {
+  std::snprintf(failure_.data(), failure_.size(), "%s", why);
+  network_.quick_stop_all();
+  network_.io().set_outputs(0);
+  go(State::halting, now);
+}
+
+void Commissioning::fail_joint(const char* why, Time now) {
+  fail(why, now);
+  std::snprintf(failure_.data(), failure_.size(), "%s: %s", config::joint_name(joint_), why);
+}
+
+bool Commissioning::without_power() const {
+  return std::none_of(powered_.begin(), powered_.end(), [](bool powered) { return powered; });
 }
 
 void Commissioning::tick(Time now, canopen::Outbox& outbox) {
@@ -62,31 +84,46 @@ void Commissioning::tick(Time now, canopen::Outbox& outbox) {
     network_.start_boot(now);
     since_ = now;
   }
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    if (network_.axis(static_cast<Joint>(i)).state() == canopen::AxisState::disabled) powered_[i] = false;
+  }
   watch(now);
   step(now);
   network_.tick(now, outbox);
 }
 
 void Commissioning::watch(Time now) {
-  if (state_ == State::stopping || ended()) return;
-  if (cancelled_) return fail("cancelled", now);
-  if (state_ == State::booting) return;
+  const bool ends = state_ == State::halting || state_ == State::powering_off || state_ == State::stopping || ended();
+  if (ends) return;
+  if (stop_reason_ != nullptr) return fail(stop_reason_, now);
+  if (state_ == State::booting) {
+    foreign_frames_ = network_.foreign_frames();
+    return;
+  }
   if (!network_.operational()) return fail("a node was lost", now);
-  if (!network_.io().estop_closed()) return fail("the emergency-stop chain is open", now);
+  const canopen::IoModule& io = network_.io();
+  if (!io.seen() || !io.fresh(now)) return fail("the emergency-stop chain cannot be read", now);
+  if (!io.estop_closed()) return fail("the emergency-stop chain is open", now);
+  if (network_.foreign_frames() != foreign_frames_) return fail("another master is on the bus", now);
   for (std::size_t i = 0; i < joint_count; ++i) {
     const canopen::Axis& one = network_.axis(static_cast<Joint>(i));
-    if (one.fault() != canopen::AxisFault::none) return fail(std::string(config::joint_name(i)) + ": " + canopen::name(one.fault()), now);
+    if (one.fault() == canopen::AxisFault::none) continue;
+    fail(canopen::name(one.fault()), now);
+    std::snprintf(failure_.data(), failure_.size(), "%s: %s", config::joint_name(i), canopen::name(one.fault()));
+    return;
   }
-  if (now - joint_since_ > config_.longest) fail(std::string(config::joint_name(joint_)) + ": no stop was found in time", now);
+  if (now - joint_since_ > config_.longest) fail_joint("no stop was found in time", now);
 }
 
 void Commissioning::step(Time now) {
   switch (state_) {
     case State::booting:
       if (network_.boot().state == canopen::BootState::failed) {
-        const canopen::NodeBoot* node = network_.boot().failed();
-        return fail("boot failed" + (node != nullptr ? ", node " + std::to_string(node->node) + ": " + canopen::name(node->failure) : ""),
-                    now);
+        fail("boot failed", now);
+        const canopen::BootReport boot = network_.boot();
+        if (const canopen::NodeBoot* node = boot.failed(); node != nullptr)
+          std::snprintf(failure_.data(), failure_.size(), "boot failed, node %d: %s", node->node, canopen::name(node->failure));
+        return;
       }
       if (network_.boot().state != canopen::BootState::done || !network_.operational()) return;
       if (config_.here) return take_here(now);
@@ -94,6 +131,7 @@ void Commissioning::step(Time now) {
       return next_joint(now);
     case State::enabling:
       if (axis().requested() != canopen::AxisRequest::hold_enabled) axis().request(canopen::AxisRequest::hold_enabled);
+      powered_[joint_] = true;
       if (!axis().enabled()) return;
       target_ = last_counts_ = started_counts_ = axis().actual_counts();
       moved_ = now;
@@ -105,8 +143,29 @@ void Commissioning::step(Time now) {
       if (axis().state() != canopen::AxisState::disabled) return;
       ++joint_;
       return next_joint(now);
+    case State::halting: {
+      // Category 1: the power is taken when the joint stands, not when its drive begins to brake.
+      const std::int32_t counts = network_.axis(static_cast<Joint>(std::min(joint_, joint_count - 1))).actual_counts();
+      if (std::abs(counts - rest_counts_) > 1) {
+        rest_counts_ = counts;
+        rest_since_ = now;
+      }
+      const bool stands = now - std::max(since_, rest_since_) >= still_time;
+      if (!stands && now - since_ < halt_time) return;
+      network_.disable_all();
+      return go(State::powering_off, now);
+    }
+    case State::powering_off:
+      // An axis with a latched fault stays in its quick stop, under power, until the fault is reset.
+      for (std::size_t i = 0; i < joint_count; ++i) {
+        canopen::Axis& one = network_.axis(static_cast<Joint>(i));
+        if (one.state() == canopen::AxisState::fault) one.request(canopen::AxisRequest::reset_fault);
+      }
+      if (!without_power() && now - since_ < power_off_time) return;
+      network_.shut_down();
+      return go(State::stopping, now);
     case State::stopping:
-      if (now - since_ >= stop_time) go(failure_.empty() ? State::done : State::failed, now);
+      if (now - since_ >= stop_time) go(failure_[0] == '\0' ? State::done : State::failed, now);
       return;
     case State::done:
     case State::failed: return;
@@ -147,10 +206,10 @@ void Commissioning::seek(Time now) {
   if (!pressing || now - moved_ < config_.stall) return;
   pressed_permille_ = std::abs(axis().torque_permille());
   if (pressed_permille_ < least_pressing * config_.torque_permille) {
-    const std::string torque = std::to_string(std::lround(pressed_permille_ / 10)) + " % of its torque";
-    return fail(std::string(config::joint_name(joint_)) + ": it stands still and presses with " + torque +
-                    " only: look at its encoder and its gear",
-                now);
+    std::array<char, 120> why{};
+    std::snprintf(why.data(), why.size(), "it stands still and presses with %ld %% of its torque only: look at its encoder and its gear",
+                  std::lround(pressed_permille_ / 10));
+    return fail_joint(why.data(), now);
   }
   pressed_counts_ = actual;
   easing_counts_.reset();
@@ -168,8 +227,7 @@ void Commissioning::ease(Time now) {
   if (torque >= has_fallen) {
     target_ -= way * config_.ease_fraction * drive.max_speed_counts_s * network_.config().sync_period.s();
     (void)axis().set_target_counts(static_cast<std::int32_t>(std::lround(target_)));
-    if (std::abs(target_ - pressed_counts_) > drive.following_window_counts)
-      fail(std::string(config::joint_name(joint_)) + ": it does not come off its stop", now);
+    if (std::abs(target_ - pressed_counts_) > drive.following_window_counts) fail_joint("it does not come off its stop", now);
     return;
   }
   stop_counts_ = actual + (actual - *easing_counts_) * has_fallen / (begins_to_fall - has_fallen);
@@ -193,6 +251,23 @@ void Commissioning::back_off(Time now) {
   if (std::abs(axis().actual_counts() - goal) > std::max(3.0, arrived_windows * window)) return;  // drives hold within two counts
   axis().request(canopen::AxisRequest::disable);
   go(State::releasing, now);
+}
+
+const char* name(Commissioning::State state) {
+  switch (state) {
+    case Commissioning::State::booting: return "booting";
+    case Commissioning::State::enabling: return "powering up";
+    case Commissioning::State::seeking: return "moving to its stop";
+    case Commissioning::State::easing: return "easing off its stop";
+    case Commissioning::State::backing_off: return "moving back";
+    case Commissioning::State::releasing: return "powering off";
+    case Commissioning::State::halting: return "stopping";
+    case Commissioning::State::powering_off: return "losing power";
+    case Commissioning::State::stopping: return "ending";
+    case Commissioning::State::done: return "done";
+    case Commissioning::State::failed: return "failed";
+  }
+  return "unknown";
 }
 
 }  // namespace lf::hal

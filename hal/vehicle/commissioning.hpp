@@ -2,17 +2,19 @@
 //
 // One joint after the other is powered, moved slowly against a stop with a third of its rated torque, eased off until it only touches, read there, moved
 // back to where it was, and released: the stop's angle is known from the arm's description. What presses is wound up: read under a third of its torque the slew would be 0.4 deg off.
-// The drives' own references are not touched. A plain object like the core: frames and the time in, frames out.
+// The drives' own references are not touched. A plain object like the core, run by the control thread in the core's place: frames and the time in, frames
+// out, no heap. It stands on the core's own network and axes.
+//
+// Whatever ends it early is an emergency stop of category 1: quick stop, then the power is taken, also when the stop itself was not answered.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <string>
+#include <string_view>
 
 #include "firmware/canopen/network.hpp"
 #include "hal/config/homing_file.hpp"
-#include "hal/ports.hpp"
 #include "shared/messages/joint_io.hpp"
 #include "shared/messages/time.hpp"
 
@@ -33,18 +35,32 @@ class Commissioning {
     Duration longest = Duration::from_ms(150'000);  // of one joint
   };
 
-  enum class State : std::uint8_t { booting, enabling, seeking, easing, backing_off, releasing, stopping, done, failed };
+  enum class State : std::uint8_t {
+    booting,
+    enabling,
+    seeking,      // toward the stop
+    easing,       // off it, until it only touches
+    backing_off,  // to where the joint was
+    releasing,    // the joint loses power
+    halting,      // ended early: quick stop
+    powering_off,
+    stopping,  // the nodes are told to stop
+    done,
+    failed
+  };
 
   explicit Commissioning(const Config& config);
 
   void on_frame(const CanFrame& frame, Time t) { network_.on_frame(frame, t); }
   void tick(Time now, canopen::Outbox& outbox);
-  // Stops what moves and ends as failed.
-  void cancel() { cancelled_ = true; }
+  // Stops what moves, takes the power, and ends as failed for this reason. The first reason holds.
+  void stop(const char* why);
 
   State state() const { return state_; }
   bool ended() const { return state_ == State::done || state_ == State::failed; }
-  const std::string& failure() const { return failure_; }
+  std::string_view failure() const { return failure_.data(); }
+  // No drive that this one powered has power: each has said so since. A drive that is no longer heard counts as powered.
+  bool without_power() const;
   std::size_t joint() const { return joint_; }  // under work
   const std::array<std::int32_t, joint_count>& zero_counts() const { return zero_counts_; }
   const std::array<bool, joint_count>& found() const { return found_; }
@@ -52,7 +68,8 @@ class Commissioning {
  private:
   canopen::Axis& axis() { return network_.axis(static_cast<Joint>(joint_)); }
   void go(State state, Time now);
-  void fail(const std::string& why, Time now);
+  void fail(const char* why, Time now);
+  void fail_joint(const char* why, Time now);
   void watch(Time now);
   void step(Time now);
   void next_joint(Time now);
@@ -65,8 +82,9 @@ class Commissioning {
   canopen::Network network_;
   State state_ = State::booting;
   bool booted_ = false;
-  bool cancelled_ = false;
-  std::string failure_;
+  const char* stop_reason_ = nullptr;
+  std::array<bool, joint_count> powered_{};  // asked to take power, and not heard to be without it since
+  std::array<char, 160> failure_{};
   std::size_t joint_ = 0;
   std::array<std::int32_t, joint_count> zero_counts_{};
   std::array<bool, joint_count> found_{};
@@ -74,31 +92,17 @@ class Commissioning {
   Time joint_since_;  // with this joint
   Time moved_;        // when it last counted
   std::int32_t last_counts_ = 0;
-  double target_ = 0;                // counts
-  std::int32_t started_counts_ = 0;  // where it was powered
-  double pressed_permille_ = 0;      // torque when it stood at the stop
+  std::int32_t rest_counts_ = 0;  // while halting: where it stood, and since when
+  Time rest_since_;
+  std::uint32_t foreign_frames_ = 0;  // of another master, before the boot was done
+  double target_ = 0;                 // counts
+  std::int32_t started_counts_ = 0;   // where it was powered
+  double pressed_permille_ = 0;       // torque when it stood at the stop
   std::int32_t pressed_counts_ = 0;
   std::optional<std::int32_t> easing_counts_;  // where the torque began to fall
   double stop_counts_ = 0;                     // where it only touches
 };
 
-// Runs it on a platform's clock and bus 0; `cancelled` is looked at once a tick, `tell` hears of each joint that is begun.
-template <class P, class Cancelled, class Tell>
-void run_commissioning(P& platform, Commissioning& commissioning, Cancelled cancelled, Tell tell) {
-  std::size_t told = joint_count;
-  while (!commissioning.ended()) {
-    Time now;
-    (void)platform.wait_for_tick(now);
-    for (ReceivedFrame received; platform.receive_can(0, received) == port_ok;) commissioning.on_frame(received.frame, received.t);
-    if (cancelled()) commissioning.cancel();
-    canopen::Outbox outbox;
-    commissioning.tick(now, outbox);
-    (void)platform.send_can(0, {outbox.data(), outbox.size()});
-    if (commissioning.state() == Commissioning::State::seeking && told != commissioning.joint()) {
-      told = commissioning.joint();
-      tell(told);
-    }
-  }
-}
+const char* name(Commissioning::State state);
 
 }  // namespace lf::hal

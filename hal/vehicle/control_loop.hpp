@@ -1,7 +1,7 @@
 // The control thread and the vision thread of the vehicle: the core's turns (hal/core_loop.hpp) with everything around them that takes no heap and no time.
 //
-// Orders come in and answers, reports and port faults go out through single-producer single-consumer rings; nothing else is shared. The same loops run on
-// any platform that the concept describes and that can wait for an image: tests drive them with a scripted one.
+// Reports and port faults go out through single-producer single-consumer rings; everything else goes through the platform's ports. The same loops run on
+// any platform that the concept describes: tests drive them with a scripted one. `Probe` has begin() and end(), called around the core's work.
 #pragma once
 
 #include <atomic>
@@ -13,56 +13,40 @@
 #include "firmware/scan_pipeline.hpp"
 #include "hal/core_loop.hpp"
 #include "hal/heap_guard/heap_guard.hpp"
+#include "hal/vehicle/commissioning.hpp"
 #include "hal/vehicle/control_report.hpp"
-#include "hal/vehicle/latency_histogram.hpp"
-#include "hal/vehicle/realtime.hpp"
-#include "hal/vehicle/tick_clock.hpp"
+#include "hal/vehicle/order_gate.hpp"
 #include "shared/messages/spsc_ring.hpp"
 
 namespace lf::hal {
-
-struct NumberedOrder {
-  std::uint64_t number = 0;
-  mission::Order order;
-};
-
-struct OrderAnswer {
-  std::uint64_t number = 0;
-  bool taken = false;
-  mission::Standing standing = mission::Standing::idle;  // when it was judged
-};
 
 struct PortFault {
   Port port = Port::camera;
   PortStatus code = port_ok;
 };
 
-struct LoopRings {
-  CoreRings core;
-  SpscRing<NumberedOrder, 16> orders;     // operator -> control
-  SpscRing<OrderAnswer, 16> answers;      // control -> operator
-  SpscRing<ControlReport, 8> reports;     // control -> writer
-  SpscRing<CameraReport, 8> cameras;      // vision -> writer
-  SpscRing<PortFault, 64> vision_faults;  // vision -> control
+struct CommissioningResult {
+  Commissioning* commissioning = nullptr;
+  bool begun = false;  // false: the arm had power, or another one is under way
 };
 
-// Times the core's work: by the clock, and in processor time.
-class TimingProbe {
- public:
-  void begin() {
-    began_ = monotonic_now();
-    thread_began_ = thread_time_now();
-  }
-  void end() {
-    worked_.add(thread_time_now() - thread_began_);
-    took_.add(monotonic_now() - began_);
-  }
-  const LatencyHistogram& took() const { return took_; }
-  const LatencyHistogram& worked() const { return worked_; }
-
- private:
-  Time began_, thread_began_;
-  LatencyHistogram took_, worked_;
+struct LoopRings {
+  CoreRings core;
+  SpscRing<NumberedOrder, 16> orders;    // operator -> control
+  SpscRing<NumberedOrder, 16> stops;     // operator -> control: emergency stops, which no other order keeps out
+  SpscRing<NumberedOrder, 8> own;        // the daemon's own orders -> control; their number is 0
+  SpscRing<OrderAnswer, 8> own_answers;  // control -> the daemon
+  SpscRing<OrderAnswer, 64> answers;     // control -> operator
+  OrderGate gate;                        // over `orders` and `stops`
+  SpscRing<ControlReport, 8> reports;    // control -> status
+  // A commissioning is lent to the control thread and comes back when it has ended, or at once when it cannot begin. A core with other zeros is exchanged
+  // for the one before while nothing has power. Whoever lends owns: the control thread neither makes nor deletes.
+  SpscRing<Commissioning*, 2> commissionings;     // operator -> control
+  SpscRing<CommissioningResult, 4> commissioned;  // control -> operator
+  SpscRing<Controller*, 2> cores;                 // operator -> control
+  SpscRing<Controller*, 2> old_cores;             // control -> operator
+  SpscRing<CameraReport, 8> cameras;              // vision -> status
+  SpscRing<PortFault, 64> vision_faults;          // vision -> control
 };
 
 // Reports leave every so many ticks.
@@ -70,7 +54,7 @@ inline constexpr std::uint64_t ticks_a_report = 25;
 // After the nodes were told to stop the loop goes on for as long as Network::shut_down needs, and a little.
 inline constexpr int ticks_to_stop = 10;
 
-template <class P>
+template <Platform P, class Probe = NoProbe>
 class ControlLoop {
  public:
   ControlLoop(P& platform, const ControllerConfig& config, LoopRings& rings)
@@ -81,19 +65,20 @@ class ControlLoop {
   void turn(Fill fill) {
     {
       const CoreSection guarded;  // the whole of the turn, not only the core in it
-      take_orders();
       for (PortFault fault; rings_.vision_faults.pop(fault);) controller_->on_port_error(fault.port, fault.code, now_);
-      control_turn(platform_, *controller_, rings_.core, out_, now_, probe_);
+      take_loans();
+      const bool shut_down =
+          commissioning_ != nullptr ? commissioning_turn() : control_turn(platform_, *controller_, rings_.core, out_, now_, probe_);
+      stopping_ = stopping_ || shut_down;
       if (ticks_++ % ticks_a_report == 0 || ended_now()) report(fill);
     }
-    if (stopping_ && controller_->mission().over() && ticks_left_ > 0) --ticks_left_;
+    if (stopping_ && commissioning_ == nullptr && controller_->mission().over() && ticks_left_ > 0) --ticks_left_;
   }
 
   // Everything is stopped and the nodes know it.
   bool stopped() const { return stopping_ && ticks_left_ == 0; }
   const Controller& controller() const { return *controller_; }
-  const LatencyHistogram& tick_latency() const { return probe_.took(); }
-  const LatencyHistogram& tick_work() const { return probe_.worked(); }
+  const Probe& probe() const { return probe_; }
   std::uint64_t ticks() const { return ticks_; }
 
   template <class Fill>
@@ -104,14 +89,82 @@ class ControlLoop {
   }
 
  private:
-  void take_orders() {
-    for (NumberedOrder order; rings_.orders.pop(order);) {
+  // Nothing has power: the bus may be handed over, and the core exchanged.
+  bool at_rest() const {
+    const mission::Standing standing = controller_->mission().standing();
+    if (stopping_ || (standing != mission::Standing::idle && standing != mission::Standing::ended)) return false;
+    for (std::size_t i = 0; i < joint_count; ++i) {
+      // What its drive said last: after a mission the nodes are stopped, and say no more.
+      if (controller_->network().axis(static_cast<Joint>(i)).powered()) return false;
+    }
+    return true;
+  }
+
+  void take_loans() {
+    for (Commissioning* next = nullptr; rings_.commissionings.pop(next);) {
+      // After a stop or a fault the operator resets first.
+      const mission::Outcome& outcome = controller_->mission().outcome();
+      if (commissioning_ == nullptr && at_rest() && (!outcome.ended || outcome.success)) {
+        commissioning_ = next;
+      } else {
+        (void)rings_.commissioned.push({next, false});
+      }
+    }
+    if (commissioning_ != nullptr || !at_rest()) return;
+    if (Controller* next = nullptr; rings_.cores.pop(next)) {
+      (void)rings_.old_cores.push(controller_.release());
+      controller_.reset(next);
+    }
+  }
+
+  // One period of commissioning, under the same clock, bus, emergency stops and orders as the core's. True when the end of the program was ordered in it.
+  bool commissioning_turn() {
+    Time tick = now_;
+    const bool clock = platform_.wait_for_tick(tick) == port_ok;
+    now_ = clock ? tick : now_ + can_map::sync_period;
+    if (!clock) commissioning_->stop("the clock failed");
+    probe_.begin();
+    bool closed = false;
+    if (platform_.read_estop(closed) != port_ok || !closed) commissioning_->stop("the emergency-stop input is open");
+    const bool shut_down = take_orders_meanwhile();
+    stopping_ = stopping_ || shut_down;
+    hear_bus();
+    canopen::Outbox outbox;
+    commissioning_->tick(now_, outbox);
+    probe_.end();
+    if (platform_.send_can(0, {outbox.data(), outbox.size()}) != port_ok) commissioning_->stop("the bus does not take frames");
+    if (commissioning_->ended()) {
+      (void)rings_.commissioned.push({std::exchange(commissioning_, nullptr), true});
+      if (stopping_) (void)controller_->on_command(Command::shut_down, now_);
+    }
+    return shut_down;
+  }
+
+  // Whatever stops is taken, everything else is refused.
+  bool take_orders_meanwhile() {
+    bool shut_down = false;
+    for (NumberedOrder order; platform_.receive_order(order) == port_ok;) {
+      const Command command = order.order.command;
+      if (command == Command::emergency_stop) commissioning_->stop("an emergency stop was ordered");
+      if (command == Command::abort) commissioning_->stop("it was called off");
+      if (command == Command::shut_down) commissioning_->stop("the program ends");
+      shut_down = shut_down || command == Command::shut_down;
       OrderAnswer answer;
       answer.number = order.number;
-      answer.standing = controller_->mission().standing();
-      answer.taken = controller_->on_order(order.order, now_);
-      stopping_ = stopping_ || order.order.command == Command::shut_down;
-      (void)rings_.answers.push(answer);
+      answer.commissioning = true;
+      answer.taken = command == Command::emergency_stop || command == Command::abort || command == Command::shut_down;
+      (void)platform_.answer_order(answer);
+    }
+    return shut_down;
+  }
+
+  void hear_bus() {
+    for (int i = 0; i < max_frames_a_tick; ++i) {
+      ReceivedFrame received;
+      const PortStatus status = platform_.receive_can(0, received);
+      if (status == port_empty) return;
+      if (status != port_ok) return commissioning_->stop("the bus cannot be read");
+      commissioning_->on_frame(received.frame, received.t);
     }
   }
 
@@ -123,6 +176,11 @@ class ControlLoop {
   void fill_report() {
     const mission::Mission& mission = controller_->mission();
     report_.t = now_;
+    report_.commissioning = commissioning_ != nullptr;
+    if (commissioning_ != nullptr) {
+      report_.commissioning_state = commissioning_->state();
+      report_.commissioning_joint = commissioning_->joint();
+    }
     report_.standing = mission.standing();
     report_.step = mission.step();
     report_.outcome = mission.outcome();
@@ -148,9 +206,10 @@ class ControlLoop {
   P& platform_;
   LoopRings& rings_;
   std::unique_ptr<Controller> controller_;
+  Commissioning* commissioning_ = nullptr;  // lent
   TickOutput out_;
   ControlReport report_;
-  TimingProbe probe_;
+  Probe probe_;
   Time now_;
   std::uint64_t ticks_ = 0;
   bool stopping_ = false;
@@ -158,24 +217,26 @@ class ControlLoop {
   int ticks_left_ = ticks_to_stop;
 };
 
-template <class P>
+template <Platform P, class Probe = NoProbe>
 class VisionLoop {
  public:
   VisionLoop(P& platform, const ScanConfig& config, LoopRings& rings)
       : platform_(platform), rings_(rings), pipeline_(std::make_unique<ScanPipeline>(config)) {}
 
+  // Waits for an image and works on it.
   void turn() {
+    (void)platform_.wait_for_image();
     vision_turn(platform_, *pipeline_, rings_.core, probe_, [this](Port port, PortStatus code) {
       (void)rings_.vision_faults.push({port, code});
     });
   }
-  const LatencyHistogram& image_latency() const { return probe_.took(); }
+  const Probe& probe() const { return probe_; }
 
  private:
   P& platform_;
   LoopRings& rings_;
   std::unique_ptr<ScanPipeline> pipeline_;
-  TimingProbe probe_;
+  Probe probe_;
 };
 
 }  // namespace lf::hal

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "firmware/controller.hpp"
+#include "hal/vehicle/commissioning.hpp"
 #include "hal/vehicle/socket_can.hpp"
 #include "shared/messages/scan_messages.hpp"
 
@@ -12,6 +13,9 @@ namespace lf::hal {
 
 struct ControlReport {
   Time t;
+  bool commissioning = false;  // in the core's place
+  Commissioning::State commissioning_state = Commissioning::State::booting;
+  std::size_t commissioning_joint = 0;
   mission::Standing standing = mission::Standing::idle;
   mission::Step step = mission::Step::idle;
   mission::Outcome outcome;

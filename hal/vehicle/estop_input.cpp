@@ -5,7 +5,7 @@
 
 namespace lf::hal {
 
-bool EstopInput::whole() const {
+bool EstopInput::closed() const {
   if (path_.empty()) return true;
   const int fd = open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (fd < 0) return false;

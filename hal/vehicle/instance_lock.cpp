@@ -51,6 +51,8 @@ std::string InstanceLock::take(const std::string& folder, const std::string& int
     return "another lanternfishd" + owner + " is the master of " + interface + ", says " + path_;
   }
   const std::string own = std::to_string(getpid()) + "\n";
+  // One that root has made, by hand, must not keep the service out afterwards.
+  if (struct stat owner{}; geteuid() == 0 && stat(folder.c_str(), &owner) == 0) (void)!fchown(fd_, owner.st_uid, owner.st_gid);
   if (ftruncate(fd_, 0) != 0 || pwrite(fd_, own.data(), own.size(), 0) < 0) return path_ + ": " + std::strerror(errno);
   return "";
 }
@@ -65,6 +67,12 @@ std::optional<std::string> hear_another_master(SocketCan& can, Duration how_long
       if (status != port_empty) sleep_until(monotonic_now() + Duration::from_ms(10));  // down or gone: nobody to be heard
       continue;
     }
+    if (received.frame.id > 0x7FF) continue;  // error frames, and what no CANopen node sends
+    const std::uint32_t function = received.frame.id & 0x780U;
+    const bool rpdo = function == 0x200 || function == 0x300 || function == 0x400 || function == 0x500;
+    if (rpdo) return "another master sends set points (RPDOs)";
+    if (function == 0x600) return "another master asks for objects (SDO)";
+    if (received.frame.id == 0) return "another master sends NMT commands (0x000)";
     if (received.frame.id == sync_id) return "another master sends SYNC (0x080)";
     if (received.frame.id == master_heartbeat_id) return "another master sends its heartbeat (0x77F)";
   }

@@ -16,6 +16,7 @@ class InstanceLock {
   InstanceLock(const InstanceLock&) = delete;
   InstanceLock& operator=(const InstanceLock&) = delete;
 
+  // The folder is one that only the daemon's user can write to, such as the service's RuntimeDirectory: elsewhere anybody could hold the lock.
   // Locks FOLDER/lanternfishd-INTERFACE-NAMESPACE.lock (flock(2): gone with the process, however it ends). An empty text when it is ours, else what is
   // in the way, with the other's process number where the file has it.
   std::string take(const std::string& folder, const std::string& interface);
@@ -26,7 +27,10 @@ class InstanceLock {
   std::string path_;
 };
 
-// Listens for `how_long` to a bus that should be silent of masters. What gives another one away, in words: a SYNC or a master's heartbeat.
+// Three heartbeats of a master, and many of its SYNCs.
+inline constexpr Duration listen_for_a_master = Duration::from_ms(350);
+
+// Listens for `how_long` to a bus that should be silent of masters. What gives another one away, in words: SYNC, NMT, its heartbeat, set points, SDO requests.
 std::optional<std::string> hear_another_master(SocketCan& can, Duration how_long);
 
 }  // namespace lf::hal

@@ -1,30 +1,25 @@
 // The `lanternfishd` program: the daemon itself, and its sub-commands for the operator.
 // Exit status: 0 done, 1 the job failed or an order was refused, 2 bad input, 3 this machine lacks something.
-#include <poll.h>
 #include <sys/signalfd.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
-#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
-#include <ctime>
-#include <filesystem>
 #include <functional>
 #include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
-#include "hal/config/share.hpp"
-#include "hal/vehicle/commissioning.hpp"
+#include "hal/config/drive_kind.hpp"
+#include "hal/vehicle/bus_doctor.hpp"
 #include "hal/vehicle/daemon.hpp"
+#include "hal/vehicle/instance_lock.hpp"
+#include "hal/vehicle/machine_check.hpp"
 #include "hal/vehicle/operator_client.hpp"
-#include "shared/arm/arm_description.hpp"
+#include "hal/vehicle/tick_clock.hpp"
 #include "shared/input_error.hpp"
 #include "shared/version/version.hpp"
 
@@ -56,17 +51,41 @@ int take_signals() {
   sigemptyset(&set);
   sigaddset(&set, SIGINT);
   sigaddset(&set, SIGTERM);
+  sigaddset(&set, SIGHUP);  // the terminal is gone: the arm is not left to itself
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
   return signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK);
 }
 
+// The file, then what this machine has of it.
+int check(const Options& options) {
+  Json report{{"config", options.config}, {"problems", Json::array()}};
+  int status = done;
+  try {
+    const VehicleConfig config = load_vehicle_config(options.config);
+    for (const Finding& finding : check_machine(config)) {
+      report["problems"].push_back({{"key", finding.key}, {"problem", finding.problem}, {"remedy", finding.remedy}});
+      status = environment;
+    }
+  } catch (const InputError& error) {
+    if (!options.json) throw;
+    report["problems"].push_back({{"problem", error.what()}});
+    status = bad_input;
+  }
+  report["ok"] = status == done;
+  if (options.json) {
+    std::printf("%s\n", report.dump(1, ' ', false, Json::error_handler_t::replace).c_str());
+    return status;
+  }
+  for (const Json& one : report["problems"])
+    complain("'" + one["key"].get<std::string>() + "': " + one["problem"].get<std::string>() + ": " + one["remedy"].get<std::string>());
+  std::printf("%s is valid%s\n", options.config.c_str(), status == done ? "" : ", but this machine lacks something");
+  return status;
+}
+
 int run_daemon(const Options& options) {
   if (options.config.empty()) throw InputError("--config FILE is needed; `lanternfishd --help` has more");
+  if (options.check) return check(options);
   const VehicleConfig config = load_vehicle_config(options.config);
-  if (options.check) {
-    std::printf("%s is sound\n", options.config.c_str());
-    return done;
-  }
   const int signals = take_signals();
   const auto daemon = std::make_unique<Daemon>(config);  // megabytes
   const bool well = daemon->run(signals, options.run_job);
@@ -102,7 +121,7 @@ using Action = std::function<int()>;
 void add_simple_requests(CLI::App& app, const Options& options, Action& action) {
   for (const Right& right : operator_rights()) {
     const std::string request = right.request;
-    if (request == "jog" || request == "task") continue;
+    if (request == "jog" || request == "task" || request == "commission") continue;
     CLI::App* command = app.add_subcommand(request, right.does);
     command->callback([&options, &action, request] { action = [&options, request] { return ask(options, {{"do", request}}); }; });
   }
@@ -144,99 +163,86 @@ void add_task(CLI::App& app, const Options& options, Action& action) {
 struct CommissionOptions {
   std::vector<std::string> joints;
   bool here = false;
-  bool sure = false;
+  bool clear = false;
 };
 
-// A clock and a bus, without the rest of a vehicle.
-struct BusOnly {
-  SocketCan can;
-  TickClock clock;
-  PortStatus wait_for_tick(Time& tick) {
-    tick = clock.wait();
-    return port_ok;
+// What a commissioning is at, each time that this changes; its end.
+int follow_commissioning(const std::string& socket, bool json) {
+  std::string told;
+  for (;;) {
+    const Json status = ask_daemon(socket, {{"do", "status"}});
+    const Json now = status.value("commissioning", Json::object());
+    const std::string state = now.value("state", std::string("unknown"));
+    if (state == "done" || state == "failed") {
+      if (json) std::printf("%s\n", now.dump(1).c_str());
+      if (state == "failed") complain(now.value("why", std::string("failed")));
+      for (const auto& [joint, zero] : now.value("zeros", Json::object()).items()) {
+        if (!json) std::printf("%-9s zero at %d counts\n", joint.c_str(), zero.get<int>());
+      }
+      return state == "done" ? done : failed;
+    }
+    const std::string line = now.value("joint", std::string("the nodes")) + ": " + state;
+    if (line != told && !json) std::fprintf(stderr, "%s ...\n", line.c_str());
+    told = line;
+    sleep_until(monotonic_now() + Duration::from_ms(200));
   }
-  PortStatus receive_can(std::uint8_t, ReceivedFrame& received) { return can.receive(received); }
-  PortStatus send_can(std::uint8_t, std::span<const CanFrame> frames) { return can.send(frames); }
-};
-
-std::array<bool, joint_count> chosen(const CommissionOptions& options) {
-  std::array<bool, joint_count> joints{};
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    const auto named = std::find(options.joints.begin(), options.joints.end(), config::joint_name(i)) != options.joints.end();
-    joints[i] = options.joints.empty() || named;
-  }
-  for (const std::string& name : options.joints) {
-    bool known = false;
-    for (std::size_t i = 0; i < joint_count; ++i) known = known || name == config::joint_name(i);
-    if (!known) throw InputError("no joint '" + name + "': slew, shoulder, elbow, roll or jaw");
-  }
-  return joints;
 }
 
-// What cannot be read or written is told before anything moves.
-config::HomingOffsets known_offsets(const std::string& file) {
-  config::HomingOffsets offsets;
-  if (std::filesystem::exists(file)) offsets = config::read_homing_file(file);
-  const std::string folder = std::filesystem::absolute(file).parent_path().string();
-  if (access(folder.c_str(), W_OK | X_OK) != 0) throw InputError(file + ": cannot be written: " + std::strerror(errno));
-  return offsets;
-}
-
-void keep_offsets(const std::string& file, config::HomingOffsets offsets, const Commissioning& commissioning, bool here) {
-  char day[32] = "";
-  const std::time_t now = std::time(nullptr);
-  std::strftime(day, sizeof day, "%Y-%m-%d %H:%M", std::gmtime(&now));
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    if (!commissioning.found()[i]) continue;
-    offsets.zero_counts[i] = commissioning.zero_counts()[i];
-    offsets.found[i] = std::string(here ? "in the jig, " : "at its stop, ") + day + " UTC";
-    std::printf("%-9s zero at %d counts\n", config::joint_name(i), offsets.zero_counts[i]);
-  }
-  config::write_homing_file(file, offsets);
-  std::printf("written to %s\n", file.c_str());
-}
-
+// The daemon does it. An interrupt here ends only the telling: `lanternfishd abort` calls the commissioning off, `estop` stops it.
 int commission(const Options& options, const CommissionOptions& wanted) {
-  if (options.config.empty()) throw InputError("--config FILE is needed");
-  const VehicleConfig config = load_vehicle_config(options.config);
-  if (config.homing_file.empty()) throw InputError(options.config + ": 'homing.file' names no file to write to");
-  Commissioning::Config setup;
-  setup.network = config.core.controller.network;
-  setup.joints = chosen(wanted);
-  const std::filesystem::path folder = std::filesystem::path(options.config).parent_path();
-  const ArmDescription arm = load_arm_urdf(config::find_file(config.machine.arm_urdf, folder));
-  for (std::size_t i = 0; i < joint_count; ++i) setup.backlash_rad[i] = arm.joints[i].backlash_rad;
-  setup.here = wanted.here;
-  if (!wanted.sure && !wanted.here)
-    throw InputError("commissioning moves the arm against its stops: clear its reach, then say so with --clear");
-  const config::HomingOffsets known = known_offsets(config.homing_file);
-  InstanceLock lock;
-  if (const std::string taken = lock.take(config.lock_folder, config.interface); !taken.empty()) throw EnvironmentLacks(taken);
-  BusOnly bus{SocketCan(config.can()), TickClock(setup.network.sync_period)};
-  if (const PortStatus error = bus.can.open(); error != port_ok) throw EnvironmentLacks(SocketCan::explain(error, config.interface));
-  if (const auto other = hear_another_master(bus.can, Duration::from_ms(350))) throw EnvironmentLacks(config.interface + ": " + *other);
-  const int signals = take_signals();
-  Commissioning commissioning(setup);
-  bus.clock.start();
-  const auto cancelled = [signals] {
-    signalfd_siginfo info{};
-    return read(signals, &info, sizeof info) > 0;
-  };
-  run_commissioning(bus, commissioning, cancelled, [](std::size_t joint) { std::fprintf(stderr, "%s ...\n", config::joint_name(joint)); });
-  if (commissioning.state() == Commissioning::State::failed) {
-    complain("nothing was written: " + commissioning.failure());
+  Json request{{"do", "commission"}, {"here", wanted.here}, {"clear", wanted.clear}};
+  if (!wanted.joints.empty()) request["joints"] = wanted.joints;
+  const std::string socket = socket_of(options);
+  const Json reply = ask_daemon(socket, request);
+  if (!reply.value("ok", false)) {
+    complain("refused: " + reply.value("why", std::string("no reason given")));
     return failed;
   }
-  keep_offsets(config.homing_file, known, commissioning, wanted.here);
-  return done;
+  return follow_commissioning(socket, options.json);
+}
+
+// On its own interface, or the configuration's. Refused while another program is master of the bus.
+int examine_bus(const Options& options, std::string interface) {
+  if (interface.empty() && !options.config.empty()) interface = load_vehicle_config(options.config).interface;
+  if (interface.empty()) throw InputError("doctor needs --interface, or --config with 'can.interface'");
+  SocketCan::Config config;
+  config.interface = interface;
+  config.filters = core_filters();
+  for (std::uint32_t node = 1; node <= 126; ++node) config.filters.push_back(CanFilter::exactly(0x580 + node));
+  SocketCan can(config);
+  if (const PortStatus error = can.open(); error != port_ok) throw EnvironmentLacks(SocketCan::explain(error, interface));
+  // Questions on a bus that has a master would stop its arm: a core takes them for another master's.
+  if (const auto master = hear_another_master(can, listen_for_a_master)) throw EnvironmentLacks(interface + ": " + *master);
+  TickClock clock(Duration::from_ms(1));
+  clock.start();
+  BusDoctor doctor;
+  std::vector<CanFrame> out;
+  while (!doctor.done()) {
+    const Time now = clock.wait();
+    for (ReceivedFrame received; can.receive(received) == port_ok;) doctor.on_frame(received.frame, now);
+    out.clear();
+    doctor.step(now, out);
+    (void)can.send(out);
+  }
+  std::vector<config::DriveKind> kinds;
+  for (const std::string& name : config::shipped_drive_kinds()) kinds.push_back(config::find_drive_kind(name, ""));
+  std::fputs(doctor_text(doctor.nodes(), kinds).c_str(), stdout);
+  return doctor.nodes().empty() ? failed : done;
+}
+
+void add_doctor(CLI::App& app, const Options& options, Action& action) {
+  auto interface = std::make_shared<std::string>();
+  CLI::App* command = app.add_subcommand("doctor", "read the bus: which drives are on it, and what differs from their profiles");
+  command->add_option("--interface", *interface, "the CAN interface, in place of the configuration's");
+  command->callback([&options, &action, interface] { action = [&options, interface] { return examine_bus(options, *interface); }; });
 }
 
 void add_commission(CLI::App& app, const Options& options, Action& action) {
   auto wanted = std::make_shared<CommissionOptions>();
-  CLI::App* command = app.add_subcommand("commission", "find and store the zeros of the joints' absolute encoders");
+  CLI::App* command = app.add_subcommand("commission", right_of("commission")->does);
   command->add_option("--joint", wanted->joints, "only this one; may be given again")->allow_extra_args(false);
   command->add_flag("--here", wanted->here, "the arm stands at its zero, in a jig: nothing moves");
-  command->add_flag("--clear", wanted->sure, "nobody and nothing is within the arm's reach");
+  command->add_flag("--clear", wanted->clear, "nobody and nothing is within the arm's reach");
   command->callback([&options, &action, wanted] { action = [&options, wanted] { return commission(options, *wanted); }; });
 }
 
@@ -246,7 +252,7 @@ int run(int argc, char** argv) {
   Action action = [&options] { return run_daemon(options); };
   app.add_option("--config", options.config, "The vehicle's configuration");
   app.add_option("--socket", options.socket, "The operator interface's socket, for the sub-commands");
-  app.add_flag("--check", options.check, "Only check the configuration");
+  app.add_flag("--check", options.check, "Only check the configuration, and what this machine has of it");
   app.add_flag("--run", options.run_job, "Start the job at once and end with it");
   app.add_flag("--json", options.json, "Answer in JSON");
   app.set_version_flag("--version", version_line("lanternfishd"), "Print which build this is");
@@ -256,6 +262,7 @@ int run(int argc, char** argv) {
   add_jog(app, options, action);
   add_task(app, options, action);
   add_commission(app, options, action);
+  add_doctor(app, options, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {

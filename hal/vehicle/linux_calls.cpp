@@ -54,6 +54,11 @@ int LinuxCalls::set_option(int fd, int level, int name, const void* value, std::
   return answer(setsockopt(fd, level, name, value, static_cast<socklen_t>(bytes)));
 }
 
+int LinuxCalls::get_option(int fd, int level, int name, void* value, std::size_t bytes) {
+  auto length = static_cast<socklen_t>(bytes);
+  return answer(getsockopt(fd, level, name, value, &length));
+}
+
 int LinuxCalls::receive_many(int fd, mmsghdr* messages, unsigned count) {
   return answer(recvmmsg(fd, messages, count, MSG_DONTWAIT, nullptr));
 }

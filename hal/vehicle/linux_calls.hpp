@@ -23,6 +23,7 @@ class LinuxCalls {
   virtual int socket(int family, int type, int protocol);
   virtual int bind(int fd, const sockaddr* address, std::size_t bytes);
   virtual int set_option(int fd, int level, int name, const void* value, std::size_t bytes);
+  virtual int get_option(int fd, int level, int name, void* value, std::size_t bytes);
   virtual int receive_many(int fd, mmsghdr* messages, unsigned count);  // never waits
   virtual int send_many(int fd, mmsghdr* messages, unsigned count);     // never waits
   // Waits until `fd` has one of poll(2)'s `events` or `timeout_ns` have passed; the events that came, 0 after the time.

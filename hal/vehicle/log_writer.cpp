@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <utility>
 
-#include "hal/vehicle/linux_calls.hpp"
 #include "hal/vehicle/realtime.hpp"
+#include "hal/vehicle/tick_clock.hpp"
 #include "shared/candump/candump_line.hpp"
 
 namespace lf::hal {
@@ -15,21 +15,26 @@ namespace {
 
 constexpr Duration look_again = Duration::from_ms(20);
 constexpr int looks_a_flush = 25;  // twice a second
+constexpr std::size_t most_lines = 4096;
+// NTP slews the monotonic clock as well, so that the difference changes only where the wall clock is set.
+constexpr std::int64_t step_ns = 1'000'000;
+
+RotatingFile::Config file_of(const LogWriter::Config& config, const char* name) {
+  return {config.folder + "/" + name, config.largest_bytes, config.keep, config.pack};
+}
 
 }  // namespace
 
-LogWriter::LogWriter(LogRings& log, LoopRings& loops, std::string interface) : log_(log), loops_(loops), interface_(std::move(interface)) {}
+LogWriter::LogWriter(LogRings& log, const Config& config, LinuxCalls& calls)
+    : log_(log), config_(config), calls_(calls), frames_(file_of(config, "can0.log")), lines_(file_of(config, "log.jsonl")) {}
 
-int LogWriter::open(const std::string& folder) {
+int LogWriter::open() {
   std::error_code error;
-  std::filesystem::create_directories(folder, error);
+  std::filesystem::create_directories(config_.folder, error);
   if (error) return error.value();
-  files_.frames = std::fopen((folder + "/can0.log").c_str(), "ae");
-  if (files_.frames == nullptr) return errno;
-  files_.lines = std::fopen((folder + "/log.jsonl").c_str(), "ae");
-  if (files_.lines == nullptr) return errno;
-  wall_from_monotonic_ = Duration::from_ns(linux_calls().realtime_ns() - linux_calls().monotonic_ns());
-  return 0;
+  wall_from_monotonic_ = Duration::from_ns(calls_.realtime_ns() - calls_.monotonic_ns());
+  if (const int frames = frames_.open(); frames != 0) return frames;
+  return lines_.open();
 }
 
 void LogWriter::start() {
@@ -40,79 +45,74 @@ void LogWriter::stop() {
   if (thread_.joinable()) {
     stop_ = true;
     thread_.join();
-    drain();
-    write_counters();
+    write_frames();
+    write_lines();
   }
-  close_files();
-}
-
-void LogWriter::close_files() {
-  for (std::FILE** file : {&files_.frames, &files_.lines}) {
-    if (*file != nullptr && std::fclose(*file) != 0 && error_ == 0) error_ = errno;
-    *file = nullptr;
-  }
+  note(frames_.close());
+  note(lines_.close());
 }
 
 void LogWriter::run() {
   name_thread("writer");
   for (int look = 1; !stop_; ++look) {
-    drain();
+    follow_wall_clock();
+    write_frames();
+    write_lines();
     if (look % looks_a_flush == 0) {
-      write_counters();
-      (void)std::fflush(files_.frames);
-      (void)std::fflush(files_.lines);
+      note(frames_.flush());
+      note(lines_.flush());
+      error_ = std::exchange(round_error_, 0);
     }
     sleep_until(monotonic_now() + look_again);
   }
 }
 
-void LogWriter::drain() {
+void LogWriter::note(int error) {
+  if (error == 0) return;
+  round_error_ = error;
+  error_ = error;
+}
+
+// A vehicle's computer often starts with a wrong time and is told the right one later.
+void LogWriter::follow_wall_clock() {
+  const Duration now = Duration::from_ns(calls_.realtime_ns() - calls_.monotonic_ns());
+  const std::int64_t change_ns = now.ns() - wall_from_monotonic_.ns();
+  if (change_ns > -step_ns && change_ns < step_ns) return;
+  wall_from_monotonic_ = now;
+  say({{"t_s", 1e-9 * static_cast<double>(calls_.monotonic_ns())},
+       {"kind", "wall clock set"},
+       {"by_s", 1e-9 * static_cast<double>(change_ns)}});
+}
+
+void LogWriter::write_frames() {
   for (LogFrame frame; log_.frames.pop(frame);) {
-    const CandumpLine line = candump_line(frame.t + wall_from_monotonic_, interface_.c_str(), frame.frame);
-    if (files_.frames != nullptr && std::fwrite(line.text.data(), 1, line.size, files_.frames) != line.size) {
-      const std::lock_guard lock(mutex_);
-      if (error_ == 0) error_ = errno;
-    }
-  }
-  for (Telemetry telemetry; log_.telemetry.pop(telemetry);) {
-    for (const Event& event : telemetry.events) say(event_json(event));
-    const std::lock_guard lock(mutex_);
-    newest_.telemetry = telemetry;
-  }
-  for (ControlReport report; loops_.reports.pop(report);) {
-    const std::lock_guard lock(mutex_);
-    newest_.control = report;
-  }
-  for (CameraReport report; loops_.cameras.pop(report);) {
-    const std::lock_guard lock(mutex_);
-    newest_.camera = report;
+    const CandumpLine line = candump_line(frame.t + wall_from_monotonic_, config_.interface.c_str(), frame.frame);
+    note(frames_.write({line.text.data(), line.size}));
   }
 }
 
-// When something was counted since: at most twice a second, whatever happens.
-void LogWriter::write_counters() {
-  const Newest now = newest();
-  Json counters = counters_json(now.control, now.camera, now.telemetry);
-  counters.erase("images");  // those that are well are no news
-  if (counters == counters_) return;
-  counters_ = counters;
-  say({{"t_s", now.control.t.s()}, {"kind", "counted"}, {"counters", counters}});
+void LogWriter::write_lines() {
+  std::vector<std::string> lines;
+  {
+    const std::lock_guard lock(mutex_);
+    lines.swap(said_);
+  }
+  for (const std::string& line : lines) note(lines_.write(line));
 }
 
 void LogWriter::say(const Json& line) {
-  const std::string text = line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  std::string text = line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
   const std::lock_guard lock(mutex_);
-  if (files_.lines != nullptr && std::fwrite(text.data(), 1, text.size(), files_.lines) != text.size() && error_ == 0) error_ = errno;
-}
-
-LogWriter::Newest LogWriter::newest() const {
-  const std::lock_guard lock(mutex_);
-  return newest_;
+  if (said_.size() >= most_lines) {
+    ++lines_lost_;
+    return;
+  }
+  said_.push_back(std::move(text));
 }
 
 std::string LogWriter::trouble() const {
-  const std::lock_guard lock(mutex_);
-  return error_ == 0 ? "" : std::string("the log is not written: ") + std::strerror(error_);
+  const int error = error_;
+  return error == 0 ? "" : std::string("the log is not written: ") + std::strerror(error);
 }
 
 }  // namespace lf::hal

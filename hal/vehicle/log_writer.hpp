@@ -1,15 +1,17 @@
-// The writer thread: takes what the control and vision threads leave in the rings, keeps the newest of it for the operator, and writes can0.log (candump's
-// format, wall-clock time) and log.jsonl (one JSON object a line). A disk that fails or is slow costs records, which are counted, never a control tick.
+// The writer thread: can0.log (candump's format, wall-clock time) and log.jsonl (one JSON object a line), both set aside when they are full.
+//
+// A disk that fails or is slow costs records, which are counted. It delays nobody: no lock is held while something is written.
 #pragma once
 
 #include <atomic>
 #include <cstdint>
-#include <cstdio>
 #include <mutex>
 #include <string>
 #include <thread>
+#include <vector>
 
-#include "hal/vehicle/control_loop.hpp"
+#include "hal/vehicle/linux_calls.hpp"
+#include "hal/vehicle/rotating_file.hpp"
 #include "hal/vehicle/status_json.hpp"
 #include "hal/vehicle/vehicle_platform.hpp"
 
@@ -17,51 +19,50 @@ namespace lf::hal {
 
 class LogWriter {
  public:
-  struct Newest {
-    ControlReport control;
-    CameraReport camera;
-    Telemetry telemetry;
+  struct Config {
+    std::string folder;
+    std::string interface;
+    std::int64_t largest_bytes = std::int64_t{256} << 20;  // of each file
+    int keep = 24;
+    bool pack = true;
   };
 
-  LogWriter(LogRings& log, LoopRings& loops, std::string interface);
+  LogWriter(LogRings& log, const Config& config, LinuxCalls& calls = linux_calls());
   ~LogWriter() { stop(); }
   LogWriter(const LogWriter&) = delete;
   LogWriter& operator=(const LogWriter&) = delete;
 
-  // Opens can0.log and log.jsonl in `folder`, made if need be, behind what is in them. 0 or errno.
-  int open(const std::string& folder);
+  // Opens can0.log and log.jsonl in the folder, made if need be, behind what is in them. 0 or errno.
+  int open();
   void start();
   // Writes what is left and closes. The second call does nothing.
   void stop();
 
-  // A line for people and tools, from any thread: {"t_s", "kind", ...}. Lines of events come from the rings.
+  // A line for people and tools, from any thread: {"t_s", "kind", ...}. Takes as long as a copy; beyond 4096 lines that wait it is lost and counted.
   void say(const Json& line);
-  Newest newest() const;
-  // Of a write that failed: what is said is lost from then on. Empty when all is well.
+  // Of the latest try to write. Empty when that went well.
   std::string trouble() const;
+  std::uint64_t lines_lost() const { return lines_lost_; }
 
  private:
-  struct Files {
-    std::FILE* frames = nullptr;
-    std::FILE* lines = nullptr;
-  };
-
   void run();
-  void drain();
-  void write_counters();
-  void close_files();
+  void write_frames();
+  void write_lines();
+  void follow_wall_clock();
+  void note(int error);
 
   LogRings& log_;
-  LoopRings& loops_;
-  std::string interface_;
-  Duration wall_from_monotonic_;  // when the log was opened: a jump of the wall clock does not show in it
-  Files files_;
+  Config config_;
+  LinuxCalls& calls_;
+  RotatingFile frames_, lines_;
+  Duration wall_from_monotonic_;
+  int round_error_ = 0;  // since the last flush
   std::thread thread_;
   std::atomic<bool> stop_{false};
-  mutable std::mutex mutex_;  // over all below
-  Newest newest_;
-  Json counters_;
-  int error_ = 0;
+  std::atomic<int> error_{0};
+  std::atomic<std::uint64_t> lines_lost_{0};
+  std::mutex mutex_;  // over `said_`
+  std::vector<std::string> said_;
 };
 
 }  // namespace lf::hal

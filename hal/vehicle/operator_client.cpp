@@ -59,7 +59,7 @@ std::string status_text(const Json& status) {
   std::string text = status["standing"].get<std::string>() + ", step " + status["step"].get<std::string>() + "\n";
   if (status.contains("failure")) {
     const Json& failure = status["failure"];
-    text += "  failed in " + failure["step"].get<std::string>() + ": " + failure["reason"].get<std::string>() + "\n";
+    text += "  failed in " + failure["step"].get<std::string>() + ": " + failure.value("text", failure["reason"].get<std::string>()) + "\n";
   }
   if (status.contains("faults since the end")) text += "  since the end: " + status["faults since the end"].dump() + "\n";
   for (const Json& task : status["tasks"]) {

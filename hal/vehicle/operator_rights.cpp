@@ -26,6 +26,7 @@ const std::vector<Right>& operator_rights() {
       {"task", Role::op, "another job"},
       {"reset", Role::op, "forget how the last mission ended"},
       {"jog", Role::engineer, "one joint by a small angle"},
+      {"commission", Role::engineer, "find and store the zeros of the joints' absolute encoders"},
       {"restart-bus", Role::engineer, "bring a CAN controller back that went bus-off"},
   };
   return rights;

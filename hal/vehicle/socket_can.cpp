@@ -3,6 +3,7 @@
 #include <linux/can.h>
 #include <linux/can/error.h>
 #include <linux/can/raw.h>
+#include <linux/sock_diag.h>
 #include <net/if.h>
 #include <poll.h>
 #include <sys/ioctl.h>
@@ -51,11 +52,17 @@ bool is_gone(int error) { return error == ENODEV || error == ENXIO; }
 CanFilter CanFilter::exactly(std::uint32_t id) { return {id, CAN_EFF_FLAG | CAN_RTR_FLAG | CAN_SFF_MASK}; }
 
 std::vector<CanFilter> core_filters() {
-  std::vector<CanFilter> filters{CanFilter::exactly(0x000), CanFilter::exactly(0x080), CanFilter::exactly(0x700U + can_map::master_node)};
   std::vector<std::uint8_t> nodes(can_map::drive_nodes.begin(), can_map::drive_nodes.end());
   nodes.push_back(can_map::io_node);
+  return core_filters(nodes);
+}
+
+std::vector<CanFilter> core_filters(std::span<const std::uint8_t> nodes) {
+  std::vector<CanFilter> filters{CanFilter::exactly(0x000), CanFilter::exactly(0x080), CanFilter::exactly(0x700U + can_map::master_node)};
   for (const std::uint8_t node : nodes) {
-    for (const std::uint32_t function : {0x080U, 0x180U, 0x580U, 0x700U}) filters.push_back(CanFilter::exactly(function + node));
+    // The second half are a master's: RPDO 1 to 4 and SDO requests.
+    for (const std::uint32_t function : {0x080U, 0x180U, 0x580U, 0x700U, 0x200U, 0x300U, 0x400U, 0x500U, 0x600U})
+      filters.push_back(CanFilter::exactly(function + node));
   }
   return filters;
 }
@@ -103,6 +110,7 @@ struct SocketCan::State {
   void expire(std::int64_t now_ns);
   PortStatus flush();
   PortStatus drops();
+  bool stuck(std::int64_t now_ns);
 
   Config config;
   LinuxCalls& calls;
@@ -122,8 +130,9 @@ struct SocketCan::State {
   std::array<can_frame, batch> outbox_frames{};
   std::array<Waiting, queue> waiting{};
   std::size_t first_waiting = 0, waiting_count = 0;
-  bool dropped = false;  // since the last answer
-  bool down = false;     // as the last call found it
+  std::int64_t emptied_ns = 0;  // when the kernel's queue was last found empty
+  bool dropped = false;         // since the last answer
+  bool down = false;            // as the last call found it
 };
 
 PortStatus SocketCan::State::configure() {
@@ -139,6 +148,9 @@ PortStatus SocketCan::State::configure() {
   // Without these three it still works: stamps are taken here, overflows go unseen, the queue is the default one.
   (void)calls.set_option(fd, SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on);
   (void)calls.set_option(fd, SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof on);
+  const int off = 0;
+  (void)calls.set_option(fd, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, &off, sizeof off);
+  (void)calls.set_option(fd, SOL_SOCKET, SO_SNDBUF, &config.send_buffer_bytes, sizeof config.send_buffer_bytes);
   const int bytes = config.receive_buffer_bytes;
   if (calls.set_option(fd, SOL_SOCKET, SO_RCVBUFFORCE, &bytes, sizeof bytes) < 0)
     (void)calls.set_option(fd, SOL_SOCKET, SO_RCVBUF, &bytes, sizeof bytes);
@@ -167,7 +179,7 @@ PortStatus SocketCan::State::open() {
   address.can_ifindex = request.ifr_ifindex;
   if (const PortStatus error = configure(); error != port_ok) return refuse(error);
   if (const int error = calls.bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address); error < 0) return refuse(-error);
-  drained_ns = calls.monotonic_ns();
+  drained_ns = emptied_ns = calls.monotonic_ns();
   overflow_seen = 0;
   inbox.count = inbox.next = 0;
   waiting_count = 0;
@@ -214,9 +226,9 @@ void SocketCan::State::read_control(const msghdr& header, std::int64_t realtime_
     }
   }
   // Stamps are wall-clock time. A frame is younger than the moment the queue was last empty: what says otherwise was spoilt by a jump of that clock.
-  const bool sound = age_ns >= 0 && monotonic_ns - age_ns >= drained_ns;
-  if (!sound) ++stats.stamps_missed;
-  stamp = Time::from_ns(sound ? monotonic_ns - age_ns : monotonic_ns);
+  const bool valid = age_ns >= 0 && monotonic_ns - age_ns >= drained_ns;
+  if (!valid) ++stats.stamps_missed;
+  stamp = Time::from_ns(valid ? monotonic_ns - age_ns : monotonic_ns);
 }
 
 PortStatus SocketCan::State::fill() {
@@ -255,9 +267,21 @@ void SocketCan::State::expire(std::int64_t now_ns) {
 
 PortStatus SocketCan::State::drops() { return std::exchange(dropped, false) ? ENOBUFS : port_ok; }
 
+// The kernel counts what a socket has in its queues (SO_MEMINFO). One that cannot say so is taken to be empty.
+bool SocketCan::State::stuck(std::int64_t now_ns) {
+  std::array<std::uint32_t, SK_MEMINFO_VARS> bytes{};
+  const bool told = calls.get_option(fd, SOL_SOCKET, SO_MEMINFO, bytes.data(), sizeof bytes) >= 0;
+  if (!told || bytes[SK_MEMINFO_WMEM_ALLOC] == 0) emptied_ns = now_ns;
+  return now_ns - emptied_ns > config.transmit_deadline.ns();
+}
+
 PortStatus SocketCan::State::flush() {
   const std::int64_t now_ns = calls.monotonic_ns();
   expire(now_ns);
+  if (waiting_count > 0 && stuck(now_ns)) {
+    ++stats.stuck;
+    return drops();
+  }
   while (waiting_count > 0) {
     const auto count = static_cast<unsigned>(std::min<std::size_t>(waiting_count, batch));
     for (unsigned i = 0; i < count; ++i) outbox_frames[i] = raw_of(waiting[(first_waiting + i) % queue].frame);
@@ -303,7 +327,7 @@ std::string SocketCan::explain(PortStatus error, const std::string& interface) {
              std::to_string(can_map::bitrate) + "`";
     case EPERM:
     case EACCES: return "no permission to open " + interface;
-    case ENOBUFS: return interface + ": frames were not sent in time, its queue was full (`ip link set " + interface + " txqueuelen 1000`)";
+    case ENOBUFS: return interface + ": frames were not sent in time, its queue was full (`ip -s link show " + interface + "`)";
     default: return interface + ": " + std::strerror(error);
   }
 }

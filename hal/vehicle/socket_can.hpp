@@ -3,7 +3,8 @@
 // Receive: exact filters in the kernel; frames carry the kernel's receive time, put on CLOCK_MONOTONIC whatever the wall clock does; what overflowed the
 // socket's queue is counted. Error frames come as frames with CanFrame::error_flag, and are counted by what they say (can_error.hpp).
 // Send: what the controller's queue does not take at once (ENOBUFS, EAGAIN) waits in order and is tried again at the next send() or flush(), until its
-// deadline; then it is dropped and counted, since a late SYNC or set point is worse than none.
+// deadline; then it is dropped and counted, since a late SYNC or set point is worse than none. What the kernel has taken counts as well: it cannot be called
+// back. Therefore its queue is kept short, and while it has not been empty for a deadline nothing more is put into it.
 // An interface that is down, gone or bus-off is an error that is told at every call until it is back; the same object works again then. A bus-off controller
 // stays off until restart_can() (can_restart.hpp): nothing restarts by itself.
 //
@@ -33,9 +34,10 @@ struct CanFilter {
   static CanFilter exactly(std::uint32_t id);
 };
 
-// What the master listens to: EMCY, TPDO1, SDO answers and heartbeats of its six nodes; and NMT, SYNC and heartbeat in the master's own name, which tell of
-// a second master.
+// What the master listens to: EMCY, TPDO1, SDO answers and heartbeats of its `nodes`, those of the CAN map unless stated; and what only a master sends, which
+// tells of a second one: NMT, SYNC, its heartbeat, RPDOs and SDO requests. Frames of this socket's own do not come back.
 std::vector<CanFilter> core_filters();
+std::vector<CanFilter> core_filters(std::span<const std::uint8_t> nodes);
 
 // Told of every frame as it crosses the kernel's border; for the log.
 class CanTap {
@@ -50,7 +52,10 @@ class SocketCan {
     std::string interface = "can0";
     std::vector<CanFilter> filters;  // empty: every frame
     bool error_frames = true;
-    int receive_buffer_bytes = 1 << 20;                 // some 2500 frames: half a second of a full bus at 1 Mbit/s
+    int receive_buffer_bytes = 1 << 20;  // some 2500 frames: half a second of a full bus at 1 Mbit/s
+    // Of frames that the kernel has taken and the controller has not. It charges 768 bytes for each and doubles the number that it is given: 32 frames,
+    // a tick's and its retries (docs: canopen.md).
+    int send_buffer_bytes = 32 * 768 / 2;
     Duration transmit_deadline = Duration::from_ms(4);  // a SYNC period
   };
 
@@ -61,6 +66,7 @@ class SocketCan {
     std::uint64_t expired = 0;        // not sent before their deadline
     std::uint64_t refused = 0;        // not sent: no room to wait in, or the interface was down, gone or never there
     std::uint64_t full = 0;           // times the controller's queue was full
+    std::uint64_t stuck = 0;          // times frames were held back, since those before had been in the queue for a deadline
     std::uint32_t malformed = 0;      // messages that are no classic CAN frame
     std::uint32_t stamps_missed = 0;  // receive times that could not be had, or that a jump of the wall clock spoilt: taken as of now
     std::uint32_t downs = 0;          // times the interface went down

@@ -4,7 +4,10 @@
 #include <cstdio>
 #include <string>
 
+#include "firmware/canopen/emcy.hpp"
 #include "firmware/canopen/sdo_abort.hpp"
+#include "hal/config/boot_sentence.hpp"
+#include "hal/config/fault_text.hpp"
 #include "hal/config/homing_file.hpp"
 
 namespace lf::hal {
@@ -25,6 +28,7 @@ const char* kind_of(Event::Kind kind) {
     case Event::Kind::located: return "located";
     case Event::Kind::task_done: return "task done";
     case Event::Kind::task_failed: return "task failed";
+    case Event::Kind::emcy: return "emcy";
   }
   return "event";
 }
@@ -39,6 +43,7 @@ Json can_counters(const SocketCan::Stats& s) {
   count(json, "not sent in time", s.expired);
   count(json, "not sent", s.refused);
   count(json, "transmit queue full", s.full);
+  count(json, "transmit queue stuck", s.stuck);
   count(json, "malformed", s.malformed);
   count(json, "receive times missed", s.stamps_missed);
   count(json, "interface down", s.downs);
@@ -137,8 +142,17 @@ Json event_json(const Event& event) {
     json["fault"] = safety::name(event.fault);
     json["reaction"] = safety::name(event.reaction);
     json["code"] = event.code;
+    json["text"] = config::fault_text(event.fault, event.code, event.emcy);
     const bool step_failed = event.fault == safety::Fault::step_failed || event.fault == safety::Fault::vision_poor;
-    if (step_failed) json["because"] = lf::name(static_cast<StepFailure>(event.code));
+    if (step_failed) {
+      json["because"] = lf::name(static_cast<StepFailure>(event.code));
+      json["remedy"] = lf::remedy(static_cast<StepFailure>(event.code));
+    }
+  }
+  if (event.kind == Event::Kind::emcy) {
+    json["node"] = event.code;
+    json["emcy"] = event.emcy;
+    json["text"] = canopen::emcy_name(event.emcy);
   }
   if (event.kind == Event::Kind::located) json["handle_deg"] = deg_from_rad(event.value);
   if (event.kind == Event::Kind::task_done || event.kind == Event::Kind::task_failed) {
@@ -188,6 +202,7 @@ Json status_json(const ControlReport& control, const Telemetry& telemetry) {
       json["failure"] = {{"phase", control.outcome.stage},
                          {"step", mission::row(control.outcome.step).name},
                          {"reason", safety::name(control.outcome.fault)},
+                         {"text", config::fault_text(control.outcome.fault, control.outcome.code, control.outcome.emcy)},
                          {"code", control.outcome.code}};
     const Json later = faults_json(control.faults_after_end);
     if (!later.empty()) json["faults since the end"] = later;
@@ -202,7 +217,13 @@ Json status_json(const ControlReport& control, const Telemetry& telemetry) {
     if (control.axis_faults[i] != canopen::AxisFault::none) joint["fault"] = canopen::name(control.axis_faults[i]);
     json["joints"].push_back(joint);
   }
-  for (const canopen::NodeBoot& node : control.boot.nodes) json["nodes"].push_back(node_json(node));
+  for (std::size_t i = 0; i < control.boot.nodes.size(); ++i) {
+    Json node = node_json(control.boot.nodes[i]);
+    if (const std::string why = config::boot_sentence(control.boot.nodes[i], i < joint_count ? config::joint_name(i) : "outputs");
+        !why.empty())
+      node["why"] = why;
+    json["nodes"].push_back(node);
+  }
   json["estop_closed"] = (control.inputs & can_map::input_estop_closed) != 0;
   json["interlock_closed"] = (control.inputs & can_map::input_interlock_closed) != 0;
   json["laser"] = (control.outputs & can_map::output_laser) != 0;

@@ -8,11 +8,15 @@
 
 namespace lf::hal {
 
+// CLOCK_MONOTONIC.
 Time monotonic_now();
 // Processor time of the calling thread. Kernels that account by the timer's ticks (User Mode Linux) have it in steps of those.
 Time thread_time_now();
 // Sleeps until `t` on CLOCK_MONOTONIC; returns at once when it is past. Signals do not shorten it.
 void sleep_until(Time t);
+
+// For tests on machines that do not keep time: from now on both of the above go `factor` times slower than the clock. Before threads are started.
+void slow_time_down(int factor);
 
 class TickClock {
  public:

@@ -39,10 +39,10 @@ struct V4l2Camera::State {
   PortStatus lose();
   PortStatus choose_format();
   PortStatus map_buffers();
-  void set_control(std::uint32_t id, std::int32_t value);
+  bool set_control(std::uint32_t id, std::int32_t value);
   void set_controls();
   bool give_back();
-  bool sound(const v4l2_buffer& buffer);
+  bool usable(const v4l2_buffer& buffer);
   Time start_of(const v4l2_buffer& buffer);
   ImageView grey_of(const v4l2_buffer& buffer);
 
@@ -51,6 +51,7 @@ struct V4l2Camera::State {
   int fd = -1;
   bool was_open = false;
   std::int64_t searched_ns = 0;
+  Duration exposure;  // as the camera has it; zero: it does not say
   std::uint32_t format = 0;
   std::array<char, 5> format_name{};
   std::uint32_t stride = 0;
@@ -72,7 +73,12 @@ PortStatus V4l2Camera::State::choose_format() {
     wanted.fmt.pix.height = static_cast<std::uint32_t>(config.height);
     wanted.fmt.pix.pixelformat = candidate;
     wanted.fmt.pix.field = V4L2_FIELD_NONE;
-    if (const int error = calls.ioctl(fd, VIDIOC_S_FMT, &wanted); error == -EBUSY) return EBUSY;
+    // EINVAL is a format that the camera has not; anything else is no answer about formats.
+    if (const int error = calls.ioctl(fd, VIDIOC_S_FMT, &wanted); error == -EINVAL) {
+      continue;
+    } else if (error < 0) {
+      return -error;
+    }
     const v4l2_pix_format& got = wanted.fmt.pix;
     if (got.pixelformat != candidate || got.width != static_cast<std::uint32_t>(config.width) ||
         got.height != static_cast<std::uint32_t>(config.height))
@@ -86,16 +92,23 @@ PortStatus V4l2Camera::State::choose_format() {
   return EINVAL;
 }
 
-void V4l2Camera::State::set_control(std::uint32_t id, std::int32_t value) {
+bool V4l2Camera::State::set_control(std::uint32_t id, std::int32_t value) {
   v4l2_control control{id, value};
-  if (calls.ioctl(fd, VIDIOC_S_CTRL, &control) < 0) ++stats.controls_refused;
+  if (calls.ioctl(fd, VIDIOC_S_CTRL, &control) >= 0) return true;
+  ++stats.controls_refused;
+  return false;
 }
 
 void V4l2Camera::State::set_controls() {
-  set_control(V4L2_CID_EXPOSURE_AUTO, V4L2_EXPOSURE_MANUAL);
-  set_control(V4L2_CID_EXPOSURE_ABSOLUTE, static_cast<std::int32_t>((config.exposure.ns() + 99'999) / 100'000));
-  set_control(V4L2_CID_AUTOGAIN, 0);
-  set_control(V4L2_CID_GAIN, config.gain);
+  const auto wanted = static_cast<std::int32_t>((config.exposure.ns() + 99'999) / 100'000);
+  const bool by_hand = set_control(V4L2_CID_EXPOSURE_AUTO, V4L2_EXPOSURE_MANUAL);
+  exposure = by_hand && set_control(V4L2_CID_EXPOSURE_ABSOLUTE, wanted) ? config.exposure : Duration{};
+  // What the camera has instead, where it says so: a driver may also take another value than the one asked for.
+  v4l2_control has{V4L2_CID_EXPOSURE_ABSOLUTE, 0};
+  if (by_hand && calls.ioctl(fd, VIDIOC_G_CTRL, &has) >= 0 && has.value != wanted)
+    exposure = Duration::from_us(std::int64_t{100} * has.value);
+  (void)set_control(V4L2_CID_AUTOGAIN, 0);
+  (void)set_control(V4L2_CID_GAIN, config.gain);
 }
 
 PortStatus V4l2Camera::State::map_buffers() {
@@ -169,7 +182,7 @@ bool V4l2Camera::State::give_back() {
 }
 
 // Counts what is missing before this buffer; false for one that cannot be used.
-bool V4l2Camera::State::sound(const v4l2_buffer& buffer) {
+bool V4l2Camera::State::usable(const v4l2_buffer& buffer) {
   const std::uint32_t step = buffer.sequence - last_sequence;
   const bool repeated = any && step == 0;
   if (any && !repeated && step < 0x8000'0000U) {
@@ -245,7 +258,7 @@ std::string V4l2Camera::explain(PortStatus error, const Config& config) {
 PortStatus V4l2Camera::receive(Image& image) {
   State& own = *state_;
   if (own.fd < 0) {
-    if (!own.was_open || own.calls.monotonic_ns() - own.searched_ns < search_ns) return ENODEV;
+    if (own.calls.monotonic_ns() - own.searched_ns < search_ns) return ENODEV;
     if (own.open() != port_ok) return ENODEV;
   }
   if (!own.give_back()) return own.lose();
@@ -258,14 +271,14 @@ PortStatus V4l2Camera::receive(Image& image) {
     if (error < 0) return is_gone(-error) ? own.lose() : -error;
     own.lent = buffer;
     own.has_lent = true;
-    if (!own.sound(buffer)) {
+    if (!own.usable(buffer)) {
       if (!own.give_back()) return own.lose();
       continue;
     }
     image = {};
     image.view = own.grey_of(buffer);
     image.exposure_start = own.start_of(buffer);
-    image.exposure = own.config.exposure;
+    image.exposure = own.exposure;
     image.sequence = own.sequence;
     ++own.stats.images;
     return port_ok;

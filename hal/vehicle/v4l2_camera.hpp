@@ -3,7 +3,8 @@
 // Grey comes as GREY, as Y10 or Y16 (the upper eight bits) or as the luma of YUYV, whatever of these the camera has, in this order. The driver's monotonic time
 // stamp becomes the start of the exposure: what the stamp means is the camera's affair (V4L2_BUF_FLAG_TSTAMP_SRC_SOE or EOF, and cables), so its distance
 // from the exposure's start is calibrated: `stamp_delay`. The core takes an image whose start is within ScanConfig::match_window of an exposure it ordered.
-// A camera that goes away (ENODEV, an unplugged cable) is looked for twice a second, set up anew and goes on; each call until then answers ENODEV.
+// A camera that is not there, or goes away (ENODEV, an unplugged cable), is looked for twice a second, set up anew and goes on; each call until then answers
+// ENODEV. An image bears the exposure that the camera says it has, and none (zero) where the one asked for was refused and the camera says nothing.
 //
 // Not thread-safe: one thread owns it.
 #pragma once

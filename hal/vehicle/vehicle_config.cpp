@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <limits>
 
-#include "hal/config/homing_file.hpp"
+#include "hal/config/handle_check.hpp"
 #include "hal/config/share.hpp"
 #include "hal/config/text_file.hpp"
 #include "hal/config/yaml_reader.hpp"
@@ -47,11 +47,13 @@ void add_camera_source(Keys& all, VehicleConfig& c) {
 
 void add_machine(Keys& all, VehicleConfig& c) {
   config::add_panel(all, c.machine.panel);
+  config::add_valve_stops(all, c.machine.valve);
   config::add_camera(all, c.machine.camera);
   config::add_laser(all, c.machine.laser);
   all.push_back(key("lamps.lit", "", 0, 0, &c.machine.lamps_lit, "stills are taken with the lamps on"));
   all.push_back(key("arm.urdf", "", 0, 0, &c.machine.arm_urdf, "the arm; relative to this file's folder, then to the shipped files"));
   all.push_back(key("safety.limits", "", 0, 0, &c.machine.safety_limits, "the checksummed file of limits; found as arm.urdf is"));
+  config::add_drives(all, c.machine.drives);
   config::add_mission(all, c.machine.mission);
 }
 
@@ -61,13 +63,20 @@ void add_running(Keys& all, VehicleConfig& c) {
   all.push_back(key("realtime.vision_cpu", "", -1, 1023, &c.vision_cpu, "the vision thread's CPU; -1: any"));
   all.push_back(key("realtime.lock_memory", "", 0, 0, &c.realtime.lock_memory, "nothing is paged out, nothing comes late"));
   all.push_back(key("operator.socket", "", 0, 0, &c.operator_socket, "the operator interface's Unix socket"));
+  all.push_back(key("operator.group", "", 0, 0, &c.operator_group, "the group that may open the socket; without it the daemon's own"));
+  all.push_back(
+      key("operator.everyone", "", 0, 0, &c.operator_everyone, "every user of this machine may open the socket: to see, and to stop"));
   all.push_back(key("operator.operators", "", 0, 0, &c.operators, "users and @groups that may run missions"));
   all.push_back(key("operator.engineers", "", 0, 0, &c.engineers, "users and @groups that may do everything"));
   all.push_back(
       key("estop.input", "", 0, 0, &c.estop_input, "a file that reads 1 while the emergency-stop chain is whole, as a GPIO's value does"));
   all.push_back(key("log.folder", "", 0, 0, &c.log_folder, "can0.log and log.jsonl are written here"));
+  all.push_back(key("log.file_mb", "MB", 1, 100'000, &c.log_file_mb, "a file of the log is set aside at this size"));
+  all.push_back(key("log.keep", "", 1, 1000, &c.log_keep, "files set aside of each; the oldest beyond them is removed"));
+  all.push_back(key("log.pack", "", 0, 0, &c.log_pack, "files set aside are compressed (gzip)"));
   all.push_back(key("lock_folder", "", 0, 0, &c.lock_folder, "where lock files may be"));
-  all.push_back(key("homing.file", "", 0, 0, &c.homing_file, "what `lanternfishd commission` found; relative to this file's folder"));
+  all.push_back(key("homing.file", "", 0, 0, &c.machine.homing_file,
+                    "the joints' zeros, which `lanternfishd commission` finds; a joint that is not in it takes no power"));
 }
 
 bool page_sized(std::int64_t bytes) { return bytes % static_cast<std::int64_t>(frame_ring_page) == 0; }
@@ -87,22 +96,25 @@ void check_together(const VehicleConfig& c, const std::string& file, std::vector
   const PanelLayout& panel = c.machine.panel;
   if ((panel.plate_min_m.array() >= panel.plate_max_m.array()).any()) refuse("'panel.plate_min_m' is not below 'panel.plate_max_m'");
   if (panel.marker_plate_m <= panel.marker_size_m) refuse("'panel.marker_plate_m' is not larger than 'panel.marker_size_m'");
+  for (const std::string& problem : config::handle_problems(panel, c.machine.valve, c.machine.tasks)) refuse(problem);
   const double between_ms = c.machine.mission.camera_syncs * can_map::sync_period.s() * 1e3;
   if (c.match_window_us * 1e-3 >= between_ms / 2)
     refuse("'camera.match_window_us' is half the time between two exposures or more: an image could belong to either");
 }
 
-void read_homing(VehicleConfig& c, std::vector<std::string>& problems) {
-  if (c.homing_file.empty()) return;
-  const std::filesystem::path given(c.homing_file);
-  if (given.is_relative()) c.homing_file = (std::filesystem::path(c.machine.file).parent_path() / given).string();
-  if (!std::filesystem::exists(c.homing_file)) return;  // not commissioned yet: the drives' own zeros
-  try {
-    const config::HomingOffsets offsets = config::read_homing_file(c.homing_file);
-    for (std::size_t i = 0; i < joint_count; ++i) c.core.controller.network.drives[i].encoder_zero_counts = offsets.zero_counts[i];
-  } catch (const InputError& problem) {
-    problems.emplace_back(problem.what());
+// A file that is missing may be one that was misspelt. Its place is kept, so that commissioning writes where was read.
+void find_homing(config::Machine& machine, std::vector<std::string>& problems) {
+  if (machine.homing_file.empty()) return;
+  const std::filesystem::path folder = std::filesystem::path(machine.file).parent_path();
+  const std::filesystem::path found = config::find_file(machine.homing_file, folder);
+  if (std::filesystem::exists(found)) {
+    machine.homing_file = std::filesystem::canonical(found).string();
+    return;
   }
+  problems.push_back(
+      machine.file + ": 'homing.file': there is no " + machine.homing_file +
+      ", neither beside this file nor among the shipped ones. An arm that was never commissioned has an empty one: make it with `touch`");
+  machine.homing_file.clear();
 }
 
 std::string joined(const std::vector<std::string>& problems) {
@@ -116,7 +128,9 @@ std::string joined(const std::vector<std::string>& problems) {
 SocketCan::Config VehicleConfig::can() const {
   SocketCan::Config can;
   can.interface = interface;
-  can.filters = core_filters();
+  std::vector<std::uint8_t> nodes{core.controller.network.io.node};
+  for (const canopen::DriveSetup& drive : core.controller.network.drives) nodes.push_back(drive.node);
+  can.filters = core_filters(nodes);
   can.transmit_deadline = Duration::from_s(transmit_deadline_ms * 1e-3);
   return can;
 }
@@ -155,8 +169,8 @@ VehicleConfig load_vehicle_config(const std::string& path) {
   if (!root.IsNull() && !root.IsMap()) source.refuse(root.Mark(), "a vehicle's configuration is a group of keys");
   if (root.IsMap()) config::read_map(root, "", "", keys(config), source);
   check_together(config, path, problems);
+  find_homing(config.machine, problems);
   config.core = config::make_core(config.machine, problems);
-  read_homing(config, problems);
   if (!problems.empty()) throw InputError(joined(problems));
   config.core.scan.match_window = Duration::from_us(config.match_window_us);
   config.core.controller.mission.image_due = Duration::from_ms(config.image_due_ms);

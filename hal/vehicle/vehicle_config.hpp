@@ -34,13 +34,17 @@ struct VehicleConfig {
   std::int32_t vision_cpu = -1;
 
   std::string operator_socket = "/run/lanternfishd/operator.sock";
+  std::string operator_group;          // that may open the socket; empty: the daemon's own
+  bool operator_everyone = false;      // every user of this machine may
   std::vector<std::string> operators;  // users or groups beside root and the daemon's own user
   std::vector<std::string> engineers;
 
   std::string estop_input;  // a file that reads 1 while the chain is whole: a GPIO's value; empty: none beside the output node's
   std::string log_folder = "/var/log/lanternfishd";
-  std::string lock_folder = "/run/lock";
-  std::string homing_file;  // written by `lanternfishd commission`; empty: the drives count from the arm's own zero
+  std::int64_t log_file_mb = 256;  // half an hour of can0.log at 36 % load
+  std::int32_t log_keep = 24;      // 13 h of it; packed they take some 0.6 GB
+  bool log_pack = true;
+  std::string lock_folder = "/run/lanternfishd";  // the service's RuntimeDirectory
 
   SocketCan::Config can() const;
   V4l2Camera::Config v4l2() const;

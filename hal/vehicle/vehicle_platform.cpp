@@ -22,10 +22,12 @@ vision::PanelVisionConfig panel_vision_config(const ControllerConfig& core) {
 
 }  // namespace
 
-VehiclePlatform::VehiclePlatform(const VehicleConfig& config, LogRings& log, LinuxCalls& calls)
+VehiclePlatform::VehiclePlatform(const VehicleConfig& config, LogRings& log, LoopRings& loops, const EstopLine& estop, LinuxCalls& calls)
     : config_(config),
       calls_(calls),
       log_(log),
+      loops_(loops),
+      estop_(estop),
       can_(config.can(), calls),
       clock_(config.core.controller.network.sync_period),
       panel_vision_(panel_vision_config(config.core.controller)) {
@@ -49,6 +51,7 @@ PortStatus VehiclePlatform::open_camera(std::string& why) {
 }
 
 PortStatus VehiclePlatform::wait_for_tick(Time& tick) {
+  if (!std::exchange(clock_runs_, true)) clock_.start();
   while (can_.waiting() > 0) {
     const Time again = monotonic_now() + try_again;
     if (again >= clock_.next()) break;
@@ -56,6 +59,25 @@ PortStatus VehiclePlatform::wait_for_tick(Time& tick) {
     if (const PortStatus status = can_.flush(); status != port_ok) send_error_ = status;
   }
   tick = clock_.wait();
+  return port_ok;
+}
+
+PortStatus VehiclePlatform::receive_order(NumberedOrder& order) {
+  if (loops_.own.pop(order)) return port_ok;
+  if (loops_.stops.pop(order)) return port_ok;  // a stop is never withdrawn: it needs no gate
+  while (loops_.orders.pop(order)) {
+    if (loops_.gate.take(order.number)) return port_ok;
+  }
+  return port_empty;
+}
+
+PortStatus VehiclePlatform::answer_order(const OrderAnswer& answer) {
+  if (answer.number == 0) return loops_.own_answers.push(answer) ? port_ok : ENOBUFS;
+  return loops_.answers.push(answer) ? port_ok : ENOBUFS;
+}
+
+PortStatus VehiclePlatform::read_estop(bool& closed) const {
+  closed = estop_.closed(monotonic_now());
   return port_ok;
 }
 
@@ -76,11 +98,16 @@ PortStatus VehiclePlatform::receive_panel(PanelResult& result) {
 
 PortStatus VehiclePlatform::publish(const Telemetry& telemetry) { return log_.telemetry.push(telemetry) ? port_ok : ENOBUFS; }
 
-void VehiclePlatform::wait_for_image() {
+PortStatus VehiclePlatform::wait_for_image() {
   const Time until = monotonic_now() + longest_look;
-  if (const auto* device = std::get_if<std::unique_ptr<V4l2Camera>>(&camera_)) return (*device)->wait(until);
-  if (const auto* ring = std::get_if<std::unique_ptr<RingCamera>>(&camera_)) return (*ring)->wait(until);
-  sleep_until(until);
+  if (const auto* device = std::get_if<std::unique_ptr<V4l2Camera>>(&camera_)) {
+    (*device)->wait(until);
+  } else if (const auto* ring = std::get_if<std::unique_ptr<RingCamera>>(&camera_)) {
+    (*ring)->wait(until);
+  } else {
+    sleep_until(until);
+  }
+  return port_ok;
 }
 
 PortStatus VehiclePlatform::receive_image(std::uint8_t camera, Image& image) {

@@ -1,6 +1,6 @@
 // The vehicle as a platform: SocketCAN, a camera, the kernel's clock, panel vision on its own thread, and a writer that takes what is to be kept.
 //
-// Control thread: wait_for_tick, receive_can, send_can, receive_panel, publish. Vision thread: wait_for_image, receive_image, submit_panel.
+// Which thread calls which port: hal/ports.hpp. The rest is the daemon's: opening, and what is to be reported.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,9 @@
 #include <variant>
 
 #include "hal/ports.hpp"
+#include "hal/vehicle/control_loop.hpp"
 #include "hal/vehicle/control_report.hpp"
+#include "hal/vehicle/estop_input.hpp"
 #include "hal/vehicle/ring_camera.hpp"
 #include "hal/vehicle/socket_can.hpp"
 #include "hal/vehicle/tick_clock.hpp"
@@ -34,7 +36,8 @@ struct LogRings {
 
 class VehiclePlatform : private CanTap {
  public:
-  VehiclePlatform(const VehicleConfig& config, LogRings& log, LinuxCalls& calls = linux_calls());
+  // All outlive the platform.
+  VehiclePlatform(const VehicleConfig& config, LogRings& log, LoopRings& loops, const EstopLine& estop, LinuxCalls& calls = linux_calls());
   ~VehiclePlatform() override = default;
   VehiclePlatform(const VehiclePlatform&) = delete;
   VehiclePlatform& operator=(const VehiclePlatform&) = delete;
@@ -43,15 +46,16 @@ class VehiclePlatform : private CanTap {
   // 0, or errno with its explanation in `why`.
   PortStatus open_camera(std::string& why);
 
-  void start_clock() { clock_.start(); }
   PortStatus wait_for_tick(Time& tick);
+  PortStatus receive_order(NumberedOrder& order);
+  PortStatus answer_order(const OrderAnswer& answer);
+  PortStatus read_estop(bool& closed) const;
   PortStatus receive_can(std::uint8_t bus, ReceivedFrame& received);
   PortStatus send_can(std::uint8_t bus, std::span<const CanFrame> frames);
   PortStatus receive_panel(PanelResult& result);
   PortStatus publish(const Telemetry& telemetry);
 
-  // Blocks until there may be an image, 5 ms at most.
-  void wait_for_image();
+  PortStatus wait_for_image();  // 5 ms at most
   PortStatus receive_image(std::uint8_t camera, Image& image);
   PortStatus submit_panel(const PanelRequest& request, ImageView still, std::span<const CloudPoint> cloud);
 
@@ -67,8 +71,11 @@ class VehiclePlatform : private CanTap {
   const VehicleConfig& config_;
   LinuxCalls& calls_;
   LogRings& log_;
+  LoopRings& loops_;
+  const EstopLine& estop_;
   SocketCan can_;
   TickClock clock_;
+  bool clock_runs_ = false;
   std::variant<std::monostate, std::unique_ptr<V4l2Camera>, std::unique_ptr<RingCamera>> camera_;
   vision::PanelVisionWorker panel_vision_;
   PortStatus send_error_ = port_ok;  // of a frame that was tried again between two ticks

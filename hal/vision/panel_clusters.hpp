@@ -22,7 +22,7 @@ struct PanelRegion {
 
 struct PanelClustersConfig {
   double min_height_m = 0.008;     // over the plane: 9 sigma of the cloud in turbid water, above the 2 mm marker plate
-  double max_height_m = 0.116;     // the handle's top is at 106 mm; what stands further out is the arm's own hand, or drifts by
+  double max_height_m = 0.116;     // of a bar whose top is at 106 mm; what stands further out is the arm's own hand, or drifts by
   double join_distance_m = 0.012;  // points closer than this belong together: 4 stripes of 2.6 mm; buttons are 24 mm apart
   double lone_radius_m = 0.008;    // a point with fewer than `lone_neighbours` in this radius is noise
   std::uint32_t lone_neighbours = 3;

@@ -6,6 +6,9 @@
 #include <exception>
 #include <optional>
 
+#include "firmware/scan/valve_frame.hpp"
+#include "hal/vision/pointer.hpp"
+
 namespace lf::vision {
 namespace {
 
@@ -21,9 +24,19 @@ class TrapsOff {
   std::fenv_t saved_{};
 };
 
+constexpr double above_the_bar_m = 0.010;
+
 PanelRegion region_of(const PanelVisionConfig& config) {
   const Vec2 margin = Vec2::Constant(config.region_margin_m);
   return {config.panel.nominal_base_from_panel(), config.panel.plate_min_m - margin, config.panel.plate_max_m + margin};
+}
+
+// What belongs to the panel stands no higher than the bar's top and a centimetre. The layer that gives the bar's axis is half as deep as the bar is thick.
+PanelClustersConfig clusters_of(const PanelVisionConfig& config) {
+  PanelClustersConfig clusters = config.clusters;
+  clusters.max_height_m = config.panel.handle_height_m + config.panel.handle_thickness_m / 2 + above_the_bar_m;
+  clusters.top_layer_m = config.panel.handle_thickness_m / 2;
+  return clusters;
 }
 
 double tilt_cosine(const Pose& camera_from_tag, const Pose& base_from_camera, const Plane& plane) {
@@ -81,6 +94,16 @@ double confidence_of(const PanelResult& result, bool has_still, const PanelVisio
   return std::isfinite(confidence) ? std::clamp(confidence, 0.0, 1.0) : 0;
 }
 
+// The handle is the cluster that the core itself will take.
+PointerObservation observe_pointer(const PanelResult& result, ImageView still, std::span<const CloudPoint> cloud,
+                                   const PanelVisionConfig& config) {
+  const scan::ValveFrameConfig thresholds;
+  const scan::ValveFrame frame = scan::find_valve_frame(result, config.marker, config.camera, thresholds);
+  const scan::HandleObservation handle = scan::find_handle(result, frame, config.panel, thresholds);
+  if (!handle.found) return {};
+  return find_pointer({frame.base_from_panel, handle.angle_rad, handle.centre_m}, still, cloud, config.camera, config.panel);
+}
+
 bool usable(const PlaneFit& fit) { return fit.valid && fit.plane.normal.allFinite() && std::isfinite(fit.plane.offset_m); }
 
 }  // namespace
@@ -96,14 +119,16 @@ PanelResult analyse_panel(const PanelRequest& request, ImageView still, std::spa
   try {
     if (request.has_still) result.marker = observe_marker(still, request.fit, config);
     if (usable(request.fit)) {
-      const PanelClusters found = find_panel_clusters(cloud, request.fit.plane, region_of(config), config.clusters);
+      const PanelClusters found = find_panel_clusters(cloud, request.fit.plane, region_of(config), clusters_of(config));
       result.clusters = found.clusters;
       result.clusters_dropped = found.dropped;
     }
+    if (request.has_still) result.pointer = observe_pointer(result, still, cloud, config);
     result.confidence = static_cast<float>(confidence_of(result, request.has_still, config));
   } catch (...) {
     if (failed != nullptr) *failed = true;
     result.marker = {};
+    result.pointer = {};
     result.clusters.clear();
     result.confidence = 0;
   }

@@ -49,6 +49,7 @@ CampaignTable tabulate(const std::vector<record::RunResult>& results) {
   CampaignTable table;
   table.runs = results.size();
   for (const record::RunResult& result : results) {
+    table.false_successes += result.false_success ? 1 : 0;
     if (result.success)
       ++table.successes;
     else
@@ -59,13 +60,15 @@ CampaignTable tabulate(const std::vector<record::RunResult>& results) {
     for (const record::RunResult& result : results) {
       if (const double value = figure.of(result); std::isfinite(value)) values.push_back(value);
     }
+    if (values.empty()) continue;
     table.errors.push_back({figure.name, figure.unit, spread_of(std::move(values), figure.more_is_better)});
   }
   return table;
 }
 
 void tell(const CampaignTable& table) {
-  print("\n%zu of %zu succeeded\n%-20s %10s %10s %10s\n", table.successes, table.runs, "", "median", "p95", "worst");
+  print("\n%zu of %zu succeeded, %zu false successes\n", table.successes, table.runs, table.false_successes);
+  if (!table.errors.empty()) print("%-20s %10s %10s %10s\n", "", "median", "p95", "worst");
   for (const ErrorColumn& error : table.errors) {
     print("%-20s %10.3f %10.3f %10.3f %s\n", error.name.c_str(), error.values.median, error.values.p95, error.values.worst,
           error.unit.c_str());
@@ -85,7 +88,11 @@ Json json_of(const CampaignTable& table) {
     const record::FailureRecord failure = result.failure.value_or(record::FailureRecord{"?", "?"});
     failures.push_back({{"seed", result.seed}, {"phase", failure.phase}, {"reason", failure.reason}});
   }
-  return {{"runs", table.runs}, {"successes", table.successes}, {"errors", errors}, {"failures", failures}};
+  return {{"runs", table.runs},
+          {"successes", table.successes},
+          {"false_successes", table.false_successes},
+          {"errors", errors},
+          {"failures", failures}};
 }
 
 }  // namespace lf::app

@@ -19,7 +19,7 @@ struct ErrorColumn {
 };
 
 struct CampaignTable {
-  std::size_t runs = 0, successes = 0;
+  std::size_t runs = 0, successes = 0, false_successes = 0;
   std::vector<ErrorColumn> errors;  // over all runs that have the figure; of recall the worst is the smallest
   std::vector<record::RunResult> failures;
 };

@@ -9,6 +9,7 @@
 #include "host_sim/app/checks.hpp"
 #include "host_sim/app/command.hpp"
 #include "host_sim/app/interrupt.hpp"
+#include "host_sim/app/run_experiment.hpp"
 #include "host_sim/app/run_session.hpp"
 #include "shared/input_error.hpp"
 
@@ -49,7 +50,8 @@ void tell_error(const char* name, double value, const char* unit) {
   if (std::isfinite(value)) print("  %-32s %8.3f %s\n", name, value, unit);
 }
 
-void tell(const record::RunResult& result, const std::string& folder) {
+void tell(const RunOutcome& outcome, const std::string& folder) {
+  const record::RunResult& result = outcome.result;
   for (const record::TaskRecord& task : result.tasks) {
     if (task.task == "turn_valve") {
       print("turn valve to %.1f deg: %s, it stands at %.2f deg\n", task.target_deg, task.done ? "done" : "NOT DONE", task.reached_deg);
@@ -69,11 +71,13 @@ void tell(const record::RunResult& result, const std::string& folder) {
   tell_error("peaks, recall", result.errors.peak_recall, "");
   print("%.1f s simulated in %.1f s, %.1f x real time\n", result.time.simulated_s, result.time.wall_s, result.time.real_time_factor);
   if (result.success) {
-    print("SUCCESS\n");
+    const std::string expected = result.expected_failure ? ": it failed as expected, " + result.expected_failure->reason : "";
+    print("SUCCESS%s\n", expected.c_str());
   } else {
-    print("FAILED in %s: %s\n", result.failure->phase.c_str(), result.failure->reason.c_str());
+    print("%s in %s: %s\n", result.false_success ? "FALSE SUCCESS" : "FAILED", result.failure->phase.c_str(),
+          result.failure->reason.c_str());
   }
-  if (!folder.empty()) print("report: %s/report.html\n", folder.c_str());
+  if (outcome.has_report && outcome.kept) print("report: %s/report.html\n", folder.c_str());
 }
 
 int run(const Options& options) {
@@ -83,7 +87,10 @@ int run(const Options& options) {
   request.realtime = options.realtime;
   request.outside = options.outside;
   request.render_threads = options.render_threads > 0 ? options.render_threads : default_render_threads();
-  request.out = options.out.empty() ? "runs/" + request.scenario.name + "-" + std::to_string(options.seed) : options.out;
+  request.experiment = experiment_of(request.scenario, options.seed);
+  request.out = options.out.empty()
+                    ? default_folder(request.scenario.name + "-" + std::to_string(options.seed), !options.set.empty(), request.experiment)
+                    : std::filesystem::path(options.out);
   request.command = command_of(options);
   if (isatty(STDERR_FILENO) != 0) {
     request.say = [](const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); };
@@ -93,9 +100,12 @@ int run(const Options& options) {
   if (options.json) {
     print("%s", record::result_json(outcome.result).c_str());
   } else {
-    tell(outcome.result, request.out.string());
+    tell(outcome, request.out.string());
   }
-  if (!outcome.write_error.empty()) throw EnvironmentError(outcome.write_error + "; what was recorded before is kept");
+  if (!outcome.write_error.empty())
+    throw EnvironmentError(outcome.write_error +
+                           (outcome.kept ? "; what was recorded before is kept" : "; the finished run that stands there is kept"));
+  if (!outcome.kept) std::fprintf(stderr, "interrupted: the finished run in %s is kept\n", request.out.c_str());
   if (outcome.interrupted && !outcome.result.success) return exit_interrupted;
   return outcome.result.success ? done : failed;
 }
@@ -108,7 +118,7 @@ void add_run(CLI::App& app, Action& action) {
   command->add_option("SCENARIO", options->scenario, "A file or a shipped name (`lanternfish scenarios`)")->capture_default_str();
   command->add_option("--seed", options->seed, "Draws everything random")->check(check_seed)->capture_default_str();
   command->add_option("--set", options->set, "path.to.key=value: change the scenario")->allow_extra_args(false);
-  command->add_option("--out", options->out, "The run's folder (default runs/SCENARIO-SEED)");
+  command->add_option("--out", options->out, "The run's folder (default runs/SCENARIO-SEED, with --set and a hash of it)");
   command->add_flag("--realtime", options->realtime, "No faster than the clock on the wall");
   command->add_option("--render-threads", options->render_threads, "Threads that render (default: all; the result is the same)")
       ->check(CLI::Range(1, 256));

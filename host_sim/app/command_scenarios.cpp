@@ -1,5 +1,6 @@
 #include <memory>
 
+#include "hal/config/fault_kinds.hpp"
 #include "host_sim/app/command.hpp"
 #include "host_sim/scenario/describe.hpp"
 #include "host_sim/scenario/scenario.hpp"
@@ -14,6 +15,7 @@ struct Options {
   bool json = false;
   bool schema = false;
   bool keys = false;
+  bool faults = false;
 };
 
 int list(bool json) {
@@ -34,6 +36,8 @@ int scenarios(const Options& options) {
     print("%s", scenario::json_schema().c_str());
   } else if (options.keys) {
     print("%s", scenario::keys_markdown().c_str());
+  } else if (options.faults) {
+    print("%s", config::fault_kinds_markdown().c_str());
   } else if (options.name.empty()) {
     return list(options.json);
   } else {
@@ -57,6 +61,7 @@ void add_scenarios(CLI::App& app, Action& action) {
   command->add_option("--set", options->set, "path.to.key=value, as for run")->allow_extra_args(false);
   command->add_flag("--schema", options->schema, "Print the JSON Schema of scenario files");
   command->add_flag("--keys", options->keys, "Print the table of all keys (Markdown)");
+  command->add_flag("--faults", options->faults, "Print the table of all kinds of faults (Markdown)");
   command->add_flag("--json", options->json, "Print JSON");
   command->callback([options, &action] { action = [options] { return scenarios(*options); }; });
 }

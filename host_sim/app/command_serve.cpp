@@ -69,7 +69,7 @@ int run(const Options& options) {
   request.seed = options.seed;
   request.can = options.can;
   request.nodes = serve::NodeSet::parse(options.nodes);
-  if (!options.homing.empty()) request.real_zero_counts = config::read_homing_file(options.homing).zero_counts;
+  if (!options.homing.empty()) request.zero_counts = config::read_homing_file(options.homing).zero_counts;
   request.camera = options.camera;
   request.renderer = options.renderer;
   request.render_threads = options.render_threads;
@@ -102,7 +102,8 @@ void add_serve(CLI::App& app, Action& action) {
       ->capture_default_str();
   command->add_option("--nodes", options->nodes, "Nodes to serve, as 1-5 or 1,3,6, all, none; the others are real and are followed")
       ->capture_default_str();
-  command->add_option("--homing", options->homing, "Homing file of the real drives (`lanternfishd commission`): where they count from");
+  command->add_option("--homing", options->homing,
+                      "Homing file, as the daemon has it: where the simulated drives count from, and the real ones that are followed");
   command->add_option("--seed", options->seed, "Draws everything random")->check(check_seed)->capture_default_str();
   command->add_option("--set", options->set, "path.to.key=value: change the scenario")->allow_extra_args(false);
   command->add_option("--renderer", options->renderer, "FILE that `lanternfish render-frames` renders for, instead of a thread here");

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -32,8 +33,10 @@ void add_commands(CLI::App& app, Action& action) {
   add_version(app, action);
 }
 
-int complain(const char* message, int status) {
-  std::fprintf(stderr, "lanternfish: %s\n", message);
+// A line for each problem.
+int complain(const std::string& message, int status) {
+  std::istringstream lines(message);
+  for (std::string line; std::getline(lines, line);) std::fprintf(stderr, "lanternfish: %s\n", line.c_str());
   return status;
 }
 
@@ -87,6 +90,6 @@ int main(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     return lf::app::complain("out of memory", lf::app::environment);
   } catch (const std::exception& error) {
-    return lf::app::complain((std::string("unexpected: ") + error.what()).c_str(), lf::app::environment);
+    return lf::app::complain(std::string("unexpected: ") + error.what(), lf::app::environment);
   }
 }

@@ -3,27 +3,20 @@
 #include <cmath>
 #include <cstdio>
 
+#include "hal/config/boot_sentence.hpp"
+#include "host_sim/app/outcome_text.hpp"
+#include "host_sim/judge/truth.hpp"
+
 namespace lf::app {
 
 namespace {
 
 constexpr std::array<const char*, 3> button_names{"left", "centre", "right"};
-constexpr double valve_accuracy_deg = 3.0;
 
 std::string formatted(const char* format, double a, double b = 0, double c = 0) {
   char text[160];
   std::snprintf(text, sizeof text, format, a, b, c);
   return text;
-}
-
-std::string reason_of(const mission::Outcome& outcome) {
-  std::string reason = safety::name(outcome.fault);
-  if (outcome.fault == safety::Fault::step_failed) {
-    reason += std::string(": ") + name(static_cast<StepFailure>(outcome.code));
-  } else if (outcome.code != 0) {
-    reason += " (" + std::to_string(outcome.code) + ")";
-  }
-  return reason + ", in step " + mission::row(outcome.step).name;
 }
 
 }  // namespace
@@ -32,46 +25,40 @@ std::optional<record::FailureRecord> failure_of(const Controller& controller, co
                                                 const scenario::Scenario& scenario, bool interrupted) {
   const mission::Outcome& outcome = controller.mission().outcome();
   if (outcome.ended && outcome.success) return std::nullopt;
-  if (outcome.ended) return record::FailureRecord{outcome.stage, reason_of(outcome)};
-  if (interrupted) return record::FailureRecord{recorder.stage(), "interrupted"};
-  return record::FailureRecord{recorder.stage(),
+  const std::string boot = outcome.fault == safety::Fault::boot_failed ? config::boot_sentences(controller.network().boot()) : "";
+  if (outcome.ended) return record::FailureRecord{outcome.stage, reason_of(outcome) + boot};
+  if (interrupted) return record::FailureRecord{recorder.phases().stage(), "interrupted"};
+  return record::FailureRecord{recorder.phases().stage(),
                                formatted("not ended by the time limit of %.0f s, at %.1f s", scenario.time_limit_s, world.time_s())};
 }
 
-std::optional<record::FailureRecord> disagreement(const std::vector<record::TaskRecord>& tasks) {
-  for (const record::TaskRecord& task : tasks) {
-    if (task.done) continue;
-    if (task.task == "turn_valve") {
-      return record::FailureRecord{"turn_valve", formatted("the valve stands at %.1f deg instead of %.1f, against the core's account",
-                                                           task.reached_deg, task.target_deg)};
-    }
-    return record::FailureRecord{"press_buttons", "the " + task.button + " button did not click, against the core's account"};
-  }
-  return std::nullopt;
+std::optional<record::FailureRecord> disagreement(const Controller& controller, const world::World& world, const RunRecorder& recorder) {
+  const auto& results = controller.mission().tasks();
+  const auto wrong =
+      judge::contradiction({results.data(), results.size()}, recorder.truth().tasks(), judge::task_truth(world), world.contacts());
+  if (!wrong) return std::nullopt;
+  return record::FailureRecord{wrong->phase, wrong->reason};
 }
 
 std::vector<record::TaskRecord> task_records(const Controller& controller, const world::World& world, const RunRecorder& recorder) {
   std::vector<record::TaskRecord> records;
-  std::array<std::uint32_t, PanelLayout::button_count> wanted{};
-  TaskTruth now;
-  now.valve_rad = world.valve_angle_rad();
-  for (std::size_t i = 0; i < now.presses.size(); ++i) now.presses[i] = world.button(i).presses;
   const auto& results = controller.mission().tasks();
+  const std::vector<judge::TaskTruth> truths = judge::completed(recorder.truth().tasks(), results.size(), judge::task_truth(world));
+  const std::vector<bool> done = judge::truly_done({results.data(), results.size()}, truths);
   for (std::size_t i = 0; i < results.size(); ++i) {
     const mission::TaskResult& result = results[i];
-    const TaskTruth& truth = i < recorder.tasks().size() ? recorder.tasks()[i] : now;
+    const judge::TaskTruth& truth = truths[i];
     record::TaskRecord task;
     if (result.task.kind == mission::Task::Kind::turn_valve) {
       task.task = "turn_valve";
       task.target_deg = deg_from_rad(result.task.to_rad);
       task.reached_deg = deg_from_rad(truth.valve_rad);
-      task.done = result.done && std::abs(task.reached_deg - task.target_deg) <= valve_accuracy_deg;
     } else {
       task.task = "press_button";
       task.button = button_names[result.task.button];
       task.presses = static_cast<int>(truth.presses[result.task.button]);
-      task.done = result.done && truth.presses[result.task.button] >= ++wanted[result.task.button];
     }
+    task.done = done[i];
     records.push_back(task);
   }
   return records;
@@ -82,8 +69,8 @@ record::ErrorRecord score(const RunRecorder& recorder, const hal::SimConfig& tru
   errors.peak_rms_px = recorder.peaks().rms_px();
   errors.peak_rms_smooth_px = recorder.peaks().smooth_rms_px();
   errors.peak_recall = recorder.peaks().recall();
-  if (!recorder.located()) return errors;
-  const Located& located = *recorder.located();
+  if (!recorder.panel().located()) return errors;
+  const Located& located = *recorder.panel().located();
   const Pose& base_from_panel = truth.world.base_from_panel;
   const PlaneFit& fit = located.panel.fit;
   errors.plane_normal_deg = plane_normal_error_deg(fit.plane, base_from_panel);
@@ -148,14 +135,6 @@ record::DrawnRecord drawn(const scenario::Sample& s) {
           {"joint_offset_deg", std::move(joint_offset_deg)},
           {"marker_shift_m", metres(s.marker_shift_m)},
           {"marker_turn_deg", {deg_from_rad(s.marker_turn_rad)}}};
-}
-
-std::string contact_note(const world::UnintendedContact& contact) {
-  static constexpr std::array<const char*, scene::body_count> names{"vehicle", "slew",        "upper arm",     "forearm",
-                                                                    "wrist",   "finger a",    "finger b",      "panel",
-                                                                    "handle",  "left button", "centre button", "right button"};
-  return std::string("Unintended contact: ") + names[std::size_t(contact.a)] + " and " + names[std::size_t(contact.b)] +
-         formatted(" at %.2f s, up to %.0f N.", contact.first_s, contact.peak_force_n);
 }
 
 }  // namespace lf::app

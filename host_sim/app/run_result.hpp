@@ -21,9 +21,9 @@ namespace lf::app {
 std::optional<record::FailureRecord> failure_of(const Controller& controller, const world::World& world, const RunRecorder& recorder,
                                                 const scenario::Scenario& scenario, bool interrupted);
 // Where the truth contradicts a mission that believes it succeeded.
-std::optional<record::FailureRecord> disagreement(const std::vector<record::TaskRecord>& tasks);
+std::optional<record::FailureRecord> disagreement(const Controller& controller, const world::World& world, const RunRecorder& recorder);
 
-// Turns count as done when the core says so and the true angle is within 3 degrees of the target; presses when the button itself counted them.
+// Done when the core says so and the truth agrees (judge::truly_done).
 std::vector<record::TaskRecord> task_records(const Controller& controller, const world::World& world, const RunRecorder& recorder);
 
 record::ErrorRecord score(const RunRecorder& recorder, const hal::SimConfig& truth);
@@ -34,7 +34,5 @@ std::map<std::string, std::uint64_t> rejected_inputs(const Controller& controlle
 // The drawn quantities, for the report.
 std::vector<std::pair<std::string, std::string>> conditions(const scenario::Sample& sample);
 record::DrawnRecord drawn(const scenario::Sample& sample);
-
-std::string contact_note(const world::UnintendedContact& contact);
 
 }  // namespace lf::app

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <memory>
 #include <thread>
+#include <utility>
 
 #include "firmware/controller.hpp"
 #include "firmware/scan_pipeline.hpp"
@@ -16,6 +17,8 @@
 #include "host_sim/app/interrupt.hpp"
 #include "host_sim/app/run_recorder.hpp"
 #include "host_sim/app/run_result.hpp"
+#include "host_sim/judge/truth.hpp"
+#include "host_sim/record/folder_in_writing.hpp"
 #include "host_sim/scenario/instance.hpp"
 #include "shared/version/version.hpp"
 
@@ -24,6 +27,9 @@ namespace lf::app {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+constexpr double standing_rad_s = 0.02;
+constexpr double longest_to_stand_s = 3;  // every stop is over by then
 
 // Thread CPU time of each turn of the core.
 class CpuProbe {
@@ -49,32 +55,77 @@ class Session {
       : request_(request),
         sample_(scenario::draw(request.scenario, request.seed)),
         nominal_(scenario::make_nominal(request.scenario, sample_.lamps_lit)),
-        sim_(scenario::make_truth(request.scenario, sample_, nominal_, request.render_threads)),
-        recorder_(folder, sim_.world.scene, request.say),
-        platform_(std::make_unique<hal::SimPlatform>(sim_, recorder_)),
+        sim_(truth(request, sample_, nominal_)),
+        recorder_(folder, request.say),
+        platform_(std::make_unique<hal::SimPlatform>(sim_, recorder_.observer())),
         controller_(std::make_unique<Controller>(nominal_.controller)),
         pipeline_(std::make_unique<ScanPipeline>(nominal_.scan)),
         rings_(std::make_unique<hal::CoreRings>()),
         ticks_(static_cast<std::size_t>(request.scenario.time_limit_s / can_map::sync_period.s()) + 1),
         frames_(16384) {}
 
-  // Runs to the mission's end, the time limit or an interrupt.
+  // Runs until the arm stands without power after the mission's end, or to the time limit or an interrupt.
   void run() {
     const std::uint64_t heap_calls = hal::HeapGuard::calls();
     const Clock::time_point start = Clock::now();
     Time now;
     TickOutput out;
     controller_->on_command(Command::start, now);
-    while (!controller_->mission().outcome().ended && now.s() < request_.scenario.time_limit_s && !interrupted()) {
-      hal::control_turn(*platform_, *controller_, *rings_, out, now, ticks_);
+    while (!settled(now) && now.s() < request_.scenario.time_limit_s && !interrupted()) {
+      (void)hal::control_turn(*platform_, *controller_, *rings_, out, now, ticks_);
       recorder_.after_control(controller_->mission());
-      hal::vision_turn(*platform_, *pipeline_, *rings_, frames_,
-                       [&](Port port, hal::PortStatus status) { controller_->on_port_error(port, status, now); });
-      recorder_.after_vision(*pipeline_);
+      if (platform_->vision_runs()) {
+        hal::vision_turn(*platform_, *pipeline_, *rings_, frames_,
+                         [&](Port port, hal::PortStatus status) { controller_->on_port_error(port, status, now); });
+        recorder_.after_vision(*pipeline_);
+      }
       if (request_.realtime) std::this_thread::sleep_until(start + std::chrono::nanoseconds(now.ns()));
     }
     wall_s_ = std::chrono::duration<double>(Clock::now() - start).count();
     heap_calls_ = hal::HeapGuard::calls() - heap_calls;
+  }
+
+  // The arm stands and has no power. A mission that ends with the arm held under power never gets there, nor does one that is not safe.
+  bool settled(Time now) {
+    if (!controller_->mission().outcome().ended) return false;
+    if (ended_s_ < 0) ended_s_ = now.s();
+    return safe() || now.s() >= ended_s_ + longest_to_stand_s;
+  }
+
+  bool safe() const {
+    const JointReadings joints = platform_->world().readings();
+    for (std::size_t i = 0; i < joint_count; ++i) {
+      if (platform_->devices().power(i) != devices::DrivePower::off || std::abs(joints[i].velocity_rad_s) >= standing_rad_s) return false;
+    }
+    return true;
+  }
+
+  // A scenario that expects a failure has succeeded when the mission failed so, and safely.
+  static void hold_against(const std::string& expected, bool safe, record::RunResult& result) {
+    if (!result.failure) {
+      result.failure = record::FailureRecord{"end", "expected was the failure '" + expected + "', but the mission succeeded"};
+    } else if (result.failure->reason.find(expected) == std::string::npos) {
+      result.failure->reason += "; expected was '" + expected + "'";
+    } else if (!safe) {
+      result.failure->reason += ", as expected, but the arm moves or has power 3 s after the end";
+    } else {
+      result.expected_failure = std::exchange(result.failure, std::nullopt);
+    }
+  }
+
+  void judge(record::RunResult& result) {
+    result.failure = failure_of(*controller_, platform_->world(), recorder_, request_.scenario, interrupted());
+    if (!result.failure) result.failure = disagreement(*controller_, platform_->world(), recorder_);
+    const bool held = controller_->mission().step() == mission::Step::held;
+    if (!result.failure && !safe() && !held) result.failure = record::FailureRecord{"end", "the end is not safe"};
+    const std::string& expected = request_.scenario.expect.failure;
+    if (expected != scenario::Expect::nothing && !interrupted()) {
+      hold_against(expected, safe(), result);
+    } else if (result.failure && !safe() && !held && !interrupted() && controller_->mission().outcome().ended) {
+      result.failure->reason += "; the arm moves or has power 3 s after the end";
+    }
+    result.success = !result.failure.has_value();
+    result.false_success = controller_->mission().outcome().ended && controller_->mission().outcome().success && !result.success;
   }
 
   record::RunResult result() {
@@ -83,13 +134,11 @@ class Session {
     result.seed = request_.seed;
     result.version = version();
     result.drawn = drawn(sample_);
-    result.failure = failure_of(*controller_, platform_->world(), recorder_, request_.scenario, interrupted());
+    judge(result);
     recorder_.finish(platform_->world(), result.failure ? result.failure->reason : "");
-    result.phases = recorder_.phases();
+    result.phases = recorder_.phases().phases();
     result.tasks = task_records(*controller_, platform_->world(), recorder_);
     result.errors = score(recorder_, sim_);
-    if (!result.failure) result.failure = disagreement(result.tasks);
-    result.success = !result.failure.has_value();
     const world::ContactReport contacts = platform_->world().contacts();
     result.contact = {contacts.peak_force_n, contacts.unintended.size()};
     if (hal::HeapGuard::available()) result.core.heap_calls = heap_calls_;
@@ -112,21 +161,28 @@ class Session {
     data.command = request_.command;
     data.conditions = conditions(sample_);
     data.errors = record::report_errors(result, sample_.attenuation_per_m);
-    if (request_.outside) recorder_.draw_outside(sim_.optics, request_.render_threads);
-    data.pictures = std::move(recorder_.pictures());
-    if (recorder_.located()) {
-      data.cloud = recorder_.located()->cloud;
-      data.fit = recorder_.located()->panel.fit;
+    if (request_.outside) recorder_.pictures().draw_outside(sim_.optics, request_.render_threads);
+    data.pictures = std::move(recorder_.pictures().pictures());
+    if (const std::optional<Located>& located = recorder_.panel().located()) {
+      data.cloud = located->cloud;
+      data.fit = located->panel.fit;
     }
-    data.charts = recorder_.charts();
+    data.charts = recorder_.curves().charts();
     if (!recorder_.write_error().empty()) data.notes.push_back("Not everything could be recorded: " + recorder_.write_error() + ".");
-    for (const world::UnintendedContact& contact : platform_->world().contacts().unintended) data.notes.push_back(contact_note(contact));
+    for (const world::UnintendedContact& contact : platform_->world().contacts().unintended)
+      data.notes.push_back("Unintended contact: " + judge::contact_text(contact) + ".");
     return data;
   }
 
   const std::string& write_error() const { return recorder_.write_error(); }
 
  private:
+  static hal::SimConfig truth(const RunRequest& request, const scenario::Sample& sample, const scenario::Nominal& nominal) {
+    hal::SimConfig sim = scenario::make_truth(request.scenario, sample, nominal, request.render_threads);
+    sim.given_sight = request.given_sight;
+    return sim;
+  }
+
   const RunRequest& request_;
   scenario::Sample sample_;
   scenario::Nominal nominal_;
@@ -138,26 +194,40 @@ class Session {
   std::unique_ptr<hal::CoreRings> rings_;
   CpuProbe ticks_, frames_;
   double wall_s_ = 0;
+  double ended_s_ = -1;
   std::uint64_t heap_calls_ = 0;
 };
 
 }  // namespace
 
 RunOutcome run_mission(const RunRequest& request) {
-  std::optional<record::RunFolder> folder;
-  if (!request.out.empty()) folder.emplace(request.out);
-  Session session(request, folder ? &*folder : nullptr);
+  std::optional<record::FolderInWriting> writing;
+  if (!request.out.empty()) writing.emplace(request.out, request.experiment);
+  Session session(request, writing ? &writing->folder() : nullptr);
   session.run();
   RunOutcome outcome;
   outcome.result = session.result();
   outcome.interrupted = interrupted();
   outcome.write_error = session.write_error();
-  if (!folder) return outcome;
+  if (!writing) return outcome;
   try {
-    folder->write("result.json", record::result_json(outcome.result));
-    folder->write("report.html", record::report_html(session.report(outcome.result)));
+    if (outcome.write_error.empty()) {
+      writing->folder().write("result.json", record::result_json(outcome.result));
+      writing->folder().write("report.html", record::report_html(session.report(outcome.result)));
+      outcome.has_report = true;
+    }
+    const bool whole = outcome.write_error.empty() && !outcome.interrupted;
+    outcome.kept = whole || !writing->place_is_taken();
+    if (outcome.kept) writing->publish();
   } catch (const record::RecordError& error) {
     outcome.write_error = error.what();
+    outcome.kept = !writing->place_is_taken();
+    if (outcome.kept) writing->publish();
+  }
+  if (!outcome.write_error.empty()) {
+    outcome.has_report = false;
+    outcome.result.success = false;
+    outcome.result.failure = record::FailureRecord{"record", outcome.write_error};
   }
   return outcome;
 }

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "host_sim/record/experiment.hpp"
 #include "host_sim/record/report.hpp"
 #include "host_sim/record/result.hpp"
 #include "host_sim/scenario/scenario.hpp"
@@ -19,8 +20,10 @@ struct RunRequest {
   std::uint64_t seed = 1;
   int render_threads = 1;
   bool realtime = false;
+  bool given_sight = false;                     // nothing is rendered: for runs that are not about seeing
   bool outside = true;                          // pictures of the robot from outside
   std::filesystem::path out;                    // the run folder; empty keeps nothing
+  record::Experiment experiment;                // what the folder is held against
   std::string command;                          // that reproduces the run, for the report
   std::function<void(const std::string&)> say;  // progress, one line a phase; may be empty
 };
@@ -28,11 +31,14 @@ struct RunRequest {
 struct RunOutcome {
   record::RunResult result;
   bool interrupted = false;
-  std::string write_error;  // what could not be recorded, if anything
+  std::string write_error;  // what could not be recorded, if anything: the run has failed then, whatever the mission did
+  bool kept = false;        // the run folder is in its place
+  bool has_report = false;
 };
 
-// Throws InputError for a scenario that cannot be run and for an output folder that cannot be made. An interrupt ends it early with what it has; so does a
-// full disk end the recording, not the run.
+// Goes on until the arm stands and has no power, 3 s after the mission's end at most. Throws InputError for a scenario that cannot be run and for an
+// output folder that cannot be made or holds another experiment. An interrupt ends it early with what it has, which is kept where no finished run stands.
+// A full disk ends the recording, not the run; but a run that could not be recorded has failed.
 RunOutcome run_mission(const RunRequest& request);
 
 }  // namespace lf::app

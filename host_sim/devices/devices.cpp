@@ -1,9 +1,10 @@
 #include "host_sim/devices/devices.hpp"
 
 #include <deque>
+#include <vector>
 
-#include "host_sim/devices/can_bus.hpp"
-#include "host_sim/devices/node_rack.hpp"
+#include "host_sim/devices/bus/can_bus.hpp"
+#include "host_sim/devices/canopen/node_rack.hpp"
 
 namespace lf::devices {
 namespace {
@@ -21,6 +22,8 @@ struct Devices::Impl {
   void collect(std::size_t slot, Time at);
   void set_bus_fault(const DeviceFault& fault, bool on);
   void set_bus_off(std::uint8_t id, bool off);
+  void set_second_master(const DeviceFault& fault, bool on);
+  void run_second_master();
 
   NodeRack rack;
   CanBus bus;
@@ -28,7 +31,66 @@ struct Devices::Impl {
   std::function<void(const BusRecord&)> tap;
   Time now;
   bool powered = false;
+
+  // A second master's frames, from when on each is due.
+  struct Foreign {
+    DeviceFault what;
+    Time due;
+  };
+  std::vector<Foreign> foreign;
 };
+
+namespace {
+
+bool same(const DeviceFault& a, const DeviceFault& b) { return a.kind == b.kind && a.node == b.node && a.at_s == b.at_s; }
+
+// What the second master of the kind sends.
+CanFrame foreign_frame(const DeviceFault& fault) {
+  CanFrame frame;
+  switch (fault.kind) {
+    case DeviceFaultKind::foreign_rpdo:
+      frame.id = 0x200u + fault.node;
+      if (fault.node == can_map::io_node) {
+        frame.length = 4;
+        frame.data = {can_map::output_laser, 0, 0, 0};
+      } else {
+        frame.length = 8;
+        frame.data = {0x0F, 0};  // operation enabled, target 0
+      }
+      return frame;
+    case DeviceFaultKind::foreign_sdo:
+      frame.id = 0x600u + fault.node;
+      frame.length = 8;
+      frame.data = {0x40, 0x18, 0x10, 0x01};  // upload 1018:01
+      return frame;
+    case DeviceFaultKind::foreign_sync: frame.id = 0x080; return frame;
+    case DeviceFaultKind::foreign_nmt:
+      frame.id = 0x000;
+      frame.length = 2;
+      frame.data = {0x80, 0};
+      return frame;
+    default:
+      frame.id = 0x700u + can_map::master_node;
+      frame.length = 1;
+      frame.data = {0x05};
+      return frame;
+  }
+}
+
+}  // namespace
+
+void Devices::Impl::set_second_master(const DeviceFault& fault, bool on) {
+  std::erase_if(foreign, [&](const Foreign& known) { return same(known.what, fault); });
+  if (on) foreign.push_back({fault, now});
+}
+
+void Devices::Impl::run_second_master() {
+  for (Foreign& each : foreign) {
+    if (now < each.due) continue;
+    bus.send(second_master, foreign_frame(each.what), now);
+    each.due = each.due + second_master_period;
+  }
+}
 
 void Devices::Impl::run_bus(Time until) {
   BusRecord record;
@@ -54,6 +116,7 @@ void Devices::Impl::set_bus_fault(const DeviceFault& fault, bool on) {
   if (fault.kind == DeviceFaultKind::drop_frames) bus.drop(fault.can_id, on);
   if (fault.kind == DeviceFaultKind::error_frames) bus.set_error_frames(on);
   if (fault.kind == DeviceFaultKind::bus_off) set_bus_off(fault.node, on);
+  if (of_a_second_master(fault.kind)) set_second_master(fault, on);
 }
 
 void Devices::Impl::set_bus_off(std::uint8_t id, bool off) {
@@ -87,6 +150,7 @@ void Devices::step(Time t, const JointReadings& readings) {
   d.run_bus(t);
   d.now = t;
   d.rack.tick(t, readings, [&d](const DeviceFault& fault, bool on) { d.set_bus_fault(fault, on); });
+  d.run_second_master();
   for (std::size_t slot = 0; slot < NodeRack::slots; ++slot) d.collect(slot, t);
 }
 
@@ -105,6 +169,8 @@ bool Devices::lamps_on() const { return impl_->rack.lamps_on(); }
 std::optional<Exposure> Devices::take_exposure() { return impl_->rack.take_exposure(); }
 void Devices::set_estop_closed(bool closed) { impl_->rack.set_estop_closed(closed); }
 void Devices::set_interlock_closed(bool closed) { impl_->rack.set_interlock_closed(closed); }
+void Devices::add_fault(const DeviceFault& fault, Time t) { impl_->rack.add_fault(fault, t); }
+DrivePower Devices::power(std::size_t joint) const { return impl_->rack.power(joint); }
 BusStats Devices::bus() const { return impl_->bus.stats(); }
 void Devices::set_tap(std::function<void(const BusRecord&)> tap) { impl_->tap = std::move(tap); }
 

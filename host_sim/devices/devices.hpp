@@ -15,7 +15,7 @@
 #include <memory>
 #include <optional>
 
-#include "host_sim/devices/bus_record.hpp"
+#include "host_sim/devices/bus/bus_record.hpp"
 #include "host_sim/devices/devices_config.hpp"
 #include "host_sim/devices/exposure.hpp"
 #include "shared/messages/can_frame.hpp"
@@ -53,6 +53,10 @@ class Devices {
   // Inputs of the output node beside those that faults open. Both chains are closed (healthy) at first.
   void set_estop_closed(bool closed);
   void set_interlock_closed(bool closed);
+
+  // A fault from `t` on, besides the configured ones; its `at_s` is not read. Throws InputError as the constructor does.
+  void add_fault(const DeviceFault& fault, Time t);
+  DrivePower power(std::size_t joint) const;  // ground truth
 
   BusStats bus() const;
   // Called for every frame delivered on the bus, in the order of time, whoever sent it.

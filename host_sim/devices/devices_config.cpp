@@ -3,7 +3,7 @@
 #include <cmath>
 #include <set>
 
-#include "host_sim/devices/actuator.hpp"
+#include "host_sim/devices/drive/actuator.hpp"
 #include "shared/can/object_tables.hpp"
 #include "shared/input_error.hpp"
 
@@ -37,13 +37,32 @@ void check_drive(const DriveConfig& drive) {
 }
 
 bool of_one_node(DeviceFaultKind kind) {
-  return kind != DeviceFaultKind::estop && kind != DeviceFaultKind::interlock_open && kind != DeviceFaultKind::drop_frames &&
-         kind != DeviceFaultKind::error_frames;
+  using enum DeviceFaultKind;
+  switch (kind) {
+    case estop:
+    case interlock_open:
+    case drop_frames:
+    case error_frames:
+    case foreign_sync:
+    case foreign_nmt:
+    case foreign_heartbeat: return false;
+    default: return true;
+  }
 }
 
 bool of_a_drive(DeviceFaultKind kind) {
-  return kind == DeviceFaultKind::overcurrent || kind == DeviceFaultKind::hot || kind == DeviceFaultKind::following ||
-         kind == DeviceFaultKind::stuck_encoder;
+  using enum DeviceFaultKind;
+  switch (kind) {
+    case overcurrent:
+    case hot:
+    case following:
+    case stuck_encoder:
+    case encoder_jump:
+    case torque_frozen:
+    case torque_high:
+    case runaway: return true;
+    default: return false;
+  }
 }
 
 void check_fault(const DeviceFault& fault, const DevicesConfig& config) {
@@ -58,6 +77,16 @@ void check_fault(const DeviceFault& fault, const DevicesConfig& config) {
 }
 
 }  // namespace
+
+bool of_a_second_master(DeviceFaultKind kind) {
+  using enum DeviceFaultKind;
+  return kind == foreign_rpdo || kind == foreign_sdo || kind == foreign_sync || kind == foreign_nmt || kind == foreign_heartbeat;
+}
+
+bool of_the_bus(DeviceFaultKind kind) {
+  using enum DeviceFaultKind;
+  return kind == drop_frames || kind == error_frames || kind == bus_off || of_a_second_master(kind);
+}
 
 DriveConfig drive_config(const ArmJoint& joint, std::uint8_t node) {
   DriveConfig drive;

@@ -3,15 +3,19 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "host_sim/devices/drive/drive_habits.hpp"
 #include "shared/arm/arm_description.hpp"
 #include "shared/can/can_map.hpp"
 #include "shared/messages/joint_io.hpp"
 #include "shared/messages/time.hpp"
 
 namespace lf::devices {
+
+struct DictionaryRow;
 
 // One servo drive and its motor. `drive_config` fills it from the arm's description.
 struct DriveConfig {
@@ -31,6 +35,14 @@ struct DriveConfig {
   double water_celsius = 12;
   double rise_at_rated_celsius = 30;  // of the winding in the long run at rated torque
   double trip_celsius = 85;
+
+  // A make of drive with its own dictionary, units and habits; nullptr: the simulator's own. Both or neither.
+  const DriveHabit* habit = nullptr;
+  std::shared_ptr<const std::vector<DictionaryRow>> dictionary;
+  DriveSwitches switches;
+  double counts_per_rev = 64;      // of the motor's encoder
+  double rated_current_a = 1.333;  // at the rated torque
+  bool reversed = false;           // it counts against the joint
 };
 
 // From the URDF: the only source of the arm's geometry and of its joints' figures.
@@ -38,6 +50,13 @@ DriveConfig drive_config(const ArmJoint& joint, std::uint8_t node);
 
 struct IoConfig {
   std::uint8_t node = can_map::io_node;
+};
+
+// What a drive's power stage does to its joint.
+enum class DrivePower : std::uint8_t {
+  off,        // nothing: the gear or the brake holds it
+  operation,  // it follows its targets
+  stopping,   // it brakes or holds by itself: quick stop active, fault reaction active
 };
 
 enum class DeviceFaultKind : std::uint8_t {
@@ -52,7 +71,28 @@ enum class DeviceFaultKind : std::uint8_t {
   drop_frames,     // frames with the identifier `can_id` are lost on their way, to every receiver
   error_frames,    // one frame in sixteen is destroyed by an error frame and sent again
   bus_off,         // the node's CAN controller goes off the bus; afterwards EMCY 8140. `node` 0x7F is the master's
+
+  encoder_jump,    // the position reads 0.25 rad too much
+  torque_frozen,   // object 6077 keeps its value
+  torque_high,     // 1.2 times the peak torque is added to the torque reading
+  runaway,         // while enabled the joint moves at 1.5 times its top speed, and the drive's following-error window is gone
+  wrong_identity,  // object 1018:02 names another product
+
+  // A second master, with a controller of its own on the bus, sends every 50 ms:
+  foreign_rpdo,       // the node's first RPDO: a drive's target, or the output node's laser
+  foreign_sdo,        // an SDO upload request to the node
+  foreign_sync,       // a SYNC
+  foreign_nmt,        // NMT "enter pre-operational", to all nodes
+  foreign_heartbeat,  // a heartbeat with the master's own node number
 };
+
+// Frames of a second master come from this controller on the simulated bus; the number stands for no node.
+inline constexpr std::uint8_t second_master = 0x7D;
+inline constexpr Duration second_master_period = Duration::from_ms(50);
+
+// Whether the kind is the bus's, which whoever owns the bus makes.
+bool of_the_bus(DeviceFaultKind kind);
+bool of_a_second_master(DeviceFaultKind kind);
 
 struct DeviceFault {
   double at_s = 0;

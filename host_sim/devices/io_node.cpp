@@ -1,6 +1,6 @@
 #include "host_sim/devices/io_node.hpp"
 
-#include "host_sim/devices/communication_objects.hpp"
+#include "host_sim/devices/canopen/communication_objects.hpp"
 #include "shared/can/can_map.hpp"
 
 namespace lf::devices {

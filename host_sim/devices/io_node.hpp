@@ -10,9 +10,9 @@
 #include <optional>
 #include <vector>
 
+#include "host_sim/devices/canopen/node.hpp"
 #include "host_sim/devices/devices_config.hpp"
 #include "host_sim/devices/exposure.hpp"
-#include "host_sim/devices/node.hpp"
 
 namespace lf::devices {
 

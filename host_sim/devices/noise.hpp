@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "shared/random.hpp"
+
 namespace lf::devices {
 
 class Noise {
@@ -18,12 +20,10 @@ class Noise {
   }
 
  private:
-  // splitmix64 (Steele, Lea, Flood 2014).
   std::uint64_t next_bits() {
-    std::uint64_t z = (state_ += 0x9E3779B97F4A7C15u);
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
-    return z ^ (z >> 31);
+    const std::uint64_t bits = splitmix64(state_);
+    state_ += splitmix64_step;
+    return bits;
   }
 
   std::uint64_t state_;

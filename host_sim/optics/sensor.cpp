@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "shared/random.hpp"
+
 namespace lf::optics {
 namespace {
 
@@ -59,13 +61,6 @@ WordLanes mix(WordLanes x) {
   return x ^ (x >> 16);
 }
 
-constexpr std::uint64_t splitmix(std::uint64_t x) {
-  x += 0x9e3779b97f4a7c15ULL;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebULL;
-  return x ^ (x >> 31);
-}
-
 }  // namespace
 
 Sensor::Sensor(const CameraConfig& camera)
@@ -104,7 +99,7 @@ void Sensor::expose_packet(Lanes grey, std::uint8_t* pixels, std::uint32_t first
 }
 
 std::uint64_t noise_key(std::uint64_t seed, std::uint64_t camera, std::uint64_t frame_number) {
-  return splitmix(splitmix(splitmix(seed) + camera) + frame_number);
+  return splitmix64(splitmix64(splitmix64(seed) + camera) + frame_number);
 }
 
 }  // namespace lf::optics

@@ -91,6 +91,9 @@ std::string result_json(const RunResult& result) {
   document["success"] = result.success;
   document["failure"] = nullptr;
   if (result.failure) document["failure"] = {{"phase", result.failure->phase}, {"reason", result.failure->reason}};
+  if (result.expected_failure)
+    document["expected_failure"] = {{"phase", result.expected_failure->phase}, {"reason", result.expected_failure->reason}};
+  document["false_success"] = result.false_success;
   document["drawn"] = to_json(result.drawn);
   document["phases"] = list(result.phases);
   document["tasks"] = list(result.tasks);

@@ -101,6 +101,8 @@ struct RunResult {
   std::string version;
   bool success = false;
   std::optional<FailureRecord> failure;
+  std::optional<FailureRecord> expected_failure;  // that the scenario asked for, and got
+  bool false_success = false;                     // the mission believes it succeeded, and the truth disagrees
   DrawnRecord drawn;
   std::vector<PhaseRecord> phases;
   std::vector<TaskRecord> tasks;

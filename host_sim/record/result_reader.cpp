@@ -125,6 +125,12 @@ RunResult result_from(const Json& document) {
     read(failure, "phase", result.failure->phase);
     read(failure, "reason", result.failure->reason);
   }
+  if (const Json& failure = section(document, "expected_failure"); !failure.empty()) {
+    result.expected_failure.emplace();
+    read(failure, "phase", result.expected_failure->phase);
+    read(failure, "reason", result.expected_failure->reason);
+  }
+  read(document, "false_success", result.false_success);
   result.drawn = drawn_from(section(document, "drawn"));
   for (const Json& phase : section(document, "phases")) result.phases.push_back(phase_from(phase));
   for (const Json& task : section(document, "tasks")) result.tasks.push_back(task_from(task));

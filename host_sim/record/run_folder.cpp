@@ -1,5 +1,6 @@
 #include "host_sim/record/run_folder.hpp"
 
+#include <cerrno>
 #include <system_error>
 
 #include "shared/input_error.hpp"
@@ -12,9 +13,15 @@ RunFolder::RunFolder(const fs::path& directory) : directory_(directory) {
   if (fs::exists(directory, error) && !fs::is_directory(directory, error))
     throw InputError(directory.string(), 0, "is a file, not a folder");
   fs::create_directories(directory, error);
+  if (error == std::errc::no_space_on_device) throw RecordError(directory.string() + ": " + error.message());
   if (error) throw InputError(directory.string(), 0, "cannot be made a folder: " + error.message());
   const fs::path probe = directory / ".writable";
-  { const FileSink opened(probe); }
+  try {
+    const FileSink opened(probe);
+  } catch (const InputError&) {
+    if (errno == ENOSPC || errno == EDQUOT) throw RecordError(directory.string() + ": " + std::generic_category().message(errno));
+    throw;
+  }
   fs::remove(probe, error);
 }
 

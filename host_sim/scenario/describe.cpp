@@ -45,6 +45,7 @@ struct FlowYaml {
   std::string operator()(const Chance* value) const {
     return *value == Chance::either ? "either" : *value == Chance::yes ? "true" : "false";
   }
+  std::string operator()(const PanelLayout::Pointer* value) const { return config::pointer_words[static_cast<std::size_t>(*value)]; }
   std::string operator()(const std::array<double, 3>* value) const { return flow_list(*value, text_of); }
   std::string operator()(const Vec2* value) const { return std::string("[") + text_of(value->x()) + ", " + text_of(value->y()) + "]"; }
   std::string operator()(const std::array<Vec2, 3>* value) const {
@@ -64,7 +65,9 @@ struct FlowYaml {
     return flow_list(*value, [](Fault fault) {
       std::string out = "{";
       for (const Key& key : keys(fault)) {
-        if (key.path == "node" && fault.node.empty()) continue;
+        const bool by_step = !fault.at_step.empty();
+        if ((key.path == "node" && fault.node.empty()) || (key.path == "at_s" && by_step)) continue;
+        if ((key.path == "at_step" || key.path == "after_s") && !by_step) continue;
         out += (out.size() > 1 ? ", " : "") + key.path + ": " + std::visit(FlowYaml{}, key.value);
       }
       return out + "}";
@@ -107,6 +110,7 @@ struct TypeSchema {
     return {{"oneOf", {number, range}}};
   }
   Json operator()(Chance*) const { return {{"enum", Json::array({true, false, "either"})}}; }
+  Json operator()(PanelLayout::Pointer*) const { return words_schema(key); }
   Json operator()(std::array<double, 3>*) const { return list_schema(number_schema(key, "number"), 3); }
   Json operator()(Vec2*) const { return list_schema(number_schema(key, "number"), 2); }
   Json operator()(std::array<Vec2, 3>*) const { return list_schema((*this)(static_cast<Vec2*>(nullptr)), 3); }

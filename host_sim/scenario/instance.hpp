@@ -13,15 +13,24 @@ namespace lf::scenario {
 // What the core is told: nominal calibrations, the survey of the panel, the job, drives and limits.
 using Nominal = config::Core;
 
-// Reads the arm's URDF and the file of limits. Throws InputError for these, and for a job that the machine as it is described cannot do: a valve or button
+// Reads the arm's URDF and the file of limits. Throws InputError with every problem of these, a line each, and for a job that the machine as it is described cannot do: a valve or button
 // out of the arm's reach, a panel that the camera does not see.
 Nominal make_nominal(const Scenario& scenario, bool lamps_lit);
+
+// Adds what make_nominal would refuse.
+void add_job_problems(const Scenario& scenario, std::vector<std::string>& problems);
+std::string joined(const std::vector<std::string>& problems);  // a line each
 
 // The world, the optics, the devices with the sample's errors in them.
 hal::SimConfig make_truth(const Scenario& scenario, const Sample& sample, const Nominal& nominal, int render_threads);
 
-// A scenario's fault as the devices take it. Throws InputError for a kind that there is not.
-devices::DeviceFault device_fault(const Fault& fault);
+// A scenario's fault as the simulated platform takes it, at the node that `drives` gives the joint. Throws InputError for a kind that there is not.
+hal::SimFault sim_fault(const Fault& fault, const config::Drives& drives);
+// The same for the devices alone, which know of times but not of steps.
+devices::DeviceFault device_fault(const Fault& fault, const config::Drives& drives);
+
+// Drives that are not served are overheard on the bus at the CAN map's nodes, in encoder counts and forward. Throws InputError for one of another kind.
+void check_overheard(const config::Drives& drives, std::size_t joint);
 
 // base_from_panel with the sample's docking error: shifted along the base's axes, turned about them at the panel's origin (roll, then pitch, then yaw).
 Pose true_base_from_panel(const PanelLayout& layout, const Sample& sample);

@@ -23,8 +23,7 @@ void add_place(Keys& all, Scenario& s) {
   all.push_back(key("valve.start_deg", "deg", -180, 180, &s.valve.start_deg,
                     "the handle's angle at the start: 0 is a vertical bar, positive counter-clockwise"));
   all.push_back(key("valve.friction_nm", "N m", 0, 20, &s.valve.friction_nm, "torque that it takes to turn the handle"));
-  all.push_back(key("valve.stop_min_deg", "deg", -360, 360, &s.valve.stop_min_deg, "end stop, clockwise"));
-  all.push_back(key("valve.stop_max_deg", "deg", -360, 360, &s.valve.stop_max_deg, "end stop, counter-clockwise"));
+  config::add_valve_stops(all, s.valve);
   all.push_back(key("valve.detents_deg", "deg", -360, 360, &s.valve.detents_deg, "the named positions, in which the handle settles"));
   all.push_back(key("valve.detent_nm", "N m", 0, 20, &s.valve.detent_nm, "peak pull toward a detent"));
   all.push_back(key("valve.viscous_nm_s", "N m s/rad", 0, 20, &s.valve.viscous_nm_s, "viscous friction of the handle"));
@@ -88,8 +87,13 @@ std::vector<Key> keys(Scenario& scenario) {
   config::add_panel(all, scenario.panel);
   add_sight(all, scenario);
   add_machine(all, scenario);
+  config::add_drives(all, scenario.drives);
   config::add_mission(all, scenario.mission);
   all.push_back(key("faults", "", 0, 0, &scenario.faults, "what goes wrong, and when"));
+  std::vector<std::string> failures{Expect::nothing};
+  for (std::size_t i = 0; i < safety::fault_count; ++i) failures.emplace_back(safety::name(static_cast<safety::Fault>(i)));
+  all.push_back(key("expect.failure", "", 0, 0, &scenario.expect.failure,
+                    "the fault that has to end the mission; the run succeeds when it does, safely", failures));
   return all;
 }
 

@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "hal/config/fault_kinds.hpp"
+#include "hal/config/handle_check.hpp"
 #include "hal/config/nearest.hpp"
 #include "hal/config/share.hpp"
 #include "hal/config/text_file.hpp"
 #include "hal/config/yaml_reader.hpp"
 #include "hal/sim/sim_config.hpp"
+#include "host_sim/scenario/instance.hpp"
 #include "host_sim/scenario/keys.hpp"
 #include "shared/input_error.hpp"
 
@@ -56,9 +59,9 @@ void apply_override(Scenario& scenario, const std::string& text) {
 }
 
 // What no single key can tell.
-void check_together(const Scenario& s, const std::string& where) {
-  const auto refuse = [&](const std::string& message) { throw InputError(where + ": " + message); };
-  if (s.valve.stop_min_deg >= s.valve.stop_max_deg) refuse("'valve.stop_min_deg' is not below 'valve.stop_max_deg'");
+void check_together(const Scenario& s, const std::string& where, std::vector<std::string>& problems) {
+  const auto refuse = [&](const std::string& message) { problems.push_back(where + ": " + message); };
+  for (const std::string& problem : config::handle_problems(s.panel, s.valve, s.tasks)) refuse(problem);
   if (s.valve.start_deg.min < s.valve.stop_min_deg || s.valve.start_deg.max > s.valve.stop_max_deg)
     refuse("'valve.start_deg' lies beyond the valve's stops");
   if (s.buttons.release_depth_m >= s.buttons.click_depth_m) refuse("'buttons.release_depth_m' is not below 'buttons.click_depth_m'");
@@ -67,22 +70,25 @@ void check_together(const Scenario& s, const std::string& where) {
   if (s.panel.marker_plate_m <= s.panel.marker_size_m) refuse("'panel.marker_plate_m' is not larger than 'panel.marker_size_m'");
   if (s.camera.distortion.size() != 5) refuse("'camera.distortion' takes 5 numbers: k1, k2, p1, p2, k3");
   std::size_t tasks = 0;
-  for (const Task& task : s.tasks) {
-    tasks += task.kind == Task::Kind::turn_valve ? 1 : task.order.size();
-    if (task.kind == Task::Kind::turn_valve && (task.to_deg < s.valve.stop_min_deg || task.to_deg > s.valve.stop_max_deg)) {
-      refuse("'turn_valve.to_deg' lies beyond the valve's stops");
-    }
-  }
+  for (const Task& task : s.tasks) tasks += task.kind == Task::Kind::turn_valve ? 1 : task.order.size();
   if (tasks == 0) refuse("'tasks' is empty: there is nothing to do");
   if (tasks > mission::MissionConfig::max_tasks) {
     refuse("'tasks' has " + std::to_string(tasks) + " turns and presses; the core holds " +
            std::to_string(mission::MissionConfig::max_tasks));
   }
   for (const Fault& fault : s.faults) {
-    const bool of_all =
-        fault.kind == "estop" || fault.kind == "interlock_open" || fault.kind == "drop_frames" || fault.kind == "error_frames";
-    if (!of_all && fault.node.empty()) refuse("'faults': " + fault.kind + " needs a node");
-    if (fault.kind == "drop_frames" && fault.can_id == 0) refuse("'faults': drop_frames needs a can_id");
+    const config::FaultPlace place = config::find_fault_kind(fault.kind)->place;
+    const std::vector<std::string> nodes = config::fault_nodes(place);
+    const bool right_node = std::find(nodes.begin(), nodes.end(), fault.node) != nodes.end();
+    if (fault.node.empty() && !right_node)
+      refuse("'faults': " + fault.kind + " needs a node");
+    else if (!right_node)
+      refuse("'faults': " + fault.kind + (nodes.size() == 1 ? " takes no node" : " does not happen to " + fault.node));
+    if (place == config::FaultPlace::frames && fault.can_id == 0) refuse("'faults': drop_frames needs a can_id");
+    if (!fault.at_step.empty() && fault.at_s != 0) refuse("'faults': " + fault.kind + " has both at_s and at_step");
+    if (fault.at_step.empty() && fault.after_s != 0) refuse("'faults': " + fault.kind + " has after_s without at_step");
+    const bool later = fault.at_s > 0 || !fault.at_step.empty();
+    if (place == config::FaultPlace::told && later) refuse("'faults': " + fault.kind + " is there from power-on or not at all");
   }
 }
 
@@ -90,8 +96,8 @@ void check_together(const Scenario& s, const std::string& where) {
 
 Latency::Latency() {
   const hal::SimConfig defaults;
-  image_ms = defaults.image_latency.s() * 1e3;
-  panel_vision_ms = defaults.vision_latency.s() * 1e3;
+  image_ms = static_cast<double>(defaults.image_latency.ns()) / 1e6;  // 30, where seconds times 1e3 are 30.000000000000004
+  panel_vision_ms = static_cast<double>(defaults.vision_latency.ns()) / 1e6;
 }
 
 Physics::Physics() {
@@ -108,15 +114,24 @@ Scenario load_scenario(const std::string& file_or_name, const std::vector<std::s
   Scenario scenario;
   scenario.name = path.stem();
   scenario.file = path;
-  const config::Source source = config::Source::of_file(path);
+  std::vector<std::string> problems;
+  const config::Source source = config::Source::of_file(path, problems);
   const YAML::Node root = config::parse_yaml(config::read_text_file(path), source);
   if (!root.IsNull()) {
     if (!root.IsMap()) source.refuse(root.Mark(), "a scenario is a group of keys");
     config::read_map(root, "", "", keys(scenario), source);
   }
-  for (const std::string& text : overrides) apply_override(scenario, text);
-  check_together(scenario, overrides.empty() ? source.name() : source.name() + " with --set");
-  return scenario;
+  for (const std::string& text : overrides) {
+    try {
+      apply_override(scenario, text);
+    } catch (const InputError& problem) {
+      problems.emplace_back(problem.what());
+    }
+  }
+  check_together(scenario, overrides.empty() ? source.name() : source.name() + " with --set", problems);
+  if (problems.empty()) return scenario;
+  if (!scenario.tasks.empty()) add_job_problems(scenario, problems);
+  throw InputError(joined(problems));
 }
 
 std::vector<ShippedScenario> shipped_scenarios() {

@@ -35,11 +35,9 @@ struct Docking {
   Spread yaw_deg = Spread::around(0, 2);
 };
 
-struct Valve {
+struct Valve : config::ValveStops {
   Spread start_deg = Spread::around(0, 40);
   Spread friction_nm{0.5, 3};
-  double stop_min_deg = -105;  // +/-90 is clear of the stops
-  double stop_max_deg = 105;
   std::vector<double> detents_deg{-90, 0, 90};  // the named positions: shut, half, open
   double detent_nm = world::ValveConfig{}.detent_nm;
   double viscous_nm_s = world::ValveConfig{}.viscous_nm_s;
@@ -110,6 +108,12 @@ struct Safety {
   std::string limits = "safety/limits.yaml";
 };
 
+// How the mission is to end, where that is not success: a scenario that makes a fault passes when the mission fails safely because of it.
+struct Expect {
+  static constexpr const char* nothing = "none";
+  std::string failure = nothing;  // a fault's name
+};
+
 struct Scenario {
   std::string name;  // of the file, without its ending
   std::string file;  // where it was read
@@ -130,14 +134,16 @@ struct Scenario {
   Latency latency;
   Sensors sensors;
   Safety safety;
+  config::Drives drives;
   mission::MissionConfig mission;  // its speeds, distances and tries; layout, lamps and tasks are filled from the rest
   std::vector<Task> tasks{Task{}, Task{Task::Kind::press_buttons}};
   std::vector<Fault> faults;
+  Expect expect;
 };
 
 // Reads a file, or a shipped scenario by its name, then applies `overrides` ("path.to.key=value", the value in YAML) in their order.
-// Throws InputError in one line, "file:line: ..." or "--set key=value: ...": a missing or malformed file, an unknown, misspelt or repeated key (with the
-// nearest known one), a value of another type, out of its range or not a finite number, and values that do not go together.
+// Throws InputError with every problem, a line each, "file:line: ..." or "--set key=value: ...": a missing or malformed file, an unknown, misspelt or
+// repeated key (with the nearest known one), a value of another type, out of its range or not a finite number, and values that do not go together.
 Scenario load_scenario(const std::string& file_or_name, const std::vector<std::string>& overrides = {});
 
 struct ShippedScenario {

@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <array>
 
+#include "hal/config/homing_file.hpp"
 #include "hal/config/share.hpp"
+#include "host_sim/devices/drive/drive_dictionary.hpp"
 #include "host_sim/scenario/instance.hpp"
 #include "shared/arm/arm_description.hpp"
 #include "shared/input_error.hpp"
@@ -12,6 +14,8 @@ namespace lf::scenario {
 namespace {
 
 using devices::DeviceFaultKind;
+
+constexpr const char* limits_refused = "limits_refused";
 
 Pose small_pose(const Vec3& shift_m, const Vec3& turn_rad) {
   Pose pose = Pose::Identity();
@@ -107,46 +111,129 @@ optics::OpticsConfig optics_config(const Scenario& scenario, const Sample& sampl
   return optics;
 }
 
-DeviceFaultKind fault_kind(const std::string& name) {
-  static constexpr std::array<std::pair<const char*, DeviceFaultKind>, 11> kinds{{{"overcurrent", DeviceFaultKind::overcurrent},
-                                                                                  {"hot", DeviceFaultKind::hot},
-                                                                                  {"following", DeviceFaultKind::following},
-                                                                                  {"stuck_encoder", DeviceFaultKind::stuck_encoder},
-                                                                                  {"silent", DeviceFaultKind::silent},
-                                                                                  {"reboot", DeviceFaultKind::reboot},
-                                                                                  {"estop", DeviceFaultKind::estop},
-                                                                                  {"interlock_open", DeviceFaultKind::interlock_open},
-                                                                                  {"drop_frames", DeviceFaultKind::drop_frames},
-                                                                                  {"error_frames", DeviceFaultKind::error_frames},
-                                                                                  {"bus_off", DeviceFaultKind::bus_off}}};
-  for (const auto& [text, kind] : kinds) {
-    if (name == text) return kind;
+// The names of config::fault_kinds() that the devices make; a test holds the tables against each other.
+constexpr std::array<std::pair<const char*, DeviceFaultKind>, 21> device_kinds{{{"overcurrent", DeviceFaultKind::overcurrent},
+                                                                                {"hot", DeviceFaultKind::hot},
+                                                                                {"following", DeviceFaultKind::following},
+                                                                                {"stuck_encoder", DeviceFaultKind::stuck_encoder},
+                                                                                {"silent", DeviceFaultKind::silent},
+                                                                                {"reboot", DeviceFaultKind::reboot},
+                                                                                {"estop", DeviceFaultKind::estop},
+                                                                                {"interlock_open", DeviceFaultKind::interlock_open},
+                                                                                {"drop_frames", DeviceFaultKind::drop_frames},
+                                                                                {"error_frames", DeviceFaultKind::error_frames},
+                                                                                {"bus_off", DeviceFaultKind::bus_off},
+                                                                                {"encoder_jump", DeviceFaultKind::encoder_jump},
+                                                                                {"torque_frozen", DeviceFaultKind::torque_frozen},
+                                                                                {"torque_high", DeviceFaultKind::torque_high},
+                                                                                {"runaway", DeviceFaultKind::runaway},
+                                                                                {"wrong_identity", DeviceFaultKind::wrong_identity},
+                                                                                {"foreign_rpdo", DeviceFaultKind::foreign_rpdo},
+                                                                                {"foreign_sdo", DeviceFaultKind::foreign_sdo},
+                                                                                {"foreign_sync", DeviceFaultKind::foreign_sync},
+                                                                                {"foreign_nmt", DeviceFaultKind::foreign_nmt},
+                                                                                {"foreign_heartbeat", DeviceFaultKind::foreign_heartbeat}}};
+
+// Those that the platform makes.
+constexpr std::array<std::pair<const char*, hal::SimFaultKind>, 20> platform_kinds{
+    {{"clock_lost", hal::SimFaultKind::clock_lost},
+     {"can_receive_fails", hal::SimFaultKind::can_receive_fails},
+     {"can_send_fails", hal::SimFaultKind::can_send_fails},
+     {"camera_fails", hal::SimFaultKind::camera_fails},
+     {"panel_submit_fails", hal::SimFaultKind::panel_submit_fails},
+     {"panel_receive_fails", hal::SimFaultKind::panel_receive_fails},
+     {"telemetry_fails", hal::SimFaultKind::telemetry_fails},
+     {"vision_stalled", hal::SimFaultKind::vision_stalled},
+     {"image_lost", hal::SimFaultKind::image_lost},
+     {"camera_silent", hal::SimFaultKind::camera_silent},
+     {"camera_frozen", hal::SimFaultKind::camera_frozen},
+     {"sensor_frozen", hal::SimFaultKind::sensor_frozen},
+     {"vision_late", hal::SimFaultKind::vision_late},
+     {"vision_silent", hal::SimFaultKind::vision_silent},
+     {"vision_poor", hal::SimFaultKind::vision_poor},
+     {"handle_breaks", hal::SimFaultKind::handle_breaks},
+     {"obstacle", hal::SimFaultKind::obstacle},
+     {"abort_ordered", hal::SimFaultKind::abort_ordered},
+     {"estop_ordered", hal::SimFaultKind::estop_ordered},
+     {"shut_down_ordered", hal::SimFaultKind::shut_down_ordered}}};
+
+mission::Step step_of(const std::string& name) {
+  for (std::size_t i = 0; i < mission::step_count; ++i) {
+    if (name == mission::row(static_cast<mission::Step>(i)).name) return static_cast<mission::Step>(i);
   }
-  throw InputError("no kind of fault '" + name + "'");
+  return mission::Step::count;
 }
 
-std::uint8_t node_number(const std::string& name) {
-  static constexpr std::array<const char*, joint_count> joints{"slew", "shoulder", "elbow", "roll", "jaw"};
+std::uint8_t node_number(const std::string& name, const config::Drives& drives) {
   for (std::size_t i = 0; i < joint_count; ++i) {
-    if (name == joints[i]) return can_map::drive_nodes[i];
+    if (name == config::joint_name(i)) return static_cast<std::uint8_t>(config::drive_of(drives, i).node);
   }
-  return name == "io" ? can_map::io_node : name == "master" ? can_map::master_node : 0;
+  return name == "io" ? static_cast<std::uint8_t>(drives.output_node) : name == "master" ? can_map::master_node : 0;
+}
+
+// A simulated drive of the make that the machine's file names.
+void set_make(const config::Drives& drives, std::size_t joint, devices::DriveConfig& drive) {
+  const config::JointDriveChoice choice = config::drive_of(drives, joint);
+  drive.node = static_cast<std::uint8_t>(choice.node);
+  drive.counts_per_rev = choice.counts_per_rev;
+  drive.rated_current_a = choice.rated_current_a;
+  drive.reversed = choice.polarity == "reversed";
+  const std::string make = std::filesystem::path(choice.profile).stem();
+  drive.habit = devices::find_habit(make);
+  if (drive.habit != nullptr) {
+    drive.dictionary = devices::read_dictionary(config::share_folder() / "drives" / "objects.csv", drive.habit->dictionary);
+    return;
+  }
+  if (make == "lanternfish" || make.starts_with("cia402")) return;
+  std::string list;
+  for (const devices::DriveHabit& habit : devices::drive_habits()) list += ", " + std::string(habit.name);
+  throw InputError(std::string("drives.") + config::joint_name(joint) + ": there is no simulated drive '" + make +
+                   "'; there are lanternfish" + list);
 }
 
 devices::DevicesConfig device_config(const Scenario& scenario, const Sample& sample, const ArmDescription& arm) {
   devices::DevicesConfig config = devices::devices_config(arm, sample.joint_offset_rad, sample.devices_seed);
-  for (devices::DriveConfig& drive : config.drives) {
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    devices::DriveConfig& drive = config.drives[i];
     drive.torque_noise_ratio = scenario.physics.torque_noise_ratio;
     drive.water_celsius = scenario.physics.water_celsius;
+    set_make(scenario.drives, i, drive);
   }
-  for (const Fault& fault : scenario.faults) config.faults.push_back(device_fault(fault));
+  config.io.node = static_cast<std::uint8_t>(scenario.drives.output_node);
   return config;
 }
 
 }  // namespace
 
-devices::DeviceFault device_fault(const Fault& fault) {
-  return {fault.at_s, fault_kind(fault.kind), node_number(fault.node), fault.duration_s, static_cast<std::uint32_t>(fault.can_id)};
+void check_overheard(const config::Drives& drives, std::size_t joint) {
+  const config::JointDriveChoice drive = config::drive_of(drives, joint);
+  const bool plain = drive.profile == "lanternfish" || drive.profile == "cia402";
+  if (drive.node == can_map::drive_nodes[joint] && plain && drive.polarity == "forward") return;
+  throw InputError(std::string("drives.") + config::joint_name(joint) +
+                   ": a drive that is not served is overheard only at its node of the CAN map, in encoder counts and forward");
+}
+
+hal::SimFault sim_fault(const Fault& fault, const config::Drives& drives) {
+  hal::SimFault out;
+  out.at_s = fault.at_s;
+  out.at_step = step_of(fault.at_step);
+  out.after_s = fault.after_s;
+  out.duration_s = fault.duration_s;
+  for (const auto& [name, kind] : platform_kinds) {
+    if (fault.kind != name) continue;
+    out.kind = kind;
+    return out;
+  }
+  out.device = device_fault(fault, drives);
+  return out;
+}
+
+devices::DeviceFault device_fault(const Fault& fault, const config::Drives& drives) {
+  for (const auto& [name, kind] : device_kinds) {
+    if (fault.kind == name)
+      return {fault.at_s, kind, node_number(fault.node, drives), fault.duration_s, static_cast<std::uint32_t>(fault.can_id)};
+  }
+  throw InputError("the devices have no fault '" + fault.kind + "'");
 }
 
 Pose true_base_from_panel(const PanelLayout& layout, const Sample& sample) {
@@ -166,6 +253,12 @@ hal::SimConfig make_truth(const Scenario& scenario, const Sample& sample, const 
   sim.optics = optics_config(scenario, sample, nominal, sim.world);
   sim.optics.threads = render_threads;
   sim.devices = device_config(scenario, sample, sim.world.arm);
+  for (const Fault& fault : scenario.faults) {
+    if (fault.kind == limits_refused) continue;  // make_nominal's
+    const hal::SimFault made = sim_fault(fault, scenario.drives);
+    const bool timed_by_devices = made.kind == hal::SimFaultKind::device && made.at_step == mission::Step::count;
+    timed_by_devices ? sim.devices.faults.push_back(made.device) : sim.faults.push_back(made);
+  }
   sim.vision.camera = nominal.controller.camera;
   sim.vision.marker = nominal.controller.marker;
   sim.vision.panel = scenario.panel;

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "host_sim/devices/node_rack.hpp"
+#include "host_sim/devices/canopen/node_rack.hpp"
 
 namespace lf::serve {
 

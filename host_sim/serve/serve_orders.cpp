@@ -52,7 +52,10 @@ void make_fault(std::istringstream& words, ServeLoop& loop) {
       fault.node = word;
     }
   }
-  loop.rack().add_fault(scenario::device_fault(fault), loop.simulated());
+  config::Drives drives;
+  for (std::size_t i = 0; i < joint_count; ++i) drives.joints[i].node = loop.rack().node(i).id();
+  drives.output_node = loop.rack().node(devices::NodeRack::io_slot).id();
+  loop.rack().add_fault(scenario::device_fault(fault, drives), loop.simulated());
 }
 
 }  // namespace

@@ -21,15 +21,16 @@ std::unique_ptr<FrameRenderer> make_renderer(const ServeRequest& request, const 
   return std::make_unique<RemoteRenderer>(request.renderer);
 }
 
-// Faults that a scenario may ask for and a real bus does not let us make.
-void say_what_cannot_be(const devices::DevicesConfig& devices, const ServeLoop::Say& say) {
-  for (const devices::DeviceFault& fault : devices.faults) {
+// Faults that a scenario may ask for, but that cannot be made here: on a real bus, or without seeing where the core's mission stands.
+void say_what_cannot_be(const hal::SimConfig& sim, const ServeLoop::Say& say) {
+  bool bus = false;
+  for (const devices::DeviceFault& fault : sim.devices.faults) {
     const bool master = fault.kind == devices::DeviceFaultKind::bus_off && fault.node == can_map::master_node;
-    if (fault.kind == devices::DeviceFaultKind::error_frames || master) {
-      say("the scenario's error frames and bus-off of the master cannot be made on a real bus; they are left out");
-      return;
-    }
+    bus = bus || master || fault.kind == devices::DeviceFaultKind::error_frames || devices::of_a_second_master(fault.kind);
   }
+  if (bus) say("the scenario's error frames, second master and bus-off of the master cannot be made on a real bus; they are left out");
+  if (!sim.faults.empty())
+    say("the scenario's faults of ports, sight, world and orders, and those at a step, happen in `run` only; they are left out");
 }
 
 // The first steps read the program's pages in, which takes milliseconds: a world that nobody sees pays for it.
@@ -45,10 +46,14 @@ void warm_up(const world::WorldConfig& config) {
 
 ServeResult serve(const ServeRequest& request, bool (*stop)()) {
   const ServeLoop::Say say = request.say ? request.say : [](const std::string&) {};
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    if (!request.nodes.has(i)) scenario::check_overheard(request.scenario.drives, i);
+  }
   const scenario::Sample sample = scenario::draw(request.scenario, request.seed);
   const scenario::Nominal nominal = scenario::make_nominal(request.scenario, sample.lamps_lit);
-  const hal::SimConfig sim = scenario::make_truth(request.scenario, sample, nominal, request.render_threads);
-  say_what_cannot_be(sim.devices, say);
+  hal::SimConfig sim = scenario::make_truth(request.scenario, sample, nominal, request.render_threads);
+  for (std::size_t i = 0; i < joint_count; ++i) sim.devices.drives[i].encoder_zero_counts = request.zero_counts[i];
+  say_what_cannot_be(sim, say);
   std::optional<record::RunFolder> folder;
   std::optional<record::CandumpLog> log;
   if (!request.out.empty()) {
@@ -68,7 +73,7 @@ ServeResult serve(const ServeRequest& request, bool (*stop)()) {
   OrderReader orders(request.orders);
   SocketCanLink link(request.can);
   come_first();
-  ServeLoop loop(sim, request.nodes, link, camera ? &*camera : nullptr, say, request.real_zero_counts);
+  ServeLoop loop(sim, request.nodes, link, camera ? &*camera : nullptr, say, request.zero_counts);
   if (log) loop.bus().set_tap([&log](Time t, const CanFrame& frame) { log->write(t, frame); });
   say("serving nodes " + request.nodes.text() + " on " + request.can + ", camera " + request.camera);
 

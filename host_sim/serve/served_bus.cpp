@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "firmware/canopen/cob_id.hpp"
-#include "host_sim/devices/can_bits.hpp"
+#include "host_sim/devices/bus/can_bits.hpp"
 
 namespace lf::serve {
 

@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "host_sim/devices/bus_record.hpp"
-#include "host_sim/devices/node_rack.hpp"
+#include "host_sim/devices/bus/bus_record.hpp"
+#include "host_sim/devices/canopen/node_rack.hpp"
 #include "host_sim/serve/can_link.hpp"
 #include "host_sim/serve/node_set.hpp"
 #include "host_sim/serve/overheard.hpp"

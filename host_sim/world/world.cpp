@@ -11,6 +11,7 @@
 #include "host_sim/world/button_body.hpp"
 #include "host_sim/world/config_check.hpp"
 #include "host_sim/world/contact_sensor.hpp"
+#include "host_sim/world/obstacle.hpp"
 #include "host_sim/world/valve_body.hpp"
 
 namespace lf::world {
@@ -72,6 +73,8 @@ struct World::Impl {
   std::array<ButtonBody, PanelLayout::button_count> buttons;
   ContactSensor sensor;
   std::vector<ContactImpulse> impulses;
+  std::unique_ptr<Obstacle> obstacle;
+  bool handle_is_there = true;
   std::int64_t steps = 0;
 
   explicit Impl(const WorldConfig& from)
@@ -97,6 +100,7 @@ struct World::Impl {
   }
 
   ~Impl() {
+    obstacle.reset();
     for (ButtonBody& button : buttons) button.part().leave(bullet.get());
     valve.part().leave(bullet.get());
     bullet.get().removeCollisionObject(panel.get());
@@ -125,10 +129,11 @@ struct World::Impl {
   }
 
   void step() {
-    enter_or_leave(valve);
+    if (handle_is_there) enter_or_leave(valve);
     for (ButtonBody& button : buttons) enter_or_leave(button);
     const Pose base_from_tool = arm.base_from_tool();
     arm.before_step();
+    if (obstacle) obstacle->before_step();
     if (valve.part().entered()) valve.before_step();
     for (ButtonBody& button : buttons) {
       if (button.part().entered()) button.before_step();
@@ -151,6 +156,16 @@ World& World::operator=(World&&) noexcept = default;
 
 void World::set_drives(const JointDrives& drives) { impl_->arm.set_drives(drives); }
 void World::step() { impl_->step(); }
+void World::break_handle() {
+  impl_->handle_is_there = false;
+  if (impl_->valve.part().entered()) impl_->valve.part().leave(impl_->bullet.get());
+}
+
+void World::push_obstacle() {
+  const Vec3 wrist_m = impl_->arm.base_from_link(std::size_t(BodyId::wrist)).translation();
+  if (!impl_->obstacle) impl_->obstacle = std::make_unique<Obstacle>(impl_->bullet.get(), wrist_m, int(BodyId::panel));
+}
+
 double World::time_s() const { return double(impl_->steps) * impl_->config.step_s; }
 JointReadings World::readings() const { return impl_->arm.readings(); }
 Pose World::base_from_tool() const { return impl_->arm.base_from_tool(); }

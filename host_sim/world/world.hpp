@@ -100,6 +100,11 @@ class World {
   // Advances by `step_s`.
   void step();
 
+  // The handle breaks off: from the next step on it touches nothing, and the valve stays where it is.
+  void break_handle();
+  // From the next step on a box floats up from the wrist's left and pushes against it with 80 N. In contact reports it counts as the panel.
+  void push_obstacle();
+
   double time_s() const;
   // After construction and after each step. motor_position_rad: see drive_rows.hpp for the model of the play.
   JointReadings readings() const;

@@ -55,6 +55,16 @@ struct ProudCluster {
   std::uint32_t points = 0;
 };
 
+// The pointer mark at one end of the handle's bar, which tells the handle's angle from the one half a turn on.
+struct PointerObservation {
+  bool seen = false;
+  Vec3 direction = Vec3::UnitX();  // base frame, unit: along the bar, from its middle to the marked end
+  float confidence = 0;            // 0..1: half the sum of the two readings' evidence
+  // Each -1..1: for the marked end at `angle_rad` of find_handle() (positive), or half a turn on. 0: nothing seen.
+  double still_evidence = 0;  // of the still image's grey levels
+  double cloud_evidence = 0;  // of the laser line's brightness
+};
+
 struct PanelResult {
   static constexpr std::size_t max_clusters = 12;  // a handle, three buttons, the marker plate's edge, and what drifts by
 
@@ -65,6 +75,7 @@ struct PanelResult {
   MarkerObservation marker;
   StaticVector<ProudCluster, max_clusters> clusters;  // largest first
   std::uint32_t clusters_dropped = 0;
+  PointerObservation pointer;
   float confidence = 0;  // 0..1: fit's inlier ratio, marker's margin and ambiguity, and points of the largest cluster; 0 is no answer
 };
 

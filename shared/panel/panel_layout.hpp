@@ -28,6 +28,18 @@ struct PanelLayout {
   double handle_length_m = 0.0966;
   double handle_thickness_m = 0.0126;
   double handle_height_m = 0.100;
+  // The mark that tells one end of the bar from the other: without one a bar looks the same after half a turn. The end that points along the panel's y at
+  // handle angle 0 is painted on all sides over `pointer_length_m`.
+  enum class Pointer : std::uint8_t {
+    none,
+    light_end,  // white on a bar of a middle shade
+    dark_end,   // black on a bar of a middle shade
+  };
+  Pointer pointer = Pointer::light_end;
+  double pointer_length_m = 0.030;  // a third of the bar: 8 px where the camera sees the bar foreshortened most
+  // Between its stops the handle turns from `handle_min_rad`, clockwise, to `handle_max_rad`: +/-105 degrees, so that +/-90 is clear of them.
+  double handle_min_rad = -1.8325957145940461;
+  double handle_max_rad = 1.8325957145940461;
   double stem_radius_m = 0.004;  // thinner than the bar: pads that grip it 10 mm deep stay clear of the stem at 14 degrees of tilt
 
   // Left, centre, right; centres of the caps in panel x and y (base Z 0.451, 0.406, 0.451). At 64 and 137 mm the pressing tool came within 17.9 mm of

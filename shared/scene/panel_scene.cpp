@@ -12,6 +12,8 @@ constexpr Albedo panel_grey{0.62f, 0.64f, 0.64f};
 constexpr Albedo frame_blue{0.10f, 0.22f, 0.38f};
 constexpr Albedo plate_white{0.85f, 0.85f, 0.85f};
 constexpr Albedo handle_yellow{0.85f, 0.62f, 0.08f};
+constexpr Albedo pointer_white{0.85f, 0.85f, 0.85f};
+constexpr Albedo pointer_black{0.05f, 0.05f, 0.05f};
 constexpr Albedo stem_steel{0.45f, 0.46f, 0.48f};
 constexpr Albedo bezel_grey{0.25f, 0.26f, 0.28f};
 constexpr std::array<Albedo, PanelLayout::button_count> cap_colours{Albedo{0.72f, 0.09f, 0.08f}, Albedo{0.09f, 0.48f, 0.14f},
@@ -84,12 +86,29 @@ void add_panel(Body& panel, const PanelLayout& layout) {
   }
 }
 
-void add_handle(Body& handle, const PanelLayout& layout) {
-  Shape bar = shape(ShapeKind::box, Vec3(layout.handle_thickness_m, layout.handle_length_m, layout.handle_thickness_m),
-                    at(0, 0, layout.handle_height_m), handle_yellow);
+// The part of the bar between two places along it.
+Shape bar_part(const PanelLayout& layout, double from_m, double to_m, const Albedo& albedo) {
+  return shape(ShapeKind::box, Vec3(layout.handle_thickness_m, to_m - from_m, layout.handle_thickness_m),
+               at(0, 0.5 * (from_m + to_m), layout.handle_height_m), albedo);
+}
+
+// Paint changes what is seen, not what is touched: with a pointer the bar that collides is not the two parts that are visible.
+void add_bar(Body& handle, const PanelLayout& layout) {
+  const double end_m = 0.5 * layout.handle_length_m;
+  Shape bar = bar_part(layout, -end_m, end_m, handle_yellow);
   bar.friction = bar_friction;
-  const double stem_length = layout.handle_height_m - 0.5 * layout.handle_thickness_m;
+  bar.visible = layout.pointer == PanelLayout::Pointer::none;
   handle.shapes.push_back(bar);
+  if (bar.visible) return;
+  const double edge_m = end_m - layout.pointer_length_m;
+  const Albedo paint = layout.pointer == PanelLayout::Pointer::light_end ? pointer_white : pointer_black;
+  handle.shapes.push_back(decoration(bar_part(layout, -end_m, edge_m, handle_yellow)));
+  handle.shapes.push_back(decoration(bar_part(layout, edge_m, end_m, paint)));
+}
+
+void add_handle(Body& handle, const PanelLayout& layout) {
+  const double stem_length = layout.handle_height_m - 0.5 * layout.handle_thickness_m;
+  add_bar(handle, layout);
   handle.shapes.push_back(shape(ShapeKind::cylinder, Vec3(layout.stem_radius_m, 0, stem_length), at(0, 0, 0.5 * stem_length), stem_steel));
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
@@ -57,8 +58,22 @@ class Bench {
   }
 
   void run(
-      Commissioning& commissioning, const std::function<bool()>& cancelled = [] { return false; }) {
-    hal::run_commissioning(*platform_, commissioning, cancelled, [](std::size_t) {});
+      Commissioning& commissioning, const std::function<bool()>& called_off = [] { return false; }) {
+    while (!commissioning.ended()) {
+      Time now;
+      (void)platform_->wait_for_tick(now);
+      for (hal::ReceivedFrame received; platform_->receive_can(0, received) == hal::port_ok;)
+        commissioning.on_frame(received.frame, received.t);
+      if (called_off()) commissioning.stop("it was called off");
+      canopen::Outbox outbox;
+      commissioning.tick(now, outbox);
+      (void)platform_->send_can(0, {outbox.data(), outbox.size()});
+    }
+  }
+  // Of the true drives, not of what the master was told.
+  bool any_powered() const {
+    const JointDrives drives = platform_->devices().drives();
+    return std::any_of(drives.begin(), drives.end(), [](const JointDrive& drive) { return !drive.released; });
   }
 
   // Half a count is what rounding costs.
@@ -119,6 +134,7 @@ TEST(CommissionedArm, IsWhereTheCoreTakesItToBe) {
   const std::string file = std::filesystem::temp_directory_path() / ("lanternfish_homing_" + std::to_string(getpid()) + ".yaml");
   config::HomingOffsets found;
   found.zero_counts = commissioning.zero_counts();
+  found.known = commissioning.found();
   config::write_homing_file(file, found);
   const config::HomingOffsets read = config::read_homing_file(file);
   std::filesystem::remove(file);
@@ -185,11 +201,11 @@ TEST(CommissioningWithAStuckEncoder, FindsNoZero) {
   Commissioning commissioning(config);
   bench.run(commissioning);
   EXPECT_EQ(commissioning.state(), Commissioning::State::failed);
-  EXPECT_NE(commissioning.failure().find("elbow"), std::string::npos) << commissioning.failure();
+  EXPECT_NE(commissioning.failure().find("elbow"), std::string_view::npos) << commissioning.failure();
   EXPECT_FALSE(commissioning.found()[2]);
 }
 
-TEST(CommissioningCancelled, StopsAndFindsNothing) {
+TEST(CommissioningCalledOff, StopsAndEndsWithoutPower) {
   Bench bench(somewhere);
   Commissioning::Config config = bench.config();
   config.joints = {false, false, true, false, false};
@@ -197,7 +213,9 @@ TEST(CommissioningCancelled, StopsAndFindsNothing) {
   int ticks = 0;
   bench.run(commissioning, [&] { return commissioning.state() == Commissioning::State::seeking && ++ticks > 250; });
   EXPECT_EQ(commissioning.state(), Commissioning::State::failed);
-  EXPECT_EQ(commissioning.failure(), "cancelled");
+  EXPECT_EQ(commissioning.failure(), "it was called off");
+  EXPECT_TRUE(commissioning.without_power());
+  EXPECT_FALSE(bench.any_powered());
   EXPECT_FALSE(commissioning.found()[2]);
   const double stood = bench.angles()[2];
   EXPECT_LT(stood, parked[2] - 0.02) << "it had not begun";
@@ -217,6 +235,23 @@ TEST(CommissioningWithTheEmergencyStopOpen, EndsAndSaysSo) {
   bench.run(commissioning);
   EXPECT_EQ(commissioning.state(), Commissioning::State::failed);
   EXPECT_EQ(commissioning.failure(), "the emergency-stop chain is open");
+  EXPECT_TRUE(commissioning.without_power());
+  EXPECT_FALSE(bench.any_powered());
+}
+
+// A joint that was never commissioned takes no power, whatever is asked of the core.
+TEST(AnArmThatWasNeverCommissioned, TakesNoPower) {
+  Bench bench(somewhere);
+  ControllerConfig config = bench.nominal().controller;
+  config.network.drives[1].zero_known = false;
+  hal::Lockstep<hal::SimPlatform> lockstep(bench.platform(), config, bench.nominal().scan);
+  lockstep.step();
+  for (const Command command : {Command::start, Command::home, Command::jog})
+    EXPECT_FALSE(lockstep.controller().on_command(command, lockstep.now()));
+  for (int i = 0; i < 2000; ++i) {
+    lockstep.step();
+    ASSERT_FALSE(bench.any_powered());
+  }
 }
 
 }  // namespace

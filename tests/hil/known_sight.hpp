@@ -9,11 +9,12 @@
 
 #include "firmware/config.hpp"
 #include "firmware/scan_pipeline.hpp"
+#include "hal/sim/given_sight.hpp"
 #include "hal/sim/sim_platform.hpp"
 
 namespace lf::test {
 
-class KnownSight {
+class KnownSight : public hal::Unattended {
  public:
   // `inner` outlives this. `base_from_panel` is the true pose of the panel.
   KnownSight(hal::SimPlatform& inner, const ControllerConfig& told, const Pose& base_from_panel)
@@ -58,8 +59,6 @@ class KnownSight {
 
 static_assert(hal::Platform<KnownSight>);
 
-// What panel vision would say, without error, of a panel that stands so.
-PanelResult panel_as_it_is(const Pose& base_from_panel, double handle_rad, const PanelLayout& layout, const MarkerCalibration& marker,
-                           const CameraCalibration& camera);
+using hal::panel_as_it_is;
 
 }  // namespace lf::test

@@ -87,6 +87,7 @@ std::string describe(const MissionRun& run) {
             << safety::name(event.reaction);
         break;
       case Event::Kind::located: out << "located, handle at " << deg_from_rad(event.value) << " deg"; break;
+      case Event::Kind::emcy: out << "EMCY " << event.emcy << " of node " << event.code; break;
       case Event::Kind::task_done: out << "task " << int{event.task} << " done: " << event.value; break;
       case Event::Kind::task_failed: out << "task " << int{event.task} << " failed: " << event.value; break;
     }

@@ -48,7 +48,7 @@ TEST_P(Hold, StandsStillForAsLongAsItTakesAndGoesOnFromThere) {
   const auto stood = angles_rad(rig);
   const double valve_rad = rig.world().valve_angle_rad();
   const double grip_n = rig.world().contacts().grip_force_n;
-  rig.run_for(mission::row(moment.step).timeout_s + 2);
+  rig.run_for(mission::row(moment.step).margin_s + 20);
   EXPECT_LT(rig.fastest_joint_rad_s(), standing_rad_s);
   EXPECT_LT(farthest_apart(angles_rad(rig), stood), 0.004) << "it crept";
   EXPECT_NEAR(rig.world().valve_angle_rad(), valve_rad, 0.005);
@@ -130,6 +130,26 @@ TEST(Home, WaitsForTheStart) {
   ASSERT_TRUE(give(rig, Command::start));
   ASSERT_TRUE(rig.run_to_end()) << rig.story();
   EXPECT_EQ(rig.step_now(), Step::done) << rig.story();
+}
+
+TEST(Orders, ThatHaveExpiredAreRefusedButAStopIsObeyed) {
+  Rig rig(press_only());
+  rig.run_for(0.1);
+  mission::Order order;
+  order.command = Command::start;
+  order.expires = rig.now() - Duration::from_ms(1);
+  EXPECT_FALSE(rig.controller().on_order(order, rig.now()));
+  rig.run_for(0.5);
+  EXPECT_EQ(rig.step_now(), Step::idle) << rig.story();
+  order.expires = rig.now() + Duration::from_ms(500);
+  EXPECT_TRUE(rig.controller().on_order(order, rig.now()));
+  rig.run_for(0.1);
+  EXPECT_EQ(rig.step_now(), Step::boot) << rig.story();
+  order.command = Command::emergency_stop;
+  order.expires = rig.now() - Duration::from_s(1);
+  EXPECT_TRUE(rig.controller().on_order(order, rig.now()));
+  rig.run_for(0.1);
+  EXPECT_TRUE(rig.outcome().ended) << rig.story();
 }
 
 TEST(SetTasks, ReplacesTheJob) {
@@ -218,7 +238,7 @@ bool bring_to(Rig& rig, Standing standing) {
       rig.start();
       rig.run_to_end();
       break;
-    case Standing::held:  // an overload holds in free motion
+    case Standing::held:  // an unexpected contact holds in free motion
       rig.start();
       rig.run_to_end();
       break;
@@ -231,9 +251,7 @@ class Standings : public testing::TestWithParam<Standing> {
  protected:
   static Rig::Tell told() {
     if (GetParam() != Standing::held) return {};
-    return [](ControllerConfig& told) {
-      for (safety::JointLimit& joint : told.mission_limits.joints) joint.max_torque_nm = 0.5;
-    };
+    return [](ControllerConfig& told) { told.mission_limits.max_contact_torque_nm = 0.3; };
   }
 };
 

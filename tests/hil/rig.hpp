@@ -10,6 +10,7 @@
 #include "hal/mock/failing_platform.hpp"
 #include "hal/sim/sim_platform.hpp"
 #include "host_sim/scenario/instance.hpp"
+#include "tests/hil/bus_watch.hpp"
 #include "tests/hil/known_sight.hpp"
 
 namespace lf::test {
@@ -46,8 +47,10 @@ class Rig {
   const ArmDescription& arm() const { return arm_; }
   Time now() const { return lockstep_->now(); }
 
-  double fastest_joint_rad_s() const;              // of all five, in truth
-  std::uint32_t count(safety::Fault fault) const;  // events of it
+  BusWatch& bus() { return recorder_.bus; }
+  bool any_power() const { return recorder_.bus.any_power(platform_->devices()); }  // from the drives' side
+  double fastest_joint_rad_s() const;                                               // of all five, in truth
+  std::uint32_t count(safety::Fault fault) const;                                   // events of it
   // How it ended and what happened on the way, for failure messages.
   std::string story();
 
@@ -57,7 +60,9 @@ class Rig {
     void on_telemetry(const Telemetry& telemetry) override {
       for (const Event& event : telemetry.events) events.push_back(event);
     }
+    void on_bus_frame(const devices::BusRecord& record) override { bus.on_frame(record); }
     std::vector<Event> events;
+    BusWatch bus;
   };
 
   Recorder recorder_;

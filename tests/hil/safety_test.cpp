@@ -85,14 +85,16 @@ TEST(EmergencyStopBeforeTheStart, KeepsThePowerOff) {
   rig.devices().set_estop_closed(false);
   rig.start();
   ASSERT_TRUE(rig.run_to_end(60));
-  EXPECT_EQ(rig.step_now(), Step::off) << rig.story();
+  rig.run_for(1);
+  EXPECT_FALSE(rig.any_power()) << rig.story();
+  EXPECT_TRUE(rig.mission().over()) << rig.story();
   EXPECT_EQ(rig.outcome().fault, Fault::estop);
 }
 
 TEST(EmergencyStopWhileHeld, StillStops) {
   Rig rig(turn_only(), 1, [](ControllerConfig& told) {
-    // An overload holds in free motion: what a joint may bear is set below what deploying takes.
-    for (safety::JointLimit& joint : told.mission_limits.joints) joint.max_torque_nm = 0.5;
+    // An unexpected contact holds in free motion: what counts as one is set below what deploying takes.
+    told.mission_limits.max_contact_torque_nm = 0.3;
   });
   rig.start();
   ASSERT_TRUE(rig.run_to_end());
@@ -100,7 +102,7 @@ TEST(EmergencyStopWhileHeld, StillStops) {
   rig.devices().set_estop_closed(false);
   rig.run_for(stop_time_s);
   EXPECT_EQ(rig.step_now(), Step::stopped);
-  EXPECT_EQ(rig.outcome().fault, Fault::overload) << "the first fault is the one that ended the mission";
+  EXPECT_EQ(rig.outcome().fault, Fault::unexpected_contact) << "the first fault is the one that ended the mission";
 }
 
 class Abort : public testing::TestWithParam<Moment> {};
@@ -239,7 +241,7 @@ TEST(LostFrames, OfTwoCyclesChangeNothing) {
   EXPECT_EQ(rig.step_now(), Step::done) << rig.story();
 }
 
-TEST(OutputNode, LostWhileTurningLetsGoAndStows) {
+TEST(OutputNode, LostWhileTurningStopsAndKeepsTheHandle) {
   std::vector<std::string> overrides = turn_only();
   double at_s = 0;
   {
@@ -251,9 +253,12 @@ TEST(OutputNode, LostWhileTurningLetsGoAndStows) {
   Rig rig(overrides);
   rig.start();
   ASSERT_TRUE(rig.run_to_end()) << rig.story();
-  EXPECT_EQ(rig.step_now(), Step::failed) << rig.story();
+  EXPECT_LT(rig.now().s() - at_s, 0.03) << "an emergency stop cannot be read any more";
+  EXPECT_EQ(rig.step_now(), Step::stopped) << rig.story();
   EXPECT_EQ(rig.outcome().fault, Fault::io_lost);
-  EXPECT_LT(rig.world().contacts().grip_force_n, 1);
+  rig.run_for(2);
+  EXPECT_GT(rig.world().contacts().grip_force_n, 10);
+  EXPECT_FALSE(rig.any_power());
 }
 
 TEST(Interlock, OpenInTheScanIsTriedAgainAndThenGivenUp) {
@@ -392,7 +397,7 @@ TEST(AfterTheEnd, AFaultIsCountedAndTheOutcomeStays) {
   EXPECT_EQ(rig.outcome().fault, Fault::count);
 }
 
-TEST(AfterTheEnd, ByAQuickStopTheDrivesThatHoldAreWatchedOn) {
+TEST(AfterTheEnd, ByAQuickStopTheNodesAreWatchedOn) {
   Rig rig(turn_only());
   ASSERT_TRUE(reach(rig, free_motion)) << rig.story();
   rig.devices().set_estop_closed(false);

@@ -45,7 +45,7 @@ TEST(Turn, ThatStallsIsLetGoLookedAtAndTakenUpAgain) {
 
 TEST(Turn, OfAHandleThatIsStuckIsTriedThreeTimesAndEndsStowed) {
   std::vector<std::string> overrides = turn_only();
-  overrides.push_back("valve.friction_nm=20");
+  overrides.emplace_back("valve.friction_nm=20");
   Rig rig(overrides);
   const double before_rad = rig.world().valve_angle_rad();
   rig.start();

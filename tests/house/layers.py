@@ -35,6 +35,7 @@ LAYERS = {
     "host_sim/record/": ["host_sim/record/", "hal/vision/", "firmware/", "shared/"],
     "host_sim/scenario/": ["hal/config/", "host_sim/scenario/", "host_sim/world/", "host_sim/optics/", "host_sim/devices/", "hal/sim/sim_config.hpp",
                            "hal/vision/", "firmware/", "shared/"],
+    "host_sim/judge/": ["host_sim/judge/", "host_sim/scenario/", "host_sim/world/", "host_sim/devices/", "hal/config/", "hal/sim/", "firmware/", "shared/"],
     "host_sim/serve/": ["host_sim/serve/", "host_sim/scenario/", "host_sim/record/", "host_sim/world/", "host_sim/optics/", "host_sim/devices/",
                         "hal/sim/", "hal/vehicle/", "hal/ports.hpp", "firmware/", "shared/"],
     "host_sim/app/": ["host_sim/", "hal/", "firmware/", "shared/", "tests/bench/"],
@@ -47,6 +48,10 @@ OWNERS = {
     r"^apriltag": ["hal/vision/", "host_sim/optics/"],
     r"^opencv2/": ["hal/vision/", "host_sim/record/", "host_sim/optics/", "host_sim/app/"],
     r"^linux/|^sys/socket|^net/": ["hal/vehicle/", "host_sim/serve/v4l2_target"],
+    # POSIX beside those: the vehicle's side, the desktop program's processes and terminal, the one file of shared memory, and the one that has to reach the disk.
+    r"^(unistd|fcntl|poll|sched|pthread|pwd|grp|termios|dirent|dlfcn|ifaddrs|syslog|signal)\.h$|^csignal$|^sys/|^netinet/|^arpa/":
+        ["hal/vehicle/", "host_sim/app/", "host_sim/serve/come_first", "host_sim/serve/serve_orders", "host_sim/serve/v4l2_target", "shared/frame_ring/mapped_file",
+         "hal/config/homing_file", "host_sim/record/folder_in_writing"],  # fsync, flock
     r"^kdl/": [],
 }
 

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Makes a root folder with nothing but Debian's essential packages and what the given .deb files depend on: clean_root.py ROOT DEB...
+"""Makes a root folder with nothing but Debian's essential packages and what the given .deb files depend on.
+
+Usage: clean_root.py ROOT [--with PACKAGE]... DEB...    --with: this package of the machine's, too, and what it depends on
 
 The packages' files are copied from this machine, where all of them are installed since the programs were built here; nothing is downloaded. A library
 that a program needs and its package does not depend on is therefore missing in ROOT, as it would be on a user's machine.
@@ -90,7 +92,12 @@ def main():
     root = pathlib.Path(sys.argv[1])
     packages, providers = installed()
     wanted, ours = [], set()
-    for deb in sys.argv[2:]:
+    debs = sys.argv[2:]
+    while "--with" in debs:
+        at = debs.index("--with")
+        wanted.append([debs[at + 1]])
+        del debs[at:at + 2]
+    for deb in debs:
         fields = next(stanzas(subprocess.run(["dpkg-deb", "-f", deb], capture_output=True, text=True, check=True).stdout))[0]
         ours.add(fields["Package"])
         wanted += names(fields.get("Depends", ""))

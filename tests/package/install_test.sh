@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Packs the build, installs the packages in a clean root, and uses them there. Usage: install_test.sh BUILD_DIR WORK_DIR
-# Exit status 77 when this machine permits no new root.
+# Packs the build, installs the packages in clean roots, and uses them there. Usage: install_test.sh BUILD_DIR WORK_DIR
+# The daemon's package is installed without the simulator's, and upgraded while its service runs. Exit status 77 when this machine permits no new root.
 set -euo pipefail
 build=$1
 work=$2
@@ -14,23 +14,73 @@ if [ "${3:-}" != inside ]; then
 fi
 
 rm -rf "$work"
-mkdir -p "$work/debs" "$work/root"
+mkdir -p "$work/debs"
 cpack -G DEB --config "$build/CPackConfig.cmake" -B "$work/debs" >"$work/cpack.log" 2>&1 || { cat "$work/cpack.log"; exit 1; }
-debs=("$work"/debs/*.deb)
-for deb in "${debs[@]}"; do
+for deb in "$work"/debs/*.deb; do
   dpkg-deb -f "$deb" Package Version Architecture Depends Installed-Size
 done
-/usr/bin/python3 "$here/clean_root.py" "$work/root" "${debs[@]}"
+common=$(echo "$work"/debs/lanternfish-common_*.deb) desktop=$(echo "$work"/debs/lanternfish_*.deb) daemon=$(echo "$work"/debs/lanternfishd_*.deb)
 
-root=$work/root
-mount --rbind /dev "$root/dev"
-mount --rbind /proc "$root/proc"
-mount -t tmpfs tmpfs "$root/tmp"
+# clean_root DEB...: $root, with what they depend on and nothing else, and the packages installed in it.
+clean_root() {
+  root=$work/root
+  mkdir -p "$root"
+  /usr/bin/python3 "$here/clean_root.py" "$root" "$@"
+  mount --rbind /dev "$root/dev"
+  mount --rbind /proc "$root/proc"
+  mount -t tmpfs tmpfs "$root/tmp"
+  in_root ldconfig
+  dpkg --root="$root" -i "$@"
+}
 in_root() { env -i PATH=/usr/sbin:/usr/bin HOME=/root LC_ALL=C.UTF-8 chroot "$root" "$@"; }
-in_root ldconfig
-dpkg --root="$root" -i "${debs[@]}"
+# remove PACKAGE...: nothing of theirs is left, and the root is gone.
+remove() {
+  dpkg --root="$root" --purge "$@"
+  local left
+  left=$(find "$root/usr" "$root/etc" -path '*lanternfish*' -print)
+  [ -z "$left" ] || { echo "left behind: $left"; exit 1; }
+  umount -l "$root/tmp" "$root/proc" "$root/dev"
+  rm -rf "$root"
+}
+
+if [ -e "$daemon" ]; then
+  echo "--- lanternfishd, without the simulator"
+  clean_root "$common" "$daemon"
+  for file in usr/bin/lanternfish 'usr/lib/*/libembree3.so*' 'usr/lib/*/libBulletDynamics*'; do
+    [ -z "$(compgen -G "$root/$file")" ] || { echo "the daemon's package brings the simulator's $file"; exit 1; }
+  done
+  in_root lanternfishd --help >/dev/null
+  # The files are valid; that this machine has no CAN interface is status 3.
+  for file in /etc/lanternfish/vehicle.yaml /usr/share/lanternfish/vehicle/vcan.yaml; do
+    in_root lanternfishd --config "$file" --check || [ $? = 3 ]
+  done
+  in_root getent passwd lanternfish
+  for file in usr/lib/systemd/system/lanternfishd.service usr/lib/systemd/system/lanternfish-can.service usr/lib/udev/rules.d/70-lanternfishd.rules \
+              usr/lib/lanternfish/lanternfish-can etc/lanternfish/lanternfish-can.conf; do
+    [ -s "$root/$file" ] || { echo "not installed: /$file"; exit 1; }
+  done
+
+  grep -q '^ExecStart=/usr/bin/lanternfishd ' "$root/usr/lib/systemd/system/lanternfishd.service" || { echo "the unit names another program than the package's"; exit 1; }
+
+  echo "--- upgrade while the service runs"
+  # A systemctl that writes down what it is told; the service is active.
+  mkdir -p "$root/run/systemd/system"
+  printf '#!/bin/sh\necho "$*" >>/run/told\n' >"$root/usr/bin/systemctl"
+  chmod 755 "$root/usr/bin/systemctl"
+  ln -sf /bin/true "$root/usr/bin/udevadm"
+  dpkg --root="$root" -i "$daemon"
+  told=$(tr '\n' ';' <"$root/run/told")
+  [[ $told == *"stop lanternfishd.service"*"start lanternfishd.service"* ]] || { echo "an upgrade leaves the old program running: $told"; exit 1; }
+  # It was not running: it is not started.
+  printf '#!/bin/sh\necho "$*" >>/run/told\ncase "$*" in *is-active*) exit 3 ;; esac\n' >"$root/usr/bin/systemctl"
+  rm "$root/run/told"
+  dpkg --root="$root" -i "$daemon"
+  ! grep -qE '(^| )(re)?start' "$root/run/told" || { echo "an upgrade starts a daemon that did not run"; cat "$root/run/told"; exit 1; }
+  remove lanternfishd lanternfish-common
+fi
 
 echo "--- lanternfish"
+clean_root "$common" "$desktop"
 in_root lanternfish version
 in_root lanternfish doctor
 in_root lanternfish scenarios
@@ -39,21 +89,5 @@ for file in result.json report.html cloud.pcd can0.log; do
   [ -s "$root/tmp/run/$file" ] || { echo "the run left no $file"; exit 1; }
 done
 gzip -t "$root"/usr/share/man/man?/lanternfish*.gz
-if [ -e "$root/usr/bin/lanternfishd" ]; then
-  echo "--- lanternfishd"
-  in_root lanternfishd --help >/dev/null
-  in_root lanternfishd --config /etc/lanternfish/vehicle.yaml --check
-  in_root lanternfishd --config /usr/share/lanternfish/vehicle/vcan.yaml --check
-  in_root getent passwd lanternfish
-  for file in lib/systemd/system/lanternfishd.service lib/udev/rules.d/70-lanternfishd.rules; do
-    [ -s "$root/usr/$file" ] || { echo "not installed: /usr/$file"; exit 1; }
-  done
-fi
-
-echo "--- removal"
-dpkg --root="$root" --purge lanternfishd lanternfish
-left=$(find "$root/usr" "$root/etc" -path '*lanternfish*' -print)
-[ -z "$left" ] || { echo "left behind: $left"; exit 1; }
-echo "installed, used and removed"
-umount -l "$root/tmp" "$root/proc" "$root/dev"
-rm -rf "$root"
+remove lanternfish lanternfish-common
+echo "installed, used, upgraded and removed"

@@ -23,7 +23,7 @@ class CanCardTest : public ::testing::Test {
   void SetUp() override {
     const char* guest = std::getenv("LANTERNFISH_GUEST");
     if (guest == nullptr || std::string(guest) != "qemu") GTEST_SKIP() << "no CAN cards here: run it through ctest -L qemu";
-    ASSERT_TRUE(shell("ip link set can0 txqueuelen 1000"));
+    ASSERT_TRUE(shell("ip link set can0 txqueuelen 32"));
   }
 
   static SocketCan::Config config() {

@@ -18,8 +18,10 @@ from rig import expect  # noqa: E402
 SECONDS = 2.0  # of motion
 READING_S = 3600  # more than the guest's clock ever jumps while programs are read, however slow this machine is
 rig.ANSWER_S = READING_S  # the daemon reads its program while it answers
-rig.LATE_MS = 0.2  # on a clock that counts instructions, what is later than this waited for a file of this machine
 
+# On a clock that counts instructions nothing outside makes the loop late, so a late wake-up is a failure like another. Measured: p99.9 and worst
+# 11 us each, of 760 ticks (2026-11-22). Each bound can fail without the other: 1 tick in 760 is more than p99.9 leaves out.
+WAKE_UP_P999_US, WAKE_UP_MAX_US = 50, 200
 
 def loop(programs):
     folder = pathlib.Path("/tmp/rig")
@@ -52,7 +54,13 @@ def loop(programs):
     expect(not after["counters"]["can"], f"on the bus: {after['counters']['can']}")
     # Every SYNC is answered by six nodes; heartbeats come besides. A status is up to 0.1 s old at either end.
     expect(received >= 6 * (ticks - 1), f"{received} frames for {ticks} ticks of six nodes")
-    expect(latency["wake_up_us"]["p999"] <= 200, f"woken up {latency['wake_up_us']['p999']:.0f} us late (p99.9)")
+    judge_wake_ups(latency["wake_up_us"])
 
 
-rig.main(loop)
+def judge_wake_ups(wake_up):
+    expect(wake_up["p999"] <= WAKE_UP_P999_US, f"woken up {wake_up['p999']:.0f} us late (p99.9)")
+    expect(wake_up["max"] <= WAKE_UP_MAX_US, f"woken up {wake_up['max']:.0f} us late (worst)")
+
+
+if __name__ == "__main__":
+    rig.main(loop)

@@ -85,11 +85,40 @@ void pass(S& s, canopen::Identity& v) {
   pass_all(s, vendor, product);
 }
 template <class S>
+void pass(S& s, canopen::Ratio& v) {
+  auto& [num, den] = v;
+  pass_all(s, num, den);
+}
+template <class S>
+void pass(S& s, canopen::DriveScale& v) {
+  auto& [position, speed, acceleration, torque, sign] = v;
+  pass_all(s, position, speed, acceleration, torque, sign);
+}
+template <class S>
+void pass(S& s, canopen::BootStep& v) {
+  auto& [index, sub, width, action, value, literal, mask, optional] = v;
+  pass_all(s, index, sub, width, action, value, literal, mask, optional);
+}
+template <class S>
+void pass(S& s, canopen::Absence& v) {
+  auto& [what, by, index, sub] = v;
+  pass_all(s, what, by, index, sub);
+}
+template <class S>
+void pass(S& s, canopen::DriveProfile& v) {
+  auto& [scale, rated_unit, rated, guarded, torque_offset, waits, times_following, brake_opens, brake_closes, quick_stop_fallback,
+         abort_fallback, objects, absences] = v;
+  pass_all(s, scale, rated_unit, rated, guarded, torque_offset, waits, times_following, brake_opens, brake_closes, quick_stop_fallback,
+           abort_fallback, objects, absences);
+}
+template <class S>
 void pass(S& s, canopen::DriveSetup& v) {
-  auto& [node, identity, min_counts, max_counts, drive_margin, max_torque, max_speed, motor_speed, quick_stop, window, timeout,
-         quick_stop_option, abort_option, encoder_zero, homing_method, home_offset, homing_speed, homing_accel, homing_timeout] = v;
-  pass_all(s, node, identity, min_counts, max_counts, drive_margin, max_torque, max_speed, motor_speed, quick_stop, window, timeout,
-           quick_stop_option, abort_option, encoder_zero, homing_method, home_offset, homing_speed, homing_accel, homing_timeout);
+  auto& [node, identity, profile, min_counts, max_counts, drive_margin, max_torque, max_speed, motor_speed, quick_stop, window, timeout,
+         quick_stop_option, abort_option, encoder_zero, zero_known, homing_method, home_offset, homing_speed, homing_accel,
+         homing_timeout] = v;
+  pass_all(s, node, identity, profile, min_counts, max_counts, drive_margin, max_torque, max_speed, motor_speed, quick_stop, window,
+           timeout, quick_stop_option, abort_option, encoder_zero, zero_known, homing_method, home_offset, homing_speed, homing_accel,
+           homing_timeout);
 }
 template <class S>
 void pass(S& s, canopen::IoSetup& v) {
@@ -128,10 +157,12 @@ void pass(S& s, mission::Task& v) {
 }
 template <class S>
 void pass(S& s, PanelLayout& v) {
-  auto& [x, y, z, plate_min, plate_max, plate_thickness, handle_length, handle_thickness, handle_height, stem, buttons, button_width,
-         button_height, button_stroke, marker_id, marker_size, marker_plate, marker_thickness, marker_centre] = v;
-  pass_all(s, x, y, z, plate_min, plate_max, plate_thickness, handle_length, handle_thickness, handle_height, stem, buttons, button_width,
-           button_height, button_stroke, marker_id, marker_size, marker_plate, marker_thickness, marker_centre);
+  auto& [x, y, z, plate_min, plate_max, plate_thickness, handle_length, handle_thickness, handle_height, pointer, pointer_length,
+         handle_min, handle_max, stem, buttons, button_width, button_height, button_stroke, marker_id, marker_size, marker_plate,
+         marker_thickness, marker_centre] = v;
+  pass_all(s, x, y, z, plate_min, plate_max, plate_thickness, handle_length, handle_thickness, handle_height, pointer, pointer_length,
+           handle_min, handle_max, stem, buttons, button_width, button_height, button_stroke, marker_id, marker_size, marker_plate,
+           marker_thickness, marker_centre);
 }
 template <class S>
 void pass(S& s, mission::MissionConfig& v) {
@@ -180,9 +211,14 @@ void pass(S& s, ProudCluster& v) {
   pass_all(s, centroid, axis, length, width, height, height_max, points);
 }
 template <class S>
+void pass(S& s, PointerObservation& v) {
+  auto& [seen, direction, confidence, still_evidence, cloud_evidence] = v;
+  pass_all(s, seen, direction, confidence, still_evidence, cloud_evidence);
+}
+template <class S>
 void pass(S& s, PanelResult& v) {
-  auto& [id, measured, answered, fit, marker, clusters, dropped, confidence] = v;
-  pass_all(s, id, measured, answered, fit, marker, clusters, dropped, confidence);
+  auto& [id, measured, answered, fit, marker, clusters, dropped, pointer, confidence] = v;
+  pass_all(s, id, measured, answered, fit, marker, clusters, dropped, pointer, confidence);
 }
 
 // What goes to it.

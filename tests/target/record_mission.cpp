@@ -31,7 +31,7 @@ class Writer : public RecordStream {
 };
 
 // A platform that notes what passes.
-class Recording {
+class Recording : public hal::Unattended {
  public:
   explicit Recording(KnownSight& inner) : inner_(inner) {}
   RecordedTick tick;
@@ -102,7 +102,7 @@ int record(const char* path) {
     for (ScanStats stats; rings->scan_stats.pop(stats);)
       if (!platform.tick.stats.push_back(stats)) std::abort();
     for (const ScanStats& stats : platform.tick.stats) rings->scan_stats.push(stats);
-    hal::control_turn(platform, *controller, *rings, out, now, probe);
+    (void)hal::control_turn(platform, *controller, *rings, out, now, probe);
     for (const ScanCommand& order : out.scan)
       if (!platform.tick.orders.push_back(order)) std::abort();
     hal::vision_turn(platform, *pipeline, *rings, probe, [](Port, hal::PortStatus) { std::abort(); });

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "shared/geometry/pose.hpp"
+#include "shared/random.hpp"
 
 // On a board, big objects go to its external memory (toolchain/cortex_m7/mps2_an500.ld).
 #ifdef __arm__
@@ -20,10 +21,9 @@ class SameRandom {
  public:
   explicit SameRandom(std::uint64_t seed) : state_(seed) {}
   std::uint64_t bits() {
-    std::uint64_t z = (state_ += 0x9E3779B97F4A7C15u);
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
-    return z ^ (z >> 31);
+    const std::uint64_t drawn = splitmix64(state_);
+    state_ += splitmix64_step;
+    return drawn;
   }
   // 0 to n - 1.
   std::int32_t below(std::int32_t n) { return static_cast<std::int32_t>(bits() % static_cast<std::uint32_t>(n)); }

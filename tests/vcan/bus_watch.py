@@ -52,6 +52,20 @@ class Ear:
         self.socket.send(struct.pack("=IB3x8s", identifier, len(data), data))
 
 
+class GapWatch:
+    """The longest silence between two SYNCs, or two answers of the first drive, on an interface. Call poll() often."""
+
+    def __init__(self, interface):
+        self.ear = Ear(interface, [0x080, 0x181])
+        self.last = {}
+        self.gap_s = 0.0
+
+    def poll(self):
+        for t, identifier, _ in self.ear.frames():
+            self.gap_s = max(self.gap_s, t - self.last.get(identifier, t))
+            self.last[identifier] = t
+
+
 class BusWatch:
     """Collects what the drives say, and the controlwords that they are sent. Call poll() often."""
 
@@ -126,6 +140,11 @@ class BusWatch:
             if recent and max(recent) - min(recent) > counts:
                 return True
         return False
+
+    def longest_gap_s(self):
+        """The longest silence of the SYNCs, or of a drive that had begun to answer them."""
+        series = [self.syncs] + [[s.t for s in samples] for samples in self.samples.values()]
+        return max((later - earlier for times in series for earlier, later in zip(times, times[1:])), default=0.0)
 
     def forget(self):
         for record in (*self.samples.values(), *self.heartbeats.values(), *self.controlwords.values(), self.syncs):

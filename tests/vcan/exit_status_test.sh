@@ -10,7 +10,12 @@ ends() {
   local wanted=$1 status=0
   shift
   "$runners/with_vcan.sh" --time-limit 600 "$@" || status=$?
-  [ "$status" -ne 3 ] || exit 3
+  if [ "$status" -eq 3 ]; then
+    # Where CI=true, a guest has to boot.
+    [ "${CI:-}" != true ] || exit 1
+    echo "skipped: no guest on this machine"
+    exit 77
+  fi
   [ "$status" -eq "$wanted" ] || { echo "'$*' ended with $status, not with $wanted" >&2; exit 1; }
   [ -z "$(ls -A "$TMPDIR")" ] || { echo "'$*' left $(ls "$TMPDIR")" >&2; exit 1; }
 }

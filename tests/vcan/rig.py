@@ -21,11 +21,27 @@ import bus_watch
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
-LATE_MS = 4.0  # a SYNC period: what comes later than that came too late
+FAILED, TOO_LATE = 1, 75  # exit statuses, for toolchain/guests/keeping_time.py
+
+# What the core stops for when the machine stands still, and for how long it has to: three SYNC periods without a position, less the one that is there
+# anyway; 0.2 s without an image, less the two frame periods that may pass.
+STALLS_MS = {"stale position": 8.0, "output node lost": 8.0, "camera silent": 120.0}
+BY_SILENCE = ("stale position", "output node lost")
 
 
 class Failed(Exception):
-    pass
+    """A function failed: no machine excuses it."""
+
+
+class TooLate(Exception):
+    """Right, but too late: `missed_ms` is how much longer the test would have had to wait."""
+
+    def __init__(self, message, missed_ms):
+        super().__init__(message)
+        self.missed_ms = missed_ms
+
+
+LATE = []  # (what, ms) of the limits that were missed while the test went on
 
 
 def expect(condition, message):
@@ -33,15 +49,35 @@ def expect(condition, message):
         raise Failed(message)
 
 
+def expect_in_time(what, took_s, limit_s):
+    """Notes a missed limit and goes on, so that a function that fails later is still seen."""
+    if took_s > limit_s:
+        LATE.append((f"{what} after {1e3 * took_s:.0f} ms, {1e3 * limit_s:.0f} ms are allowed", 1e3 * (took_s - limit_s)))
+
+
 def wait_for(what, condition, limit_s, poll_s=0.02):
-    """The first true value of condition(); Failed after limit_s."""
+    """The first true value of condition(); TooLate after limit_s. A machine that stands still for two SYNC periods explains the lack of it: the core then stops the
+    arm for a stale position, and what is waited for never comes."""
     end = time.monotonic() + limit_s
     while True:
         value = condition()
         if value:
             return value
-        expect(time.monotonic() < end, f"{what}: not within {limit_s:g} s")
+        if time.monotonic() >= end:
+            raise TooLate(f"{what}: not within {limit_s:g} s", STALLS_MS["stale position"])
         time.sleep(poll_s)
+
+
+def expect_not_stopped(status, gap_s, message):
+    """The mission was not ended or held by a fault. Where its fault is one that a machine makes by standing still, and the listener on the bus (`gap_s`, its
+    longest silence) saw that, too, it is TooLate."""
+    if status["standing"] in ("working", "ready") or status.get("success"):
+        return
+    reason = status.get("failure", {}).get("reason")
+    stall_ms = STALLS_MS.get(reason)
+    if stall_ms is not None and (reason not in BY_SILENCE or 1e3 * gap_s >= stall_ms):
+        raise TooLate(f"{message}: {status['standing']} ({reason}); the bus was silent for {1e3 * gap_s:.1f} ms", stall_ms)
+    raise Failed(f"{message}: {status['standing']} ({status.get('failure')})")
 
 
 def shell(command):
@@ -50,7 +86,6 @@ def shell(command):
 
 ANSWER_S = 5  # an answer of the daemon may take
 PROCESSES = []  # of programs under test
-LATEST = {}  # the control thread's wake-ups in the last status of each daemon: process -> ms
 
 
 def start(arguments, output):
@@ -63,9 +98,6 @@ def stage():
     """Leaves no program, rule or queue behind."""
     try:
         yield
-    except Exception:
-        time.sleep(1.1)  # the sea says once a second how late it was
-        raise
     finally:
         for process in PROCESSES:
             if process.poll() is None:
@@ -111,9 +143,7 @@ class Daemon:
 
     def status(self):
         expect(self.process.poll() is None, f"the daemon ended ({self.process.returncode}):\n{self.text()}")
-        status = self.ask("status")
-        LATEST[self.process.pid] = 1e-3 * status["latency"]["wake_up_us"]["max"]
-        return status
+        return self.ask("status")
 
     def wait_ready(self, limit_s=20):
         """Seconds from its start until it answers."""
@@ -236,32 +266,35 @@ class Rig:
         self.watch.poll()
 
 
-def out_of_time():
-    """Why it may have been the machine that failed: what was not done in real time, besides the programs under test."""
-    reasons = [f"the control thread was woken up {late_ms:.1f} ms late" for late_ms in LATEST.values() if late_ms > LATE_MS]
-    for sea in pathlib.Path("/tmp/rig").glob("*/sea.err"):
-        late_ms = [float(number) for number in re.findall(r"not in real time: .* up to ([0-9.]+) ms", sea.read_text())]
-        reasons += [f"the simulated sea was {max(late_ms):.1f} ms late"] if late_ms else []
-    for result in pathlib.Path("/tmp/rig").glob("*/out/result.json"):
-        camera = json.loads(result.read_text())["camera"]
-        if camera and camera["not_rendered"] > 0.1 * camera["exposures"]:
-            reasons.append(f"the simulated camera could not make {camera['not_rendered']} of {camera['exposures']} pictures in time")
-    return reasons
+def verdict(test):
+    """(exit status, messages, by how many ms limits were missed) of test(). Function comes before time: a late test with a wrong result is wrong."""
+    LATE.clear()
+    missed, messages, status = [], [], 0
+    try:
+        test()
+    except TooLate as late:
+        status, messages, missed = TOO_LATE, [str(late)], [late.missed_ms]
+    except Exception as failure:  # pylint: disable=broad-except  # a socket's time-out is a failure like another
+        if not isinstance(failure, Failed):
+            traceback.print_exc()
+        status, messages = FAILED, [str(failure)]
+    if LATE:
+        status = status or TOO_LATE
+        messages += [what for what, _ in LATE]
+        missed += [ms for _, ms in LATE]
+    return status, messages, max(missed, default=0.0)
 
 
 def main(test):
-    """Runs test(programs); says why it failed and what the programs said, and leaves what speaks for them in LANTERNFISH_GUEST_OUT (keeping_time.py)."""
+    """Runs test(programs), says why it failed and what the programs said, and ends with a status that tells function from time (keeping_time.py)."""
     if len(sys.argv) < 2:
         sys.exit(f"usage: {sys.argv[0]} FOLDER_OF_PROGRAMS")
-    try:
-        test(sys.argv[1])
-    except Exception as failure:  # pylint: disable=broad-except  # a socket's time-out is a failure like another
-        print(f"FAILED: {failure}", file=sys.stderr)
-        if not isinstance(failure, Failed):
-            traceback.print_exc()
-        time.sleep(1.1)
-        for log in sorted(pathlib.Path("/tmp/rig").glob("*/*.out")) + sorted(pathlib.Path("/tmp/rig").glob("*/*.err")):
-            print(f"--- {log}\n{log.read_text()[-3000:]}", file=sys.stderr)
-        if out := os.environ.get("LANTERNFISH_GUEST_OUT"):
-            (pathlib.Path(out) / "out_of_time").write_text("".join(reason + "\n" for reason in out_of_time()))
-        sys.exit(1)
+    status, messages, missed = verdict(lambda: test(sys.argv[1]))
+    if status == 0:
+        return
+    print("".join(f"{'FAILED' if status == FAILED else 'TOO LATE'}: {message}\n" for message in messages), file=sys.stderr)
+    for log in sorted(pathlib.Path("/tmp/rig").glob("*/*.out")) + sorted(pathlib.Path("/tmp/rig").glob("*/*.err")):
+        print(f"--- {log}\n{log.read_text()[-3000:]}", file=sys.stderr)
+    if out := os.environ.get("LANTERNFISH_GUEST_OUT"):
+        (pathlib.Path(out) / "missed_ms").write_text(f"{missed:.1f}\n")
+    sys.exit(status)

@@ -86,12 +86,15 @@ TEST_F(SocketCanTest, CarriesEveryKindOfFrameUnchangedAndInOrder) {
   EXPECT_EQ(other.stats().received, sent.size());
 }
 
-TEST_F(SocketCanTest, TheCoresFiltersLetThroughItsNodesAnswersAndNothingElse) {
+TEST_F(SocketCanTest, TheCoresFiltersLetThroughItsNodesAnswersAndWhatAMasterSends) {
   SocketCan can(config(core_filters()));
   ASSERT_EQ(can.open(), port_ok);
   RawPeer peer(bus);
   std::set<std::uint32_t> expected{0x000, 0x080, 0x77F};
-  for (std::uint32_t node = 1; node <= 6; ++node) expected.insert({0x080 + node, 0x180 + node, 0x580 + node, 0x700 + node});
+  for (std::uint32_t node = 1; node <= 6; ++node) {
+    expected.insert({0x080 + node, 0x180 + node, 0x580 + node, 0x700 + node});
+    expected.insert({0x200 + node, 0x300 + node, 0x400 + node, 0x500 + node, 0x600 + node});  // a second master's
+  }
   std::set<std::uint32_t> heard;
   for (std::uint32_t id = 0; id <= 0x7FF; ++id) {
     ASSERT_TRUE(peer.send(id));

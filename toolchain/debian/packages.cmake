@@ -1,6 +1,7 @@
-# Two Debian packages from one build: `cpack -G DEB --config build/release/CPackConfig.cmake -B build/packages`.
+# Three Debian packages from one build: `cpack -G DEB --config build/release/CPackConfig.cmake -B build/packages`. docs/installing.md is for their users.
 #
-# lanternfish: the desktop program and the files both programs read. lanternfishd: the vehicle's program, with its unit, udev rule and configuration.
+# lanternfish-common: the files both programs read (arm, limits, CAN map). lanternfish: the simulator. lanternfishd: the vehicle's program, with its units,
+# udev rule and configuration; it needs no simulator.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_VENDOR "Lanternfish developers")
 set(CPACK_PACKAGE_CONTACT "Lanternfish developers <lanternfish@invalid>")
@@ -8,7 +9,7 @@ set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
-set(CPACK_COMPONENTS_ALL lanternfish)
+set(CPACK_COMPONENTS_ALL lanternfish-common lanternfish)
 if(TARGET lanternfishd)
   list(APPEND CPACK_COMPONENTS_ALL lanternfishd)
 endif()
@@ -18,7 +19,12 @@ set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 
+set(CPACK_DEBIAN_LANTERNFISH-COMMON_PACKAGE_NAME lanternfish-common)
+set(CPACK_DEBIAN_LANTERNFISH-COMMON_PACKAGE_ARCHITECTURE all)
+set(CPACK_COMPONENT_LANTERNFISH-COMMON_DESCRIPTION "arm, limits and CAN map of an underwater robot that works on panels
+ The files that the simulator and the vehicle's control program both read.")
 set(CPACK_DEBIAN_LANTERNFISH_PACKAGE_NAME lanternfish)
+set(CPACK_DEBIAN_LANTERNFISH_PACKAGE_DEPENDS "lanternfish-common (= ${PROJECT_VERSION})")
 set(CPACK_COMPONENT_LANTERNFISH_DESCRIPTION "simulator of an underwater robot that works on panels
  Flies the robot's own control core against simulated physics, drives and camera:
  missions, campaigns, and each stage of the perception on its own.
@@ -27,8 +33,8 @@ set(CPACK_DEBIAN_LANTERNFISHD_PACKAGE_NAME lanternfishd)
 set(CPACK_COMPONENT_LANTERNFISHD_DESCRIPTION "control program of an underwater robot that works on panels
  Runs the control core against CANopen drives on SocketCAN and a V4L2 camera, in
  real time. Installing it starts nothing: set /etc/lanternfish/vehicle.yaml first.")
-# The arm, the limits and the CAN map of both are one set of files.
-set(CPACK_DEBIAN_LANTERNFISHD_PACKAGE_DEPENDS "lanternfish (= ${PROJECT_VERSION}), passwd")
+# iproute2 moves the CAN interface into the service's network namespace.
+set(CPACK_DEBIAN_LANTERNFISHD_PACKAGE_DEPENDS "lanternfish-common (= ${PROJECT_VERSION}), passwd, iproute2")
 set(CPACK_DEBIAN_LANTERNFISHD_PACKAGE_SUGGESTS "can-utils")
 set(CPACK_DEBIAN_LANTERNFISHD_PACKAGE_CONTROL_EXTRA
   ${CMAKE_CURRENT_LIST_DIR}/postinst ${CMAKE_CURRENT_LIST_DIR}/prerm ${CMAKE_CURRENT_LIST_DIR}/postrm ${CMAKE_CURRENT_LIST_DIR}/conffiles)
@@ -55,6 +61,10 @@ if(TARGET lanternfishd)
   install_packed(${CMAKE_SOURCE_DIR}/docs/man/lanternfishd.8 share/man/man8 lanternfishd.8 lanternfishd)
   install_packed(${CMAKE_SOURCE_DIR}/docs/man/lanternfish-vehicle.5 share/man/man5 lanternfish-vehicle.5 lanternfishd)
   install(FILES ${CMAKE_SOURCE_DIR}/shared/vehicle/vehicle.yaml DESTINATION /etc/lanternfish COMPONENT lanternfishd)
+  # The pages that the configuration and the units point to.
+  foreach(page operating installing security)
+    install(FILES ${CMAKE_SOURCE_DIR}/docs/${page}.md DESTINATION share/doc/lanternfishd COMPONENT lanternfishd)
+  endforeach()
 endif()
 
 include(CPack)

@@ -35,7 +35,7 @@ class Reader : public RecordStream {
 };
 
 // Gives what was recorded, and compares what the controller answers.
-class Replay {
+class Replay : public hal::Unattended {
  public:
   explicit Replay(Reader& reader) : reader_(reader) {}
 
@@ -163,7 +163,7 @@ int run() {
   controller.on_command(Command::start, now);
   do {
     platform.load(rings);
-    hal::control_turn(platform, controller, rings, out, now, turns);
+    (void)hal::control_turn(platform, controller, rings, out, now, turns);
     platform.check_orders(rings);
   } while (!platform.last());
 

@@ -181,15 +181,33 @@ TEST_F(BadInput, ADiskThatFillsUpDuringARunLeavesWhatWasWritten) {
   ASSERT_EQ(std::system(command.c_str()), 0);
   EXPECT_EQ(text_of(folder() / "status"), "3\n");
   const std::string said = text_of(folder() / "err");
-  EXPECT_THAT(said, StartsWith("lanternfish: disk/run/"));
+  EXPECT_THAT(said, StartsWith("lanternfish: disk/run"));
   EXPECT_THAT(said, HasSubstr("No space left on device; what was recorded before is kept"));
   EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
+  const std::string out = text_of(folder() / "out");
+  EXPECT_THAT(out, HasSubstr("FAILED in record: "));
+  EXPECT_THAT(out, ::testing::Not(HasSubstr("SUCCESS")));
+  EXPECT_THAT(out, ::testing::Not(HasSubstr("report:")));
   const std::string log = text_of(folder() / "kept" / "can0.log");
   EXPECT_GT(log.size(), 50'000u);
   EXPECT_THAT(log, ::testing::MatchesRegex("\\([0-9.]+\\) can0 .*"));
   for (const auto& entry : std::filesystem::directory_iterator(folder() / "kept")) {
     EXPECT_NE(entry.path().extension(), ".partial") << entry.path();
   }
+}
+
+TEST_F(BadInput, ADiskThatFillsUpEndsACampaignWithItsCauseAndWithoutATable) {
+  std::filesystem::create_directory(folder() / "disk");
+  const std::string in_namespace = "unshare --user --map-root-user --mount sh -c ";
+  const std::string mount = "mount -t tmpfs -o size=96k none '" + (folder() / "disk").string() + "'";
+  if (std::system((in_namespace + "\"" + mount + "\" 2>/dev/null").c_str()) != 0) GTEST_SKIP() << "no file system can be mounted here";
+  const std::string run =
+      LANTERNFISH_PROGRAM " campaign default --seeds 1-3 --jobs 1 --set time_limit_s=2 --out disk/c >out 2>err; echo \\$? >status";
+  ASSERT_EQ(std::system(("cd '" + folder().string() + "' && " + in_namespace + "\"" + mount + " && { " + run + "; }\"").c_str()), 0);
+  EXPECT_EQ(text_of(folder() / "status"), "3\n");
+  EXPECT_THAT(text_of(folder() / "err"), HasSubstr("No space left on device"));
+  EXPECT_THAT(text_of(folder() / "out"), ::testing::Not(HasSubstr("nan")));
+  EXPECT_THAT(text_of(folder() / "out"), ::testing::Not(HasSubstr("succeeded")));
 }
 
 TEST_F(BadInput, LimitsThatAreNotThoseOfTheirChecksumAreNamedWithTheRightOne) {

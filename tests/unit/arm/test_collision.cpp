@@ -88,6 +88,36 @@ TEST(LinkCapsules, ContainTheUrdfsCollisionShapes) {
   }
 }
 
+// The links that can meet, as the header lists them: forearm, wrist and fingers against the slew, wrist and fingers against the upper arm. Points along one
+// capsule's axis are held against the other's.
+TEST(ClearanceToItself, IsWhatSamplingFindsBetweenLinksThatAreNotNeighbours) {
+  SCOPED_TRACE(testing::Message() << "seed " << seed);
+  RandomJoints random(seed);
+  int near = 0, overlapping = 0;
+  for (int k = 0; k < 300; ++k) {
+    // Also where the joints' limits do not let the arm go: within them it never comes as near to itself as 50 mm.
+    const JointVector q(random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(-3, 3));
+    const LinkCapsules capsules = link_capsules(q, random.uniform(0, 1));
+    double least = 1e9;
+    for (const Capsule& a : capsules) {
+      for (const Capsule& b : capsules) {
+        if (!((a.link == 1 && b.link >= 3) || (a.link == 2 && b.link >= 4))) continue;
+        const auto to_axis = [&](const Vec3& p) {
+          const Vec3 way = b.b_m - b.a_m;
+          const double along = way.squaredNorm() > 0 ? std::clamp(way.dot(p - b.a_m) / way.squaredNorm(), 0.0, 1.0) : 0;
+          return (p - b.a_m - way * along).norm();
+        };
+        least = std::min(least, sampled(a, to_axis) - b.radius_m);
+      }
+    }
+    ASSERT_NEAR(clearance_to_itself(capsules), least, 2e-3) << q.transpose();
+    near += least < 0.05 ? 1 : 0;
+    overlapping += least < 0 ? 1 : 0;
+  }
+  EXPECT_GT(near, 20) << "poses near enough to matter";
+  EXPECT_GT(overlapping, 5);
+}
+
 TEST(ClearanceToItself, IsPositiveInEveryPoseOfTheMission) {
   for (const JointVector& q :
        {JointVector(0, 0.60, 1.90, 0), JointVector(0, 1.307, 1.151, 1.5), JointVector(0, 1.083, 1.355, 0), JointVector(0, 1.414, 1.425, 0),

@@ -47,6 +47,17 @@ class GripperRun {
   double torque_ = 0;
 };
 
+TEST(JawOpening, LeavesTheSameRoomBesideABarOfAnyThickness) {
+  for (const double bar_m : {thinnest_bar_m, 0.0126, 0.022, 0.050}) {
+    const double room_m = (jaw_opening_m(bar_m) - bar_m) / 2;
+    EXPECT_NEAR(room_m, 0.024, 1e-12) << bar_m;
+    EXPECT_NEAR(gap_from_jaw(jaw_from_gap(jaw_opening_m(bar_m))), jaw_opening_m(bar_m), 1e-9) << "within the jaw's stroke";
+  }
+  EXPECT_NEAR(jaw_opening_m(thickest_bar_m()), gap_from_jaw(1.3377), 1e-9);
+  EXPECT_LE(jaw_opening_m(1), gap_from_jaw(1.3377)) << "no further than the jaw opens";
+  EXPECT_GT(thinnest_bar_m, gap_from_jaw(-0.05816) + 0.004) << "told from a closed jaw";
+}
+
 // The pads of the URDF's fingers, corner by corner in the wrist's frame.
 TEST(JawGeometry, GapIsTheDistanceBetweenThePadsOfTheUrdf) {
   for (const double q : {-0.05, 0.0, 0.1, 0.4, 0.9, 1.3}) {

@@ -4,11 +4,11 @@
 #include <functional>
 #include <memory>
 
-#include "host_sim/devices/drive402.hpp"
+#include "host_sim/devices/drive/drive402.hpp"
 #include "host_sim/devices/io_node.hpp"
 #include "shared/arm/arm_description.hpp"
 #include "tests/unit/can_map/eds_file.hpp"
-#include "tests/unit/devices/client.hpp"
+#include "tests/unit/devices/canopen/client.hpp"
 
 namespace lf::test {
 namespace {

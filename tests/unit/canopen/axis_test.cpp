@@ -99,6 +99,7 @@ TEST_F(AxisTest, AJointMovedByHandWhileDisabledDoesNotJumpBackWhenEnabled) {
   bus.step(2);
   ASSERT_TRUE(enable(axis()));
   bus.step(20);
+  ASSERT_GE(drive().targets_while_enabled.size(), 20u);
   for (const std::int32_t target : drive().targets_while_enabled) EXPECT_EQ(target, 30'000);
 }
 
@@ -108,6 +109,7 @@ TEST_F(AxisTest, FollowsTargetsNoFasterThanTheMaximumSpeed) {
   ASSERT_TRUE(axis().set_target_counts(2000));
   bus.step(60);
   EXPECT_EQ(axis().actual_counts(), 2000);
+  ASSERT_GE(drive().targets_while_enabled.size(), 25u) << "1000 counts at 40 a cycle";
   std::int32_t last = 1000;
   for (const std::int32_t target : drive().targets_while_enabled) {
     EXPECT_LE(target - last, 41);  // 10,000 counts/s in 4 ms, and one for rounding
@@ -391,6 +393,89 @@ TEST_F(AxisTest, HomingRunsInItsModeAndEndsDisabledInCyclicMode) {
   EXPECT_EQ(elbow().target_counts(), -77);
 }
 
+TEST_F(AxisTest, AHomedZeroSurvivesABootThatTheMasterCauses) {
+  elbow().request(AxisRequest::home);
+  ASSERT_TRUE(bus.run_until([&] { return elbow().homed(); }, Duration::from_ms(1400)));
+  ASSERT_TRUE(bus.boot());
+  EXPECT_TRUE(elbow().homed());
+}
+
+// A drive that lost its power lost its zero, whenever that happened.
+TEST_F(AxisTest, AHomedZeroDoesNotSurviveAPowerCycleAfterAFailedBoot) {
+  elbow().request(AxisRequest::home);
+  ASSERT_TRUE(bus.run_until([&] { return elbow().homed(); }, Duration::from_ms(1400)));
+  bus.nodes[0].dead = true;
+  ASSERT_FALSE(bus.boot());
+  elbow_drive().reboot();
+  bus.step(20);
+  bus.nodes[0].dead = false;
+  ASSERT_TRUE(bus.boot());
+  EXPECT_FALSE(elbow().homed());
+}
+
+TEST_F(AxisTest, ADriveThatWasSilentMayHaveBeenWithoutPower) {
+  elbow().request(AxisRequest::home);
+  ASSERT_TRUE(bus.run_until([&] { return elbow().homed(); }, Duration::from_ms(1400)));
+  elbow_drive().dead = true;
+  bus.step(120);
+  elbow_drive().dead = false;
+  ASSERT_TRUE(bus.boot());
+  EXPECT_FALSE(elbow().homed());
+}
+
+TEST_F(AxisTest, TargetsStandStillUntilTheBrakeIsOpen) {
+  NetworkConfig braked = config();
+  braked.drives[0].profile.brake_opens = Duration::from_ms(200);
+  Bus slow(braked);
+  ASSERT_TRUE(slow.boot());
+  Axis& slew = slow.network.axis(Joint::slew);
+  slew.request(AxisRequest::hold_enabled);
+  ASSERT_TRUE(slow.run_until([&] { return slew.drive_state() == DriveState::operation_enabled; }, Duration::from_ms(400)));
+  const Time powered = slow.now;
+  EXPECT_FALSE(slew.enabled());
+  EXPECT_FALSE(slew.set_target_counts(1100));
+  ASSERT_TRUE(slow.run_until([&] { return slew.enabled(); }, Duration::from_ms(400)));
+  EXPECT_NEAR((slow.now - powered).s(), 0.2, 0.01);
+  EXPECT_TRUE(slew.set_target_counts(1100));
+}
+
+TEST_F(AxisTest, PositionsAndTorquesAreInTheDrivesUnitsOnTheBusAndInTheArmsInside) {
+  NetworkConfig other = config();
+  other.drives[0].profile.scale.position = {225, 4};
+  other.drives[0].profile.scale.torque = {1092, 1000};
+  other.drives[0].profile.scale.sign = -1;
+  other.drives[0].encoder_zero_counts = 100;
+  Bus changed(other);
+  ASSERT_TRUE(changed.boot());
+  changed.nodes[0].actual_counts = -56'250;
+  changed.nodes[0].torque_permille = -546;
+  changed.step(3);
+  Axis& slew = changed.network.axis(Joint::slew);
+  EXPECT_EQ(slew.actual_counts(), 900);
+  EXPECT_EQ(slew.torque_permille(), 500);
+  slew.request(AxisRequest::hold_enabled);
+  ASSERT_TRUE(changed.run_until([&] { return slew.enabled(); }, Duration::from_ms(500)));
+  ASSERT_TRUE(slew.set_target_counts(910));
+  changed.step(3);
+  EXPECT_EQ(changed.nodes[0].targets_while_enabled.back(), -56'813);  // (910 + 100) x 56.25, halves away from zero
+}
+
+TEST_F(AxisTest, TheMasterTimesTheFollowingErrorOfADriveThatDoesNot) {
+  for (const bool times : {false, true}) {
+    NetworkConfig other = config();
+    other.drives[0].profile.master_times_following = times;
+    Bus changed(other);
+    ASSERT_TRUE(changed.boot());
+    Axis& slew = changed.network.axis(Joint::slew);
+    slew.request(AxisRequest::hold_enabled);
+    ASSERT_TRUE(changed.run_until([&] { return slew.enabled(); }, Duration::from_ms(500)));
+    changed.nodes[0].jammed = true;
+    ASSERT_TRUE(slew.set_target_counts(3000));
+    changed.step(200);
+    EXPECT_EQ(slew.fault(), times ? AxisFault::following_error : AxisFault::none);
+  }
+}
+
 TEST_F(AxisTest, StatusBitsOfAnEarlierHomingAreNotTakenForThisOne) {
   elbow_drive().homing_cycles = 100;  // the script shows "attained" until the start bit arrives
   elbow().request(AxisRequest::home);
@@ -427,6 +512,7 @@ TEST_F(AxisTest, AHomingThatIsInterruptedReturnsToCyclicModeBeforeMoving) {
   ASSERT_TRUE(enable(elbow()));
   EXPECT_EQ(elbow_drive().object(0x6061, 0), 8u);
   EXPECT_FALSE(elbow().homed());
+  ASSERT_FALSE(elbow_drive().targets_while_enabled.empty());
   for (const std::int32_t target : elbow_drive().targets_while_enabled) EXPECT_EQ(target, 1000);
 }
 

@@ -45,7 +45,7 @@ TEST(Boot, AHealthyBusIsBootedWithinASecondAndOperational) {
     EXPECT_STREQ(node.device_name.data(), "A scripted node with a long name");
   }
   EXPECT_EQ(report.nodes[0].device_type, 0x00020192u);
-  EXPECT_EQ(bus.network.axis(Joint::slew).rated_torque_mnm(), 12'000u);
+  EXPECT_EQ(bus.network.axis(Joint::slew).rated_torque_unm(), 12'000'000u);
   EXPECT_EQ(bus.network.stats().refused_total(), 0u);
   for (const ScriptedNode& node : bus.nodes) EXPECT_EQ(node.nmt(), 5);
 }
@@ -120,12 +120,15 @@ TEST(Boot, EveryObjectHoldsItsConfiguredValue) {
 
 TEST(Boot, PdosAreMappedInTheOrderOfTheStandardWithEveryWriteReadBack) {
   Bus bus(full_config());
+  bus.nodes[elbow].set_object(0x1600, 0, 2, 1);
+  for (const std::uint8_t entry : {1, 2, 3}) bus.nodes[elbow].set_object(0x1600, entry, 0x60FF0020, 4);
+  bus.nodes[elbow].set_object(0x1400, 2, 255, 1);
   ASSERT_TRUE(bus.boot());
   const auto& log = bus.nodes[elbow].sdo_log;
-  const std::vector<std::string> expected{
-      "r 1400:01", "w 1400:01", "r 1400:01", "w 1600:00", "r 1600:00", "w 1600:01", "r 1600:01", "w 1600:02", "r 1600:02",
-      "w 1600:03", "r 1600:03", "w 1600:00", "r 1600:00", "w 1400:02", "r 1400:02", "w 1400:01", "r 1400:01",
-  };
+  std::vector<std::string> expected;
+  for (const char* object : {"1400:01", "1600:00", "1600:01", "1600:02", "1600:03", "1600:00", "1400:02", "1400:01"}) {
+    for (const char* access : {"r ", "w ", "r "}) expected.push_back(std::string(access) + object);
+  }
   EXPECT_NE(std::search(log.begin(), log.end(), expected.begin(), expected.end()), log.end());
   for (std::size_t i = 0; i < log.size(); ++i) {
     if (log[i][0] != 'w') continue;
@@ -134,6 +137,46 @@ TEST(Boot, PdosAreMappedInTheOrderOfTheStandardWithEveryWriteReadBack) {
     ASSERT_LT(i + 1, log.size());
     EXPECT_EQ(log[i + 1], read);
   }
+}
+
+// Writing what stands there already wears out memory on some drives, and a read-only object that holds the right value is no reason to stop.
+TEST(Boot, WhatHoldsItsValueIsNotWritten) {
+  Bus bus(full_config());
+  ASSERT_TRUE(bus.boot());
+  ASSERT_TRUE(bus.boot());
+  for (const std::string& entry : bus.nodes[elbow].sdo_log) {
+    const bool mapping = entry[2] == '1' && (entry[3] == '4' || entry[3] == '6' || entry[3] == '8' || entry[3] == 'A');
+    if (entry[0] == 'w' && !mapping) {
+      EXPECT_EQ(entry, "w 6060:00");
+    }
+  }
+}
+
+TEST(Boot, ANodeThatRestartsBetweenItsStartAndItsFirstDataIsStartedAgain) {
+  Bus bus(full_config());
+  bus.nodes[elbow].mute_tpdo = true;
+  bus.network.start_boot(bus.now);
+  ASSERT_TRUE(bus.run_until([&] { return bus.nodes[elbow].nmt() == 5; }, Duration::from_ms(3000)));
+  bus.nodes[elbow].reboot();
+  bus.nodes[elbow].mute_tpdo = false;
+  EXPECT_TRUE(bus.run_until([&] { return bus.network.operational(); }, Duration::from_ms(5000)));
+  EXPECT_EQ(bus.nodes[elbow].nmt(), 5);
+  EXPECT_EQ(bus.network.axis(Joint::elbow).state(), AxisState::disabled);
+}
+
+TEST(Boot, AGuardedDriveGetsGuardRequestsAndNoHeartbeat) {
+  NetworkConfig config = full_config();
+  config.drives[elbow].profile.guarded = true;
+  Bus bus(config);
+  bus.nodes[elbow].set_object(0x100C, 0, 0, 2);
+  bus.nodes[elbow].set_object(0x100D, 0, 0, 1);
+  bus.nodes[elbow].remove_object(0x1016, 1);
+  bus.network.start_boot(bus.now);
+  bus.step(400);
+  EXPECT_EQ(bus.nodes[elbow].object(0x100C, 0), 100u);
+  EXPECT_EQ(bus.nodes[elbow].object(0x100D, 0), 3u);
+  EXPECT_EQ(bus.nodes[elbow].object(0x1017, 0), 0u);
+  EXPECT_GE(std::count_if(bus.log.begin(), bus.log.end(), [](const CanFrame& f) { return f.id == (CanFrame::remote_flag | 0x703u); }), 3);
 }
 
 TEST(Boot, NodesAreConfiguredAtTheSameTimeAndStartedTogether) {
@@ -253,7 +296,6 @@ TEST(Boot, AnyWriteThatDoesNotTakeIsFoundByReadingBack) {
   EXPECT_GE(written.size(), 20u);
   for (const std::uint16_t index : written) {
     Bus bus(full_config());
-    if (index == 0x60C2) bus.nodes[elbow].set_object(0x60C2, 2, 0xFC, 1);  // the default would be right by chance
     if (index == 0x1600 || index == 0x1A00) bus.nodes[elbow].set_object(index, 0, 5, 1);
     bus.nodes[elbow].trick = Trick{Trick::What::ignore_write, -1, index, 0, 1};
     ASSERT_FALSE(bus.boot()) << std::hex << index;

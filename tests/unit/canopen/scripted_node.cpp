@@ -166,8 +166,9 @@ void ScriptedNode::on_sync() {
   if (!ignores_controlword) latch_controlword(u16_at(rpdo, 0));
   run_homing();
   if (state_ != 0x27 || mode_ != 8) return;
-  actual_counts = static_cast<std::int32_t>(u32_at(rpdo, 2));
-  targets_while_enabled.push_back(actual_counts);
+  const auto target = static_cast<std::int32_t>(u32_at(rpdo, 2));
+  if (!jammed) actual_counts = target;
+  targets_while_enabled.push_back(target);
 }
 
 void ScriptedNode::send_tpdo() {
@@ -417,6 +418,7 @@ NetworkConfig plain_config() {
     drive.max_speed_counts_s = 10'000;
     drive.following_window_counts = 500;
     drive.following_timeout_ms = 60;
+    drive.quick_stop_option = 6;  // the harder case: the drive keeps its power
   }
   return config;
 }

@@ -54,6 +54,7 @@ class ScriptedNode {
   bool ignores_controlword = false;
   bool ignores_mode = false;  // 6061 does not follow
   bool refuses_reset = false;
+  bool jammed = false;    // does not follow its targets
   int homing_cycles = 5;  // SYNCs that a homing takes
   bool homing_fails = false;
   std::optional<Trick> trick;

@@ -32,6 +32,9 @@ TEST(Setup, EachImpossibleNumberIsNamedWithItsNode) {
       {[](NetworkConfig& c) { c.drives[0].max_torque_permille = 0; }, ConfigError::torque, 0},
       {[](NetworkConfig& c) { c.drives[4].following_window_counts = 0; }, ConfigError::following, 4},
       {[](NetworkConfig& c) { c.drives[4].homing_method = -4; }, ConfigError::homing, 4},
+      {[](NetworkConfig& c) { c.drives[1].profile.scale.speed.num = 0; }, ConfigError::profile, 1},
+      {[](NetworkConfig& c) { c.drives[1].profile.scale.sign = 0; }, ConfigError::profile, 1},
+      {[](NetworkConfig& c) { c.drives[1].profile.scale.speed.num = 1'000'000'000; }, ConfigError::profile, 1},
       {[](NetworkConfig& c) { c.sync_period = Duration::from_ns(4'000'001); }, ConfigError::sync_period, joint_count},
       {[](NetworkConfig& c) { c.sync_period = Duration::from_ms(200); }, ConfigError::sync_period, joint_count},
       {[](NetworkConfig& c) { c.sync_period = Duration{}; }, ConfigError::sync_period, joint_count},
@@ -70,6 +73,14 @@ TEST(Setup, InterpolationPeriodIsValueTimesPowerOfTen) {
     std::int8_t exponent = 0;
     ASSERT_TRUE(interpolation_period(Duration::from_us(us), value, exponent)) << us;
     EXPECT_NEAR(value * std::pow(10.0, exponent), static_cast<double>(us) * 1e-6, 1e-15);
+  }
+  // Many drives take no exponent but -3.
+  for (const std::int64_t ms : {1, 4, 10, 20, 100, 255}) {
+    std::uint8_t in_ms = 0;
+    std::int8_t power = 0;
+    ASSERT_TRUE(interpolation_period(Duration::from_ms(ms), in_ms, power));
+    EXPECT_EQ(in_ms, ms);
+    EXPECT_EQ(power, -3);
   }
   std::uint8_t value = 0;
   std::int8_t exponent = 0;

@@ -8,7 +8,7 @@
 #include <random>
 
 #include "shared/input_error.hpp"
-#include "tests/unit/devices/drive_rig.hpp"
+#include "tests/unit/devices/drive/drive_rig.hpp"
 
 namespace lf::devices::test {
 namespace {

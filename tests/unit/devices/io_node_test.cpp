@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "shared/can/can_map.hpp"
-#include "tests/unit/devices/client.hpp"
+#include "tests/unit/devices/canopen/client.hpp"
 
 namespace lf::devices::test {
 namespace {

@@ -54,19 +54,30 @@ TEST(BarTurn, EndsAtTheAngleAndTheOtherJointsStay) {
   EXPECT_EQ(end.head<3>(), start.q.head<3>());
 }
 
-// The wrist's turn differs from the handle's as over a universal joint: tan(wrist) = tan(handle) cos(tilt) or its inverse, so at 8 degrees of tilt by
-// at most half of sin^2(tilt / 2) x 2, which is 0.28 degrees each way.
+// Seen along the tool's axis, the bar turns by another angle than about the panel's normal, as over a universal joint. The wrist follows what is seen there:
+// the angle between the bar's projections on the plane across the tool.
 TEST(BarTurn, FollowsTheUniversalJointNotTheProportion) {
   const Grasp start = grasp(0, 1.5);
   BarTurn turn;
   ASSERT_TRUE(turn.plan(start.q, start.base_from_panel, 0, 1.5, {}, -pi, pi));
-  double worst = 0;
-  for (double t = 0; t <= turn.duration_s(); t += 0.02) {
-    const double wrist = std::abs(turn.sample(t)[3] - start.q[3]);
-    worst = std::max(worst, std::abs(wrist - turn.handle_rad(t)));
+  const Vec3 tool = arm::base_from_tool(start.q).linear().col(2);
+  const auto seen = [&](double handle) {
+    const Vec3 bar = start.base_from_panel * Vec3(-std::sin(handle), std::cos(handle), 0);
+    return Vec3(bar - tool * tool.dot(bar));
+  };
+  double most = 0;
+  int samples = 0;
+  for (double t = 0; t <= turn.duration_s(); t += 0.02, ++samples) {
+    const double wrist = turn.sample(t)[3] - start.q[3], handle = turn.handle_rad(t);
+    const Vec3 from = seen(0), to = seen(handle);
+    EXPECT_NEAR(wrist, std::atan2(tool.dot(from.cross(to)), from.dot(to)), 1e-9) << "at " << t << " s";
+    most = std::max(most, std::abs(std::abs(wrist) - handle));
   }
-  EXPECT_LT(deg_from_rad(worst), 1.2);
-  EXPECT_GT(deg_from_rad(worst), 0.1);
+  EXPECT_GT(samples, 20);
+  // tan(wrist) = tan(handle) / cos(tilt) parts from the proportion by asin((1 - cos tilt) / (1 + cos tilt)) at most, and reaches it between 0 and 90 degrees.
+  const double cos_tilt = std::abs(tool.dot(start.base_from_panel.col(2)));
+  EXPECT_LE(most, std::asin((1 - cos_tilt) / (1 + cos_tilt)) + 1e-9);
+  EXPECT_GT(most, 0.5 * std::asin((1 - cos_tilt) / (1 + cos_tilt)));
 }
 
 TEST(BarTurn, RefusesATurnThatLeavesTheWristsLimits) {

@@ -42,11 +42,11 @@ std::string steps_drawing() {
 
 std::string steps_table() {
   std::ostringstream out;
-  out << "| step | stage | phase | time-out (s) | tried again from |\n|---|---|---|---|---|\n";
+  out << "| step | stage | phase | times out after its plan and (s) | tried again from |\n|---|---|---|---|---|\n";
   for (std::size_t i = 0; i < static_cast<std::size_t>(Step::done); ++i) {
     const StepRow& step = row(static_cast<Step>(i));
     out << "| " << step.name << " | " << step.stage << " | " << safety::name(step.phase) << " | ";
-    if (step.timeout_s > 0) out << step.timeout_s;
+    if (step.margin_s > 0) out << step.margin_s;
     out << " | " << (step.on_retry == Step::count ? "" : row(step.on_retry).name) << " |\n";
   }
   return out.str();

@@ -59,6 +59,14 @@ TEST(Limits, ImpossibleOnesAreRefusedEvenWhenSigned) {
   EXPECT_EQ(check(limits), LimitsVerdict::not_positive);
 }
 
+TEST(Limits, AnExcursionIsTheFarthestOfTheThreeAxes) {
+  const Limits limits = good_limits();  // x and y -0.5 to 0.5, z -0.5 to 1.0
+  EXPECT_EQ(workspace_excursion_m(limits, {0, 0, 0}), 0);
+  EXPECT_EQ(workspace_excursion_m(limits, {0.5, -0.5, 1.0}), 0);
+  EXPECT_NEAR(workspace_excursion_m(limits, {0.6, -0.8, 1.1}), 0.3, 1e-12);
+  EXPECT_GT(workspace_excursion_m(limits, {std::numeric_limits<double>::quiet_NaN(), 0, 0}), 1e9);
+}
+
 TEST(Limits, AMissionMayTightenEachButWidenNone) {
   const Limits outer = good_limits();
   EXPECT_TRUE(is_tighter(outer, outer));

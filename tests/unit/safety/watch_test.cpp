@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
 #include "tests/unit/canopen/scripted_node.hpp"
 
 namespace lf::safety {
@@ -17,6 +19,7 @@ class WatchTest : public testing::Test {
     for (JointLimit& joint : limits.joints) joint = {-1, 1, 100, 100};
     limits.workspace_min_m = {-9, -9, -9};
     limits.workspace_max_m = {9, 9, 9};
+    limits.stale_position_s = 0.012;
     return limits;
   }
 
@@ -27,9 +30,9 @@ class WatchTest : public testing::Test {
       bus.step();
       watch.observe(bus.network, {rad, 0, 0, 0, 0}, bus.now);
       EXPECT_TRUE(watch.joints().valid);
-      FaultReports reports;
-      watch.check(bus.network, Vec3::Zero(), true, bus.now, reports);
-      for (const FaultReport& report : reports) began += report.fault == Fault::joint_limit && report.code == 0;
+      FaultArbiter reports;
+      watch.check(bus.network, Vec3::Zero(), Vigilance::joints, bus.now, reports);
+      for (const FaultReport& report : reports.reports()) began += report.fault == Fault::joint_limit && report.code == 0;
     }
     return began;
   }
@@ -51,7 +54,7 @@ TEST_F(WatchTest, NamesAJointBeyondItsLimitOnce) {
 TEST_F(WatchTest, BearsAJointThatComesBackAndNoneThatGoesOn) {
   bus.step();
   watch.observe(bus.network, {1.2, 0, 0, 0, 0}, bus.now);
-  watch.bear_outside(true);
+  watch.tolerate_excursion(true);
   EXPECT_EQ(faults_at(1.2), 0);
   EXPECT_EQ(faults_at(1.207), 0) << "noise";
   EXPECT_EQ(faults_at(1.1), 0);
@@ -64,10 +67,174 @@ TEST_F(WatchTest, BearsAJointThatComesBackAndNoneThatGoesOn) {
 TEST_F(WatchTest, BearsNothingOnceTheLimitsAreTheLimitsAgain) {
   bus.step();
   watch.observe(bus.network, {-1.05, 0, 0, 0, 0}, bus.now);
-  watch.bear_outside(true);
+  watch.tolerate_excursion(true);
   EXPECT_EQ(faults_at(-1.05), 0);
-  watch.bear_outside(false);
+  watch.tolerate_excursion(false);
   EXPECT_EQ(faults_at(-1.05), 1);
+}
+
+// ---- every limit trips ----
+
+class EachLimit : public testing::Test {
+ protected:
+  void SetUp() override { ASSERT_TRUE(bus.boot()); }
+
+  static Limits loose() {
+    Limits limits;
+    for (JointLimit& joint : limits.joints) joint = {-1, 1, 100, 100};
+    limits.workspace_min_m = {-1, -1, -1};
+    limits.workspace_max_m = {1, 1, 1};
+    limits.stale_position_s = 0.012;
+    return limits;
+  }
+
+  // How often `fault` begins within some cycles under these limits. Joint 2 turns at `speed_rad_s`, from 0.
+  int begins(const Limits& limits, Fault fault, double speed_rad_s = 0, const Vec3& tool_m = Vec3::Zero(), int cycles = 60) {
+    Watch watch{limits};
+    int began = 0;
+    double rad = 0;
+    for (int i = 0; i < cycles; ++i) {
+      bus.step();
+      rad += speed_rad_s * 0.004;
+      watch.observe(bus.network, {0, 0, rad, 0, 0}, bus.now);
+      FaultArbiter reports;
+      watch.check(bus.network, tool_m, Vigilance::joints, bus.now, reports);
+      for (const FaultReport& report : reports.reports()) began += report.fault == fault;
+    }
+    return began;
+  }
+
+  canopen::test::Bus bus{canopen::test::plain_config()};
+};
+
+TEST_F(EachLimit, OfSpeed) {
+  Limits limits = loose();
+  EXPECT_EQ(begins(limits, Fault::overspeed, 0.5), 0);
+  limits.joints[2].max_speed_rad_s = 0.35;
+  EXPECT_EQ(begins(limits, Fault::overspeed, 0.5), 1);
+}
+
+TEST_F(EachLimit, OfTorque) {
+  Limits limits = loose();
+  bus.nodes[2].torque_permille = 500;
+  EXPECT_EQ(begins(limits, Fault::overload), 0);
+  limits.joints[2].max_torque_nm = 0.4e-3 * bus.network.axis(Joint::elbow).rated_torque_unm() * 1e-3;
+  EXPECT_EQ(begins(limits, Fault::overload), 1);
+}
+
+TEST_F(EachLimit, OfPosition) {
+  Limits limits = loose();
+  EXPECT_EQ(begins(limits, Fault::joint_limit, 0.5), 0);
+  limits.joints[2].max_rad = 0.05;
+  EXPECT_EQ(begins(limits, Fault::joint_limit, 0.5), 1);
+  limits = loose();
+  limits.joints[2].min_rad = -0.05;
+  EXPECT_EQ(begins(limits, Fault::joint_limit, -0.5), 1);
+}
+
+TEST_F(EachLimit, OfTheWorkspaceOnEverySide) {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double side : {-1.0, 1.0}) {
+      Vec3 tool_m = Vec3::Zero();
+      tool_m[axis] = side * 0.9;
+      EXPECT_EQ(begins(loose(), Fault::workspace, 0, tool_m), 0);
+      tool_m[axis] = side * 1.01;
+      EXPECT_EQ(begins(loose(), Fault::workspace, 0, tool_m), 1);
+    }
+  }
+}
+
+// Two cycles without process data are borne at three cycles' limit, and a fault at one cycle's: a mission may tighten it.
+TEST_F(EachLimit, OfAPositionsAge) {
+  const auto with_a_gap = [this](double stale_s) {
+    Limits limits = loose();
+    limits.stale_position_s = stale_s;
+    Watch watch{limits};
+    int began = 0;
+    for (int i = 0; i < 30; ++i) {
+      bus.nodes[2].mute_tpdo = i >= 10 && i < 12;
+      bus.step();
+      watch.observe(bus.network, {}, bus.now);
+      FaultArbiter reports;
+      watch.check(bus.network, Vec3::Zero(), Vigilance::joints, bus.now, reports);
+      for (const FaultReport& report : reports.reports()) began += report.fault == Fault::stale_position && report.code == 2;
+    }
+    return began;
+  };
+  EXPECT_EQ(with_a_gap(0.012), 0);
+  EXPECT_EQ(with_a_gap(0.004), 1);
+}
+
+TEST_F(EachLimit, AToolOutsideMayComeBackAndNotGoOn) {
+  Watch watch{loose()};
+  const auto began = [&](double x_m) {
+    bus.step();
+    watch.observe(bus.network, {}, bus.now);
+    FaultArbiter reports;
+    watch.check(bus.network, Vec3(x_m, 0, 0), Vigilance::joints, bus.now, reports);
+    return reports.reports().size();
+  };
+  watch.tolerate_excursion(true);
+  EXPECT_EQ(began(1.10), 0u);
+  EXPECT_TRUE(watch.any_outside());
+  EXPECT_EQ(began(1.05), 0u);
+  EXPECT_EQ(began(1.08), 1u) << "it has been at 1.05";
+  EXPECT_EQ(began(0.99), 0u);
+  EXPECT_FALSE(watch.any_outside());
+  EXPECT_EQ(began(1.01), 1u) << "it has been inside";
+}
+
+// ---- links ----
+
+class Links : public EachLimit {
+ protected:
+  std::vector<FaultReport> reports_of(int cycles, Vigilance vigilance) {
+    std::vector<FaultReport> all;
+    for (int i = 0; i < cycles; ++i) {
+      bus.step();
+      watch.observe(bus.network, {}, bus.now);
+      FaultArbiter reports;
+      watch.check(bus.network, Vec3::Zero(), vigilance, bus.now, reports);
+      all.insert(all.end(), reports.reports().begin(), reports.reports().end());
+    }
+    return all;
+  }
+  Watch watch{loose()};
+};
+
+TEST_F(Links, AnOutputNodeThatIsSilentIsAFaultWithinFourCycles) {
+  for (const Vigilance vigilance : {Vigilance::nodes, Vigilance::joints}) {
+    EXPECT_TRUE(reports_of(10, vigilance).empty());
+    bus.nodes[5].mute_tpdo = true;
+    const auto reports = reports_of(5, vigilance);
+    ASSERT_EQ(reports.size(), 1u);
+    EXPECT_EQ(reports[0].fault, Fault::io_lost);
+    bus.nodes[5].mute_tpdo = false;
+  }
+}
+
+TEST_F(Links, AComplaintOfADriveIsAFaultWithItsCode) {
+  EXPECT_TRUE(reports_of(10, Vigilance::joints).empty());
+  bus.nodes[2].send_emcy(0x3210, 0x05);
+  const auto reports = reports_of(5, Vigilance::joints);
+  ASSERT_EQ(reports.size(), 1u);
+  EXPECT_EQ(reports[0].fault, Fault::drive_fault);
+  EXPECT_EQ(reports[0].code, 2);
+  EXPECT_EQ(reports[0].emcy, 0x3210);
+}
+
+TEST_F(Links, FramesOfASecondMasterAreAFaultWithTheirIdentifier) {
+  EXPECT_TRUE(reports_of(10, Vigilance::nodes).empty());
+  for (const std::uint32_t id : {0x203u, 0x405u, 0x080u, 0x000u, 0x602u, 0x77Fu}) {
+    CanFrame foreign;
+    foreign.id = id;
+    foreign.length = 2;
+    bus.network.on_frame(foreign, bus.now);
+    const auto reports = reports_of(3, Vigilance::nodes);
+    ASSERT_EQ(reports.size(), 1u) << id;
+    EXPECT_EQ(reports[0].fault, Fault::second_master);
+    EXPECT_EQ(reports[0].code, static_cast<std::int32_t>(id));
+  }
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "hal/config/fault_kinds.hpp"
 #include "hal/config/share.hpp"
 #include "host_sim/scenario/keys.hpp"
 #include "tests/unit/scenario/scenario_file.hpp"
@@ -49,6 +50,17 @@ TEST(Schema, TheShippedOneIsThatOfTheTable) { EXPECT_EQ(text_of("shared/scenario
 
 // Regenerate the table of docs/scenarios.md with: lanternfish scenarios --keys
 TEST(Schema, TheUsersPageHoldsTheTable) { EXPECT_NE(text_of("docs/scenarios.md").find(keys_markdown()), std::string::npos); }
+
+// The table of faults: lanternfish scenarios --faults
+TEST(Schema, TheUsersPageHoldsTheTableOfFaults) {
+  EXPECT_NE(text_of("docs/scenarios.md").find(config::fault_kinds_markdown()), std::string::npos);
+}
+
+TEST(Schema, NumbersAreAsShortAsAPersonWouldWriteThem) {
+  const std::string table = keys_markdown();
+  EXPECT_EQ(table.find("0000000"), std::string::npos) << table.substr(table.find("0000000") - 60, 100);
+  EXPECT_EQ(table.find("9999999"), std::string::npos);
+}
 
 TEST(Schema, HasAPlaceForEveryKeyAndRefusesOthers) {
   const nlohmann::json schema = nlohmann::json::parse(json_schema());

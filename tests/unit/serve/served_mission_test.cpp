@@ -63,7 +63,7 @@ struct Job {
 };
 
 // The master's platform: a tick is four turns of everything that is served.
-class WirePlatform {
+class WirePlatform : public hal::Unattended {
  public:
   WirePlatform(const Job& job, test::Wire& wire, test::VirtualClock& clock, MemoryTarget& camera, std::function<void()> turn)
       : config_(job.sim), clock_(clock), plug_(wire, clock), camera_(camera), turn_(std::move(turn)), vision_(job.sim.vision) {}
@@ -154,7 +154,7 @@ TEST(ServedMission, a_world_whose_drives_are_real_follows_them) {
   core.controller().on_command(Command::start, {});
   double travelled_rad = 0, worst_rad = 0;
   const double start_rad = real.world().readings()[1].position_rad;
-  while (clock.now.s() < 4) {
+  while (clock.now.s() < 6) {  // the jaw is looked at for 1.4 s first
     core.step();
     for (std::size_t i = 0; i < arm_joint_count; ++i) {
       // Encoder offsets are part of what a drive reports: the follower stands where the drive says, which is that far off.

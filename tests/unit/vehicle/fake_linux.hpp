@@ -3,6 +3,7 @@
 
 #include <linux/can.h>
 #include <linux/can/raw.h>
+#include <linux/sock_diag.h>
 #include <linux/videodev2.h>
 #include <net/if.h>
 #include <poll.h>
@@ -13,6 +14,7 @@
 #include <cstring>
 #include <ctime>
 #include <deque>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -37,8 +39,10 @@ class FakeLinux : public hal::LinuxCalls {
   bool interface_up = true;
   int receive_error = 0;  // told once
   std::deque<Arriving> arriving;
-  std::size_t room = 1000;  // in the transmit queue
-  int send_error = 0;       // while set
+  std::size_t room = 1000;         // in the transmit queue
+  int send_error = 0;              // while set
+  std::uint32_t queued_bytes = 0;  // of what was sent and is still in the kernel
+  int send_buffer = 0;
   std::vector<can_frame> sent;
   std::vector<can_filter> filters;
   can_err_mask_t error_mask = 0;
@@ -53,12 +57,14 @@ class FakeLinux : public hal::LinuxCalls {
     std::uint8_t value = 0;
     bool whole = true;
   };
+  std::map<unsigned long, int> failing_ioctls;  // request -> errno, while it is there
   bool camera_there = true;
   std::uint32_t camera_format = V4L2_PIX_FMT_GREY;
   std::deque<Frame> frames;
   std::vector<std::vector<std::uint8_t>> buffers;
   std::deque<std::uint32_t> queued;
   std::vector<std::pair<std::uint32_t, std::int32_t>> controls;
+  std::int32_t exposure_100us = 333;  // until it is set
   bool streaming = false;
 
   int open(const char*, int) override { return camera_there ? 100 : -ENOENT; }
@@ -83,10 +89,19 @@ class FakeLinux : public hal::LinuxCalls {
       filters.resize(bytes / sizeof(can_filter));
       std::memcpy(filters.data(), value, bytes);
     }
+    if (level == SOL_SOCKET && name == SO_SNDBUF) std::memcpy(&send_buffer, value, sizeof send_buffer);
     if (level == SOL_CAN_RAW && name == CAN_RAW_ERR_FILTER) std::memcpy(&error_mask, value, sizeof error_mask);
     return 0;
   }
+  int get_option(int, int, int name, void* value, std::size_t bytes) override {
+    if (name != SO_MEMINFO) return -ENOPROTOOPT;
+    std::vector<std::uint32_t> memory(bytes / sizeof(std::uint32_t));
+    memory[SK_MEMINFO_WMEM_ALLOC] = queued_bytes;
+    std::memcpy(value, memory.data(), bytes);
+    return 0;
+  }
   int ioctl(int fd, unsigned long request, void* argument) override {
+    if (const auto failing = failing_ioctls.find(request); failing != failing_ioctls.end()) return -failing->second;
     return fd == 100 ? camera_ioctl(request, argument) : can_ioctl(request, argument);
   }
 
@@ -183,6 +198,13 @@ class FakeLinux : public hal::LinuxCalls {
       case VIDIOC_S_CTRL: {
         const auto* control = static_cast<v4l2_control*>(argument);
         controls.emplace_back(control->id, control->value);
+        if (control->id == V4L2_CID_EXPOSURE_ABSOLUTE) exposure_100us = control->value;
+        return 0;
+      }
+      case VIDIOC_G_CTRL: {
+        auto* control = static_cast<v4l2_control*>(argument);
+        if (control->id != V4L2_CID_EXPOSURE_ABSOLUTE) return -EINVAL;
+        control->value = exposure_100us;
         return 0;
       }
       case VIDIOC_STREAMON: streaming = true; return 0;

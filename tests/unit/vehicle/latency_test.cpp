@@ -8,6 +8,7 @@
 #include "hal/vehicle/control_loop.hpp"
 #include "hal/vehicle/latency_histogram.hpp"
 #include "hal/vehicle/tick_clock.hpp"
+#include "hal/vehicle/timing_probe.hpp"
 
 namespace lf::hal {
 namespace {

@@ -45,14 +45,15 @@ class SocketCanTest : public testing::Test {
 };
 
 TEST_F(SocketCanTest, AsksForExactlyWhatTheCoreWants) {
-  ASSERT_EQ(linux_.filters.size(), 27u);
+  ASSERT_EQ(linux_.filters.size(), 57u);
   for (const can_filter& filter : linux_.filters) EXPECT_EQ(filter.can_mask, CAN_EFF_FLAG | CAN_RTR_FLAG | CAN_SFF_MASK);
   const auto wanted = [&](std::uint32_t id) {
     return std::any_of(linux_.filters.begin(), linux_.filters.end(),
                        [&](const can_filter& f) { return (id & f.can_mask) == (f.can_id & f.can_mask); });
   };
-  for (const std::uint32_t id : {0x181U, 0x186U, 0x581U, 0x701U, 0x081U, 0x080U, 0x000U, 0x77FU}) EXPECT_TRUE(wanted(id)) << std::hex << id;
-  for (const std::uint32_t id : {0x201U, 0x281U, 0x601U, 0x187U, 0x702U + 5, 0x181U | CAN_RTR_FLAG, 0x181U | CAN_EFF_FLAG}) {
+  for (const std::uint32_t id : {0x181U, 0x186U, 0x581U, 0x701U, 0x081U, 0x080U, 0x000U, 0x77FU, 0x201U, 0x306U, 0x405U, 0x502U, 0x601U})
+    EXPECT_TRUE(wanted(id)) << std::hex << id;
+  for (const std::uint32_t id : {0x207U, 0x281U, 0x607U, 0x187U, 0x702U + 5, 0x181U | CAN_RTR_FLAG, 0x181U | CAN_EFF_FLAG}) {
     EXPECT_FALSE(wanted(id)) << std::hex << id;
   }
   EXPECT_EQ(linux_.error_mask, CAN_ERR_MASK);
@@ -110,6 +111,24 @@ TEST_F(SocketCanTest, WaitsInOrderForAFullControllerAndDropsWhatIsLate) {
   EXPECT_EQ(can.stats().expired, 6u);
   EXPECT_EQ(linux_.sent.back().can_id, 0x200u);
   EXPECT_EQ(can.send(frames_of(1)), port_ok);
+}
+
+// A queue of a thousand frames took set points for a tenth of a second before a quick stop.
+TEST_F(SocketCanTest, PutsNothingBehindFramesThatTheKernelHasHeldForADeadline) {
+  EXPECT_LE(linux_.send_buffer, 32 * 768);
+  linux_.queued_bytes = 10 * 768;  // the bus takes nothing
+  EXPECT_EQ(can.send(frames_of(10)), port_ok);
+  EXPECT_EQ(linux_.sent.size(), 10u);
+  linux_.pass(5'000'000);
+  EXPECT_EQ(can.send(frames_of(10)), port_ok);
+  EXPECT_EQ(linux_.sent.size(), 10u);
+  EXPECT_EQ(can.stats().stuck, 1u);
+  linux_.pass(5'000'000);
+  EXPECT_EQ(can.flush(), ENOBUFS);
+  EXPECT_EQ(can.stats().expired, 10u);
+  linux_.queued_bytes = 0;
+  EXPECT_EQ(can.send(frames_of(3)), port_ok);
+  EXPECT_EQ(linux_.sent.size(), 13u);
 }
 
 TEST_F(SocketCanTest, RefusesMoreThanCanWait) {

@@ -112,6 +112,51 @@ TEST(V4l2Camera, ACameraThatGoesAwayIsFoundAgain) {
   EXPECT_EQ(camera.stats().reopened, 1u);
 }
 
+// A failed call read as success, and YUYV as grey.
+TEST(V4l2Camera, AnyCallThatFailsIsAnError) {
+  for (const unsigned long request : {static_cast<unsigned long>(VIDIOC_S_FMT), static_cast<unsigned long>(VIDIOC_QUERYCAP),
+                                      static_cast<unsigned long>(VIDIOC_REQBUFS), static_cast<unsigned long>(VIDIOC_QUERYBUF),
+                                      static_cast<unsigned long>(VIDIOC_QBUF), static_cast<unsigned long>(VIDIOC_STREAMON)}) {
+    for (const int error : {EIO, EINVAL, EBUSY, ENOMEM}) {
+      FakeLinux linux_;
+      linux_.failing_ioctls[request] = error;
+      V4l2Camera camera(small(), linux_);
+      EXPECT_NE(camera.open(), port_ok) << request << ", " << error;
+      EXPECT_FALSE(camera.is_open());
+      EXPECT_FALSE(linux_.streaming);
+    }
+  }
+}
+
+TEST(V4l2Camera, AnImageBearsTheExposureThatTheCameraHas) {
+  Image image;
+  const auto exposure_with = [&](unsigned long refused, bool says) {
+    FakeLinux linux_;
+    if (refused != 0) linux_.failing_ioctls[refused] = EINVAL;
+    if (!says) linux_.failing_ioctls[VIDIOC_G_CTRL] = EINVAL;
+    V4l2Camera camera(small(), linux_);
+    EXPECT_EQ(camera.open(), port_ok);
+    linux_.frames.push_back({.sequence = 0, .stamp_ns = 1});
+    EXPECT_EQ(camera.receive(image), port_ok);
+    return image.exposure;
+  };
+  EXPECT_EQ(exposure_with(0, true), small().exposure);
+  EXPECT_EQ(exposure_with(0, false), small().exposure);
+  EXPECT_EQ(exposure_with(VIDIOC_S_CTRL, false), Duration{});
+}
+
+TEST(V4l2Camera, ACameraThatIsNotThereAtFirstIsFound) {
+  FakeLinux linux_;
+  linux_.camera_there = false;
+  V4l2Camera camera(small(), linux_);
+  EXPECT_EQ(camera.open(), ENOENT);
+  linux_.camera_there = true;
+  linux_.pass(600'000'000);
+  linux_.frames.push_back({.sequence = 0, .stamp_ns = 1});
+  Image image;
+  EXPECT_EQ(camera.receive(image), port_ok);
+}
+
 TEST(V4l2Camera, SaysWhatItLacks) {
   FakeLinux linux_;
   linux_.camera_there = false;

@@ -30,9 +30,12 @@ std::vector<std::string> problems_of(const std::string& file) {
   return lines;
 }
 
-TEST(VehicleConfig, TheShippedOnesAreSound) {
-  for (const char* name : {"vehicle.yaml", "vcan.yaml"})
-    EXPECT_THAT(problems_of(std::string(LANTERNFISH_SOURCE_DIR "/shared/vehicle/") + name), IsEmpty()) << name;
+TEST(VehicleConfig, TheShippedOnesAreValid) {
+  const std::string folder = LANTERNFISH_SOURCE_DIR "/shared/vehicle/";
+  EXPECT_THAT(problems_of(folder + "vcan.yaml"), IsEmpty());
+  // The vehicle's zeros are in a file that its package makes; a machine that builds this has none.
+  for (const std::string& problem : problems_of(folder + "vehicle.yaml"))
+    EXPECT_THAT(problem, HasSubstr("there is no /var/lib/lanternfish/homing.yaml"));
 }
 
 TEST(VehicleConfig, AnEmptyFileIsTheDefault) {
@@ -93,22 +96,50 @@ TEST(VehicleConfig, TheHomingFileReachesTheDrives) {
   const TemporaryFolder folder;
   config::HomingOffsets offsets;
   offsets.zero_counts = {10, -20, 30, 0, 123456};
+  offsets.known = {true, true, true, true, true};
   config::write_homing_file(folder / "homing.yaml", offsets);
   const VehicleConfig config = load_vehicle_config(folder.write("v.yaml", "homing: {file: homing.yaml}\n"));
-  for (std::size_t i = 0; i < joint_count; ++i)
+  for (std::size_t i = 0; i < joint_count; ++i) {
     EXPECT_EQ(config.core.controller.network.drives[i].encoder_zero_counts, offsets.zero_counts[i]);
+    EXPECT_TRUE(config.core.controller.network.drives[i].zero_known);
+  }
 }
 
-TEST(HomingFile, ComesBackAsItWentAndRefusesWhatIsNotWhole) {
+// A misspelt name was taken for "the drives count from the arm's own zero".
+TEST(VehicleConfig, AHomingFileThatIsNotThereIsRefused) {
+  const TemporaryFolder folder;
+  EXPECT_THAT(problems_of(folder.write("v.yaml", "homing: {file: hoaming.yaml}\n")), ElementsAre(HasSubstr("there is no hoaming.yaml")));
+}
+
+TEST(VehicleConfig, WithoutAHomingFileNoJointTakesPower) {
+  const TemporaryFolder folder;
+  folder.write("empty.yaml", "");
+  for (const char* text : {"", "homing: {file: empty.yaml}\n"}) {
+    const VehicleConfig config = load_vehicle_config(folder.write("v.yaml", text));
+    for (const canopen::DriveSetup& drive : config.core.controller.network.drives) EXPECT_FALSE(drive.may_have_power()) << text;
+  }
+}
+
+TEST(VehicleConfig, AFileWithSomeJointsGivesPowerToThose) {
+  const TemporaryFolder folder;
+  folder.write("h.yaml", "elbow: {zero_counts: 7}\n");
+  const VehicleConfig config = load_vehicle_config(folder.write("v.yaml", "homing: {file: h.yaml}\n"));
+  for (std::size_t i = 0; i < joint_count; ++i) EXPECT_EQ(config.core.controller.network.drives[i].may_have_power(), i == 2) << i;
+}
+
+TEST(HomingFile, ComesBackAsItWentAndRefusesWhatIsNotValid) {
   const TemporaryFolder folder;
   config::HomingOffsets offsets;
   offsets.zero_counts = {1, 2, -3, 4, 5};
+  offsets.known = {true, false, true, true, true};
   offsets.found[2] = "at its lower stop";
   config::write_homing_file(folder / "h.yaml", offsets);
   const config::HomingOffsets read = config::read_homing_file(folder / "h.yaml");
-  EXPECT_EQ(read.zero_counts, offsets.zero_counts);
+  EXPECT_EQ(read.zero_counts, (std::array<std::int32_t, joint_count>{1, 0, -3, 4, 5}));
+  EXPECT_EQ(read.known, offsets.known) << "commissioning one joint wrote zeros for the other four";
   EXPECT_EQ(read.found, offsets.found);
-  EXPECT_THROW((void)config::read_homing_file(folder.write("a.yaml", "slew: {zero_counts: 3}\n")), InputError);
+  EXPECT_FALSE(std::filesystem::exists(folder / "h.yaml.partial"));
+  EXPECT_THROW((void)config::read_homing_file(folder.write("a.yaml", "slew: {found: here}\n")), InputError);
   EXPECT_THROW((void)config::read_homing_file(folder.write("b.yaml", "slew: {zero_counts: x}\n")), InputError);
   EXPECT_THROW((void)config::read_homing_file(folder.write("c.yaml", "neck: {zero_counts: 1}\n")), InputError);
   EXPECT_THROW(config::write_homing_file(folder / "no/such/folder.yaml", offsets), InputError);

@@ -1,0 +1,92 @@
+#include "firmware/mission/fault_sources.hpp"
+
+namespace lf::mission {
+
+using safety::Fault;
+
+namespace {
+
+// One late tick is jitter; three are the time after which a position is stale.
+constexpr std::uint32_t clock_lost_ticks = 3;
+
+}  // namespace
+
+FaultSources::FaultSources(const safety::Limits& limits) : free_guard_(free_motion_guard(limits)) {}
+
+void FaultSources::on_port_error(Port port) { ports_failed_[static_cast<std::size_t>(port)] = true; }
+
+void FaultSources::collect(const StepTick& tick, safety::Vigilance vigilance) {
+  collect_drives(tick, vigilance);
+  collect_complaints(tick);
+  collect_orders(tick);
+  collect_ports(tick);
+  collect_images(tick);
+  collect_contact(tick);
+  if (tick.bench.camera.laser_inhibited()) tick.faults.report(Fault::interlock);
+  collect_timeout(tick);
+}
+
+void FaultSources::collect_drives(const StepTick& tick, safety::Vigilance vigilance) {
+  Workbench& bench = tick.bench;
+  const Vec3 tool_m = arm::base_from_tool(bench.measured_rad()).translation();
+  bench.watch.check(tick.network, tool_m, vigilance, tick.now, tick.faults);
+}
+
+// What the nodes complain of goes into the record, whether it is a fault or not.
+void FaultSources::collect_complaints(const StepTick& tick) {
+  while (const std::optional<canopen::Emcy> emcy = tick.network.take_emcy()) {
+    Event event;
+    event.kind = Event::Kind::emcy;
+    event.t = emcy->time;
+    event.step = tick.step;
+    event.task = static_cast<std::uint8_t>(tick.bench.job.index());
+    event.code = emcy->node;
+    event.emcy = emcy->code;
+    (void)tick.telemetry.events.push_back(event);
+  }
+}
+
+void FaultSources::collect_orders(const StepTick& tick) {
+  OrderMailbox& mailbox = tick.bench.mailbox;
+  if (mailbox.take(Command::emergency_stop)) tick.faults.report(Fault::estop, 1);
+  if (mailbox.take(Command::abort) && tick.bench.course != Course::giving_up) tick.faults.report(Fault::aborted);
+}
+
+// Before the start nothing is lost by a failed call.
+void FaultSources::collect_ports(const StepTick& tick) {
+  clockless_ticks_ = ports_failed_[static_cast<std::size_t>(Port::clock)] ? clockless_ticks_ + 1 : 0;
+  if (clockless_ticks_ == clock_lost_ticks) tick.faults.report(Fault::clock_lost, static_cast<std::int32_t>(clockless_ticks_));
+  for (std::size_t port = 0; port < port_count; ++port) {
+    if (ports_failed_[port]) tick.faults.report(Fault::port_error, static_cast<std::int32_t>(port));
+  }
+  ports_failed_ = {};
+}
+
+// A sweep tolerates a lost frame, but not a camera that is silent.
+void FaultSources::collect_images(const StepTick& tick) {
+  CameraWork& camera = tick.bench.camera;
+  const std::uint32_t lost = camera.images_lost() - images_lost_;
+  if (lost != 0) tick.faults.report(Fault::image_lost, static_cast<std::int32_t>(lost));
+  images_lost_ = camera.images_lost();
+  if (camera.take_silence()) tick.faults.report(Fault::camera_lost);
+}
+
+// After a contact or a grip the arm's load has changed: the torque of free motion is learned anew.
+void FaultSources::collect_contact(const StepTick& tick) {
+  const safety::Phase phase = row(tick.step).phase;
+  const bool free = phase == safety::Phase::free || phase == safety::Phase::scan || tick.step == Step::stow;
+  const Workbench& bench = tick.bench;
+  if (!bench.powered || !free) return free_guard_.reset();
+  const safety::JointStates& joints = bench.watch.joints();
+  if (!joints.valid) return;
+  free_guard_.update(joints.t, bench.motion.target(), bench.measured_rad(), bench.measured_nm());
+  if (free_guard_.touched()) tick.faults.report(Fault::unexpected_contact, static_cast<std::int32_t>(free_guard_.joint()));
+}
+
+void FaultSources::collect_timeout(const StepTick& tick) {
+  const double margin_s = row(tick.step).margin_s;
+  const Duration limit = tick.clock.planned() + Duration::from_s(margin_s);
+  if (margin_s > 0 && tick.clock.elapsed(tick.now) > limit) tick.faults.report(Fault::step_timeout);
+}
+
+}  // namespace lf::mission

@@ -1,0 +1,53 @@
+// The job: its tasks one after the other, what became of each, and how often each step of the task under way was tried.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "firmware/mission/mission_config.hpp"
+#include "firmware/mission/orders.hpp"
+#include "firmware/mission/progress.hpp"
+#include "firmware/mission/steps.hpp"
+#include "shared/messages/static_vector.hpp"
+
+namespace lf::mission {
+
+struct TaskResult {
+  Task task;
+  bool attempted = false;
+  bool done = false;
+  double reached_rad = 0;     // turn_valve: as the second look saw it
+  std::uint32_t presses = 0;  // press_button: bottomed and felt
+};
+using TaskResults = StaticVector<TaskResult, MissionConfig::max_tasks>;
+
+class Job {
+ public:
+  Job(const Tasks& tasks, std::uint32_t tries) : tries_allowed_(tries) { set(tasks); }
+
+  // False, and nothing changes, when there is none, or one that this panel does not have: no such button, an angle beyond
+  // the handle's stops.
+  static bool makes_sense(const Tasks& tasks, const PanelLayout& panel);
+  void set(const Tasks& tasks);
+  void begin_anew();  // nothing is attempted yet
+
+  // Chooses the first task that is not done: done() leads to a valve, other_way() to a button, nothing_left() when all are done.
+  Progress choose_next();
+
+  const TaskResults& results() const { return results_; }
+  std::size_t index() const { return index_; }
+  const Task& task() const { return results_[index_].task; }
+  TaskResult& result() { return results_[index_]; }
+
+  bool may_try_again(Step step) const { return tries_[static_cast<std::size_t>(step)] + 1u < tries_allowed_; }
+  void count_try(Step step) { ++tries_[static_cast<std::size_t>(step)]; }
+  void forget_tries(Step step) { tries_[static_cast<std::size_t>(step)] = 0; }
+
+ private:
+  std::uint32_t tries_allowed_;
+  TaskResults results_;
+  std::size_t index_ = 0;
+  std::array<std::uint32_t, step_count> tries_{};  // of the task under way
+};
+
+}  // namespace lf::mission

@@ -1,0 +1,158 @@
+#include "firmware/mission/look.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lf::mission {
+
+namespace {
+
+// The last exposure may have been asked for as the arm came to rest, and acts a SYNC later.
+constexpr Duration last_exposure = Duration::from_ms(20);
+// The second sweep's margin around the handle: the panel's place is known to 3 mm, and two lines before and after the bar tell it from the plate.
+constexpr double beyond_handle_m = 0.006;
+
+}  // namespace
+
+void Look::on_panel(const PanelResult& result) {
+  if (result.id != sweep_) return;
+  panel_ = result;
+  panel_arrived_ = true;
+}
+
+void Look::begin(const StepTick& tick) {
+  switch (tick.step) {
+    case Step::deploy: return begin_deploy(tick);
+    case Step::verify_reach: return begin_verify_reach(tick);
+    case Step::scan:
+    case Step::verify_scan: return begin_scan(tick);
+    case Step::look:
+    case Step::verify_look: return tick.bench.camera.set_mode(CameraWork::Mode::still, tick.now);
+    case Step::perceive:
+    case Step::verify: return begin_question(tick);
+    default: return;
+  }
+}
+
+Progress Look::run(const StepTick& tick) {
+  switch (tick.step) {
+    case Step::deploy:
+    case Step::verify_reach: return tick.bench.follow_motion();
+    case Step::scan:
+    case Step::verify_scan: return run_scan(tick);
+    case Step::look:
+    case Step::verify_look: return Progress::done_if(tick.bench.camera.still_taken());
+    case Step::perceive: return run_perceive(tick);
+    case Step::verify: return run_verify(tick);
+    default: return Progress::running();
+  }
+}
+
+void Look::go_to_sweep(const StepTick& tick, scan::SweepRequest request) {
+  Workbench& bench = tick.bench;
+  request.slowest_rad_s = bench.mission().sweep_speed_rad_s;
+  bench.motion.go_to_sweep(request, bench.config.laser, bench.room(), bench.mission().move_speed_fraction);
+}
+
+void Look::begin_deploy(const StepTick& tick) {
+  tick.bench.gripper.close();
+  scan::SweepRequest request;
+  request.base_from_panel = tick.bench.mission().layout.nominal_base_from_panel();
+  go_to_sweep(tick, request);
+}
+
+// The second look needs only the handle's surroundings, and knows where they are.
+void Look::begin_verify_reach(const StepTick& tick) {
+  Workbench& bench = tick.bench;
+  bench.gripper.close();
+  scan::SweepRequest request;
+  request.base_from_panel = bench.map.base_from_panel();
+  // Over the whole handle at every angle, and no further than the plate.
+  const PanelLayout& layout = bench.mission().layout;
+  const double band_m = std::max(bench.mission().verify_band_m, layout.handle_length_m / 2 + beyond_handle_m);
+  request.top_m = std::min(band_m, layout.plate_max_m.y());
+  request.bottom_m = std::max(-band_m, layout.plate_min_m.y());
+  request.margin_m = 0.010;
+  request.docking_shift_m = 0.003;    // thrice the valve base's usual error
+  request.docking_turn_rad = 0.0035;  // 0.2 degrees
+  go_to_sweep(tick, request);
+}
+
+void Look::begin_scan(const StepTick& tick) {
+  ++sweep_;
+  send(tick, ScanCommand::Kind::begin_sweep);
+  tick.bench.camera.set_mode(CameraWork::Mode::sweep, tick.now);
+  tick.bench.motion.sweep();
+}
+
+Progress Look::run_scan(const StepTick& tick) {
+  Workbench& bench = tick.bench;
+  if (!bench.motion.done()) return Progress::running();
+  if (bench.camera.mode() == CameraWork::Mode::sweep) bench.camera.set_mode(CameraWork::Mode::idle, tick.now);
+  if (!tick.settled(true, bench.mission().image_due + last_exposure)) return Progress::running();
+  send(tick, ScanCommand::Kind::end_sweep);
+  return Progress::done();
+}
+
+void Look::begin_question(const StepTick& tick) {
+  panel_arrived_ = false;
+  send(tick, ScanCommand::Kind::analyse);
+}
+
+bool Look::answered(const StepTick& tick) const {
+  const Duration timeout = Duration::from_s(tick.bench.config.mission_limits.vision_timeout_s);
+  tick.clock.expect(timeout);
+  const bool late = tick.clock.elapsed(tick.now) > timeout;
+  if (!panel_arrived_ && late) tick.faults.report(safety::Fault::vision_late);
+  return panel_arrived_;
+}
+
+Progress Look::run_perceive(const StepTick& tick) {
+  if (!answered(tick)) return Progress::running();
+  PanelMap& map = tick.bench.map;
+  const StepFailure failure = map.update(panel_);
+  if (failure != StepFailure::none) return Progress::failed(failure);
+  tick.event(Event::Kind::located, map.handle_rad());
+  return Progress::done();
+}
+
+Progress Look::run_verify(const StepTick& tick) {
+  if (!answered(tick)) return Progress::running();
+  PanelMap& map = tick.bench.map;
+  Job& job = tick.bench.job;
+  const double left_at_rad = map.handle_rad();  // where the jaw had the handle when it let go
+  const StepFailure failure = map.update(panel_);
+  if (failure != StepFailure::none) return Progress::failed(failure);
+  tick.event(Event::Kind::located, map.handle_rad());
+  TaskResult& result = job.result();
+  result.reached_rad = map.handle_rad();
+  const double tolerance_rad = tick.bench.mission().valve_tolerance_rad;
+  if (std::abs(map.handle_rad() - job.task().to_rad) <= tolerance_rad) {
+    result.done = true;
+    tick.event(Event::Kind::task_done, result.reached_rad);
+    return Progress::done();
+  }
+  const bool followed = !tick.bench.turn_ended || std::abs(map.handle_rad() - left_at_rad) <= tolerance_rad;
+  if (followed && tick.bench.turn_ended && tick.bench.turn_goal_rad != job.task().to_rad)
+    return Progress::other_way();  // the rest of a turn in pieces
+  const StepFailure why = followed ? StepFailure::wrong_angle : StepFailure::slipped;
+  if (job.may_try_again(Step::reach_valve)) {
+    // A turn that stalled was named when it did.
+    safety::FaultReport report{safety::Fault::step_failed, static_cast<std::int32_t>(why)};
+    report.only_counted = true;
+    if (tick.bench.turn_ended) tick.faults.report(report);
+    job.count_try(Step::reach_valve);
+    return Progress::other_way();
+  }
+  tick.event(Event::Kind::task_failed, result.reached_rad);
+  return Progress::failed_for_good(why);
+}
+
+void Look::send(const StepTick& tick, ScanCommand::Kind kind) const {
+  ScanCommand command;
+  command.kind = kind;
+  command.sweep = sweep_;
+  tick.send(command);
+}
+
+}  // namespace lf::mission

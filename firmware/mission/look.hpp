@@ -1,0 +1,34 @@
+// Looks: goes where the sweep begins, sweeps the laser, takes a still, asks panel vision, and takes its answer. The second look, after a turn, sees only
+// the handle's surroundings and judges the angle.
+#pragma once
+
+#include "firmware/mission/workbench.hpp"
+
+namespace lf::mission {
+
+class Look {
+ public:
+  void begin(const StepTick& tick);
+  Progress run(const StepTick& tick);
+  // An answer to an earlier question came too late to matter and is ignored.
+  void on_panel(const PanelResult& result);
+
+ private:
+  void begin_deploy(const StepTick& tick);
+  void begin_verify_reach(const StepTick& tick);
+  void go_to_sweep(const StepTick& tick, scan::SweepRequest request);
+  void begin_scan(const StepTick& tick);
+  Progress run_scan(const StepTick& tick);
+  void begin_question(const StepTick& tick);
+  // True when the answer is there; reports vision that is late.
+  bool answered(const StepTick& tick) const;
+  Progress run_perceive(const StepTick& tick);
+  Progress run_verify(const StepTick& tick);
+  void send(const StepTick& tick, ScanCommand::Kind kind) const;
+
+  std::uint32_t sweep_ = 0;
+  PanelResult panel_;
+  bool panel_arrived_ = false;
+};
+
+}  // namespace lf::mission

@@ -1,0 +1,79 @@
+#include "firmware/mission/manual.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "firmware/arm/actuator.hpp"
+
+namespace lf::mission {
+
+namespace {
+
+// The tool's way is checked every 0.02 rad: 20 mm at a metre, against a box that is coarse by more.
+constexpr int checks = 18;
+// What the tool may be farther out at one check than at the one before, for the count of a joint.
+constexpr double noise_m = 0.0005;
+
+// Whether the tool stays inside its workspace when one joint turns to `to_rad`; from outside, whether it only comes closer.
+bool keeps_to_workspace(const Workbench& bench, std::size_t joint, double to_rad) {
+  arm::JointVector q = bench.motion.target();
+  const auto k = static_cast<Eigen::Index>(joint);
+  const double from_rad = q[k];
+  const safety::Limits& limits = bench.config.mission_limits;
+  double before_m = safety::workspace_excursion_m(limits, arm::base_from_tool(q).translation());
+  for (int i = 1; i <= checks; ++i) {
+    q[k] = from_rad + (to_rad - from_rad) * i / checks;
+    const double excursion_m = safety::workspace_excursion_m(limits, arm::base_from_tool(q).translation());
+    if (excursion_m > before_m + noise_m) return false;
+    before_m = std::min(before_m, excursion_m);
+  }
+  return true;
+}
+
+}  // namespace
+
+std::optional<double> jog_goal_rad(const Order& order, const Workbench& bench) {
+  const auto joint = static_cast<std::size_t>(order.joint);
+  if (joint >= joint_count || !std::isfinite(order.by_rad) || std::abs(order.by_rad) > largest_jog_rad) return std::nullopt;
+  const bool arm = joint < arm_joint_count;
+  const double from = arm ? bench.motion.target()[static_cast<Eigen::Index>(joint)] : bench.watch.joints().position_rad[joint];
+  const double to = from + order.by_rad;
+  const safety::JointLimit& limit = bench.config.mission_limits.joints[joint];
+  const arm_geometry::JointNumbers& stroke = arm::numbers(order.joint);
+  const double low = std::max(limit.min_rad, stroke.lower_rad), high = std::min(limit.max_rad, stroke.upper_rad);
+  const bool inside = to >= low && to <= high;
+  const bool toward_it = (from < low && to > from && to <= high) || (from > high && to < from && to >= low);
+  if (!inside && !toward_it) return std::nullopt;
+  if (arm && !keeps_to_workspace(bench, joint, to)) return std::nullopt;
+  return to;
+}
+
+void Manual::begin(const StepTick& tick) {
+  if (tick.step != Step::jog) return;
+  Workbench& bench = tick.bench;
+  bench.job.forget_tries(Step::jog);
+  if (jog_.joint == Joint::jaw) return bench.gripper.turn_to(jog_.goal_rad);
+  arm::JointVector goal = bench.motion.target();
+  goal[static_cast<Eigen::Index>(jog_.joint)] = jog_.goal_rad;
+  bench.motion.jog(goal, jog_speed_fraction);
+}
+
+Progress Manual::run(const StepTick& tick) {
+  if (tick.step == Step::ready) return run_ready(tick);
+  const bool jaw_moves = jog_.joint == Joint::jaw && tick.bench.gripper.state() == arm::GripperState::opening;
+  return jaw_moves ? Progress::running() : tick.bench.follow_motion();
+}
+
+Progress Manual::run_ready(const StepTick& tick) {
+  Workbench& bench = tick.bench;
+  if (bench.mailbox.take(Command::start)) {
+    bench.watch.tolerate_excursion(false);
+    return Progress::done();
+  }
+  const std::optional<WaitingOrder> jog = bench.mailbox.take(Command::jog);
+  if (!jog) return Progress::running();
+  jog_ = *jog;
+  return Progress::other_way();
+}
+
+}  // namespace lf::mission

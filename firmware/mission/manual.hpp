@@ -1,0 +1,23 @@
+// By hand: waits for an operator's orders under power, and jogs one joint at a time.
+#pragma once
+
+#include "firmware/mission/workbench.hpp"
+
+namespace lf::mission {
+
+class Manual {
+ public:
+  void begin(const StepTick& tick);
+  Progress run(const StepTick& tick);
+
+ private:
+  Progress run_ready(const StepTick& tick);
+
+  WaitingOrder jog_;
+};
+
+// Where a jog that is ordered now would end, or nothing when its numbers, the joint's limits or the tool's workspace do not allow it. What
+// stands outside may only come closer.
+std::optional<double> jog_goal_rad(const Order& order, const Workbench& bench);
+
+}  // namespace lf::mission

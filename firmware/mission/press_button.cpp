@@ -1,0 +1,110 @@
+#include "firmware/mission/press_button.hpp"
+
+namespace lf::mission {
+
+namespace {
+
+constexpr double limit_margin_rad = 0.01;
+// The face is where the layout says to a few millimetres; what is touched farther out is something else.
+constexpr double early_m = 0.012;
+// A press lasts as long as a person's.
+constexpr Duration press_time = Duration::from_ms(250);
+
+// The tool point when the closed fingers' tip is at `tip_m`: behind it by the fingers' length along an approach axis that depends on the place itself.
+// Two rounds settle it to 0.1 mm, since the axis turns by 2 degrees over the fingers' length.
+bool tool_for_tip(const Vec3& tip_m, double tip_beyond_m, double roll_rad, arm::JointVector& q_rad) {
+  Vec3 tool_m = tip_m;
+  for (int round = 0; round < 4; ++round) {
+    const arm::IkResult result = arm::inverse_kinematics(tool_m, roll_rad, limit_margin_rad);
+    if (result.outcome == arm::IkOutcome::not_a_number || result.outcome == arm::IkOutcome::too_far) return false;
+    q_rad = result.q_rad;
+    if (round == 3) return result.ok();
+    tool_m = tip_m - tip_beyond_m * arm::approach_axis(q_rad);
+  }
+  return false;
+}
+
+double closed_tip_beyond_tool_m() { return arm::tip_beyond_tool_m(arm::jaw_from_gap(0)); }
+
+}  // namespace
+
+Progress PressButton::begin(const StepTick& tick) {
+  switch (tick.step) {
+    case Step::reach_button: return begin_reach(tick.bench);
+    case Step::press: return begin_press(tick.bench);
+    case Step::button_back: tick.bench.begin_back_off(); break;
+    default: break;
+  }
+  return Progress::running();
+}
+
+Progress PressButton::run(const StepTick& tick) {
+  switch (tick.step) {
+    case Step::reach_button: return run_reach(tick);
+    case Step::press: return run_press(tick);
+    case Step::button_back: return run_back(tick);
+    default: return Progress::running();
+  }
+}
+
+Progress PressButton::begin_reach(Workbench& bench) {
+  bench.take_up_task();
+  pressed_ = false;
+  bench.gripper.close();
+  bench.tool_roll_rad = 0;
+  const Vec3 tip = bench.map.button_m(bench.job.task().button) + bench.map.normal() * bench.mission().approach_distance_m;
+  arm::JointVector q;
+  if (!tool_for_tip(tip, closed_tip_beyond_tool_m(), bench.tool_roll_rad, q)) return Progress::failed(StepFailure::unreachable);
+  bench.go_clear(q);
+  bench.standoff_m = arm::base_from_tool(q).translation();
+  return Progress::running();
+}
+
+Progress PressButton::run_reach(const StepTick& tick) {
+  const Progress motion = tick.bench.follow_motion();
+  if (!motion.is_done()) return motion;
+  const arm::GripperState jaw = tick.bench.gripper.state();
+  return Progress::done_if(jaw != arm::GripperState::closing && jaw != arm::GripperState::opening);
+}
+
+Progress PressButton::begin_press(Workbench& bench) {
+  arm::GuardConfig config;
+  config.contact_torque_nm.setConstant(bench.mission().press_torque_nm);
+  guard_ = arm::GuardedMotion(config);
+  const double depth = bench.mission().layout.button_stroke_m + bench.mission().press_overtravel_m;
+  const Vec3 tip = bench.map.button_m(bench.job.task().button) - bench.map.normal() * depth;
+  arm::JointVector q;
+  if (!tool_for_tip(tip, closed_tip_beyond_tool_m(), bench.tool_roll_rad, q)) return Progress::failed(StepFailure::unreachable);
+  bench.motion.line(arm::base_from_tool(q).translation(), bench.tool_roll_rad, bench.mission().press_speed_m_s);
+  return Progress::running();
+}
+
+Progress PressButton::run_press(const StepTick& tick) {
+  Workbench& bench = tick.bench;
+  if (pressed_) return Progress::done_if(tick.settled(bench.motion.done(), press_time));
+  if (bench.motion.planning()) return Progress::running();
+  guard_.update(tick.now, bench.motion.target(), bench.measured_rad(), bench.measured_nm());
+  if (guard_.touched()) {
+    bench.motion.stop();
+    const Vec3 tip = arm::base_from_tool(bench.measured_rad()) * Vec3(0, 0, closed_tip_beyond_tool_m());
+    const double above_face_m = (tip - bench.map.button_m(bench.job.task().button)).dot(bench.map.normal());
+    if (above_face_m > early_m) return Progress::failed(StepFailure::early_contact);
+    pressed_ = true;
+    ++bench.job.result().presses;
+    return Progress::running();
+  }
+  const Progress motion = bench.follow_motion();
+  return motion.is_done() ? Progress::failed(StepFailure::no_contact) : motion;
+}
+
+Progress PressButton::run_back(const StepTick& tick) {
+  const Progress motion = tick.bench.follow_back_off(tick.now);
+  if (!motion.is_done()) return motion;
+  if (!pressed_) return Progress::other_way();
+  TaskResult& result = tick.bench.job.result();
+  result.done = true;
+  tick.event(Event::Kind::task_done, result.presses);
+  return Progress::done();
+}
+
+}  // namespace lf::mission

@@ -1,0 +1,69 @@
+#include "firmware/mission/step_failure.hpp"
+
+namespace lf {
+
+namespace {
+
+struct Words {
+  const char* name;
+  const char* remedy;
+};
+
+Words words(StepFailure failure) {
+  switch (failure) {
+    case StepFailure::none: return {"none", ""};
+    case StepFailure::unreachable: return {"unreachable", "Dock nearer to the nominal place: `reach` shows what the arm reaches."};
+    case StepFailure::no_motion: return {"no way there", "Something stands in every way that was tried: check the panel's layout."};
+    case StepFailure::early_contact: return {"touched something before the aim", "Check the panel's layout and what hangs before it."};
+    case StepFailure::no_contact: return {"nothing to touch where the aim should be", "Check the panel's layout."};
+    case StepFailure::not_gripped: return {"nothing held", "Check panel.handle_thickness_m, and the jaw's torque."};
+    case StepFailure::wrong_angle: return {"the handle is not where it was turned to", "Check valve.stop_min_deg and valve.stop_max_deg."};
+    case StepFailure::no_panel:
+      return {"no panel seen",
+              "The laser's line was not found on a plane: the water is too turbid, the laser is off, or the exposure is too short."};
+    case StepFailure::no_marker:
+      return {"no usable marker seen",
+              "It is hidden, out of view, or too dim: look at the still image; check panel.marker_id and the lamps."};
+    case StepFailure::no_handle:
+      return {"no handle seen",
+              "Nothing of its height and length stands before the valve: check panel.handle_length_m and panel.handle_height_m."};
+    case StepFailure::panel_moved: return {"the panel has moved", "The docking slipped: dock again."};
+    case StepFailure::not_homed: return {"homing failed", "Commission the joint again."};
+    case StepFailure::too_few_points:
+      return {"too few points of the panel",
+              "The laser's line is too weak or the sweep too fast: check mission.sweep_speed_rad_s and the water."};
+    case StepFailure::jaw_stuck: return {"the jaw does not open", "Look at what it holds; free it by hand without power."};
+    case StepFailure::touched_on_the_way_back:
+      return {"touched something on the way back", "Look at what the arm touches before it is moved again."};
+    case StepFailure::stalled: return {"the turn stalled", "The valve takes more torque than the wrist has, or something blocks it."};
+    case StepFailure::marker_wrong:
+      return {"the marker has another size than surveyed", "Check panel.marker_size_m and the camera's calibration."};
+    case StepFailure::marker_disagrees:
+      return {"the marker's own pose and the scanned plane disagree",
+              "Check the calibration of camera and laser, and that the marker lies flat."};
+    case StepFailure::plane_unsure:
+      return {"too many of the laser's points lie off the panel", "The water is turbid, or something drifts before the panel: scan again."};
+    case StepFailure::handle_unsure:
+      return {"too few points on the handle for its angle", "Sweep slower: check mission.sweep_speed_rad_s; clean the handle."};
+    case StepFailure::pointer_unsure:
+      return {"the handle's pointer mark was not recognised",
+              "Clean the mark; check panel.pointer and panel.pointer_length_m, and the lamps."};
+    case StepFailure::half_turn_open:
+      return {"the handle may stand at either of two angles half a turn apart",
+              "It has no pointer mark: turn it by hand to within what its stops make unique, or paint one end and set panel.pointer."};
+    case StepFailure::beyond_stops:
+      return {"the handle is seen beyond its stops",
+              "Check valve.stop_min_deg, valve.stop_max_deg and which end carries the pointer mark."};
+    case StepFailure::slipped:
+      return {"the handle slipped in the jaw", "Clean the pads and the bar; the valve may take more torque than the grip holds."};
+    case StepFailure::vision_failed: return {"panel vision failed", "Look at the log: it ran out of memory or met a bad picture."};
+  }
+  return {"unknown", ""};
+}
+
+}  // namespace
+
+const char* name(StepFailure failure) { return words(failure).name; }
+const char* remedy(StepFailure failure) { return words(failure).remedy; }
+
+}  // namespace lf

@@ -1,0 +1,41 @@
+// The reasons a step of the mission gives when it fails: a number for the record, and for people what is wrong and what to do about it.
+#pragma once
+
+#include <cstdint>
+
+namespace lf {
+
+// In Event::code and Outcome::code of the faults step_failed and vision_poor. Numbers are never given to another reason.
+enum class StepFailure : std::int32_t {
+  none = 0,
+  unreachable = 1,
+  no_motion = 2,
+  early_contact = 3,
+  no_contact = 4,
+  not_gripped = 5,
+  wrong_angle = 6,
+  no_panel = 7,
+  no_marker = 8,
+  no_handle = 9,
+  panel_moved = 10,
+  not_homed = 11,
+  too_few_points = 12,
+  stalled = 13,
+  jaw_stuck = 14,
+  touched_on_the_way_back = 15,
+  marker_wrong = 16,      // its corners are no square of the surveyed size
+  marker_disagrees = 17,  // its own pose and the scanned plane differ
+  plane_unsure = 18,      // too many of the laser's points lie off the plane
+  handle_unsure = 19,     // too few points for its angle
+  pointer_unsure = 20,    // the mark at the bar's end was not told from the other end
+  half_turn_open = 21,    // without a mark: two angles half a turn apart both lie within the stops
+  beyond_stops = 22,      // the handle is seen where its stops do not let it be
+  slipped = 23,           // the handle did not follow the turn of the jaw that held it
+  vision_failed = 24,     // panel vision gave no answer of use although it saw plane and marker
+};
+
+// What is wrong, in a few words; and what a user can do about it, one sentence, empty where the words say it all.
+const char* name(StepFailure failure);
+const char* remedy(StepFailure failure);
+
+}  // namespace lf

@@ -1,0 +1,166 @@
+#include "firmware/mission/turn_valve.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace lf::mission {
+
+namespace {
+
+// The closest soft limits over the docking error are 0.019 rad away (shoulder, pressing); the drives' own software limits lie outside.
+constexpr double limit_margin_rad = 0.01;
+// After a turn the drives settle within their position loop's time constant of 50 ms.
+constexpr Duration settle = Duration::from_ms(300);
+// The bar is between the pads when this much of the way is done; touching before is running into something.
+constexpr double contact_expected = 0.8;
+// A free roll stands 0.018 rad behind its target, and the drive gives up at 0.15: what stays further behind for so long is held by something.
+constexpr double stalled_rad = 0.08;
+constexpr Duration stalled_for = Duration::from_ms(50);
+
+// The roll with which to take the bar so that the wrist can turn it from one angle to another.
+std::optional<double> roll_for(const Workbench& bench, const arm::JointVector& q_rad, double from_rad, double to_rad) {
+  const auto from = arm::rolls_for_bar(q_rad, bench.map.bar(from_rad));
+  const auto to = arm::rolls_for_bar(q_rad, bench.map.bar(to_rad));
+  if (!from || !to) return std::nullopt;
+  // Seen along the tool axis, into the panel, the handle turns the other way round.
+  const double about = from_rad - to_rad;
+  const double turn = about + wrap(to->roll_rad[0] - from->roll_rad[0] - about, pi / 2);
+  const arm::JointLimits limits = bench.motion.limits(1);
+  const double drawn_in_rad = pi - std::min(limits.upper_rad[3], -limits.lower_rad[3]);
+  return arm::roll_for_turn(*from, turn, drawn_in_rad + limit_margin_rad);
+}
+
+// The whole way to the task's angle, or as much of it as the wrist can turn and the next look can tell apart: the rest comes after that look.
+std::optional<double> choose_roll(Workbench& bench, const arm::JointVector& q_rad) {
+  const double from_rad = bench.map.handle_rad();
+  const double to_rad = bench.job.task().to_rad;
+  for (const double share : {1.0, 0.5, 0.25}) {
+    bench.turn_goal_rad = to_rad - (1 - share) * (to_rad - from_rad);
+    if (std::abs(bench.turn_goal_rad - from_rad) > bench.map.longest_turn_rad()) continue;
+    if (const auto roll = roll_for(bench, q_rad, from_rad, bench.turn_goal_rad)) return roll;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+Progress TurnValve::begin(const StepTick& tick) {
+  switch (tick.step) {
+    case Step::reach_valve: return begin_reach(tick.bench);
+    case Step::advance: begin_advance(tick.bench); break;
+    case Step::grip: tick.bench.gripper.close(); break;
+    case Step::turn: begin_turn(tick); break;
+    case Step::let_go: begin_let_go(tick.bench); break;
+    case Step::back_off: tick.bench.begin_back_off(); break;
+    default: break;
+  }
+  return Progress::running();
+}
+
+Progress TurnValve::run(const StepTick& tick) {
+  switch (tick.step) {
+    case Step::reach_valve: return run_reach(tick);
+    case Step::advance: return run_advance(tick);
+    case Step::grip: return run_grip(tick);
+    case Step::turn: return run_turn(tick);
+    case Step::let_go: return run_let_go(tick);
+    case Step::back_off: return tick.bench.follow_back_off(tick.now);
+    default: return Progress::running();
+  }
+}
+
+// To a stand-off in front of the handle, the jaw open and rolled to the bar, with room for the turn.
+Progress TurnValve::begin_reach(Workbench& bench) {
+  const Progress unreachable = Progress::failed(StepFailure::unreachable);
+  bench.take_up_task();
+  bench.gripper.open_to(bench.mission().jaw_open_m);
+  const PanelMap& map = bench.map;
+  const Vec3 centre = map.handle_centre_m();
+  bench.standoff_m = centre + map.normal() * bench.mission().approach_distance_m;
+  const arm::IkResult at_bar = arm::inverse_kinematics(centre, 0, limit_margin_rad);
+  if (!at_bar.ok()) return unreachable;
+  const std::optional<double> roll = choose_roll(bench, at_bar.q_rad);
+  if (!roll) return unreachable;
+  bench.tool_roll_rad = *roll;
+  const arm::IkResult start = arm::inverse_kinematics(bench.standoff_m, bench.tool_roll_rad, limit_margin_rad);
+  if (!start.ok()) return unreachable;
+  bench.go_clear(start.q_rad);
+  return Progress::running();
+}
+
+Progress TurnValve::run_reach(const StepTick& tick) {
+  const arm::GripperState jaw = tick.bench.gripper.state();
+  if (jaw == arm::GripperState::jammed) return Progress::failed(StepFailure::not_gripped);
+  const Progress motion = tick.bench.follow_motion();
+  return motion.is_done() ? Progress::done_if(jaw == arm::GripperState::open) : motion;
+}
+
+void TurnValve::begin_advance(Workbench& bench) {
+  arm::GuardConfig config;
+  config.contact_torque_nm = arm::JointVector(8, 8, 8, 3);  // 20 N at the tool; the pads may brush the bar
+  guard_ = arm::GuardedMotion(config);
+  bench.motion.line(bench.map.handle_centre_m(), bench.tool_roll_rad, bench.mission().approach_speed_m_s);
+}
+
+Progress TurnValve::run_advance(const StepTick& tick) {
+  Workbench& bench = tick.bench;
+  const Progress motion = bench.follow_motion();
+  if (!motion.is_running() || bench.motion.planning()) return motion;
+  guard_.update(tick.now, bench.motion.target(), bench.measured_rad(), bench.measured_nm());
+  if (!guard_.touched()) return Progress::running();
+  bench.motion.stop();
+  if (bench.motion.elapsed_s() < contact_expected * bench.motion.duration_s()) return Progress::failed(StepFailure::early_contact);
+  return Progress::done();
+}
+
+Progress TurnValve::run_grip(const StepTick& tick) {
+  switch (tick.bench.gripper.state()) {
+    case arm::GripperState::held: return Progress::done_if(tick.bench.motion.done());
+    case arm::GripperState::empty:
+    case arm::GripperState::dropped:
+    case arm::GripperState::jammed: return Progress::failed(StepFailure::not_gripped);
+    default: return Progress::running();
+  }
+}
+
+void TurnValve::begin_turn(const StepTick& tick) {
+  Workbench& bench = tick.bench;
+  following_since_ = tick.now;
+  bench.turn_ended = false;
+  bench.motion.turn(bench.map.base_from_panel().linear(), bench.map.handle_rad(), bench.turn_goal_rad, bench.mission().turn_speed_rad_s);
+}
+
+// A turn that ends early leaves the handle on its way: the jaw lets go, and the second look finds it.
+Progress TurnValve::run_turn(const StepTick& tick) {
+  Workbench& bench = tick.bench;
+  const Progress motion = bench.follow_motion();
+  if (motion.kind == Progress::Kind::failed) return motion;
+  bench.map.expect_handle(bench.motion.handle_rad());
+  const arm::GripperState jaw = bench.gripper.state();
+  if (jaw == arm::GripperState::dropped || jaw == arm::GripperState::empty) {
+    tick.faults.report(safety::Fault::grip_lost);
+    return Progress::running();
+  }
+  if (stalled(tick)) return Progress::failed(StepFailure::stalled);
+  bench.turn_ended = tick.settled(motion.is_done(), settle);
+  return Progress::done_if(bench.turn_ended);
+}
+
+bool TurnValve::stalled(const StepTick& tick) {
+  if (std::abs(tick.bench.motion.target()[3] - tick.bench.measured_rad()[3]) < stalled_rad) following_since_ = tick.now;
+  return tick.now - following_since_ > stalled_for;
+}
+
+void TurnValve::begin_let_go(Workbench& bench) {
+  bench.let_off_roll();
+  bench.gripper.open_to(bench.mission().jaw_open_m);
+}
+
+Progress TurnValve::run_let_go(const StepTick& tick) {
+  const arm::GripperState jaw = tick.bench.gripper.state();
+  if (jaw == arm::GripperState::jammed) return Progress::failed(StepFailure::not_gripped);
+  return Progress::done_if(jaw == arm::GripperState::open);
+}
+
+}  // namespace lf::mission

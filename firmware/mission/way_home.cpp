@@ -1,0 +1,55 @@
+#include "firmware/mission/way_home.hpp"
+
+namespace lf::mission {
+
+void WayHome::begin(const StepTick& tick) {
+  Workbench& bench = tick.bench;
+  switch (tick.step) {
+    case Step::abandon:  // out of a contact: the jaw opens, whatever it holds, before the arm goes back
+      bench.let_off_roll();
+      return bench.gripper.open_to(bench.mission().jaw_open_m);
+    case Step::abandon_back: return bench.begin_back_off();
+    case Step::stow: bench.gripper.close(); return bench.go_clear(bench.mission().park_rad);
+    case Step::shut_down: return begin_shut_down(tick);
+    default: return;
+  }
+}
+
+Progress WayHome::run(const StepTick& tick) {
+  switch (tick.step) {
+    case Step::abandon: return run_abandon(tick.bench);
+    case Step::abandon_back: {
+      const Progress motion = tick.bench.follow_back_off(tick.now);
+      if (!motion.is_done()) return motion;
+      return tick.bench.course == Course::retrying ? Progress::other_way() : Progress::done();
+    }
+    case Step::stow: {
+      const Progress motion = tick.bench.follow_motion();
+      if (!motion.is_done()) return motion;
+      return tick.bench.course == Course::giving_up ? Progress::other_way() : Progress::done();
+    }
+    case Step::shut_down: return Progress::done_if(tick.bench.power.off());
+    default: return Progress::running();
+  }
+}
+
+// Nothing goes back before the jaw is seen open: what it still holds would be dragged along.
+Progress WayHome::run_abandon(const Workbench& bench) {
+  const arm::GripperState jaw = bench.gripper.state();
+  if (jaw == arm::GripperState::jammed) return Progress::failed(StepFailure::jaw_stuck);
+  return Progress::done_if(jaw == arm::GripperState::open && bench.motion.done());
+}
+
+// The arm stands, unless a joint was just being homed.
+void WayHome::begin_shut_down(const StepTick& tick) {
+  Workbench& bench = tick.bench;
+  if (bench.powered) {
+    bench.power.lower(tick.now, tick.network);
+  } else {
+    bench.power.stop(tick.now, tick.network);
+  }
+  bench.motion.freeze();
+  bench.powered = false;
+}
+
+}  // namespace lf::mission

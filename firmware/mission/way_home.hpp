@@ -1,0 +1,18 @@
+// The way home: out of a contact, to the park position, and the power off.
+#pragma once
+
+#include "firmware/mission/workbench.hpp"
+
+namespace lf::mission {
+
+class WayHome {
+ public:
+  void begin(const StepTick& tick);
+  Progress run(const StepTick& tick);
+
+ private:
+  static Progress run_abandon(const Workbench& bench);
+  static void begin_shut_down(const StepTick& tick);
+};
+
+}  // namespace lf::mission

@@ -1,0 +1,94 @@
+// What every step of the mission works with, and what outlives the steps: the joints, what moves them, the camera, what is known of the panel, the job.
+#pragma once
+
+#include "firmware/arm/compliance.hpp"
+#include "firmware/arm/gripper.hpp"
+#include "firmware/arm/guarded_motion.hpp"
+#include "firmware/canopen/network.hpp"
+#include "firmware/config.hpp"
+#include "firmware/mission/camera_work.hpp"
+#include "firmware/mission/job.hpp"
+#include "firmware/mission/motion.hpp"
+#include "firmware/mission/order_mailbox.hpp"
+#include "firmware/mission/panel_map.hpp"
+#include "firmware/mission/progress.hpp"
+#include "firmware/safety/fault_arbiter.hpp"
+#include "firmware/safety/power.hpp"
+#include "firmware/safety/watch.hpp"
+#include "firmware/telemetry.hpp"
+
+namespace lf::mission {
+
+// What the mission is about to do.
+enum class Course : std::uint8_t {
+  working,    // on its job
+  retrying,   // the task under way is taken again after the way back
+  giving_up,  // the mission failed and is on its way to a safe end
+};
+
+// A contact in motion that may touch nothing: what free motion takes of torque is learned on the way; how much more is a contact, the limits say, and for
+// the wrist half of its own limit if that is less. The overload is the watch's.
+arm::GuardConfig free_motion_guard(const safety::Limits& limits);
+
+struct Workbench {
+  explicit Workbench(const ControllerConfig& told);
+
+  ControllerConfig config;
+  safety::Watch watch;
+  CameraWork camera;
+  Motion motion;
+  arm::Gripper gripper;
+  arm::Compliance compliance;     // of the arm while it grips
+  arm::GuardedMotion back_guard;  // of the way out of a contact
+  PanelMap map;
+  Job job;
+  OrderMailbox mailbox;
+  Course course = Course::working;
+  safety::Power power;
+  bool powered = false;            // the joints follow the motion
+  Vec3 standoff_m = Vec3::Zero();  // where the straight motions of a task start, and where they return to
+  double tool_roll_rad = 0;        // of the tool at the standoff
+  double turn_goal_rad = 0;        // turn_valve: where the turn under way ends; short of the task's angle when another one follows
+
+  bool turn_ended = false;  // the jaw has turned all the way there
+  // A jaw that knows how thick the handle's bar is.
+  arm::Gripper new_gripper() const;
+  const MissionConfig& mission() const { return config.mission; }
+  arm::JointVector measured_rad() const;
+  arm::JointVector measured_nm() const;
+  Room room() const;  // around the arm, as far as it is known
+  void go_clear(const arm::JointVector& goal_rad) { motion.go_clear(goal_rad, room(), config.mission.move_speed_fraction); }
+  // Done when the motion is; failed when the motion could not be planned.
+  Progress follow_motion() const;
+  // The task under way is at its beginning again.
+  void take_up_task() { course = course == Course::retrying ? Course::working : course; }
+
+  // The motion's target and what the arm has given way by. Giving way ends at the joints' limits.
+  arm::JointVector pushed_target() const;
+  // The compliance offset becomes part of the target, so that the arm does not spring back.
+  void stay_where_pushed();
+  // The roll's target becomes its position: the torque that it has wound up against the handle is let off.
+  void let_off_roll();
+  // Straight back to the stand-off, under guard: whoever leaves a contact may touch nothing new.
+  void begin_back_off();
+  Progress follow_back_off(Time now);
+};
+
+// One tick of one step: its surroundings.
+struct StepTick {
+  Time now;
+  const Step& step;
+  canopen::Network& network;
+  ScanOrders& orders;
+  Telemetry& telemetry;
+  Workbench& bench;
+  safety::FaultArbiter& faults;
+  StepClock& clock;
+
+  bool settled(bool condition, Duration for_how_long) const { return clock.settled(condition, for_how_long, now); }
+  void event(Event::Kind kind, double value = 0) const;
+  // A scan order that finds no room is a port error.
+  void send(const ScanCommand& command) const;
+};
+
+}  // namespace lf::mission

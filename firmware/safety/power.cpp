@@ -1,0 +1,92 @@
+#include "firmware/safety/power.hpp"
+
+#include <cmath>
+
+namespace lf::safety {
+
+void Power::stop(Time now, canopen::Network& network) {
+  if (state_ == State::stopping || state_ == State::removing) return;
+  network.quick_stop_all();
+  state_ = State::stopping;
+  since_ = now;
+  rest_since_.fill(now);
+  rest_rad_.fill(HUGE_VAL);
+}
+
+void Power::remove(Time now, canopen::Network& network) {
+  network.remove_power();
+  if (state_ == State::removing) return;
+  state_ = State::removing;
+  since_ = now;
+}
+
+void Power::lower(Time now, canopen::Network& network) {
+  if (state_ == State::stopping || state_ == State::removing) return;
+  network.disable_all();
+  state_ = State::lowering;
+  since_ = now;
+}
+
+void Power::tick(const JointStates& joints, Time now, canopen::Network& network) {
+  if (state_ == State::stopping) {
+    if (confirmed(now, network) || standing(joints, now, network) || now - since_ >= longest_stop) remove(now, network);
+  } else if (state_ == State::lowering) {
+    if (confirmed(now, network)) state_ = State::off;
+    if (state_ != State::off && now - since_ >= longest_lowering) remove(now, network);
+  } else if (state_ == State::removing) {
+    network.remove_power();
+    if (confirmed(now, network)) state_ = State::off;
+  } else if (state_ == State::off) {
+    // Nothing comes on by itself; a drive that does, or that is heard again after a silence, is told off.
+    for (std::size_t i = 0; i < joint_count; ++i) {
+      const canopen::Axis& axis = network.axis(static_cast<Joint>(i));
+      if (axis.fresh(now) && axis.powered()) return remove(now, network);
+    }
+  }
+}
+
+bool Power::standing(const JointStates& joints, Time now, const canopen::Network& network) {
+  bool all = true;
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    if (!joints.fresh[i]) {
+      all = all && now - since_ >= silent_ramp;
+      continue;
+    }
+    const double rad = joints.position_rad[i];
+    const std::int32_t counts = network.axis(static_cast<Joint>(i)).actual_counts();
+    const bool one_count = std::abs(std::int64_t{counts} - rest_counts_[i]) <= 1;
+    const bool known = std::isfinite(rest_rad_[i]);
+    if (!known || (std::abs(rad - rest_rad_[i]) > still_rad && !one_count)) {
+      rest_rad_[i] = rad;
+      rest_counts_[i] = counts;
+      rest_since_[i] = now;
+    }
+    all = all && now - rest_since_[i] >= still_time;
+  }
+  return all;
+}
+
+// A statusword that was sent before the drive heard the order says nothing of it: a drive on its way up would be taken for down.
+bool Power::confirmed(Time now, const canopen::Network& network) const {
+  if (now - since_ < network.config().sync_period * (canopen::Axis::handshake_syncs + 1)) return false;
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    const canopen::Axis& axis = network.axis(static_cast<Joint>(i));
+    if (axis.state() == canopen::AxisState::offline || axis.confirmed_unpowered(now)) continue;
+    const bool given_time = state_ == State::removing && now - since_ >= blind_time;
+    if (axis.fresh(now) || !given_time) return false;
+  }
+  return true;
+}
+
+const char* name(Power::State state) {
+  switch (state) {
+    case Power::State::off: return "off";
+    case Power::State::on: return "on";
+    case Power::State::lowering: return "lowering";
+    case Power::State::stopping: return "stopping";
+    case Power::State::removing: return "removing";
+  }
+  return "unknown";
+}
+
+}  // namespace lf::safety

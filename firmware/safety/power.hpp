@@ -1,0 +1,71 @@
+// The drives' power, and how it is taken: the stop functions of ISO 13850 and IEC 60204-1.
+//
+//   stop category 1   quick stop at once; power off as soon as the arm stands, and at the latest `longest_stop` after the quick stop
+//   stop category 0   power off at once, whatever moves
+//   lowering          the arm stands: each drive goes down through every state, so that its brake closes first; then as category 0
+//
+// Both are one way: a stop is never taken back, and a milder one that comes later changes nothing. The self-locking gears hold the arm without power.
+// Power is off when every drive says so. A drive that is not heard is told to go down for `blind_time` and then taken for down: nothing more can be done.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "firmware/canopen/network.hpp"
+#include "firmware/safety/watch.hpp"
+#include "shared/messages/joint_io.hpp"
+#include "shared/messages/time.hpp"
+
+namespace lf::safety {
+
+class Power {
+ public:
+  enum class State : std::uint8_t {
+    off,       // no drive has power, as far as can be known
+    on,        // drives are being enabled, or are
+    lowering,  // the orderly way down
+    stopping,  // the quick stop acts
+    removing,  // power off is ordered, but not confirmed yet
+  };
+
+  // Two SYNC periods until the order acts are 8 ms: the power is off within 1.2 s of the stop.
+  static constexpr Duration longest_stop = Duration::from_ms(1100);
+  // A joint stands when it has moved by no more than `still_rad`, or by one count of its encoder, for so long: 0.02 rad/s.
+  static constexpr Duration still_time = Duration::from_ms(50);
+  static constexpr double still_rad = 0.001;
+  // A joint whose drive is silent is taken for standing when its ramp is over: the longest of the default machine, the roll's from 0.7 rad/s, takes 0.2 s.
+  static constexpr Duration silent_ramp = Duration::from_ms(250);
+  // The longest that a drive may take to hear of it: 250 SYNC periods.
+  static constexpr Duration blind_time = Duration::from_ms(1000);
+  // Four handshakes of three SYNC periods are 48 ms; brakes take up to half a second to close.
+  static constexpr Duration longest_lowering = Duration::from_ms(700);
+
+  void switch_on() { state_ = state_ == State::off ? State::on : state_; }
+  // Category 1.
+  void stop(Time now, canopen::Network& network);
+  // Category 0.
+  void remove(Time now, canopen::Network& network);
+
+  // The orderly way down of an arm that stands.
+  void lower(Time now, canopen::Network& network);
+
+  // Once a tick, after the joints were observed.
+  void tick(const JointStates& joints, Time now, canopen::Network& network);
+
+  State state() const { return state_; }
+  bool off() const { return state_ == State::off; }
+
+ private:
+  bool standing(const JointStates& joints, Time now, const canopen::Network& network);
+  bool confirmed(Time now, const canopen::Network& network) const;
+
+  State state_ = State::off;
+  Time since_;  // of the state
+  std::array<double, joint_count> rest_rad_{};
+  std::array<std::int32_t, joint_count> rest_counts_{};
+  std::array<Time, joint_count> rest_since_{};
+};
+
+const char* name(Power::State state);
+
+}  // namespace lf::safety

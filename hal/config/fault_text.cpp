@@ -1,0 +1,60 @@
+#include "hal/config/fault_text.hpp"
+
+#include <array>
+#include <cstdio>
+
+#include "firmware/canopen/emcy.hpp"
+#include "firmware/mission/step_failure.hpp"
+#include "shared/messages/joint_io.hpp"
+
+namespace lf::config {
+
+namespace {
+
+using safety::Fault;
+
+std::string hex(unsigned value) {
+  char text[16];
+  std::snprintf(text, sizeof text, "0x%04X", value);
+  return text;
+}
+
+std::string cause(Fault fault, std::int32_t code) {
+  switch (fault) {
+    case Fault::node_lost:
+    case Fault::node_rebooted:
+    case Fault::drive_fault:
+    case Fault::following_error:
+    case Fault::stale_position:
+    case Fault::joint_limit:
+    case Fault::overspeed:
+    case Fault::overload:
+    case Fault::unexpected_contact: return node_text(code);
+    case Fault::step_failed:
+    case Fault::vision_poor: return name(static_cast<StepFailure>(code));
+    case Fault::second_master: return "identifier " + hex(static_cast<unsigned>(code));
+    case Fault::estop: return code == 0 ? "the chain is open" : "by order";
+    case Fault::io_lost: return "";
+    default: return code == 0 ? "" : std::to_string(code);
+  }
+}
+
+}  // namespace
+
+std::string node_text(std::int32_t index) {
+  constexpr std::array<const char*, joint_count + 1> names{"slew", "shoulder", "elbow", "roll", "jaw", "io"};
+  const bool known = index >= 0 && index < static_cast<std::int32_t>(names.size());
+  return known ? names[static_cast<std::size_t>(index)] : std::to_string(index);
+}
+
+std::string fault_text(Fault fault, std::int32_t code, std::uint16_t emcy) {
+  std::string text = safety::name(fault);
+  if (const std::string why = cause(fault, code); !why.empty()) text += ": " + why;
+  const bool failed = fault == Fault::step_failed || fault == Fault::vision_poor;
+  if (const char* what_to_do = failed ? remedy(static_cast<StepFailure>(code)) : ""; *what_to_do != 0)
+    text += std::string(" (") + what_to_do + ")";
+  if (emcy != 0) text += ", EMCY " + hex(emcy) + " (" + canopen::emcy_name(emcy) + ")";
+  return text;
+}
+
+}  // namespace lf::config

@@ -1,0 +1,67 @@
+#include "hal/sim/given_sight.hpp"
+
+#include <cmath>
+
+#include "firmware/scan/camera_model.hpp"
+#include "shared/random.hpp"
+
+namespace lf::hal {
+
+namespace {
+
+// As many as a sweep of the whole panel gives.
+constexpr std::uint32_t plane_points = 80000, handle_points = 4000;
+
+}  // namespace
+
+PanelResult panel_as_it_is(const Pose& base_from_panel, double handle_rad, const PanelLayout& layout, const MarkerCalibration& marker,
+                           const CameraCalibration& camera) {
+  PanelResult result;
+  result.fit.valid = true;
+  result.fit.plane.normal = base_from_panel.linear().col(2);
+  result.fit.plane.offset_m = -result.fit.plane.normal.dot(base_from_panel.translation());
+  result.fit.points = result.fit.inliers = plane_points;
+  result.fit.rms_m = 0.0004;
+  result.confidence = 0.9f;
+
+  const Pose camera_from_tag = camera.base_from_camera.inverse() * base_from_panel * marker.panel_from_tag;
+  const scan::CameraModel model(camera.intrinsics);
+  const double h = marker.size_m / 2;
+  const std::array<Vec3, 4> corners{Vec3(-h, -h, 0), Vec3(h, -h, 0), Vec3(h, h, 0), Vec3(-h, h, 0)};
+  result.marker.found = true;
+  result.marker.id = marker.id;
+  result.marker.camera_from_tag = camera_from_tag;
+  result.marker.margin = 80;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const std::optional<Vec2> pixel = model.project(camera_from_tag * corners[i]);
+    result.marker.found = result.marker.found && pixel.has_value();
+    result.marker.corners_px[i] = pixel.value_or(Vec2::Zero());
+    result.marker.centre_px += result.marker.corners_px[i] / 4;
+  }
+
+  ProudCluster handle;
+  handle.centroid_m = base_from_panel * Vec3(0, 0, layout.handle_height_m);
+  handle.axis = base_from_panel.linear() * Vec3(-std::sin(handle_rad), std::cos(handle_rad), 0);
+  handle.length_m = layout.handle_length_m;
+  handle.width_m = layout.handle_thickness_m;
+  handle.height_m = handle.height_max_m = layout.handle_height_m;
+  handle.points = handle_points;
+  (void)result.clusters.push_back(handle);
+  if (layout.pointer != PanelLayout::Pointer::none) {
+    result.pointer.seen = true;
+    result.pointer.direction = handle.axis;
+    result.pointer.confidence = 0.8f;
+  }
+  return result;
+}
+
+void blank_picture(std::uint32_t sequence, optics::Frame& frame) {
+  frame.width = 16;
+  frame.height = 12;
+  frame.channels = 1;
+  frame.pixels.resize(static_cast<std::size_t>(frame.width * frame.height));
+  for (std::size_t i = 0; i < frame.pixels.size(); ++i)
+    frame.pixels[i] = static_cast<std::uint8_t>(splitmix64((std::uint64_t{sequence} << 16) + i) >> 60);
+}
+
+}  // namespace lf::hal

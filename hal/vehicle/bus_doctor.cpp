@@ -1,0 +1,249 @@
+#include "hal/vehicle/bus_doctor.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+#include "firmware/canopen/cob_id.hpp"
+
+namespace lf::hal {
+
+namespace {
+
+constexpr Duration answer_time = Duration::from_ms(30);  // an idle server answers within a few milliseconds
+
+struct Place {
+  std::uint16_t index;
+  std::uint8_t sub;
+};
+
+// In the order of the boot. The first one says whether anybody is there.
+constexpr std::array<Place, 62> places{{
+    {0x1000, 0}, {0x1008, 0}, {0x1018, 1}, {0x1018, 2}, {0x1018, 3}, {0x1005, 0}, {0x1006, 0}, {0x1014, 0}, {0x100C, 0},
+    {0x100D, 0}, {0x1016, 1}, {0x1017, 0}, {0x1029, 1}, {0x6007, 0}, {0x603F, 0}, {0x6041, 0}, {0x605A, 0}, {0x605B, 0},
+    {0x605C, 0}, {0x605D, 0}, {0x605E, 0}, {0x6060, 0}, {0x6061, 0}, {0x6064, 0}, {0x6065, 0}, {0x6066, 0}, {0x6072, 0},
+    {0x6075, 0}, {0x6076, 0}, {0x6077, 0}, {0x607A, 0}, {0x607C, 0}, {0x607D, 1}, {0x607D, 2}, {0x607E, 0}, {0x607F, 0},
+    {0x6080, 0}, {0x6085, 0}, {0x608F, 1}, {0x608F, 2}, {0x6091, 1}, {0x6091, 2}, {0x6092, 1}, {0x6092, 2}, {0x6093, 1},
+    {0x6093, 2}, {0x6096, 1}, {0x6096, 2}, {0x6098, 0}, {0x6099, 1}, {0x6099, 2}, {0x609A, 0}, {0x60A8, 0}, {0x60A9, 0},
+    {0x60AA, 0}, {0x60B2, 0}, {0x60C2, 1}, {0x60C2, 2}, {0x60FD, 0}, {0x6502, 0}, {0x1600, 0}, {0x1A00, 0},
+}};
+
+std::uint32_t key(std::uint16_t index, std::uint8_t sub) { return (std::uint32_t{index} << 8) | sub; }
+
+std::string hex(std::uint32_t value) {
+  char text[16];
+  std::snprintf(text, sizeof text, "0x%08X", value);
+  return text;
+}
+
+std::string named(std::uint16_t index, std::uint8_t sub) {
+  const std::string name = config::object_name(index);
+  return config::object_text(index, sub) + (name.empty() ? "" : " " + name);
+}
+
+// Rows of the boot that a profile may name a substitute for.
+constexpr std::array<Place, 13> replaceable{{{0x6076, 0},
+                                             {0x1016, 1},
+                                             {0x6007, 0},
+                                             {0x605A, 0},
+                                             {0x6066, 0},
+                                             {0x607D, 1},
+                                             {0x6072, 0},
+                                             {0x607F, 0},
+                                             {0x6085, 0},
+                                             {0x6098, 0},
+                                             {0x609A, 0},
+                                             {0x607C, 0},
+                                             {0x60B2, 0}}};
+
+const char* likely_substitute(std::uint16_t index) {
+  switch (index) {
+    case 0x6076: return "configured_rating";
+    case 0x1016: return "node_guarding";
+    case 0x6066: return "master_times_following";
+    case 0x607D: return "master_limits_position";
+    case 0x6072: return "vendor_limit";
+    case 0x607F: return "master_limits_speed";
+    case 0x60B2: return "no_feed_forward";
+    default: return "fixed_by_maker";
+  }
+}
+
+std::string number_text(const FoundNode& node, std::uint16_t index, std::uint8_t sub) {
+  const ReadObject* object = node.find(index, sub);
+  return object != nullptr && object->there() ? std::to_string(object->number()) : "?";
+}
+
+const char* type_of(std::size_t bytes) { return bytes == 1 ? "u8" : bytes == 2 ? "u16" : "u32"; }
+
+}  // namespace
+
+std::uint32_t ReadObject::number() const {
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < std::min<std::size_t>(4, bytes.size()); ++i) value |= std::uint32_t{bytes[i]} << (8 * i);
+  return value;
+}
+
+const ReadObject* FoundNode::find(std::uint16_t index, std::uint8_t sub) const {
+  const auto found = objects.find(key(index, sub));
+  return found == objects.end() ? nullptr : &found->second;
+}
+
+bool FoundNode::drive() const {
+  const ReadObject* type = find(0x1000, 0);
+  return type != nullptr && type->there() && (type->number() & 0xFFFFu) == 0x0192;
+}
+
+std::string FoundNode::name() const {
+  const ReadObject* name = find(0x1008, 0);
+  if (name == nullptr || !name->there()) return "";
+  std::string text(name->bytes.begin(), name->bytes.end());
+  text.resize(std::min(text.size(), text.find('\0')));
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c < 0x20 || c > 0x7E; }, '?');
+  return text;
+}
+
+BusDoctor::BusDoctor(std::uint8_t first, std::uint8_t last) : node_(first), last_(last), sdo_(first, answer_time) { reading_.node = first; }
+
+void BusDoctor::on_frame(const CanFrame& frame, Time now) {
+  if (!done() && frame.id == canopen::cob_id::sdo_answer + node_ && frame.length == 8) (void)sdo_.on_frame(frame, now);
+}
+
+void BusDoctor::next_node() {
+  if (!reading_.objects.empty()) nodes_.push_back(reading_);
+  reading_ = {};
+  ++node_;
+  reading_.node = node_;
+  object_ = 0;
+  sdo_ = canopen::SdoClient(node_, answer_time);
+}
+
+void BusDoctor::take() {
+  const bool silent = sdo_.state() == canopen::SdoClient::State::failed && !sdo_.aborted_by_server();
+  if (silent && object_ == 0) return next_node();
+  ReadObject read;
+  if (sdo_.state() == canopen::SdoClient::State::done) {
+    const auto value = sdo_.value();
+    read.bytes.assign(value.begin(), value.end());
+  } else {
+    read.abort_code = sdo_.abort_code();
+  }
+  reading_.objects[key(places[object_].index, places[object_].sub)] = read;
+  if (++object_ == places.size()) next_node();
+}
+
+void BusDoctor::step(Time now, std::vector<CanFrame>& out) {
+  CanFrame frame;
+  while (!done() && sdo_.poll(now, frame)) out.push_back(frame);
+  if (done() || sdo_.busy()) return;
+  if (sdo_.state() != canopen::SdoClient::State::idle) take();
+  if (done()) return;
+  sdo_.upload(places[object_].index, places[object_].sub);
+  while (sdo_.poll(now, frame)) out.push_back(frame);
+}
+
+const config::DriveKind* known_kind(const FoundNode& node, const std::vector<config::DriveKind>& kinds) {
+  const ReadObject* vendor = node.find(0x1018, 1);
+  const ReadObject* product = node.find(0x1018, 2);
+  if (vendor == nullptr || !vendor->there()) return nullptr;
+  const config::DriveKind* best = nullptr;
+  for (const config::DriveKind& kind : kinds) {
+    if (kind.identity.vendor == 0 && kind.identity.product == 0) continue;
+    if (kind.identity.vendor != 0 && kind.identity.vendor != vendor->number()) continue;
+    const bool same = product != nullptr && product->there() && kind.identity.product == product->number();
+    if (kind.identity.product != 0 && !same) continue;
+    if (best == nullptr || (best->identity.product == 0 && kind.identity.product != 0)) best = &kind;
+  }
+  return best;
+}
+
+std::vector<std::string> differences(const FoundNode& node, const config::DriveKind& kind) {
+  std::vector<std::string> all;
+  for (const config::ProfileObject& object : kind.objects) {
+    const ReadObject* read = node.find(object.index, object.sub);
+    if (object.writes || read == nullptr) continue;
+    const std::string why = object.why.empty() ? "" : " (" + object.why + ")";
+    if (!read->there() && !object.optional) all.push_back(named(object.index, object.sub) + " is not there" + why);
+    if (!read->there()) continue;
+    const auto wanted = static_cast<std::uint32_t>(std::stoll(object.value, nullptr, 0));
+    if (read->number() != wanted)
+      all.push_back(named(object.index, object.sub) + " holds " + hex(read->number()) + ", the profile says " + hex(wanted) + why);
+  }
+  for (const Place& place : replaceable) {
+    const ReadObject* read = node.find(place.index, place.sub);
+    const bool listed = kind.absence(place.index) != nullptr;
+    if (read == nullptr || read->there() != listed) continue;
+    if (listed && kind.absence(place.index)->by != canopen::Substitute::configured_rating)
+      all.push_back(named(place.index, place.sub) + " is there, the profile says it is not: a newer firmware?");
+    if (!listed) all.push_back(named(place.index, place.sub) + " is not there, and the profile names no substitute");
+  }
+  const ReadObject* rating = node.find(0x6076, 0);
+  if (kind.rating == "object" && rating != nullptr && rating->there() && rating->number() == 0)
+    all.emplace_back("6076:00 rated torque is 0: commission the motor's data, or state 'rated_torque_nm'");
+  return all;
+}
+
+std::string draft_profile(const FoundNode& node) {
+  const auto identity = [&](std::uint8_t sub) {
+    const ReadObject* read = node.find(0x1018, sub);
+    return read != nullptr && read->there() ? hex(read->number()) : std::string("0");
+  };
+  std::string text = "title: " + (node.name().empty() ? "a drive without a name" : "\"" + node.name() + "\"") + "\n";
+  text += "identity: {vendor: \"" + identity(1) + "\", product: \"" + identity(2) + "\"}\n";
+  text += "# State one scale for each, from the maker's manual: units_per_count or units_per_rev (speed: _s, acceleration: _s2).\n";
+  text += "position: {units_per_count: STATE}\nspeed: {units_per_rev_s: STATE}\nacceleration: {units_per_rev_s2: STATE}\n";
+  const ReadObject* rating = node.find(0x6076, 0);
+  const bool rated = rating != nullptr && rating->there() && rating->number() > 0;
+  text += std::string("torque: {basis: STATE, rating: ") +
+          (rated ? "object, rating_unit_unm: STATE}  # 6076 holds " + number_text(node, 0x6076, 0) : "configured}") + "\n";
+  text +=
+      "options: {quick_stop: 6, abort: 3}  # 605A holds " + number_text(node, 0x605A, 0) + ", 6007 " + number_text(node, 0x6007, 0) + "\n";
+  text += "sync_loss: unknown\n";
+  std::string checks, absences;
+  for (const Place& place : places) {
+    const bool factor = (place.index >= 0x608F && place.index <= 0x6097) || (place.index >= 0x60A8 && place.index <= 0x60AA);
+    const ReadObject* read = node.find(place.index, place.sub);
+    if (!factor || read == nullptr || !read->there()) continue;
+    checks += "  - {object: \"" + config::object_text(place.index, place.sub) + "\", type: " + type_of(read->bytes.size()) +
+              ", value: " + hex(read->number()) + "}\n";
+  }
+  for (const Place& place : replaceable) {
+    const ReadObject* read = node.find(place.index, place.sub);
+    if (read == nullptr || read->there()) continue;
+    absences += "  - {object: \"" + config::object_text(place.index, place.sub) + "\", by: " + likely_substitute(place.index) +
+                "}  # make sure of it\n";
+  }
+  if (!checks.empty()) text += "check:\n" + checks;
+  if (!absences.empty()) text += "absent:\n" + absences;
+  return text;
+}
+
+std::string doctor_text(const std::vector<FoundNode>& nodes, const std::vector<config::DriveKind>& kinds) {
+  if (nodes.empty()) return "nobody answers: look at the bus' power, bit rate and termination\n";
+  std::string text;
+  for (const FoundNode& node : nodes) {
+    const std::string name = node.name().empty() ? "without a name" : "'" + node.name() + "'";
+    text += "node " + std::to_string(node.node) + ": " + name;
+    if (!node.drive()) {
+      text += ", no servo drive (1000 is " + number_text(node, 0x1000, 0) + ")\n";
+      continue;
+    }
+    const config::DriveKind* kind = known_kind(node, kinds);
+    if (kind == nullptr) {
+      text += ", not known. A draft of its profile:\n\n" + draft_profile(node) + "\n";
+      continue;
+    }
+    const std::vector<std::string> all = differences(node, *kind);
+    text += ", profile " + kind->name + " (" + kind->title + ")" + (all.empty() ? ": as it says\n" : ":\n");
+    for (const std::string& one : all) text += "  " + one + "\n";
+    const ReadObject* error = node.find(0x603F, 0);
+    if (error != nullptr && error->there() && error->number() != 0)
+      text += "  its last error (603F) is " + hex(error->number()).substr(6) + ": " +
+              kind->error_text(static_cast<std::uint16_t>(error->number())) + "\n";
+    for (const std::string& open : kind->unconfirmed) text += "  unconfirmed, try it on the bench: " + open + "\n";
+  }
+  return text;
+}
+
+}  // namespace lf::hal

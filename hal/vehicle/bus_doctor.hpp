@@ -1,0 +1,71 @@
+// Reads a bus and says which drives are on it: which profile each has, what differs from it, and a draft of a profile for one that is not known.
+//
+// It only reads. SDO uploads go out, and nothing else: no NMT command, no SYNC, no write. It may run beside a master that stands still.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "firmware/canopen/sdo_client.hpp"
+#include "hal/config/drive_kind.hpp"
+#include "shared/messages/can_frame.hpp"
+#include "shared/messages/time.hpp"
+
+namespace lf::hal {
+
+// An object as a node answered: its bytes, or the abort code.
+struct ReadObject {
+  std::vector<std::uint8_t> bytes;
+  std::uint32_t abort_code = 0;
+  bool there() const { return abort_code == 0; }
+  std::uint32_t number() const;
+};
+
+struct FoundNode {
+  std::uint8_t node = 0;
+  std::map<std::uint32_t, ReadObject> objects;  // by index << 8 | sub
+
+  const ReadObject* find(std::uint16_t index, std::uint8_t sub) const;
+  bool drive() const;        // CiA 402
+  std::string name() const;  // 1008
+};
+
+class BusDoctor {
+ public:
+  // Asks nodes `first` to `last`, one after the other. A node that does not answer within 30 ms is not there.
+  explicit BusDoctor(std::uint8_t first = 1, std::uint8_t last = 126);
+
+  void on_frame(const CanFrame& frame, Time now);
+  // Appends the frames that are due. Call it every millisecond.
+  void step(Time now, std::vector<CanFrame>& out);
+  bool done() const { return node_ > last_; }
+  const std::vector<FoundNode>& nodes() const { return nodes_; }
+
+ private:
+  void next_node();
+  void next_object();
+  void take();
+
+  std::uint8_t node_;
+  std::uint8_t last_;
+  std::size_t object_ = 0;
+  canopen::SdoClient sdo_;
+  FoundNode reading_;
+  std::vector<FoundNode> nodes_;
+};
+
+// The profile of the drive, by vendor and product; nullptr when none says them. A profile that states the product goes before one that does not.
+const config::DriveKind* known_kind(const FoundNode& node, const std::vector<config::DriveKind>& kinds);
+
+// What the drive holds or lacks otherwise than its profile says, a sentence each.
+std::vector<std::string> differences(const FoundNode& node, const config::DriveKind& kind);
+
+// A profile in YAML, filled with what was read; what a reader has to state stands there as a question.
+std::string draft_profile(const FoundNode& node);
+
+// All of it, for people.
+std::string doctor_text(const std::vector<FoundNode>& nodes, const std::vector<config::DriveKind>& kinds);
+
+}  // namespace lf::hal

@@ -1,0 +1,202 @@
+#include "hal/vehicle/commissioner.hpp"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <ctime>
+#include <filesystem>
+#include <utility>
+
+#include "hal/config/share.hpp"
+#include "hal/vehicle/tick_clock.hpp"
+#include "shared/arm/arm_description.hpp"
+#include "shared/input_error.hpp"
+
+namespace lf::hal {
+
+namespace {
+
+// Of a control period, 4 ms, several: a commissioning that cannot begin comes back at once.
+constexpr Duration refused_within = Duration::from_ms(50);
+
+Json refused(const std::string& why) { return {{"ok", false}, {"why", why}}; }
+
+std::string now_text() {
+  char day[32] = "";
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  std::strftime(day, sizeof day, "%Y-%m-%d %H:%M", &utc);
+  return day;
+}
+
+// What cannot be read or written is told before anything moves.
+config::HomingOffsets read_and_check(const std::string& file) {
+  config::HomingOffsets offsets = config::read_homing_file(file);
+  const std::string folder = std::filesystem::absolute(file).parent_path().string();
+  if (access(folder.c_str(), W_OK | X_OK) != 0) throw InputError(file + ": cannot be written: " + std::strerror(errno));
+  return offsets;
+}
+
+}  // namespace
+
+Commissioner::Commissioner(const VehicleConfig& config, LoopRings& rings, Log log)
+    : core_(config.core.controller), file_(config.machine.homing_file), rings_(rings), log_(std::move(log)) {
+  const std::filesystem::path folder = std::filesystem::path(config.machine.file).parent_path();
+  const ArmDescription arm = load_arm_urdf(config::find_file(config.machine.arm_urdf, folder));
+  for (std::size_t i = 0; i < joint_count; ++i) backlash_rad_[i] = arm.joints[i].backlash_rad;
+}
+
+// The control thread has ended before: what was lent is the owner's again.
+Commissioner::~Commissioner() {
+  for (Controller* old = nullptr; rings_.old_cores.pop(old);) delete old;
+  if (Controller* untaken = nullptr; rings_.cores.pop(untaken)) {
+    (void)untaken;  // still held by core_given_
+  } else {
+    (void)core_given_.release();  // the control loop has it
+  }
+}
+
+std::string Commissioner::unknown_joints() const {
+  std::string names;
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    if (!core_.network.drives[i].may_have_power()) names += (names.empty() ? "" : ", ") + std::string(config::joint_name(i));
+  }
+  return names;
+}
+
+std::optional<std::string> Commissioner::begin(const CommissionOrder& order) {
+  if (stage_ != Stage::idle) return "a commissioning is under way";
+  if (file_.empty()) return "'homing.file' names no file to write the zeros to";
+  order_ = order;
+  answer_.reset();
+  prepared_ = std::make_shared<Prepared>();
+  Commissioning::Config setup;
+  setup.network = core_.network;
+  setup.joints = order.joints;
+  setup.backlash_rad = backlash_rad_;
+  setup.here = order.here;
+  const bool posted = worker_.post([prepared = prepared_, setup, file = file_] {
+    std::string problem;
+    try {
+      (void)read_and_check(file);
+    } catch (const InputError& error) {
+      problem = error.what();
+    }
+    auto commissioning = problem.empty() ? std::make_unique<Commissioning>(setup) : nullptr;
+    const std::lock_guard lock(prepared->mutex);
+    prepared->problem = problem;
+    prepared->commissioning = std::move(commissioning);
+    prepared->done = true;
+  });
+  if (!posted) return "too much is waiting to be done";
+  stage_ = Stage::preparing;
+  return std::nullopt;
+}
+
+std::optional<Json> Commissioner::answer() { return std::exchange(answer_, std::nullopt); }
+
+void Commissioner::step() {
+  for (Controller* old = nullptr; rings_.old_cores.pop(old);) {
+    delete old;
+    (void)core_given_.release();  // in the control loop now
+  }
+  for (CommissioningResult result; rings_.commissioned.pop(result);) take_back(result);
+  if (stage_ == Stage::preparing) lend();
+  if (stage_ == Stage::lending && monotonic_now() - lent_ >= refused_within) {
+    stage_ = Stage::running;
+    last_ = {{"state", "under way"}};
+    answer_ = Json{{"ok", true}, {"standing", "commissioning"}};
+  }
+  if (stage_ == Stage::storing) install();
+}
+
+void Commissioner::lend() {
+  {
+    const std::lock_guard lock(prepared_->mutex);
+    if (!prepared_->done) return;
+    if (!prepared_->problem.empty()) answer_ = refused(prepared_->problem);
+    commissioning_ = std::move(prepared_->commissioning);
+  }
+  stage_ = commissioning_ != nullptr ? Stage::lending : Stage::idle;
+  last_ = nullptr;
+  lent_ = monotonic_now();
+  if (commissioning_ != nullptr) (void)rings_.commissionings.push(commissioning_.get());
+}
+
+void Commissioner::take_back(const CommissioningResult& result) {
+  const std::unique_ptr<Commissioning> ended = std::move(commissioning_);
+  if (!result.begun) {
+    const std::string why = "the arm is not at rest without power: `abort` or `reset` first";
+    if (stage_ == Stage::running) return end_with({{"state", "failed"}, {"why", why}, {"without_power", true}});
+    answer_ = refused(why);
+    stage_ = Stage::idle;
+    return;
+  }
+  if (last_.is_null()) answer_ = Json{{"ok", true}, {"standing", "commissioning"}};
+  if (ended->state() == Commissioning::State::done) return store(*ended);
+  end_with(
+      {{"state", "failed"}, {"why", "nothing was written: " + std::string(ended->failure())}, {"without_power", ended->without_power()}});
+}
+
+void Commissioner::end_with(const Json& outcome) {
+  last_ = outcome;
+  stage_ = Stage::idle;
+  Json line{{"t_s", monotonic_now().s()}, {"kind", "commissioning"}};
+  line.update(outcome);
+  log_(line);
+}
+
+// The file is read again: it keeps what this commissioning has not found.
+void Commissioner::store(const Commissioning& ended) {
+  stage_ = Stage::storing;
+  prepared_ = std::make_shared<Prepared>();
+  const std::string how = (order_.here ? "in the jig, " : "at its stop, ") + now_text() + " UTC";
+  const bool posted =
+      worker_.post([prepared = prepared_, file = file_, how, found = ended.found(), zeros = ended.zero_counts(), core = core_]() mutable {
+        std::string problem;
+        config::HomingOffsets offsets;
+        std::unique_ptr<Controller> with_zeros;
+        try {
+          offsets = read_and_check(file);
+          for (std::size_t i = 0; i < joint_count; ++i) {
+            if (!found[i]) continue;
+            offsets.zero_counts[i] = zeros[i];
+            offsets.known[i] = true;
+            offsets.found[i] = how;
+          }
+          config::write_homing_file(file, offsets);
+          for (std::size_t i = 0; i < joint_count; ++i) {
+            core.network.drives[i].encoder_zero_counts = offsets.zero_counts[i];
+            core.network.drives[i].zero_known = offsets.known[i];
+          }
+          with_zeros = std::make_unique<Controller>(core);
+        } catch (const InputError& error) {
+          problem = error.what();
+        }
+        const std::lock_guard lock(prepared->mutex);
+        prepared->problem = problem;
+        prepared->offsets = offsets;
+        prepared->core = std::move(with_zeros);
+        prepared->done = true;
+      });
+  if (!posted) end_with({{"state", "failed"}, {"why", "nothing was written: too much is waiting to be done"}, {"without_power", true}});
+}
+
+void Commissioner::install() {
+  const std::lock_guard lock(prepared_->mutex);
+  if (!prepared_->done) return;
+  if (!prepared_->problem.empty()) return end_with({{"state", "failed"}, {"why", prepared_->problem}, {"without_power", true}});
+  Json zeros = Json::object();
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    core_.network.drives[i].encoder_zero_counts = prepared_->offsets.zero_counts[i];
+    core_.network.drives[i].zero_known = prepared_->offsets.known[i];
+    if (prepared_->offsets.known[i]) zeros[config::joint_name(i)] = prepared_->offsets.zero_counts[i];
+  }
+  core_given_ = std::move(prepared_->core);
+  (void)rings_.cores.push(core_given_.get());
+  end_with({{"state", "done"}, {"zeros", zeros}, {"file", file_}});
+}
+
+}  // namespace lf::hal

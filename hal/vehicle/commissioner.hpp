@@ -1,0 +1,78 @@
+// The operator's side of a commissioning: prepares it, lends it to the control thread, writes what it found into the homing file, and gives the core its
+// new zeros. One at a time.
+//
+// Files and memory are a worker's business: nothing here blocks. One thread owns it, the one that serves the socket.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "hal/vehicle/control_loop.hpp"
+#include "hal/vehicle/parse_order.hpp"
+#include "hal/vehicle/status_json.hpp"
+#include "hal/vehicle/vehicle_config.hpp"
+#include "hal/vehicle/worker.hpp"
+
+namespace lf::hal {
+
+class Commissioner {
+ public:
+  using Log = std::function<void(const Json&)>;
+
+  Commissioner(const VehicleConfig& config, LoopRings& rings, Log log);
+  ~Commissioner();
+  Commissioner(const Commissioner&) = delete;
+  Commissioner& operator=(const Commissioner&) = delete;
+
+  // Why it cannot begin, in words; nothing: answer() tells later whether it has.
+  std::optional<std::string> begin(const CommissionOrder& order);
+  // {"ok": ...} once after each begin(), when the control thread has begun it or when it could not.
+  std::optional<Json> answer();
+  // From begin() until the new zeros are on the disk and in the core.
+  bool busy() const { return stage_ != Stage::idle || core_given_ != nullptr; }
+  // One look at what has come back.
+  void step();
+
+  // Joints that take no power since their zero is not known: "slew, elbow"; empty when there is none.
+  std::string unknown_joints() const;
+  // How the last one ended; null before the first.
+  Json last() const { return last_; }
+
+ private:
+  // What a worker leaves; guarded by its mutex.
+  struct Prepared {
+    std::mutex mutex;
+    bool done = false;
+    std::string problem;
+    std::unique_ptr<Commissioning> commissioning;
+    std::unique_ptr<Controller> core;
+    config::HomingOffsets offsets;
+  };
+  enum class Stage { idle, preparing, lending, running, storing };
+
+  void lend();
+  void take_back(const CommissioningResult& result);
+  void store(const Commissioning& ended);
+  void install();
+  void end_with(const Json& outcome);
+
+  ControllerConfig core_;
+  std::string file_;
+  std::array<double, joint_count> backlash_rad_{};
+  LoopRings& rings_;
+  Log log_;
+  Stage stage_ = Stage::idle;
+  CommissionOrder order_;
+  Time lent_;
+  std::shared_ptr<Prepared> prepared_;
+  std::unique_ptr<Commissioning> commissioning_;  // lent while it runs
+  std::unique_ptr<Controller> core_given_;        // until the control thread has taken it
+  std::optional<Json> answer_;
+  Json last_;
+  Worker worker_{"commission"};
+};
+
+}  // namespace lf::hal

@@ -1,0 +1,55 @@
+// What `lanternfish campaign` is asked for, and the folder that a campaign writes to.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "host_sim/scenario/scenario.hpp"
+
+namespace lf::app {
+
+struct CampaignOptions {
+  std::string scenario = "default";
+  std::string seeds;
+  std::vector<std::string> set;
+  std::string out;
+  int jobs = 0;
+  bool json = false;
+  bool faults = false;
+  std::vector<std::string> kinds, steps;
+  bool pairs = false;
+  std::size_t one_in = 1;
+  bool ranges = false;
+  std::size_t draws = 5, many = 300;
+  std::string shard = "1/1";
+};
+
+struct Shard {
+  std::size_t index = 1, count = 1;
+};
+// "K/N". Throws InputError.
+Shard parse_shard(const std::string& text);
+
+int jobs_of(const CampaignOptions& options);
+
+// A campaign's folder, locked while it runs, with the experiment that it is of.
+class CampaignFolder {
+ public:
+  // Throws InputError when it holds another experiment or another campaign is writing there. `kind` names the default folder.
+  CampaignFolder(const CampaignOptions& options, const scenario::Scenario& scenario, const std::string& kind);
+  ~CampaignFolder();
+  CampaignFolder(const CampaignFolder&) = delete;
+  CampaignFolder& operator=(const CampaignFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+  int lock_ = -1;
+};
+
+int fault_campaign(const CampaignOptions& options);
+int range_campaign(const CampaignOptions& options);
+
+}  // namespace lf::app

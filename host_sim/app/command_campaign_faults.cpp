@@ -1,0 +1,72 @@
+// `lanternfish campaign --faults`.
+#include <algorithm>
+#include <cstdio>
+#include <set>
+
+#include "host_sim/app/campaign_options.hpp"
+#include "host_sim/app/fault_table.hpp"
+#include "host_sim/app/interrupt.hpp"
+#include "host_sim/record/run_folder.hpp"
+
+namespace lf::app {
+
+namespace {
+
+std::string command_of(const CampaignOptions& options) {
+  std::string command = "lanternfish campaign " + options.scenario + " --faults";
+  if (options.pairs) command += " --pairs";
+  for (const std::string& kind : options.kinds) command += " --kinds " + kind;
+  for (const std::string& step : options.steps) command += " --steps '" + step + "'";
+  if (options.one_in > 1) command += " --one-in " + std::to_string(options.one_in);
+  if (options.shard != "1/1") command += " --shard " + options.shard;
+  return command;
+}
+
+void say(const RowResult& row) {
+  const char* verdict = !row.safe() ? "UNSAFE" : row.unclear.empty() ? "safe" : "unclear";
+  std::fprintf(stderr, "%-8s %s\n", verdict, row.row.c_str());
+}
+
+}  // namespace
+
+int fault_campaign(const CampaignOptions& options) {
+  const Shard shard = parse_shard(options.shard);
+  const scenario::Scenario base = scenario::load_scenario(options.scenario, options.set);
+  const CampaignFolder folder(options, base, options.pairs ? "fault-pairs" : "faults");
+  catch_interrupts();
+  MatrixChoice choice{options.kinds, options.steps, options.pairs, shard.index, shard.count, options.one_in};
+  const std::vector<MatrixRow> all = matrix_rows(survey_moments(base), choice);
+
+  // Rows of this choice that are there are kept.
+  const std::filesystem::path file = folder.path() / "rows.jsonl";
+  std::set<std::string> wanted;
+  for (const MatrixRow& row : all) wanted.insert(row.name());
+  std::vector<RowResult> results;
+  for (RowResult& row : read_rows(file)) {
+    if (wanted.erase(row.row) > 0) results.push_back(std::move(row));
+  }
+  const std::size_t kept = results.size();
+  std::vector<MatrixRow> missing;
+  for (const MatrixRow& row : all) {
+    if (wanted.contains(row.name())) missing.push_back(row);
+  }
+  if (kept > 0) std::fprintf(stderr, "%zu rows are kept, %zu are missing\n", kept, missing.size());
+  fly_matrix(base, missing, jobs_of(options), file, [&](const RowResult& row) {
+    say(row);
+    results.push_back(row);
+  });
+
+  std::sort(results.begin(), results.end(), [](const RowResult& a, const RowResult& b) { return a.row < b.row; });
+  const FaultTable table = tabulate_faults(results);
+  const record::RunFolder out(folder.path());
+  out.write("faults.csv", csv_of(results));
+  out.write("faults.md", markdown_of(table, command_of(options)));
+  Json json = json_of(table);
+  json["folder"] = folder.path().string();
+  out.write("faults.json", json.dump(2) + "\n");
+  options.json ? print_json(json) : tell(table);
+  if (interrupted()) return exit_interrupted;
+  return table.good() ? done : failed;
+}
+
+}  // namespace lf::app

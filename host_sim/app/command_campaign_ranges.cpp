@@ -1,0 +1,165 @@
+// `lanternfish campaign --ranges`: every key of the scenario, drawn over its documented range.
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "host_sim/app/campaign_options.hpp"
+#include "host_sim/app/command.hpp"
+#include "host_sim/app/copies.hpp"
+#include "host_sim/app/interrupt.hpp"
+#include "host_sim/app/range_draws.hpp"
+#include "host_sim/app/run_session.hpp"
+#include "host_sim/judge/truth.hpp"
+#include "host_sim/record/run_folder.hpp"
+#include "shared/input_error.hpp"
+
+namespace lf::app {
+
+namespace {
+
+// What a drawn value came to. "unnamed": it ended safely, but nobody can say why.
+constexpr std::array verdicts{"success", "safe", "refused", "unnamed", "unsafe"};
+
+struct RangeResult {
+  std::string name, key, set, verdict, reason;
+};
+
+std::string line_of(const RangeResult& result) {
+  const Json json{{"row", result.name}, {"key", result.key}, {"set", result.set}, {"verdict", result.verdict}, {"reason", result.reason}};
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::optional<RangeResult> parse(const std::string& line) {
+  const Json json = Json::parse(line, nullptr, false);
+  if (!json.is_object()) return std::nullopt;
+  return RangeResult{json.value("row", ""), json.value("key", ""), json.value("set", ""), json.value("verdict", ""),
+                     json.value("reason", "")};
+}
+
+void judge(const record::RunResult& run, RangeResult& result) {
+  if (run.success) {
+    result.verdict = "success";
+    return;
+  }
+  result.reason = run.failure->phase + ": " + run.failure->reason;
+  const bool forced = run.contact.peak_force_n > judge::contact_limit_n || run.contact.unintended_contacts > 0;
+  const bool unsafe = run.false_success || forced || run.failure->reason.find("moves or has power") != std::string::npos;
+  const bool named = run.failure->reason.find("not ended by the time limit") == std::string::npos;
+  result.verdict = unsafe ? "unsafe" : named ? "safe" : "unnamed";
+  if (forced && !run.false_success) {
+    result.reason += " (" + std::to_string(run.contact.unintended_contacts) + " unintended contacts, up to " +
+                     std::to_string(static_cast<int>(run.contact.peak_force_n)) + " N)";
+  }
+}
+
+RangeResult fly(const CampaignOptions& options, const RangeRow& row) {
+  RangeResult result{row.name, row.key, "", "", ""};
+  std::vector<std::string> set = options.set;
+  set.insert(set.end(), row.set.begin(), row.set.end());
+  for (const std::string& each : row.set) result.set += (result.set.empty() ? "" : " ") + each;
+  try {
+    RunRequest request;
+    request.scenario = scenario::load_scenario(options.scenario, set);
+    request.seed = row.seed;
+    request.outside = false;
+    request.given_sight = !row.sees;
+    judge(run_mission(request).result, result);
+  } catch (const InputError& error) {
+    result.verdict = "refused";
+    result.reason = error.what();
+  }
+  return result;
+}
+
+std::string cell(std::string text) {
+  for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.insert(at, "\\");
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+using Counts = std::map<std::string, std::size_t>;
+
+std::string markdown_of(const std::vector<RangeResult>& results) {
+  std::map<std::string, Counts> by_key;
+  for (const RangeResult& result : results) ++by_key[result.key][result.verdict];
+  std::string text = "| key | success | safe | refused | unnamed | unsafe |\n|---|---|---|---|---|---|\n";
+  for (auto& [key, counts] : by_key) {
+    text += "| `" + key + "` |";
+    for (const char* verdict : verdicts) text += " " + (counts[verdict] > 0 ? std::to_string(counts[verdict]) : "") + " |";
+    text += "\n";
+  }
+  text += "\n| drawn | came to | because |\n|---|---|---|\n";
+  for (const RangeResult& result : results) {
+    if (result.verdict != "success") text += "| `" + cell(result.set) + "` | " + result.verdict + " | " + cell(result.reason) + " |\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+int range_campaign(const CampaignOptions& options) {
+  const Shard shard = parse_shard(options.shard);
+  const scenario::Scenario base = scenario::load_scenario(options.scenario, options.set);
+  const CampaignFolder folder(options, base, "ranges");
+  catch_interrupts();
+  const std::filesystem::path file = folder.path() / "rows.jsonl";
+  std::vector<RangeRow> rows;
+  const std::vector<RangeRow> all = range_rows(options.draws, options.many);
+  for (std::size_t i = shard.index - 1; i < all.size(); i += shard.count) {
+    if (options.kinds.empty() || std::find(options.kinds.begin(), options.kinds.end(), all[i].key) != options.kinds.end())
+      rows.push_back(all[i]);
+  }
+  std::map<std::string, RangeResult> results;
+  std::ifstream kept(file);
+  for (std::string line; std::getline(kept, line);) {
+    if (std::optional<RangeResult> result = parse(line)) results[result->name] = *result;
+  }
+  LineFile lines(file);
+  std::map<std::string, const RangeRow*> by_name;
+  Copies copies(jobs_of(options), [&](const Copies::Ended& ended) {
+    const RangeRow& row = *by_name.at(ended.name);
+    RangeResult result = parse(ended.line).value_or(RangeResult{row.name, row.key, row.set.front(), "unsafe", ended.failure});
+    lines.append(line_of(result));
+    std::fprintf(stderr, "%-8s %s %s\n", result.verdict.c_str(), result.name.c_str(), result.reason.c_str());
+    results[result.name] = result;
+  });
+  for (const RangeRow& row : rows) {
+    if (results.contains(row.name) || interrupted()) continue;
+    by_name[row.name] = &row;
+    copies.start(row.name, [&] { return line_of(fly(options, row)); });
+  }
+  copies.finish();
+
+  std::vector<RangeResult> mine;
+  Counts counts, single;
+  for (const RangeRow& row : rows) {
+    const auto found = results.find(row.name);
+    if (found == results.end()) continue;
+    mine.push_back(found->second);
+    ++counts[found->second.verdict];
+    if (row.key != "many") ++single[found->second.verdict];
+  }
+  const record::RunFolder out(folder.path());
+  out.write("ranges.md", markdown_of(mine));
+  std::size_t singles = 0;
+  for (const auto& [verdict, count] : single) singles += count;
+  Json json{{"rows", mine.size()}, {"single_draws", singles}, {"folder", folder.path().string()}};
+  for (const char* verdict : verdicts) json[verdict] = counts[verdict];
+  out.write("ranges.json", json.dump(2) + "\n");
+  if (options.json) {
+    print_json(json);
+  } else {
+    print("%s", markdown_of(mine).c_str());
+    for (const char* verdict : verdicts) print("%s: %zu\n", verdict, counts[verdict]);
+    print("single-key draws: %zu of %zu succeeded\n", single["success"], singles);
+  }
+  if (interrupted()) return exit_interrupted;
+  constexpr double wanted_share = 0.8;
+  const bool enough = static_cast<double>(single["success"]) >= wanted_share * static_cast<double>(singles);
+  return counts["unsafe"] + counts["unnamed"] == 0 && enough ? done : failed;
+}
+
+}  // namespace lf::app

@@ -1,0 +1,264 @@
+#include "host_sim/app/fault_matrix.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <map>
+
+#include "hal/config/fault_text.hpp"
+#include "hal/sim/observers.hpp"
+#include "host_sim/app/copies.hpp"
+#include "host_sim/app/interrupt.hpp"
+#include "host_sim/judge/truth.hpp"
+#include "host_sim/scenario/draw.hpp"
+#include "shared/input_error.hpp"
+#include "shared/random.hpp"
+
+namespace lf::app {
+
+namespace {
+
+using mission::Step;
+
+constexpr std::uint64_t sample_seed = 1;
+constexpr double pairs_within_s = 0.5;
+constexpr double after_end_s = 2.5;  // watched on, past every time that a stop may take
+constexpr double longest_s = 300;    // of a mission, after its fault
+constexpr double by_hand_s = 6;      // of an arm that waits for orders
+constexpr double over_s = 3;         // of a mission that had ended before
+
+// A pair is taken in one step of each phase.
+constexpr std::array<Step, 8> pair_steps{Step::enable, Step::deploy, Step::scan, Step::advance,
+                                         Step::turn,   Step::press,  Step::stow, Step::stopped};
+
+bool chosen(const std::vector<std::string>& names, const std::string& name) {
+  return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
+}
+
+void check_names(const std::vector<std::string>& given, const std::vector<std::string>& known, const char* option) {
+  for (const std::string& name : given) {
+    if (std::find(known.begin(), known.end(), name) == known.end()) throw InputError(std::string(option) + ": there is no '" + name + "'");
+  }
+}
+
+// What is true from power-on or not at all happens there only.
+bool happens_in(const judge::Cause& cause, const FaultMoment& moment) {
+  return cause.rule->kind != "limits_refused" || moment.name == "power-on";
+}
+
+std::vector<MatrixRow> single_rows(const std::vector<FaultMoment>& moments, const MatrixChoice& choice) {
+  std::vector<MatrixRow> rows;
+  for (const FaultMoment& moment : moments) {
+    if (!chosen(choice.steps, moment.name)) continue;
+    for (const judge::Cause& cause : judge::all_causes()) {
+      if (chosen(choice.kinds, cause.rule->kind) && happens_in(cause, moment)) rows.push_back({moment, {cause}, 0});
+    }
+  }
+  return rows;
+}
+
+// Every pair of rules in a step of every phase; which nodes, which is first, and how far apart, a hash of the pair says.
+std::vector<MatrixRow> pair_rows(const std::vector<FaultMoment>& moments, const MatrixChoice& choice) {
+  std::map<const judge::FaultRule*, std::vector<judge::Cause>> by_rule;
+  for (const judge::Cause& cause : judge::all_causes()) by_rule[cause.rule].push_back(cause);
+  const std::span<const judge::FaultRule> rules = judge::fault_rules();
+  std::vector<MatrixRow> rows;
+  for (const FaultMoment& moment : moments) {
+    if (!chosen(choice.steps, moment.name)) continue;
+    if (std::find(pair_steps.begin(), pair_steps.end(), moment.step) == pair_steps.end()) continue;
+    for (std::size_t a = 0; a < rules.size(); ++a) {
+      for (std::size_t b = a; b < rules.size(); ++b) {
+        if (!chosen(choice.kinds, rules[a].kind) && !chosen(choice.kinds, rules[b].kind)) continue;
+        if (rules[a].kind == "limits_refused" || rules[b].kind == "limits_refused") continue;
+        const std::uint64_t draw = splitmix64(splitmix64(a * 1000 + b) + static_cast<std::uint64_t>(moment.step));
+        const std::vector<judge::Cause>&first = by_rule[&rules[a]], &second = by_rule[&rules[b]];
+        MatrixRow row{moment, {first[draw % first.size()], second[(draw >> 16) % second.size()]}, 0};
+        if ((draw >> 32) % 2 == 1) std::swap(row.causes[0], row.causes[1]);
+        row.apart_s = pairs_within_s * static_cast<double>((draw >> 33) % 1000) / 1000;
+        rows.push_back(row);
+      }
+    }
+  }
+  return rows;
+}
+
+void check_choice(const std::vector<FaultMoment>& moments, const MatrixChoice& choice) {
+  std::vector<std::string> kinds, steps;
+  for (const judge::FaultRule& rule : judge::fault_rules()) kinds.push_back(rule.kind);
+  for (const FaultMoment& moment : moments) steps.push_back(moment.name);
+  check_names(choice.kinds, kinds, "--kinds");
+  check_names(choice.steps, steps, "--steps");
+}
+
+struct Watched {
+  judge::SafetyObserver safety;
+  judge::TruthObserver truth;
+  hal::SimObservers all{&safety, &truth};
+};
+
+judge::Ending ending_of(const Flight& flight, const Watched& watched, const MatrixRow& row, const world::World& world) {
+  const mission::Outcome& outcome = flight.mission().outcome();
+  judge::Ending ending;
+  ending.ended = outcome.ended;
+  ending.success = outcome.ended && outcome.success;
+  ending.step = mission::row(flight.mission_step()).name;
+  if (ending.ended && !ending.success) ending.reason = config::fault_text(outcome.fault, outcome.code, outcome.emcy);
+  ending.holds = flight.mission_step() == Step::held;
+  const bool must_stop = std::any_of(row.causes.begin(), row.causes.end(),
+                                     [](const judge::Cause& cause) { return cause.rule->demand == judge::Demand::stop; });
+  ending.expected_to_end = row.moment.walk != "by hand" || must_stop;
+  if (!ending.success) return ending;
+  const auto& results = flight.mission().tasks();
+  world::ContactReport contacts = world.contacts();
+  // What was pushed against the arm has touched it, whatever the mission did.
+  const bool pushed =
+      std::any_of(row.causes.begin(), row.causes.end(), [](const judge::Cause& cause) { return cause.rule->kind == "obstacle"; });
+  if (pushed) contacts.unintended.clear();
+  const auto wrong = judge::contradiction({results.data(), results.size()}, watched.truth.tasks(), judge::task_truth(world), contacts);
+  if (wrong) ending.contradicted = wrong->reason;
+  return ending;
+}
+
+// Makes the row's faults and flies on to the end.
+RowResult fly_row(const config::Drives& drives, Flight& flight, Watched& watched, FaultWalk& walk, const MatrixRow& row) {
+  judge::Situation situation;
+  situation.causes = row.causes;
+  situation.deceleration_rad_s2 = flight.deceleration_rad_s2();
+  situation.powering_up = mission::row(row.moment.step).phase == safety::Phase::boot;
+  situation.over = flight.mission().outcome().ended;
+  situation.fails_anyway = row.moment.walk != "mission" && !walk.by_hand();
+  const Time begin = flight.now();
+  watched.safety.begin(flight.platform().devices(), begin);
+  for (std::size_t i = 0; i < row.causes.size(); ++i) {
+    const double later_s = i == 0 ? 0 : row.apart_s;
+    situation.begins_s.push_back(later_s);
+    config::Fault fault = row.causes[i].fault();
+    if (fault.kind == "limits_refused") continue;  // it has been told
+    fault.at_s = begin.s() + later_s;
+    flight.platform().add_fault(scenario::sim_fault(fault, drives));
+  }
+  const double limit_s = situation.over                                                                 ? over_s
+                         : walk.by_hand() && mission::row(row.moment.step).phase == safety::Phase::free ? by_hand_s
+                                                                                                        : longest_s;
+  double ended_s = -1;
+  while (true) {
+    const double now_s = (flight.now() - begin).s();
+    if (!situation.over && ended_s < 0 && flight.mission().outcome().ended) ended_s = now_s;
+    if (now_s >= limit_s || (ended_s >= 0 && now_s >= ended_s + after_end_s)) break;
+    walk.give_orders(flight);
+    flight.step();
+  }
+  const judge::Ending ending = ending_of(flight, watched, row, flight.platform().world());
+  const judge::Verdict verdict = judge::judge(watched.safety.seen(), situation, ending);
+  RowResult result;
+  result.wrong = verdict.wrong;
+  result.unclear = verdict.unclear;
+  result.false_success = verdict.false_success;
+  result.went_on = verdict.went_on;
+  result.end = ending.ended ? ending.step : "not ended, in " + ending.step;
+  result.reason = ending.reason;
+  result.stop_ms = verdict.stop_ms;
+  result.standing_s = verdict.standing_s;
+  result.power_off_s = verdict.power_off_s;
+  result.stop_to_off_s = verdict.stop_to_off_s;
+  result.force_n = verdict.force_n;
+  return result;
+}
+
+RowResult described(const MatrixRow& row, RowResult result) {
+  result.row = row.name();
+  for (const judge::Cause& cause : row.causes) result.kind += (result.kind.empty() ? "" : " + ") + cause.rule->kind;
+  result.step = row.moment.name;
+  result.walk = row.moment.walk;
+  // A mission that waits for an operator, or had ended, has no success to come to.
+  result.must_go_on = row.moment.walk == "mission" && !mission::is_end(row.moment.step) &&
+                      std::all_of(row.causes.begin(), row.causes.end(),
+                                  [](const judge::Cause& cause) { return cause.rule->demand == judge::Demand::go_on; });
+  return result;
+}
+
+// Rows of one walk, in the order of their times.
+void fly_walk(const scenario::Scenario& base, const std::string& name, const std::vector<const MatrixRow*>& rows, Copies& copies) {
+  FaultWalk walk(name);
+  Watched watched;
+  Flight flight(walk.with_its_faults(base), 1, watched.all);
+  for (const MatrixRow* row : rows) {
+    while (flight.now().s() < row->moment.at_s && !interrupted()) {
+      walk.give_orders(flight);
+      flight.step();
+    }
+    if (interrupted()) return;
+    copies.start(row->name(), [&] { return row_json(described(*row, fly_row(base.drives, flight, watched, walk, *row))); });
+  }
+}
+
+// What the core is told before it starts cannot be made on the way.
+void fly_from_power_on(const scenario::Scenario& base, const MatrixRow& row, Copies& copies) {
+  copies.start(row.name(), [&] {
+    FaultWalk walk(row.moment.walk);
+    scenario::Scenario told = walk.with_its_faults(base);
+    for (const judge::Cause& cause : row.causes) told.faults.push_back(cause.fault());
+    Watched watched;
+    Flight flight(told, 1, watched.all);
+    walk.give_orders(flight);
+    flight.step();
+    return row_json(described(row, fly_row(base.drives, flight, watched, walk, row)));
+  });
+}
+
+}  // namespace
+
+std::string MatrixRow::name() const {
+  std::string text = moment.name + ": " + causes.front().name();
+  if (causes.size() < 2) return text;
+  char later[32];
+  std::snprintf(later, sizeof later, " %.4f s later", apart_s);
+  return text + ", then " + causes[1].name() + later;
+}
+
+std::vector<MatrixRow> matrix_rows(const std::vector<FaultMoment>& moments, const MatrixChoice& choice) {
+  check_choice(moments, choice);
+  const std::vector<MatrixRow> all = choice.pairs ? pair_rows(moments, choice) : single_rows(moments, choice);
+  std::vector<MatrixRow> mine;
+  // A sample is drawn by the rows' names: a stride would meet the same kinds at every moment.
+  for (std::size_t i = choice.shard - 1; i < all.size(); i += choice.shards) {
+    if (choice.one_in <= 1 || scenario::bits(sample_seed, all[i].name()) % choice.one_in == 0) mine.push_back(all[i]);
+  }
+  return mine;
+}
+
+void fly_matrix(const scenario::Scenario& base, const std::vector<MatrixRow>& rows, int jobs, const std::filesystem::path& file,
+                const std::function<void(const RowResult&)>& told) {
+  LineFile lines(file);
+  std::map<std::string, const MatrixRow*> by_name;
+  for (const MatrixRow& row : rows) by_name[row.name()] = &row;
+  Copies copies(jobs, [&](const Copies::Ended& ended) {
+    std::optional<RowResult> result = parse_row(ended.line);
+    if (!result) {
+      result.emplace();
+      result->wrong = {ended.failure};
+      result = described(*by_name.at(ended.name), *result);
+    }
+    lines.append(row_json(*result));
+    told(*result);
+  });
+  for (const std::string& walk : FaultWalk::names()) {
+    std::vector<const MatrixRow*> on_the_way;
+    for (const MatrixRow& row : rows) {
+      if (row.moment.walk != walk) continue;
+      const bool is_told =
+          std::any_of(row.causes.begin(), row.causes.end(), [](const judge::Cause& cause) { return cause.rule->kind == "limits_refused"; });
+      if (is_told) {
+        fly_from_power_on(base, row, copies);
+      } else {
+        on_the_way.push_back(&row);
+      }
+    }
+    std::stable_sort(on_the_way.begin(), on_the_way.end(),
+                     [](const MatrixRow* a, const MatrixRow* b) { return a->moment.at_s < b->moment.at_s; });
+    if (!on_the_way.empty() && !interrupted()) fly_walk(base, walk, on_the_way, copies);
+  }
+  copies.finish();
+}
+
+}  // namespace lf::app

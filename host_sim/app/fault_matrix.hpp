@@ -1,0 +1,56 @@
+// The fault matrix: every kind of fault, at every node, in every step of the mission's table, and pairs of them; each row a run of its own.
+//
+// A walk is flown once. Where a fault is due the process is copied (fork), and the copy flies on with the fault: no row flies the way to its step again, and
+// the copies differ from each other in nothing but their faults.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host_sim/app/fault_walk.hpp"
+#include "host_sim/judge/verdict.hpp"
+
+namespace lf::app {
+
+struct MatrixRow {
+  FaultMoment moment;
+  std::vector<judge::Cause> causes;  // one, or two
+  double apart_s = 0;                // of two
+
+  std::string name() const;  // "turn: overcurrent elbow, then estop 0.12 s later"
+};
+
+struct MatrixChoice {
+  std::vector<std::string> kinds;  // empty: all
+  std::vector<std::string> steps;  // empty: all
+  bool pairs = false;
+  std::size_t shard = 1, shards = 1;  // row i belongs to shard 1 + i mod shards
+  std::size_t one_in = 1;             // a sample: of each shard's rows
+};
+
+// Throws InputError for a kind or step that there is not.
+std::vector<MatrixRow> matrix_rows(const std::vector<FaultMoment>& moments, const MatrixChoice& choice);
+
+struct RowResult {
+  std::string row, kind, step, walk;
+  std::vector<std::string> wrong, unclear;
+  bool false_success = false, must_go_on = false, went_on = false;
+  std::string end, reason;
+  std::optional<double> stop_ms, standing_s, power_off_s, stop_to_off_s;
+  double force_n = 0;
+
+  bool safe() const { return wrong.empty() && !false_success; }
+};
+
+std::string row_json(const RowResult& row);                           // one line
+std::optional<RowResult> parse_row(const std::string& line);          // nothing for half a line
+std::vector<RowResult> read_rows(const std::filesystem::path& file);  // those that are whole; none without the file
+
+// Flies the rows, `jobs` at a time, and appends each to `file` as it ends; `told` is called for each. An interrupt ends it early.
+void fly_matrix(const scenario::Scenario& base, const std::vector<MatrixRow>& rows, int jobs, const std::filesystem::path& file,
+                const std::function<void(const RowResult&)>& told);
+
+}  // namespace lf::app

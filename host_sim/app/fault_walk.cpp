@@ -1,0 +1,94 @@
+#include "host_sim/app/fault_walk.hpp"
+
+#include <set>
+
+namespace lf::app {
+
+namespace {
+
+using mission::Step;
+
+constexpr double into_step = 0.4;   // of its duration: whatever it does is under way
+constexpr double into_end_s = 0.2;  // of a step that lasts for good: what stopped the arm is done
+constexpr double longest_s = 300;   // of a walk
+constexpr double after_end_s = 1.0;
+constexpr double power_on_s = 0.004;  // the first tick
+
+config::Fault at_step(const char* kind, const char* node, const char* step, double after_s, double duration_s) {
+  config::Fault fault;
+  fault.kind = kind;
+  fault.node = node;
+  fault.at_step = step;
+  fault.after_s = after_s;
+  fault.duration_s = duration_s;
+  return fault;
+}
+
+struct Stay {
+  Step step;
+  double begin_s, end_s;
+};
+
+std::vector<Stay> stays_of(FaultWalk walk, const scenario::Scenario& base) {
+  hal::SimObserver nobody;
+  Flight flight(walk.with_its_faults(base), 1, nobody);
+  std::vector<Stay> stays;
+  double ended_s = -1;
+  while (flight.now().s() < longest_s && (ended_s < 0 || flight.now().s() < ended_s + after_end_s)) {
+    walk.give_orders(flight);
+    flight.step();
+    const double now_s = flight.now().s();
+    if (stays.empty() || stays.back().step != flight.mission_step()) stays.push_back({flight.mission_step(), now_s, now_s});
+    stays.back().end_s = now_s;
+    const bool back_from_jog = walk.by_hand() && stays.size() > 2 && stays[stays.size() - 2].step == Step::jog;
+    if (ended_s < 0 && (flight.mission().outcome().ended || back_from_jog)) ended_s = now_s;
+  }
+  return stays;
+}
+
+}  // namespace
+
+FaultWalk::FaultWalk(std::string name) : name_(std::move(name)) {}
+
+const std::vector<std::string>& FaultWalk::names() {
+  static const std::vector<std::string> all{"mission", "by hand", "aborted", "stopped", "held", "shut down"};
+  return all;
+}
+
+scenario::Scenario FaultWalk::with_its_faults(const scenario::Scenario& base) const {
+  scenario::Scenario walked = base;
+  if (name_ == "aborted") walked.faults.push_back(at_step("abort_ordered", "", "turn", 1, 0));
+  if (name_ == "stopped") walked.faults.push_back(at_step("estop_ordered", "", "deploy", 1, 0));
+  if (name_ == "held") walked.faults.push_back(at_step("torque_high", "shoulder", "deploy", 1, 0.1));
+  if (name_ == "shut down") walked.faults.push_back(at_step("shut_down_ordered", "", "deploy", 1, 0));
+  return walked;
+}
+
+void FaultWalk::give_orders(Flight& flight) {
+  if (!begun_) flight.order(by_hand() ? Command::home : Command::start);
+  begun_ = true;
+  if (!by_hand() || jogged_ || flight.mission_step() != Step::ready) return;
+  mission::Order jog;
+  jog.command = Command::jog;
+  jog.joint = Joint::slew;
+  jog.by_rad = -0.2;
+  // The first tick in the step is the homing's last: one later an order is taken.
+  static constexpr double wait_s = 1.0;
+  if (ready_s_ < 0) ready_s_ = flight.now().s();
+  if (flight.now().s() > ready_s_ + wait_s) jogged_ = flight.order(jog);
+}
+
+std::vector<FaultMoment> survey_moments(const scenario::Scenario& base) {
+  std::vector<FaultMoment> moments{{"mission", Step::idle, "power-on", power_on_s}};
+  std::set<Step> known{Step::idle};
+  for (const std::string& name : FaultWalk::names()) {
+    for (const Stay& stay : stays_of(FaultWalk(name), base)) {
+      if (!known.insert(stay.step).second) continue;
+      const double in_s = mission::is_end(stay.step) ? into_end_s : into_step * (stay.end_s - stay.begin_s);
+      moments.push_back({name, stay.step, mission::row(stay.step).name, stay.begin_s + in_s});
+    }
+  }
+  return moments;
+}
+
+}  // namespace lf::app

@@ -1,0 +1,43 @@
+// The ways through the mission's table of steps along which faults are made: each step is reached by one of them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "host_sim/app/flight.hpp"
+
+namespace lf::app {
+
+// A way through the steps, and the operator who orders it.
+class FaultWalk {
+ public:
+  explicit FaultWalk(std::string name);
+
+  const std::string& name() const { return name_; }
+  bool by_hand() const { return name_ == "by hand"; }
+  // The scenario with the faults that lead this way.
+  scenario::Scenario with_its_faults(const scenario::Scenario& base) const;
+  // Before each control period: gives the orders that are due.
+  void give_orders(Flight& flight);
+
+  // "mission", "by hand", "aborted", "stopped", "held", "shut down"
+  static const std::vector<std::string>& names();
+
+ private:
+  std::string name_;
+  bool begun_ = false, jogged_ = false;
+  double ready_s_ = -1;  // since when it waits for orders
+};
+
+// When a step of a walk has a fault made in it.
+struct FaultMoment {
+  std::string walk;
+  mission::Step step = mission::Step::idle;
+  std::string name;  // of the step, or "power-on"
+  double at_s = 0;
+};
+
+// One moment for each step of the table that can be reached, in the order of the walks and of time: 0.4 of the step's duration in.
+std::vector<FaultMoment> survey_moments(const scenario::Scenario& base);
+
+}  // namespace lf::app

@@ -1,0 +1,32 @@
+#include "host_sim/app/flight.hpp"
+
+namespace lf::app {
+
+namespace {
+
+constexpr double force_window_s = 0.050;  // over which a contact's force is judged
+
+}  // namespace
+
+Flight::Flight(const scenario::Scenario& scenario, std::uint64_t seed, hal::SimObserver& observer) {
+  const scenario::Sample sample = scenario::draw(scenario, seed);
+  const scenario::Nominal nominal = scenario::make_nominal(scenario, sample.lamps_lit);
+  hal::SimConfig sim = scenario::make_truth(scenario, sample, nominal, 1);
+  sim.given_sight = true;
+  sim.world.force_window_s = force_window_s;
+  for (std::size_t i = 0; i < joint_count; ++i) deceleration_rad_s2_[i] = sim.devices.drives[i].max_acceleration_rad_s2;
+  platform_ = std::make_unique<hal::SimPlatform>(sim, observer);
+  controller_ = std::make_unique<Controller>(nominal.controller);
+  pipeline_ = std::make_unique<ScanPipeline>(nominal.scan);
+  rings_ = std::make_unique<hal::CoreRings>();
+}
+
+void Flight::step() {
+  hal::NoProbe no_probe;
+  (void)hal::control_turn(*platform_, *controller_, *rings_, out_, now_, no_probe);
+  if (!platform_->vision_runs()) return;
+  hal::vision_turn(*platform_, *pipeline_, *rings_, no_probe,
+                   [this](Port port, hal::PortStatus code) { controller_->on_port_error(port, code, now_); });
+}
+
+}  // namespace lf::app

@@ -1,0 +1,43 @@
+// A mission on given sight, in simulated time and on one thread: platform and core taking turns. What campaigns run whose matter is not seeing.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+
+#include "firmware/controller.hpp"
+#include "firmware/scan_pipeline.hpp"
+#include "hal/core_loop.hpp"
+#include "hal/sim/sim_platform.hpp"
+#include "host_sim/scenario/instance.hpp"
+
+namespace lf::app {
+
+class Flight {
+ public:
+  // Nothing is ordered yet. `observer` outlives the flight. Throws InputError for a scenario that cannot be run.
+  Flight(const scenario::Scenario& scenario, std::uint64_t seed, hal::SimObserver& observer);
+
+  void order(Command command) { controller_->on_command(command, now_); }
+  bool order(const mission::Order& order) { return controller_->on_order(order, now_); }
+  // One control period.
+  void step();
+
+  Time now() const { return now_; }
+  const mission::Mission& mission() const { return controller_->mission(); }
+  mission::Step mission_step() const { return mission().step(); }
+  hal::SimPlatform& platform() { return *platform_; }
+  // Of the joints, by their drives' best: what a stop may take.
+  const std::array<double, joint_count>& deceleration_rad_s2() const { return deceleration_rad_s2_; }
+
+ private:
+  std::array<double, joint_count> deceleration_rad_s2_{};
+  std::unique_ptr<hal::SimPlatform> platform_;
+  std::unique_ptr<Controller> controller_;
+  std::unique_ptr<ScanPipeline> pipeline_;
+  std::unique_ptr<hal::CoreRings> rings_;
+  TickOutput out_;
+  Time now_;
+};
+
+}  // namespace lf::app

@@ -1,0 +1,52 @@
+#include "host_sim/app/observers/curve_observer.hpp"
+
+#include <string>
+
+#include "shared/can/can_map.hpp"
+
+namespace lf::app {
+
+namespace {
+
+constexpr std::uint32_t ticks_a_sample = 10;  // 25 Hz
+constexpr std::array<const char*, joint_count> joint_names{"slew", "shoulder", "elbow", "roll", "jaw"};
+
+}  // namespace
+
+CurveObserver::CurveObserver(RunFiles& files, const BusObserver& bus) : files_(files), bus_(bus) {
+  if (files_.wanted()) joint_log_.emplace(files_.path("joints.csv"));
+}
+
+void CurveObserver::on_telemetry(const Telemetry& telemetry) {
+  if (ticks_++ % ticks_a_sample != 0) return;
+  if (joint_log_ && !joint_log_->write(telemetry)) files_.lost(joint_log_->sink().error());
+  t_s_.push_back(telemetry.t.s());
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    target_rad_[i].push_back(telemetry.target_rad[i]);
+    actual_rad_[i].push_back(telemetry.actual_rad[i]);
+    torque_nm_[i].push_back(telemetry.torque_nm[i]);
+  }
+  valve_deg_.push_back(world_ != nullptr ? deg_from_rad(world_->valve_angle_rad()) : record::unknown);
+  const double window_s = ticks_a_sample * can_map::sync_period.s();
+  bus_load_percent_.push_back(100.0 * static_cast<double>(bus_.bits() - bits_before_) / (window_s * can_map::bitrate));
+  bits_before_ = bus_.bits();
+}
+
+void CurveObserver::finish() {
+  if (joint_log_ && !joint_log_->close()) files_.lost(joint_log_->sink().error());
+}
+
+std::vector<record::ReportChart> CurveObserver::charts() const {
+  record::ReportChart positions{"Joint positions", "rad", {}}, torques{"Joint torques", "N m", {}};
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    positions.series.push_back({joint_names[i], t_s_, actual_rad_[i], false});
+    positions.series.push_back({std::string(joint_names[i]) + ", target", t_s_, target_rad_[i], true});
+    torques.series.push_back({joint_names[i], t_s_, torque_nm_[i], false});
+  }
+  return {positions,
+          torques,
+          {"Valve, true angle", "deg", {{"valve", t_s_, valve_deg_, false}}},
+          {"Bus load", "%", {{"can0", t_s_, bus_load_percent_, false}}}};
+}
+
+}  // namespace lf::app

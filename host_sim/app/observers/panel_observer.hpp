@@ -1,0 +1,49 @@
+// What the core made of the panel, with what was true then.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "firmware/mission/mission.hpp"
+#include "hal/sim/sim_platform.hpp"
+#include "host_sim/app/observers/run_files.hpp"
+
+namespace lf::app {
+
+// At the core's first look that succeeded.
+struct Located {
+  PanelResult panel;
+  Pose base_from_panel = Pose::Identity();  // as found
+  double handle_found_rad = 0;
+  double handle_true_rad = 0;
+  scene::BodyPoses poses;  // while it looked
+  std::vector<CloudPoint> cloud;
+};
+
+// Keeps cloud.pcd, too: the newest cloud until the panel was found.
+class PanelObserver : public hal::SimObserver {
+ public:
+  explicit PanelObserver(RunFiles& files) : files_(files) {}
+
+  void on_step(Time, const world::World& world) override { world_ = &world; }
+  void on_telemetry(const Telemetry& telemetry) override;
+  void on_panel_request(const PanelRequest& request, ImageView still, std::span<const CloudPoint> cloud) override;
+  void on_panel_result(const PanelResult& result) override { answered_ = result; }
+  // After each turn of the control thread: where the panel was found.
+  void after_control(const mission::Mission& mission);
+
+  const std::optional<Located>& located() const { return located_; }
+
+ private:
+  RunFiles& files_;
+  const world::World* world_ = nullptr;
+  std::vector<CloudPoint> asked_cloud_;
+  scene::BodyPoses asked_poses_;
+  double asked_valve_rad_ = 0;
+  PanelResult answered_;
+  std::optional<Located> located_;
+  bool map_taken_ = false;
+};
+
+}  // namespace lf::app

@@ -1,0 +1,37 @@
+// The phases of a run as the mission goes through them, told as they end; its decisions go into the digest.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "hal/sim/sim_platform.hpp"
+#include "host_sim/record/digest.hpp"
+#include "host_sim/record/result.hpp"
+
+namespace lf::app {
+
+class PhaseObserver : public hal::SimObserver {
+ public:
+  using Say = std::function<void(const std::string&)>;  // a line of progress
+
+  // `digest` outlives the observer, as does what `say` refers to. `say` may be empty.
+  PhaseObserver(record::RunDigest& digest, Say say) : digest_(digest), say_(std::move(say)) {}
+
+  void on_telemetry(const Telemetry& telemetry) override;
+  void finish(double now_s, const std::string& failure);
+
+  const std::vector<record::PhaseRecord>& phases() const { return phases_; }
+  std::string stage() const { return phases_.empty() ? "boot" : phases_.back().name; }
+
+ private:
+  void on_event(const Event& event);
+  void enter_step(const Event& event);
+
+  record::RunDigest& digest_;
+  Say say_;
+  std::vector<record::PhaseRecord> phases_;
+  bool retried_ = false;
+};
+
+}  // namespace lf::app

@@ -1,0 +1,13 @@
+// Why a mission failed, in words.
+#pragma once
+
+#include <string>
+
+#include "firmware/mission/mission.hpp"
+
+namespace lf::app {
+
+// "drive fault: elbow, EMCY 0x2310 (continuous over-current), in step scan"
+std::string reason_of(const mission::Outcome& outcome);
+
+}  // namespace lf::app

@@ -1,0 +1,130 @@
+#include "host_sim/app/range_draws.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <concepts>
+#include <optional>
+
+#include "host_sim/scenario/draw.hpp"
+
+namespace lf::app {
+
+namespace {
+
+using config::Key;
+using scenario::uniform;
+
+constexpr std::size_t keys_at_once = 8;
+constexpr double logarithmic_from = 100;  // a range's end over its beginning
+
+std::string text_of(double value) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
+
+// Each draw has a generator of its own, made of the key's name.
+class Draw {
+ public:
+  Draw(const Key& key, std::uint64_t seed) : key_(key), seed_(seed) {}
+
+  std::string operator()(double*) { return text_of(rounded(number())); }
+  template <std::integral Integer>
+  std::string operator()(Integer*) {
+    return text_of(std::clamp(std::round(number()), key_.min, key_.max));
+  }
+  std::string operator()(bool*) { return share() < 0.5 ? "false" : "true"; }
+  std::string operator()(config::Spread*) { return text_of(rounded(number())); }
+  std::string operator()(config::Chance*) { return share() < 0.5 ? "false" : "true"; }
+  std::string operator()(std::array<double, 3>*) { return list(3); }
+  std::string operator()(Vec2*) { return list(2); }
+  std::string operator()(std::array<Vec2, 3>*) { return "[" + list(2) + ", " + list(2) + ", " + list(2) + "]"; }
+  std::string operator()(std::vector<double>*) {
+    return list(key_.path == "camera.distortion" ? 5 : 1 + static_cast<std::size_t>(3 * share()));
+  }
+  std::string operator()(std::vector<config::Task>*) { return "[{turn_valve: {to_deg: " + text_of(rounded(360 * share() - 180)) + "}}]"; }
+  std::string operator()(PanelLayout::Pointer*) {
+    return key_.words[static_cast<std::size_t>(share() * static_cast<double>(key_.words.size()))];
+  }
+  std::string operator()(std::string*) { return ""; }
+  std::string operator()(std::vector<std::string>*) { return ""; }
+  std::string operator()(std::vector<config::Fault>*) { return ""; }
+
+ private:
+  double share() { return uniform(seed_, key_.path + "#" + std::to_string(count_++)); }
+
+  double number() {
+    const double at = share();
+    const bool logarithmic = key_.min > 0 && key_.max > logarithmic_from * key_.min;
+    return logarithmic ? key_.min * std::pow(key_.max / key_.min, at) : key_.min + (key_.max - key_.min) * at;
+  }
+
+  // Four digits: what a person would write.
+  double rounded(double value) const {
+    if (value == 0) return 0;
+    const double unit = std::pow(10, std::floor(std::log10(std::abs(value))) - 3);
+    return std::clamp(std::round(value / unit) * unit, key_.min < key_.max ? key_.min : value, key_.min < key_.max ? key_.max : value);
+  }
+
+  std::string list(std::size_t count) {
+    std::string text = "[";
+    for (std::size_t i = 0; i < count; ++i) text += (i > 0 ? ", " : "") + text_of(rounded(number()));
+    return text + "]";
+  }
+
+  const Key& key_;
+  std::uint64_t seed_;
+  int count_ = 0;
+};
+
+// What these say is seen, or where it is looked from.
+bool is_seen(const std::string& key) {
+  for (const char* group :
+       {"docking.", "water.", "lamps.", "camera.", "laser.", "mounting.", "sensors.", "latency.", "panel.", "mission.camera_syncs",
+        "mission.frames_per_background", "mission.sweep_speed_rad_s", "mission.verify_band_m"}) {
+    if (key.starts_with(group)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::vector<std::string> drawn_keys() {
+  scenario::Scenario scenario;
+  std::vector<std::string> paths;
+  for (const Key& key : scenario::keys(scenario)) {
+    const bool text = std::holds_alternative<std::string*>(key.value) || std::holds_alternative<std::vector<std::string>*>(key.value);
+    if (!text && !std::holds_alternative<std::vector<config::Fault>*>(key.value)) paths.push_back(key.path);
+  }
+  return paths;
+}
+
+std::string drawn_value(const std::string& path, std::uint64_t draw) {
+  scenario::Scenario scenario;
+  for (const Key& key : scenario::keys(scenario)) {
+    if (key.path == path) return std::visit(Draw(key, draw), key.value);
+  }
+  return "";
+}
+
+std::vector<RangeRow> range_rows(std::size_t draws, std::size_t many) {
+  const std::vector<std::string> paths = drawn_keys();
+  std::vector<RangeRow> rows;
+  for (const std::string& path : paths) {
+    for (std::uint64_t draw = 1; draw <= draws; ++draw) {
+      const std::string value = drawn_value(path, draw);
+      rows.push_back({path + " " + value + " #" + std::to_string(draw), path, {path + "=" + value}, draw, is_seen(path)});
+    }
+  }
+  for (std::uint64_t i = 1; i <= many; ++i) {
+    RangeRow row{"many " + std::to_string(i), "many", {}, i, true};
+    for (std::size_t k = 0; k < keys_at_once; ++k) {
+      const std::string& path = paths[scenario::bits(i, "many " + std::to_string(k)) % paths.size()];
+      row.set.push_back(path + "=" + drawn_value(path, 1000 + i));
+    }
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+}  // namespace lf::app

@@ -1,0 +1,29 @@
+// Values of a scenario's keys, drawn over their documented ranges: what the range campaign sets.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "host_sim/scenario/keys.hpp"
+
+namespace lf::app {
+
+struct RangeRow {
+  std::string name;              // "valve.friction_nm 3", "many 17"
+  std::string key;               // "many" where it is several
+  std::vector<std::string> set;  // as --set takes them
+  std::uint64_t seed = 1;        // of the run
+  bool sees = false;             // the key is about seeing: the run renders, else sight is given
+};
+
+// The keys that have something to draw, by path. Not: texts, files, the faults, and what only names or limits a run.
+std::vector<std::string> drawn_keys();
+
+// Draw number `draw` (from 1) of a key as YAML. Even over the range; where it spans more than a factor of a hundred above 0, even in the logarithm.
+std::string drawn_value(const std::string& key, std::uint64_t draw);
+
+// `draws` rows a key, one key at a time; then `many` rows with eight keys at once.
+std::vector<RangeRow> range_rows(std::size_t draws, std::size_t many);
+
+}  // namespace lf::app

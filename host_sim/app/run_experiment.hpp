@@ -1,0 +1,22 @@
+// The experiment that a run or a campaign is, and the folder it goes to by default.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "host_sim/record/experiment.hpp"
+#include "host_sim/scenario/scenario.hpp"
+
+namespace lf::app {
+
+// The resolved scenario, the files it uses, and this program. Throws InputError for a file that cannot be read.
+record::Experiment experiment_of(const scenario::Scenario& scenario);
+// The same with the seed of one run.
+record::Experiment experiment_of(const scenario::Scenario& scenario, std::uint64_t seed);
+
+// runs/BASE; with --set, and where another experiment stands there already, runs/BASE-HASH: what differs does not get in each other's way.
+std::filesystem::path default_folder(const std::string& base, bool has_overrides, const record::Experiment& experiment);
+
+}  // namespace lf::app

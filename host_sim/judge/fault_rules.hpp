@@ -1,0 +1,53 @@
+// What is asked of a mission to which a fault happens: whether it must stop, may end some other safe way, or has to go on; how it hears of the fault; and
+// which words of its reason would name the cause.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hal/config/key.hpp"
+
+namespace lf::judge {
+
+enum class Demand : std::uint8_t {
+  stop,      // every drive is told to stop, stands and loses its power
+  safe_end,  // it goes on, or ends: standing, named, and without doing harm
+  go_on,     // it must not end the mission
+};
+
+// How the core can know, and so when its time to react begins.
+enum class Report : std::uint8_t {
+  frame,          // a frame says so: fault bit, EMCY, boot-up, open chain
+  second_master,  // the first foreign frame
+  silence,        // the last process data of the node
+  at_once,        // the port or the operator says so in the tick after
+  unheard,        // nothing that the core sends arrives: the drives stop by themselves when the master's heartbeat is missing
+  none,           // to be found by watching the arm: no time is asked for
+};
+
+struct FaultRule {
+  std::string kind;
+  Demand demand = Demand::safe_end;
+  Report report = Report::none;
+  double duration_s = 0;              // 0: for the rest of the run
+  std::vector<std::string> named_by;  // parts of a reason that name this cause; any one will do
+  const char* variant = "";           // tells rules of the same kind apart
+};
+
+std::span<const FaultRule> fault_rules();
+
+// One fault as a row of the matrix has it.
+struct Cause {
+  const FaultRule* rule = nullptr;
+  std::string node;  // or "tpdo slew", "rpdo io" for lost frames
+
+  std::string name() const;  // "overcurrent elbow"
+  config::Fault fault() const;
+};
+
+// Each rule at each node that it can happen to.
+std::vector<Cause> all_causes();
+
+}  // namespace lf::judge

@@ -1,0 +1,69 @@
+#include "host_sim/judge/safety_observer.hpp"
+
+#include <cmath>
+
+#include "shared/can/can_map.hpp"
+
+namespace lf::judge {
+
+namespace {
+
+// CiA 301's pre-defined connection set.
+constexpr std::uint32_t emergency = 0x080, first_tpdo = 0x180, first_rpdo = 0x200, heartbeat = 0x700, function_mask = 0x780,
+                        node_mask = 0x7F;
+constexpr std::uint8_t boot_up = 0;
+// CiA 402: the statusword's fault bit; a controlword of "enable operation" has its four low bits set.
+constexpr std::uint8_t status_fault = 0x08, run_bits = 0x0F;
+
+}  // namespace
+
+void SafetyObserver::begin(const devices::Devices& devices, Time now) {
+  devices_ = &devices;
+  begin_ = now;
+  seen_ = {};
+}
+
+void SafetyObserver::on_bus_frame(const devices::BusRecord& record) {
+  const CanFrame& frame = record.frame;
+  const std::size_t node = frame.id & node_mask;
+  const bool from_master = record.sender == can_map::master_node;
+  if (from_master && (frame.id & function_mask) == first_rpdo && node >= 1 && node <= joint_count)
+    run_ordered_[node - 1] = (frame.data[0] & run_bits) == run_bits;
+  if (devices_ == nullptr || record.delivered < begin_) return;
+  const double t_s = (record.delivered - begin_).s();
+  if (record.sender == devices::second_master) {
+    if (!seen_.second_master_s) seen_.second_master_s = t_s;
+    return;
+  }
+  if (from_master) return;
+  judge_report(frame, t_s);
+  if ((frame.id & function_mask) == first_tpdo && node >= 1 && node <= seen_.last_heard_s.size()) seen_.last_heard_s[node - 1] = t_s;
+}
+
+void SafetyObserver::judge_report(const CanFrame& frame, double t_s) {
+  const std::uint32_t function = frame.id & function_mask;
+  const std::size_t node = frame.id & node_mask;
+  const bool of_drive = node >= 1 && node <= joint_count;
+  const bool fault = function == first_tpdo && of_drive && (frame.data[0] & status_fault) != 0;
+  const bool emcy = function == emergency && node != 0 && (frame.data[0] != 0 || frame.data[1] != 0);
+  const bool rebooted = function == heartbeat && frame.data[0] == boot_up;
+  const bool chain_open = function == first_tpdo && node == can_map::io_node && (frame.data[0] & can_map::input_estop_closed) == 0;
+  if ((fault || emcy || rebooted || chain_open) && !seen_.fault_reported_s) seen_.fault_reported_s = t_s;
+  if (chain_open && !seen_.chain_open_s) seen_.chain_open_s = t_s;
+}
+
+void SafetyObserver::on_step(Time, const world::World& world) {
+  if (devices_ == nullptr) return;
+  Moment moment;
+  const JointReadings readings = world.readings();
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    moment.speed_rad_s[i] = static_cast<float>(std::abs(readings[i].velocity_rad_s));
+    const devices::DrivePower power = devices_->power(i);
+    if (power != devices::DrivePower::off) moment.power |= static_cast<std::uint8_t>(1u << i);
+    if (power == devices::DrivePower::operation && run_ordered_[i]) moment.told_to_run |= static_cast<std::uint8_t>(1u << i);
+  }
+  moment.force_n = static_cast<float>(world.contacts().base_wrench.force_n.norm());
+  seen_.moments.push_back(moment);
+}
+
+}  // namespace lf::judge

@@ -1,0 +1,52 @@
+// Watches a run from outside the core and keeps what a judge of its safety needs: the frames on the bus, the drives' power, and the world. It knows
+// nothing of the core's own account.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "hal/sim/sim_platform.hpp"
+
+namespace lf::judge {
+
+// One millisecond.
+struct Moment {
+  std::array<float, joint_count> speed_rad_s{};  // true, absolute
+  float force_n = 0;                             // of all contacts on the robot, over the world's force window
+  std::uint8_t power = 0;                        // bit a joint: its power stage holds or moves it
+  std::uint8_t told_to_run = 0;                  // bit a joint: in operation, and the newest RPDO says operation enabled
+};
+
+// What was seen since watching began; times are seconds since then.
+struct Seen {
+  std::vector<Moment> moments;  // one a millisecond
+  // The first frame that says a drive is in fault, a node has an emergency or has rebooted, or the emergency-stop chain is open.
+  std::optional<double> fault_reported_s;
+  std::optional<double> chain_open_s;     // the first that says the chain is open
+  std::optional<double> second_master_s;  // the first frame of a second master
+  // The newest process data that arrived from each node, by its number less 1; 0 when none did.
+  std::array<double, joint_count + 1> last_heard_s{};
+};
+
+class SafetyObserver : public hal::SimObserver {
+ public:
+  // From now on; what was seen before is forgotten. `devices` outlives the watch.
+  void begin(const devices::Devices& devices, Time now);
+
+  void on_bus_frame(const devices::BusRecord& record) override;
+  void on_step(Time now, const world::World& world) override;
+
+  const Seen& seen() const { return seen_; }
+
+ private:
+  void judge_report(const CanFrame& frame, double t_s);
+
+  const devices::Devices* devices_ = nullptr;
+  Time begin_;
+  Seen seen_;
+  std::array<bool, joint_count> run_ordered_{};  // known before watching began, too
+};
+
+}  // namespace lf::judge

@@ -1,0 +1,61 @@
+// Whether a run to which a fault happened was safe, from what was seen in the world and on the bus; and whether what the core says of it is true.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host_sim/judge/fault_rules.hpp"
+#include "host_sim/judge/safety_observer.hpp"
+
+namespace lf::judge {
+
+// The figures of safety. Sources: the "safe means", which are this project's requirements.
+struct SafetyFigures {
+  double stop_ms = 12;           // on the bus, from the report: three SYNC periods
+  double unread_ms = 26;         // on the bus, after the last good process data: six SYNC periods and the bus's own time
+  double standing_rad_s = 0.02;  // the drives' compliance lets a stopped arm swing by less
+  double settling_s = 0.15;      // over what speed and deceleration ask for
+  double off_after_standing_s = 0.100;
+  double off_after_stop_s = 1.2;
+  double force_n = 150;       // over 50 ms
+  double self_stop_s = 0.40;  // the drives' consumer time of the master's heartbeat, 300 ms, and one heartbeat
+};
+
+// What the core says, and what is true, at the end.
+struct Ending {
+  bool ended = false;
+  bool success = false;      // by the core's account
+  std::string step;          // in which it stands
+  std::string reason;        // of a failure
+  std::string contradicted;  // how the truth contradicts a success; empty: it does not
+  bool expected_to_end = true;
+  bool holds = false;  // it says that the arm is held under power
+};
+
+struct Situation {
+  std::vector<Cause> causes;
+  std::vector<double> begins_s;  // of each, since watching began
+  bool powering_up = false;      // boot or enable: nothing moves, and powering up may be tried again
+  bool over = false;             // the mission had ended before
+  bool fails_anyway = false;     // it was on its way to a failure of another cause, which is what its reason names
+  std::array<double, joint_count> deceleration_rad_s2{};
+};
+
+struct Verdict {
+  std::vector<std::string> wrong;    // why it was not safe; empty: it was
+  std::vector<std::string> unclear;  // safe, but the end does not say what happened
+  bool false_success = false;
+  bool went_on = false;  // the mission succeeded, and truly
+  // Measured; nothing where it does not apply.
+  std::optional<double> stop_ms;      // from the report until no drive runs as it was told
+  std::optional<double> standing_s;   // from there until every joint stands
+  std::optional<double> power_off_s;  // from standing until no drive has power
+  std::optional<double> stop_to_off_s;
+  double force_n = 0;
+};
+
+Verdict judge(const Seen& seen, const Situation& situation, const Ending& ending, const SafetyFigures& figures = {});
+
+}  // namespace lf::judge

@@ -1,0 +1,49 @@
+#include "host_sim/world/obstacle.hpp"
+
+#include "host_sim/world/bullet_types.hpp"
+
+namespace lf::world {
+
+namespace {
+
+constexpr double side_m = 0.1;
+constexpr double mass_kg = 4;      // with the water it takes along
+constexpr double away_m = 0.2;     // at the start, from the middle of the wrist
+constexpr double push_n = 80;      // above the core's contact threshold of 50 N at the wrist, below the 150 N that may not be passed
+constexpr double speed_m_s = 0.2;  // at which the water's drag balances the push
+
+Pose at(const Vec3& place_m) {
+  Pose pose = Pose::Identity();
+  pose.translation() = place_m;
+  return pose;
+}
+
+scene::Body box() {
+  scene::Body body;
+  scene::Shape shape;
+  shape.kind = scene::ShapeKind::box;
+  shape.size_m = Vec3::Constant(side_m);
+  shape.collides = true;
+  body.shapes.push_back(shape);
+  return body;
+}
+
+}  // namespace
+
+Obstacle::Obstacle(btMultiBodyDynamicsWorld& world, const Vec3& target_m, int scene_body)
+    : world_(world), part_(1, at(target_m - Vec3(0, away_m, 0))) {
+  const btVector3 inertia(0.01, 0.01, 0.01);  // of no effect: it does not turn
+  part_.body().setupPrismatic(0, mass_kg, inertia, -1, btQuaternion::getIdentity(), btVector3(0, 1, 0), btVector3(0, 0, 0),
+                              btVector3(0, 0, 0), false);
+  part_.finish_links();
+  part_.add_collider(-1, make_collision_shape({}, Pose::Identity()), no_body, 0, Friction::free);
+  part_.add_collider(0, make_collision_shape(box(), Pose::Identity()), scene_body, 0, Friction::free);
+  part_.update_poses();
+  part_.enter(world_);
+}
+
+Obstacle::~Obstacle() { part_.leave(world_); }
+
+void Obstacle::before_step() { part_.body().addJointTorque(0, push_n - push_n / speed_m_s * part_.body().getJointVel(0)); }
+
+}  // namespace lf::world

@@ -1,0 +1,24 @@
+// A box that something pushes against the arm: a cable, kelp with a stone in it, another vehicle. It slides on a straight line. Internal to this folder.
+#pragma once
+
+#include "host_sim/world/multibody_part.hpp"
+#include "shared/geometry/pose.hpp"
+
+namespace lf::world {
+
+class Obstacle {
+ public:
+  // Enters `world` 0.2 m to the left of `target_m` in the base frame, and is pushed to the right. `scene_body`: the body it counts as.
+  Obstacle(btMultiBodyDynamicsWorld& world, const Vec3& target_m, int scene_body);
+  ~Obstacle();
+  Obstacle(const Obstacle&) = delete;
+  Obstacle& operator=(const Obstacle&) = delete;
+
+  void before_step();
+
+ private:
+  btMultiBodyDynamicsWorld& world_;
+  MultibodyPart part_;
+};
+
+}  // namespace lf::world

@@ -1,0 +1,158 @@
+// What the mission makes of an answer of panel vision: which of two angles half a turn apart a bar has, and why an answer is not taken.
+#include "firmware/mission/panel_map.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "tests/hil/known_sight.hpp"
+#include "tests/unit/scan/docked_scene.hpp"
+
+namespace lf::test {
+namespace {
+
+using mission::PanelMap;
+
+struct Panel {
+  PanelLayout layout;
+  MarkerCalibration marker;
+  CameraCalibration camera = nominal_camera();
+
+  explicit Panel(PanelLayout::Pointer pointer = PanelLayout::Pointer::light_end) {
+    layout.pointer = pointer;
+    marker = {layout.marker_id, layout.marker_size_m, layout.panel_from_tag()};
+  }
+  PanelMap map() const { return {layout, marker, camera}; }
+  PanelResult seen(double handle_deg, const Vec3& shift_m = Vec3::Zero()) const {
+    Pose pose = layout.nominal_base_from_panel();
+    pose.translation() += shift_m;
+    return panel_as_it_is(pose, rad_from_deg(handle_deg), layout, marker, camera);
+  }
+};
+
+constexpr double a_tenth_deg = 0.1;
+
+TEST(PanelMap, TellsEveryAngleBetweenTheStopsByItsPointer) {
+  const Panel panel;
+  for (double degrees = -105; degrees <= 105; degrees += 5) {
+    PanelMap map = panel.map();
+    ASSERT_EQ(map.update(panel.seen(degrees)), StepFailure::none) << degrees;
+    EXPECT_NEAR(deg_from_rad(map.handle_rad()), degrees, a_tenth_deg);
+  }
+}
+
+TEST(PanelMap, WithoutAPointerTakesWhatTheStopsMakeUniqueAndRefusesTheRestByName) {
+  const Panel panel(PanelLayout::Pointer::none);
+  for (double degrees = -104; degrees <= 105; degrees += 1) {
+    PanelMap map = panel.map();
+    const StepFailure failure = map.update(panel.seen(degrees));
+    if (std::abs(degrees) <= 71) {
+      EXPECT_EQ(failure, StepFailure::none) << degrees;
+      EXPECT_NEAR(deg_from_rad(map.handle_rad()), degrees, a_tenth_deg);
+    } else if (std::abs(degrees) >= 73) {
+      EXPECT_EQ(failure, StepFailure::half_turn_open) << degrees;
+      EXPECT_FALSE(map.known()) << "nothing is guessed";
+    }
+  }
+}
+
+TEST(PanelMap, WithoutAPointerKnowsTheHandleOnTheWayOfItsOwnTurn) {
+  const Panel panel(PanelLayout::Pointer::none);
+  for (const double found : {0.0, 45.0, 90.0, 95.0}) {  // it followed all the way, half of it, or not at all
+    PanelMap map = panel.map();
+    ASSERT_EQ(map.update(panel.seen(0)), StepFailure::none);
+    map.expect_handle(rad_from_deg(50));
+    map.expect_handle(rad_from_deg(90));
+    ASSERT_EQ(map.update(panel.seen(found)), StepFailure::none) << found;
+    EXPECT_NEAR(deg_from_rad(map.handle_rad()), found, a_tenth_deg);
+  }
+}
+
+// From -70 to 90 both ends look alike to within the margins: a handle that slipped at once would be taken for one that followed.
+TEST(PanelMap, WithoutAPointerDoesNotTellAHandleThatStayedFromOneThatTurnedHalfATurn) {
+  const Panel panel(PanelLayout::Pointer::none);
+  PanelMap map = panel.map();
+  ASSERT_EQ(map.update(panel.seen(-70)), StepFailure::none);
+  map.expect_handle(rad_from_deg(100));
+  EXPECT_EQ(map.update(panel.seen(-75)), StepFailure::half_turn_open);
+  EXPECT_LT(map.longest_turn_rad(), rad_from_deg(170)) << "so long a turn is made in two";
+}
+
+struct Poor {
+  const char* name;
+  std::function<void(PanelResult&)> spoil;
+  StepFailure why;
+};
+void PrintTo(const Poor& poor, std::ostream* out) { *out << poor.name; }
+
+class PoorVision : public testing::TestWithParam<Poor> {};
+
+TEST_P(PoorVision, IsNamedByItsCauseAndChangesNothing) {
+  const Panel panel;
+  PanelMap map = panel.map();
+  ASSERT_EQ(map.update(panel.seen(10)), StepFailure::none);
+  PanelResult poor = panel.seen(40);
+  GetParam().spoil(poor);
+  EXPECT_EQ(map.update(poor), GetParam().why) << name(map.update(poor));
+  EXPECT_NEAR(deg_from_rad(map.handle_rad()), 10, a_tenth_deg);
+  EXPECT_STRNE(name(GetParam().why), "unknown");
+  EXPECT_STRNE(remedy(GetParam().why), "");
+}
+
+INSTANTIATE_TEST_SUITE_P(Causes, PoorVision,
+                         testing::Values(Poor{"NoPlane", [](PanelResult& r) { r.fit.valid = false; }, StepFailure::no_panel},
+                                         Poor{"FewPoints", [](PanelResult& r) { r.fit.points = 100; }, StepFailure::too_few_points},
+                                         Poor{"CloudOffThePlane", [](PanelResult& r) { r.fit.inliers = r.fit.points / 5; },
+                                              StepFailure::plane_unsure},
+                                         Poor{"NoMarker", [](PanelResult& r) { r.marker.found = false; }, StepFailure::no_marker},
+                                         Poor{"MarkerTooSmall",
+                                              [](PanelResult& r) {
+                                                for (Vec2& c : r.marker.corners_px) c = r.marker.centre_px + 0.7 * (c - r.marker.centre_px);
+                                              },
+                                              StepFailure::marker_wrong},
+                                         Poor{"MarkerElsewhere", [](PanelResult& r) { r.marker.camera_from_tag.translation().z() += 0.1; },
+                                              StepFailure::marker_disagrees},
+                                         Poor{"MarkerTilted",
+                                              [](PanelResult& r) {
+                                                r.marker.camera_from_tag.linear() =
+                                                    r.marker.camera_from_tag.linear() * Eigen::AngleAxisd(0.7, Vec3::UnitX());
+                                              },
+                                              StepFailure::marker_disagrees},
+                                         Poor{"NoHandle", [](PanelResult& r) { r.clusters.clear(); }, StepFailure::no_handle},
+                                         Poor{"HandleOfFewPoints",
+                                              [](PanelResult& r) {
+                                                r.clusters[0].points = 25;
+                                                r.clusters[0].length_m = 0.06;
+                                                r.clusters[0].width_m = 0.012;
+                                              },
+                                              StepFailure::handle_unsure},
+                                         Poor{"NoConfidence", [](PanelResult& r) { r.confidence = 0; }, StepFailure::vision_failed}),
+                         [](const auto& cause) { return cause.param.name; });
+
+TEST(PanelMap, NamesAPointerThatItDidNotRecogniseWhereTheStopsLeaveItOpen) {
+  const Panel panel;
+  PanelResult faint = panel.seen(90);
+  faint.pointer.confidence = 0.1f;
+  EXPECT_EQ(panel.map().update(faint), StepFailure::pointer_unsure);
+  PanelResult clear_by_stops = panel.seen(30);
+  clear_by_stops.pointer.confidence = 0.1f;
+  EXPECT_EQ(panel.map().update(clear_by_stops), StepFailure::none);
+}
+
+TEST(PanelMap, NamesAHandleThatStandsWhereItsStopsDoNotLetIt) {
+  const Panel panel;
+  EXPECT_EQ(panel.map().update(panel.seen(150)), StepFailure::beyond_stops);
+  EXPECT_EQ(panel.map().update(panel.seen(106)), StepFailure::none) << "a look errs by a degree";
+}
+
+TEST(PanelMap, HoldsEveryLookAgainstTheFirstSoThatAShiftSeenTwiceIsNamedTwice) {
+  const Panel panel;
+  PanelMap map = panel.map();
+  ASSERT_EQ(map.update(panel.seen(0)), StepFailure::none);
+  EXPECT_EQ(map.update(panel.seen(0, Vec3(0, 0.03, 0))), StepFailure::panel_moved);
+  EXPECT_EQ(map.update(panel.seen(0, Vec3(0, 0.03, 0))), StepFailure::panel_moved);
+  EXPECT_EQ(map.update(panel.seen(0, Vec3(0, 0.001, 0))), StepFailure::none);
+}
+
+}  // namespace
+}  // namespace lf::test

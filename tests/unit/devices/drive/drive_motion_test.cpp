@@ -1,0 +1,248 @@
+// CSP on a joint that stands still below its stiction speed; PP and PV beside it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/unit/devices/drive/drive_rig.hpp"
+
+namespace lf::devices::test {
+namespace {
+
+// Counts of an angle from the triangle, solved on its own: law of cosines.
+double elbow_counts(double q) {
+  const auto length = [](double angle) { return std::sqrt(0.26 * 0.26 + 0.06 * 0.06 - 2 * 0.26 * 0.06 * std::cos(angle + 0.2115)); };
+  return 166667 * (length(q) - length(0));
+}
+
+TEST(DriveMotion, the_encoder_counts_the_screw_through_its_triangle) {
+  for (const double q : {0.0, 0.3, 1.0, 1.7, 2.15}) {
+    DriveRig rig(elbow(), q);
+    EXPECT_EQ(rig.actual(), std::lround(elbow_counts(q))) << q;
+  }
+}
+
+TEST(DriveMotion, counts_per_radian_are_the_slope_of_the_counts) {
+  const Actuator actuator(elbow().actuator);
+  for (double q = 0.05; q < 2.1; q += 0.05) {
+    const double slope = (actuator.counts(q + 1e-6) - actuator.counts(q - 1e-6)) / 2e-6;
+    EXPECT_NEAR(actuator.counts_per_rad(q), slope, 1e-3 * std::abs(slope));
+  }
+}
+
+TEST(DriveMotion, an_encoder_offset_reads_too_much_by_itself) {
+  DriveConfig config = elbow();
+  config.encoder_offset_rad = 0.05 * 3.14159265358979 / 180;
+  DriveRig rig(config, 1.0);
+  EXPECT_EQ(rig.actual(), std::lround(elbow_counts(1.0 + config.encoder_offset_rad)));
+}
+
+// Moves to targets all over the stroke, one SYNC at a time at 500 counts/s, and waits half a second.
+TEST(DriveMotion, targets_are_reached_within_two_counts_despite_the_dead_band) {
+  DriveRig rig;
+  rig.enable();
+  for (const double q : {1.0005, 0.9, 1.5, 0.4, 1.97, 1.9703, 1.97}) {
+    const auto target = static_cast<std::int32_t>(std::lround(elbow_counts(q)));
+    for (int i = 0; i < 20000 && rig.target != target; ++i) {
+      const double step = std::clamp<double>(target - rig.target, -2, 2);
+      rig.target += static_cast<std::int32_t>(step);
+      rig.run_ms(4);
+    }
+    rig.run_ms(500);
+    ASSERT_EQ(rig.drive.state(), DriveState::operation_enabled) << q;
+    EXPECT_LE(std::abs(rig.actual() - target), 2) << q;
+    const double parked = rig.joint.q_rad;
+    rig.run_ms(1000);
+    EXPECT_EQ(rig.joint.q_rad, parked) << "it hunts at " << q;
+    EXPECT_NE(rig.status() & 0x400, 0) << "target reached";
+  }
+}
+
+// The sweep's speed, hardly above the stiction of 0.06 rad/s, where a count is 0.1 to 0.37 mrad.
+TEST(DriveMotion, the_sweeps_speed_is_tracked_smoothly) {
+  DriveRig rig(elbow(), 2.05);
+  rig.enable();
+  const double speed = 0.065;
+  double worst_error = 0, slowest = 1e9, fastest = 0;
+  double window_start = rig.joint.q_rad;
+  for (int ms = 0; ms < 12000; ms += 4) {
+    const double q = 2.05 - speed * 1e-3 * ms;
+    rig.target = static_cast<std::int32_t>(std::lround(elbow_counts(q)));
+    rig.run_ms(4);
+    if (ms < 1000) {
+      window_start = rig.joint.q_rad;
+      continue;
+    }
+    worst_error = std::max(worst_error, std::abs(rig.joint.q_rad - (q + speed * 0.002)));
+    if (ms % 200 != 0) continue;
+    const double mean = (window_start - rig.joint.q_rad) / (ms == 1000 ? 0.004 : 0.2);
+    window_start = rig.joint.q_rad;
+    if (ms == 1000) continue;
+    slowest = std::min(slowest, mean);
+    fastest = std::max(fastest, mean);
+  }
+  EXPECT_LT(worst_error, 1.2e-3);
+  EXPECT_GT(slowest, 0.95 * speed);
+  EXPECT_LT(fastest, 1.05 * speed);
+}
+
+TEST(DriveMotion, a_speed_below_the_dead_band_is_kept_in_the_mean) {
+  DriveRig rig(elbow(), 1.6);
+  rig.enable();
+  const double begin = rig.joint.q_rad;
+  for (int ms = 0; ms < 10000; ms += 4) {
+    rig.target = static_cast<std::int32_t>(std::lround(elbow_counts(1.6 - 0.01 * 1e-3 * ms)));
+    rig.run_ms(4);
+  }
+  EXPECT_NEAR(begin - rig.joint.q_rad, 0.1, 1e-3);
+}
+
+TEST(DriveMotion, the_command_is_interpolated_over_60c2) {
+  DriveRig rig;
+  rig.enable();
+  rig.cyclic = false;
+  const std::int32_t from = rig.target;
+  rig.target = from + 40;
+  rig.send_set_point();
+  rig.client.sync();
+  std::vector<int> demand;
+  for (int i = 0; i < 6; ++i) {
+    rig.run_ms(1);
+    demand.push_back(static_cast<std::int32_t>(rig.client.read(0x6062, 0)) - from);
+  }
+  EXPECT_EQ(demand, (std::vector<int>{10, 20, 30, 40, 40, 40}));
+}
+
+TEST(DriveMotion, a_target_outside_607d_is_held_at_the_limit) {
+  DriveRig rig;
+  ASSERT_EQ(rig.client.write(0x607D, 2, rig.actual() + 30, 4), 0u);
+  const std::int32_t limit = rig.actual() + 30;
+  rig.enable();
+  for (int i = 0; i < 60; ++i) {
+    rig.target += 2;
+    rig.run_ms(4);
+  }
+  rig.run_ms(400);
+  EXPECT_NEAR(rig.actual(), limit, 2);
+  EXPECT_NE(rig.status() & 0x800, 0) << "internal limit active";
+}
+
+TEST(DriveMotion, top_speed_and_acceleration_are_kept) {
+  DriveRig rig(elbow(), 0.5);
+  rig.client.write(0x6065, 0, 0xFFFFFFFF, 4);
+  rig.enable();
+  rig.target += 4000;
+  double last = 0, fastest = 0, hardest = 0;
+  for (int ms = 0; ms < 3000; ++ms) {
+    rig.run_ms(1);
+    const double v = rig.output.velocity_rad_s;
+    fastest = std::max(fastest, v);
+    if (std::abs(v) > 0.1 && std::abs(last) > 0.1) hardest = std::max(hardest, std::abs(v - last) / 1e-3);
+    last = v;
+  }
+  EXPECT_LE(fastest, 0.35 + 1e-12);
+  EXPECT_GT(fastest, 0.3);
+  EXPECT_LE(hardest, 0.8 + 1e-9);
+  EXPECT_NEAR(rig.actual(), rig.target, 2);
+}
+
+TEST(DriveMotion, without_power_the_joint_is_left_to_its_gear) {
+  DriveRig rig;
+  EXPECT_TRUE(rig.output.released);
+  rig.enable();
+  EXPECT_FALSE(rig.output.released);
+  EXPECT_DOUBLE_EQ(rig.output.torque_limit_nm, 90);
+  rig.client.write(0x6072, 0, 500, 2);
+  rig.run_ms(1);
+  EXPECT_DOUBLE_EQ(rig.output.torque_limit_nm, 15);
+  rig.controlword = 0;
+  rig.run_ms(8);
+  EXPECT_TRUE(rig.output.released);
+}
+
+TEST(DriveMotion, the_torque_reading_is_in_thousandths_of_the_rated_torque) {
+  DriveRig rig;
+  rig.joint.load_nm = 12;
+  rig.run_ms(50);
+  double mean = 0;
+  for (int i = 0; i < 200; ++i) {
+    rig.run_ms(1);
+    mean += static_cast<std::int16_t>(rig.client.read(0x6077, 0)) / 200.0;
+  }
+  EXPECT_NEAR(mean, 400, 2);
+}
+
+TEST(DriveMotion, a_quick_stop_brakes_at_6085_and_holds_with_option_6) {
+  DriveRig rig(elbow(), 1.5);
+  rig.client.write(0x605A, 0, 6, 2);
+  rig.enable();
+  for (int i = 0; i < 250; ++i) {
+    rig.target -= 6;  // 1,500 counts/s
+    rig.run_ms(4);
+  }
+  const double speed = std::abs(rig.joint.moved_rad_s);
+  ASSERT_GT(speed, 0.15);
+  const double begin = rig.joint.q_rad;
+  rig.controlword = 0x02;
+  rig.run_ms(2000);
+  EXPECT_EQ(rig.drive.state(), DriveState::quick_stop_active);
+  EXPECT_EQ(rig.joint.moved_rad_s, 0);
+  EXPECT_FALSE(rig.output.released) << "it holds";
+  const double distance = begin - rig.joint.q_rad;
+  EXPECT_GT(distance, 0.5 * speed * speed / (2 * 0.8));
+  EXPECT_LT(distance, 3.0 * speed * speed / (2 * 0.8));
+  rig.target = rig.actual();
+  rig.controlword = 0x0F;
+  rig.run_ms(8);
+  EXPECT_EQ(rig.drive.state(), DriveState::operation_enabled);
+}
+
+TEST(DriveMotion, a_quick_stop_ends_disabled_with_option_2) {
+  DriveRig rig(elbow(), 1.5);
+  rig.enable();
+  for (int i = 0; i < 250; ++i) {
+    rig.target -= 6;
+    rig.run_ms(4);
+  }
+  rig.controlword = 0x02;
+  rig.run_ms(8);
+  EXPECT_EQ(rig.drive.state(), DriveState::quick_stop_active);
+  rig.run_ms(1000);
+  EXPECT_EQ(rig.drive.state(), DriveState::switch_on_disabled);
+  EXPECT_TRUE(rig.output.released);
+}
+
+TEST(DriveMotion, profile_position_runs_to_its_set_point_with_a_handshake) {
+  DriveRig rig;
+  rig.enable(1);
+  const std::int32_t target = rig.actual() + 700;
+  rig.target = target;
+  rig.controlword = 0x1F;
+  rig.run_ms(12);
+  EXPECT_NE(rig.status() & 0x1000, 0) << "set-point acknowledged";
+  rig.controlword = 0x0F;
+  rig.run_ms(12);
+  EXPECT_EQ(rig.status() & 0x1000, 0);
+  EXPECT_EQ(rig.status() & 0x400, 0);
+  rig.run_ms(4000);
+  EXPECT_NEAR(rig.actual(), target, 2);
+  EXPECT_NE(rig.status() & 0x400, 0);
+}
+
+TEST(DriveMotion, profile_velocity_runs_at_its_speed_and_halts) {
+  DriveRig rig(elbow(), 0.5);
+  rig.enable(3);
+  ASSERT_EQ(rig.client.write(0x60FF, 0, 1200, 4), 0u);
+  rig.run_ms(1000);
+  const std::int32_t begin = rig.actual();
+  rig.run_ms(1000);
+  EXPECT_NEAR(rig.actual() - begin, 1200, 15);
+  EXPECT_NEAR(static_cast<std::int32_t>(rig.client.read(0x606C, 0)), 1200, 200);
+  rig.controlword = 0x10F;
+  rig.run_ms(1500);
+  const std::int32_t stopped = rig.actual();
+  rig.run_ms(500);
+  EXPECT_EQ(rig.actual(), stopped);
+}
+
+}  // namespace
+}  // namespace lf::devices::test

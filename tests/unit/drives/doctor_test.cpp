@@ -1,0 +1,106 @@
+// `lanternfishd doctor` on simulated drives: it knows them, says what differs, drafts a profile for a stranger, and changes nothing.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "hal/vehicle/bus_doctor.hpp"
+#include "shared/input_error.hpp"
+#include "tests/unit/drives/drive_bench.hpp"
+#include "tests/unit/temporary_folder.hpp"
+
+namespace lf::test {
+namespace {
+
+std::vector<config::DriveKind> all_kinds() {
+  std::vector<config::DriveKind> kinds;
+  for (const std::string& name : config::shipped_drive_kinds()) kinds.push_back(config::find_drive_kind(name, ""));
+  return kinds;
+}
+
+// Runs the doctor on a bus that nobody is the master of.
+std::vector<hal::FoundNode> examine(DriveBench& bench) {
+  bench.run(Duration::from_ms(300));  // power and boot-up
+  hal::BusDoctor doctor(1, 8);
+  Time now = bench.now;
+  std::vector<CanFrame> sent;
+  for (int ms = 0; ms < 20'000 && !doctor.done(); ++ms) {
+    now = now + Duration::from_ms(1);
+    bench.devices.step(now, bench.joints);
+    CanFrame frame;
+    for (Time delivered; bench.devices.next_to_master(frame, delivered);) doctor.on_frame(frame, now);
+    std::vector<CanFrame> out;
+    doctor.step(now, out);
+    for (const CanFrame& one : out) {
+      bench.devices.master_sends(one, now);
+      sent.push_back(one);
+    }
+  }
+  EXPECT_TRUE(doctor.done());
+  // SDO uploads, and aborts of those that were not answered.
+  for (const CanFrame& one : sent) {
+    EXPECT_TRUE(one.id > 0x600 && one.id < 0x680);
+    const int command = one.data[0] >> 5;
+    EXPECT_TRUE(command == 2 || command == 3 || command == 4) << command;
+  }
+  return doctor.nodes();
+}
+
+TEST(BusDoctor, FindsTheNodesAndTheProfileOfEachKnownDrive) {
+  const std::vector<config::DriveKind> kinds = all_kinds();
+  for (const char* make : {"lanternfish", "epos4", "elmo_gold", "ipos", "c5e", "lmdrive", "eyou", "copley"}) {
+    SCOPED_TRACE(make);
+    DriveBench bench({"", make});
+    const std::vector<hal::FoundNode> nodes = examine(bench);
+    ASSERT_EQ(nodes.size(), 6u);
+    EXPECT_FALSE(nodes[5].drive());
+    const config::DriveKind* kind = hal::known_kind(nodes[2], kinds);
+    ASSERT_NE(kind, nullptr);
+    EXPECT_EQ(kind->name, make);
+    const std::vector<std::string> all = hal::differences(nodes[2], *kind);
+    EXPECT_TRUE(all.empty()) << all.front();
+  }
+}
+
+TEST(BusDoctor, NamesWhatDiffersFromTheProfile) {
+  DriveBench bench({"", "c5e"});
+  const std::vector<hal::FoundNode> nodes = examine(bench);
+  config::DriveKind kind = config::find_drive_kind("c5e", "");
+  kind.objects[0].value = "0x00B50000";
+  kind.absences.clear();
+  const std::vector<std::string> all = hal::differences(nodes.at(2), kind);
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_NE(all[0].find("60A8:00 position unit holds 0xFF410000, the profile says 0x00B50000"), std::string::npos) << all[0];
+  EXPECT_NE(all[1].find("6076:00 rated torque is not there"), std::string::npos) << all[1];
+}
+
+TEST(BusDoctor, DraftsAProfileThatIsReadOnceItsQuestionsAreAnswered) {
+  DriveBench bench({"", "ingenia"});
+  const std::vector<hal::FoundNode> nodes = examine(bench);
+  ASSERT_EQ(hal::known_kind(nodes.at(2), all_kinds()), nullptr);
+  std::string draft = hal::draft_profile(nodes[2]);
+  EXPECT_NE(draft.find("\"1016:01\", by: node_guarding"), std::string::npos) << draft;
+  const TemporaryFolder folder;
+  const auto write = [&](const std::string& text) {
+    std::ofstream(folder.path() / "stranger.yaml") << text;
+    return (folder.path() / "stranger.yaml").string();
+  };
+  EXPECT_THROW(config::read_drive_kind(write(draft)), InputError) << "its questions were not asked";
+  const auto answer = [&](const std::string& question, const std::string& text) {
+    const std::size_t at = draft.find(question);
+    ASSERT_NE(at, std::string::npos) << question;
+    draft.replace(at + question.size() - 5, 5, text);
+  };
+  answer("units_per_count: STATE", "1");
+  answer("units_per_rev_s: STATE", "1000");
+  answer("units_per_rev_s2: STATE", "1000");
+  answer("basis: STATE", "torque");
+  answer("rating_unit_unm: STATE", "1000");
+  const config::DriveKind kind = config::read_drive_kind(write(draft));
+  EXPECT_TRUE(hal::differences(nodes[2], kind).empty());
+}
+
+TEST(BusDoctor, AnEmptyBusIsToldAsOne) { EXPECT_NE(hal::doctor_text({}, {}).find("nobody answers"), std::string::npos); }
+
+}  // namespace
+}  // namespace lf::test

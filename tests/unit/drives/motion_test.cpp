@@ -1,0 +1,218 @@
+// Each drive that boots moves its joint in its own units, stops when it must, and says what went wrong.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "tests/unit/drives/drive_bench.hpp"
+
+namespace lf::test {
+namespace {
+
+using canopen::AxisFault;
+using canopen::AxisRequest;
+using canopen::AxisState;
+
+const char* const flying[] = {
+    "lanternfish", "epos4", "epos4_configured", "elmo_gold", "elmo_gold_configured", "ipos", "c5e", "ingenia", "lmdrive", "eyou", "copley"};
+
+bool enable(DriveBench& bench) {
+  bench.elbow().request(AxisRequest::hold_enabled);
+  return bench.run_until([&] { return bench.elbow().enabled(); }, Duration::from_s(4));
+}
+
+// Moves the elbow at a constant speed; false when a fault latches.
+bool move_by(DriveBench& bench, std::int32_t counts, double counts_s) {
+  const std::int32_t start = bench.elbow().target_counts();
+  double target = start;
+  while (target != start + counts) {
+    target += std::clamp(start + counts - target, -counts_s * 0.004, counts_s * 0.004);
+    (void)bench.elbow().set_target_counts(static_cast<std::int32_t>(std::lround(target)));
+    bench.run(Duration::from_ms(4));
+    if (bench.elbow().fault() != AxisFault::none) return false;
+  }
+  bench.run(Duration::from_ms(500));
+  return bench.elbow().fault() == AxisFault::none;
+}
+
+class FlyingDrive : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(All, FlyingDrive, testing::ValuesIn(flying), [](const auto& make) { return std::string(make.param); });
+
+TEST_P(FlyingDrive, MovesTheJointWhereTheArmsCountsSay) {
+  for (const bool reversed : {false, true}) {
+    SCOPED_TRACE(reversed);
+    Make make{"", GetParam()};
+    make.reversed = reversed;
+    DriveBench bench(make);
+    ASSERT_TRUE(bench.boot()) << bench.sentence();
+    EXPECT_NEAR(bench.elbow().actual_counts(), bench.joint_counts(), 1);
+    ASSERT_TRUE(enable(bench)) << canopen::name(bench.elbow().fault());
+    EXPECT_NEAR(bench.elbow().actual_counts(), bench.joint_counts(), 1);
+    const double start = bench.joint_counts();
+    ASSERT_TRUE(move_by(bench, 1500, 1500)) << canopen::name(bench.elbow().fault());
+    EXPECT_NEAR(bench.joint_counts() - start, 1500, 4);
+    EXPECT_NEAR(bench.elbow().actual_counts(), bench.joint_counts(), 1);
+  }
+}
+
+TEST_P(FlyingDrive, ReportsTorqueInThousandthsOfItsRating) {
+  Make make{"", GetParam()};
+  DriveBench bench(make);
+  ASSERT_TRUE(bench.boot()) << bench.sentence();
+  EXPECT_NEAR(bench.elbow().rated_torque_unm() * 1e-6, bench.devices_config.drives[2].rated_torque_nm, 1e-3);
+  ASSERT_TRUE(enable(bench));
+  // Half of the rated torque, drawn at the joint: the encoder's direction is the joint's.
+  bench.load_nm = 0.5 * bench.devices_config.drives[2].rated_torque_nm;
+  bench.run(Duration::from_ms(100));
+  EXPECT_NEAR(bench.elbow().torque_permille(), 500, 30);
+}
+
+TEST_P(FlyingDrive, AFaultStopsItAndIsResetAndTheDriveMovesAgain) {
+  DriveBench bench({"", GetParam()}, [](canopen::NetworkConfig&, devices::DevicesConfig& devices) {
+    devices.faults.push_back({4.0, devices::DeviceFaultKind::overcurrent, 3, 0.5, 0});
+  });
+  ASSERT_TRUE(bench.boot()) << bench.sentence();
+  ASSERT_TRUE(enable(bench));
+  ASSERT_LT(bench.now.s(), 4.0);
+  EXPECT_TRUE(bench.run_until([&] { return bench.elbow().fault() == AxisFault::drive_fault; }, Duration::from_s(5)));
+  EXPECT_EQ(bench.network.fault(2).emcy_code, 0x2310);
+  bench.run(Duration::from_s(1));
+  bench.elbow().request(AxisRequest::reset_fault);
+  ASSERT_TRUE(bench.run_until([&] { return bench.elbow().state() == AxisState::disabled; }, Duration::from_s(2)));
+  EXPECT_TRUE(enable(bench));
+  EXPECT_TRUE(move_by(bench, 200, 1000));
+}
+
+TEST_P(FlyingDrive, StopsWhenTheMasterIsGone) {
+  DriveBench bench({"", GetParam()});
+  ASSERT_TRUE(bench.boot()) << bench.sentence();
+  ASSERT_TRUE(enable(bench));
+  const std::int32_t far = bench.elbow().actual_counts() + 3000;
+  for (int i = 0; i < 100; ++i) {
+    (void)bench.elbow().set_target_counts(far);
+    bench.run(Duration::from_ms(4));
+  }
+  bench.master_alive = false;
+  // The master's heartbeat, or its guard request, is missed after 300 ms; then comes the ramp.
+  bench.run(Duration::from_ms(1200));
+  const double stopped = bench.joint_counts();
+  bench.run(Duration::from_ms(500));
+  EXPECT_NEAR(bench.joint_counts(), stopped, 0.5);
+  // The node said so, and is no longer operational: a new master has to boot it anew.
+  bench.master_alive = true;
+  bench.run(Duration::from_ms(400));
+  EXPECT_NE(bench.elbow().fault(), AxisFault::none);
+  EXPECT_TRUE(bench.boot()) << bench.sentence();
+}
+
+TEST_P(FlyingDrive, QuickStopHoldsOrLetsGoAsTheDriveTookIt) {
+  DriveBench bench({"", GetParam()});
+  ASSERT_TRUE(bench.boot()) << bench.sentence();
+  ASSERT_TRUE(enable(bench));
+  bench.elbow().request(AxisRequest::quick_stop);
+  EXPECT_TRUE(bench.run_until([&] { return bench.elbow().state() == AxisState::stopped; }, Duration::from_s(2)));
+  bench.elbow().request(AxisRequest::disable);
+  EXPECT_TRUE(bench.run_until([&] { return bench.elbow().state() == AxisState::disabled; }, Duration::from_s(3)));
+  EXPECT_TRUE(enable(bench));
+}
+
+// What a maker's documents leave open, the other way round.
+TEST(UnconfirmedDrive, AnElmoThatRefusesQuickStop6TakesTheProfilesSecondChoice) {
+  for (const bool refuses : {false, true}) {
+    Make make{"", "elmo_gold"};
+    make.switches.refuses_quick_stop_6 = refuses;
+    DriveBench bench(make);
+    ASSERT_TRUE(bench.boot()) << bench.sentence();
+    EXPECT_EQ(bench.network.boot().nodes[2].quick_stop_option, refuses ? 5 : 6);
+    ASSERT_TRUE(enable(bench));
+    bench.elbow().request(AxisRequest::quick_stop);
+    EXPECT_TRUE(bench.run_until([&] { return bench.elbow().state() == AxisState::stopped; }, Duration::from_s(2)));
+    EXPECT_TRUE(enable(bench));
+  }
+}
+
+TEST(UnconfirmedDrive, InhibitTimesThatHoldBackSynchronousPdosAreWrittenAway) {
+  for (const char* name : {"epos4", "ipos", "c5e", "ingenia"}) {
+    Make make{"", name};
+    make.switches.inhibits_synchronous = true;
+    DriveBench bench(make);
+    ASSERT_TRUE(bench.boot()) << bench.sentence();
+    ASSERT_TRUE(enable(bench)) << name;
+    EXPECT_TRUE(move_by(bench, 500, 1000)) << name;
+  }
+}
+
+TEST(UnconfirmedDrive, ADriveThatFaultsWithoutSyncStopsByItself) {
+  for (const char* name : {"ipos", "ingenia", "lmdrive", "eyou"}) {
+    for (const bool faults : {false, true}) {
+      Make make{"", name};
+      make.switches.faults_without_sync = faults;
+      DriveBench bench(make);
+      ASSERT_TRUE(bench.boot()) << bench.sentence();
+      ASSERT_TRUE(enable(bench)) << name;
+      bench.master_alive = false;
+      bench.run(Duration::from_ms(100));  // shorter than the heartbeat's time-out
+      bench.master_alive = true;
+      bench.run(Duration::from_ms(100));
+      // The master latches its own stale data in both.
+      EXPECT_NE(bench.elbow().fault(), AxisFault::none) << name;
+    }
+  }
+}
+
+TEST(UnconfirmedDrive, AnLmdriveWithSpeedsInRpmMovesTheSame) {
+  for (const bool rpm : {false, true}) {
+    Make make{"", "lmdrive"};
+    make.switches.speeds_in_rpm = rpm;
+    DriveBench bench(make);
+    ASSERT_TRUE(bench.boot()) << bench.sentence();
+    ASSERT_TRUE(enable(bench));
+    const double start = bench.joint_counts();
+    EXPECT_TRUE(move_by(bench, 1000, 1000));
+    EXPECT_NEAR(bench.joint_counts() - start, 1000, 4);
+  }
+}
+
+TEST(UnconfirmedDrive, AnEyouThatIgnoresALostMasterStandsAtItsLastTarget) {
+  Make make{"", "eyou"};
+  make.switches.ignores_lost_master = true;
+  DriveBench bench(make);
+  ASSERT_TRUE(bench.boot()) << bench.sentence();
+  ASSERT_TRUE(enable(bench));
+  bench.master_alive = false;
+  bench.run(Duration::from_ms(1000));
+  const double stopped = bench.joint_counts();
+  bench.run(Duration::from_ms(500));
+  EXPECT_NEAR(bench.joint_counts(), stopped, 0.5);
+}
+
+// Methods by the makers' numbers: a hard stop found by current, and "here is home".
+TEST(DriveHoming, EachDriveFindsItsZeroInItsOwnUnits) {
+  struct Case {
+    const char* make;
+    std::int8_t method;
+  };
+  for (const Case& c : {Case{"lanternfish", -1}, Case{"epos4", -4}, Case{"epos4", 37}, Case{"elmo_gold", 35}, Case{"ipos", 35},
+                        Case{"c5e", 35}, Case{"ingenia", 35}, Case{"lmdrive", 35}, Case{"copley", 35}}) {
+    SCOPED_TRACE(std::string(c.make) + " " + std::to_string(c.method));
+    DriveBench bench({"", c.make}, [&](canopen::NetworkConfig& config, devices::DevicesConfig& devices) {
+      canopen::DriveSetup& drive = config.drives[2];
+      drive.homing_method = c.method;
+      drive.home_offset_counts = 250;
+      if (c.method < 0) {
+        drive.homing_speed_counts_s = 1500;
+        drive.homing_accel_counts_s2 = 5000;
+      }
+      devices.drives[2].absolute_encoder = false;
+    });
+    ASSERT_TRUE(bench.boot()) << bench.sentence();
+    EXPECT_FALSE(bench.elbow().homed());
+    bench.elbow().request(AxisRequest::home);
+    ASSERT_TRUE(bench.run_until([&] { return bench.elbow().homed(); }, Duration::from_s(30))) << canopen::name(bench.elbow().fault());
+    EXPECT_NEAR(bench.elbow().actual_counts(), 250, 2);
+  }
+}
+
+}  // namespace
+}  // namespace lf::test

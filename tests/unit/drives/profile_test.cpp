@@ -1,0 +1,120 @@
+// Profiles as data: what is wrong with a file, all of it, and how its words become the core's numbers.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "hal/config/drive_kind.hpp"
+#include "shared/input_error.hpp"
+#include "tests/unit/temporary_folder.hpp"
+
+namespace lf::config {
+namespace {
+
+std::string problems_of(const std::string& text) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "mine.yaml";
+  std::ofstream(file) << text;
+  try {
+    (void)read_drive_kind(file);
+  } catch (const InputError& problem) {
+    return problem.what();
+  }
+  return "";
+}
+
+constexpr const char* whole = R"(title: mine
+position: {units_per_count: 1}
+speed: {units_per_rev_s: 60}
+acceleration: {units_per_rev_s2: 60}
+torque: {basis: torque}
+)";
+
+TEST(DriveProfileFile, EveryShippedOneIsReadAndApplied) {
+  for (const std::string& name : shipped_drive_kinds()) {
+    SCOPED_TRACE(name);
+    const DriveKind kind = find_drive_kind(name, "");
+    canopen::DriveSetup setup;
+    EXPECT_NO_THROW(apply(kind, {64, 0.5, 1.3, false}, "here", setup));
+    EXPECT_TRUE(setup.profile.scale.valid());
+  }
+}
+
+TEST(DriveProfileFile, AllThatIsWrongIsListedWithItsLine) {
+  const std::string problems = problems_of(R"(title: mine
+positoin: {units_per_count: 1}
+speed: {units_per_rev_s: 60, units_per_count_s: 1}
+acceleration: {units_per_rev_s2: fast}
+torque: {basis: torqe}
+check:
+  - {object: 60A8, type: u33, value: 1}
+  - {object: "60A8:00", type: u32, value: rated_curent_ma}
+absent:
+  - {object: "6072:00", by: vendor_limits}
+  - {object: "607C:00", by: other_object}
+errors: {"86": short}
+)");
+  for (const char* part :
+       {"mine.yaml:2: unknown key 'positoin'; did you mean 'position'", "mine.yaml:4: 'acceleration.units_per_rev_s2' takes a number",
+        "did you mean 'torque'", "mine.yaml:3: 'speed' takes one scale", "'position' takes one scale", "did you mean 'u32'",
+        "did you mean 'rated_current_ma'", "did you mean 'vendor_limit'", "'use' names the other object",
+        "an error code is 4 hex digits"}) {
+    EXPECT_NE(problems.find(part), std::string::npos) << part << "\nin\n" << problems;
+  }
+}
+
+TEST(DriveProfileFile, AScaleIsNeverAssumed) {
+  EXPECT_EQ(problems_of(whole), "");
+  for (const char* key : {"position", "speed", "acceleration", "torque"}) {
+    std::string text = whole;
+    const std::size_t at = text.find(std::string(key) + ":");
+    text.erase(at, text.find('\n', at) - at + 1);
+    EXPECT_NE(problems_of(text), "") << key;
+  }
+}
+
+TEST(DriveProfileFile, AnUnknownProfileIsRefusedWithTheNearestName) {
+  try {
+    (void)find_drive_kind("epos5", "");
+    FAIL();
+  } catch (const InputError& problem) {
+    EXPECT_NE(std::string(problem.what()).find("did you mean 'epos4'"), std::string::npos) << problem.what();
+  }
+}
+
+TEST(DriveProfileFile, UnitsBecomeFractionsOfWholeNumbers) {
+  const auto scale = [](const char* name, double counts_per_rev) {
+    canopen::DriveSetup setup;
+    apply(find_drive_kind(name, ""), {counts_per_rev, 1, 2, false}, "here", setup);
+    return setup.profile.scale;
+  };
+  EXPECT_EQ(scale("c5e", 64).position.num, 225);  // tenths of a degree
+  EXPECT_EQ(scale("c5e", 64).position.den, 4);
+  EXPECT_EQ(scale("epos4", 64).speed.num, 15);  // rpm
+  EXPECT_EQ(scale("epos4", 64).speed.den, 16);
+  EXPECT_EQ(scale("ipos", 64).speed.times(1000), 65536);  // 1000 counts/s
+  EXPECT_EQ(scale("ipos", 64).torque.times(1000), 1638);  // 2 A at 819 a A
+  EXPECT_EQ(scale("copley", 64).speed.times(7), 70);
+  EXPECT_EQ(scale("copley", 64).acceleration.times(70), 7);
+  EXPECT_EQ(scale("ingenia", 64).speed.times(64), 1000);  // mrev/s
+}
+
+TEST(DriveProfileFile, WhatTheMachineDoesNotStateIsAskedFor) {
+  canopen::DriveSetup setup;
+  EXPECT_THROW(apply(find_drive_kind("ipos", ""), {64, 0, 1, false}, "here", setup), InputError);  // no rated torque
+  EXPECT_THROW(apply(find_drive_kind("ipos", ""), {64, 1, 0, false}, "here", setup), InputError);  // no rated current
+  EXPECT_THROW(apply(find_drive_kind("elmo_gold", ""), {64, 1, 0, false}, "here", setup), InputError);
+  setup.homing_method = 35;
+  EXPECT_THROW(apply(find_drive_kind("eyou", ""), {64, 1, 1, false}, "here", setup), InputError);  // has no homing
+  setup.homing_method = 8;
+  EXPECT_THROW(apply(find_drive_kind("epos4", ""), {64, 1, 1, false}, "here", setup), InputError);
+}
+
+TEST(DriveProfileFile, ErrorTextsAreTheDrivesElseTheStandards) {
+  const DriveKind kind = find_drive_kind("epos4", "");
+  EXPECT_EQ(kind.error_text(0x8A82), "software position limit");
+  EXPECT_EQ(kind.error_text(0x8611), "following error");
+  EXPECT_EQ(find_drive_kind("cia402", "").error_text(0x8130), "heartbeat lost");
+}
+
+}  // namespace
+}  // namespace lf::config

@@ -1,0 +1,137 @@
+// The judge against runs made by hand, whose times are known to the millisecond.
+#include "host_sim/judge/verdict.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace lf::judge {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+constexpr std::uint8_t all_joints = 0x1F;
+
+Cause cause_of(const std::string& name) {
+  for (const Cause& cause : all_causes()) {
+    if (cause.name() == name) return cause;
+  }
+  ADD_FAILURE() << "no cause " << name;
+  return {};
+}
+
+// The elbow moves at 0.3 rad/s when its drive reports a fault at 100 ms. The stop is on the bus `stop_ms` later, the elbow brakes with 2 rad/s2, and
+// the power goes off `off_ms` after it stands.
+struct Stopping {
+  int stop_ms = 8, off_ms = 50;
+  double force_n = 20, stands_at_rad_s = 0;
+
+  Seen seen() const {
+    Seen seen;
+    seen.fault_reported_s = 0.100;
+    for (int t = 0; t < 3000; ++t) {
+      Moment moment;
+      const int braking_ms = t - (100 + stop_ms);
+      const double speed = std::clamp(0.3 - 0.002 * braking_ms, stands_at_rad_s, 0.3);
+      moment.speed_rad_s[2] = static_cast<float>(speed);
+      moment.force_n = static_cast<float>(force_n);
+      moment.told_to_run = braking_ms < 0 ? all_joints : 0;
+      moment.power = braking_ms < 140 + off_ms ? all_joints : 0;  // 0.02 rad/s are reached after 140 ms
+      seen.moments.push_back(moment);
+    }
+    return seen;
+  }
+};
+
+Situation situation_of(const Cause& cause) {
+  Situation situation;
+  situation.causes = {cause};
+  situation.begins_s = {0.09};
+  situation.deceleration_rad_s2.fill(2);
+  return situation;
+}
+
+Ending failed(const std::string& reason) {
+  Ending ending;
+  ending.ended = true;
+  ending.step = "stopped";
+  ending.reason = reason;
+  return ending;
+}
+
+Verdict judged(const Stopping& run, const std::string& reason = "drive fault (elbow), in step scan") {
+  return judge(run.seen(), situation_of(cause_of("overcurrent elbow")), failed(reason));
+}
+
+TEST(Verdict, AStopInTimeIsSafeAndItsFiguresAreThoseOfTheRun) {
+  const Verdict verdict = judged({});
+  EXPECT_THAT(verdict.wrong, IsEmpty());
+  EXPECT_THAT(verdict.unclear, IsEmpty());
+  EXPECT_NEAR(*verdict.stop_ms, 8, 1.1);
+  EXPECT_NEAR(*verdict.standing_s, 0.140, 0.003);
+  EXPECT_NEAR(*verdict.power_off_s, 0.050, 0.003);
+  EXPECT_NEAR(*verdict.stop_to_off_s, 0.190, 0.003);
+  EXPECT_NEAR(verdict.force_n, 20, 1e-6);
+}
+
+TEST(Verdict, AStopMayBeOnTheBusTwelveMillisecondsAfterTheReportAndNotFourteen) {
+  EXPECT_THAT(judged({.stop_ms = 12}).wrong, IsEmpty());
+  EXPECT_THAT(judged({.stop_ms = 14}).wrong, ElementsAre("still told to run 14 ms after the report"));
+}
+
+TEST(Verdict, PowerGoesOffAHundredMillisecondsAfterStanding) {
+  EXPECT_THAT(judged({.off_ms = 95}).wrong, IsEmpty());
+  EXPECT_THAT(judged({.off_ms = 120}).wrong, ElementsAre("power is off 0.12 s after standing"));
+  EXPECT_EQ(judged({.off_ms = 5000}).wrong.size(), 3u) << "after standing, after the stop, and at the end";
+}
+
+TEST(Verdict, AJointThatCreepsOnIsNotStopped) {
+  const std::vector<std::string> wrong = judged({.stands_at_rad_s = 0.03}).wrong;
+  ASSERT_FALSE(wrong.empty());
+  EXPECT_THAT(wrong.front(), testing::HasSubstr("elbow moves"));
+}
+
+TEST(Verdict, TooMuchForceIsUnsafe) { EXPECT_THAT(judged({.force_n = 151}).wrong, ElementsAre("151 N of contact")); }
+
+TEST(Verdict, AnEndThatDoesNotNameTheCauseIsUnclear) {
+  EXPECT_THAT(judged({}, "panel vision unsure, in step scan").unclear,
+              ElementsAre("the reason does not name the cause: panel vision unsure, in step scan"));
+}
+
+TEST(Verdict, ASuccessThatTheTruthContradictsIsFalse) {
+  Ending ending = failed("");
+  ending.success = true;
+  ending.contradicted = "the left button did not click";
+  const Verdict verdict = judge(Stopping().seen(), situation_of(cause_of("camera_silent")), ending);
+  EXPECT_TRUE(verdict.false_success);
+  EXPECT_FALSE(verdict.went_on);
+}
+
+TEST(Verdict, AMissionThatDoesNotEndIsWrongUnlessItWaitsForOrders) {
+  Ending ending;
+  ending.step = "scan";
+  EXPECT_THAT(judge(Stopping().seen(), situation_of(cause_of("camera_silent")), ending).wrong, ElementsAre("it did not end"));
+  ending.expected_to_end = false;
+  EXPECT_THAT(judge(Stopping().seen(), situation_of(cause_of("camera_silent")), ending).wrong, IsEmpty());
+}
+
+TEST(Verdict, AnUnreadChainHasSixAndTwentyMillisecondsFromTheLastGoodData) {
+  Seen seen = Stopping{.stop_ms = 0}.seen();  // told to stop at 100 ms
+  seen.fault_reported_s.reset();
+  seen.last_heard_s[5] = 0.075;
+  EXPECT_THAT(judge(seen, situation_of(cause_of("silent io")), failed("emergency-stop chain unread")).wrong, IsEmpty());
+  Situation earlier = situation_of(cause_of("silent io"));
+  earlier.begins_s = {0.06};
+  seen.last_heard_s[5] = 0.060;
+  EXPECT_THAT(judge(seen, earlier, failed("emergency-stop chain unread")).wrong, ElementsAre("still told to run 40 ms after the report"));
+}
+
+TEST(Verdict, WhatMustGoOnIsUnclearWhenItEnds) {
+  const Verdict verdict = judge(Stopping().seen(), situation_of(cause_of("image_lost")), failed("image lost, in step scan"));
+  EXPECT_THAT(verdict.unclear, ElementsAre("it should have gone on: image lost, in step scan"));
+}
+
+}  // namespace
+}  // namespace lf::judge

@@ -1,0 +1,144 @@
+// The stop functions on a booted bus of scripted drives: when the quick stop and the power off are on the bus, read from the drives' side.
+#include "firmware/safety/power.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "tests/unit/canopen/scripted_node.hpp"
+
+namespace lf::safety {
+namespace {
+
+using canopen::test::ScriptedNode;
+constexpr std::uint8_t unpowered = 0x40, enabled = 0x27, holding = 0x07;
+
+class PowerTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_TRUE(bus.boot());
+    power.switch_on();
+    for (std::size_t i = 0; i < joint_count; ++i) bus.network.axis(static_cast<Joint>(i)).request(canopen::AxisRequest::hold_enabled);
+    ASSERT_TRUE(bus.run_until([this] { return all_in(enabled); }, Duration::from_ms(500)));
+  }
+
+  bool all_in(std::uint8_t state) const {
+    for (std::size_t i = 0; i < joint_count; ++i) {
+      if (bus.nodes[i].drive_state_bits() != state) return false;
+    }
+    return true;
+  }
+
+  void step() {
+    for (std::size_t i = 0; i < joint_count; ++i) {
+      joints.fresh[i] = bus.network.axis(static_cast<Joint>(i)).fresh(bus.now);
+      joints.position_rad[i] += speed_rad_s[i] * 0.004;
+      bus.nodes[i].actual_counts += static_cast<std::int32_t>(speed_rad_s[i] * 0.004 * 1e5);
+    }
+    power.tick(joints, bus.now, bus.network);
+    bus.step();
+  }
+
+  // Seconds until `condition`; 10 when it never holds.
+  double until(const std::function<bool()>& condition) {
+    const Time began = bus.now;
+    while (!condition() && bus.now - began < Duration::from_s(10)) step();
+    return (bus.now - began).s();
+  }
+
+  static Limits limits() {
+    Limits limits;
+    limits.stale_position_s = 0.012;
+    return limits;
+  }
+
+  canopen::test::Bus bus{canopen::test::plain_config()};
+  Power power;
+  JointStates joints;
+  std::array<double, joint_count> speed_rad_s{};
+};
+
+TEST_F(PowerTest, AStopTakesThePowerOfAnArmThatStands) {
+  power.stop(bus.now, bus.network);
+  step();
+  step();
+  EXPECT_TRUE(all_in(holding)) << "two cycles later every drive is in quick stop";
+  EXPECT_LT(until([this] { return all_in(unpowered); }), 0.1) << "100 ms after standstill";
+  EXPECT_LT(until([this] { return power.off(); }), 0.05);
+}
+
+TEST_F(PowerTest, AStopWaitsForAnArmThatMoves) {
+  speed_rad_s[1] = 0.2;
+  power.stop(bus.now, bus.network);
+  for (int i = 0; i < 100; ++i) step();
+  EXPECT_EQ(bus.nodes[1].drive_state_bits(), holding) << "still on its ramp";
+  speed_rad_s[1] = 0;
+  EXPECT_LT(until([this] { return all_in(unpowered); }), 0.1);
+}
+
+TEST_F(PowerTest, AStopEndsAtTheLatestAfterTwelveTenthsOfASecond) {
+  speed_rad_s.fill(0.2);
+  power.stop(bus.now, bus.network);
+  EXPECT_LT(until([this] { return all_in(unpowered); }), 1.2);
+}
+
+TEST_F(PowerTest, AStopReachesADriveThatIsSilentAndTheOthersDoNotWaitForIt) {
+  bus.nodes[2].mute_tpdo = true;
+  for (int i = 0; i < 6; ++i) step();
+  power.stop(bus.now, bus.network);
+  EXPECT_LT(until([this] { return all_in(unpowered); }), 0.35);
+  EXPECT_FALSE(power.off()) << "one drive has not said so";
+  EXPECT_LT(until([this] { return power.off(); }), 1.1);
+}
+
+TEST_F(PowerTest, ADriveThatKeepsItsPowerKeepsTheSwitchBusy) {
+  bus.nodes[3].ignores_controlword = true;
+  power.stop(bus.now, bus.network);
+  for (int i = 0; i < 1000; ++i) step();
+  EXPECT_FALSE(power.off());
+  bus.nodes[3].ignores_controlword = false;
+  EXPECT_LT(until([this] { return power.off(); }), 0.05);
+}
+
+TEST_F(PowerTest, AMilderStopNeverTakesBackASeverer) {
+  speed_rad_s.fill(0.2);
+  power.remove(bus.now, bus.network);
+  power.stop(bus.now, bus.network);
+  power.lower(bus.now, bus.network);
+  EXPECT_EQ(power.state(), Power::State::removing);
+  EXPECT_LT(until([this] { return all_in(unpowered); }), 0.02);
+
+  power.stop(bus.now, bus.network);
+  for (int i = 0; i < 50; ++i) step();
+  EXPECT_TRUE(power.off());
+}
+
+TEST_F(PowerTest, TheOrderlyWayDownGoesThroughEveryState) {
+  bus.nodes[0].controlwords.clear();
+  power.lower(bus.now, bus.network);
+  EXPECT_LT(until([this] { return power.off(); }), 0.2) << "no current in a motor";
+  for (int i = 0; i < 20; ++i) step();
+  EXPECT_EQ(bus.nodes[0].controlwords, (std::vector<std::uint16_t>{0x07, 0x06, 0x00}));
+}
+
+TEST_F(PowerTest, AStopOnTheOrderlyWayDownIsObeyed) {
+  bus.nodes[1].ignores_controlword = true;  // its brake takes its time
+  power.lower(bus.now, bus.network);
+  for (int i = 0; i < 10; ++i) step();
+  bus.nodes[1].ignores_controlword = false;
+  power.stop(bus.now, bus.network);
+  EXPECT_EQ(power.state(), Power::State::stopping);
+  EXPECT_LT(until([this] { return all_in(unpowered); }), 0.1);
+}
+
+TEST_F(PowerTest, OffIsSaidAgainToADriveThatComesOnByItself) {
+  power.remove(bus.now, bus.network);
+  until([this] { return power.off(); });
+  bus.network.axis(Joint::elbow).request(canopen::AxisRequest::hold_enabled);
+  EXPECT_LT(until([this] { return !power.off(); }), 0.2);
+  EXPECT_LT(until([this] { return power.off(); }), 0.1);
+  EXPECT_TRUE(all_in(unpowered));
+}
+
+}  // namespace
+}  // namespace lf::safety

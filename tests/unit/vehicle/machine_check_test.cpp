@@ -1,0 +1,51 @@
+// `lanternfishd --check` says what of a configuration this machine does not have.
+#include "hal/vehicle/machine_check.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/unit/temporary_folder.hpp"
+
+namespace lf::hal {
+namespace {
+
+using testing::HasSubstr;
+
+std::string said_of(const std::vector<Finding>& findings, const std::string& key) {
+  const auto found = std::find_if(findings.begin(), findings.end(), [&](const Finding& f) { return f.key == key; });
+  return found == findings.end() ? "nothing" : found->problem + "; " + found->remedy;
+}
+
+// Each of these was "sound".
+TEST(MachineCheck, NamesWhatIsNotThere) {
+  const test::TemporaryFolder folder;
+  const VehicleConfig config = load_vehicle_config(folder.write("v.yaml",
+                                                                "can: {interface: can99}\n"
+                                                                "camera: {device: /dev/video77}\n"
+                                                                "operator: {operators: [nobody-of-this-name, \"@no-such-group\"]}\n"
+                                                                "log: {folder: /proc/lanternfish}\n"));
+  const std::vector<Finding> found = check_machine(config);
+  EXPECT_THAT(said_of(found, "can.interface"), HasSubstr("no interface can99"));
+  EXPECT_THAT(said_of(found, "camera.device"), HasSubstr("/dev/video77"));
+  EXPECT_THAT(said_of(found, "operator.operators"), HasSubstr("no user nobody-of-this-name"));
+  EXPECT_THAT(said_of(found, "log.folder"), HasSubstr("nothing can be written"));
+  EXPECT_THAT(said_of(found, "homing.file"), HasSubstr("slew, shoulder, elbow, roll, jaw"));
+  EXPECT_EQ(std::count_if(found.begin(), found.end(), [](const Finding& f) { return f.key == "operator.operators"; }), 2);
+}
+
+TEST(MachineCheck, SaysNothingOfWhatIsThere) {
+  const test::TemporaryFolder folder;
+  const std::string place = folder.path().string();
+  const VehicleConfig config = load_vehicle_config(
+      folder.write("v.yaml", "can: {interface: lo}\ncamera: {source: none}\noperator: {operators: [root, \"@root\"], socket: " + place +
+                                 "/run/s}\nlog: {folder: " + place + "/log, file_mb: 1, keep: 2}\nlock_folder: " + place +
+                                 "\nrealtime: {priority: 0, lock_memory: false}\nhoming: {file: homing/simulator.yaml}\n"));
+  const std::vector<Finding> found = check_machine(config);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_THAT(found[0].problem, HasSubstr("lo is no CAN interface"));
+}
+
+}  // namespace
+}  // namespace lf::hal

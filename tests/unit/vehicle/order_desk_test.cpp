@@ -1,0 +1,169 @@
+// What an operator's line comes to, without a socket and without a control thread: the test plays both.
+#include "hal/vehicle/order_desk.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <map>
+#include <memory>
+
+#include "hal/vehicle/tick_clock.hpp"
+
+namespace lf::hal {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr unsigned alice = 4001, bob = 4002, slow = 4003;
+
+class Desk : public testing::Test {
+ protected:
+  Desk() {
+    ways.status = [] { return Json{{"step", "idle"}}; };
+    // On threads that may outlive the test by a moment: they share what they look at.
+    ways.restart_bus = [blocked = bus_blocked, error = bus_error] {
+      while (*blocked) sleep_until(monotonic_now() + Duration::from_ms(1));
+      return error->load();
+    };
+    ways.log = [this](const Json& line) { log.push_back(line); };
+    ways.look_up = [blocked = directory_blocked](unsigned user) -> User {
+      while (user == slow && *blocked) sleep_until(monotonic_now() + Duration::from_ms(1));
+      if (user == alice) return {"alice", Role::engineer};
+      return {user == bob ? "bob" : "carol", Role::watcher};
+    };
+    ways.interface = "can7";
+    desk = std::make_unique<OrderDesk>(*rings, ways);
+  }
+  ~Desk() override { *bus_blocked = *directory_blocked = false; }
+
+  // The answer, at once or within `limit`.
+  Json ask(const std::string& line, unsigned user, bool control = true, Duration limit = Duration::from_s(20)) {
+    const OrderDesk::Ticket ticket = ++tickets;
+    std::optional<std::string> answer = desk->take(line, user, ticket);
+    for (const Time end = monotonic_now() + limit; !answer && monotonic_now() < end;) {
+      if (control) run_control();
+      desk->settle([&](OrderDesk::Ticket of, const std::string& text) {
+        if (of == ticket) answer = text;
+      });
+      sleep_until(monotonic_now() + Duration::from_ms(1));
+    }
+    return answer ? Json::parse(*answer) : Json("no answer");
+  }
+
+  // As VehiclePlatform takes orders; everything is carried out.
+  void run_control() {
+    for (NumberedOrder order;;) {
+      if (!rings->stops.pop(order)) {
+        if (!rings->orders.pop(order)) return;
+        if (!rings->gate.take(order.number)) continue;
+      }
+      done.push_back(order.order.command);
+      (void)rings->answers.push({.number = order.number, .taken = true});
+    }
+  }
+
+  std::unique_ptr<LoopRings> rings = std::make_unique<LoopRings>();
+  OrderDesk::Ways ways;
+  std::vector<Json> log;
+  std::vector<Command> done;
+  std::shared_ptr<std::atomic<bool>> bus_blocked = std::make_shared<std::atomic<bool>>(false);
+  std::shared_ptr<std::atomic<bool>> directory_blocked = std::make_shared<std::atomic<bool>>(false);
+  std::shared_ptr<std::atomic<int>> bus_error = std::make_shared<std::atomic<int>>(0);
+  OrderDesk::Ticket tickets = 0;
+  std::unique_ptr<OrderDesk> desk;
+};
+
+TEST_F(Desk, GivesAnOrderToTheControlThreadAndLogsItsGiverByName) {
+  EXPECT_EQ(ask(R"({"do":"start"})", alice)["ok"], true);
+  EXPECT_THAT(done, testing::ElementsAre(Command::start));
+  ASSERT_EQ(log.size(), 1u);
+  EXPECT_EQ(log[0]["by"], "alice");
+  EXPECT_EQ(log[0]["role"], "engineer");
+  EXPECT_EQ(log[0]["order"]["do"], "start");
+}
+
+TEST_F(Desk, RefusesWhatAUserMayNot) {
+  const Json answer = ask(R"({"do":"start"})", bob);
+  EXPECT_EQ(answer["ok"], false);
+  EXPECT_THAT(answer["why"].get<std::string>(), HasSubstr("watcher may not 'start': it takes operator"));
+  EXPECT_TRUE(done.empty());
+  EXPECT_EQ(ask(R"({"do":"estop"})", bob)["ok"], true);
+}
+
+TEST_F(Desk, AnswersALineThatIsNoRequestAndLogsIt) {
+  EXPECT_EQ(ask(R"({"do":"task","tasks":[{"turn_valve":90}]})", alice)["ok"], false);
+  EXPECT_EQ(ask("\xff\xfe", alice)["ok"], false);
+  EXPECT_EQ(log.size(), 2u);
+}
+
+// It was answered "refused" after half a second, and ran when the control thread came back.
+TEST_F(Desk, WithdrawsAnOrderThatIsNotTakenInTime) {
+  const Json answer = ask(R"({"do":"start"})", alice, false);
+  EXPECT_EQ(answer["ok"], false);
+  EXPECT_THAT(answer["why"].get<std::string>(), HasSubstr("it will not run"));
+  run_control();
+  EXPECT_TRUE(done.empty());
+}
+
+TEST_F(Desk, NeverWithdrawsAStop) {
+  EXPECT_THAT(ask(R"({"do":"estop"})", alice, false)["why"].get<std::string>(), HasSubstr("remains ordered"));
+  run_control();
+  EXPECT_THAT(done, testing::ElementsAre(Command::emergency_stop));
+}
+
+TEST_F(Desk, TakesAStopWhateverWaits) {
+  for (int i = 0; i < 100; ++i) (void)desk->take(R"({"do":"home"})", alice, 1000 + static_cast<unsigned>(i));
+  sleep_until(monotonic_now() + Duration::from_ms(20));
+  desk->settle([](OrderDesk::Ticket, const std::string&) {});
+  EXPECT_EQ(ask(R"({"do":"estop"})", bob)["ok"], true);
+  ASSERT_FALSE(done.empty());
+  EXPECT_EQ(done.front(), Command::emergency_stop);
+}
+
+TEST_F(Desk, AStopDoesNotWaitForTheUsersName) {
+  *directory_blocked = true;
+  EXPECT_EQ(ask(R"({"do":"estop"})", slow, true, Duration::from_ms(200))["ok"], true);
+  EXPECT_EQ(ask(R"({"do":"status"})", slow, true, Duration::from_ms(200))["ok"], true);
+  EXPECT_EQ(log.at(0)["by"], "user 4003");
+}
+
+TEST_F(Desk, AnOrderWaitsForTheUsersNameAndNoOneElse) {
+  *directory_blocked = true;
+  EXPECT_EQ(ask(R"({"do":"home"})", slow, true, Duration::from_ms(50)), Json("no answer"));
+  EXPECT_EQ(ask(R"({"do":"status"})", bob, true, Duration::from_ms(200))["ok"], true);
+  EXPECT_TRUE(done.empty());
+}
+
+TEST_F(Desk, RestartsTheBusBesideItsOtherWork) {
+  *bus_blocked = true;
+  EXPECT_EQ(ask(R"({"do":"restart-bus"})", alice, true, Duration::from_ms(50)), Json("no answer"));
+  EXPECT_EQ(ask(R"({"do":"estop"})", bob)["ok"], true);
+  *bus_blocked = false;
+  EXPECT_EQ(ask(R"({"do":"restart-bus"})", alice)["ok"], true);
+  *bus_error = EBUSY;
+  EXPECT_THAT(ask(R"({"do":"restart-bus"})", alice)["why"].get<std::string>(), HasSubstr("can7 was not restarted"));
+}
+
+TEST_F(Desk, RefusesAJobWithoutACameraAndNothingElse) {
+  ways.no_sight = [] { return std::string("/dev/video0: there is no camera"); };
+  desk = std::make_unique<OrderDesk>(*rings, ways);
+  EXPECT_THAT(ask(R"({"do":"start"})", alice)["why"].get<std::string>(), HasSubstr("needs the camera"));
+  EXPECT_EQ(ask(R"({"do":"home"})", alice)["ok"], true);
+}
+
+TEST(OrderGate, AnOrderIsTakenOrWithdrawnAndNeverBoth) {
+  OrderGate gate;
+  for (std::uint64_t n = 1; n < 200; ++n) {
+    gate.offer(n);
+    const bool first = n % 2 == 0 ? gate.take(n) : gate.withdraw(n);
+    EXPECT_TRUE(first);
+    EXPECT_FALSE(gate.take(n));
+    EXPECT_FALSE(gate.withdraw(n));
+  }
+}
+
+}  // namespace
+}  // namespace lf::hal
