@@ -131,9 +131,8 @@ def fault(sheet, node, transfer):
         for limit, beyond in (("LowLimit", lambda v, l: v < l), ("HighLimit", lambda v, l: v > l)):
             if limit in row and beyond(value, number(row[limit], node, signed, size)):
                 return f"is written {value}, {limit} {row[limit]}"
-        if transfer.index in MAPPINGS and transfer.sub > 0:
-            return mapping_fault(sheet, transfer)
-    return None
+    # Read, too: what a drive has mapped already is not written again.
+    return mapping_fault(sheet, transfer) if transfer.index in MAPPINGS and transfer.sub > 0 else None
 
 
 def faults(all_sheets, traffic):
