@@ -106,6 +106,11 @@ void Gripper::move(Time t, double jaw_rad, double torque_nm, double dt_s) {
   }
   const bool pushing = target_rad_ == goal_rad_ || std::abs(target_rad_ - jaw_rad) >= 0.99 * config_.lead_rad;
   if (pushing && t - still_since_ >= config_.stall_time) stalled(jaw_rad, torque_nm);
+  if (pushing && t - still_since_ >= config_.lost_time && std::abs(torque_nm) < config_.hold_torque_nm) {
+    state_ = GripperState::lost;
+    target_rad_ = jaw_rad;
+    return;
+  }
   if (t - began_ >= config_.move_timeout && (state_ == GripperState::opening || state_ == GripperState::closing)) {
     state_ = GripperState::jammed;
     target_rad_ = jaw_rad;  // pressing on would only heat the motor

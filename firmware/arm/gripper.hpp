@@ -36,6 +36,7 @@ struct GripperConfig {
       0.05;  // the target runs ahead of the jaw by at most this: the squeeze while holding, and below the drive's following-error window
   double stall_rad = 0.002;  // less movement than this within `stall_time` is a stall; 4 encoder counts
   Duration stall_time = Duration::from_ms(150);
+  Duration lost_time = Duration::from_ms(300);      // so long without an answer; the jaw may have gone 0.15 rad meanwhile
   double slip_rad = 0.03;                           // closing further than this from the grip while holding: it slipped out
   Duration move_timeout = Duration::from_ms(8000);  // the full stroke takes 5.6 s at the closing speed
 };
@@ -49,6 +50,7 @@ enum class GripperState : std::uint8_t {
   empty,    // closed past the bar, nothing between the pads
   dropped,  // was held, and is no more
   jammed,   // stalled where it should not, or took too long
+  lost,     // told to move, it reports the same angle, without a load that would hold it: its encoder or its drive is not to be trusted
 };
 
 class Gripper {

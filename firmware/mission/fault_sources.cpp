@@ -22,6 +22,7 @@ void FaultSources::collect(const StepTick& tick, safety::Vigilance vigilance) {
   collect_ports(tick);
   collect_images(tick);
   collect_contact(tick);
+  collect_jaw(tick);
   if (tick.bench.camera.laser_inhibited()) tick.faults.report(Fault::interlock);
   collect_timeout(tick);
 }
@@ -80,7 +81,16 @@ void FaultSources::collect_contact(const StepTick& tick) {
   const safety::JointStates& joints = bench.watch.joints();
   if (!joints.valid) return;
   free_guard_.update(joints.t, bench.motion.target(), bench.measured_rad(), bench.measured_nm());
-  if (free_guard_.touched()) tick.faults.report(Fault::unexpected_contact, static_cast<std::int32_t>(free_guard_.joint()));
+  if (!free_guard_.touched()) return;
+  // A joint that stays behind without a load has met nothing: its encoder or its drive is not to be trusted.
+  const bool without_load = free_guard_.cause() == arm::GuardCause::following_error;
+  tick.faults.report(without_load ? Fault::following_error : Fault::unexpected_contact, static_cast<std::int32_t>(free_guard_.joint()));
+}
+
+void FaultSources::collect_jaw(const StepTick& tick) {
+  const Workbench& bench = tick.bench;
+  if (!bench.powered || bench.gripper.state() != arm::GripperState::lost) return;
+  tick.faults.report(Fault::following_error, static_cast<std::int32_t>(Joint::jaw));
 }
 
 void FaultSources::collect_timeout(const StepTick& tick) {

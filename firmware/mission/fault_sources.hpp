@@ -27,6 +27,7 @@ class FaultSources {
   void collect_ports(const StepTick& tick);
   void collect_images(const StepTick& tick);
   void collect_contact(const StepTick& tick);
+  static void collect_jaw(const StepTick& tick);
   static void collect_timeout(const StepTick& tick);
 
   arm::GuardedMotion free_guard_;                // of all motion in which nothing may be touched

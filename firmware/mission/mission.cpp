@@ -89,7 +89,7 @@ bool Mission::settle_faults(const StepTick& tick) {
   }
   if (verdict.reaction == Reaction::count_only) return false;
   if (verdict.reaction > Reaction::retry) give_up(verdict.cause);
-  react(tick, verdict.reaction);
+  react(tick, verdict);
   return true;
 }
 
@@ -127,8 +127,8 @@ void Mission::complete_outcome(const StepTick& tick) {
   outcome_.emcy = tick.network.fault(static_cast<std::size_t>(outcome_.code)).emcy_code;
 }
 
-void Mission::react(const StepTick& tick, Reaction reaction) {
-  switch (reaction) {
+void Mission::react(const StepTick& tick, const safety::FaultArbiter::Verdict& verdict) {
+  switch (verdict.reaction) {
     case Reaction::count_only: return;
     case Reaction::retry:
       bench_.job.count_try(step_);
@@ -147,8 +147,10 @@ void Mission::react(const StepTick& tick, Reaction reaction) {
       return enter(tick, Step::held);
     case Reaction::quick_stop: bench_.power.stop(tick.now, tick.network); return end_without_power(tick, Step::stopped);
     case Reaction::power_off:
-      // A stop that brakes is not cut short.
-      if (bench_.power.state() != safety::Power::State::stopping) bench_.power.remove(tick.now, tick.network);
+      // A stop that brakes is not cut short, unless somebody else keeps the drives from braking.
+      if (bench_.power.state() != safety::Power::State::stopping || drives_are_told_otherwise(verdict.cause)) {
+        bench_.power.remove(tick.now, tick.network);
+      }
       return end_without_power(tick, Step::off);
   }
 }
@@ -198,6 +200,7 @@ Progress Mission::work(const StepTick& tick) {
     motions_before_ = bench_.motion.begun();
     const bool takes_hold = step_ == Step::grip || step_ == Step::free_jaw;
     if (!yielding() || takes_hold) bench_.stay_where_pushed();
+    if (step_ == Step::held) bench_.stay_where_measured();
     const Progress begun = begin(tick);
     if (!begun.is_running()) return begun;
   }

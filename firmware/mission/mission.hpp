@@ -86,7 +86,7 @@ class Mission {
   void record(const StepTick& tick, const safety::FaultReport& report, safety::Reaction reaction);
   void give_up(const safety::FaultReport& cause);
   void complete_outcome(const StepTick& tick);
-  void react(const StepTick& tick, safety::Reaction reaction);
+  void react(const StepTick& tick, const safety::FaultArbiter::Verdict& verdict);
   void retreat(const StepTick& tick);
   void end_without_power(const StepTick& tick, Step end);
   void enter(const StepTick& tick, Step next);

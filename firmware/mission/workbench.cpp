@@ -80,6 +80,12 @@ arm::JointVector Workbench::pushed_target() const {
   return (target + compliance.offset_rad()).cwiseMax(limits.lower_rad.cwiseMin(target)).cwiseMin(limits.upper_rad.cwiseMax(target));
 }
 
+void Workbench::stay_where_measured() {
+  if (!watch.joints().valid) return;
+  motion.start_at(measured_rad());
+  compliance.reset();
+}
+
 void Workbench::stay_where_pushed() {
   if (!compliance.offset_rad().isZero()) motion.start_at(pushed_target());
   compliance.reset();

@@ -69,6 +69,8 @@ struct Workbench {
   void stay_where_pushed();
   // The roll's target becomes its position: the torque that it has wound up against the handle is let off.
   void let_off_roll();
+  // The arm's targets become its positions: it presses on nothing, and a drive whose encoder stands still is not driven on.
+  void stay_where_measured();
   // Straight back to the stand-off, under guard: whoever leaves a contact may touch nothing new.
   void begin_back_off();
   Progress follow_back_off(Time now);

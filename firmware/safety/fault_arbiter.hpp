@@ -30,6 +30,10 @@ struct Circumstances {
   bool on_hold = false;    // the operator holds the arm
 };
 
+// Another master sends set points and controlwords to a drive: it would take back a quick stop, but cannot take back a lost power with one controlword.
+// Such a report takes the power at once, in every phase.
+bool drives_are_told_otherwise(const FaultReport& report);
+
 // The table's reaction, made possible in these circumstances: out of tries a retry is a retreat; before the joints follow
 // there is no way back, and the drives that already have power are stopped; an arm that the operator holds does not set out by itself, unless the
 // operator aborts.

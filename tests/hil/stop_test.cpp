@@ -205,6 +205,7 @@ INSTANTIATE_TEST_SUITE_P(WhileDeploying, LostDrive,
                          testing::Values(Loss{"Faulted", "kind: overcurrent, node: elbow"}, Loss{"Silent", "kind: silent, node: shoulder"},
                                          Loss{"Rebooted", "kind: reboot, node: shoulder"},
                                          Loss{"HeartbeatLost", "kind: drop_frames, can_id: 1794"},
+                                         Loss{"EncoderStuck", "kind: stuck_encoder, node: elbow"},
                                          Loss{"PositionsLost", "kind: drop_frames, can_id: 386"},
                                          Loss{"MasterOffTheBus", "kind: bus_off, node: master"}),
                          [](const testing::TestParamInfo<Loss>& test) { return std::string(test.param.name); });
@@ -252,6 +253,27 @@ TEST(SecondMaster, IsSeenNamedAndStopped) {
     EXPECT_EQ(rig.outcome().fault, Fault::second_master) << rig.story();
     EXPECT_EQ(rig.outcome().code, static_cast<std::int32_t>(id));
     EXPECT_EQ(rig.count(Fault::second_master), 1u);
+  }
+}
+
+// A master that goes on would take back a quick stop: the arm stands as its gears do, without power.
+TEST(SecondMaster, ThatGoesOnEnablingADriveMovesNothing) {
+  for (const char* joint : {"slew", "roll", "jaw"}) {
+    SCOPED_TRACE(joint);
+    double at_s = 0;
+    {
+      Rig rehearsal(turn_only());
+      ASSERT_TRUE(reach(rehearsal, {Step::deploy, 1.0, ""})) << rehearsal.story();
+      at_s = rehearsal.now().s();
+    }
+    std::vector<std::string> overrides = turn_only();
+    overrides.push_back("faults=[{at_s: " + std::to_string(at_s) + ", kind: foreign_rpdo, node: " + joint + "}]");
+    Rig rig(overrides);
+    (void)reach(rig, {Step::deploy, 1.0, ""});
+    const Times times = watch_stop(rig);
+    EXPECT_GE(times.power_off_s, 0);
+    EXPECT_LE(times.power_off_s, 0.1);
+    EXPECT_EQ(rig.outcome().fault, Fault::second_master) << rig.story();
   }
 }
 

@@ -183,13 +183,38 @@ TEST(Gripper, DoesNotPressOnWhenItIsJammed) {
   EXPECT_NEAR(run.gripper.target_rad(), run.jaw.q_rad, 1e-9);
 }
 
-TEST(Gripper, DoesNotTakeAStallWithoutTorqueForAGrip) {
+TEST(Gripper, DoesNotTakeAStallWithLittleTorqueForAGrip) {
   GripperRun run;
   run.jaw.stop_closing_rad = 0.0;
-  run.jaw.torque_limit_nm = 1;
+  run.jaw.torque_limit_nm = 3;
   run.gripper.close();
   EXPECT_EQ(run.run(5), GripperState::closing);
   EXPECT_EQ(run.run(5), GripperState::jammed);
+}
+
+// The jaw moves, and says that it does not: no torque holds it.
+TEST(Gripper, IsLostWhenItReportsTheSameAngleWithoutALoad) {
+  for (const bool closing : {true, false}) {
+    Gripper gripper;
+    Time t;
+    const auto run = [&](double seconds, double jaw_rad) {
+      double target = 0;
+      for (const Time end = t + Duration::from_s(seconds); t < end;) {
+        t = t + Duration::from_ms(4);
+        target = gripper.update(t, jaw_rad, closing ? -0.5 : 0.5);
+      }
+      return target;
+    };
+    run(0.1, 0.5);
+    closing ? gripper.close() : gripper.open_to(0.1);
+    run(0.25, 0.5);
+    EXPECT_EQ(gripper.state(), closing ? GripperState::closing : GripperState::opening) << "the target has to run ahead first";
+    EXPECT_NEAR(run(0.15, 0.5), 0.5, 1e-12) << "it is not driven on";
+    EXPECT_EQ(gripper.state(), GripperState::lost);
+    gripper.turn_to(0.6);
+    run(0.02, 0.5);
+    EXPECT_EQ(gripper.state(), GripperState::opening) << "an order begins anew";
+  }
 }
 
 TEST(Gripper, StaysWhereItIsUntilOrderedAndRefusesNonsense) {

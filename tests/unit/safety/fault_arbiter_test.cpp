@@ -51,6 +51,18 @@ TEST(FaultArbiter, TakesTheMoreSevereOfAnyTwo) {
   EXPECT_EQ(pairs, static_cast<int>(fault_count * fault_count * phase_count * 8));
 }
 
+TEST(FaultArbiter, TakesThePowerAtOnceWhereAnotherMasterCommandsADrive) {
+  for (const Circumstances& c : all_circumstances()) {
+    for (const std::int32_t set_points : {0x200, 0x27F, 0x301, 0x403, 0x57F}) {
+      EXPECT_EQ(reaction_in({Fault::second_master, set_points}, c), Reaction::power_off) << std::hex << set_points << " in " << words(c);
+    }
+    for (const std::int32_t other : {0x000, 0x080, 0x1FF, 0x281, 0x580, 0x603, 0x77F}) {
+      EXPECT_EQ(reaction_in({Fault::second_master, other}, c), reaction(Fault::second_master, c.phase))
+          << std::hex << other << " in " << words(c);
+    }
+  }
+}
+
 TEST(FaultArbiter, DoesNotMindTheOrderOfAnyNumber) {
   constexpr unsigned seed = 20261122;
   std::mt19937 random(seed);
