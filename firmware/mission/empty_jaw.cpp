@@ -30,7 +30,9 @@ Progress EmptyJaw::run(const StepTick& tick) {
 
 Progress EmptyJaw::run_check(const StepTick& tick) {
   switch (tick.bench.gripper.state()) {
-    case arm::GripperState::empty: freed_ = false; return Progress::done();
+    case arm::GripperState::empty:
+      freed_ = false;
+      return tick.bench.course == Course::giving_up ? Progress::nothing_left() : Progress::done();
     case arm::GripperState::held:
     case arm::GripperState::dropped:
     case arm::GripperState::jammed:

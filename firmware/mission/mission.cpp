@@ -166,6 +166,8 @@ void Mission::retreat(const StepTick& tick) {
   bench_.motion.stop();
   const safety::Phase phase = row(step_).phase;
   const bool touching = phase == safety::Phase::contact || phase == safety::Phase::gripping;
+  // By hand nobody has looked yet what the jaw holds, and the way to the park would drag it along.
+  if (step_ == Step::ready || step_ == Step::jog) return enter(tick, Step::check_jaw);
   if (!touching) return enter(tick, Step::stow);
   const bool at_button = step_ == Step::press || step_ == Step::button_back;
   enter(tick, at_button ? Step::abandon_back : Step::abandon);

@@ -16,7 +16,7 @@ constexpr std::array<StepRow, step_count> table{{
     {Step::home, "home", "boot", Activity::start_up, Phase::free, 10, Step::check_jaw, Step::ready, Step::enable},
     {Step::ready, "ready", "ready", Activity::manual, Phase::free, 0, Step::check_jaw, Step::jog, never},
     {Step::jog, "jog", "ready", Activity::manual, Phase::free, 10, Step::ready, Step::ready, Step::ready},
-    {Step::check_jaw, "check jaw", "ready", Activity::empty_jaw, Phase::contact, 20, Step::deploy, Step::free_jaw, never},
+    {Step::check_jaw, "check jaw", "ready", Activity::empty_jaw, Phase::contact, 20, Step::deploy, Step::free_jaw, never, Step::stow},
     {Step::free_jaw, "free jaw", "ready", Activity::empty_jaw, Phase::contact, 20, Step::back_out, Step::back_out, never},
     {Step::back_out, "back out", "ready", Activity::empty_jaw, Phase::contact, 10, Step::check_jaw, Step::check_jaw, never},
     {Step::deploy, "deploy", "deploy", Activity::look, Phase::free, 20, Step::scan, Step::scan, Step::deploy},

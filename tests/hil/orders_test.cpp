@@ -200,6 +200,36 @@ TEST(Reset, OfAHeldArmTakesThePowerOffAndTheNextJobIsDone) {
   EXPECT_EQ(rig.step_now(), Step::done) << rig.story();
 }
 
+// A stop in mid-turn leaves the handle in the jaw. Neither a new job nor the way to the park drags it along.
+TEST(Reset, AfterAStopInTheTurnGetsFreeOfTheHandleFirst) {
+  for (const Command next : {Command::start, Command::abort}) {
+    SCOPED_TRACE(next == Command::start ? "start" : "abort");
+    Rig rig(turn_only());
+    ASSERT_TRUE(reach(rig, {Step::turn, 1.0, "turning"})) << rig.story();
+    ASSERT_TRUE(give(rig, Command::emergency_stop));
+    rig.run_for(1.5);
+    ASSERT_EQ(rig.step_now(), Step::stopped) << rig.story();
+    ASSERT_GT(rig.world().contacts().grip_force_n, 10) << "the handle is held";
+    const double valve_rad = rig.world().valve_angle_rad();
+    ASSERT_TRUE(give(rig, Command::reset));
+    rig.run_for(0.5);
+    ASSERT_TRUE(home(rig)) << rig.story();
+    const double force_before_n = rig.world().contacts().peak_force_n;
+    ASSERT_TRUE(give(rig, next));
+    double pulled_n = 0, turned_rad = 0;
+    const bool job = next == Command::start;
+    for (int i = 0; i < 60'000 && !rig.outcome().ended && !(job && rig.step_now() == Step::deploy); ++i) {
+      rig.step();
+      pulled_n = std::max(pulled_n, rig.world().contacts().base_wrench.force_n.norm());
+      turned_rad = std::max(turned_rad, std::abs(rig.world().valve_angle_rad() - valve_rad));
+    }
+    EXPECT_EQ(rig.step_now(), job ? Step::deploy : Step::failed) << rig.story();
+    EXPECT_LT(pulled_n, 60) << "before: " << force_before_n;
+    EXPECT_LT(turned_rad, 0.1);
+    EXPECT_LT(rig.world().contacts().grip_force_n, 1) << "it is let go";
+  }
+}
+
 TEST(Reset, AfterAnEndIsAsNew) {
   Rig rig(press_only());
   rig.start();
