@@ -92,7 +92,8 @@ double Gripper::update(Time t, double jaw_rad, double torque_nm) {
 }
 
 void Gripper::move(Time t, double jaw_rad, double torque_nm, double dt_s) {
-  const double speed = state_ == GripperState::opening ? config_.opening_speed_rad_s : config_.closing_speed_rad_s;
+  const double top = state_ == GripperState::opening ? config_.opening_speed_rad_s : config_.closing_speed_rad_s;
+  const double speed = std::min(top, config_.ramp_rad_s2 * (t - began_).s());
   target_rad_ += std::clamp(goal_rad_ - target_rad_, -speed * dt_s, speed * dt_s);
   target_rad_ = std::clamp(target_rad_, jaw_rad - config_.lead_rad, jaw_rad + config_.lead_rad);
   if (std::abs(jaw_rad - still_rad_) > config_.stall_rad) {

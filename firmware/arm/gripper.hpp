@@ -32,6 +32,8 @@ struct GripperConfig {
   std::uint32_t low_torque_samples = 25;  // 0.1 s: turning the handle unloads the pads for shorter
   double closing_speed_rad_s = 0.25;
   double opening_speed_rad_s = 0.4;
+  double ramp_rad_s2 =
+      2.0;  // to the speed, from rest: a drive that is told to stop meanwhile has no more to brake than what it has reached
   double lead_rad =
       0.05;  // the target runs ahead of the jaw by at most this: the squeeze while holding, and below the drive's following-error window
   double stall_rad = 0.002;  // less movement than this within `stall_time` is a stall; 4 encoder counts

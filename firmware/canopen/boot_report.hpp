@@ -71,6 +71,8 @@ struct BootReport {
     }
     return nullptr;
   }
+  // Its index; -1 if none did.
+  std::int32_t first_failed() const { return failed() == nullptr ? -1 : static_cast<std::int32_t>(failed() - nodes.data()); }
 };
 
 }  // namespace lf::canopen

@@ -100,6 +100,8 @@ class Network {
   void quick_stop_all();  // every axis; the laser and the lamps are the caller's
   void disable_all();     // power off, each drive on its way down through every state
   void remove_power();    // disable voltage for every axis, at once
+  // NMT stop of one node with the next tick, for a drive that does not heed its process data: 6007 makes it a quick stop. Only `start_boot` leads back.
+  void stop_node(std::size_t node) { nmt_due_[node] = NmtCommand::stop; }
   // Power and outputs off, and NMT stop of every node four SYNC periods later, when the drives have heard of it. Only `start_boot` leads back.
   void shut_down();
 

@@ -96,7 +96,16 @@ void FaultSources::collect_jaw(const StepTick& tick) {
 void FaultSources::collect_timeout(const StepTick& tick) {
   const double margin_s = row(tick.step).margin_s;
   const Duration limit = tick.clock.planned() + Duration::from_s(margin_s);
-  if (margin_s > 0 && tick.clock.elapsed(tick.now) > limit) tick.faults.report(Fault::step_timeout);
+  if (margin_s <= 0 || tick.clock.elapsed(tick.now) <= limit) return;
+  // What keeps the arm from being enabled is a drive that does not leave its fault.
+  for (std::size_t i = 0; i < joint_count && tick.step == Step::enable; ++i) {
+    const canopen::Axis& axis = tick.network.axis(static_cast<Joint>(i));
+    const canopen::NodeFault& link = tick.network.fault(i);
+    if (!axis.drive_in_fault()) continue;
+    tick.faults.report({Fault::drive_fault, static_cast<std::int32_t>(i), link.emcy_code});
+    return;
+  }
+  tick.faults.report(Fault::step_timeout);
 }
 
 }  // namespace lf::mission

@@ -262,6 +262,7 @@ void Mission::report_failure(const StepTick& tick, const Progress& progress) {
   safety::FaultReport report;
   report.fault = by_vision ? Fault::vision_poor : step_ == Step::boot ? Fault::boot_failed : Fault::step_failed;
   report.code = static_cast<std::int32_t>(progress.failure);
+  if (report.fault == Fault::boot_failed) report.code = tick.network.boot().first_failed();
   report.out_of_tries = progress.out_of_tries;
   tick.faults.report(report);
 }

@@ -2,12 +2,15 @@
 
 #include <cmath>
 
+#include "firmware/canopen/cob_id.hpp"
+
 namespace lf::safety {
 
 void Power::stop(Time now, canopen::Network& network) {
   if (state_ == State::stopping || state_ == State::removing) return;
   network.quick_stop_all();
   state_ = State::stopping;
+  expect_heed(now, network);
   since_ = now;
   rest_since_.fill(now);
   rest_rad_.fill(HUGE_VAL);
@@ -18,6 +21,7 @@ void Power::remove(Time now, canopen::Network& network) {
   if (state_ == State::removing) return;
   state_ = State::removing;
   since_ = now;
+  expect_heed(now, network);
 }
 
 void Power::lower(Time now, canopen::Network& network) {
@@ -27,7 +31,31 @@ void Power::lower(Time now, canopen::Network& network) {
   since_ = now;
 }
 
+void Power::expect_heed(Time now, const canopen::Network& network) {
+  // Another master's NMT command may just have taken all nodes out of operation: they are told at once, whatever they said last.
+  taken_over_ = network.foreign_frames() > 0 && network.foreign_id() == canopen::cob_id::nmt;
+  insist_at_ = taken_over_ ? now : now + heed_time;
+}
+
+void Power::insist(Time now, canopen::Network& network) {
+  if (now < insist_at_) return;
+  insist_at_ = now + insist_period;
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    if (taken_over_ || !heeds(i, now, network)) network.stop_node(i);
+  }
+  taken_over_ = false;
+}
+
+// A drive that is not heard may hear: it is given time before it is made deaf to process data, too.
+bool Power::heeds(std::size_t joint, Time now, const canopen::Network& network) const {
+  const canopen::Axis& axis = network.axis(static_cast<Joint>(joint));
+  if (axis.fresh(now)) return state_ == State::stopping ? !axis.runs() : !axis.powered();
+  if (network.fault(joint).left_operational) return false;
+  return state_ != State::removing || now - since_ < silent_time;
+}
+
 void Power::tick(const JointStates& joints, Time now, canopen::Network& network) {
+  if (state_ == State::stopping || state_ == State::removing) insist(now, network);
   if (state_ == State::stopping) {
     if (confirmed(now, network) || standing(joints, now, network) || now - since_ >= longest_stop) remove(now, network);
   } else if (state_ == State::lowering) {
@@ -71,7 +99,10 @@ bool Power::confirmed(Time now, const canopen::Network& network) const {
   if (now - since_ < network.config().sync_period * (canopen::Axis::handshake_syncs + 1)) return false;
   for (std::size_t i = 0; i < joint_count; ++i) {
     const canopen::Axis& axis = network.axis(static_cast<Joint>(i));
-    if (axis.state() == canopen::AxisState::offline || axis.confirmed_unpowered(now)) continue;
+    // A node that was not started, or that has restarted, has no power; one that was lost or taken out of operation may have it still.
+    const canopen::NodeFault& link = network.fault(i);
+    const bool lost = !link.rebooted && (link.heartbeat_lost || link.left_operational);
+    if ((axis.state() == canopen::AxisState::offline && !lost) || axis.confirmed_unpowered(now)) continue;
     const bool given_time = state_ == State::removing && now - since_ >= blind_time;
     if (axis.fresh(now) || !given_time) return false;
   }

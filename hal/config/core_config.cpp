@@ -2,7 +2,9 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <optional>
+#include <set>
 #include <tuple>
 
 #include "firmware/arm/actuator.hpp"
@@ -49,17 +51,51 @@ canopen::DriveSetup drive_setup(const ArmJoint& joint, Joint which, const safety
   return setup;
 }
 
+// Runs the steps of a set-up; without a list the first problem ends it.
+class Steps {
+ public:
+  explicit Steps(std::vector<std::string>* problems) : problems_(problems) {}
+  template <class Step>
+  bool take(Step step) const {
+    try {
+      step();
+      return true;
+    } catch (const InputError& problem) {
+      if (problems_ == nullptr) throw;
+      problems_->emplace_back(problem.what());
+      return false;
+    }
+  }
+
+ private:
+  std::vector<std::string>* problems_;
+};
+
+// The profiles of the joints' drives by their names in the machine's file. What is wrong with one is told once, by the first key that names it.
+std::map<std::string, DriveKind> read_profiles(const Machine& machine, const Steps& steps) {
+  std::map<std::string, DriveKind> profiles;
+  std::set<std::string> tried;
+  for (std::size_t joint = 0; joint < joint_count; ++joint) {
+    const std::string& name = drive_of(machine.drives, joint).profile;
+    if (!tried.insert(name).second) continue;
+    const bool of_all = machine.drives.joints[joint].profile.empty();
+    const std::string key = std::string("drives.") + (of_all ? "" : std::string(joint_name(joint)) + ".") + "profile";
+    steps.take([&] {
+      try {
+        profiles[name] = find_drive_kind(name, std::filesystem::path(machine.file).parent_path());
+      } catch (const InputError& problem) {
+        throw InputError(machine.file + ": " + key + ": " + problem.what());
+      }
+    });
+  }
+  return profiles;
+}
+
 // The profile's units, objects and option codes, and the machine's node numbers.
-void set_drive(const Machine& machine, std::size_t joint, const ArmJoint& description, canopen::DriveSetup& setup) {
+void set_drive(const Machine& machine, std::size_t joint, const DriveKind& kind, const ArmJoint& description, canopen::DriveSetup& setup) {
   const JointDriveChoice choice = drive_of(machine.drives, joint);
   const std::string where = machine.file + ": drives." + joint_name(joint);
   setup.node = static_cast<std::uint8_t>(choice.node);
-  DriveKind kind;
-  try {
-    kind = find_drive_kind(choice.profile, std::filesystem::path(machine.file).parent_path());
-  } catch (const InputError& problem) {
-    throw InputError(where + ": " + problem.what());
-  }
   // A drive that says its rated torque is only checked against a stated one; one that does not, has the arm's description's.
   const bool described = choice.rated_torque_nm == 0 && kind.rating == "configured";
   apply(kind,
@@ -234,26 +270,6 @@ mission::Tasks core_tasks(const std::vector<Task>& tasks, const std::string& whe
 
 namespace {
 
-// Runs the steps of a set-up; without a list the first problem ends it.
-class Steps {
- public:
-  explicit Steps(std::vector<std::string>* problems) : problems_(problems) {}
-  template <class Step>
-  bool take(Step step) const {
-    try {
-      step();
-      return true;
-    } catch (const InputError& problem) {
-      if (problems_ == nullptr) throw;
-      problems_->emplace_back(problem.what());
-      return false;
-    }
-  }
-
- private:
-  std::vector<std::string>* problems_;
-};
-
 // A joint without a line in the file, and every joint without a file, takes no power.
 void set_zeros(const std::string& file, const std::filesystem::path& folder, canopen::NetworkConfig& network) {
   for (canopen::DriveSetup& drive : network.drives) drive.zero_known = false;
@@ -276,9 +292,14 @@ Core assemble(const Machine& machine, const Steps& steps) {
   if (arm && limits) {
     controller.network = network_config(description, controller.limits);
     controller.network.io.node = static_cast<std::uint8_t>(machine.drives.output_node);
+    const std::map<std::string, DriveKind> profiles = read_profiles(machine, steps);
     bool drives = true;
-    for (std::size_t i = 0; i < joint_count; ++i)
-      drives = steps.take([&] { set_drive(machine, i, description.joints[i], controller.network.drives[i]); }) && drives;
+    for (std::size_t i = 0; i < joint_count; ++i) {
+      const auto kind = profiles.find(drive_of(machine.drives, i).profile);
+      const bool known = kind != profiles.end();
+      drives =
+          known && steps.take([&] { set_drive(machine, i, kind->second, description.joints[i], controller.network.drives[i]); }) && drives;
+    }
     if (drives) steps.take([&] { check_network(machine, controller.network); });
   }
   steps.take([&] { set_zeros(machine.homing_file, folder, controller.network); });

@@ -270,6 +270,7 @@ DriveKind read_with_base(const std::filesystem::path& file, std::vector<std::str
     if (!std::filesystem::exists(base))
       reader.source().refuse(like.Mark(), "no profile '" + like.Scalar() + "'" + suggestion(like.Scalar(), shipped_drive_kinds()));
     kind = read_with_base(base, problems, depth + 1);
+    kind.like.insert(kind.like.begin(), kind.file);
   }
   kind.name = file.stem().string();
   kind.file = file.string();

@@ -41,6 +41,7 @@ struct ProfileAbsence {
 struct DriveKind {
   std::string name;  // of its file, without the ending
   std::string file;
+  std::vector<std::string> like;  // files of the profiles that this one is like, the nearest first
   std::string title;
   canopen::Identity identity;
   UnitScale position, speed, acceleration;

@@ -30,6 +30,7 @@ std::string cause(Fault fault, std::int32_t code) {
     case Fault::overspeed:
     case Fault::overload:
     case Fault::unexpected_contact: return node_text(code);
+    case Fault::boot_failed: return code < 0 ? "" : node_text(code);
     case Fault::step_failed:
     case Fault::vision_poor: return name(static_cast<StepFailure>(code));
     case Fault::second_master: return "identifier " + hex(static_cast<unsigned>(code));

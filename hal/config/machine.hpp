@@ -44,7 +44,7 @@ struct JointDriveChoice {
 struct Drives {
   std::string profile = "lanternfish";  // a shipped one's name, or a file
   double counts_per_rev = 64;           // of the arm's counts in a revolution of the motor: a hall sensor's 16 lines
-  double rated_current_a = 1.333;       // at the rated torque
+  double rated_current_a = 0;           // at the rated torque; 0: not stated
   std::array<JointDriveChoice, joint_count> joints;
   std::int64_t output_node = can_map::io_node;
 };

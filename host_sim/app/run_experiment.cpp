@@ -1,5 +1,6 @@
 #include "host_sim/app/run_experiment.hpp"
 
+#include "hal/config/drive_kind.hpp"
 #include "hal/config/share.hpp"
 #include "host_sim/scenario/describe.hpp"
 
@@ -12,6 +13,11 @@ record::Experiment experiment_of(const scenario::Scenario& scenario) {
   record::Experiment experiment{{"scenario", scenario::scenario_yaml(scenario)}, {"program", record::file_hash("/proc/self/exe")}};
   for (const std::string& file : {scenario.arm.urdf, scenario.safety.limits})
     experiment["file " + file] = record::file_hash(config::find_file(file, folder));
+  for (std::size_t joint = 0; joint < joint_count; ++joint) {
+    const config::DriveKind kind = config::find_drive_kind(config::drive_of(scenario.drives, joint).profile, folder);
+    experiment["file " + kind.name + ".yaml"] = record::file_hash(kind.file);
+    for (const std::string& base : kind.like) experiment["file " + fs::path(base).filename().string()] = record::file_hash(base);
+  }
   return experiment;
 }
 

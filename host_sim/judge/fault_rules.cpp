@@ -40,7 +40,7 @@ const std::vector<FaultRule>& rules() {
        safe_end,
        Report::none,
        0,
-       {"node", "stale position", "chain", "emergency stop", "drive fault", "following error", "step", "contact"}},
+       {"node", "stale position", "chain", "emergency stop", "drive fault", "following error", "step", "contact", "boot failed", "camera"}},
       {"drop_frames", go_on, Report::none, 0.004, {}, "one frame"},
       {"estop", stop, Report::frame, 0, {"emergency stop"}},
       {"interlock_open", safe_end, Report::none, 0, {"interlock", "step"}},
@@ -78,7 +78,7 @@ const std::vector<FaultRule>& rules() {
       {"obstacle", safe_end, Report::none, 0, misbehaves},
       {"abort_ordered", safe_end, Report::none, 0, {"aborted"}},
       {"estop_ordered", stop, Report::at_once, 0, {"emergency stop"}},
-      {"shut_down_ordered", stop, Report::at_once, 0, {"aborted", "shut down"}},
+      {"shut_down_ordered", stop, Report::halt, 0, {"aborted", "shut down"}},
       {"limits_refused", safe_end, Report::none, 0, {"limits"}},
   };
   return all;

@@ -22,6 +22,7 @@ enum class Report : std::uint8_t {
   frame,          // a frame says so: fault bit, EMCY, boot-up, open chain
   second_master,  // the first foreign frame
   silence,        // the last process data of the node
+  halt,           // an order that is no emergency: the arm halts on its path within half a second
   at_once,        // the port or the operator says so in the tick after
   unheard,        // nothing that the core sends arrives: the drives stop by themselves when the master's heartbeat is missing
   none,           // to be found by watching the arm: no time is asked for

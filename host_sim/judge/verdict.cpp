@@ -41,6 +41,9 @@ std::size_t node_index(const std::string& node) {
 // A drive that hears nothing of the master any more.
 bool cut_off(const Cause& cause) { return cause.rule->kind == "silent" || cause.rule->kind == "bus_off"; }
 
+// Until an order acts: up to a SYNC period until the SYNC, one that is interpolated, and the arm's own compliance.
+constexpr std::size_t takes_effect_ms = 20;
+
 struct Deadline {
   double at_s = 0;       // from when on time counts
   double allowed_s = 0;  // until the stop is on the bus
@@ -61,6 +64,8 @@ Deadline report_of(const Seen& seen, const Cause& cause, double begins_s, const 
     }
     case Report::unheard: return {begins_s, figures.self_stop_s};
     // Three ticks without a time are a lost clock; an order is read with the next tick.
+    // The arm halts on its own path first, then each drive goes down through every state.
+    case Report::halt: return {begins_s + 0.004, figures.halt_s};
     case Report::at_once: return {begins_s + (cause.rule->kind == "clock_lost" ? 0.012 : 0.004), stop_s};
     case Report::none: break;
   }
@@ -133,7 +138,10 @@ class Judge {
     double standing_s = from_s;
     for (std::size_t joint = 0; joint < joint_count; ++joint) {
       const auto at = static_cast<std::size_t>(from_s / ms);
-      const double speed = at < moments_.size() ? moments_[at].speed_rad_s[joint] : 0;
+      // A drive brakes from the SYNC on that follows the order: until then it does what it was told before.
+      double speed = 0;
+      for (std::size_t i = at; i < std::min(at + takes_effect_ms, moments_.size()); ++i)
+        speed = std::max<double>(speed, moments_[i].speed_rad_s[joint]);
       const double late_s = (cut & (1u << joint)) != 0 ? figures_.self_stop_s : 0;
       const double allowed_s = speed / situation_.deceleration_rad_s2[joint] + figures_.settling_s + late_s;
       const double moved_s = last_s(moments_, from_s, [&](const Moment& m) { return m.speed_rad_s[joint] >= figures_.standing_rad_s; });

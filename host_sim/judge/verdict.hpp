@@ -20,6 +20,7 @@ struct SafetyFigures {
   double off_after_standing_s = 0.100;
   double off_after_stop_s = 1.2;
   double force_n = 150;       // over 50 ms
+  double halt_s = 0.6;        // of an arm in motion on its own path: half a second, and the tick and SYNC after
   double self_stop_s = 0.40;  // the drives' consumer time of the master's heartbeat, 300 ms, and one heartbeat
 };
 

@@ -1,10 +1,9 @@
 #include "host_sim/scenario/describe.hpp"
 
-#include <algorithm>
-#include <charconv>
 #include <concepts>
 #include <nlohmann/json.hpp>
 
+#include "hal/config/key_text.hpp"
 #include "host_sim/scenario/keys.hpp"
 
 namespace lf::scenario {
@@ -12,68 +11,6 @@ namespace lf::scenario {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-// The shortest text that reads back to the same number.
-std::string text_of(double value) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, value).ptr};
-}
-
-// A text that YAML reads back as it is.
-std::string quoted(const std::string& text) { return Json(text).dump(-1, ' ', false, Json::error_handler_t::replace); }
-
-template <class List, class Text>
-std::string flow_list(const List& list, Text text) {
-  std::string out = "[";
-  for (const auto& item : list) out += (out.size() > 1 ? ", " : "") + text(item);
-  return out + "]";
-}
-
-// A key's value as YAML in one line.
-struct FlowYaml {
-  std::string operator()(const double* value) const { return text_of(*value); }
-  template <std::integral Integer>
-  std::string operator()(const Integer* value) const {
-    return std::to_string(*value);
-  }
-  std::string operator()(const bool* value) const { return *value ? "true" : "false"; }
-  std::string operator()(const std::string* value) const { return quoted(*value); }
-  std::string operator()(const Spread* value) const {
-    if (value->min == value->max) return text_of(value->min);
-    return std::string("{min: ") + text_of(value->min) + ", max: " + text_of(value->max) + "}";
-  }
-  std::string operator()(const Chance* value) const {
-    return *value == Chance::either ? "either" : *value == Chance::yes ? "true" : "false";
-  }
-  std::string operator()(const PanelLayout::Pointer* value) const { return config::pointer_words[static_cast<std::size_t>(*value)]; }
-  std::string operator()(const std::array<double, 3>* value) const { return flow_list(*value, text_of); }
-  std::string operator()(const Vec2* value) const { return std::string("[") + text_of(value->x()) + ", " + text_of(value->y()) + "]"; }
-  std::string operator()(const std::array<Vec2, 3>* value) const {
-    return flow_list(*value, [this](const Vec2& point) { return (*this)(&point); });
-  }
-  std::string operator()(const std::vector<double>* value) const { return flow_list(*value, text_of); }
-  std::string operator()(const std::vector<std::string>* value) const {
-    return flow_list(*value, [](const std::string& text) { return text; });
-  }
-  std::string operator()(const std::vector<Task>* value) const {
-    return flow_list(*value, [this](const Task& task) {
-      if (task.kind == Task::Kind::turn_valve) return std::string("{turn_valve: {to_deg: ") + text_of(task.to_deg) + "}}";
-      return std::string("{press_buttons: {order: ") + (*this)(&task.order) + "}}";
-    });
-  }
-  std::string operator()(const std::vector<Fault>* value) const {
-    return flow_list(*value, [](Fault fault) {
-      std::string out = "{";
-      for (const Key& key : keys(fault)) {
-        const bool by_step = !fault.at_step.empty();
-        if ((key.path == "node" && fault.node.empty()) || (key.path == "at_s" && by_step)) continue;
-        if ((key.path == "at_step" || key.path == "after_s") && !by_step) continue;
-        out += (out.size() > 1 ? ", " : "") + key.path + ": " + std::visit(FlowYaml{}, key.value);
-      }
-      return out + "}";
-    });
-  }
-};
 
 Json nested_schema(const std::vector<Key>& table);
 
@@ -150,17 +87,6 @@ Json nested_schema(const std::vector<Key>& table) {
   return root;
 }
 
-bool has_range(const Key& key) { return key.min < key.max; }
-
-void add_rows(std::string& out, const std::vector<Key>& table, const std::string& prefix, bool with_default) {
-  for (const Key& key : table) {
-    const std::string shown = std::visit(FlowYaml{}, key.value);
-    const std::string range = has_range(key) ? text_of(key.min) + " to " + text_of(key.max) + (key.unit.empty() ? "" : " " + key.unit) : "";
-    out += "| `" + prefix + key.path + "` | " + type_name(key) + " | " + (with_default ? "`" + shown + "`" : "") + " | " + range + " | " +
-           key.doc + " |\n";
-  }
-}
-
 }  // namespace
 
 std::string json_schema() {
@@ -174,10 +100,10 @@ std::string keys_markdown() {
   Scenario scenario;
   Task task;
   Fault fault;
-  std::string out = "| key | takes | default | range | meaning |\n|---|---|---|---|---|\n";
-  add_rows(out, keys(scenario), "", true);
-  add_rows(out, keys(task), "tasks[].", false);
-  add_rows(out, keys(fault), "faults[].", false);
+  std::string out = config::markdown_head;
+  for (const Key& key : keys(scenario)) out += config::markdown_row(key);
+  for (const Key& key : keys(task)) out += config::markdown_row(key, "tasks[].", false);
+  for (const Key& key : keys(fault)) out += config::markdown_row(key, "faults[].", false);
   return out;
 }
 
@@ -189,8 +115,7 @@ std::string scenario_yaml(const Scenario& of) {
     const std::string group = dot == std::string::npos ? "" : key.path.substr(0, dot);
     if (group != section && !group.empty()) out += group + ":\n";
     section = group;
-    const std::string line =
-        (group.empty() ? "" : "  ") + key.path.substr(group.empty() ? 0 : dot + 1) + ": " + std::visit(FlowYaml{}, key.value);
+    const std::string line = (group.empty() ? "" : "  ") + key.path.substr(group.empty() ? 0 : dot + 1) + ": " + config::value_text(key);
     out += line + std::string(line.size() < 44 ? 44 - line.size() : 1, ' ') + "# " + key.doc + (key.unit.empty() ? "" : ", " + key.unit) +
            "\n";
   }

@@ -114,6 +114,13 @@ struct Expect {
   std::string failure = nothing;  // a fault's name
 };
 
+// The simulated motors' rating, for makes that count in current.
+inline config::Drives simulated_drives() {
+  config::Drives drives;
+  drives.rated_current_a = 1.333;
+  return drives;
+}
+
 struct Scenario {
   std::string name;  // of the file, without its ending
   std::string file;  // where it was read
@@ -134,7 +141,7 @@ struct Scenario {
   Latency latency;
   Sensors sensors;
   Safety safety;
-  config::Drives drives;
+  config::Drives drives = simulated_drives();
   mission::MissionConfig mission;  // its speeds, distances and tries; layout, lamps and tasks are filled from the rest
   std::vector<Task> tasks{Task{}, Task{Task::Kind::press_buttons}};
   std::vector<Fault> faults;

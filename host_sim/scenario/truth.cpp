@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 
+#include "hal/config/drive_kind.hpp"
 #include "hal/config/homing_file.hpp"
 #include "hal/config/share.hpp"
 #include "host_sim/devices/drive/drive_dictionary.hpp"
@@ -171,24 +172,34 @@ std::uint8_t node_number(const std::string& name, const config::Drives& drives) 
   return name == "io" ? static_cast<std::uint8_t>(drives.output_node) : name == "master" ? can_map::master_node : 0;
 }
 
-// A simulated drive of the make that the machine's file names.
-void set_make(const config::Drives& drives, std::size_t joint, devices::DriveConfig& drive) {
+std::vector<std::string> makes_of(const std::string& profile, const std::filesystem::path& folder) {
+  std::vector<std::string> makes{std::filesystem::path(profile).stem()};
+  const bool is_file = profile != makes.front();
+  if (!is_file) return makes;
+  for (const std::string& file : config::find_drive_kind(profile, folder).like) makes.push_back(std::filesystem::path(file).stem());
+  return makes;
+}
+
+// A simulated drive of the make that the machine's file names. `folder`: of that file.
+void set_make(const config::Drives& drives, std::size_t joint, const std::filesystem::path& folder, devices::DriveConfig& drive) {
   const config::JointDriveChoice choice = config::drive_of(drives, joint);
   drive.node = static_cast<std::uint8_t>(choice.node);
   drive.counts_per_rev = choice.counts_per_rev;
   drive.rated_current_a = choice.rated_current_a;
   drive.reversed = choice.polarity == "reversed";
-  const std::string make = std::filesystem::path(choice.profile).stem();
-  drive.habit = devices::find_habit(make);
-  if (drive.habit != nullptr) {
-    drive.dictionary = devices::read_dictionary(config::share_folder() / "drives" / "objects.csv", drive.habit->dictionary);
-    return;
+  // The profile's own make, or the nearest of those that it is like.
+  for (const std::string& make : makes_of(choice.profile, folder)) {
+    drive.habit = devices::find_habit(make);
+    if (drive.habit != nullptr) {
+      drive.dictionary = devices::read_dictionary(config::share_folder() / "drives" / "objects.csv", drive.habit->dictionary);
+      return;
+    }
+    if (make == "lanternfish" || make.starts_with("cia402")) return;
   }
-  if (make == "lanternfish" || make.starts_with("cia402")) return;
   std::string list;
   for (const devices::DriveHabit& habit : devices::drive_habits()) list += ", " + std::string(habit.name);
-  throw InputError(std::string("drives.") + config::joint_name(joint) + ": there is no simulated drive '" + make +
-                   "'; there are lanternfish" + list);
+  throw InputError(std::string("drives.") + config::joint_name(joint) + ": there is no simulated drive '" + choice.profile +
+                   "'; there are lanternfish" + list + "; a profile of your own is simulated as the one that it is 'like'");
 }
 
 devices::DevicesConfig device_config(const Scenario& scenario, const Sample& sample, const ArmDescription& arm) {
@@ -197,7 +208,7 @@ devices::DevicesConfig device_config(const Scenario& scenario, const Sample& sam
     devices::DriveConfig& drive = config.drives[i];
     drive.torque_noise_ratio = scenario.physics.torque_noise_ratio;
     drive.water_celsius = scenario.physics.water_celsius;
-    set_make(scenario.drives, i, drive);
+    set_make(scenario.drives, i, std::filesystem::path(scenario.file).parent_path(), drive);
   }
   config.io.node = static_cast<std::uint8_t>(scenario.drives.output_node);
   return config;

@@ -96,7 +96,7 @@ void Node::on_nmt(const CanFrame& frame, Time now) {
   switch (frame.data[0]) {
     case nmt_start: return enter(NmtState::operational, now);
     case nmt_stop:
-      if (state_ == NmtState::operational) application_.connection_lost(emcy::stopped_by_master, now);
+      if (state_ != NmtState::stopped) application_.connection_lost(emcy::stopped_by_master, now);
       return enter(NmtState::stopped, now);
     case nmt_pre_operational: return enter(NmtState::pre_operational, now);
     case nmt_reset_node: return power_on(now);

@@ -91,13 +91,16 @@ TEST_F(PowerTest, AStopReachesADriveThatIsSilentAndTheOthersDoNotWaitForIt) {
   EXPECT_LT(until([this] { return power.off(); }), 1.1);
 }
 
-TEST_F(PowerTest, ADriveThatKeepsItsPowerKeepsTheSwitchBusy) {
+// It does not hear its process data, or somebody took it out of operation: 6007 makes NMT stop a quick stop.
+TEST_F(PowerTest, ADriveThatDoesNotHeedIsStoppedByNmtAndTheOthersAreNot) {
   bus.nodes[3].ignores_controlword = true;
   power.stop(bus.now, bus.network);
-  for (int i = 0; i < 1000; ++i) step();
-  EXPECT_FALSE(power.off());
-  bus.nodes[3].ignores_controlword = false;
-  EXPECT_LT(until([this] { return power.off(); }), 0.05);
+  EXPECT_LT(until([this] { return bus.nodes[3].nmt() == 4; }), 0.04);
+  EXPECT_LT(until([this] { return bus.nodes[0].drive_state_bits() == unpowered; }), 0.35);
+  EXPECT_EQ(bus.nodes[0].nmt(), 5) << "operational";
+  for (int i = 0; i < 100; ++i) step();
+  EXPECT_FALSE(power.off()) << "it has not said so";
+  EXPECT_LT(until([this] { return power.off(); }), 1.1) << "nothing more can be done";
 }
 
 TEST_F(PowerTest, AMilderStopNeverTakesBackASeverer) {

@@ -5,6 +5,7 @@
 
 #include "hal/config/text_file.hpp"
 #include "tests/unit/scenario/scenario_file.hpp"
+#include "tests/unit/temporary_folder.hpp"
 
 namespace lf::scenario {
 
@@ -27,6 +28,19 @@ TEST(Nominal, TheCameraLooksWhereItsAnglesSay) {
   EXPECT_NEAR(pose.linear().col(0).z(), 0, 1e-12) << "no roll";
   EXPECT_NEAR((pose.linear() * pose.linear().transpose() - Mat3::Identity()).norm(), 0, 1e-12);
   EXPECT_GT(pose.linear().determinant(), 0);
+}
+
+// A lab's own profile is simulated as the make that it is like, however far up.
+TEST(Truth, AProfileOfTheUsersOwnIsSimulatedAsTheOneItIsLike) {
+  const test::TemporaryFolder folder;
+  folder.write("ours.yaml", "title: ours\nlike: epos4_configured\n");
+  folder.write("deep.yaml", "title: deep\nlike: ours\n");
+  for (const std::string name : {"ours.yaml", "deep.yaml"}) {
+    const Scenario scenario = load_scenario(folder.write("s.yaml", "drives: {profile: " + name + "}\n"));
+    const hal::SimConfig config = make_truth(scenario, draw(scenario, 1), make_nominal(scenario, true), 1);
+    ASSERT_NE(config.devices.drives[2].habit, nullptr) << name;
+    EXPECT_STREQ(config.devices.drives[2].habit->name, "epos4_configured") << name;
+  }
 }
 
 TEST(Nominal, EveryShippedScenarioCanBeRun) {

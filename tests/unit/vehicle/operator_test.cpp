@@ -8,11 +8,11 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
 
+#include "hal/config/key_text.hpp"
 #include "hal/vehicle/estop_input.hpp"
 #include "hal/vehicle/instance_lock.hpp"
 #include "hal/vehicle/operator_rights.hpp"
@@ -38,21 +38,11 @@ std::string rights_table() {
   return out.str();
 }
 
-std::string number_text(double value) {
-  std::array<char, 32> text{};
-  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
-}
-
 std::string keys_table() {
-  std::ostringstream out;
-  out << "| key | takes | range | meaning |\n|---|---|---|---|\n";
+  std::string out = config::markdown_head;
   VehicleConfig config;
-  for (const config::Key& key : keys(config)) {
-    out << "| `" << key.path << "` | " << config::type_name(key) << " | ";
-    if (key.min != key.max) out << number_text(key.min) << " to " << number_text(key.max) << (key.unit.empty() ? "" : " " + key.unit);
-    out << " | " << key.doc << " |\n";
-  }
-  return out.str();
+  for (const config::Key& key : keys(config)) out += config::markdown_row(key);
+  return out;
 }
 
 void expect_on_page(const std::string& mark, const std::string& drawn) {

@@ -83,6 +83,25 @@ TEST(VehicleConfig, TextThatIsNoYamlIsToldWithItsLine) {
   EXPECT_THAT(problems_of(folder / "none.yaml"), ElementsAre(HasSubstr("none.yaml: No such file")));
 }
 
+TEST(VehicleConfig, AProfileOfAllJointsThatIsNotThereIsToldOnce) {
+  const TemporaryFolder folder;
+  EXPECT_THAT(problems_of(folder.write("v.yaml", "drives: {profile: epos5, jaw: {profile: elmo_glod}}\n")),
+              ElementsAre(HasSubstr("drives.profile: no drive profile 'epos5'; did you mean 'epos4'"),
+                          HasSubstr("drives.jaw.profile: no drive profile 'elmo_glod'; did you mean 'elmo_gold'")));
+}
+
+// A motor's rated current is written to the drive: nobody's motor is that of a default.
+TEST(VehicleConfig, ADriveThatCountsInCurrentAsksForItsMotors) {
+  const TemporaryFolder folder;
+  for (const std::string make : {"elmo_gold", "ipos"}) {
+    EXPECT_THAT(problems_of(folder.write("v.yaml", "drives: {profile: " + make + "}\n")), testing::Contains(HasSubstr("rated_current_a")))
+        << make;
+    EXPECT_THAT(problems_of(folder.write("v.yaml", "drives: {profile: " + make + ", rated_current_a: 4.2}\n")),
+                testing::Not(testing::Contains(HasSubstr("rated_current_a"))))
+        << make;
+  }
+}
+
 TEST(VehicleConfig, LimitsWithAnotherChecksumAreRefused) {
   const TemporaryFolder folder;
   std::ifstream shipped(LANTERNFISH_SOURCE_DIR "/shared/safety/limits.yaml");
