@@ -121,7 +121,8 @@ class Reader {
     read_map(scalars, "", "", scalar_keys(kind, like, vendor, product), source_);
     attempt([&] { read_identity(vendor, scalars, "vendor", kind.identity.vendor); });
     attempt([&] { read_identity(product, scalars, "product", kind.identity.product); });
-    if (root["homing"] && root["homing"]["methods"]) kind.any_homing = false;
+    const YAML::Node homing = root["homing"];
+    if (homing && homing.IsMap() && homing["methods"]) kind.any_homing = false;
   }
 
   void check_whole(const YAML::Node& root, const DriveKind& kind) {
