@@ -2,7 +2,7 @@
 # Builds the fuzz targets of tests/fuzz with Clang's libFuzzer and sanitizers, runs them one after the other, and prints a table.
 # Usage: tests/fuzz.sh [--seconds N | --runs N | --wanted] [--keep] [TARGET...]     default: 60 seconds each of all targets
 #   --wanted  as many runs of each as the nightly shard wants (the table `wanted` below)
-#   --keep    add to tests/fuzz/corpus what reaches code that the kept inputs do not, the smallest first, up to 4 KB a target
+#   --keep    add to tests/fuzz/corpus up to 12 inputs of at most 400 bytes that reach code which the kept ones do not, 4 KB a target in all
 # What is found stays in build/fuzz/corpus/TARGET from call to call; an input that ends a target in build/fuzz/crashes/TARGET-*.
 # Exit status: 0 when no input ended a target; 77 without Clang.
 set -euo pipefail
@@ -65,14 +65,14 @@ for target in "${targets[@]}"; do
   [ "$runs" != '?' ] || runs=$(grep -aoE '^#[0-9]+' "$log" | tail -n 1 | tr -d '#')
   echo "| $target | $runs | $seconds | $((runs / (seconds > 0 ? seconds : 1))) | $(last_number "$log" 'cov:') | $(find "$found" -type f | wc -l) | $crashes inputs |"
   if [ -n "$keep" ] && [ "$crashes" -eq 0 ]; then
-    # Inputs that add something, the smallest first, as long as there is room.
+    # Of the inputs that together cover all, longer ones do more.
     work=$(mktemp -d)
     "$build/tests/fuzz_$target" -set_cover_merge=1 "$work" "$kept" "$build/tests/fuzz/seeds/$target" "$found" >"$build/$target.merge.log" 2>&1 </dev/null
     room=$((most_kept - $(cat "$kept"/* 2>/dev/null | wc -c)))
     while read -r size file; do
-      [ "$size" -le "$room" ] || break
+      [ "$size" -le "$room" ] || continue
       [ -e "$kept/${file##*/}" ] || { cp "$file" "$kept/" && room=$((room - size)); }
-    done < <(find "$work" -type f -printf '%s %p\n' | sort -n)
+    done < <(find "$work" -type f -size -401c -printf '%s %p\n' | sort -rn | head -n 12)
     rm -r "$work"
   fi
 done
