@@ -38,7 +38,7 @@ export UBSAN_OPTIONS=print_stacktrace=1:${UBSAN_OPTIONS:-}
 
 # Words of the seeds, for the mutations of text. make_dictionary TARGET
 make_dictionary() {
-  cat "$build/tests/fuzz/seeds/$1"/* tests/fuzz/corpus/"$1"/* 2>/dev/null | grep -aoE '[A-Za-z_][A-Za-z0-9_]{2,24}:?' | sort -u | sed 's/.*/"&"/' >"$build/$1.dict"
+  cat "$build/tests/fuzz/seeds/$1"/* tests/fuzz/corpus/"$1"/* 2>/dev/null | grep -aoE '[A-Za-z_][A-Za-z0-9_]{2,24}:?' | sort -u | sed 's/.*/"&"/' >"$build/$1.dict" || true
 }
 
 # last_number LOG WORD: the number after the word's last occurrence.
@@ -49,20 +49,23 @@ echo "| target | runs | seconds | runs/s | edges | corpus | ended by |"
 echo "|---|---|---|---|---|---|---|"
 for target in "${targets[@]}"; do
   log=$build/$target.log found=$build/corpus/$target kept=tests/fuzz/corpus/$target
-  mkdir -p "$found"
+  mkdir -p "$found" "$kept"
   [ -z "$by_table" ] || limit=("-runs=${wanted[$target]}")
   make_dictionary "$target"
+  dictionary=()
+  [ ! -s "$build/$target.dict" ] || dictionary=("-dict=$build/$target.dict")  # an empty one is refused
   length=4096
   [ "$target" != urdf ] || length=16384
   [[ $target != can_* && $target != frame_ring ]] || length=1024
   before=$(find "$build/crashes" -name "$target-*" | wc -l)
   begin=$SECONDS
-  "$build/tests/fuzz_$target" "${limit[@]}" -seed=1 -max_len="$length" -dict="$build/$target.dict" -timeout=25 -rss_limit_mb=4096 -print_final_stats=1 -use_value_profile=1 \
+  "$build/tests/fuzz_$target" "${limit[@]}" -seed=1 -max_len="$length" "${dictionary[@]}" -timeout=25 -rss_limit_mb=4096 -print_final_stats=1 -use_value_profile=1 \
     -artifact_prefix="$build/crashes/$target-" "$found" "$kept" "$build/tests/fuzz/seeds/$target" >"$log" 2>&1 </dev/null || status=1
   crashes=$(($(find "$build/crashes" -name "$target-*" | wc -l) - before))
   seconds=$((SECONDS - begin))
   runs=$(last_number "$log" 'stat::number_of_executed_units:')
-  [ "$runs" != '?' ] || runs=$(grep -aoE '^#[0-9]+' "$log" | tail -n 1 | tr -d '#')
+  [ "$runs" != '?' ] || runs=$(grep -aoE '^#[0-9]+' "$log" | tail -n 1 | tr -d '#' || true)
+  runs=${runs:-0}
   echo "| $target | $runs | $seconds | $((runs / (seconds > 0 ? seconds : 1))) | $(last_number "$log" 'cov:') | $(find "$found" -type f | wc -l) | $crashes inputs |"
   if [ -n "$keep" ] && [ "$crashes" -eq 0 ]; then
     # Of the inputs that together cover all, longer ones do more.

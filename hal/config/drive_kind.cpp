@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cstdio>
 #include <set>
+#include <system_error>
 
 #include "firmware/canopen/emcy.hpp"
 #include "hal/config/nearest.hpp"
@@ -267,8 +268,9 @@ DriveKind read_with_base(const std::filesystem::path& file, std::vector<std::str
     if (depth >= 4) reader.source().refuse(like.Mark(), "'like' leads in a circle");
     const std::filesystem::path beside = file.parent_path() / (like.Scalar() + ".yaml");
     const std::filesystem::path shipped = share_folder() / "drives" / (like.Scalar() + ".yaml");
-    const std::filesystem::path& base = std::filesystem::exists(beside) ? beside : shipped;
-    if (!std::filesystem::exists(base))
+    std::error_code ignored;  // a name that is no file's, too long for instance, is not there
+    const std::filesystem::path& base = std::filesystem::exists(beside, ignored) ? beside : shipped;
+    if (!std::filesystem::exists(base, ignored))
       reader.source().refuse(like.Mark(), "no profile '" + like.Scalar() + "'" + suggestion(like.Scalar(), shipped_drive_kinds()));
     kind = read_with_base(base, problems, depth + 1);
   }

@@ -70,6 +70,11 @@ TEST(DriveProfileFile, AGroupThatIsNoneIsRefusedInWords) {
   }
 }
 
+// The C++ library throws where the name of a file is too long to be one.
+TEST(DriveProfileFile, ALikenessThatIsNoFilesNameIsRefusedInWords) {
+  EXPECT_NE(problems_of("title: mine\nlike: " + std::string(300, 'x') + "\n").find("mine.yaml:2: no profile 'xxx"), std::string::npos);
+}
+
 TEST(DriveProfileFile, AScaleIsNeverAssumed) {
   EXPECT_EQ(problems_of(whole), "");
   for (const char* key : {"position", "speed", "acceleration", "torque"}) {
