@@ -71,7 +71,7 @@ for target in "${targets[@]}"; do
     # Of the inputs that together cover all, longer ones do more.
     work=$(mktemp -d)
     "$build/tests/fuzz_$target" -set_cover_merge=1 "$work" "$kept" "$build/tests/fuzz/seeds/$target" "$found" >"$build/$target.merge.log" 2>&1 </dev/null
-    room=$((most_kept - $(cat "$kept"/* 2>/dev/null | wc -c)))
+    room=$((most_kept - $(find "$kept" -type f -exec cat {} + | wc -c)))
     while read -r size file; do
       [ "$size" -le "$room" ] || continue
       [ -e "$kept/${file##*/}" ] || { cp "$file" "$kept/" && room=$((room - size)); }
