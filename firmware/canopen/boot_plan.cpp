@@ -240,9 +240,6 @@ std::size_t own_rows(const BootContext& context) { return context.drive != nullp
 
 }  // namespace
 
-std::span<const BootStep> drive_boot_plan() { return drive_plan; }
-std::span<const BootStep> io_boot_plan() { return io_plan; }
-
 std::size_t boot_step_count(const BootContext& context) {
   return context.drive != nullptr ? drive_plan.size() + own_rows(context) : io_plan.size();
 }

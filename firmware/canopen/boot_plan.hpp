@@ -17,9 +17,6 @@ struct BootContext {
   std::uint8_t node = 0;
 };
 
-std::span<const BootStep> drive_boot_plan();
-std::span<const BootStep> io_boot_plan();
-
 // The rows for this node, one after the other. A drive's profile adds its own behind the identity, and may send a number to another object.
 std::size_t boot_step_count(const BootContext& context);
 BootStep boot_step(std::size_t i, const BootContext& context);

@@ -346,7 +346,7 @@ float BasicPeakDetector<Pixel, MaxLength>::plateau_centre(const Strip& s, std::i
       if (outer < level && inner >= level)
         return static_cast<float>(row) + static_cast<float>(step) * std::log(inner / level) / std::log(inner / outer);
     }
-    return static_cast<float>(row);
+    return static_cast<float>(std::clamp<std::int32_t>(row, 0, s.length - 1));  // a flank beyond the image is taken to be at its border
   };
   return 0.5f * (crossing(plateau.first, -1) + crossing(last, 1));
 }

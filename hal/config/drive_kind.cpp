@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cstdio>
 #include <set>
+#include <system_error>
 
 #include "firmware/canopen/emcy.hpp"
 #include "hal/config/nearest.hpp"
@@ -121,7 +122,8 @@ class Reader {
     read_map(scalars, "", "", scalar_keys(kind, like, vendor, product), source_);
     attempt([&] { read_identity(vendor, scalars, "vendor", kind.identity.vendor); });
     attempt([&] { read_identity(product, scalars, "product", kind.identity.product); });
-    if (root["homing"] && root["homing"]["methods"]) kind.any_homing = false;
+    const YAML::Node homing = root["homing"];
+    if (homing && homing.IsMap() && homing["methods"]) kind.any_homing = false;
   }
 
   void check_whole(const YAML::Node& root, const DriveKind& kind) {
@@ -266,8 +268,9 @@ DriveKind read_with_base(const std::filesystem::path& file, std::vector<std::str
     if (depth >= 4) reader.source().refuse(like.Mark(), "'like' leads in a circle");
     const std::filesystem::path beside = file.parent_path() / (like.Scalar() + ".yaml");
     const std::filesystem::path shipped = share_folder() / "drives" / (like.Scalar() + ".yaml");
-    const std::filesystem::path& base = std::filesystem::exists(beside) ? beside : shipped;
-    if (!std::filesystem::exists(base))
+    std::error_code ignored;  // a name that is no file's, too long for instance, is not there
+    const std::filesystem::path& base = std::filesystem::exists(beside, ignored) ? beside : shipped;
+    if (!std::filesystem::exists(base, ignored))
       reader.source().refuse(like.Mark(), "no profile '" + like.Scalar() + "'" + suggestion(like.Scalar(), shipped_drive_kinds()));
     kind = read_with_base(base, problems, depth + 1);
     kind.like.insert(kind.like.begin(), kind.file);

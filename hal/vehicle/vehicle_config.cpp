@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <limits>
+#include <system_error>
 
 #include "hal/config/handle_check.hpp"
 #include "hal/config/share.hpp"
@@ -107,8 +108,10 @@ void find_homing(config::Machine& machine, std::vector<std::string>& problems) {
   if (machine.homing_file.empty()) return;
   const std::filesystem::path folder = std::filesystem::path(machine.file).parent_path();
   const std::filesystem::path found = config::find_file(machine.homing_file, folder);
-  if (std::filesystem::exists(found)) {
-    machine.homing_file = std::filesystem::canonical(found).string();
+  std::error_code error;  // a name that is no file's, too long for instance, is not there
+  const std::filesystem::path place = std::filesystem::canonical(found, error);
+  if (!error) {
+    machine.homing_file = place.string();
     return;
   }
   problems.push_back(

@@ -54,6 +54,12 @@ class CalibrationReader {
     return value;
   }
 
+  std::size_t count(const YAML::Node& node, const std::string& of) const {
+    const double value = number(node, of);
+    if (value < 0 || value > 65535 || value != std::floor(value)) refuse(node, of + " must be 0 to 65535");
+    return static_cast<std::size_t>(value);
+  }
+
   int size(const std::string& key) const {
     const YAML::Node node = root_[key];
     if (!node) return 0;
@@ -70,8 +76,8 @@ class CalibrationReader {
     if (!node.IsMap() || !node["rows"] || !node["cols"] || !node["data"] || !node["data"].IsSequence()) {
       refuse(node, key + " needs rows, cols and data");
     }
-    rows = static_cast<std::size_t>(std::max(0.0, number(node["rows"], key + ".rows")));
-    columns = static_cast<std::size_t>(std::max(0.0, number(node["cols"], key + ".cols")));
+    rows = count(node["rows"], key + ".rows");
+    columns = count(node["cols"], key + ".cols");
     std::vector<double> values;
     for (const YAML::Node& element : node["data"]) values.push_back(number(element, "a number of " + key));
     if (values.size() != rows * columns) {

@@ -63,10 +63,10 @@ double distance(const Line& line, const Vec2& p) {
   return std::abs(line.direction.x() * d.y() - line.direction.y() * d.x());
 }
 
-// The line through the edge from a to b; none when less than half of its profiles cross it.
+// The line through the edge from a to b; none when less than half of its profiles cross it, or it is longer than the image's diagonal.
 std::optional<Line> edge_line(ImageView image, const Vec2& a, const Vec2& b, int cells) {
   const double length_px = (b - a).norm();
-  if (!(length_px >= 2 * cells)) return std::nullopt;
+  if (!(length_px >= 2 * cells && length_px <= std::hypot(image.width, image.height))) return std::nullopt;
   const Vec2 along = (b - a) / length_px;
   const Vec2 normal(-along.y(), along.x());
   const double reach_px = std::clamp(0.5 * length_px / cells, 1.5, 4.0);

@@ -25,6 +25,7 @@ class Urdf {
   explicit Urdf(const std::string& file) : file_(file) {
     if (document_.LoadFile(file.c_str()) != tinyxml2::XML_SUCCESS) throw InputError(file, document_.ErrorLineNum(), load_error());
     robot_ = document_.RootElement();
+    if (robot_ == nullptr) throw InputError(file, 0, "has no element");
     if (std::strcmp(robot_->Name(), "robot") != 0) fail(robot_, "expected <robot>, found <" + std::string(robot_->Name()) + ">");
   }
 

@@ -56,6 +56,8 @@ bool FrameRingWriter::open(std::span<std::byte> memory, std::uint32_t slots, std
   header->slots.store(slots);
   header->payload_bytes.store(payload_bytes);
   header->published.store(0);
+  slot_count_ = slots;
+  payload_bytes_ = payload_bytes;
   header_ = header;
   slots_ = memory.data() + frame_ring_page;
   for (std::uint32_t i = 0; i < slots; ++i) {
@@ -68,10 +70,9 @@ bool FrameRingWriter::open(std::span<std::byte> memory, std::uint32_t slots, std
 }
 
 bool FrameRingWriter::write(const RecordInfo& info, std::span<const std::byte> payload, std::int64_t now_ns) {
-  if (header_ == nullptr || payload.size() > header_->payload_bytes.load(std::memory_order_relaxed)) return false;
+  if (header_ == nullptr || payload.size() > payload_bytes_) return false;
   const std::uint64_t number = header_->published.load(std::memory_order_relaxed);
-  const std::size_t slot = number % header_->slots.load(std::memory_order_relaxed);
-  std::byte* place = slots_ + slot * header_->slot_bytes.load(std::memory_order_relaxed);
+  std::byte* place = slots_ + number % slot_count_ * slot_size(payload_bytes_);
   auto* record = reinterpret_cast<RecordHeader*>(place);
   RecordInfo written = info;
   written.written_ns = now_ns;
@@ -89,7 +90,7 @@ void FrameRingWriter::beat(std::int64_t now_ns) {
   if (header_ != nullptr) header_->writer_beat_ns.store(now_ns, std::memory_order_relaxed);
 }
 
-FrameRingReader::Answer FrameRingReader::attach() {
+FrameRingReader::Answer FrameRingReader::attach(Layout& layout) {
   if (memory_.size() < frame_ring_page || !aligned(memory_.data())) return Answer::other_layout;
   const auto* header = reinterpret_cast<const RingHeader*>(memory_.data());
   if (header->magic.load(std::memory_order_acquire) != frame_ring_magic) return Answer::no_ring;
@@ -98,6 +99,7 @@ FrameRingReader::Answer FrameRingReader::attach() {
                     payload + record_header_bytes <= slot_bytes && slot_bytes % record_header_bytes == 0 &&
                     frame_ring_page + slots * slot_bytes <= memory_.size();
   if (!fits) return Answer::other_layout;
+  layout = {slots, slot_bytes};
   const std::uint64_t generation = header->generation.load();
   if (generation != generation_) {
     // What was written before this reader came is old news; what a new writer has written since it started is not.
@@ -109,9 +111,10 @@ FrameRingReader::Answer FrameRingReader::attach() {
 }
 
 FrameRingReader::Answer FrameRingReader::take(RecordInfo& info, std::span<std::byte> payload) {
-  if (const Answer answer = attach(); answer != Answer::record) return answer;
+  Layout layout;
+  if (const Answer answer = attach(layout); answer != Answer::record) return answer;
+  const auto [slots, slot_bytes] = layout;
   const auto* header = reinterpret_cast<const RingHeader*>(memory_.data());
-  const std::uint64_t slots = header->slots.load(), slot_bytes = header->slot_bytes.load();
   for (std::uint64_t round = 0; round < slots; ++round) {
     const std::uint64_t published = header->published.load(std::memory_order_acquire);
     if (published <= next_) return Answer::empty;

@@ -80,6 +80,8 @@ class FrameRingWriter {
   void beat(std::int64_t now_ns);
 
  private:
+  // The layout as it was made: the memory's own numbers may be changed by the other side, these cannot.
+  std::uint32_t slot_count_ = 0, payload_bytes_ = 0;
   RingHeader* header_ = nullptr;
   std::byte* slots_ = nullptr;
 };
@@ -111,7 +113,11 @@ class FrameRingReader {
   const Stats& stats() const { return stats_; }
 
  private:
-  Answer attach();
+  // Read once and checked: the other side may change the memory's numbers at any time.
+  struct Layout {
+    std::uint64_t slots = 0, slot_bytes = 0;
+  };
+  Answer attach(Layout& layout);
 
   std::span<const std::byte> memory_;
   std::uint64_t generation_ = 0;

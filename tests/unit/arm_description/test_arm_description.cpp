@@ -193,6 +193,8 @@ TEST(ArmUrdf, MissingEmptyAndForeignFilesAreNamed) {
   const std::string path = temporary_file(".urdf");
   std::ofstream(path).flush();
   EXPECT_EQ(error_of(path), path + ": is empty");
+  std::ofstream(path) << "<!-- nothing else -->";
+  EXPECT_EQ(error_of(path), path + ": has no element");
   std::ofstream(path) << "<scene/>";
   EXPECT_EQ(error_of(path), path + ":1: expected <robot>, found <scene>");
   std::filesystem::remove(path);

@@ -275,6 +275,9 @@ bool ScriptedNode::apply_trick(const CanFrame& request, CanFrame& answer) {
   switch (trick->what) {
     case Trick::What::drop: return false;
     case Trick::What::abort: answer = abort(u16_at(request, 1), request.data[3], trick->code); return true;
+    case Trick::What::refuse_write:
+      if ((request.data[0] >> 5) == 1) answer = abort(u16_at(request, 1), request.data[3], trick->code);
+      return true;
     case Trick::What::wrong_value: answer.data[4] ^= 0x40; return true;
     case Trick::What::ignore_write: return true;
     case Trick::What::wrong_object: answer.data[1] ^= 0x01; return true;

@@ -21,7 +21,7 @@ class ScriptedNode {
   enum class Kind { drive, io };
   // What the SDO server does instead of its duty with its n-th request.
   struct Trick {
-    enum class What { drop, abort, wrong_value, ignore_write, wrong_object, wrong_toggle, wrong_length } what = What::drop;
+    enum class What { drop, abort, refuse_write, wrong_value, ignore_write, wrong_object, wrong_toggle, wrong_length } what = What::drop;
     int request = -1;         // counted from 0 since the last reset; -1: every one, as far as `index` fits
     std::uint16_t index = 0;  // 0: any object
     std::uint32_t code = 0;   // of an abort

@@ -62,6 +62,19 @@ errors: {"86": short}
   }
 }
 
+// A group's name with a plain value ended the program: the YAML library throws an error of its own for a member of what is no group.
+TEST(DriveProfileFile, AGroupThatIsNoneIsRefusedInWords) {
+  for (const char* group : {"homing", "identity", "position", "torque", "options", "brake"}) {
+    const std::string problems = problems_of(std::string("title: mine\n") + group + ": none\n");
+    EXPECT_NE(problems.find(std::string("mine.yaml:2: '") + group + "' takes a group of keys"), std::string::npos) << problems;
+  }
+}
+
+// The C++ library throws where the name of a file is too long to be one.
+TEST(DriveProfileFile, ALikenessThatIsNoFilesNameIsRefusedInWords) {
+  EXPECT_NE(problems_of("title: mine\nlike: " + std::string(300, 'x') + "\n").find("mine.yaml:2: no profile 'xxx"), std::string::npos);
+}
+
 TEST(DriveProfileFile, AScaleIsNeverAssumed) {
   EXPECT_EQ(problems_of(whole), "");
   for (const char* key : {"position", "speed", "acceleration", "torque"}) {

@@ -1,6 +1,7 @@
 #include "shared/frame_ring/frame_ring.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -205,6 +206,49 @@ TEST(FrameRing, AReaderThatIsOverrunSeesOnlyWholeRecords) {
   writing.join();
   EXPECT_EQ(last, records - 1);
   EXPECT_EQ(read + reader.stats().missed, records);
+}
+
+// The other side changes the layout between the reader's look at it and its use: what is checked has to be what is used. Behind the memory there is none.
+TEST(FrameRing, ALayoutThatChangesWhileItIsReadLeadsNowhereElse) {
+  const std::size_t bytes = frame_ring_bytes(slots, payload);
+  void* mapped = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  ASSERT_NE(mapped, MAP_FAILED);
+  const std::span<std::byte> memory(static_cast<std::byte*>(mapped), bytes);
+  FrameRingWriter writer;
+  ASSERT_TRUE(writer.open(memory, slots, payload));
+  auto* header = reinterpret_cast<RingHeader*>(mapped);
+  const std::uint32_t honest = header->slot_bytes.load();
+  std::atomic<bool> over = false;
+  FrameRingReader reader(memory);
+  std::vector<std::byte> out(payload);
+  RecordInfo info;
+  EXPECT_EQ(reader.take(info, out), Answer::empty);
+  std::thread hostile([&] {
+    for (std::uint64_t n = 1; n < 3'000'000; ++n) {
+      header->published.store(n);
+      header->slot_bytes.store(n % 2 == 0 ? 0x7FFF'FF80U : honest);
+      header->slots.store(n % 7 == 0 ? 0 : slots);
+    }
+    over = true;
+  });
+  while (!over) (void)reader.take(info, out);
+  hostile.join();
+  munmap(mapped, bytes);
+}
+
+TEST(FrameRing, AWriterKeepsToItsOwnLayout) {
+  Memory memory;
+  FrameRingWriter writer;
+  ASSERT_TRUE(writer.open(memory.span(), slots, payload));
+  auto* header = reinterpret_cast<RingHeader*>(memory.span().data());
+  header->slots.store(0);
+  header->payload_bytes.store(0xFFFF'FFFFU);
+  header->slot_bytes.store(0xFFFF'FF80U);
+  header->published.store(3);
+  EXPECT_FALSE(writer.write(info_of(0), std::vector<std::byte>(payload + 1), 0));
+  EXPECT_TRUE(writer.write(info_of(0), pattern(0, payload), 0));
+  // In the fourth slot of 1152 bytes.
+  EXPECT_EQ(std::memcmp(memory.span().data() + frame_ring_page + 3 * 1152 + 128, pattern(0, payload).data(), payload), 0);
 }
 
 class TemporaryFile {

@@ -57,6 +57,14 @@ TEST(Limits, ImpossibleOnesAreRefusedEvenWhenSigned) {
   limits.joints[0].max_speed_rad_s = 0;
   limits.checksum = limits_checksum(limits);
   EXPECT_EQ(check(limits), LimitsVerdict::not_positive);
+
+  for (double Limits::*number :
+       {&Limits::stale_position_s, &Limits::stale_image_s, &Limits::vision_timeout_s, &Limits::max_contact_torque_nm}) {
+    limits = good_limits();
+    limits.*number = 0;
+    limits.checksum = limits_checksum(limits);
+    EXPECT_EQ(check(limits), LimitsVerdict::not_positive);
+  }
 }
 
 TEST(Limits, AnExcursionIsTheFarthestOfTheThreeAxes) {

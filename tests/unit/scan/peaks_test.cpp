@@ -296,6 +296,25 @@ TEST(Peaks, AWidePlateauIsSaturatedNotAStripe) {
   EXPECT_EQ(detector->counters().saturated, 64u);
 }
 
+// Its outer flank is beyond the image: the peak was given beyond it, too.
+TEST(Peaks, APlateauAtTheBorderLiesInTheImage) {
+  const int width = 64, height = 40;
+  for (const bool at_the_end : {false, true}) {
+    std::vector<std::uint8_t> image(width * height, 0);
+    const auto begin = image.begin() + (at_the_end ? (height - 5) * width : 0);
+    std::fill(begin, begin + 5 * width, 255);
+    auto detector = std::make_unique<PeakDetector>();
+    std::vector<Peak> peaks(width);
+    const std::size_t found = detector->detect(ImageView{image.data(), width, height, width}, {}, peaks);
+    ASSERT_EQ(found, 64u);
+    for (const Peak& peak : peaks) {
+      EXPECT_GE(peak.v_px, 0);
+      EXPECT_LE(peak.v_px, height - 1);
+      EXPECT_NEAR(peak.v_px, at_the_end ? height - 3 : 2, 2.5);
+    }
+  }
+}
+
 TEST(Peaks, RowsOfATurnedImageGiveTheSameAsColumns) {
   const test::StripeImage image = test::make_stripe_image({.width = 333, .height = 287, .sigma_px = 1.3, .noise = 2, .seed = 8});
   const auto turn = [&](const std::vector<std::uint8_t>& from) {

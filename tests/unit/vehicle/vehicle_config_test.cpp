@@ -130,6 +130,13 @@ TEST(VehicleConfig, AHomingFileThatIsNotThereIsRefused) {
   EXPECT_THAT(problems_of(folder.write("v.yaml", "homing: {file: hoaming.yaml}\n")), ElementsAre(HasSubstr("there is no hoaming.yaml")));
 }
 
+// The C++ library throws where the name of a file is too long to be one.
+TEST(VehicleConfig, AHomingFileWhoseNameIsNoneIsRefused) {
+  const TemporaryFolder folder;
+  const std::string name(300, 'x');
+  EXPECT_THAT(problems_of(folder.write("v.yaml", "homing: {file: " + name + "}\n")), ElementsAre(HasSubstr("there is no " + name)));
+}
+
 TEST(VehicleConfig, WithoutAHomingFileNoJointTakesPower) {
   const TemporaryFolder folder;
   folder.write("empty.yaml", "");

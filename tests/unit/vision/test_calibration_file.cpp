@@ -71,6 +71,7 @@ TEST_F(CalibrationFile, BadOnesAreRefusedWithTheirLine) {
       {replaced(ros, "430.2", ".nan"), "c.yaml:7: a number of camera_matrix is not finite"},
       {replaced(ros, "430.2", "wide"), "c.yaml:7: a number of camera_matrix is not a number"},
       {replaced(ros, "  rows: 3", "  rows: 4"), "c.yaml:5: camera_matrix has 9 numbers"},
+      {replaced(ros, "  rows: 3", "  rows: 1e107"), "camera_matrix.rows must be 0 to 65535"},
       {replaced(ros, "camera_matrix", "camera_matrx"), "camera_matrix is missing"},
       {replaced(replaced(ros, "cols: 5", "cols: 6"), "-0.000104, 0.]", "-0.000104, 0., 0.2]"), "beyond k1 k2 p1 p2 k3 must be zero"},
       {replaced(ros, "image_width: 640", "image_width: 6.5"), "c.yaml:1: image_width must be 1 to 65535"},

@@ -2,9 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cfenv>
 #include <limits>
 #include <random>
 
+#include "hal/vision/corner_refinement.hpp"
 #include "hal/vision/marker_detector.hpp"
 #include "shared/input_error.hpp"
 #include "tests/unit/vision/rendered_marker.hpp"
@@ -163,6 +165,17 @@ TEST(MarkerPose, IsNoneForCornersThatHaveNone) {
   const auto degenerate = marker_pose({Vec2(5, 5), Vec2(5, 5), Vec2(5, 5), Vec2(5, 5)}, 0.08, camera);
   if (degenerate) {
     EXPECT_TRUE(degenerate->camera_from_tag.matrix().allFinite());
+  }
+}
+
+// Of an edge of 1e77 px as many profiles were wanted: a number that no integer holds.
+TEST(RefineCorners, GivesBackCornersThatAreFarApart) {
+  const std::vector<std::uint8_t> pixels(64 * 64, 90);
+  for (const double far : {1e3, 1e9, 1e77}) {
+    const std::array<Vec2, 4> corners{Vec2(10, 10), Vec2(far, 10), Vec2(far, far), Vec2(10, far)};
+    std::feclearexcept(FE_INVALID);
+    EXPECT_EQ(refine_corners(ImageView{pixels.data(), 64, 64, 64}, corners, 8), corners);
+    EXPECT_EQ(std::fetestexcept(FE_INVALID), 0) << far;
   }
 }
 

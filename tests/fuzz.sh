@@ -1,0 +1,82 @@
+#!/usr/bin/env bash
+# Builds the fuzz targets of tests/fuzz with Clang's libFuzzer and sanitizers, runs them one after the other, and prints a table.
+# Usage: tests/fuzz.sh [--seconds N | --runs N | --wanted] [--keep] [TARGET...]     default: 60 seconds each of all targets
+#   --wanted  as many runs of each as the nightly shard wants (the table `wanted` below)
+#   --keep    add to tests/fuzz/corpus up to 12 inputs of at most 400 bytes that reach code which the kept ones do not, 4 KB a target in all
+# What is found stays in build/fuzz/corpus/TARGET from call to call; an input that ends a target in build/fuzz/crashes/TARGET-*.
+# Exit status: 0 when no input ended a target; 77 without Clang.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+declare -A wanted=([operator_line]=10000000 [frame_ring]=10000000 [can_core]=10000000 [can_devices]=10000000
+  [vehicle_yaml]=1000000 [scenario_yaml]=1000000 [drive_yaml]=1000000 [small_yaml]=1000000 [urdf]=1000000
+  [image_peaks]=100000 [image_marker]=100000 [cloud]=100000)
+most_kept=4096
+limit=(-max_total_time=60) by_table='' keep='' targets=()
+while [ $# -gt 0 ]; do
+  case $1 in
+    --seconds) limit=("-max_total_time=$2"); shift ;;
+    --runs) limit=("-runs=$2"); shift ;;
+    --wanted) by_table=yes ;;
+    --keep) keep=yes ;;
+    -*) sed -n '2,/^set/s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
+    *) [ -n "${wanted[$1]:-}" ] || { echo "fuzz: no target $1: ${!wanted[*]}" >&2; exit 2; }; targets+=("$1") ;;
+  esac
+  shift
+done
+[ ${#targets[@]} -gt 0 ] || mapfile -t targets < <(printf '%s\n' "${!wanted[@]}" | sort)
+command -v clang++-14 >/dev/null || { echo "fuzz: skipped, there is no clang++-14 (toolchain/setup.sh --tests)" >&2; exit 77; }
+
+build=build/fuzz
+mkdir -p "$build/crashes"
+cmake --preset fuzz >"$build/configure.log" 2>&1 && cmake --build --preset fuzz --target "${targets[@]/#/fuzz_}" -- --quiet >"$build/build.log" 2>&1 ||
+  { tail -n 40 "$build"/configure.log "$build"/build.log >&2; exit 1; }
+
+# The libraries of Debian are not instrumented: containers that cross to them look overflowed when they are not. The JSON and YAML libraries keep what
+# they need until the end.
+export ASAN_OPTIONS=detect_container_overflow=0:detect_stack_use_after_return=0:allocator_may_return_null=1:${ASAN_OPTIONS:-}
+export UBSAN_OPTIONS=print_stacktrace=1:${UBSAN_OPTIONS:-}
+
+# Words of the seeds, for the mutations of text. make_dictionary TARGET
+make_dictionary() {
+  cat "$build/tests/fuzz/seeds/$1"/* tests/fuzz/corpus/"$1"/* 2>/dev/null | grep -aoE '[A-Za-z_][A-Za-z0-9_]{2,24}:?' | sort -u | sed 's/.*/"&"/' >"$build/$1.dict" || true
+}
+
+# last_number LOG WORD: the number after the word's last occurrence.
+last_number() { grep -aoE "$2 *[0-9]+" "$1" | tail -n 1 | grep -oE '[0-9]+$' || echo '?'; }
+
+status=0
+echo "| target | runs | seconds | runs/s | edges | corpus | ended by |"
+echo "|---|---|---|---|---|---|---|"
+for target in "${targets[@]}"; do
+  log=$build/$target.log found=$build/corpus/$target kept=tests/fuzz/corpus/$target
+  mkdir -p "$found" "$kept"
+  [ -z "$by_table" ] || limit=("-runs=${wanted[$target]}")
+  make_dictionary "$target"
+  dictionary=()
+  [ ! -s "$build/$target.dict" ] || dictionary=("-dict=$build/$target.dict")  # an empty one is refused
+  length=4096
+  [ "$target" != urdf ] || length=16384
+  [[ $target != can_* && $target != frame_ring ]] || length=1024
+  before=$(find "$build/crashes" -name "$target-*" | wc -l)
+  begin=$SECONDS
+  "$build/tests/fuzz_$target" "${limit[@]}" -seed=1 -max_len="$length" "${dictionary[@]}" -timeout=25 -rss_limit_mb=4096 -print_final_stats=1 -use_value_profile=1 \
+    -artifact_prefix="$build/crashes/$target-" "$found" "$kept" "$build/tests/fuzz/seeds/$target" >"$log" 2>&1 </dev/null || status=1
+  crashes=$(($(find "$build/crashes" -name "$target-*" | wc -l) - before))
+  seconds=$((SECONDS - begin))
+  runs=$(last_number "$log" 'stat::number_of_executed_units:')
+  [ "$runs" != '?' ] || runs=$(grep -aoE '^#[0-9]+' "$log" | tail -n 1 | tr -d '#' || true)
+  runs=${runs:-0}
+  echo "| $target | $runs | $seconds | $((runs / (seconds > 0 ? seconds : 1))) | $(last_number "$log" 'cov:') | $(find "$found" -type f | wc -l) | $crashes inputs |"
+  if [ -n "$keep" ] && [ "$crashes" -eq 0 ]; then
+    # Of the inputs that together cover all, longer ones do more.
+    work=$(mktemp -d)
+    "$build/tests/fuzz_$target" -set_cover_merge=1 "$work" "$kept" "$build/tests/fuzz/seeds/$target" "$found" >"$build/$target.merge.log" 2>&1 </dev/null
+    room=$((most_kept - $(find "$kept" -type f -exec cat {} + | wc -c)))
+    while read -r size file; do
+      [ "$size" -le "$room" ] || continue
+      [ -e "$kept/${file##*/}" ] || { cp "$file" "$kept/" && room=$((room - size)); }
+    done < <(find "$work" -type f -size -401c -printf '%s %p\n' | sort -rn | head -n 12)
+    rm -r "$work"
+  fi
+done
+exit $status

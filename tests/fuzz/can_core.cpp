@@ -1,0 +1,179 @@
+// Frames from the bus, in any order and at any time, into the core's master: before, in and after the boot, and with powered axes.
+//
+// Held against: what leaves the master is its own, complete, and no more than it says; no frame makes it give power to a drive unasked.
+#include <vector>
+
+#include "firmware/canopen/cob_id.hpp"
+#include "firmware/canopen/network.hpp"
+#include "tests/fuzz/can_frames.hpp"
+#include "tests/unit/canopen/scripted_node.hpp"
+
+namespace lf::fuzz {
+namespace {
+
+using canopen::AxisRequest;
+using canopen::Network;
+using canopen::test::Bus;
+
+struct Beginning {
+  Network network;
+  Time now;
+};
+
+canopen::NetworkConfig config_of(bool homes) {
+  canopen::NetworkConfig config = canopen::test::plain_config();
+  if (!homes) return config;
+  for (canopen::DriveSetup& drive : config.drives) {
+    drive.homing_method = -3;
+    drive.homing_speed_counts_s = 1000;
+    drive.homing_accel_counts_s2 = 5000;
+  }
+  config.drives[1].profile.guarded = true;
+  return config;
+}
+
+// The master at points of its life, made once with nodes that answer as they should: every input begins at one of them.
+std::vector<Beginning> make_beginnings() {
+  std::vector<Beginning> all;
+  const auto keep = [&](const Bus& bus) { all.push_back({bus.network, bus.now}); };
+  for (const bool homes : {false, true}) {
+    Bus bus(config_of(homes));
+    keep(bus);
+    bus.network.start_boot(bus.now);
+    for (const int steps : {2, 10, 60, 60}) {
+      bus.step(steps);
+      keep(bus);
+    }
+    (void)bus.run_until([&] { return bus.network.boot().state != canopen::BootState::running; }, Duration::from_s(20));
+    keep(bus);
+    for (std::size_t i = 0; i < joint_count; ++i)
+      bus.network.axis(static_cast<Joint>(i)).request(homes ? AxisRequest::home : AxisRequest::hold_enabled);
+    for (const int steps : {4, 10, 100}) {
+      bus.step(steps);
+      keep(bus);
+    }
+  }
+  return all;
+}
+
+class Session {
+ public:
+  Session(Network& network, Time now) : network_(network), now_(now) {}
+
+  void run(Input& in) {
+    while (!in.empty() && ticks_ < most_ticks) step(in);
+    tick(4);
+    std::size_t emcys = 0;
+    while (network_.take_emcy()) ++emcys;
+    expect(emcys <= 16, "no more EMCYs than are kept");
+    (void)network_.operational();
+    for (const auto& node : network_.boot().nodes) expect(node.state <= canopen::BootState::failed, "a boot has a state");
+  }
+
+ private:
+  static constexpr int most_ticks = 400;
+
+  void step(Input& in) {
+    const std::uint8_t what = in.byte();
+    const std::uint32_t more = what >> 3U;
+    switch (what & 7U) {
+      case 0: return receive(frame_of(in, in.byte(), more & 7U, static_cast<std::uint8_t>(in.byte() % 10U)));
+      case 1: return receive(frame_of(in, 0x3, more % 7U, more % 7U == 6 ? Network::node_count : 8));  // TPDO 1
+      case 2: return receive(frame_of(in, 0xE, more & 7U, 1));                                         // heartbeat
+      case 3: return answer_sdo(in, more % 6U);
+      case 4: return receive(more < 16 ? frame_of(in, 0x1, more & 7U, 8) : any_frame(in));  // EMCY
+      case 5: return command(in, more);
+      case 6: {
+        static constexpr std::array<std::int32_t, 8> steps_ms{4, 4, 0, 1, 100, 350, 3000, -4};
+        return tick(steps_ms[more & 7U]);
+      }
+      default:
+        for (std::uint32_t i = 0; i <= more; ++i) tick(4);
+    }
+  }
+
+  void receive(const CanFrame& frame) {
+    const std::uint64_t before = network_.stats().frames_in;
+    network_.on_frame(frame, now_);
+    expect(network_.stats().frames_in == before + 1, "every frame is counted");
+  }
+
+  // To the object that the master last asked this node for.
+  void answer_sdo(Input& in, std::uint32_t node) {
+    CanFrame answer = frame_of(in, 0xB, node + 1, 8);
+    for (std::size_t i = 1; i < 4; ++i) answer.data[i] = asked_[node].data[i];
+    receive(answer);
+  }
+
+  void command(Input& in, std::uint32_t which) {
+    canopen::Axis& axis = network_.axis(static_cast<Joint>(which % joint_count));
+    switch (in.byte() % 12U) {
+      case 0: return network_.start_boot(now_);
+      case 1: return network_.shut_down();
+      case 2: return network_.quick_stop_all();
+      case 3: return network_.disable_all();
+      case 4: return network_.remove_power();
+      case 5: return network_.acknowledge(which % Network::node_count);
+      case 6: return network_.io().set_outputs(in.byte());
+      case 7: return (void)network_.io().trigger_camera(Duration::from_us(in.take<std::uint16_t>()));
+      case 8: return (void)axis.set_target_counts(in.take<std::int32_t>());
+      case 9: return axis.set_torque_offset_permille(in.take<std::int16_t>());
+      default: return axis.request(static_cast<AxisRequest>(in.byte() % 6U));
+    }
+  }
+
+  void tick(std::int32_t ms) {
+    ++ticks_;
+    now_ = now_ + Duration::from_ms(ms);
+    canopen::Outbox outbox;
+    network_.tick(now_, outbox);
+    expect(outbox.size() <= 31 && network_.stats().outbox_overflows == 0, "a tick sends what it says it does");
+    for (const CanFrame& frame : outbox) check(frame);
+    for (std::size_t i = 0; i < joint_count; ++i) check(network_.axis(static_cast<Joint>(i)));
+  }
+
+  void check(const CanFrame& frame) {
+    namespace id = canopen::cob_id;
+    const std::uint32_t function = id::function_of(frame.id & 0x7FFU), node = id::node_of(frame.id);
+    const bool guard = (frame.id & CanFrame::remote_flag) != 0 && function == id::heartbeat;
+    const bool own = frame.id == id::nmt || frame.id == id::sync || frame.id == id::heartbeat + can_map::master_node ||
+                     ((function == id::rpdo1 || function == id::sdo_request) && node >= 1 && node <= Network::node_count);
+    expect(guard || own, "the master sends what is its own");
+    expect(frame.length <= 8, "a frame has at most 8 bytes");
+    if (guard) return;
+    for (std::size_t i = frame.length; i < frame.data.size(); ++i) expect(frame.data[i] == 0, "what is not sent is 0");
+    if (function == id::sdo_request) asked_[node - 1] = frame;
+    if (function == id::rpdo1 && node <= joint_count) check_power(network_.axis(static_cast<Joint>(node - 1)), frame);
+  }
+
+  static void check_power(const canopen::Axis& axis, const CanFrame& frame) {
+    const bool operation = (frame.data[0] & 0x0FU) == 0x0FU;
+    const AxisRequest asked = axis.requested();
+    expect(!operation || asked == AxisRequest::hold_enabled || asked == AxisRequest::home || asked == AxisRequest::disable ||
+               asked == AxisRequest::quick_stop,
+           "operation is enabled on request");
+    expect(!operation || axis.state() != canopen::AxisState::fault, "a fault that is latched is not enabled");
+  }
+
+  static void check(const canopen::Axis& axis) {
+    expect(axis.state() <= canopen::AxisState::resetting && axis.fault() <= canopen::AxisFault::node_lost, "an axis has a state");
+    expect(!axis.enabled() || (axis.fault() == canopen::AxisFault::none && axis.seen()), "an axis that follows is heard and well");
+  }
+
+  Network& network_;
+  Time now_;
+  int ticks_ = 0;
+  std::array<CanFrame, Network::node_count> asked_{};
+};
+
+}  // namespace
+}  // namespace lf::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const std::vector<lf::fuzz::Beginning> beginnings = lf::fuzz::make_beginnings();
+  lf::fuzz::Input in(data, size);
+  const lf::fuzz::Beginning& begin = beginnings[in.byte() % beginnings.size()];
+  lf::canopen::Network network = begin.network;
+  lf::fuzz::Session(network, begin.now).run(in);
+  return 0;
+}
