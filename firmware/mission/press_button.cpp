@@ -50,18 +50,17 @@ Progress PressButton::run(const StepTick& tick) {
 Progress PressButton::begin_reach(Workbench& bench) {
   bench.take_up_task();
   pressed_ = false;
-  bench.gripper.close();
   bench.tool_roll_rad = 0;
   const Vec3 tip = bench.map.button_m(bench.job.task().button) + bench.map.normal() * bench.mission().approach_distance_m;
   arm::JointVector q;
   if (!tool_for_tip(tip, closed_tip_beyond_tool_m(), bench.tool_roll_rad, q)) return Progress::failed(StepFailure::unreachable);
-  bench.go_clear(q);
+  bench.go_clear(q, 0);
   bench.standoff_m = arm::base_from_tool(q).translation();
   return Progress::running();
 }
 
 Progress PressButton::run_reach(const StepTick& tick) {
-  const Progress motion = tick.bench.follow_motion();
+  const Progress motion = tick.bench.follow_way();
   if (!motion.is_done()) return motion;
   const arm::GripperState jaw = tick.bench.gripper.state();
   return Progress::done_if(jaw != arm::GripperState::closing && jaw != arm::GripperState::opening);
@@ -75,7 +74,7 @@ Progress PressButton::begin_press(Workbench& bench) {
   const Vec3 tip = bench.map.button_m(bench.job.task().button) - bench.map.normal() * depth;
   arm::JointVector q;
   if (!tool_for_tip(tip, closed_tip_beyond_tool_m(), bench.tool_roll_rad, q)) return Progress::failed(StepFailure::unreachable);
-  bench.motion.line(arm::base_from_tool(q).translation(), bench.tool_roll_rad, bench.mission().press_speed_m_s);
+  bench.go_straight(arm::base_from_tool(q).translation(), bench.tool_roll_rad, bench.mission().press_speed_m_s, bench.meant_parts());
   return Progress::running();
 }
 

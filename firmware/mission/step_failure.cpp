@@ -57,6 +57,12 @@ Words words(StepFailure failure) {
     case StepFailure::slipped:
       return {"the handle slipped in the jaw", "Clean the pads and the bar; the valve may take more torque than the grip holds."};
     case StepFailure::vision_failed: return {"panel vision failed", "Look at the log: it ran out of memory or met a bad picture."};
+    case StepFailure::panel_in_the_way:
+      return {"the panel is in the way",
+              "Check the panel's layout, mission.docking_m and mission.docking_rad; else dock nearer to the nominal place."};
+    case StepFailure::vehicle_in_the_way:
+      return {"the vehicle is in the way", "Check vehicle.boxes_m and vehicle.capsules_m; else dock nearer to the nominal place."};
+    case StepFailure::arm_in_its_own_way: return {"the arm is in its own way", "Dock nearer to the nominal place, or jog it apart."};
   }
   return {"unknown", ""};
 }

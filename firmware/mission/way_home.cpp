@@ -9,7 +9,7 @@ void WayHome::begin(const StepTick& tick) {
       bench.let_off_roll();
       return bench.gripper.open_to(bench.mission().jaw_open_m);
     case Step::abandon_back: return bench.begin_back_off();
-    case Step::stow: bench.gripper.close(); return bench.go_clear(bench.mission().park_rad);
+    case Step::stow: return bench.go_clear(bench.mission().park_rad, 0);
     case Step::shut_down: return begin_shut_down(tick);
     default: return;
   }
@@ -24,7 +24,7 @@ Progress WayHome::run(const StepTick& tick) {
       return tick.bench.course == Course::retrying ? Progress::other_way() : Progress::done();
     }
     case Step::stow: {
-      const Progress motion = tick.bench.follow_motion();
+      const Progress motion = tick.bench.follow_way();
       if (!motion.is_done()) return motion;
       return tick.bench.course == Course::giving_up ? Progress::other_way() : Progress::done();
     }

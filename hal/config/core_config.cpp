@@ -113,8 +113,26 @@ LaserCalibration laser_calibration(const Laser& laser) {
 
 std::uint8_t button_index(const std::string& name) { return name == "left" ? 0 : name == "centre" ? 1 : 2; }
 
+[[noreturn]] void refuse(const Machine& machine, const std::string& message) { throw InputError(machine.file + ": " + message); }
+
+arm::VehicleShape vehicle_shape(const Machine& machine) {
+  arm::VehicleShape shape;
+  const std::string most = std::to_string(arm::VehicleShape::capacity);
+  for (const auto& [x, y, z, dx, dy, dz] : machine.vehicle.boxes_m) {
+    if (!(dx > 0 && dy > 0 && dz > 0)) refuse(machine, "'vehicle.boxes_m' has a box without an extent above 0 along each axis");
+    if (!shape.boxes.push_back({Vec3(x, y, z), Vec3(dx, dy, dz)})) refuse(machine, "'vehicle.boxes_m' has more than " + most + " boxes");
+  }
+  for (const auto& [ax, ay, az, bx, by, bz, radius] : machine.vehicle.capsules_m) {
+    if (!(radius > 0)) refuse(machine, "'vehicle.capsules_m' has one without a radius above 0");
+    if (!shape.rods.push_back({Vec3(ax, ay, az), Vec3(bx, by, bz), radius}))
+      refuse(machine, "'vehicle.capsules_m' has more than " + most + " capsules");
+  }
+  return shape;
+}
+
 mission::MissionConfig mission_config(const Machine& machine) {
   mission::MissionConfig config = machine.mission;
+  config.vehicle = vehicle_shape(machine);
   config.layout = machine.panel;
   config.layout.handle_min_rad = rad_from_deg(machine.valve.stop_min_deg);
   config.layout.handle_max_rad = rad_from_deg(machine.valve.stop_max_deg);
@@ -124,8 +142,6 @@ mission::MissionConfig mission_config(const Machine& machine) {
   config.tasks = core_tasks(machine.tasks, machine.file);
   return config;
 }
-
-[[noreturn]] void refuse(const Machine& machine, const std::string& message) { throw InputError(machine.file + ": " + message); }
 
 std::string excess_text(const arm::IkResult& ik) {
   char text[48];

@@ -60,6 +60,7 @@ void add_sight(Keys& all, Scenario& s) {
 }
 
 void add_machine(Keys& all, Scenario& s) {
+  config::add_vehicle(all, s.vehicle);
   all.push_back(key("arm.urdf", "", 0, 0, &s.arm.urdf, "the arm; relative to the scenario's folder, then to the shipped files"));
   all.push_back(key("jaw.torque_nm", "N m", 0, 200, &s.jaw.torque_nm, "closing torque at each finger; 0: as the URDF says"));
   all.push_back(key("jaw.pad_friction", "", 0, 3, &s.jaw.pad_friction, "friction of the finger pads; 0: as the URDF says"));

@@ -128,6 +128,7 @@ struct Scenario {
   Camera camera;
   Laser laser;
   Mounting mounting;
+  config::Vehicle vehicle;
   Arm arm;
   Jaw jaw;
   Physics physics;
