@@ -35,6 +35,9 @@ enum class StepFailure : std::int32_t {
   panel_in_the_way = 25,    // the arm would come too near to it, jaw and what is not known of its place included
   vehicle_in_the_way = 26,  // hull, camera, lamps
   arm_in_its_own_way = 27,
+  button_stuck = 28,    // touched where it should be, and it does not go in
+  button_missing = 29,  // nothing there, or only what lies behind it
+  button_yields = 30,   // it goes in without bottoming
 };
 
 // What is wrong, in a few words; and what a user can do about it, one sentence, empty where the words say it all.

@@ -124,13 +124,16 @@ void Workbench::let_off_roll() {
   motion.start_at(rest_rad);
 }
 
-void Workbench::begin_back_off() {
+void Workbench::begin_back_off(double unwinding_m) {
   back_guard.reset();
+  unwinding_m_ = unwinding_m;
+  back_from_m_ = arm::base_from_tool(motion.target()).translation();
   go_straight(standoff_m, motion.target()[3], config.mission.approach_speed_m_s, meant_parts());
 }
 
 Progress Workbench::follow_back_off(Time now) {
-  if (!motion.planning() && watch.joints().valid) back_guard.update(now, pushed_target(), measured_rad(), measured_nm());
+  const bool unwinding = (arm::base_from_tool(motion.target()).translation() - back_from_m_).norm() < unwinding_m_;
+  if (!motion.planning() && !unwinding && watch.joints().valid) back_guard.update(now, pushed_target(), measured_rad(), measured_nm());
   if (!back_guard.touched()) return follow_motion();
   motion.stop();
   return Progress::failed(StepFailure::touched_on_the_way_back);

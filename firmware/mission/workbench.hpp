@@ -80,12 +80,16 @@ struct Workbench {
   void stay_where_pushed();
   // The roll's target becomes its position: the torque that it has wound up against the handle is let off.
   void let_off_roll();
-  // Straight back to the stand-off, under guard: whoever leaves a contact may touch nothing new.
-  void begin_back_off();
+  // Straight back to the stand-off, under guard: whoever leaves a contact may touch nothing new. After a press the arm is wound up against the button: what it
+  // lets off on its first `unwinding_m` is no contact.
+  static constexpr double after_a_press_m = 0.006;  // twice what it gives way by at 60 N
+  void begin_back_off(double unwinding_m = 0);
   Progress follow_back_off(Time now);
 
  private:
   Room room_on_the_way(double jaw_opening_m);
+  double unwinding_m_ = 0;
+  Vec3 back_from_m_ = Vec3::Zero();
   std::optional<double> jaw_order_m_;  // what the jaw does once the way is clear
 };
 
