@@ -170,6 +170,25 @@ void check_reach_of_tasks(const Machine& machine) {
   }
 }
 
+// What a sweep at 25 Hz gives, 232,000 points, fills the cloud to nine tenths. At more frames a second the points are taken of fewer columns. Backgrounds that
+// are older leave more of the moving hand's outline.
+void set_frame_rate(const mission::MissionConfig& mission, ScanConfig& scan) {
+  constexpr std::uint32_t full_cloud_syncs = 9;
+  constexpr double hand_m_s = 0.040, outline_m = 0.0036;
+  scan.columns_apart = (full_cloud_syncs + mission.camera_syncs - 1) / mission.camera_syncs;
+  const double oldest_background_s = (mission.frames_per_background - 1) * mission.camera_syncs * can_map::sync_period.s();
+  scan.silhouette_margin_m = outline_m + hand_m_s * oldest_background_s;
+}
+
+// Laser and lamps switch with the frames, on SYNCs: they have to stay as they are over a whole exposure, by the output node's reports.
+void check_exposure(const Machine& machine) {
+  const double longest_us = 1e6 * (machine.mission.camera_syncs - 1) * can_map::sync_period.s();
+  if (static_cast<double>(machine.camera.exposure_us) <= longest_us) return;
+  refuse(machine, "'camera.exposure_us' is " + std::to_string(machine.camera.exposure_us) + ": with 'mission.camera_syncs' at " +
+                      std::to_string(machine.mission.camera_syncs) + " an exposure lasts at most " +
+                      std::to_string(static_cast<int>(longest_us)) + " us");
+}
+
 // The wrist turns about the tool axis, the bar about the panel's normal: 20 degrees apart at most, over which the wrist is faster than the bar by 1 / cos.
 void check_turn_speed(const Machine& machine, const ArmDescription& description, const safety::Limits& limits) {
   constexpr double cosine_of_tilt = 0.94;
@@ -309,6 +328,8 @@ Core assemble(const Machine& machine, const Steps& steps) {
   core.scan.camera = controller.camera;
   core.scan.laser = controller.laser;
   set_region(machine.panel, core.scan.triangulation);
+  set_frame_rate(machine.mission, core.scan);
+  steps.take([&] { check_exposure(machine); });
   steps.take([&] { check_reach_of_tasks(machine); });
   if (arm && limits) steps.take([&] { check_turn_speed(machine, description, controller.limits); });
   if (camera) steps.take([&] { check_view(machine, controller.camera); });

@@ -90,7 +90,9 @@ void add_mission(Keys& all, mission::MissionConfig& m) {
   all.push_back(key("mission.docking_m", "m", 0, 0.1, &m.docking.shift_m,
                     "how far the panel may be off its nominal place along each of the base's axes: kept clear of until it was looked at"));
   all.push_back(key("mission.docking_rad", "rad", 0, 0.2, &m.docking.turn_rad, "how far it may be turned about each of them"));
-  all.push_back(key("mission.camera_syncs", "SYNC", 1, 250, &m.camera_syncs, "SYNCs from one exposure to the next; 10 are 25 Hz"));
+  all.push_back(key("mission.camera_syncs", "SYNC", 2, 20, &m.camera_syncs,
+                    "SYNCs from one exposure to the next; 10 are 25 Hz. At 1 no report confirms the outputs; beyond 20 the stripes on the "
+                    "handle are no longer one"));
   all.push_back(
       key("mission.frames_per_background", "", 2, 100, &m.frames_per_background, "one frame in so many is taken without the laser"));
   all.push_back(key("mission.sweep_speed_rad_s", "rad/s", 0.001, rad_s, &m.sweep_speed_rad_s,
