@@ -13,8 +13,6 @@ namespace {
 constexpr double jaw_while_scanning_rad = 0;
 // Of the links only forearm, wrist and fingers come before the panel.
 constexpr std::size_t first_seen_link = 3;
-// Around the arm's outline: since the newest background, 0.16 s ago at most, the hand has moved by 6 mm at 40 mm/s.
-constexpr double silhouette_margin_m = 0.010;
 
 // Of every eighth row: noise in 38,400 pixels. FNV-1a by eight pixels at a time, 5 us on a desktop.
 constexpr std::int32_t rows_a_sample = 8;
@@ -60,6 +58,7 @@ void BasicScanPipeline<capacity>::begin_sweep(std::uint32_t sweep) {
   still_.present = false;
   request_ready_ = false;
   request_.id = sweep;
+  stripes_seen_ = 0;
   sweeping_ = true;
 }
 
@@ -230,10 +229,13 @@ bool BasicScanPipeline<capacity>::add_points(const Stripe& stripe, bool final) {
   const Pose base_from_laser = arm::base_from_laser(q, config_.laser);
   arm_ = arm::link_capsules(q, jaw_while_scanning_rad);
   const std::span<const scan::Peak> peaks = std::span(stripe.peaks).first(stripe.count);
+  const std::uint32_t apart = std::max(config_.columns_apart, 1u);
+  const std::uint32_t shift = stripes_seen_++ % apart;
   for (std::size_t begin = 0; begin < peaks.size();) {
     std::size_t end = begin + 1;
     while (end < peaks.size() && peaks[end].u_px == peaks[begin].u_px) ++end;
-    add_column(peaks.subspan(begin, end - begin), base_from_laser);
+    const auto column = static_cast<std::uint32_t>(std::max(peaks[begin].u_px, 0.f));
+    if (column % apart == shift) add_column(peaks.subspan(begin, end - begin), base_from_laser);
     begin = end;
   }
   return true;
@@ -244,7 +246,7 @@ template <ScanCapacity capacity>
 bool BasicScanPipeline<capacity>::behind_arm(const Vec3& point_m) const {
   const arm::Capsule sight{.link = 0, .a_m = config_.camera.base_from_camera.translation(), .b_m = point_m, .radius_m = 0};
   return std::any_of(arm_.begin(), arm_.end(), [&](const arm::Capsule& link) {
-    return link.link >= first_seen_link && arm::clearance_between(sight, link) < silhouette_margin_m;
+    return link.link >= first_seen_link && arm::clearance_between(sight, link) < config_.silhouette_margin_m;
   });
 }
 

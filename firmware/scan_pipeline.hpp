@@ -34,6 +34,11 @@ struct ScanConfig {
   // An image without a trigger counter belongs to the exposure ordered within this of its start; exposures are 40 ms apart. It covers the tick's lateness, the
   // camera's own delay, and how well its clock is known.
   Duration match_window = Duration::from_ms(2);
+  // Points are taken of one column in so many, of another one in each stripe: where the camera is triggered more often than at 25 Hz, the same number of points
+  // from more stripes.
+  std::uint32_t columns_apart = 1;
+  // Around the arm's outline: since the newest background, 0.16 s ago at most, the hand has moved by 6 mm at 40 mm/s; 4 mm more for the outline itself.
+  double silhouette_margin_m = 0.010;
   // At 0.5 mm rms the marker's plate, 2 mm proud, is outside of the window.
   scan::PlaneFitter::Config plane{.tight_sigmas = 3.0};
 };
@@ -44,8 +49,8 @@ struct ScanCapacity {
   std::int32_t image_height = 480;
   // A sweep of 18.1 s at 25 Hz with one frame of five for the background and 640 columns gives at most 231,680 points.
   std::size_t cloud_points = 262'144;
-  // A stripe waits for eight SYNCs, 32 ms: one frame's time. One beyond that is for joint samples that come late.
-  std::size_t stripes = 4;
+  // A stripe waits for eight SYNCs, 32 ms: one frame's time, or four at 125 Hz. Beyond that for joint samples that come late.
+  std::size_t stripes = 6;
 };
 
 template <ScanCapacity capacity>
@@ -120,8 +125,8 @@ class BasicScanPipeline {
   void add_column(std::span<const scan::Peak> peaks, const Pose& base_from_laser);
   void analyse(std::uint32_t sweep);
 
-  // At 25 Hz and less than 0.1 s from trigger to image three are on their way; more are images that never came.
-  static constexpr std::size_t max_exposures = 16;
+  // At 125 Hz and 0.2 s from trigger to image 25 are on their way; more are images that never came.
+  static constexpr std::size_t max_exposures = 32;
 
   ScanConfig config_;
   scan::BasicPeakDetector<std::uint8_t, std::max(image_width, image_height)> detector_;
@@ -133,6 +138,7 @@ class BasicScanPipeline {
   StaticVector<Stripe, capacity.stripes> stripes_;   // oldest first
   Time last_order_;
   bool any_order_ = false;
+  std::uint32_t stripes_seen_ = 0;  // of this sweep
   bool sweeping_ = false;
   std::uint64_t last_pixels_ = 0;  // what repeats() made of the image before
   StoredImage background_;
@@ -151,11 +157,11 @@ inline constexpr ScanCapacity full_scan{};
 using ScanPipeline = BasicScanPipeline<full_scan>;
 static_assert(sizeof(ScanPipeline) <= 6 * 1024 * 1024, "a computer's, or a board's external 8 MB");
 
-// Whole images, a quarter of the points: the camera triggered at 6.25 Hz (mission.camera_syncs 40) fills it in the same sweep.
+// Whole images, a quarter of the points: the camera triggered at 12.5 Hz (mission.camera_syncs 20), with every second column, fills it in the same sweep.
 inline constexpr ScanCapacity compact_scan{.cloud_points = 65'536, .stripes = 2};
 static_assert(sizeof(BasicScanPipeline<compact_scan>) <= 2 * 1024 * 1024, "a board's external 2 MB of static memory");
 
-// Images of half the size, binned by the camera, at the same 6.25 Hz.
+// Images of half the size, binned by the camera, at the same 12.5 Hz.
 inline constexpr ScanCapacity small_scan{.image_width = 320, .image_height = 240, .cloud_points = 32'768, .stripes = 2};
 static_assert(sizeof(BasicScanPipeline<small_scan>) <= 896 * 1024,
               "inside of the chip: an STM32H7A3's contiguous 1 MB, with an eighth to spare");

@@ -8,9 +8,10 @@
 namespace lf::arm {
 namespace {
 
+constexpr std::size_t forearm = 3, wrist = 4, finger = 5;  // scene::BodyId
+
 // How far from each joint's axis any point of what it moves can be, at most, in whatever pose the joints after it are.
 JointVector reach_m(double jaw_rad) {
-  constexpr std::size_t forearm = 3, wrist = 4;  // scene::BodyId
   const LinkPoses links = base_from_links(JointVector::Zero(), jaw_rad);
   const Vec3 elbow = links[forearm - 1].translation();
   const Vec3 roll_axis = links[wrist - 1].linear().col(2);
@@ -28,34 +29,92 @@ JointVector reach_m(double jaw_rad) {
   return {std::abs(a0_m) + from_shoulder, from_shoulder, from_elbow, from_roll_axis};
 }
 
-}  // namespace
-
-void ClearWay::begin(const JointVector& from_rad, const JointVector& to_rad, double jaw_rad, const Pose& base_from_panel, double wanted_m) {
-  from_rad_ = from_rad;
-  way_rad_ = to_rad - from_rad;
-  jaw_rad_ = jaw_rad;
-  base_from_panel_ = base_from_panel;
-  wanted_m_ = wanted_m;
-  longest_m_ = way_rad_.cwiseAbs().dot(reach_m(jaw_rad));
-  fraction_ = 0;
-  poses_ = 0;
-  nearest_ = {HUGE_VAL, 0, PanelPart::none};
-  state_ = std::isfinite(longest_m_ + jaw_rad + wanted_m) && base_from_panel.matrix().allFinite() ? State::looking : State::blocked;
+// The largest of all the jaw's angles: the fingers turn about axes of their own, so that what is farthest out at one end is not at the other.
+JointVector reach_m(const JawSweep& jaw) {
+  constexpr int angles = 4;
+  JointVector most = reach_m(jaw.high_rad);
+  for (int i = 0; i < angles && jaw.low_rad < jaw.high_rad; ++i)
+    most = most.cwiseMax(reach_m(jaw.low_rad + (jaw.high_rad - jaw.low_rad) * i / angles));
+  return most;
 }
 
-ClearWay::State ClearWay::advance(const PanelShape& panel, int poses) {
-  for (int i = 0; i < poses && state_ == State::looking; ++i) {
-    const Clearance here = panel.clearance(link_capsules(from_rad_ + fraction_ * way_rad_, jaw_rad_), base_from_panel_);
-    ++poses_;
-    if (here.distance_m < nearest_.distance_m) nearest_ = here;
-    if (!(here.distance_m >= wanted_m_) || poses_ >= max_poses) {
-      state_ = State::blocked;
-    } else if (fraction_ >= 1 || longest_m_ == 0) {
-      state_ = State::clear;
-    } else {
-      fraction_ = std::min(1.0, fraction_ + std::max(here.distance_m - wanted_m_, resolution_m) / longest_m_);
-    }
+// From a finger's axis to its farthest point.
+double jaw_reach_m() {
+  double most = 0;
+  for (const arm_geometry::CapsuleNumbers& n : arm_geometry::capsules) {
+    if (n.link < finger) continue;
+    most = std::max({most, std::hypot(n.a_m[0], n.a_m[2]) + n.radius_m, std::hypot(n.b_m[0], n.b_m[2]) + n.radius_m});
   }
+  return most;
+}
+
+}  // namespace
+
+void ClearWay::begin(const JointVector& from_rad, const Surroundings& surroundings, const Distances& wanted) {
+  const Room& room = surroundings.room();
+  *this = ClearWay();
+  from_rad_ = from_rad;
+  reach_m_ = reach_m(room.jaw);
+  jaw_reach_m_ = jaw_reach_m();
+  jaw_rad_ = room.jaw.low_rad;
+  wanted_ = wanted;
+  slack_m_ = least_slack_m_ = HUGE_VAL;
+  const bool numbers = std::isfinite(room.jaw.low_rad + room.jaw.high_rad) && room.base_from_panel.matrix().allFinite() &&
+                       std::isfinite(room.doubt.shift_m + room.doubt.turn_rad) && from_rad.allFinite();
+  state_ = numbers && room.jaw.low_rad <= room.jaw.high_rad ? State::looking : State::blocked;
+}
+
+void ClearWay::add(const JointVector& to_rad) {
+  if (state_ == State::blocked) return;
+  from_rad_ += way_rad_;
+  way_rad_ = to_rad - from_rad_;
+  longest_m_ = way_rad_.cwiseAbs().dot(reach_m_);
+  fraction_ = 0;
+  state_ = std::isfinite(longest_m_) ? State::looking : State::blocked;
+  if (state_ == State::looking && poses_ > 0) move_on();
+}
+
+// As far as what is left of the last pose's distance reaches.
+void ClearWay::move_on() {
+  const double left_m = (1 - fraction_) * longest_m_;
+  if (budget_m_ >= left_m) {
+    budget_m_ -= left_m;
+    fraction_ = 1;
+    state_ = State::clear;
+    return;
+  }
+  fraction_ += budget_m_ / longest_m_;
+  budget_m_ = 0;
+}
+
+void ClearWay::look(const Surroundings& surroundings) {
+  const Distances here = surroundings.distances(from_rad_ + fraction_ * way_rad_, jaw_rad_);
+  ++poses_;
+  const std::array<double, 3> slacks{here.panel_m - wanted_.panel_m, here.vehicle_m - wanted_.vehicle_m, here.itself_m - wanted_.itself_m};
+  const auto* least = std::min_element(slacks.begin(), slacks.end());
+  if (*least < least_slack_m_ || std::isnan(*least)) {
+    least_slack_m_ = *least;
+    barrier_ = static_cast<Barrier>(1 + (least - slacks.begin()));
+  }
+  if (!(*least >= 0) || poses_ >= max_poses) {
+    state_ = State::blocked;
+    return;
+  }
+  slack_m_ = std::min(slack_m_, *least);
+  const double high_rad = surroundings.room().jaw.high_rad;
+  if (jaw_rad_ < high_rad) {  // the jaw's next angle, for which half of this one's distance vouches
+    jaw_rad_ = std::min(high_rad, jaw_rad_ + std::max(*least / 2, resolution_m) / jaw_reach_m_);
+    return;
+  }
+  const bool swept = surroundings.room().jaw.low_rad < high_rad;
+  budget_m_ = std::max(swept ? slack_m_ / 2 : slack_m_, resolution_m);
+  jaw_rad_ = surroundings.room().jaw.low_rad;
+  slack_m_ = HUGE_VAL;
+  move_on();
+}
+
+ClearWay::State ClearWay::advance(const Surroundings& surroundings, int poses) {
+  for (int i = 0; i < poses && state_ == State::looking; ++i) look(surroundings);
   return state_;
 }
 

@@ -73,7 +73,7 @@ double segment_to_cylinder(const Vec3& a, const Vec3& way, double radius_m, doub
 }
 
 // Links as scene::BodyId counts them.
-constexpr std::size_t slew = 1, upper_arm = 2, forearm = 3;
+constexpr std::size_t slew = 1, upper_arm = 2, forearm = 3, first_finger = 5;
 
 // Pairs that can meet: not the same link, not neighbours, and not the two fingers, which are meant to.
 bool can_meet(std::size_t low, std::size_t high) { return (low == slew && high >= forearm) || (low == upper_arm && high > forearm); }
@@ -139,7 +139,36 @@ PanelShape::PanelShape(const PanelLayout& layout) {
              cylinder(PanelPart::stem, layout.handle_height_m / 2, layout.stem_radius_m, layout.handle_height_m)};
 }
 
-Clearance PanelShape::clearance(const LinkCapsules& capsules, const Pose& base_from_panel, PanelParts ignored) const {
+// To first order in the turn a point p moves by turn x p, of which the part along an axis is linear in p: its largest is at a corner. The second order,
+// which three turns one after the other add, is bounded by half the square of their sum.
+PanelShape PanelShape::grown(const Pose& base_from_panel, const PanelDoubt& doubt) const {
+  constexpr int corners = 8;
+  const Mat3& axes = base_from_panel.linear();
+  const double second_order = 4.5 * doubt.turn_rad * doubt.turn_rad;
+  PanelShape shape = *this;
+  for (Solid& solid : shape.solids_) {
+    Vec3 grow = Vec3::Zero();
+    for (int i = 0; i < corners; ++i) {
+      const Vec3 corner =
+          solid.centre_m + solid.half_m.cwiseProduct(Vec3((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1, (i & 4) != 0 ? 1 : -1));
+      for (Eigen::Index k = 0; k < 3; ++k) {
+        const Vec3 axis = Vec3::Unit(k);
+        const double by_shift = doubt.shift_m * (axes * axis).lpNorm<1>();
+        const double by_turn = doubt.turn_rad * (axes * corner.cross(axis)).lpNorm<1>() + second_order * corner.norm();
+        grow[k] = std::max(grow[k], by_shift + by_turn);
+      }
+    }
+    solid.half_m += grow;
+    if (solid.radius_m > 0) {
+      solid.radius_m += grow.head<2>().norm();
+      solid.half_m.head<2>().setConstant(solid.radius_m);
+    }
+  }
+  return shape;
+}
+
+Clearance PanelShape::clearance(const LinkCapsules& capsules, const Pose& base_from_panel, PanelParts ignored,
+                                PanelParts ignored_by_fingers) const {
   const Pose panel_from_base = base_from_panel.inverse(Eigen::Isometry);
   Clearance least{HUGE_VAL, 0, PanelPart::none};
   // From the fingers up: what is near first, so that the rest need not be looked at closely.
@@ -148,14 +177,36 @@ Clearance PanelShape::clearance(const LinkCapsules& capsules, const Pose& base_f
     const Vec3 a = panel_from_base * capsule.a_m;
     const Vec3 b = panel_from_base * capsule.b_m;
     const Vec3 low = a.cwiseMin(b), high = a.cwiseMax(b);
+    const PanelParts left_out = capsule.link >= first_finger ? ignored | ignored_by_fingers : ignored;
     for (const Solid& solid : solids_) {
-      if ((ignored & bit(solid.part)) != 0) continue;
+      if ((left_out & bit(solid.part)) != 0) continue;
       const Vec3 gap = (low - solid.centre_m).cwiseMax(solid.centre_m - high) - solid.half_m;
       if (gap.cwiseMax(0.0).norm() - capsule.radius_m >= least.distance_m) continue;
       const Vec3 from_centre = a - solid.centre_m;
       const double distance = solid.radius_m > 0 ? segment_to_cylinder(from_centre, b - a, solid.radius_m, solid.half_m.z())
                                                  : segment_to_box(from_centre, b - a, solid.half_m);
       if (distance - capsule.radius_m < least.distance_m) least = {distance - capsule.radius_m, capsule.link, solid.part};
+    }
+  }
+  return least;
+}
+
+double clearance_to_vehicle(const LinkCapsules& capsules, const VehicleShape& vehicle) {
+  double least = HUGE_VAL;
+  for (const Capsule& capsule : capsules) {
+    if (capsule.link < upper_arm) continue;
+    const Vec3 low = capsule.a_m.cwiseMin(capsule.b_m), high = capsule.a_m.cwiseMax(capsule.b_m);
+    const auto could_be_nearer = [&](const Vec3& low_m, const Vec3& high_m, double radius_m) {
+      return (low - high_m).cwiseMax(low_m - high).cwiseMax(0.0).norm() - radius_m - capsule.radius_m < least;
+    };
+    for (const VehicleShape::Box& box : vehicle.boxes) {
+      const Vec3 half = box.size_m / 2;
+      if (!could_be_nearer(box.centre_m - half, box.centre_m + half, 0)) continue;
+      least = std::min(least, segment_to_box(capsule.a_m - box.centre_m, capsule.b_m - capsule.a_m, half) - capsule.radius_m);
+    }
+    for (const VehicleShape::Rod& rod : vehicle.rods) {
+      if (!could_be_nearer(rod.a_m.cwiseMin(rod.b_m), rod.a_m.cwiseMax(rod.b_m), rod.radius_m)) continue;
+      least = std::min(least, clearance_between(capsule, {0, rod.a_m, rod.b_m, rod.radius_m}));
     }
   }
   return least;

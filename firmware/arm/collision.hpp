@@ -1,13 +1,15 @@
-// How near the arm comes to the panel and to itself: capsules around its links against the panel's plate, marker plate, buttons and handle.
+// How near the arm comes to the panel, to the vehicle and to itself: capsules around its links against the panel's plate, marker plate, buttons and handle,
+// against boxes and capsules around what is bolted to the vehicle, and against each other.
 //
 // A capsule contains its link's collision shape, so that the real clearance is never smaller than the one found here, if the panel is where it is said
-// to be.
+// to be, or within the doubt by which it was grown.
 #pragma once
 
 #include <array>
 #include <cstdint>
 
 #include "firmware/arm/kinematics.hpp"
+#include "shared/messages/static_vector.hpp"
 #include "shared/panel/panel_layout.hpp"
 
 namespace lf::arm {
@@ -33,13 +35,25 @@ struct Clearance {
   PanelPart part = PanelPart::none;  // nearest to it
 };
 
+// By how much a panel may be off the place where it is believed to be: either way along each of the base's axes, and about each of them at the panel's
+// origin.
+struct PanelDoubt {
+  double shift_m = 0;
+  double turn_rad = 0;
+};
+
 // The panel's solids, worked out once for all the questions to come. The handle counts at every angle: as the disc it sweeps.
 class PanelShape {
  public:
   explicit PanelShape(const PanelLayout& layout);
 
-  // The arm against the panel at `base_from_panel`. 0.5 us on a desktop: most pairs are told apart by their bounding boxes.
-  Clearance clearance(const LinkCapsules& capsules, const Pose& base_from_panel, PanelParts ignored = 0) const;
+  // Each solid so much larger that it contains itself wherever a panel at `base_from_panel` may really be.
+  PanelShape grown(const Pose& base_from_panel, const PanelDoubt& doubt) const;
+
+  // The arm against the panel at `base_from_panel`, without the parts `ignored`, which its fingers and all other links may touch, and without those
+  // that only the fingers may. 0.5 us on a desktop: most pairs are told apart by their bounding boxes.
+  Clearance clearance(const LinkCapsules& capsules, const Pose& base_from_panel, PanelParts ignored = 0,
+                      PanelParts ignored_by_fingers = 0) const;
 
  private:
   // In the panel frame: a box, or, where there is a radius, a cylinder about z within the box.
@@ -55,7 +69,25 @@ class PanelShape {
   std::array<Solid, 4 + PanelLayout::button_count> solids_;
 };
 
+// What of the vehicle the arm could reach and must not touch: hull, camera, lamps. Fixed in the base frame.
+struct VehicleShape {
+  static constexpr std::size_t capacity = 16;  // of each kind
+  struct Box {
+    Vec3 centre_m = Vec3::Zero(), size_m = Vec3::Zero();  // full extents along the base's axes
+  };
+  struct Rod {
+    Vec3 a_m = Vec3::Zero(), b_m = Vec3::Zero();
+    double radius_m = 0;
+  };
+  StaticVector<Box, capacity> boxes;
+  StaticVector<Rod, capacity> rods;
+};
+
+// Of upper arm, forearm, wrist and fingers to the vehicle; the slew stands on it. Infinite where there is nothing of it. 0.5 us on a desktop.
+double clearance_to_vehicle(const LinkCapsules& capsules, const VehicleShape& vehicle);
+
 // The smallest clearance between links that are not neighbours: forearm, wrist and fingers against the slew, fingers and wrist against the upper arm.
+// 0.5 us on a desktop.
 double clearance_to_itself(const LinkCapsules& capsules);
 
 }  // namespace lf::arm

@@ -83,7 +83,10 @@ class CartesianLine {
   // Plans in shares: begin(), then advance() until it is true; each of its checks takes 0.2 us on a desktop. Until then the motion stands at its start.
   void begin(const JointVector& start_rad, const Vec3& goal_m, double goal_roll_rad, const LineLimits& line, const JointLimits& limits);
   bool advance(int checks);
+  bool planned() const { return planned_; }
   const LinePlan& result() const { return result_; }
+  // The joints at the last point checked that has a solution.
+  const JointVector& checked_rad() const { return last_rad_; }
 
   double duration_s() const { return curve_.duration_s(); }
   double length_m() const { return (goal_m_ - start_m_).norm(); }

@@ -25,6 +25,8 @@ bool BarTurn::plan(const arm::JointVector& start_rad, const Mat3& base_from_pane
     roll = roll_at(from_rad + (to_rad - from_rad) * i / checks, roll);
     if (!(roll >= roll_min_rad && roll <= roll_max_rad)) return false;
   }
+  goal_rad_ = start_rad;
+  goal_rad_[3] = roll;
   return true;
 }
 

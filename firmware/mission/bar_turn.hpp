@@ -24,6 +24,8 @@ class BarTurn {
             double roll_min_rad, double roll_max_rad);
 
   double duration_s() const { return curve_.duration_s(); }
+  // Where a planned turn ends; on the way only the roll changes, from where it starts to here.
+  const arm::JointVector& goal_rad() const { return goal_rad_; }
   // Joints at a time; times must not go backwards, since the roll is followed from the one before.
   arm::JointVector sample(double t_s);
   double handle_rad(double t_s) const;
@@ -33,6 +35,7 @@ class BarTurn {
   double roll_at(double handle_rad, double near_rad) const;
 
   arm::JointVector q_rad_ = arm::JointVector::Zero();
+  arm::JointVector goal_rad_ = arm::JointVector::Zero();
   Mat3 base_from_panel_ = Mat3::Identity();
   double from_rad_ = 0;
   double direction_ = 1;

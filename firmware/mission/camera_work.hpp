@@ -28,7 +28,7 @@ class CameraWork {
 
   struct Config {
     Duration exposure = Duration::from_us(2000);
-    std::uint32_t camera_syncs = 10;  // one frame in so many SYNCs: 25 Hz
+    std::uint32_t camera_syncs = 10;  // one frame in so many SYNCs: 25 Hz. At least 2: outputs that last for one report are never confirmed
     std::uint32_t frames_per_background = 5;
     bool use_lamps = true;
     bool always_on = false;
@@ -79,8 +79,9 @@ class CameraWork {
   bool still_done_ = false;
   Time still_start_;
   bool inhibited_ = false;
-  StaticVector<Pending, 8> pending_;  // exposures whose outputs are not confirmed yet: at most one in ten SYNCs, confirmed after two
-  StaticVector<Time, 16> awaited_;    // exposures whose image has not come: five at 25 Hz and 0.2 s, oldest first
+  StaticVector<Pending, 8>
+      pending_;  // exposures whose outputs are not confirmed yet: at most one in two SYNCs, confirmed or given up after seven
+  StaticVector<Time, 32> awaited_;  // exposures whose image has not come: 26 at one in two SYNCs and 0.2 s, oldest first
   Time newest_image_;
   bool silent_ = false;
   std::uint32_t images_lost_ = 0;

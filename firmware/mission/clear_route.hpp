@@ -1,7 +1,8 @@
-// A way for the arm through free space, found a few poses a tick: straight where that keeps clear of the panel, else by the park position.
+// A way for the arm through free space, found a few poses a tick: straight where that keeps clear of everything, else by the park position.
 //
-// Between links, known to their capsules, and the panel, known before the first look to the docking error of 20 mm, 15 mm stay free. Where the arm
-// stands nearer than that it may leave, but come no nearer. A route that is not clear all along is none: nothing is risked for it.
+// Clear is 10 mm between links, known to their capsules, and the panel, grown by what is not known of its place, the vehicle, and the arm itself, with the
+// jaw at every opening it has on the way. Where the arm stands nearer than that to one of them it may leave, but come no nearer to that one. A route that
+// is not clear all along is none: nothing is risked for it.
 #pragma once
 
 #include <array>
@@ -9,41 +10,49 @@
 #include <span>
 
 #include "firmware/arm/clear_way.hpp"
+#include "firmware/mission/step_failure.hpp"
 
 namespace lf::mission {
 
-// What the arm has to keep clear of, and how wide it is.
-struct Room {
-  Pose base_from_panel = Pose::Identity();
-  double jaw_rad = 0;
-};
+using arm::Room;
+
+// Calibration, quantisation, and how far a drive lags behind on a bent way.
+inline constexpr double clearance_m = 0.010;
+
+// The clearance wanted of a motion that begins where the arm stands, with its jaw there.
+arm::Distances wanted_from(const arm::JointVector& from_rad, double jaw_rad, const arm::Surroundings& surroundings);
+inline constexpr arm::Distances wanted_everywhere{clearance_m, clearance_m, clearance_m};
+
+// Why there is no way.
+StepFailure failure_of(arm::Barrier barrier);
 
 class ClearRoute {
  public:
   enum class State : std::uint8_t { looking, found, none };
 
-  static constexpr double clearance_m = 0.015;
-  // 3 us a tick on a desktop.
-  static constexpr int poses_a_share = 3;
+  // 8 us a tick on a desktop.
+  static constexpr int poses_a_share = 8;
 
-  ClearRoute(const PanelLayout& layout, const arm::JointVector& park_rad) : panel_(layout), park_rad_(park_rad) {}
+  explicit ClearRoute(const arm::JointVector& park_rad) : park_rad_(park_rad) {}
 
-  void begin(const arm::JointVector& from_rad, const arm::JointVector& to_rad, const Room& room);
-  State advance();
+  // `jaw_rad`: where it is now.
+  void begin(const arm::JointVector& from_rad, const arm::JointVector& to_rad, double jaw_rad, const arm::Surroundings& surroundings);
+  State advance(const arm::Surroundings& surroundings);
   // Once found: where to go, after the start.
   std::span<const arm::JointVector> points_rad() const { return points_; }
+  // What bars the straight way, when there is none.
+  arm::Barrier barrier() const { return barrier_; }
 
  private:
   enum class Leg : std::uint8_t { straight, to_park, from_park };
-  void look_at(Leg leg);
+  void look_at(Leg leg, const arm::Surroundings& surroundings);
 
-  arm::PanelShape panel_;
   arm::JointVector park_rad_;
   arm::ClearWay way_;
-  Room room_;
   Leg leg_ = Leg::straight;
   arm::JointVector from_rad_ = arm::JointVector::Zero();
-  double leaving_m_ = 0;  // the clearance wanted of what begins at the start
+  arm::Distances leaving_;  // the clearance wanted of what begins at the start
+  arm::Barrier barrier_ = arm::Barrier::none;
   std::array<arm::JointVector, 2> via_{arm::JointVector::Zero(), arm::JointVector::Zero()};  // park and goal
   std::span<const arm::JointVector> points_;
 };

@@ -7,6 +7,7 @@
 #include "firmware/mission/mission_config.hpp"
 #include "firmware/mission/orders.hpp"
 #include "firmware/mission/progress.hpp"
+#include "firmware/mission/step_failure.hpp"
 #include "firmware/mission/steps.hpp"
 #include "shared/messages/static_vector.hpp"
 
@@ -16,8 +17,11 @@ struct TaskResult {
   Task task;
   bool attempted = false;
   bool done = false;
-  double reached_rad = 0;     // turn_valve: as the second look saw it
-  std::uint32_t presses = 0;  // press_button: bottomed and felt
+  double reached_rad = 0;                   // turn_valve: as the second look saw it
+  std::uint32_t presses = 0;                // press_button: went in and bottomed
+  double travel_m = 0;                      // of the last press: how far the button went in
+  bool click_felt = false;                  // in the last press
+  StepFailure failure = StepFailure::none;  // of the last press: stuck, missing, yielding, or touched too early; none where it was pressed
 };
 using TaskResults = StaticVector<TaskResult, MissionConfig::max_tasks>;
 

@@ -37,7 +37,7 @@ void Look::begin(const StepTick& tick) {
 Progress Look::run(const StepTick& tick) {
   switch (tick.step) {
     case Step::deploy:
-    case Step::verify_reach: return tick.bench.follow_motion();
+    case Step::verify_reach: return tick.bench.follow_way();
     case Step::scan:
     case Step::verify_scan: return run_scan(tick);
     case Step::look:
@@ -51,20 +51,21 @@ Progress Look::run(const StepTick& tick) {
 void Look::go_to_sweep(const StepTick& tick, scan::SweepRequest request) {
   Workbench& bench = tick.bench;
   request.slowest_rad_s = bench.mission().sweep_speed_rad_s;
-  bench.motion.go_to_sweep(request, bench.config.laser, bench.room(), bench.mission().move_speed_fraction);
+  bench.go_to_sweep(request);
 }
 
 void Look::begin_deploy(const StepTick& tick) {
-  tick.bench.gripper.close();
+  const MissionConfig& mission = tick.bench.mission();
   scan::SweepRequest request;
-  request.base_from_panel = tick.bench.mission().layout.nominal_base_from_panel();
+  request.base_from_panel = mission.layout.nominal_base_from_panel();
+  request.docking_shift_m = mission.docking.shift_m;
+  request.docking_turn_rad = mission.docking.turn_rad;
   go_to_sweep(tick, request);
 }
 
 // The second look needs only the handle's surroundings, and knows where they are.
 void Look::begin_verify_reach(const StepTick& tick) {
   Workbench& bench = tick.bench;
-  bench.gripper.close();
   scan::SweepRequest request;
   request.base_from_panel = bench.map.base_from_panel();
   // Over the whole handle at every angle, and no further than the plate.
@@ -73,8 +74,8 @@ void Look::begin_verify_reach(const StepTick& tick) {
   request.top_m = std::min(band_m, layout.plate_max_m.y());
   request.bottom_m = std::max(-band_m, layout.plate_min_m.y());
   request.margin_m = 0.010;
-  request.docking_shift_m = 0.003;    // thrice the valve base's usual error
-  request.docking_turn_rad = 0.0035;  // 0.2 degrees
+  request.docking_shift_m = bench.map.doubt().shift_m;
+  request.docking_turn_rad = bench.map.doubt().turn_rad;
   go_to_sweep(tick, request);
 }
 

@@ -52,16 +52,29 @@ void Manual::begin(const StepTick& tick) {
   if (tick.step != Step::jog) return;
   Workbench& bench = tick.bench;
   bench.job.forget_tries(Step::jog);
-  if (jog_.joint == Joint::jaw) return bench.gripper.turn_to(jog_.goal_rad);
+  jaw_waits_ = jog_.joint == Joint::jaw;
   arm::JointVector goal = bench.motion.target();
-  goal[static_cast<Eigen::Index>(jog_.joint)] = jog_.goal_rad;
-  bench.motion.jog(goal, jog_speed_fraction);
+  if (!jaw_waits_) goal[static_cast<Eigen::Index>(jog_.joint)] = jog_.goal_rad;
+  bench.motion.jog(goal, bench.room(jaw_waits_ ? jog_.goal_rad : bench.jaw_rad()), bench.jaw_rad(), jog_speed_fraction);
 }
 
-Progress Manual::run(const StepTick& tick) {
-  if (tick.step == Step::ready) return run_ready(tick);
-  const bool jaw_moves = jog_.joint == Joint::jaw && tick.bench.gripper.state() == arm::GripperState::opening;
-  return jaw_moves ? Progress::running() : tick.bench.follow_motion();
+Progress Manual::run(const StepTick& tick) { return tick.step == Step::ready ? run_ready(tick) : run_jog(tick); }
+
+// A jog that is barred moves nothing: the operator is told by what, and may order another one.
+Progress Manual::run_jog(const StepTick& tick) {
+  Workbench& bench = tick.bench;
+  const Progress motion = bench.follow_motion();
+  if (motion.kind == Progress::Kind::failed) {
+    safety::FaultReport report{safety::Fault::step_failed, static_cast<std::int32_t>(motion.failure)};
+    report.only_counted = true;
+    tick.faults.report(report);
+    return Progress::done();
+  }
+  if (!motion.is_done()) return motion;
+  if (jaw_waits_) bench.gripper.turn_to(jog_.goal_rad);
+  jaw_waits_ = false;
+  const bool jaw_moves = jog_.joint == Joint::jaw && bench.gripper.state() == arm::GripperState::opening;
+  return Progress::done_if(!jaw_moves);
 }
 
 Progress Manual::run_ready(const StepTick& tick) {

@@ -13,7 +13,10 @@ class Manual {
  private:
   Progress run_ready(const StepTick& tick);
 
+  Progress run_jog(const StepTick& tick);
+
   WaitingOrder jog_;
+  bool jaw_waits_ = false;  // until it is known to have room
 };
 
 // Where a jog that is ordered now would end, or nothing when its numbers, the joint's limits or the tool's workspace do not allow it. What

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-#include "firmware/arm/kinematics.hpp"
+#include "firmware/arm/collision.hpp"
 #include "shared/geometry/pose.hpp"
 #include "shared/messages/static_vector.hpp"
 #include "shared/messages/time.hpp"
@@ -24,6 +24,9 @@ struct MissionConfig {
   StaticVector<Task, max_tasks> tasks;
 
   PanelLayout layout;  // as surveyed; where it stands is for the core to find
+  // What it may stand off its nominal place, until it was looked at; after that the look says how well it is known.
+  arm::PanelDoubt docking{.shift_m = 0.020, .turn_rad = 0.0349};
+  arm::VehicleShape vehicle;  // what the arm must not touch
 
   arm::JointVector park_rad{0.0, 0.60, 1.90, 0.0};  // folded, clear of the panel at every docking error
   bool use_lamps = true;                            // for stills; sweeps are dark but for the laser

@@ -50,48 +50,74 @@ void Motion::go(std::span<const arm::JointVector> points_rad, double speed_fract
   begin(Kind::path, path_.duration_s());
 }
 
-void Motion::jog(const arm::JointVector& goal_rad, double speed_fraction) {
+void Motion::begin_way(const Room& room, double jaw_rad) {
+  surroundings_.enter(room);
+  way_.begin(target_.q_rad, surroundings_, wanted_from(target_.q_rad, jaw_rad, surroundings_));
+}
+
+void Motion::advance_way(Kind then, double duration_s) {
+  const arm::ClearWay::State way = way_.advance(surroundings_, ClearRoute::poses_a_share);
+  if (way == arm::ClearWay::State::looking) return;
+  if (way == arm::ClearWay::State::blocked) return refuse(failure_of(way_.barrier()));
+  begin(then, duration_s);
+}
+
+void Motion::jog(const arm::JointVector& goal_rad, const Room& room, double jaw_rad, double speed_fraction) {
   arm::JointLimits widened = limits(speed_fraction);
   widened.lower_rad = widened.lower_rad.cwiseMin(target_.q_rad);
   widened.upper_rad = widened.upper_rad.cwiseMax(target_.q_rad);
   if (path_.plan(target_.q_rad, std::array{goal_rad}, widened) != arm::PlanOutcome::ok) return refuse(StepFailure::unreachable);
-  begin(Kind::path, path_.duration_s());
+  begin_way(room, jaw_rad);
+  way_.add(goal_rad);
+  begin(Kind::look_at_jog, 0);
 }
 
-void Motion::go_clear(const arm::JointVector& goal_rad, const Room& room, double speed_fraction) {
-  room_ = room;
+void Motion::go_clear(const arm::JointVector& goal_rad, const Room& room, double jaw_rad, double speed_fraction) {
+  surroundings_.enter(room);
+  jaw_rad_ = jaw_rad;
   speed_fraction_ = speed_fraction;
   plan_route(goal_rad);
 }
 
 void Motion::plan_route(const arm::JointVector& goal_rad) {
-  route_.begin(target_.q_rad, goal_rad, room_);
+  route_.begin(target_.q_rad, goal_rad, jaw_rad_, surroundings_);
   begin(Kind::plan_route, 0);
 }
 
 void Motion::advance_route() {
-  switch (route_.advance()) {
+  switch (route_.advance(surroundings_)) {
     case ClearRoute::State::looking: return;
     case ClearRoute::State::found: return go(route_.points_rad(), speed_fraction_);
-    case ClearRoute::State::none: return refuse(StepFailure::no_motion);
+    case ClearRoute::State::none: return refuse(failure_of(route_.barrier()));
   }
 }
 
-void Motion::line(const Vec3& goal_m, double goal_roll_rad, double speed_m_s) {
+void Motion::line(const Vec3& goal_m, double goal_roll_rad, const Room& room, double jaw_rad, double speed_m_s) {
   arm::LineLimits line;
   line.speed_m_s = speed_m_s;
   line_.begin(target_.q_rad, goal_m, goal_roll_rad, line, limits(1));
+  begin_way(room, jaw_rad);
   begin(Kind::plan_line, 0);
 }
 
+// The line is looked at from check to check: 1.25 mm of 80 are as good as straight in joint space.
 void Motion::advance_line() {
-  if (!line_.advance(line_checks_a_share)) return;
-  if (line_.result().outcome != arm::PlanOutcome::ok) return refuse(StepFailure::unreachable);
-  begin(Kind::line, line_.duration_s());
+  const int looked_before = way_.poses();
+  for (int checks = 0; checks < line_checks_a_share && way_.poses() - looked_before < ClearRoute::poses_a_share; ++checks) {
+    const arm::ClearWay::State way = way_.advance(surroundings_, ClearRoute::poses_a_share + looked_before - way_.poses());
+    if (way == arm::ClearWay::State::blocked) return refuse(failure_of(way_.barrier()));
+    if (way == arm::ClearWay::State::looking) return;
+    const bool planned = line_.planned();
+    if (planned && line_.result().outcome != arm::PlanOutcome::ok) return refuse(StepFailure::unreachable);
+    if (planned) return begin(Kind::line, line_.duration_s());
+    if (!line_.advance(1) || line_.result().outcome == arm::PlanOutcome::ok) way_.add(line_.checked_rad());
+  }
 }
 
-void Motion::go_to_sweep(const scan::SweepRequest& request, const LaserCalibration& laser, const Room& room, double speed_fraction) {
-  room_ = room;
+void Motion::go_to_sweep(const scan::SweepRequest& request, const LaserCalibration& laser, const Room& room, double jaw_rad,
+                         double speed_fraction) {
+  surroundings_.enter(room);
+  jaw_rad_ = jaw_rad;
   speed_fraction_ = speed_fraction;
   sweep_planner_.begin(request, laser);
   begin(Kind::plan_sweep, 0);
@@ -104,19 +130,31 @@ void Motion::advance_sweep() {
   const auto joints = [](const std::array<double, arm_joint_count>& q) { return arm::JointVector(q[0], q[1], q[2], q[3]); };
   const arm::PlanOutcome outcome = sweep_.plan(joints(plan.start_rad), joints(plan.end_rad), plan.duration.s(), limits(1));
   if (outcome != arm::PlanOutcome::ok) return refuse(StepFailure::unreachable);
+  way_.begin(sweep_.start_rad(), surroundings_, wanted_everywhere);
+  way_.add(sweep_.sample(sweep_.duration_s()).q_rad);
+  begin(Kind::look_at_sweep, 0);
+}
+
+// The sweep itself first, then the way to its start.
+void Motion::advance_sweep_way() {
+  const arm::ClearWay::State way = way_.advance(surroundings_, ClearRoute::poses_a_share);
+  if (way == arm::ClearWay::State::looking) return;
+  if (way == arm::ClearWay::State::blocked) return refuse(failure_of(way_.barrier()));
   plan_route(sweep_.start_rad());
 }
 
 void Motion::sweep() { begin(Kind::sweep, sweep_.duration_s()); }
 
-void Motion::turn(const Mat3& base_from_panel, double from_rad, double to_rad, double speed_rad_s) {
+void Motion::turn(double from_rad, double to_rad, const Room& room, double jaw_rad, double speed_rad_s) {
   const arm::JointLimits limits = this->limits(1);
   BarTurn::Limits bar;
   bar.speed_rad_s = speed_rad_s;
-  if (!turn_.plan(target_.q_rad, base_from_panel, from_rad, to_rad, bar, limits.lower_rad[3], limits.upper_rad[3])) {
+  if (!turn_.plan(target_.q_rad, room.base_from_panel.linear(), from_rad, to_rad, bar, limits.lower_rad[3], limits.upper_rad[3])) {
     return refuse(StepFailure::unreachable);
   }
-  begin(Kind::turn, turn_.duration_s());
+  begin_way(room, jaw_rad);
+  way_.add(turn_.goal_rad());
+  begin(Kind::look_at_turn, 0);
 }
 
 void Motion::stop() {
@@ -138,9 +176,15 @@ void Motion::freeze() {
 void Motion::advance_plan() {
   rate_ = holding_ ? 0 : 1;
   if (holding_) return;
-  if (kind_ == Kind::plan_route) return advance_route();
-  if (kind_ == Kind::plan_line) return advance_line();
-  advance_sweep();
+  switch (kind_) {
+    case Kind::plan_route: return advance_route();
+    case Kind::plan_line: return advance_line();
+    case Kind::plan_sweep: return advance_sweep();
+    case Kind::look_at_sweep: return advance_sweep_way();
+    case Kind::look_at_jog: return advance_way(Kind::path, path_.duration_s());
+    case Kind::look_at_turn: return advance_way(Kind::turn, turn_.duration_s());
+    default: return;
+  }
 }
 
 void Motion::step(double dt_s) {

@@ -1,4 +1,7 @@
 // What moves the arm: one motion at a time, planned a share a tick and then stepped once a control period, its target always defined.
+//
+// Every motion but a stop is looked at along its whole way, with the jaw at every opening it has on it, before it begins: see clear_route.hpp for how far it
+// keeps off what. What bars it is its failure.
 #pragma once
 
 #include <cstdint>
@@ -17,23 +20,28 @@ namespace lf::mission {
 
 class Motion {
  public:
-  // `limits` bound every motion's positions and speeds. Ways through free space keep clear of a panel of this layout, and may lead by `park_rad`.
-  Motion(const safety::Limits& limits, const PanelLayout& layout, const arm::JointVector& park_rad)
-      : limits_(limits), route_(layout, park_rad) {}
+  // `limits` bound every motion's positions and speeds. Motions keep clear of a panel of this layout and of the vehicle. Ways through free space may lead
+  // by `park_rad`.
+  Motion(const safety::Limits& limits, const PanelLayout& layout, const arm::VehicleShape& vehicle, const arm::JointVector& park_rad)
+      : limits_(limits), surroundings_(layout, vehicle), route_(park_rad) {}
 
   // Where the joints are when power comes on.
   void start_at(const arm::JointVector& q_rad);
 
   // Orders. Each is planned from the present target, at most 10 us of it a tick on a desktop, and begins when that is done. What cannot be planned
-  // leaves the arm at rest where it is, with its reason in failure().
+  // leaves the arm at rest where it is, with its reason in failure(). `jaw_rad` is where the jaw is now, one of the room's angles for it.
   void go(std::span<const arm::JointVector> points_rad, double speed_fraction);  // through these points, whatever is there
   // To one place; a joint that stands outside its limits may stay there, or come closer to them.
-  void jog(const arm::JointVector& goal_rad, double speed_fraction);
-  void go_clear(const arm::JointVector& goal_rad, const Room& room, double speed_fraction);    // past the panel
-  void line(const Vec3& goal_m, double goal_roll_rad, double speed_m_s);                       // of the tool
-  void turn(const Mat3& base_from_panel, double from_rad, double to_rad, double speed_rad_s);  // of the held bar
-  // Plans a sweep and goes where it begins; `sweep` carries it out.
-  void go_to_sweep(const scan::SweepRequest& request, const LaserCalibration& laser, const Room& room, double speed_fraction);
+  void jog(const arm::JointVector& goal_rad, const Room& room, double jaw_rad, double speed_fraction);
+  // Through free space.
+  void go_clear(const arm::JointVector& goal_rad, const Room& room, double jaw_rad, double speed_fraction);
+  // Of the tool.
+  void line(const Vec3& goal_m, double goal_roll_rad, const Room& room, double jaw_rad, double speed_m_s);
+  // Of the held bar on the room's panel.
+  void turn(double from_rad, double to_rad, const Room& room, double jaw_rad, double speed_rad_s);
+  // Plans a sweep and goes where it begins; `sweep` carries it out, with the jaw at rest where the way there leaves it.
+  void go_to_sweep(const scan::SweepRequest& request, const LaserCalibration& laser, const Room& room, double jaw_rad,
+                   double speed_fraction);
   void sweep();
 
   void stop();    // to rest, as fast as the joints' limits allow
@@ -45,7 +53,7 @@ class Motion {
   void step(double dt_s);
   const arm::JointVector& target() const { return target_.q_rad; }
   bool done() const { return kind_ == Kind::rest; }
-  bool planning() const { return kind_ == Kind::plan_route || kind_ == Kind::plan_line || kind_ == Kind::plan_sweep; }
+  bool planning() const { return kind_ >= Kind::plan_route; }
   StepFailure failure() const { return failure_; }  // of the last order
   bool paused() const { return rate_ == 0; }
   double elapsed_s() const { return t_s_; }
@@ -59,14 +67,32 @@ class Motion {
   arm::JointLimits limits(double speed_fraction) const;
 
  private:
-  enum class Kind : std::uint8_t { rest, plan_route, plan_line, plan_sweep, path, line, sweep, turn, stop };
+  enum class Kind : std::uint8_t {
+    rest,
+    path,
+    line,
+    sweep,
+    turn,
+    stop,
+    plan_route,
+    plan_line,
+    plan_sweep,
+    look_at_sweep,
+    look_at_jog,
+    look_at_turn
+  };
   void begin(Kind kind, double duration_s);
   void refuse(StepFailure failure);
   void plan_route(const arm::JointVector& goal_rad);
+  // Begins the way from here, to be looked at.
+  void begin_way(const Room& room, double jaw_rad);
   void advance_plan();
   void advance_route();
   void advance_line();
   void advance_sweep();
+  void advance_sweep_way();
+  // Looks on along the way; begins the motion of this kind when all of it is clear.
+  void advance_way(Kind then, double duration_s);
 
   safety::Limits limits_;
   Kind kind_ = Kind::rest;
@@ -81,10 +107,12 @@ class Motion {
   arm::ConstantSpeedSweep sweep_;
   BarTurn turn_;
   arm::JointStop stop_;
+  arm::Surroundings surroundings_;
   ClearRoute route_;
+  arm::ClearWay way_;  // of what is no way through free space
   scan::SweepPlanner sweep_planner_;
   // Of the order that is being planned.
-  Room room_;
+  double jaw_rad_ = 0;
   double speed_fraction_ = 0;
   StepFailure failure_ = StepFailure::none;
 };

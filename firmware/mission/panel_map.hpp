@@ -25,6 +25,8 @@ class PanelMap {
 
   bool known() const { return known_; }
   const Pose& base_from_panel() const { return frame_.base_from_panel; }
+  // By how much that may be wrong, once it is known: what the calibration errs by, and the scatter of the points about the plane.
+  arm::PanelDoubt doubt() const;
   double handle_rad() const { return handle_rad_; }
   // The jaw has the handle here, if it holds it: until the next look the handle is on the way from where it was seen to here.
   void expect_handle(double rad);

@@ -5,8 +5,11 @@ namespace lf::mission {
 namespace {
 
 constexpr double limit_margin_rad = 0.01;
-// The face is where the layout says to a few millimetres; what is touched farther out is something else.
-constexpr double early_m = 0.012;
+// The face is where the look says to 3 mm, and the tip where the joints say to 2: what is touched farther out is something else, and what is touched so much
+// deeper than its bottom is not the button.
+constexpr double face_m = 0.008;
+// A press that works shows nearly its whole stroke, a stuck cap a tenth of a default one: what is felt late, and what the arm gives way by.
+constexpr double least_travel = 0.5;
 // A press lasts as long as a person's.
 constexpr Duration press_time = Duration::from_ms(250);
 
@@ -32,7 +35,7 @@ Progress PressButton::begin(const StepTick& tick) {
   switch (tick.step) {
     case Step::reach_button: return begin_reach(tick.bench);
     case Step::press: return begin_press(tick.bench);
-    case Step::button_back: tick.bench.begin_back_off(); break;
+    case Step::button_back: tick.bench.begin_back_off(Workbench::after_a_press_m); break;
     default: break;
   }
   return Progress::running();
@@ -50,18 +53,17 @@ Progress PressButton::run(const StepTick& tick) {
 Progress PressButton::begin_reach(Workbench& bench) {
   bench.take_up_task();
   pressed_ = false;
-  bench.gripper.close();
   bench.tool_roll_rad = 0;
   const Vec3 tip = bench.map.button_m(bench.job.task().button) + bench.map.normal() * bench.mission().approach_distance_m;
   arm::JointVector q;
   if (!tool_for_tip(tip, closed_tip_beyond_tool_m(), bench.tool_roll_rad, q)) return Progress::failed(StepFailure::unreachable);
-  bench.go_clear(q);
+  bench.go_clear(q, 0);
   bench.standoff_m = arm::base_from_tool(q).translation();
   return Progress::running();
 }
 
 Progress PressButton::run_reach(const StepTick& tick) {
-  const Progress motion = tick.bench.follow_motion();
+  const Progress motion = tick.bench.follow_way();
   if (!motion.is_done()) return motion;
   const arm::GripperState jaw = tick.bench.gripper.state();
   return Progress::done_if(jaw != arm::GripperState::closing && jaw != arm::GripperState::opening);
@@ -71,11 +73,13 @@ Progress PressButton::begin_press(Workbench& bench) {
   arm::GuardConfig config;
   config.contact_torque_nm.setConstant(bench.mission().press_torque_nm);
   guard_ = arm::GuardedMotion(config);
+  feel_ = ButtonFeel();
+  bench.job.result().failure = StepFailure::none;
   const double depth = bench.mission().layout.button_stroke_m + bench.mission().press_overtravel_m;
   const Vec3 tip = bench.map.button_m(bench.job.task().button) - bench.map.normal() * depth;
   arm::JointVector q;
   if (!tool_for_tip(tip, closed_tip_beyond_tool_m(), bench.tool_roll_rad, q)) return Progress::failed(StepFailure::unreachable);
-  bench.motion.line(arm::base_from_tool(q).translation(), bench.tool_roll_rad, bench.mission().press_speed_m_s);
+  bench.go_straight(arm::base_from_tool(q).translation(), bench.tool_roll_rad, bench.mission().press_speed_m_s, bench.meant_parts());
   return Progress::running();
 }
 
@@ -84,17 +88,40 @@ Progress PressButton::run_press(const StepTick& tick) {
   if (pressed_) return Progress::done_if(tick.settled(bench.motion.done(), press_time));
   if (bench.motion.planning()) return Progress::running();
   guard_.update(tick.now, bench.motion.target(), bench.measured_rad(), bench.measured_nm());
-  if (guard_.touched()) {
-    bench.motion.stop();
-    const Vec3 tip = arm::base_from_tool(bench.measured_rad()) * Vec3(0, 0, closed_tip_beyond_tool_m());
-    const double above_face_m = (tip - bench.map.button_m(bench.job.task().button)).dot(bench.map.normal());
-    if (above_face_m > early_m) return Progress::failed(StepFailure::early_contact);
-    pressed_ = true;
-    ++bench.job.result().presses;
-    return Progress::running();
-  }
+  feel(tick);
   const Progress motion = bench.follow_motion();
-  return motion.is_done() ? Progress::failed(StepFailure::no_contact) : motion;
+  if (!guard_.touched() && !motion.is_done()) return motion;
+  if (guard_.touched()) bench.motion.stop();
+  TaskResult& result = bench.job.result();
+  result.travel_m = feel_.travel_m();
+  result.click_felt = feel_.clicked();
+  result.failure = judge(bench);
+  if (result.failure != StepFailure::none) return Progress::failed(result.failure);
+  pressed_ = true;
+  ++result.presses;
+  return Progress::running();
+}
+
+// The drives' force along the press is the least-squares one for the torques of slew, shoulder and elbow: the roll has no part in it.
+void PressButton::feel(const StepTick& tick) {
+  const Workbench& bench = tick.bench;
+  if (guard_.state() == arm::GuardState::learning || !bench.watch.joints().valid) return;
+  const arm::JointVector q = bench.measured_rad();
+  const Vec3 inward = -bench.map.normal();
+  arm::JointVector along = (inward.transpose() * arm::jacobian(q).topRows<3>()).transpose();
+  along[3] = 0;
+  const double force_n = along.dot(guard_.excess_torque_nm()) / along.squaredNorm();
+  const Vec3 tip = arm::base_from_tool(q) * Vec3(0, 0, closed_tip_beyond_tool_m());
+  feel_.update(tick.network.config().sync_period.s(), force_n, (tip - bench.map.button_m(bench.job.task().button)).dot(inward));
+}
+
+StepFailure PressButton::judge(const Workbench& bench) const {
+  const double stroke_m = bench.mission().layout.button_stroke_m;
+  if (!feel_.touched()) return guard_.touched() ? StepFailure::early_contact : StepFailure::button_missing;
+  if (feel_.touch_depth_m() < -face_m) return StepFailure::early_contact;
+  if (feel_.touch_depth_m() > stroke_m + face_m) return StepFailure::button_missing;
+  if (!guard_.touched()) return StepFailure::button_yields;
+  return feel_.travel_m() < least_travel * stroke_m ? StepFailure::button_stuck : StepFailure::none;
 }
 
 Progress PressButton::run_back(const StepTick& tick) {

@@ -1,7 +1,9 @@
-// Presses a button: to a stand-off, straight into it until the torque says that it has bottomed, and straight back.
+// Presses a button: to a stand-off, straight into it until the torque says that it has bottomed, and straight back. It is pressed when it went in by half its
+// stroke; one that is stuck and one that is not there are told apart by what the press felt like.
 #pragma once
 
 #include "firmware/arm/guarded_motion.hpp"
+#include "firmware/mission/button_feel.hpp"
 #include "firmware/mission/workbench.hpp"
 
 namespace lf::mission {
@@ -17,8 +19,12 @@ class PressButton {
   Progress begin_press(Workbench& bench);
   Progress run_press(const StepTick& tick);
   Progress run_back(const StepTick& tick);
+  void feel(const StepTick& tick);
+  // What stopped the finger, or what it is that nothing did.
+  StepFailure judge(const Workbench& bench) const;
 
   arm::GuardedMotion guard_;  // of the press, where touching is meant to happen
+  ButtonFeel feel_;
   bool pressed_ = false;
 };
 

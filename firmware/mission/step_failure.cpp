@@ -57,6 +57,21 @@ Words words(StepFailure failure) {
     case StepFailure::slipped:
       return {"the handle slipped in the jaw", "Clean the pads and the bar; the valve may take more torque than the grip holds."};
     case StepFailure::vision_failed: return {"panel vision failed", "Look at the log: it ran out of memory or met a bad picture."};
+    case StepFailure::panel_in_the_way:
+      return {"the panel is in the way",
+              "Check the panel's layout, mission.docking_m and mission.docking_rad; else dock nearer to the nominal place."};
+    case StepFailure::vehicle_in_the_way:
+      return {"the vehicle is in the way", "Check vehicle.boxes_m and vehicle.capsules_m; else dock nearer to the nominal place."};
+    case StepFailure::button_stuck:
+      return {"the button is stuck",
+              "It was touched and did not go in by half its stroke: free it; check panel.button_stroke_m and mission.press_torque_nm."};
+    case StepFailure::button_missing:
+      return {"no button there",
+              "Nothing was touched down to its bottom: look whether it broke off; check panel.buttons_m and panel.button_height_m."};
+    case StepFailure::button_yields:
+      return {"the button gives way without bottoming",
+              "Check panel.button_stroke_m, mission.press_overtravel_m and mission.press_torque_nm."};
+    case StepFailure::arm_in_its_own_way: return {"the arm is in its own way", "Dock nearer to the nominal place, or jog it apart."};
   }
   return {"unknown", ""};
 }

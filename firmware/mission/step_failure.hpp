@@ -23,15 +23,21 @@ enum class StepFailure : std::int32_t {
   stalled = 13,
   jaw_stuck = 14,
   touched_on_the_way_back = 15,
-  marker_wrong = 16,      // its corners are no square of the surveyed size
-  marker_disagrees = 17,  // its own pose and the scanned plane differ
-  plane_unsure = 18,      // too many of the laser's points lie off the plane
-  handle_unsure = 19,     // too few points for its angle
-  pointer_unsure = 20,    // the mark at the bar's end was not told from the other end
-  half_turn_open = 21,    // without a mark: two angles half a turn apart both lie within the stops
-  beyond_stops = 22,      // the handle is seen where its stops do not let it be
-  slipped = 23,           // the handle did not follow the turn of the jaw that held it
-  vision_failed = 24,     // panel vision gave no answer of use although it saw plane and marker
+  marker_wrong = 16,        // its corners are no square of the surveyed size
+  marker_disagrees = 17,    // its own pose and the scanned plane differ
+  plane_unsure = 18,        // too many of the laser's points lie off the plane
+  handle_unsure = 19,       // too few points for its angle
+  pointer_unsure = 20,      // the mark at the bar's end was not told from the other end
+  half_turn_open = 21,      // without a mark: two angles half a turn apart both lie within the stops
+  beyond_stops = 22,        // the handle is seen where its stops do not let it be
+  slipped = 23,             // the handle did not follow the turn of the jaw that held it
+  vision_failed = 24,       // panel vision gave no answer of use although it saw plane and marker
+  panel_in_the_way = 25,    // the arm would come too near to it, jaw and what is not known of its place included
+  vehicle_in_the_way = 26,  // hull, camera, lamps
+  arm_in_its_own_way = 27,
+  button_stuck = 28,    // touched where it should be, and it does not go in
+  button_missing = 29,  // nothing there, or only what lies behind it
+  button_yields = 30,   // it goes in without bottoming
 };
 
 // What is wrong, in a few words; and what a user can do about it, one sentence, empty where the words say it all.

@@ -74,7 +74,6 @@ Progress TurnValve::run(const StepTick& tick) {
 Progress TurnValve::begin_reach(Workbench& bench) {
   const Progress unreachable = Progress::failed(StepFailure::unreachable);
   bench.take_up_task();
-  bench.gripper.open_to(bench.mission().jaw_open_m);
   const PanelMap& map = bench.map;
   const Vec3 centre = map.handle_centre_m();
   bench.standoff_m = centre + map.normal() * bench.mission().approach_distance_m;
@@ -85,14 +84,15 @@ Progress TurnValve::begin_reach(Workbench& bench) {
   bench.tool_roll_rad = *roll;
   const arm::IkResult start = arm::inverse_kinematics(bench.standoff_m, bench.tool_roll_rad, limit_margin_rad);
   if (!start.ok()) return unreachable;
-  bench.go_clear(start.q_rad);
+  bench.go_clear(start.q_rad, bench.mission().jaw_open_m);
   return Progress::running();
 }
 
 Progress TurnValve::run_reach(const StepTick& tick) {
+  const Progress motion = tick.bench.follow_way();
+  if (motion.kind == Progress::Kind::failed || tick.bench.motion.planning()) return motion;
   const arm::GripperState jaw = tick.bench.gripper.state();
   if (jaw == arm::GripperState::jammed) return Progress::failed(StepFailure::not_gripped);
-  const Progress motion = tick.bench.follow_motion();
   return motion.is_done() ? Progress::done_if(jaw == arm::GripperState::open) : motion;
 }
 
@@ -100,7 +100,7 @@ void TurnValve::begin_advance(Workbench& bench) {
   arm::GuardConfig config;
   config.contact_torque_nm = arm::JointVector(8, 8, 8, 3);  // 20 N at the tool; the pads may brush the bar
   guard_ = arm::GuardedMotion(config);
-  bench.motion.line(bench.map.handle_centre_m(), bench.tool_roll_rad, bench.mission().approach_speed_m_s);
+  bench.go_straight(bench.map.handle_centre_m(), bench.tool_roll_rad, bench.mission().approach_speed_m_s, bench.meant_parts());
 }
 
 Progress TurnValve::run_advance(const StepTick& tick) {
@@ -128,7 +128,8 @@ void TurnValve::begin_turn(const StepTick& tick) {
   Workbench& bench = tick.bench;
   following_since_ = tick.now;
   bench.turn_ended = false;
-  bench.motion.turn(bench.map.base_from_panel().linear(), bench.map.handle_rad(), bench.turn_goal_rad, bench.mission().turn_speed_rad_s);
+  bench.motion.turn(bench.map.handle_rad(), bench.turn_goal_rad, bench.room(bench.jaw_rad(), bench.meant_parts()), bench.jaw_rad(),
+                    bench.mission().turn_speed_rad_s);
 }
 
 // A turn that ends early leaves the handle on its way: the jaw lets go, and the second look finds it.

@@ -8,8 +8,9 @@ void WayHome::begin(const StepTick& tick) {
     case Step::abandon:  // out of a contact: the jaw opens, whatever it holds, before the arm goes back
       bench.let_off_roll();
       return bench.gripper.open_to(bench.mission().jaw_open_m);
-    case Step::abandon_back: return bench.begin_back_off();
-    case Step::stow: bench.gripper.close(); return bench.go_clear(bench.mission().park_rad);
+    case Step::abandon_back:
+      return bench.begin_back_off(bench.job.task().kind == Task::Kind::press_button ? Workbench::after_a_press_m : 0);
+    case Step::stow: return bench.go_clear(bench.mission().park_rad, 0);
     case Step::shut_down: return begin_shut_down(tick);
     default: return;
   }
@@ -24,7 +25,7 @@ Progress WayHome::run(const StepTick& tick) {
       return tick.bench.course == Course::retrying ? Progress::other_way() : Progress::done();
     }
     case Step::stow: {
-      const Progress motion = tick.bench.follow_motion();
+      const Progress motion = tick.bench.follow_way();
       if (!motion.is_done()) return motion;
       return tick.bench.course == Course::giving_up ? Progress::other_way() : Progress::done();
     }

@@ -34,7 +34,7 @@ Workbench::Workbench(const ControllerConfig& told)
     : config(told),
       watch(told.mission_limits),
       camera(camera_config(told)),
-      motion(told.mission_limits, told.mission.layout, told.mission.park_rad),
+      motion(told.mission_limits, told.mission.layout, told.mission.vehicle, told.mission.park_rad),
       gripper(new_gripper()),
       back_guard(free_motion_guard(told.mission_limits)),
       map(told.mission.layout, told.marker, told.camera),
@@ -61,11 +61,44 @@ arm::JointVector Workbench::measured_nm() const {
   return torque;
 }
 
-Room Workbench::room() const {
+Room Workbench::room(double jaw_goal_rad, arm::PanelParts meant) const {
   Room room;
   room.base_from_panel = map.known() ? map.base_from_panel() : config.mission.layout.nominal_base_from_panel();
-  room.jaw_rad = watch.joints().position_rad[static_cast<std::size_t>(Joint::jaw)];
+  room.doubt = map.known() ? map.doubt() : config.mission.docking;
+  room.jaw = {std::min(jaw_rad(), jaw_goal_rad), std::max(jaw_rad(), jaw_goal_rad)};
+  room.meant_for_fingers = meant;
   return room;
+}
+
+arm::PanelParts Workbench::meant_parts() const {
+  if (job.task().kind == Task::Kind::turn_valve) return arm::bit(arm::PanelPart::handle) | arm::bit(arm::PanelPart::stem);
+  const auto button = static_cast<arm::PanelPart>(static_cast<std::size_t>(arm::PanelPart::button_left) + job.task().button);
+  return arm::bit(button) | arm::bit(arm::PanelPart::plate);
+}
+
+Room Workbench::room_on_the_way(double jaw_opening_m) {
+  jaw_order_m_ = jaw_opening_m;
+  return room(jaw_opening_m > 0 ? arm::jaw_from_gap(jaw_opening_m) : arm_geometry::joints[static_cast<std::size_t>(Joint::jaw)].lower_rad);
+}
+
+void Workbench::go_clear(const arm::JointVector& goal_rad, double jaw_opening_m) {
+  motion.go_clear(goal_rad, room_on_the_way(jaw_opening_m), jaw_rad(), config.mission.move_speed_fraction);
+}
+
+void Workbench::go_to_sweep(const scan::SweepRequest& request) {
+  motion.go_to_sweep(request, config.laser, room_on_the_way(0), jaw_rad(), config.mission.move_speed_fraction);
+}
+
+Progress Workbench::follow_way() {
+  const Progress progress = follow_motion();
+  if (progress.kind == Progress::Kind::failed || motion.planning() || !jaw_order_m_) return progress;
+  *jaw_order_m_ > 0 ? gripper.open_to(*jaw_order_m_) : gripper.close();
+  jaw_order_m_.reset();
+  return progress;
+}
+
+void Workbench::go_straight(const Vec3& goal_m, double roll_rad, double speed_m_s, arm::PanelParts meant) {
+  motion.line(goal_m, roll_rad, room(jaw_rad(), meant), jaw_rad(), speed_m_s);
 }
 
 Progress Workbench::follow_motion() const {
@@ -97,13 +130,16 @@ void Workbench::let_off_roll() {
   motion.start_at(rest_rad);
 }
 
-void Workbench::begin_back_off() {
+void Workbench::begin_back_off(double unwinding_m) {
   back_guard.reset();
-  motion.line(standoff_m, motion.target()[3], config.mission.approach_speed_m_s);
+  unwinding_m_ = unwinding_m;
+  back_from_m_ = arm::base_from_tool(motion.target()).translation();
+  go_straight(standoff_m, motion.target()[3], config.mission.approach_speed_m_s, meant_parts());
 }
 
 Progress Workbench::follow_back_off(Time now) {
-  if (!motion.planning() && watch.joints().valid) back_guard.update(now, pushed_target(), measured_rad(), measured_nm());
+  const bool unwinding = (arm::base_from_tool(motion.target()).translation() - back_from_m_).norm() < unwinding_m_;
+  if (!motion.planning() && !unwinding && watch.joints().valid) back_guard.update(now, pushed_target(), measured_rad(), measured_nm());
   if (!back_guard.touched()) return follow_motion();
   motion.stop();
   return Progress::failed(StepFailure::touched_on_the_way_back);

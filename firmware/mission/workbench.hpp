@@ -1,6 +1,8 @@
 // What every step of the mission works with, and what outlives the steps: the joints, what moves them, the camera, what is known of the panel, the job.
 #pragma once
 
+#include <optional>
+
 #include "firmware/arm/compliance.hpp"
 #include "firmware/arm/gripper.hpp"
 #include "firmware/arm/guarded_motion.hpp"
@@ -56,8 +58,17 @@ struct Workbench {
   const MissionConfig& mission() const { return config.mission; }
   arm::JointVector measured_rad() const;
   arm::JointVector measured_nm() const;
-  Room room() const;  // around the arm, as far as it is known
-  void go_clear(const arm::JointVector& goal_rad) { motion.go_clear(goal_rad, room(), config.mission.move_speed_fraction); }
+  double jaw_rad() const { return watch.joints().position_rad[static_cast<std::size_t>(Joint::jaw)]; }
+  // What is around the arm, as far as it is known, while the jaw goes from where it is to `jaw_goal_rad`. The fingers may touch the parts `meant`.
+  Room room(double jaw_goal_rad, arm::PanelParts meant = 0) const;
+  // What the fingers are to touch in the task under way: the handle with its stem, or the button, before the plate that its cap stands on.
+  arm::PanelParts meant_parts() const;
+  // Ways through free space: the jaw opens to this, or closes (0), on the way. It does not move before the way is found to be clear with it.
+  void go_clear(const arm::JointVector& goal_rad, double jaw_opening_m);
+  void go_to_sweep(const scan::SweepRequest& request);  // with the jaw closing
+  Progress follow_way();
+  // A straight motion of the tool with the jaw as it is.
+  void go_straight(const Vec3& goal_m, double roll_rad, double speed_m_s, arm::PanelParts meant);
   // Done when the motion is; failed when the motion could not be planned.
   Progress follow_motion() const;
   // The task under way is at its beginning again.
@@ -71,9 +82,17 @@ struct Workbench {
   void let_off_roll();
   // The arm's targets become its positions: it presses on nothing, and a drive whose encoder stands still is not driven on.
   void stay_where_measured();
-  // Straight back to the stand-off, under guard: whoever leaves a contact may touch nothing new.
-  void begin_back_off();
+  // Straight back to the stand-off, under guard: whoever leaves a contact may touch nothing new. After a press the arm is wound up against the button: what it
+  // lets off on its first `unwinding_m` is no contact.
+  static constexpr double after_a_press_m = 0.006;  // twice what it gives way by at 60 N
+  void begin_back_off(double unwinding_m = 0);
   Progress follow_back_off(Time now);
+
+ private:
+  Room room_on_the_way(double jaw_opening_m);
+  double unwinding_m_ = 0;
+  Vec3 back_from_m_ = Vec3::Zero();
+  std::optional<double> jaw_order_m_;  // what the jaw does once the way is clear
 };
 
 // One tick of one step: its surroundings.

@@ -149,8 +149,26 @@ LaserCalibration laser_calibration(const Laser& laser) {
 
 std::uint8_t button_index(const std::string& name) { return name == "left" ? 0 : name == "centre" ? 1 : 2; }
 
+[[noreturn]] void refuse(const Machine& machine, const std::string& message) { throw InputError(machine.file + ": " + message); }
+
+arm::VehicleShape vehicle_shape(const Machine& machine) {
+  arm::VehicleShape shape;
+  const std::string most = std::to_string(arm::VehicleShape::capacity);
+  for (const auto& [x, y, z, dx, dy, dz] : machine.vehicle.boxes_m) {
+    if (!(dx > 0 && dy > 0 && dz > 0)) refuse(machine, "'vehicle.boxes_m' has a box without an extent above 0 along each axis");
+    if (!shape.boxes.push_back({Vec3(x, y, z), Vec3(dx, dy, dz)})) refuse(machine, "'vehicle.boxes_m' has more than " + most + " boxes");
+  }
+  for (const auto& [ax, ay, az, bx, by, bz, radius] : machine.vehicle.capsules_m) {
+    if (!(radius > 0)) refuse(machine, "'vehicle.capsules_m' has one without a radius above 0");
+    if (!shape.rods.push_back({Vec3(ax, ay, az), Vec3(bx, by, bz), radius}))
+      refuse(machine, "'vehicle.capsules_m' has more than " + most + " capsules");
+  }
+  return shape;
+}
+
 mission::MissionConfig mission_config(const Machine& machine) {
   mission::MissionConfig config = machine.mission;
+  config.vehicle = vehicle_shape(machine);
   config.layout = machine.panel;
   config.layout.handle_min_rad = rad_from_deg(machine.valve.stop_min_deg);
   config.layout.handle_max_rad = rad_from_deg(machine.valve.stop_max_deg);
@@ -160,8 +178,6 @@ mission::MissionConfig mission_config(const Machine& machine) {
   config.tasks = core_tasks(machine.tasks, machine.file);
   return config;
 }
-
-[[noreturn]] void refuse(const Machine& machine, const std::string& message) { throw InputError(machine.file + ": " + message); }
 
 std::string excess_text(const arm::IkResult& ik) {
   char text[48];
@@ -188,6 +204,25 @@ void check_reach_of_tasks(const Machine& machine) {
       check_reach(machine, "the " + name + " button", Vec3(centre.x(), centre.y(), panel.button_height_m));
     }
   }
+}
+
+// What a sweep at 25 Hz gives, 232,000 points, fills the cloud to nine tenths. At more frames a second the points are taken of fewer columns. Backgrounds that
+// are older leave more of the moving hand's outline.
+void set_frame_rate(const mission::MissionConfig& mission, ScanConfig& scan) {
+  constexpr std::uint32_t full_cloud_syncs = 9;
+  constexpr double hand_m_s = 0.040, outline_m = 0.0036;
+  scan.columns_apart = (full_cloud_syncs + mission.camera_syncs - 1) / mission.camera_syncs;
+  const double oldest_background_s = (mission.frames_per_background - 1) * mission.camera_syncs * can_map::sync_period.s();
+  scan.silhouette_margin_m = outline_m + hand_m_s * oldest_background_s;
+}
+
+// Laser and lamps switch with the frames, on SYNCs: they have to stay as they are over a whole exposure, by the output node's reports.
+void check_exposure(const Machine& machine) {
+  const double longest_us = 1e6 * (machine.mission.camera_syncs - 1) * can_map::sync_period.s();
+  if (static_cast<double>(machine.camera.exposure_us) <= longest_us) return;
+  refuse(machine, "'camera.exposure_us' is " + std::to_string(machine.camera.exposure_us) + ": with 'mission.camera_syncs' at " +
+                      std::to_string(machine.mission.camera_syncs) + " an exposure lasts at most " +
+                      std::to_string(static_cast<int>(longest_us)) + " us");
 }
 
 // The wrist turns about the tool axis, the bar about the panel's normal: 20 degrees apart at most, over which the wrist is faster than the bar by 1 / cos.
@@ -314,6 +349,8 @@ Core assemble(const Machine& machine, const Steps& steps) {
   core.scan.camera = controller.camera;
   core.scan.laser = controller.laser;
   set_region(machine.panel, core.scan.triangulation);
+  set_frame_rate(machine.mission, core.scan);
+  steps.take([&] { check_exposure(machine); });
   steps.take([&] { check_reach_of_tasks(machine); });
   if (arm && limits) steps.take([&] { check_turn_speed(machine, description, controller.limits); });
   if (camera) steps.take([&] { check_view(machine, controller.camera); });

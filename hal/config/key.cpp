@@ -23,6 +23,10 @@ struct TypeName {
   std::string operator()(Vec2*) const { return "a list of 2 numbers"; }
   std::string operator()(std::array<Vec2, 3>*) const { return "a list of 3 lists of 2 numbers"; }
   std::string operator()(std::vector<double>*) const { return "a list of numbers"; }
+  template <std::size_t Count>
+  std::string operator()(std::vector<std::array<double, Count>>*) const {
+    return "a list of lists of " + std::to_string(Count) + " numbers";
+  }
   std::string operator()(std::vector<std::string>*) const { return key.words.empty() ? "a list of texts" : "a list of " + words(); }
   std::string operator()(std::vector<Task>*) const { return "a list of tasks"; }
   std::string operator()(std::vector<Fault>*) const { return "a list of faults"; }

@@ -48,6 +48,10 @@ struct FlowYaml {
     return flow_list(*value, [this](const Vec2& point) { return (*this)(&point); });
   }
   std::string operator()(const std::vector<double>* value) const { return flow_list(*value, number_text); }
+  template <std::size_t Count>
+  std::string operator()(const std::vector<std::array<double, Count>>* value) const {
+    return flow_list(*value, [](const std::array<double, Count>& item) { return flow_list(item, number_text); });
+  }
   std::string operator()(const std::vector<std::string>* value) const {
     return flow_list(*value, [](const std::string& text) { return text; });
   }

@@ -31,6 +31,24 @@ struct Laser {
   std::array<double, 3> position_m{-0.090, 0.0, -0.365};  // in the tool frame
 };
 
+// What of the vehicle the arm could reach, in the arm's base frame: skid, frame, hulls, the camera with its strut, and two lamps.
+struct Vehicle {
+  // [x, y, z, dx, dy, dz]: centre and extents along the base's axes.
+  std::vector<std::array<double, 6>> boxes_m{{-0.11, 0.0, -0.102, 0.50, 0.424, 0.060},  // the arm's mounting plate and its rails
+                                             {0.0, 0.0, -0.062, 0.116, 0.116, 0.020},   // the mount
+                                             {-0.37, 0.0, -0.115, 0.70, 0.64, 0.040},   // skid and its tubes
+                                             {-0.30, -0.30, -0.46, 0.03, 0.03, 0.75},   // the struts to the hulls
+                                             {-0.30, 0.30, -0.46, 0.03, 0.03, 0.75}};
+  // [x, y, z, x, y, z, radius]: the ends of its axis.
+  std::vector<std::array<double, 7>> capsules_m{{-1.025, -0.35, -0.85, -0.075, -0.35, -0.85, 0.16},  // the hulls
+                                                {-1.025, 0.35, -0.85, -0.075, 0.35, -0.85, 0.16},
+                                                {-1.025, 0.0, -0.30, -0.175, 0.0, -0.30, 0.15},
+                                                {-0.0731, -0.2784, -0.0294, 0.0069, -0.2481, 0.0518, 0.034},  // camera
+                                                {-0.035, -0.205, -0.072, -0.035, -0.222, 0.010, 0.010},       // its strut
+                                                {0.02, -0.62, 0.02, 0.02, -0.62, 0.02, 0.06},                 // lamps
+                                                {0.02, 0.45, 0.02, 0.02, 0.45, 0.02, 0.06}};
+};
+
 // The drive of one joint. What is 0 or empty is as for all, see Drives.
 struct JointDriveChoice {
   std::int64_t node = 0;
@@ -62,6 +80,7 @@ struct Machine {
   Camera camera;
   std::string camera_calibration;  // YAML of OpenCV or ROS that overrules `camera.focal_px` and `camera.distortion`; empty: none
   Laser laser;
+  Vehicle vehicle;
   std::string arm_urdf = "arm/arm5e.urdf";
   std::string safety_limits = "safety/limits.yaml";
   std::string homing_file;  // of the joints' zeros; empty: none is known, and no joint takes power
@@ -77,6 +96,7 @@ void add_panel(Keys& all, PanelLayout& panel);
 void add_valve_stops(Keys& all, ValveStops& valve);
 void add_camera(Keys& all, Camera& camera);
 void add_laser(Keys& all, Laser& laser);
+void add_vehicle(Keys& all, Vehicle& vehicle);
 void add_drives(Keys& all, Drives& drives);
 void add_mission(Keys& all, mission::MissionConfig& mission);
 

@@ -48,6 +48,14 @@ void add_laser(Keys& all, Laser& laser) {
   all.push_back(key("laser.position_m", "m", -1, 1, &laser.position_m, "[x, y, z] in the tool frame; the plane's normal is the tool's x"));
 }
 
+void add_vehicle(Keys& all, Vehicle& v) {
+  constexpr double far_m = 5;
+  all.push_back(key("vehicle.boxes_m", "m", -far_m, far_m, &v.boxes_m,
+                    "what the arm must not touch, at most 16: [x, y, z, dx, dy, dz], centre and extents in the arm's base frame"));
+  all.push_back(key("vehicle.capsules_m", "m", -far_m, far_m, &v.capsules_m,
+                    "the same, round: [x, y, z, x, y, z, radius], the ends of its axis; camera and lamps among them"));
+}
+
 void add_drives(Keys& all, Drives& d) {
   constexpr double most_counts = 1e6, most_nm = 1000, most_a = 1000;
   all.push_back(key("drives.profile", "", 0, 0, &d.profile, "make of the joints' drives: a shipped profile's name, or a file"));
@@ -80,7 +88,12 @@ JointDriveChoice drive_of(const Drives& drives, std::size_t joint) {
 
 void add_mission(Keys& all, mission::MissionConfig& m) {
   const double rad_s = 3;
-  all.push_back(key("mission.camera_syncs", "SYNC", 1, 250, &m.camera_syncs, "SYNCs from one exposure to the next; 10 are 25 Hz"));
+  all.push_back(key("mission.docking_m", "m", 0, 0.1, &m.docking.shift_m,
+                    "how far the panel may be off its nominal place along each of the base's axes: kept clear of until it was looked at"));
+  all.push_back(key("mission.docking_rad", "rad", 0, 0.2, &m.docking.turn_rad, "how far it may be turned about each of them"));
+  all.push_back(key("mission.camera_syncs", "SYNC", 2, 20, &m.camera_syncs,
+                    "SYNCs from one exposure to the next; 10 are 25 Hz. At 1 no report confirms the outputs; beyond 20 the stripes on the "
+                    "handle are no longer one"));
   all.push_back(
       key("mission.frames_per_background", "", 2, 100, &m.frames_per_background, "one frame in so many is taken without the laser"));
   all.push_back(key("mission.sweep_speed_rad_s", "rad/s", 0.001, rad_s, &m.sweep_speed_rad_s,

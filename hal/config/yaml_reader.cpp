@@ -67,6 +67,15 @@ class ValueReader {
     for (std::size_t i = 0; i < value->size(); ++i) (*value)[i] = point(node_[i]);
   }
   void operator()(std::vector<double>* value) const { *value = numbers(node_, 0); }
+  template <std::size_t Count>
+  void operator()(std::vector<std::array<double, Count>>* value) const {
+    if (!node_.IsSequence()) wrong_type(node_);
+    value->clear();
+    for (const YAML::Node& item : node_) {
+      const std::vector<double> read = numbers(item, Count);
+      std::copy(read.begin(), read.end(), value->emplace_back().begin());
+    }
+  }
   void operator()(std::vector<std::string>* value) const;
   void operator()(std::vector<Task>* value) const;
   void operator()(std::vector<Fault>* value) const;

@@ -124,6 +124,9 @@ Json tasks_json(const ControlReport& control) {
       json["task"] = "press_button";
       json["button"] = result.task.button < buttons.size() ? buttons[result.task.button] : "?";
       json["presses"] = result.presses;
+      if (result.attempted) json["travel_mm"] = 1e3 * result.travel_m;
+      if (result.attempted) json["click_felt"] = result.click_felt;
+      if (result.failure != StepFailure::none) json["failure"] = lf::name(result.failure);
     }
     json["done"] = result.done;
     all.push_back(json);

@@ -42,6 +42,12 @@ class Draw {
   std::string operator()(std::vector<double>*) {
     return list(key_.path == "camera.distortion" ? 5 : 1 + static_cast<std::size_t>(3 * share()));
   }
+  template <std::size_t Count>
+  std::string operator()(std::vector<std::array<double, Count>>*) {
+    std::string text = "[" + list(Count);
+    while (share() < 0.5) text += ", " + list(Count);
+    return text + "]";
+  }
   std::string operator()(std::vector<config::Task>*) { return "[{turn_valve: {to_deg: " + text_of(rounded(360 * share() - 180)) + "}}]"; }
   std::string operator()(PanelLayout::Pointer*) {
     return key_.words[static_cast<std::size_t>(share() * static_cast<double>(key_.words.size()))];

@@ -57,6 +57,9 @@ std::vector<record::TaskRecord> task_records(const Controller& controller, const
       task.task = "press_button";
       task.button = button_names[result.task.button];
       task.presses = static_cast<int>(truth.presses[result.task.button]);
+      if (result.attempted) task.travel_mm = 1e3 * result.travel_m;
+      task.click_felt = result.click_felt;
+      if (result.failure != StepFailure::none) task.failure = name(result.failure);
     }
     task.done = done[i];
     records.push_back(task);

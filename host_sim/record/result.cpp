@@ -31,7 +31,15 @@ Json to_json(const PhaseRecord& phase) {
 }
 
 Json to_json(const TaskRecord& task) {
-  if (task.task == "press_button") return {{"task", task.task}, {"button", task.button}, {"presses", task.presses}, {"done", task.done}};
+  if (task.task == "press_button") {
+    Json json{{"task", task.task}, {"button", task.button}, {"presses", task.presses}, {"done", task.done}};
+    if (std::isfinite(task.travel_mm)) {
+      json["travel_mm"] = task.travel_mm;
+      json["click_felt"] = task.click_felt;
+    }
+    if (!task.failure.empty()) json["failure"] = task.failure;
+    return json;
+  }
   return {{"task", task.task}, {"target_deg", number(task.target_deg)}, {"reached_deg", number(task.reached_deg)}, {"done", task.done}};
 }
 

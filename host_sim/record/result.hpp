@@ -29,6 +29,9 @@ struct TaskRecord {
   double target_deg = unknown;   // turn_valve
   double reached_deg = unknown;  // turn_valve: the true angle
   bool done = false;
+  double travel_mm = unknown;  // press_button: how far it went in, as the core felt it
+  bool click_felt = false;     // press_button: by the core
+  std::string failure{};       // press_button: what the core found wrong with it; empty: nothing
 };
 
 // Against the simulator's truth, scored outside the core.

@@ -49,6 +49,9 @@ TaskRecord task_from(const Json& json) {
   json.at("task").get_to(task.task);
   read(json, "button", task.button);
   read(json, "presses", task.presses);
+  read(json, "travel_mm", task.travel_mm);
+  read(json, "click_felt", task.click_felt);
+  read(json, "failure", task.failure);
   read(json, "target_deg", task.target_deg);
   read(json, "reached_deg", task.reached_deg);
   read(json, "done", task.done);

@@ -52,6 +52,10 @@ struct TypeSchema {
   Json operator()(Vec2*) const { return list_schema(number_schema(key, "number"), 2); }
   Json operator()(std::array<Vec2, 3>*) const { return list_schema((*this)(static_cast<Vec2*>(nullptr)), 3); }
   Json operator()(std::vector<double>*) const { return list_schema(number_schema(key, "number"), 0); }
+  template <std::size_t Count>
+  Json operator()(std::vector<std::array<double, Count>>*) const {
+    return list_schema(list_schema(number_schema(key, "number"), Count), 0);
+  }
   Json operator()(std::vector<std::string>*) const { return list_schema(words_schema(key), 0); }
   Json operator()(std::vector<Task>*) const {
     Task task;

@@ -32,6 +32,8 @@ void add_place(Keys& all, Scenario& s) {
   all.push_back(key("buttons.click_depth_m", "m", 0.0005, 0.05, &s.buttons.click_depth_m, "depth at which a button clicks and counts"));
   all.push_back(key("buttons.release_depth_m", "m", 0, 0.05, &s.buttons.release_depth_m, "depth at which it lets go on the way out"));
   all.push_back(key("buttons.click_drop_n", "N", 0, 100, &s.buttons.click_drop_n, "force that a clicked button gives less"));
+  all.push_back(key("buttons.stuck", "", 0, 0, &s.buttons.stuck, "buttons that do not move", {"left", "centre", "right"}));
+  all.push_back(key("buttons.missing", "", 0, 0, &s.buttons.missing, "buttons that broke off", {"left", "centre", "right"}));
 }
 
 void add_sight(Keys& all, Scenario& s) {
@@ -60,6 +62,7 @@ void add_sight(Keys& all, Scenario& s) {
 }
 
 void add_machine(Keys& all, Scenario& s) {
+  config::add_vehicle(all, s.vehicle);
   all.push_back(key("arm.urdf", "", 0, 0, &s.arm.urdf, "the arm; relative to the scenario's folder, then to the shipped files"));
   all.push_back(key("jaw.torque_nm", "N m", 0, 200, &s.jaw.torque_nm, "closing torque at each finger; 0: as the URDF says"));
   all.push_back(key("jaw.pad_friction", "", 0, 3, &s.jaw.pad_friction, "friction of the finger pads; 0: as the URDF says"));

@@ -12,6 +12,7 @@ config::Machine machine_of(const Scenario& scenario, bool lamps_lit) {
   machine.valve = scenario.valve;
   machine.camera = scenario.camera;
   machine.laser = scenario.laser;
+  machine.vehicle = scenario.vehicle;
   machine.arm_urdf = scenario.arm.urdf;
   machine.safety_limits = scenario.safety.limits;
   machine.homing_file = "homing/simulator.yaml";

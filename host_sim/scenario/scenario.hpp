@@ -43,6 +43,12 @@ struct Valve : config::ValveStops {
   double viscous_nm_s = world::ValveConfig{}.viscous_nm_s;
 };
 
+// All three are alike, but for those that are broken.
+struct Buttons : world::ButtonConfig {
+  std::vector<std::string> stuck;    // left, centre, right
+  std::vector<std::string> missing;  // gone, cap and all
+};
+
 struct Water {
   Spread attenuation_per_m{0.1, 0.8};  // of green light, absorption and scattering together
   double scattering_share = optics::WaterConfig{}.scattering_share;
@@ -129,12 +135,13 @@ struct Scenario {
   PanelLayout panel;
   Docking docking;
   Valve valve;
-  world::ButtonConfig buttons;  // all three
+  Buttons buttons;
   Water water;
   Lamps lamps;
   Camera camera;
   Laser laser;
   Mounting mounting;
+  config::Vehicle vehicle;
   Arm arm;
   Jaw jaw;
   Physics physics;

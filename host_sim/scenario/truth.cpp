@@ -45,6 +45,8 @@ void move_marker(scene::Body& panel, const Sample& sample) {
   }
 }
 
+std::size_t button_of(const std::string& name) { return name == "left" ? 0 : name == "centre" ? 1 : 2; }
+
 world::WorldConfig world_config(const Scenario& scenario, const Sample& sample) {
   world::WorldConfig world;
   world.arm = true_arm(scenario);
@@ -61,6 +63,9 @@ world::WorldConfig world_config(const Scenario& scenario, const Sample& sample) 
   for (const double detent : scenario.valve.detents_deg) world.valve.detents_rad.push_back(rad_from_deg(detent));
   world.buttons.fill(scenario.buttons);
   for (world::ButtonConfig& button : world.buttons) button.stroke_m = scenario.panel.button_stroke_m;
+  for (const std::string& name : scenario.buttons.stuck) world.buttons[button_of(name)].stuck = true;
+  for (const std::string& name : scenario.buttons.missing)
+    world.scene[std::size_t(scene::BodyId::button_left) + button_of(name)].shapes.clear();
   world.joint_drag_nm_s = scenario.physics.joint_drag_nm_s;
   world.restitution = scenario.physics.restitution;
   return world;

@@ -32,10 +32,11 @@ ButtonBody::ButtonBody(const ButtonConfig& config, const Pose& base_from_button,
 void ButtonBody::before_step() {
   const double depth = part_.body().getJointPos(0);
   const double spring_n = config_.preload_n + config_.spring_n_m * depth - (state_.pressed ? config_.click_drop_n : 0);
+  const double stroke_m = config_.stuck ? 0 : config_.stroke_m;
   rows_->begin();
   if (depth - stop_reach_m_s * step_s_ < 0) rows_->set(out_stop, {-depth / step_s_, 0, stop_impulse_n_s});
-  if (depth + stop_reach_m_s * step_s_ > config_.stroke_m) {
-    rows_->set(in_stop, {(config_.stroke_m - depth) / step_s_, -stop_impulse_n_s, 0});
+  if (depth + stop_reach_m_s * step_s_ > stroke_m) {
+    rows_->set(in_stop, {(stroke_m - depth) / step_s_, -stop_impulse_n_s, 0});
   }
   rows_->apply_start(step_s_);
   part_.body().addJointTorque(0, -spring_n - config_.damping_n_s_m * part_.body().getJointVel(0));

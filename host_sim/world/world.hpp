@@ -41,6 +41,7 @@ struct ButtonConfig {
   double click_depth_m = 0.0035;    // going in: pressed, and counted
   double release_depth_m = 0.0025;  // coming out: no longer pressed
   double click_drop_n = 3;
+  bool stuck = false;     // it does not move
   double mass_kg = 0.25;  // cap, plunger and water; below 0.2 kg a bottomed cap overtravels (Bullet, 1 kHz, 30 iterations)
 };
 

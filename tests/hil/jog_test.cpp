@@ -105,6 +105,31 @@ TEST(JogByTheWrongNumbers, IsRefused) {
   EXPECT_LT(farthest_apart(angles_rad(rig), before), 0.003);
 }
 
+// Before the first look the panel may be 20 mm and 2 degrees nearer than where it should stand.
+TEST(JogTowardThePanel, EndsBeforeItAndSaysWhy) {
+  Rig rig;
+  ASSERT_TRUE(home(rig)) << rig.story();
+  ASSERT_TRUE(jog(rig, Joint::shoulder, 0.35));
+  ASSERT_TRUE(finish_jog(rig)) << rig.story();
+  ASSERT_TRUE(jog(rig, Joint::shoulder, 0.3));
+  ASSERT_TRUE(finish_jog(rig)) << rig.story();
+  EXPECT_EQ(rig.count(Fault::step_failed), 0u) << rig.story();
+  double before_rad = 0;
+  for (int jogs = 0; rig.count(Fault::step_failed) == 0; ++jogs) {
+    ASSERT_LT(jogs, 20) << rig.story();
+    before_rad = angle_rad(rig, Joint::elbow);
+    ASSERT_TRUE(jog(rig, Joint::elbow, -0.1)) << rig.story();
+    ASSERT_TRUE(finish_jog(rig)) << rig.story();
+  }
+  EXPECT_NEAR(angle_rad(rig, Joint::elbow), before_rad, 0.003) << "it moved before it was refused";
+  EXPECT_EQ(rig.events().rbegin()[1].code, static_cast<std::int32_t>(StepFailure::panel_in_the_way)) << rig.story();
+  EXPECT_TRUE(rig.world().contacts().unintended.empty());
+  ASSERT_TRUE(jog(rig, Joint::elbow, 0.2)) << "back again";
+  ASSERT_TRUE(finish_jog(rig)) << rig.story();
+  EXPECT_NEAR(angle_rad(rig, Joint::elbow), before_rad + 0.2, 0.012);
+  EXPECT_EQ(rig.count(Fault::step_failed), 1u);
+}
+
 class JogToTheEnd : public testing::TestWithParam<Joint> {};
 
 // As far as it is let, either way: never out of the limits, nor against a stop.

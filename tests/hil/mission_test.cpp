@@ -43,6 +43,31 @@ INSTANTIATE_TEST_SUITE_P(Seeds, WholeMission,
                          testing::Values(Seeded{"default", 1, "either", "Default1"}, Seeded{"turbid", 7, "false", "TurbidInTheDark7"}),
                          [](const testing::TestParamInfo<Seeded>& test) { return std::string(test.param.name); });
 
+struct Rate {
+  const char* syncs;
+  const char* name;
+};
+
+class FrameRate : public testing::TestWithParam<Rate> {};
+
+// As often, and as seldom, as the camera may be triggered: no image is lost, nothing overflows, and the handle is found and turned.
+TEST_P(FrameRate, AtTheEndsOfItsRangeServesAMission) {
+  ScanStats at_end;
+  const Meddle look = [&](Time, Controller& controller, hal::SimPlatform&) { at_end = controller.mission().scan_stats(); };
+  const MissionRun run = run_mission("turn_only", 1, {std::string("mission.camera_syncs=") + GetParam().syncs}, 2, look);
+  SCOPED_TRACE(describe(run));
+  EXPECT_TRUE(run.outcome.success);
+  EXPECT_NEAR(run.valve_rad, target_rad, rad_from_deg(3));
+  EXPECT_EQ(at_end.points_overflowed, 0u);
+  EXPECT_EQ(at_end.points_no_joints, 0u);
+  EXPECT_EQ(at_end.images_missing, 0u);
+  EXPECT_LE(at_end.images_refused, 2u) << "the last one of each sweep, over which the laser goes off";
+  EXPECT_GT(at_end.points, 50'000u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Ends, FrameRate, testing::Values(Rate{"2", "At125Hz"}, Rate{"20", "At12Hz"}),
+                         [](const testing::TestParamInfo<Rate>& test) { return std::string(test.param.name); });
+
 // Boot, deployment and the first pictures of the sweep: everything that could depend on threads is at work by then.
 TEST(Digest, IsTheSameForOneAndTwoRenderThreadsAndForARepetition) {
   const std::vector<std::string> short_run{"time_limit_s=12"};

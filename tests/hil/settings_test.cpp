@@ -25,5 +25,31 @@ TEST(SweepSpeed, IsTheScenarios) {
   EXPECT_NEAR(usual_s / faster_s, 0.1 / 0.065, 0.05);
 }
 
+// A lamp hangs where the sweep begins: the core is told of it, and the arm does not set out. The mission fails where it stands, by the obstacle's name.
+TEST(AVehicleInTheWay, IsNamedBeforeAnythingMoves) {
+  Rig usual;
+  usual.start();
+  ASSERT_TRUE(usual.run_to(Step::scan)) << usual.story();
+  const Vec3 tool = usual.world().base_from_tool().translation();
+  const std::string ball = std::to_string(tool.x()) + "," + std::to_string(tool.y()) + "," + std::to_string(tool.z());
+  Rig rig({"vehicle.capsules_m=[[" + ball + "," + ball + ",0.02]]"});
+  rig.start();
+  ASSERT_TRUE(rig.run_to(Step::deploy)) << rig.story();
+  const JointReadings before = rig.world().readings();
+  ASSERT_TRUE(rig.run_to_end()) << rig.story();
+  EXPECT_FALSE(rig.outcome().success);
+  EXPECT_EQ(rig.outcome().step, Step::deploy) << rig.story();
+  EXPECT_EQ(rig.outcome().code, static_cast<std::int32_t>(StepFailure::vehicle_in_the_way)) << rig.story();
+  for (std::size_t i = 0; i < arm_joint_count; ++i) EXPECT_NEAR(rig.world().readings()[i].position_rad, before[i].position_rad, 0.002) << i;
+}
+
+// The same where the panel may stand anywhere within a decimetre.
+TEST(ADockingThatIsHardlyKnown, KeepsTheArmWhereItIs) {
+  Rig rig({"mission.docking_m=0.1"});
+  rig.start();
+  ASSERT_TRUE(rig.run_to_end()) << rig.story();
+  EXPECT_EQ(rig.outcome().step, Step::deploy) << rig.story();
+}
+
 }  // namespace
 }  // namespace lf::test

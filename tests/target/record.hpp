@@ -165,11 +165,33 @@ void pass(S& s, PanelLayout& v) {
            marker_thickness, marker_centre);
 }
 template <class S>
+void pass(S& s, arm::PanelDoubt& v) {
+  auto& [shift_m, turn_rad] = v;
+  pass_all(s, shift_m, turn_rad);
+}
+template <class S>
+void pass(S& s, arm::VehicleShape::Box& v) {
+  auto& [centre_m, size_m] = v;
+  pass_all(s, centre_m, size_m);
+}
+template <class S>
+void pass(S& s, arm::VehicleShape::Rod& v) {
+  auto& [a_m, b_m, radius_m] = v;
+  pass_all(s, a_m, b_m, radius_m);
+}
+template <class S>
+void pass(S& s, arm::VehicleShape& v) {
+  auto& [boxes, rods] = v;
+  pass_all(s, boxes, rods);
+}
+template <class S>
 void pass(S& s, mission::MissionConfig& v) {
-  auto& [tasks, layout, park, lamps, always_on, camera_syncs, frames_per_background, image_due, sweep_speed, verify_band, move_speed,
-         approach_distance, approach_speed, press_speed, press_overtravel, press_torque, turn_speed, jaw_open, valve_tolerance, tries] = v;
-  pass_all(s, tasks, layout, park, lamps, always_on, camera_syncs, frames_per_background, image_due, sweep_speed, verify_band, move_speed,
-           approach_distance, approach_speed, press_speed, press_overtravel, press_torque, turn_speed, jaw_open, valve_tolerance, tries);
+  auto& [tasks, layout, docking, vehicle, park, lamps, always_on, camera_syncs, frames_per_background, image_due, sweep_speed, verify_band,
+         move_speed, approach_distance, approach_speed, press_speed, press_overtravel, press_torque, turn_speed, jaw_open, valve_tolerance,
+         tries] = v;
+  pass_all(s, tasks, layout, docking, vehicle, park, lamps, always_on, camera_syncs, frames_per_background, image_due, sweep_speed,
+           verify_band, move_speed, approach_distance, approach_speed, press_speed, press_overtravel, press_torque, turn_speed, jaw_open,
+           valve_tolerance, tries);
 }
 template <class S>
 void pass(S& s, safety::JointLimit& v) {

@@ -154,6 +154,105 @@ TEST(PanelShape, OfTheHandleIsTwentyMillimetresAtEveryButton) {
   }
 }
 
+// Points all over the solids of panels that are off by up to the doubt, each axis on its own, are inside of the grown ones: so whatever touches a point is
+// nearer to the grown panel than nothing at all.
+TEST(PanelShapeGrown, ContainsItselfWhereverItMayBe) {
+  SCOPED_TRACE(testing::Message() << "seed " << seed);
+  RandomJoints random(seed);
+  const PanelLayout layout;
+  const PanelDoubt doubt{0.020, 0.0349};
+  const Pose believed = layout.nominal_base_from_panel();
+  const PanelShape surveyed(layout), grown = surveyed.grown(believed, doubt);
+  double nearest_to_border = 1e9;
+  for (int k = 0; k < 20'000; ++k) {
+    const auto either = [&](double most) {
+      return random.uniform(0, 1) < 0.5 ? std::copysign(most, random.uniform(-1, 1)) : random.uniform(-most, most);
+    };
+    Pose real = believed;
+    real.translation() += Vec3(either(doubt.shift_m), either(doubt.shift_m), either(doubt.shift_m));
+    real.linear() = Eigen::AngleAxisd(either(doubt.turn_rad), Vec3::UnitZ()).toRotationMatrix() *
+                    Eigen::AngleAxisd(either(doubt.turn_rad), Vec3::UnitY()).toRotationMatrix() *
+                    Eigen::AngleAxisd(either(doubt.turn_rad), Vec3::UnitX()).toRotationMatrix() * real.linear();
+    // A corner or rim of the plate, a button's face, or the handle's disc.
+    Vec3 p;
+    const double angle = random.uniform(-pi, pi);
+    switch (k % 3) {
+      case 0:
+        p = Vec3(either(1) < 0 ? layout.plate_min_m.x() : layout.plate_max_m.x(),
+                 either(1) < 0 ? layout.plate_min_m.y() : layout.plate_max_m.y(), 0);
+        break;
+      case 1:
+        p = Vec3(layout.buttons_m[2].x() + either(0.5 * layout.button_width_m), layout.buttons_m[2].y(), layout.button_height_m);
+        break;
+      default:
+        p = Vec3(0, 0, layout.handle_height_m + either(0.5 * layout.handle_thickness_m)) +
+            std::hypot(layout.handle_length_m, layout.handle_thickness_m) / 2 * Vec3(std::cos(angle), std::sin(angle), 0);
+    }
+    LinkCapsules all;
+    all.fill({2, real * p, real * p, 0});
+    const double distance = grown.clearance(all, believed).distance_m;
+    ASSERT_LE(distance, 1e-9) << "draw " << k << ", point " << p.transpose();
+    // How much larger it could have been: the point's distance to the surveyed panel.
+    nearest_to_border = std::min(nearest_to_border, std::abs(surveyed.clearance(all, believed).distance_m - 0.047));
+  }
+  EXPECT_LT(nearest_to_border, 0.005) << "no draw came near the worst: 20 mm, and 2 degrees over 0.78 m";
+  EXPECT_NEAR(surveyed.grown(believed, {}).clearance(link_capsules({0, 1.0, 1.5, 0}, 0), believed).distance_m,
+              surveyed.clearance(link_capsules({0, 1.0, 1.5, 0}, 0), believed).distance_m, 1e-12);
+}
+
+TEST(PanelShape, LeavesOutForTheFingersWhatOnlyTheyMayTouch) {
+  const PanelLayout layout;
+  const Pose base_from_panel = layout.nominal_base_from_panel();
+  const LinkCapsules grasp = link_capsules({0, 1.307, 1.151, 0}, 0);
+  const PanelParts handle = bit(PanelPart::handle) | bit(PanelPart::stem);
+  const PanelShape panel(layout);
+  EXPECT_LT(panel.clearance(grasp, base_from_panel).distance_m, 0);
+  const Clearance others = panel.clearance(grasp, base_from_panel, 0, handle);
+  EXPECT_GT(others.distance_m, 0.02);
+  LinkCapsules without_fingers = grasp;
+  for (Capsule& capsule : without_fingers)
+    if (capsule.link >= 5) capsule.a_m = capsule.b_m = Vec3(-5, 0, 0);
+  const double wrist_m = panel.clearance(without_fingers, base_from_panel).distance_m;
+  const double fingers_m = panel.clearance(grasp, base_from_panel, handle).distance_m;
+  EXPECT_NEAR(others.distance_m, std::min(wrist_m, fingers_m), 1e-12);
+}
+
+// The slew stands on the vehicle; everything after it counts.
+TEST(ClearanceToTheVehicle, IsThatOfTheNearestSolidToAnyLinkButTheSlew) {
+  SCOPED_TRACE(testing::Message() << "seed " << seed);
+  RandomJoints random(seed);
+  for (int k = 0; k < 500; ++k) {
+    VehicleShape vehicle;
+    for (int i = 0; i < 5; ++i) {
+      const auto point = [&] { return Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)); };
+      const Vec3 a = point();
+      ASSERT_TRUE(
+          vehicle.boxes.push_back({point(), Vec3(random.uniform(0.01, 0.5), random.uniform(0.01, 0.5), random.uniform(0.01, 0.5))}));
+      ASSERT_TRUE(vehicle.rods.push_back({a, i == 0 ? a : point(), random.uniform(0.01, 0.1)}));
+    }
+    const LinkCapsules capsules = link_capsules(random.next(), random.uniform(0, 1));
+    double least = 1e9;
+    for (const Capsule& c : capsules) {
+      if (c.link == 1) continue;
+      for (const VehicleShape::Box& box : vehicle.boxes) {
+        Pose pose = Pose::Identity();
+        pose.translation() = box.centre_m;
+        least = std::min(least, clearance_to_box(c, pose, box.size_m));
+      }
+      for (const VehicleShape::Rod& rod : vehicle.rods) {
+        const auto to_rod = [&](const Vec3& p) {
+          const Vec3 way = rod.b_m - rod.a_m;
+          const double along = way.squaredNorm() > 0 ? std::clamp(way.dot(p - rod.a_m) / way.squaredNorm(), 0.0, 1.0) : 0;
+          return (p - rod.a_m - way * along).norm();
+        };
+        least = std::min(least, sampled(c, to_rod) - rod.radius_m);
+      }
+    }
+    ASSERT_NEAR(clearance_to_vehicle(capsules, vehicle), least, 1e-4) << "draw " << k;
+  }
+  EXPECT_EQ(clearance_to_vehicle(link_capsules({0, 1, 1, 0}, 0), {}), HUGE_VAL);
+}
+
 // Its bounding boxes may only save work.
 TEST(PanelShape, IsAsFarAsTheNearestOfItsSolids) {
   SCOPED_TRACE(testing::Message() << "seed " << seed);

@@ -26,9 +26,22 @@ safety::Limits limits() {
 const arm::JointVector park{0, 0.6, 1.9, 0};
 
 Motion at_park(const PanelLayout& layout = {}) {
-  Motion motion(limits(), layout, park);
+  Motion motion(limits(), layout, {}, park);
   motion.start_at(park);
   return motion;
+}
+
+Room closed_before(const Pose& base_from_panel) {
+  Room room;
+  room.base_from_panel = base_from_panel;
+  return room;
+}
+
+// A panel that nothing comes near to.
+Room far_away() {
+  Pose pose = PanelLayout{}.nominal_base_from_panel();
+  pose.translation().x() += 2;
+  return closed_before(pose);
 }
 
 // Until the order is planned; false when it cannot be.
@@ -86,7 +99,7 @@ TEST(Motion, ALineStaysOnTheLine) {
   motion.start_at(start.q_rad);
   const Vec3 from = arm::base_from_tool(start.q_rad).translation();
   const Vec3 to(0.34, 0.01, 0.592);
-  motion.line(to, 0.3, 0.04);
+  motion.line(to, 0.3, far_away(), 0, 0.04);
   ASSERT_TRUE(planned(motion));
   while (!motion.done()) {
     motion.step(period_s);
@@ -113,7 +126,7 @@ TEST(Motion, TheSweepIsStrictlyAtConstantSpeedBetweenRunUpAndRunOut) {
   LaserCalibration laser;
   laser.tool_from_laser.translation() = Vec3(-0.090, 0, -0.365);
   Motion motion = at_park();
-  motion.go_to_sweep(request, laser, {request.base_from_panel, 0}, 0.6);
+  motion.go_to_sweep(request, laser, closed_before(request.base_from_panel), 0, 0.6);
   ASSERT_TRUE(planned(motion));
   const scan::SweepPlan plan = motion.sweep_plan();
   ASSERT_EQ(plan.outcome, scan::SweepOutcome::ok);
@@ -160,7 +173,7 @@ double nearest_m(Motion& motion, const Room& room) {
   double nearest = 1e9;
   for (int i = 0; i < 100'000 && !motion.done(); ++i) {
     motion.step(period_s);
-    nearest = std::min(nearest, panel.clearance(arm::link_capsules(motion.target(), room.jaw_rad), room.base_from_panel).distance_m);
+    nearest = std::min(nearest, panel.clearance(arm::link_capsules(motion.target(), room.jaw.low_rad), room.base_from_panel).distance_m);
   }
   EXPECT_TRUE(motion.done());
   return nearest;
@@ -178,7 +191,7 @@ double straight_s() {
 TEST(MotionPastThePanel, IsStraightWhereThatIsClear) {
   Motion motion = at_park(board());
   motion.start_at(behind_board);
-  motion.go_clear(past_board, board_at(1.5, 0, 0.55), 0.6);
+  motion.go_clear(past_board, board_at(1.5, 0, 0.55), 0, 0.6);
   ASSERT_TRUE(planned(motion));
   EXPECT_EQ(motion.duration_s(), straight_s());
 }
@@ -192,10 +205,10 @@ TEST(MotionPastThePanel, LeadsByTheParkPositionWhereTheStraightWayIsBarred) {
 
   Motion motion = at_park(board());
   motion.start_at(behind_board);
-  motion.go_clear(past_board, room, 0.6);
+  motion.go_clear(past_board, room, 0, 0.6);
   ASSERT_TRUE(planned(motion));
   EXPECT_GT(motion.duration_s(), straight_s());
-  EXPECT_GE(nearest_m(motion, room), ClearRoute::clearance_m - arm::ClearWay::resolution_m);
+  EXPECT_GE(nearest_m(motion, room), clearance_m - arm::ClearWay::resolution_m);
   EXPECT_LT((motion.target() - past_board).norm(), 1e-9);
 }
 
@@ -204,14 +217,14 @@ TEST(MotionPastThePanel, LooksAtTheWayToTheParkPositionToo) {
   const arm::JointVector from{-0.5, 0.9, 2.0, 0}, to{0.3, 1.2, 0.5, 0};
   const Room room = board_at(0.15, 0.05, 0.40);
   Motion from_park = at_park(board());
-  from_park.go_clear(to, room, 0.6);
+  from_park.go_clear(to, room, 0, 0.6);
   EXPECT_TRUE(planned(from_park));
 
   Motion motion = at_park(board());
   motion.start_at(from);
-  motion.go_clear(to, room, 0.6);
+  motion.go_clear(to, room, 0, 0.6);
   EXPECT_FALSE(planned(motion));
-  EXPECT_EQ(motion.failure(), StepFailure::no_motion);
+  EXPECT_EQ(motion.failure(), StepFailure::panel_in_the_way);
   EXPECT_TRUE(motion.done());
   EXPECT_EQ(motion.target(), from);
 }
@@ -225,10 +238,10 @@ TEST(MotionPastThePanel, MayLeaveFromNearerThanItWouldGo) {
   // The board comes up until the arm is 5 mm off it.
   while (panel.clearance(arm::link_capsules(near, 0), room.base_from_panel).distance_m > 0.005)
     room.base_from_panel.translation().x() -= 0.0005;
-  motion.go_clear(park, room, 0.6);
+  motion.go_clear(park, room, 0, 0.6);
   EXPECT_TRUE(planned(motion));
   motion.stop();
-  motion.go_clear({0, 1.25, 1.1, 0}, room, 0.6);
+  motion.go_clear({0, 1.25, 1.1, 0}, room, 0, 0.6);
   EXPECT_FALSE(planned(motion)) << "on into the board";
 }
 
@@ -251,7 +264,7 @@ TEST(Motion, HeldOnItsWayComesToRestThereAndGoesOnToTheSameEnd) {
 TEST(Motion, HeldWhileItIsPlannedDoesNotSetOut) {
   Motion motion = at_park();
   const arm::JointVector goal = park + arm::JointVector(0.1, 0.1, -0.1, 0);
-  motion.go_clear(goal, {}, 0.5);
+  motion.go_clear(goal, far_away(), 0, 0.5);
   ASSERT_TRUE(motion.planning());
   motion.hold();
   for (int i = 0; i < 500; ++i) motion.step(period_s);
@@ -268,7 +281,7 @@ TEST(Motion, IsPlannedInSharesAndStoppedMeanwhileStaysWhereItIs) {
   request.base_from_panel = PanelLayout{}.nominal_base_from_panel();
   LaserCalibration laser;
   laser.tool_from_laser.translation() = Vec3(-0.090, 0, -0.365);
-  motion.go_to_sweep(request, laser, {request.base_from_panel, 0}, 0.6);
+  motion.go_to_sweep(request, laser, closed_before(request.base_from_panel), 0, 0.6);
   for (int tick = 0; tick < 5; ++tick) {
     motion.step(period_s);
     EXPECT_TRUE(motion.planning());

@@ -60,6 +60,32 @@ TEST(Nominal, AnUnreachableValveIsRefusedWithTheLimitThatStopsIt) {
   EXPECT_THAT(far, ::testing::HasSubstr(" by "));
 }
 
+TEST(Nominal, AnExposureOverWhichTheLaserWouldSwitchIsRefused) {
+  EXPECT_THAT(refusal(load_scenario("default", {"mission.camera_syncs=2", "camera.exposure_us=4001"})),
+              ::testing::HasSubstr("an exposure lasts at most 4000 us"));
+  EXPECT_EQ(refusal(load_scenario("default", {"mission.camera_syncs=2", "camera.exposure_us=4000"})), "");
+}
+
+TEST(Nominal, AVehicleOfNoExtentOrOfTooManyPartsIsRefused) {
+  EXPECT_THAT(refusal(load_scenario("default", {"vehicle.boxes_m=[[0, 0, 0, 1, 0, 1]]"})),
+              ::testing::HasSubstr("without an extent above 0"));
+  EXPECT_THAT(refusal(load_scenario("default", {"vehicle.capsules_m=[[0, 0, 0, 1, 0, 1, 0]]"})), ::testing::HasSubstr("without a radius"));
+  std::string many = "[[-4, 0, 0, 1, 1, 1]";
+  for (std::size_t i = 0; i < arm::VehicleShape::capacity; ++i) many += ", [-4, 0, 0, 1, 1, 1]";
+  EXPECT_THAT(refusal(load_scenario("default", {"vehicle.boxes_m=" + many + "]"})), ::testing::HasSubstr("more than 16 boxes"));
+}
+
+TEST(Nominal, ACloudThinsItsColumnsWhereTheCameraIsFaster) {
+  const auto apart = [](const char* syncs) {
+    return make_nominal(load_scenario("default", {std::string("mission.camera_syncs=") + syncs}), false).scan.columns_apart;
+  };
+  EXPECT_EQ(apart("2"), 5u);
+  EXPECT_EQ(apart("8"), 2u);
+  EXPECT_EQ(apart("9"), 1u);
+  EXPECT_EQ(apart("20"), 1u);
+  EXPECT_NEAR(make_nominal(load_scenario("default"), false).scan.silhouette_margin_m, 0.010, 1e-12);
+}
+
 TEST(Nominal, APanelOutOfViewIsRefused) {
   EXPECT_THAT(refusal(load_scenario("default", {"camera.down_deg=-30"})), ::testing::HasSubstr("out of the camera's view"));
   EXPECT_THAT(refusal(load_scenario("default", {"camera.right_deg=180"})), ::testing::HasSubstr("is behind the camera"));

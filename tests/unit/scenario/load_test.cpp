@@ -109,6 +109,9 @@ const BadText bad_texts[] = {
     {"AList", "- 1\n", ":1: a scenario is a group of keys"},
     {"KeyThatIsAList", "[1]: 3\n", ":1: a key must be a word"},
     {"StartBeyondTheStop", "valve: {start_deg: 120}\n", ": 'valve.start_deg' lies beyond the valve's stops"},
+    {"FramesTooFast", "mission: {camera_syncs: 1}\n", ":1: 'mission.camera_syncs' is 1, out of its range 2 to 20"},
+    {"FramesTooSlow", "mission: {camera_syncs: 21}\n", ":1: 'mission.camera_syncs' is 21, out of its range 2 to 20"},
+    {"CapsuleOfSixNumbers", "vehicle: {capsules_m: [[0, 0, 0, 1, 0, 1]]}\n", ":1: 'vehicle.capsules_m' takes a list of lists of 7 numbers"},
     {"DistortionTooShort", "camera: {distortion: [0.1]}\n", ": 'camera.distortion' takes 5 numbers"},
 };
 INSTANTIATE_TEST_SUITE_P(Load, Refused, ::testing::ValuesIn(bad_texts), [](const auto& test) { return std::string(test.param.name); });
