@@ -27,7 +27,7 @@ enum class Course : std::uint8_t {
 };
 
 // A contact in motion that may touch nothing: what free motion takes of torque is learned on the way; how much more is a contact, the limits say, and for
-// the wrist half of its own limit if that is less. The overload is the watch's.
+// a joint nine tenths of its own limit if that is less. The overload is the watch's.
 arm::GuardConfig free_motion_guard(const safety::Limits& limits);
 
 struct Workbench {
@@ -55,7 +55,7 @@ struct Workbench {
   arm::Gripper new_gripper() const;
   const MissionConfig& mission() const { return config.mission; }
   arm::JointVector measured_rad() const;
-  arm::JointVector measured_nm() const;
+  arm::JointTorques measured_nm() const;
   Room room() const;  // around the arm, as far as it is known
   void go_clear(const arm::JointVector& goal_rad) { motion.go_clear(goal_rad, room(), config.mission.move_speed_fraction); }
   // Done when the motion is; failed when the motion could not be planned.
