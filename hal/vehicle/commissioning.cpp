@@ -32,8 +32,10 @@ constexpr double least_pressing = 0.7;
 constexpr double begins_to_fall = 0.9, has_fallen = 0.5, still_falls = 0.7;
 // A screw that nearly locks itself tells little on its way back.
 constexpr double least_back_efficiency = 0.3;
-// The stretch on which friction is found, in following-error windows: some 0.15 to 0.6 rad; and what of it at either end is not used.
-constexpr double least_rub_windows = 1, most_rub_windows = 4, rub_margin = 0.1;
+// The stretch on which friction is found, in following-error windows: some 0.15 to 0.6 rad.
+constexpr double least_rub_windows = 1, most_rub_windows = 4;
+// Of the drives' best: a third of the torque has to do.
+constexpr double rub_acceleration = 0.25;
 
 // The jaw's tips meet before its lower stop is reached.
 double direction(std::size_t joint) { return static_cast<Joint>(joint) == Joint::jaw ? 1 : -1; }
@@ -42,14 +44,19 @@ double stop_rad(std::size_t joint) {
   return direction(joint) < 0 ? stroke.lower_rad : stroke.upper_rad;
 }
 
+std::uint16_t pressing_permille(const Commissioning::Config& config, std::size_t joint) {
+  return arm_geometry::joints[joint].counts_per_rad > 0 ? config.gear_permille : config.screw_permille;
+}
+
 canopen::NetworkConfig gentle(const Commissioning::Config& config) {
   canopen::NetworkConfig network = config.network;
-  for (canopen::DriveSetup& drive : network.drives) {
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    canopen::DriveSetup& drive = network.drives[i];
     drive.encoder_zero_counts = 0;
     drive.zero_known = true;  // what is looked for: all counts here are the encoder's own, and wide open
     drive.min_counts = -any_count;
     drive.max_counts = any_count;
-    drive.max_torque_permille = std::min(drive.max_torque_permille, config.torque_permille);
+    drive.max_torque_permille = std::min(drive.max_torque_permille, pressing_permille(config, i));
     drive.homing_method = 0;
   }
   return network;
@@ -202,7 +209,8 @@ void Commissioning::seek(Time now) {
   const canopen::DriveSetup& drive = config_.network.drives[joint_];
   const double way = direction(joint_), lead = drive.following_window_counts / 2.0;
   const std::int32_t actual = axis().actual_counts();
-  if (actual != last_counts_) {
+  // A joint that presses between two counts wavers by one.
+  if (std::abs(actual - last_counts_) > 1) {
     last_counts_ = actual;
     moved_ = now;
   }
@@ -212,7 +220,7 @@ void Commissioning::seek(Time now) {
   const bool pressing = std::abs(target_ - actual) >= 0.9 * lead;
   if (!pressing || now - moved_ < config_.stall) return;
   pressed_permille_ = std::abs(axis().torque_permille());
-  if (pressed_permille_ < least_pressing * config_.torque_permille) {
+  if (pressed_permille_ < least_pressing * pressing_permille(config_, joint_)) {
     std::array<char, 120> why{};
     std::snprintf(why.data(), why.size(), "it stands still and presses with %ld %% of its torque only: look at its encoder and its gear",
                   std::lround(pressed_permille_ / 10));
@@ -274,6 +282,7 @@ void Commissioning::begin_rubbing(Time now) {
   rub_from_ = off_stop_counts();
   rub_to_ = rub_from_ - direction(joint_) * length;
   pass_.reset();
+  rub_speed_ = 0;
   fit_.reset();
   go(State::rubbing, now);
 }
@@ -282,17 +291,19 @@ void Commissioning::rub(Time now) {
   const canopen::DriveSetup& drive = config_.network.drives[joint_];
   const bool back = !pass_ || *pass_ % 2 == 1;  // to where the stretch begins
   const double end = back ? rub_from_ : rub_to_;
+  const double dt_s = network_.config().sync_period.s();
   const double speed = (pass_ && *pass_ >= 2 ? config_.fast_fraction : config_.slow_fraction) * drive.max_speed_counts_s;
-  const double step = speed * network_.config().sync_period.s();
-  const double actual = axis().actual_counts();
-  if (pass_ && target_ != end) {
-    const double place = (actual - rub_from_) / (rub_to_ - rub_from_);
-    // Setting off and braking are no steady motion.
-    fit_.add(*pass_, (place - rub_margin) / (1 - 2 * rub_margin), 1e-3 * std::copysign(speed, end - target_), axis().torque_permille());
-  }
-  target_ += std::clamp(end - target_, -step, step);
+  const double acceleration = rub_acceleration * drive.quick_stop_counts_s2;
+  // No faster than it can brake before the end, and on the last step as fast as just reaches it.
+  const double way_left = std::abs(end - target_);
+  const double wanted = std::min({speed, std::sqrt(2 * acceleration * way_left), way_left / dt_s});
+  rub_speed_ = std::min(wanted, rub_speed_ + acceleration * dt_s);
+  const double place = (axis().actual_counts() - rub_from_) / (rub_to_ - rub_from_);
+  if (pass_ && rub_speed_ == speed) fit_.add(*pass_, place, 1e-3 * std::copysign(speed, end - target_), axis().torque_permille());
+  target_ = way_left < 1 ? end : target_ + std::copysign(rub_speed_ * dt_s, end - target_);
   (void)axis().set_target_counts(static_cast<std::int32_t>(std::lround(target_)));
-  if (target_ != end || std::abs(actual - end) > std::max(3.0, arrived_windows * drive.following_window_counts)) return;
+  if (target_ != end || std::abs(axis().actual_counts() - end) > std::max(3.0, arrived_windows * drive.following_window_counts)) return;
+  rub_speed_ = 0;
   pass_ = pass_ ? *pass_ + 1 : 0;
   if (*pass_ < FrictionFit::passes) return;
   end_rubbing();

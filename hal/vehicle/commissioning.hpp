@@ -1,7 +1,7 @@
 // Commissioning: what each drive's absolute encoder counts where the arm's own count is 0, and how its motor and gear rub.
 //
-// One joint after the other is powered, moved slowly against a stop with a third of its rated torque, eased off until it only touches, read there, moved
-// both ways at two speeds over a stretch that it has just passed, from which friction_fit.hpp has its friction, moved back to where it was, and released: the stop's angle is known from the arm's description. What presses is wound up: read under a third of its torque the slew would be 0.4 deg off.
+// One joint after the other is powered, moved slowly against a stop with a third of its rated torque (a screw: two thirds), eased off until it only touches, read there, moved
+// both ways at two speeds over a stretch that it has just passed, from which friction_fit.hpp has its friction, moved back to where it was, and released: the stop's angle is known from the arm's description. What presses is wound up: read under that torque the slew would be 0.4 deg off.
 // The drives' own references are not touched. A plain object like the core, run by the control thread in the core's place: frames and the time in, frames
 // out, no heap. It stands on the core's own network and axes.
 //
@@ -31,12 +31,14 @@ class Commissioning {
         backlash_rad{};  // of each gear, as the arm's description has it: the motor touches half of it beyond the stop
     std::array<arm::TransmissionSetup, joint_count> transmissions;  // their friction, as far as it is known before
     bool here = false;                                              // the arm stands at its zero, in a jig: nothing is moved
-    double speed_fraction = 0.3;                       // of each drive's maximum: 0.13 rad/s of the slew, above its stiction of 0.06
-    std::uint16_t torque_permille = 350;               // of the rated torque: free motion under water takes less than a fifth
-    double slow_fraction = 0.35, fast_fraction = 0.7;  // of each drive's maximum speed, while its friction is found
-    double ease_fraction = 0.02;                       // of each drive's maximum speed: 0.007 rad of winding take the slew a second
-    Duration stall = Duration::from_ms(600);           // pressing without a count for so long is standing at the stop
-    Duration longest = Duration::from_ms(150'000);     // of one joint
+    double speed_fraction = 0.3;  // of each drive's maximum: 0.13 rad/s of the slew, above its stiction of 0.06
+    // Of the rated torque: free motion under water takes less than a fifth. At a stroke's end a screw has a third of its lever left: with less than two
+    // thirds of the torque the arm's weight stops the shoulder short.
+    std::uint16_t gear_permille = 350, screw_permille = 700;
+    double slow_fraction = 0.2, fast_fraction = 0.4;  // of each drive's maximum speed, while its friction is found
+    double ease_fraction = 0.02;                      // of each drive's maximum speed: 0.007 rad of winding take the slew a second
+    Duration stall = Duration::from_ms(600);          // pressing without a count for so long is standing at the stop
+    Duration longest = Duration::from_ms(150'000);    // of one joint
   };
 
   enum class State : std::uint8_t {
@@ -121,6 +123,7 @@ class Commissioning {
   double stop_counts_ = 0;                     // where it only touches
   FrictionFit fit_;
   double rub_from_ = 0, rub_to_ = 0;  // the stretch, counts
+  double rub_speed_ = 0;              // counts/s
   std::optional<std::size_t> pass_;   // of the fit's; none on the way to the stretch
 };
 

@@ -25,8 +25,8 @@ JointRows::Row flank_row(double flank_rad, const DriveStep& drive, double stiffn
   return row;
 }
 
-double stall_nm(double beyond_rad, const DriveStep& drive, const DrivenJoint& joint) {
-  return joint.stiffness_nm_rad > 0 ? std::min(drive.push_nm, joint.stiffness_nm_rad * beyond_rad) : drive.push_nm;
+double stall_nm(double wound_up_rad, const DriveStep& drive, const DrivenJoint& joint) {
+  return joint.stiffness_nm_rad > 0 ? std::min(drive.push_nm, joint.stiffness_nm_rad * std::max(0.0, wound_up_rad)) : drive.push_nm;
 }
 
 void set_row(JointRows& rows, Slot slot, const DrivenJoint& joint, JointRows::Row row) {
@@ -55,8 +55,8 @@ double set_drive_rows(JointRows& rows, const DrivenJoint& joint, const DriveStep
   if (at_upper_stop) set_row(rows, upper_stop, joint, {(joint.upper_rad - position_rad) / step_s, -unlimited_n_m_s, 0});
 
   // A drive that asks for what lies beyond a stop: two rows would fight over one joint, so it pushes as its spring is wound up, and the stop answers.
-  if (at_lower_stop && upper_rad < joint.lower_rad) return -stall_nm(joint.lower_rad - upper_rad, drive, joint);
-  if (at_upper_stop && lower_rad > joint.upper_rad) return stall_nm(lower_rad - joint.upper_rad, drive, joint);
+  if (at_lower_stop && upper_rad < joint.lower_rad) return -stall_nm(position_rad - upper_rad, drive, joint);
+  if (at_upper_stop && lower_rad > joint.upper_rad) return stall_nm(lower_rad - position_rad, drive, joint);
   if (up <= 0 && down <= 0) return 0;
   JointRows::Row lower = flank_row(lower_rad, drive, joint.stiffness_nm_rad, position_rad, step_s);
   JointRows::Row upper = flank_row(upper_rad, drive, joint.stiffness_nm_rad, position_rad, step_s);

@@ -28,7 +28,8 @@ using Angles = std::array<double, joint_count>;
 
 constexpr Zeros somewhere{12'345, -70'000, 7, 100'123, -54'321};
 constexpr Angles parked{0, 0.60, 1.90, 0, 0.3};
-constexpr double allowed_rad = 0.05 * pi / 180;
+// Screws rub, and what is not known of that before costs 0.02 degrees.
+constexpr double allowed_rad = 0.07 * pi / 180;
 
 // The arm with nothing within its reach, and drives whose zeros nobody knows.
 class Bench {
@@ -149,7 +150,12 @@ TEST(CommissionedArm, HasItsFrictionFound) {
     const config::JointFriction& found = commissioning.friction()[i];
     const devices::DriveConfig& drive = bench.drive(i);
     EXPECT_NEAR(1e-3 * found.coulomb_mnm, drive.friction.coulomb_nm, 0.1 * drive.friction.coulomb_nm) << config::joint_name(i);
-    EXPECT_NEAR(1e-3 * found.viscous_mnm_s, drive.friction.viscous_nm_s, 0.25 * drive.friction.viscous_nm_s) << config::joint_name(i);
+    // At the top speed viscous friction is 4 % of the rated torque; it is found to 2 %, of the roll, which creeps below its stiction speed of
+    // 0.2 rad/s, to 6 %.
+    const double top_rad_s = 0.04 * drive.rated_torque_nm / bench.nominal().controller.transmissions[i].friction.viscous_nm_s;
+    EXPECT_NEAR(1e-3 * found.viscous_mnm_s * top_rad_s, drive.friction.viscous_nm_s * top_rad_s,
+                (i == 3 ? 0.06 : 0.02) * drive.rated_torque_nm)
+        << config::joint_name(i);
     EXPECT_LT(found.rms_mnm, 20 * drive.rated_torque_nm) << config::joint_name(i) << ": 2 % of the rated torque";
   }
 }

@@ -142,10 +142,10 @@ INSTANTIATE_TEST_SUITE_P(Each, TorqueOf,
 TEST(TorqueOfTheJaw, IsAnOverloadWhenItsDriveDoesNotKeepItsLimit) {
   for (const bool broken : {false, true}) {
     Bench bench(1, [&](hal::SimConfig& truth) {
-      if (broken) truth.devices.faults.push_back({6.0, devices::DeviceFaultKind::torque_high, 5, 0.5, 0});
+      if (broken) truth.devices.faults.push_back({8.0, devices::DeviceFaultKind::torque_high, 5, 0.5, 0});
     });
     ASSERT_TRUE(bench.enable(Joint::jaw));
-    for (int i = 0; i < 2500; ++i) bench.move(Joint::jaw, -0.2);
+    for (int i = 0; i < 2500; ++i) bench.move(Joint::jaw, 0.2);
     EXPECT_EQ(bench.overloaded, broken ? std::size_t(Joint::jaw) : joint_count);
   }
 }

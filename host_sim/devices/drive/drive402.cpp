@@ -105,6 +105,11 @@ void Drive402::measure(const JointReading& reading) {
   winding_.step(torque_ratio_, step_s);
 }
 
+// Of the motor.
+double Drive402::torque_limit_nm() const {
+  return std::min(config_.peak_torque_nm, 1e-3 * static_cast<double>(o_.max_torque.value) * config_.rated_torque_nm);
+}
+
 double Drive402::ratio() const { return 2 * std::numbers::pi / (config_.counts_per_rev * std::abs(rad_per_count_)); }
 
 // What the motor needs for what the joint was given. Without power there is no current to measure.
@@ -118,9 +123,12 @@ void Drive402::measure_torque(const JointReading& reading) {
     return;
   }
   const double direction = rad_per_count_ < 0 ? -1 : 1;
-  const double motor_nm = gear_.step(direction * reading.torque_nm, direction * turned_rad * ratio() / step_s, ratio(), step_s);
+  const double motor_nm =
+      gear_.step(direction * reading.torque_nm, direction * turned_rad * ratio() / step_s, ratio(), step_s, direction * output_rad_s_);
+  const double limit_nm = torque_limit_nm();
   const double high_nm = faults_.high_torque ? torque_high_of_peak * config_.peak_torque_nm : 0;
-  torque_ratio_ += ((motor_nm + high_nm) / config_.rated_torque_nm + noise - torque_ratio_) * (step_s / torque_filter_s);
+  torque_ratio_ += ((std::clamp(motor_nm, -limit_nm, limit_nm) + high_nm) / config_.rated_torque_nm + noise - torque_ratio_) *
+                   (step_s / torque_filter_s);
 }
 
 // What this make takes beside what its dictionary says.

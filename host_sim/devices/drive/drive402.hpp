@@ -64,6 +64,7 @@ class Drive402 : private Application {
   bool brake_closed(Time now) const;
   void measure(const JointReading& reading);
   void measure_torque(const JointReading& reading);
+  double torque_limit_nm() const;
   double ratio() const;  // turns of the motor per turn of the joint
   void on_controlword(Time now);
   void reset_fault(Time now);

@@ -11,7 +11,7 @@ double GearTrain::raising_nm(double load_nm) const {
   return friction_.coulomb_nm + load_nm * (load_nm >= 0 ? 1 / friction_.efficiency : friction_.back_efficiency);
 }
 
-double GearTrain::step(double joint_nm, double motor_rad_s, double ratio, double dt_s) {
+double GearTrain::step(double joint_nm, double motor_rad_s, double ratio, double dt_s, double wanted_rad_s) {
   const double share = std::min(1.0, dt_s / smoothing_s);
   load_nm_ += (joint_nm / ratio - load_nm_) * share;
   speed_rad_s_ += (motor_rad_s - speed_rad_s_) * share;
@@ -19,6 +19,7 @@ double GearTrain::step(double joint_nm, double motor_rad_s, double ratio, double
   if (std::abs(speed_rad_s_) >= standing_rad_s) {
     held_nm_ = speed_rad_s_ > 0 ? forward_nm : backward_nm;
   } else {
+    if (wanted_rad_s != 0) held_nm_ += ((wanted_rad_s > 0 ? forward_nm : backward_nm) - held_nm_) * share;
     // A gear without friction has both equal, but for rounding.
     held_nm_ = std::max(std::min(held_nm_, std::max(forward_nm, backward_nm)), std::min(forward_nm, backward_nm));
   }

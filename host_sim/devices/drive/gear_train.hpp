@@ -27,8 +27,9 @@ class GearTrain {
 
   // The motor has no current.
   void reset();
+  // `wanted_rad_s`: what the drive asks of a motor that stands: its controller winds up to what would move the load.
   // The motor's torque after `dt_s` in which the gear gave `joint_nm` to the joint. `ratio`: turns of the motor per turn of the joint, here; positive.
-  double step(double joint_nm, double motor_rad_s, double ratio, double dt_s);
+  double step(double joint_nm, double motor_rad_s, double ratio, double dt_s, double wanted_rad_s = 0);
 
   // What the joint gets at most from a motor with this torque, at this speed of the motor's: pushing a load, and holding against one that pushes back.
   double push_nm(double motor_nm, double motor_rad_s, double ratio) const;

@@ -16,7 +16,7 @@ class WatchTest : public testing::Test {
 
   static Limits limits() {
     Limits limits;
-    for (JointLimit& joint : limits.joints) joint = {-1, 1, 100, 1e5};
+    for (JointLimit& joint : limits.joints) joint = {-1, 1, 100, 100};
     limits.workspace_min_m = {-9, -9, -9};
     limits.workspace_max_m = {9, 9, 9};
     limits.stale_position_s = 0.012;
@@ -81,7 +81,7 @@ class EachLimit : public testing::Test {
 
   static Limits loose() {
     Limits limits;
-    for (JointLimit& joint : limits.joints) joint = {-1, 1, 100, 100};
+    for (JointLimit& joint : limits.joints) joint = {-1, 1, 100, 1e5};
     limits.workspace_min_m = {-1, -1, -1};
     limits.workspace_max_m = {1, 1, 1};
     limits.stale_position_s = 0.012;

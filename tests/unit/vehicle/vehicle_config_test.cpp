@@ -87,7 +87,7 @@ TEST(VehicleConfig, LimitsWithAnotherChecksumAreRefused) {
   const TemporaryFolder folder;
   std::ifstream shipped(LANTERNFISH_SOURCE_DIR "/shared/safety/limits.yaml");
   std::string text{std::istreambuf_iterator<char>(shipped), {}};
-  text.replace(text.find("max_torque_nm: 70"), 17, "max_torque_nm: 71");
+  text.replace(text.find("max_torque_nm: 26"), 17, "max_torque_nm: 27");
   folder.write("limits.yaml", text);
   EXPECT_THAT(problems_of(folder.write("v.yaml", "safety: {limits: limits.yaml}\n")), ElementsAre(HasSubstr("checksum")));
 }
