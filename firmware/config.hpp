@@ -1,6 +1,7 @@
 // Everything the core is told before it starts: one plain struct, checked by the hosted side, and again by the core where safety hangs on it.
 #pragma once
 
+#include "firmware/arm/transmission.hpp"
 #include "firmware/canopen/network.hpp"
 #include "firmware/mission/mission_config.hpp"
 #include "firmware/safety/limits.hpp"
@@ -11,11 +12,12 @@ namespace lf {
 
 struct ControllerConfig {
   canopen::NetworkConfig network;
+  std::array<arm::TransmissionSetup, joint_count> transmissions;  // between the drives' motors and the joints
   CameraCalibration camera;
   LaserCalibration laser;
   MarkerCalibration marker;
   mission::MissionConfig mission;
-  safety::Limits limits;          // from the signed file
+  safety::Limits limits;          // from the checksummed file
   safety::Limits mission_limits;  // equal or tighter; wider is refused
 };
 

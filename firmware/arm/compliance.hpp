@@ -6,6 +6,7 @@
 
 #include <cstdint>
 
+#include "firmware/arm/joint_torques.hpp"
 #include "firmware/arm/kinematics.hpp"
 #include "shared/messages/time.hpp"
 
@@ -14,7 +15,7 @@ namespace lf::arm {
 struct ComplianceConfig {
   // With 4000 N m/rad of drives and contact a load decays within 1 / (0.0015 * 4000) s = 0.17 s; loop and filter lag by 0.07 s.
   JointVector give_rad_s_nm{0.0015, 0.0015, 0.0015, 0};
-  double dead_nm = 2;  // screw friction and the torque's quantisation move nothing
+  double dead_nm = 2;  // the drift of the torque's baseline moves nothing
   double largest_rad_s = 0.05;
   double largest_rad = 0.05;     // 20 mm at the elbow's 0.4 m
   double filter_s = 0.02;        // first-order low pass of the torque
@@ -29,9 +30,9 @@ class Compliance {
   // No offset, nothing learned.
   void reset() { *this = Compliance(config_); }
 
-  // One SYNC's torques, as the drives give them: positive drives the joint forward. A sample with a value that is not a number is refused and counted,
+  // One SYNC's torques that the drives give the joints: positive drives the joint forward. What a torque has surely risen by, given its bounds, moves the joint. A sample with a value that is not a number is refused and counted,
   // and so is one not later than the one before.
-  void update(Time t, const JointVector& torque_nm);
+  void update(Time t, const JointTorques& torque);
 
   // To be added to the joints' targets.
   const JointVector& offset_rad() const { return offset_rad_; }
@@ -42,7 +43,7 @@ class Compliance {
   Time last_;
   std::uint32_t samples_ = 0;
   std::uint32_t refused_ = 0;
-  JointVector filtered_nm_ = JointVector::Zero();
+  JointTorques filtered_;
   JointVector baseline_nm_ = JointVector::Zero();
   JointVector offset_rad_ = JointVector::Zero();
 };

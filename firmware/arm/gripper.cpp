@@ -77,8 +77,8 @@ void Gripper::begin(Time t, double jaw_rad) {
   low_torque_run_ = 0;
 }
 
-double Gripper::update(Time t, double jaw_rad, double torque_nm) {
-  if (!std::isfinite(jaw_rad) || !std::isfinite(torque_nm) || (started_ && t <= last_)) {
+double Gripper::update(Time t, double jaw_rad, const TorqueEstimate& torque) {
+  if (!std::isfinite(jaw_rad) || !std::isfinite(torque.nm + torque.low_nm + torque.high_nm) || (started_ && t <= last_)) {
     ++refused_;
     return target_rad_;
   }
@@ -86,12 +86,12 @@ double Gripper::update(Time t, double jaw_rad, double torque_nm) {
   last_ = t;
   started_ = true;
   if (order_ != Order::none) begin(t, jaw_rad);
-  if (state_ == GripperState::opening || state_ == GripperState::closing) move(t, jaw_rad, torque_nm, dt_s);
-  if (state_ == GripperState::held) hold(jaw_rad, torque_nm);
+  if (state_ == GripperState::opening || state_ == GripperState::closing) move(t, jaw_rad, torque, dt_s);
+  if (state_ == GripperState::held) hold(jaw_rad, torque);
   return target_rad_;
 }
 
-void Gripper::move(Time t, double jaw_rad, double torque_nm, double dt_s) {
+void Gripper::move(Time t, double jaw_rad, const TorqueEstimate& torque, double dt_s) {
   const double top = state_ == GripperState::opening ? config_.opening_speed_rad_s : config_.closing_speed_rad_s;
   const double speed = std::min(top, config_.ramp_rad_s2 * (t - began_).s());
   target_rad_ += std::clamp(goal_rad_ - target_rad_, -speed * dt_s, speed * dt_s);
@@ -106,8 +106,8 @@ void Gripper::move(Time t, double jaw_rad, double torque_nm, double dt_s) {
     return;
   }
   const bool pushing = target_rad_ == goal_rad_ || std::abs(target_rad_ - jaw_rad) >= 0.99 * config_.lead_rad;
-  if (pushing && t - still_since_ >= config_.stall_time) stalled(jaw_rad, torque_nm);
-  if (pushing && t - still_since_ >= config_.lost_time && std::abs(torque_nm) < config_.hold_torque_nm) {
+  if (pushing && t - still_since_ >= config_.stall_time) stalled(jaw_rad, torque);
+  if (pushing && t - still_since_ >= config_.lost_time && std::abs(torque.nm) < config_.hold_torque_nm) {
     state_ = GripperState::lost;
     target_rad_ = jaw_rad;
     return;
@@ -119,9 +119,9 @@ void Gripper::move(Time t, double jaw_rad, double torque_nm, double dt_s) {
 }
 
 // Opening is positive, so that a closing torque is negative.
-void Gripper::stalled(double jaw_rad, double torque_nm) {
+void Gripper::stalled(double jaw_rad, const TorqueEstimate& torque) {
   if (state_ == GripperState::opening) return;  // a jaw at rest below its stiction is no jam: it gets until the time-out
-  if (-torque_nm < config_.grip_torque_nm) return;
+  if (-torque.high_nm < config_.grip_torque_nm) return;
   const double gap = gap_from_jaw(jaw_rad);
   grip_rad_ = jaw_rad;
   grip_gap_m_ = gap;
@@ -137,8 +137,8 @@ void Gripper::stalled(double jaw_rad, double torque_nm) {
   }
 }
 
-void Gripper::hold(double jaw_rad, double torque_nm) {
-  low_torque_run_ = -torque_nm < config_.hold_torque_nm ? low_torque_run_ + 1 : 0;
+void Gripper::hold(double jaw_rad, const TorqueEstimate& torque) {
+  low_torque_run_ = -torque.low_nm < config_.hold_torque_nm ? low_torque_run_ + 1 : 0;
   if (jaw_rad < grip_rad_ - config_.slip_rad || low_torque_run_ >= config_.low_torque_samples) state_ = GripperState::dropped;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "firmware/arm/transmission.hpp"
 #include "shared/arm/arm_geometry.hpp"
 #include "shared/messages/time.hpp"
 
@@ -67,9 +68,11 @@ class Gripper {
   // `d` passes without update() being called, and does not count for stalls and time-outs: the operator holds the arm.
   void wait(Duration d);
 
-  // One SYNC: the jaw's measured angle and torque in; the angle to command out. A sample that is not a number, or not later than the one before,
+  // One SYNC: the jaw's measured angle and torque in; the angle to command out. A grip is believed when the torque surely reaches it, a loss when the
+  // torque surely is less. A sample that is not a number, or not later than the one before,
   // is refused and counted, and the last target stands.
-  double update(Time t, double jaw_rad, double torque_nm);
+  double update(Time t, double jaw_rad, const TorqueEstimate& torque);
+  double update(Time t, double jaw_rad, double exact_nm) { return update(t, jaw_rad, TorqueEstimate{exact_nm, exact_nm, exact_nm}); }
 
   // An order that waits for its update() counts as begun: who asks in between must not take the last one's end for its own.
   GripperState state() const;
@@ -81,9 +84,9 @@ class Gripper {
   enum class Order : std::uint8_t { none, stay, open, close };
 
   void begin(Time t, double jaw_rad);
-  void move(Time t, double jaw_rad, double torque_nm, double dt_s);
-  void stalled(double jaw_rad, double torque_nm);
-  void hold(double jaw_rad, double torque_nm);
+  void move(Time t, double jaw_rad, const TorqueEstimate& torque, double dt_s);
+  void stalled(double jaw_rad, const TorqueEstimate& torque);
+  void hold(double jaw_rad, const TorqueEstimate& torque);
 
   GripperConfig config_;
   GripperState state_ = GripperState::idle;

@@ -26,23 +26,24 @@ void GuardedMotion::latch(GuardState state, GuardCause cause, std::size_t joint)
   joint_ = static_cast<Joint>(joint);
 }
 
-GuardState GuardedMotion::update(Time t, const JointVector& command_rad, const JointVector& position_rad, const JointVector& torque_nm) {
-  if (!command_rad.allFinite() || !position_rad.allFinite() || !torque_nm.allFinite() || (samples_ > 0 && t <= last_)) {
+GuardState GuardedMotion::update(Time t, const JointVector& command_rad, const JointVector& position_rad, const JointTorques& torque) {
+  if (!command_rad.allFinite() || !position_rad.allFinite() || !torque.finite() || (samples_ > 0 && t <= last_)) {
     ++refused_;
     return state_;
   }
   const double dt_s = samples_ > 0 ? (t - last_).s() : 0;
   last_ = t;
   ++samples_;
-  if (samples_ == 1) filtered_nm_ = torque_nm;
-  filtered_nm_ += (torque_nm - filtered_nm_) * (dt_s / (dt_s + config_.filter_s));
+  if (samples_ == 1) filtered_ = torque;
+  filtered_.follow(torque, dt_s / (dt_s + config_.filter_s));
   const bool learning = samples_ <= config_.learning;
-  if (learning) baseline_nm_ += (torque_nm - baseline_nm_) / samples_;
-  excess_nm_ = filtered_nm_ - baseline_nm_;
+  if (learning) baseline_nm_ += (torque.nm - baseline_nm_) / samples_;
+  excess_nm_ = filtered_.nm - baseline_nm_;
 
   for (std::size_t i = 0; i < arm_joint_count; ++i) {
-    const bool over = std::abs(filtered_nm_[i]) > config_.overload_torque_nm[i];
-    const bool pushed = !learning && std::abs(excess_nm_[i]) > config_.contact_torque_nm[i];
+    const auto joint = static_cast<Eigen::Index>(i);
+    const bool over = std::abs(filtered_.sure_excess_nm(joint, 0)) > config_.overload_torque_nm[i];
+    const bool pushed = !learning && std::abs(filtered_.sure_excess_nm(joint, baseline_nm_[joint])) > config_.contact_torque_nm[i];
     const bool behind = !learning && std::abs(command_rad[i] - position_rad[i]) > config_.following_rad[i];
     if (run_of(over, config_.debounce, overload_run_[i])) latch(GuardState::overload, GuardCause::torque, i);
     if (run_of(pushed, config_.debounce, torque_run_[i])) latch(GuardState::contact, GuardCause::torque, i);

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 
+#include "firmware/arm/joint_torques.hpp"
 #include "firmware/arm/kinematics.hpp"
 #include "shared/messages/time.hpp"
 
@@ -38,8 +39,8 @@ class GuardedMotion {
   // Starts anew: forgets the baseline.
   void reset();
 
-  // One SYNC's measurements. A sample with a value that is not a number is refused and counted, and so is one not later than the one before.
-  GuardState update(Time t, const JointVector& command_rad, const JointVector& position_rad, const JointVector& torque_nm);
+  // One SYNC's measurements. What the torque surely is, given its bounds, is held against the thresholds: what it may be is no contact. A sample with a value that is not a number is refused and counted, and so is one not later than the one before.
+  GuardState update(Time t, const JointVector& command_rad, const JointVector& position_rad, const JointTorques& torque);
 
   GuardState state() const { return state_; }
   GuardCause cause() const { return cause_; }
@@ -58,7 +59,7 @@ class GuardedMotion {
   Time last_;
   std::uint32_t samples_ = 0;
   std::uint32_t refused_ = 0;
-  JointVector filtered_nm_ = JointVector::Zero();
+  JointTorques filtered_;
   JointVector baseline_nm_ = JointVector::Zero();
   JointVector excess_nm_ = JointVector::Zero();
   std::array<std::uint32_t, arm_joint_count> torque_run_{}, following_run_{}, overload_run_{};

@@ -88,7 +88,7 @@ class Axis {
   bool enabled() const { return state() == AxisState::enabled; }
   // The last statusword tells of current in the motor, or tells nothing that is known.
   bool powered() const;
-  bool drive_in_fault() const { return drive_state() == DriveState::fault; }  // what the drive says, whatever was made of it
+  bool drive_in_fault() const { return drive_state() == DriveState::fault; }    // what the drive says, whatever was made of it
   bool runs() const { return drive_state() == DriveState::operation_enabled; }  // not told to stop, or has not heard it
   // The drive says, and no longer ago than three SYNC cycles, that there is no current in the motor.
   bool confirmed_unpowered(Time now) const { return fresh(now) && !powered(); }

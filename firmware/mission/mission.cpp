@@ -279,7 +279,8 @@ void Mission::drive(const StepTick& tick) {
   }
   if (!joints().valid || on_hold()) return;
   const auto jaw = static_cast<std::size_t>(Joint::jaw);
-  const double jaw_rad = bench_.gripper.update(joints().t, joints().position_rad[jaw], joints().torque_nm[jaw]);
+  const double jaw_rad = bench_.gripper.update(joints().t, joints().position_rad[jaw],
+                                               {joints().torque_nm[jaw], joints().torque_low_nm[jaw], joints().torque_high_nm[jaw]});
   tick.network.axis(Joint::jaw).set_target_counts(arm::counts_from_rad(Joint::jaw, jaw_rad));
 }
 

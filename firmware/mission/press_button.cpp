@@ -8,6 +8,8 @@ constexpr double limit_margin_rad = 0.01;
 // The face is where the look says to 3 mm, and the tip where the joints say to 2: what is touched farther out is something else, and what is touched so much
 // deeper than its bottom is not the button.
 constexpr double face_m = 0.008;
+// Of a press, until it goes at its speed.
+constexpr double to_speed_m = 0.012;
 // A press that works shows nearly its whole stroke, a stuck cap a tenth of a default one: what is felt late, and what the arm gives way by.
 constexpr double least_travel = 0.5;
 // A press lasts as long as a person's.
@@ -74,6 +76,7 @@ Progress PressButton::begin_press(Workbench& bench) {
   config.contact_torque_nm.setConstant(bench.mission().press_torque_nm);
   guard_ = arm::GuardedMotion(config);
   feel_ = ButtonFeel();
+  learned_under_way_ = false;
   bench.job.result().failure = StepFailure::none;
   const double depth = bench.mission().layout.button_stroke_m + bench.mission().press_overtravel_m;
   const Vec3 tip = bench.map.button_m(bench.job.task().button) - bench.map.normal() * depth;
@@ -87,6 +90,7 @@ Progress PressButton::run_press(const StepTick& tick) {
   Workbench& bench = tick.bench;
   if (pressed_) return Progress::done_if(tick.settled(bench.motion.done(), press_time));
   if (bench.motion.planning()) return Progress::running();
+  learn_under_way(bench);
   guard_.update(tick.now, bench.motion.target(), bench.measured_rad(), bench.measured_nm());
   feel(tick);
   const Progress motion = bench.follow_motion();
@@ -102,6 +106,14 @@ Progress PressButton::run_press(const StepTick& tick) {
   return Progress::running();
 }
 
+// At rest a screw says little of its load. What free motion takes is learned anew once the press has come to its speed.
+void PressButton::learn_under_way(const Workbench& bench) {
+  const double gone_m = (arm::base_from_tool(bench.motion.target()).translation() - bench.standoff_m).norm();
+  if (learned_under_way_ || gone_m < to_speed_m) return;
+  guard_.reset();
+  learned_under_way_ = true;
+}
+
 // The drives' force along the press is the least-squares one for the torques of slew, shoulder and elbow: the roll has no part in it.
 void PressButton::feel(const StepTick& tick) {
   const Workbench& bench = tick.bench;
@@ -112,7 +124,10 @@ void PressButton::feel(const StepTick& tick) {
   along[3] = 0;
   const double force_n = along.dot(guard_.excess_torque_nm()) / along.squaredNorm();
   const Vec3 tip = arm::base_from_tool(q) * Vec3(0, 0, closed_tip_beyond_tool_m());
-  feel_.update(tick.network.config().sync_period.s(), force_n, (tip - bench.map.button_m(bench.job.task().button)).dot(inward));
+  const double depth_m = (tip - bench.map.button_m(bench.job.task().button)).dot(inward);
+  // Far from the face a small force is the friction of the way, which the guard still learns; a large one is the guard's to notice.
+  if (depth_m < -face_m) return;
+  feel_.update(tick.network.config().sync_period.s(), force_n, depth_m);
 }
 
 StepFailure PressButton::judge(const Workbench& bench) const {

@@ -19,6 +19,7 @@ class PressButton {
   Progress begin_press(Workbench& bench);
   Progress run_press(const StepTick& tick);
   Progress run_back(const StepTick& tick);
+  void learn_under_way(const Workbench& bench);
   void feel(const StepTick& tick);
   // What stopped the finger, or what it is that nothing did.
   StepFailure judge(const Workbench& bench) const;
@@ -26,6 +27,7 @@ class PressButton {
   arm::GuardedMotion guard_;  // of the press, where touching is meant to happen
   ButtonFeel feel_;
   bool pressed_ = false;
+  bool learned_under_way_ = false;
 };
 
 }  // namespace lf::mission

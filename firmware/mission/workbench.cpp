@@ -7,6 +7,9 @@ namespace lf::mission {
 
 namespace {
 
+// A contact is told before it is an overload.
+constexpr double contact_share = 0.9;
+
 CameraWork::Config camera_config(const ControllerConfig& config) {
   CameraWork::Config camera;
   camera.exposure = config.camera.exposure;
@@ -24,7 +27,8 @@ CameraWork::Config camera_config(const ControllerConfig& config) {
 arm::GuardConfig free_motion_guard(const safety::Limits& limits) {
   arm::GuardConfig guard;
   for (std::size_t i = 0; i < arm_joint_count; ++i) {
-    guard.contact_torque_nm[static_cast<Eigen::Index>(i)] = std::min(limits.max_contact_torque_nm, 0.5 * limits.joints[i].max_torque_nm);
+    guard.contact_torque_nm[static_cast<Eigen::Index>(i)] =
+        std::min(limits.max_contact_torque_nm, contact_share * limits.joints[i].max_torque_nm);
   }
   guard.overload_torque_nm.setConstant(HUGE_VAL);
   return guard;
@@ -32,7 +36,7 @@ arm::GuardConfig free_motion_guard(const safety::Limits& limits) {
 
 Workbench::Workbench(const ControllerConfig& told)
     : config(told),
-      watch(told.mission_limits),
+      watch(told.mission_limits, told.transmissions),
       camera(camera_config(told)),
       motion(told.mission_limits, told.mission.layout, told.mission.vehicle, told.mission.park_rad),
       gripper(new_gripper()),
@@ -55,10 +59,15 @@ arm::JointVector Workbench::measured_rad() const {
   return q;
 }
 
-arm::JointVector Workbench::measured_nm() const {
-  arm::JointVector torque;
-  for (std::size_t i = 0; i < arm_joint_count; ++i) torque[static_cast<Eigen::Index>(i)] = watch.joints().torque_nm[i];
-  return torque;
+arm::JointTorques Workbench::measured_nm() const {
+  arm::JointTorques torques;
+  for (std::size_t i = 0; i < arm_joint_count; ++i) {
+    const auto joint = static_cast<Eigen::Index>(i);
+    torques.nm[joint] = watch.joints().torque_nm[i];
+    torques.low_nm[joint] = watch.joints().torque_low_nm[i];
+    torques.high_nm[joint] = watch.joints().torque_high_nm[i];
+  }
+  return torques;
 }
 
 Room Workbench::room(double jaw_goal_rad, arm::PanelParts meant) const {

@@ -29,7 +29,7 @@ enum class Course : std::uint8_t {
 };
 
 // A contact in motion that may touch nothing: what free motion takes of torque is learned on the way; how much more is a contact, the limits say, and for
-// the wrist half of its own limit if that is less. The overload is the watch's.
+// a joint nine tenths of its own limit if that is less. The overload is the watch's.
 arm::GuardConfig free_motion_guard(const safety::Limits& limits);
 
 struct Workbench {
@@ -57,7 +57,7 @@ struct Workbench {
   arm::Gripper new_gripper() const;
   const MissionConfig& mission() const { return config.mission; }
   arm::JointVector measured_rad() const;
-  arm::JointVector measured_nm() const;
+  arm::JointTorques measured_nm() const;
   double jaw_rad() const { return watch.joints().position_rad[static_cast<std::size_t>(Joint::jaw)]; }
   // What is around the arm, as far as it is known, while the jaw goes from where it is to `jaw_goal_rad`. The fingers may touch the parts `meant`.
   Room room(double jaw_goal_rad, arm::PanelParts meant = 0) const;

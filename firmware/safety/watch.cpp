@@ -10,6 +10,8 @@ namespace {
 // Limits are held against noise: one wrist count is 0.003 rad, and the observer overshoots by a tenth at the end of a move.
 constexpr double position_tolerance_rad = 0.01;
 constexpr double speed_tolerance = 1.25;
+// Of the rated torque: two sigma of 12-bit current sensing and half a thousandth's step of 6077.
+constexpr double torque_doubt = 0.01;
 // The tool's box is a coarse fence; calibration and quantisation are worth a millimetre.
 constexpr double workspace_tolerance_m = 0.002;
 // A torque over its limit has to last: breakaway peaks of a gear last some milliseconds.
@@ -39,10 +41,22 @@ void Watch::observe(const canopen::Network& network, const std::array<double, jo
       observers_[i].update(rad[i], dt_s);
     }
     joints_.velocity_rad_s[i] = observers_[i].velocity_rad_s();
-    joints_.torque_nm[i] = axis.torque_permille() * 1e-3 * axis.rated_torque_unm() * 1e-6;
+    observe_torque(axis, i);
   }
   joints_.t = newest;
   observing_ = true;
+}
+
+void Watch::observe_torque(const canopen::Axis& axis, std::size_t joint) {
+  const auto which = static_cast<Joint>(joint);
+  const double q = joints_.position_rad[joint], rated_nm = axis.rated_torque_unm() * 1e-6;
+  const arm::Transmission transmission(which, transmissions_[joint]);
+  const arm::TorqueEstimate torque =
+      torque_observers_[joint].update(transmission, arm::rad_per_count(which, q), q, joints_.velocity_rad_s[joint],
+                                      axis.torque_permille() * 1e-3 * rated_nm, torque_doubt * rated_nm);
+  joints_.torque_nm[joint] = torque.nm;
+  joints_.torque_low_nm[joint] = torque.low_nm;
+  joints_.torque_high_nm[joint] = torque.high_nm;
 }
 
 // Half a SYNC period more than the limit, for the loop's jitter.
@@ -140,7 +154,9 @@ void Watch::check_joint(std::size_t joint, FaultArbiter& began) {
   tolerated_rad_[joint] = std::min(tolerated_rad_[joint], excursion_rad(joint));
   raise(excursion_rad(joint) > tolerated_rad_[joint] + position_tolerance_rad, joint, {Fault::joint_limit, code}, began);
   raise(std::abs(joints_.velocity_rad_s[joint]) > limit.max_speed_rad_s * speed_tolerance, joint, {Fault::overspeed, code}, began);
-  overload_ticks_[joint] = std::abs(joints_.torque_nm[joint]) > limit.max_torque_nm ? overload_ticks_[joint] + 1 : 0;
+  const double at_least_nm =
+      arm::TorqueEstimate{joints_.torque_nm[joint], joints_.torque_low_nm[joint], joints_.torque_high_nm[joint]}.at_least_nm();
+  overload_ticks_[joint] = at_least_nm > limit.max_torque_nm ? overload_ticks_[joint] + 1 : 0;
   raise(overload_ticks_[joint] > overload_ticks, joint, {Fault::overload, code}, began);
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "firmware/arm/transmission.hpp"
 #include "firmware/canopen/network.hpp"
 #include "firmware/safety/fault_arbiter.hpp"
 #include "firmware/safety/joint_observer.hpp"
@@ -18,7 +19,9 @@ namespace lf::safety {
 struct JointStates {
   std::array<double, joint_count> position_rad{};
   std::array<double, joint_count> velocity_rad_s{};  // observed
-  std::array<double, joint_count> torque_nm{};
+  std::array<double, joint_count> torque_nm{};       // that the drives give the joints, estimated from their motors'
+  std::array<double, joint_count> torque_low_nm{};   // and its bounds
+  std::array<double, joint_count> torque_high_nm{};  //
   std::array<bool, joint_count> fresh{};
   Time t;              // of the SYNC they belong to
   bool valid = false;  // all five are fresh: only then are speeds, torques and the time brought up to date
@@ -34,7 +37,9 @@ enum class Vigilance : std::uint8_t {
 class Watch {
  public:
   // `foreign_frames`: what the network has counted of another master's, and what was reported already.
-  explicit Watch(const Limits& limits, std::uint32_t foreign_frames = 0) : limits_(limits), foreign_frames_(foreign_frames) {}
+  using Transmissions = std::array<arm::TransmissionSetup, joint_count>;
+  explicit Watch(const Limits& limits, const Transmissions& transmissions = {}, std::uint32_t foreign_frames = 0)
+      : limits_(limits), transmissions_(transmissions), foreign_frames_(foreign_frames) {}
 
   // Reads the joints; call once a tick after the frames came in. `rad` are the positions decoded from counts.
   void observe(const canopen::Network& network, const std::array<double, joint_count>& rad, Time now);
@@ -54,6 +59,7 @@ class Watch {
  private:
   double excursion_rad(std::size_t joint) const;
   bool is_fresh(const canopen::Axis& axis, Time now) const;
+  void observe_torque(const canopen::Axis& axis, std::size_t joint);
   void check_bus(const canopen::Network& network, Time now, FaultArbiter& began);
   void check_nodes(const canopen::Network& network, Vigilance vigilance, Time now, FaultArbiter& began);
   void check_drive(const canopen::Network& network, std::size_t joint, FaultArbiter& began);
@@ -63,7 +69,9 @@ class Watch {
   void raise(bool present, std::size_t index, const FaultReport& report, FaultArbiter& began);
 
   Limits limits_;
+  Transmissions transmissions_;
   std::array<JointObserver, joint_count> observers_;
+  std::array<arm::TorqueObserver, joint_count> torque_observers_;
   bool observing_ = false;
   JointStates joints_;
   std::array<int, joint_count> overload_ticks_{};

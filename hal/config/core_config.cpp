@@ -18,6 +18,7 @@
 #include "hal/config/share.hpp"
 #include "hal/vision/calibration_file.hpp"
 #include "shared/arm/arm_description.hpp"
+#include "shared/arm/motor.hpp"
 #include "shared/input_error.hpp"
 
 namespace lf::config {
@@ -30,6 +31,11 @@ constexpr double following_window_rad = 0.15;
 // Of a joint's best acceleration: drives refuse a ramp above what they are able to. As delivered some would take seconds to stop.
 constexpr double quick_stop_share = 0.95;
 
+// Friction of the description's, not of this machine's measurement: parts and temperature differ by so much.
+constexpr double friction_doubt = 0.2, efficiency_doubt = 0.05;
+// What the cap lies above the torque of an overload, and what a reading can be wrong by, of the rated torque.
+constexpr double overload_reserve = 1.05, torque_noise = 0.01;
+
 // The drives' own limits lie this far outside of the stroke: encoder offsets do not clip the last degrees.
 constexpr double beyond_stroke_rad = 0.01;
 
@@ -39,9 +45,6 @@ canopen::DriveSetup drive_setup(const ArmJoint& joint, Joint which, const safety
   setup.max_counts = arm::counts_from_rad(which, limit.max_rad);
   setup.drive_margin_counts = std::max({0, setup.min_counts - arm::counts_from_rad(which, joint.lower_rad - beyond_stroke_rad),
                                         arm::counts_from_rad(which, joint.upper_rad + beyond_stroke_rad) - setup.max_counts});
-  // The rated torque can be held for ever, and is several times what free motion takes: with the peak torque a grip off the bar's middle pushes three
-  // times as hard, and trips the drives' over-current guard.
-  setup.max_torque_permille = static_cast<std::uint16_t>(std::clamp(1000.0 * joint.effort_nm / joint.rated_torque_nm, 1.0, 1000.0));
   // Screws have their fewest counts a radian at the ends of the stroke and their most within it; the limits hold everywhere.
   double least = 1e9;
   for (int i = 0; i <= 64; ++i) least = std::min(least, arm::rad_per_count(which, std::lerp(limit.min_rad, limit.max_rad, i / 64.0)));
@@ -98,10 +101,30 @@ void set_drive(const Machine& machine, std::size_t joint, const DriveKind& kind,
   setup.node = static_cast<std::uint8_t>(choice.node);
   // A drive that says its rated torque is only checked against a stated one; one that does not, has the arm's description's.
   const bool described = choice.rated_torque_nm == 0 && kind.rating == "configured";
+  const Motor motor = motor_of(description, choice.counts_per_rev);
   apply(kind,
-        {choice.counts_per_rev, described ? description.rated_torque_nm : choice.rated_torque_nm, choice.rated_current_a,
+        {choice.counts_per_rev, described ? motor.rated_torque_nm : choice.rated_torque_nm, choice.rated_current_a,
          choice.polarity == "reversed"},
         where, setup);
+}
+
+// Friction as the arm's description has it, with the doubts of figures that nobody has measured on this machine.
+arm::TransmissionSetup transmission_of(const ArmJoint& joint, double counts_per_rev) {
+  const Motor motor = motor_of(joint, counts_per_rev);
+  return {
+      counts_per_rev,
+      {motor.coulomb_nm, motor.viscous_nm_s, joint.friction.efficiency, joint.friction.back_efficiency, friction_doubt, efficiency_doubt}};
+}
+
+// A motor's torque is capped a little above what an overload of the joint takes where the gear has the most lever, so that the overload can be seen; never
+// above its rating, which can be held for ever, and which drives without a reserve take. With the peak torque a grip off the bar's middle pushes three times as hard, and trips the drives' over-current guard.
+std::uint16_t torque_cap_permille(const ArmJoint& joint, const safety::JointLimit& limit, const arm::TransmissionSetup& transmission) {
+  const Motor motor = motor_of(joint, transmission.counts_per_rev);
+  const arm::Friction& friction = transmission.friction;
+  const double ratio = best_motor_ratio(joint, transmission.counts_per_rev);
+  const double load_nm = overload_reserve * limit.max_torque_nm / (ratio * friction.efficiency * (1 - friction.efficiency_doubt));
+  const double seen_nm = load_nm + friction.coulomb_nm * (1 + friction.doubt) + torque_noise * motor.rated_torque_nm;
+  return static_cast<std::uint16_t>(std::clamp(1000 * std::min(seen_nm, motor.peak_torque_nm) / motor.rated_torque_nm, 1.0, 1000.0));
 }
 
 canopen::NetworkConfig network_config(const ArmDescription& description, const safety::Limits& limits) {
@@ -306,13 +329,15 @@ mission::Tasks core_tasks(const std::vector<Task>& tasks, const std::string& whe
 namespace {
 
 // A joint without a line in the file, and every joint without a file, takes no power.
-void set_zeros(const std::string& file, const std::filesystem::path& folder, canopen::NetworkConfig& network) {
+void set_zeros(const std::string& file, const std::filesystem::path& folder, ControllerConfig& controller) {
+  canopen::NetworkConfig& network = controller.network;
   for (canopen::DriveSetup& drive : network.drives) drive.zero_known = false;
   if (file.empty()) return;
   const HomingOffsets offsets = read_homing_file(find_file(file, folder));
   for (std::size_t i = 0; i < joint_count; ++i) {
     network.drives[i].zero_known = offsets.known[i];
     network.drives[i].encoder_zero_counts = offsets.zero_counts[i];
+    set_friction(offsets, i, controller.transmissions[i].friction);
   }
 }
 
@@ -330,6 +355,9 @@ Core assemble(const Machine& machine, const Steps& steps) {
     const std::map<std::string, DriveKind> profiles = read_profiles(machine, steps);
     bool drives = true;
     for (std::size_t i = 0; i < joint_count; ++i) {
+      controller.transmissions[i] = transmission_of(description.joints[i], drive_of(machine.drives, i).counts_per_rev);
+      controller.network.drives[i].max_torque_permille =
+          torque_cap_permille(description.joints[i], controller.limits.joints[i], controller.transmissions[i]);
       const auto kind = profiles.find(drive_of(machine.drives, i).profile);
       const bool known = kind != profiles.end();
       drives =
@@ -337,7 +365,7 @@ Core assemble(const Machine& machine, const Steps& steps) {
     }
     if (drives) steps.take([&] { check_network(machine, controller.network); });
   }
-  steps.take([&] { set_zeros(machine.homing_file, folder, controller.network); });
+  steps.take([&] { set_zeros(machine.homing_file, folder, controller); });
   controller.camera = camera_calibration(machine.camera);
   const bool camera = steps.take([&] {
     if (machine.camera_calibration.empty()) return;

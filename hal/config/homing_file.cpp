@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -29,10 +30,14 @@ HomingOffsets read_homing_file(const std::string& path) {
   HomingOffsets offsets;
   Keys table;
   constexpr double low = std::numeric_limits<std::int32_t>::min() / 2.0, high = std::numeric_limits<std::int32_t>::max() / 2.0;
+  constexpr double most_mnm = 1e5;
   for (std::size_t i = 0; i < joint_count; ++i) {
     const std::string joint = std::string(joint_name(i));
     table.push_back(key(joint + ".zero_counts", "counts", low, high, &offsets.zero_counts[i], ""));
     table.push_back(key(joint + ".found", "", 0, 0, &offsets.found[i], ""));
+    table.push_back(key(joint + ".coulomb_mnm", "mN m", 0, most_mnm, &offsets.friction[i].coulomb_mnm, ""));
+    table.push_back(key(joint + ".viscous_mnm_s", "mN m s", 0, most_mnm, &offsets.friction[i].viscous_mnm_s, ""));
+    table.push_back(key(joint + ".friction_rms_mnm", "mN m", 0, most_mnm, &offsets.friction[i].rms_mnm, ""));
   }
   read_map(root, "", "", table, source);
   for (std::size_t i = 0; i < joint_count; ++i) {
@@ -41,8 +46,18 @@ HomingOffsets read_homing_file(const std::string& path) {
     if (!joint["zero_counts"])
       source.refuse(joint.Mark(), std::string("'") + joint_name(i) + ".zero_counts' is missing: commission this joint");
     offsets.known[i] = true;
+    offsets.friction_known[i] = joint["coulomb_mnm"] && joint["viscous_mnm_s"];
   }
   return offsets;
+}
+
+void set_friction(const HomingOffsets& offsets, std::size_t joint, arm::Friction& friction) {
+  if (!offsets.friction_known[joint]) return;
+  constexpr double other_day = 0.05, most = 0.5;
+  const JointFriction& found = offsets.friction[joint];
+  friction.coulomb_nm = 1e-3 * found.coulomb_mnm;
+  friction.viscous_nm_s = 1e-3 * found.viscous_mnm_s;
+  friction.doubt = found.coulomb_mnm > 0 ? std::min(most, other_day + found.rms_mnm / found.coulomb_mnm) : most;
 }
 
 namespace {
@@ -73,10 +88,17 @@ int rename_through(const std::string& from, const std::string& to) {
 
 void write_homing_file(const std::string& path, const HomingOffsets& offsets) {
   std::ostringstream out;
-  out << "# Written by `lanternfishd commission`: what each drive's absolute encoder counts where the arm's own count is 0.\n";
+  out << "# Written by `lanternfishd commission`: what each drive's absolute encoder counts where the arm's own count is 0,\n"
+         "# and the friction of its motor and gear, in mN m at the motor's shaft, with what the fit left of it.\n";
   for (std::size_t i = 0; i < joint_count; ++i) {
-    if (offsets.known[i])
-      out << joint_name(i) << ": {zero_counts: " << offsets.zero_counts[i] << ", found: \"" << offsets.found[i] << "\"}\n";
+    if (!offsets.known[i]) continue;
+    out << joint_name(i) << ": {zero_counts: " << offsets.zero_counts[i];
+    if (offsets.friction_known[i]) {
+      const JointFriction& friction = offsets.friction[i];
+      out << ", coulomb_mnm: " << friction.coulomb_mnm << ", viscous_mnm_s: " << friction.viscous_mnm_s
+          << ", friction_rms_mnm: " << friction.rms_mnm;
+    }
+    out << ", found: \"" << offsets.found[i] << "\"}\n";
   }
   const std::string partial = path + ".partial";
   int error = write_through(partial, out.str());

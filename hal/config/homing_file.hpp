@@ -1,4 +1,5 @@
-// What commissioning found: for each joint, what its drive's absolute encoder counts where the arm's own count is 0. YAML, written and read here.
+// What commissioning found: for each joint, what its drive's absolute encoder counts where the arm's own count is 0, and how its motor and gear rub. YAML,
+// written and read here.
 // The daemon writes and reads it; the simulator reads it. A joint that it does not have was never commissioned, and takes no power.
 #pragma once
 
@@ -6,15 +7,29 @@
 #include <cstdint>
 #include <string>
 
+#include "firmware/arm/transmission.hpp"
 #include "shared/messages/joint_io.hpp"
 
 namespace lf::config {
 
+// At the motor's shaft.
+struct JointFriction {
+  double coulomb_mnm = 0;
+  double viscous_mnm_s = 0;  // per rad/s of the motor
+  double rms_mnm = 0;        // what the fit left
+};
+
 struct HomingOffsets {
   std::array<std::int32_t, joint_count> zero_counts{};
   std::array<bool, joint_count> known{};
+  std::array<bool, joint_count> friction_known{};
+  std::array<JointFriction, joint_count> friction{};
   std::array<std::string, joint_count> found;  // how and when, a line for people
 };
+
+// The friction as the core takes it: its doubt is what the fit left, and a twentieth for the temperature of another day. Nothing is changed for a joint whose
+// friction is not known.
+void set_friction(const HomingOffsets& offsets, std::size_t joint, arm::Friction& friction);
 
 const char* joint_name(std::size_t joint);  // "slew" ...
 

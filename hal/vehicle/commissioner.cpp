@@ -74,6 +74,7 @@ std::optional<std::string> Commissioner::begin(const CommissionOrder& order) {
   prepared_ = std::make_shared<Prepared>();
   Commissioning::Config setup;
   setup.network = core_.network;
+  setup.transmissions = core_.transmissions;
   setup.joints = order.joints;
   setup.backlash_rad = backlash_rad_;
   setup.here = order.here;
@@ -153,34 +154,38 @@ void Commissioner::store(const Commissioning& ended) {
   stage_ = Stage::storing;
   prepared_ = std::make_shared<Prepared>();
   const std::string how = (order_.here ? "in the jig, " : "at its stop, ") + now_text() + " UTC";
-  const bool posted =
-      worker_.post([prepared = prepared_, file = file_, how, found = ended.found(), zeros = ended.zero_counts(), core = core_]() mutable {
-        std::string problem;
-        config::HomingOffsets offsets;
-        std::unique_ptr<Controller> with_zeros;
-        try {
-          offsets = read_and_check(file);
-          for (std::size_t i = 0; i < joint_count; ++i) {
-            if (!found[i]) continue;
-            offsets.zero_counts[i] = zeros[i];
-            offsets.known[i] = true;
-            offsets.found[i] = how;
-          }
-          config::write_homing_file(file, offsets);
-          for (std::size_t i = 0; i < joint_count; ++i) {
-            core.network.drives[i].encoder_zero_counts = offsets.zero_counts[i];
-            core.network.drives[i].zero_known = offsets.known[i];
-          }
-          with_zeros = std::make_unique<Controller>(core);
-        } catch (const InputError& error) {
-          problem = error.what();
-        }
-        const std::lock_guard lock(prepared->mutex);
-        prepared->problem = problem;
-        prepared->offsets = offsets;
-        prepared->core = std::move(with_zeros);
-        prepared->done = true;
-      });
+  const bool posted = worker_.post([prepared = prepared_, file = file_, how, found = ended.found(), zeros = ended.zero_counts(),
+                                    rubs = ended.friction_found(), friction = ended.friction(), core = core_]() mutable {
+    std::string problem;
+    config::HomingOffsets offsets;
+    std::unique_ptr<Controller> with_zeros;
+    try {
+      offsets = read_and_check(file);
+      for (std::size_t i = 0; i < joint_count; ++i) {
+        if (!found[i]) continue;
+        offsets.zero_counts[i] = zeros[i];
+        offsets.known[i] = true;
+        offsets.found[i] = how;
+        if (!rubs[i]) continue;
+        offsets.friction[i] = friction[i];
+        offsets.friction_known[i] = true;
+      }
+      config::write_homing_file(file, offsets);
+      for (std::size_t i = 0; i < joint_count; ++i) {
+        core.network.drives[i].encoder_zero_counts = offsets.zero_counts[i];
+        core.network.drives[i].zero_known = offsets.known[i];
+        config::set_friction(offsets, i, core.transmissions[i].friction);
+      }
+      with_zeros = std::make_unique<Controller>(core);
+    } catch (const InputError& error) {
+      problem = error.what();
+    }
+    const std::lock_guard lock(prepared->mutex);
+    prepared->problem = problem;
+    prepared->offsets = offsets;
+    prepared->core = std::move(with_zeros);
+    prepared->done = true;
+  });
   if (!posted) end_with({{"state", "failed"}, {"why", "nothing was written: too much is waiting to be done"}, {"without_power", true}});
 }
 
@@ -192,6 +197,7 @@ void Commissioner::install() {
   for (std::size_t i = 0; i < joint_count; ++i) {
     core_.network.drives[i].encoder_zero_counts = prepared_->offsets.zero_counts[i];
     core_.network.drives[i].zero_known = prepared_->offsets.known[i];
+    config::set_friction(prepared_->offsets, i, core_.transmissions[i].friction);
     if (prepared_->offsets.known[i]) zeros[config::joint_name(i)] = prepared_->offsets.zero_counts[i];
   }
   core_given_ = std::move(prepared_->core);

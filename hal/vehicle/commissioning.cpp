@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <numbers>
 
 #include "firmware/arm/actuator.hpp"
 #include "shared/arm/arm_geometry.hpp"
@@ -26,8 +27,15 @@ constexpr Duration power_off_time = Duration::from_ms(1500);
 constexpr double back_off_windows = 1, arrived_windows = 0.03;
 // Of the torque that is allowed: what stands still with less does not press, its encoder or its drive is at fault. Free motion takes about half of it.
 constexpr double least_pressing = 0.7;
-// Of the pressing torque. A spring's torque falls in proportion: from these two the place of none is known, well above the weight of the arm.
-constexpr double begins_to_fall = 0.9, has_fallen = 0.5;
+// Of the load on the stop. A spring's torque falls in proportion: from two places the place of none is known, well above the weight of the arm. The second
+// load is at most so much of the first.
+constexpr double begins_to_fall = 0.9, has_fallen = 0.5, still_falls = 0.7;
+// A screw that nearly locks itself tells little on its way back.
+constexpr double least_back_efficiency = 0.3;
+// The stretch on which friction is found, in following-error windows: some 0.15 to 0.6 rad.
+constexpr double least_rub_windows = 1, most_rub_windows = 4;
+// Of the drives' best: a third of the torque has to do.
+constexpr double rub_acceleration = 0.25;
 
 // The jaw's tips meet before its lower stop is reached.
 double direction(std::size_t joint) { return static_cast<Joint>(joint) == Joint::jaw ? 1 : -1; }
@@ -36,14 +44,19 @@ double stop_rad(std::size_t joint) {
   return direction(joint) < 0 ? stroke.lower_rad : stroke.upper_rad;
 }
 
+std::uint16_t pressing_permille(const Commissioning::Config& config, std::size_t joint) {
+  return arm_geometry::joints[joint].counts_per_rad > 0 ? config.gear_permille : config.screw_permille;
+}
+
 canopen::NetworkConfig gentle(const Commissioning::Config& config) {
   canopen::NetworkConfig network = config.network;
-  for (canopen::DriveSetup& drive : network.drives) {
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    canopen::DriveSetup& drive = network.drives[i];
     drive.encoder_zero_counts = 0;
     drive.zero_known = true;  // what is looked for: all counts here are the encoder's own, and wide open
     drive.min_counts = -any_count;
     drive.max_counts = any_count;
-    drive.max_torque_permille = std::min(drive.max_torque_permille, config.torque_permille);
+    drive.max_torque_permille = std::min(drive.max_torque_permille, pressing_permille(config, i));
     drive.homing_method = 0;
   }
   return network;
@@ -138,6 +151,7 @@ void Commissioning::step(Time now) {
       return go(State::seeking, now);
     case State::seeking: return seek(now);
     case State::easing: return ease(now);
+    case State::rubbing: return rub(now);
     case State::backing_off: return back_off(now);
     case State::releasing:
       if (axis().state() != canopen::AxisState::disabled) return;
@@ -195,7 +209,8 @@ void Commissioning::seek(Time now) {
   const canopen::DriveSetup& drive = config_.network.drives[joint_];
   const double way = direction(joint_), lead = drive.following_window_counts / 2.0;
   const std::int32_t actual = axis().actual_counts();
-  if (actual != last_counts_) {
+  // A joint that presses between two counts wavers by one.
+  if (std::abs(actual - last_counts_) > 1) {
     last_counts_ = actual;
     moved_ = now;
   }
@@ -205,16 +220,22 @@ void Commissioning::seek(Time now) {
   const bool pressing = std::abs(target_ - actual) >= 0.9 * lead;
   if (!pressing || now - moved_ < config_.stall) return;
   pressed_permille_ = std::abs(axis().torque_permille());
-  if (pressed_permille_ < least_pressing * config_.torque_permille) {
+  if (pressed_permille_ < least_pressing * pressing_permille(config_, joint_)) {
     std::array<char, 120> why{};
     std::snprintf(why.data(), why.size(), "it stands still and presses with %ld %% of its torque only: look at its encoder and its gear",
                   std::lround(pressed_permille_ / 10));
     return fail_joint(why.data(), now);
   }
+  pressed_load_ = config_.transmissions[joint_].friction.efficiency * (pressed_permille_ - coulomb_permille());
   pressed_counts_ = actual;
   easing_counts_.reset();
   target_ = actual;
   go(State::easing, now);
+}
+
+// In the drive's unit, thousandths of the rated torque.
+double Commissioning::coulomb_permille() {
+  return 1e3 * config_.transmissions[joint_].friction.coulomb_nm / (1e-6 * std::max(1u, axis().rated_torque_unm()));
 }
 
 // Back so slowly that each reading is one at rest, until the torque is gone.
@@ -222,29 +243,87 @@ void Commissioning::ease(Time now) {
   const canopen::DriveSetup& drive = config_.network.drives[joint_];
   const double way = direction(joint_);
   const std::int32_t actual = axis().actual_counts();
-  const double torque = std::abs(axis().torque_permille()) / pressed_permille_;
-  if (!easing_counts_ && torque < begins_to_fall) easing_counts_ = actual;
-  if (torque >= has_fallen) {
+  // The spring of gear and links turns the motor back now: what it has of torque comes through the friction of that direction.
+  const double back_efficiency = std::max(least_back_efficiency, config_.transmissions[joint_].friction.back_efficiency);
+  const double load = (way * axis().torque_permille() + coulomb_permille()) / back_efficiency;
+  if (!easing_counts_ && load < begins_to_fall * pressed_load_) {
+    easing_counts_ = actual;
+    easing_load_ = load;
+  }
+  if (!easing_counts_ || load >= std::min(has_fallen * pressed_load_, still_falls * easing_load_)) {
     target_ -= way * config_.ease_fraction * drive.max_speed_counts_s * network_.config().sync_period.s();
     (void)axis().set_target_counts(static_cast<std::int32_t>(std::lround(target_)));
     if (std::abs(target_ - pressed_counts_) > drive.following_window_counts) fail_joint("it does not come off its stop", now);
     return;
   }
-  stop_counts_ = actual + (actual - *easing_counts_) * has_fallen / (begins_to_fall - has_fallen);
+  stop_counts_ = actual + (actual - *easing_counts_) * load / (easing_load_ - load);
   const double touching_rad = stop_rad(joint_) + way * 0.5 * config_.backlash_rad[joint_];
   zero_counts_[joint_] =
       static_cast<std::int32_t>(std::lround(stop_counts_ - arm::exact_counts_from_rad(static_cast<Joint>(joint_), touching_rad)));
   found_[joint_] = true;
   target_ = actual;
+  begin_rubbing(now);
+}
+
+double Commissioning::off_stop_counts() const {
+  return stop_counts_ - direction(joint_) * back_off_windows * config_.network.drives[joint_].following_window_counts;
+}
+
+double Commissioning::goal_counts() const {
+  const double off_stop = off_stop_counts();
+  return direction(joint_) < 0 ? std::max<double>(started_counts_, off_stop) : std::min<double>(started_counts_, off_stop);
+}
+
+// The stretch begins off the stop and goes where the joint has just come from: there is nothing on it.
+void Commissioning::begin_rubbing(Time now) {
+  const double window = config_.network.drives[joint_].following_window_counts;
+  const double length = std::min(std::abs(goal_counts() - off_stop_counts()), most_rub_windows * window);
+  if (length < least_rub_windows * window) return go(State::backing_off, now);
+  rub_from_ = off_stop_counts();
+  rub_to_ = rub_from_ - direction(joint_) * length;
+  pass_.reset();
+  rub_speed_ = 0;
+  fit_.reset();
+  go(State::rubbing, now);
+}
+
+void Commissioning::rub(Time now) {
+  const canopen::DriveSetup& drive = config_.network.drives[joint_];
+  const bool back = !pass_ || *pass_ % 2 == 1;  // to where the stretch begins
+  const double end = back ? rub_from_ : rub_to_;
+  const double dt_s = network_.config().sync_period.s();
+  const double speed = (pass_ && *pass_ >= 2 ? config_.fast_fraction : config_.slow_fraction) * drive.max_speed_counts_s;
+  const double acceleration = rub_acceleration * drive.quick_stop_counts_s2;
+  // No faster than it can brake before the end, and on the last step as fast as just reaches it.
+  const double way_left = std::abs(end - target_);
+  const double wanted = std::min({speed, std::sqrt(2 * acceleration * way_left), way_left / dt_s});
+  rub_speed_ = std::min(wanted, rub_speed_ + acceleration * dt_s);
+  const double place = (axis().actual_counts() - rub_from_) / (rub_to_ - rub_from_);
+  if (pass_ && rub_speed_ == speed) fit_.add(*pass_, place, 1e-3 * std::copysign(speed, end - target_), axis().torque_permille());
+  target_ = way_left < 1 ? end : target_ + std::copysign(rub_speed_ * dt_s, end - target_);
+  (void)axis().set_target_counts(static_cast<std::int32_t>(std::lround(target_)));
+  if (target_ != end || std::abs(axis().actual_counts() - end) > std::max(3.0, arrived_windows * drive.following_window_counts)) return;
+  rub_speed_ = 0;
+  pass_ = pass_ ? *pass_ + 1 : 0;
+  if (*pass_ < FrictionFit::passes) return;
+  end_rubbing();
   go(State::backing_off, now);
+}
+
+void Commissioning::end_rubbing() {
+  const arm::TransmissionSetup& known = config_.transmissions[joint_];
+  const FoundFriction found = fit_.solve(known.friction.efficiency, known.friction.back_efficiency);
+  friction_found_[joint_] = found.valid;
+  const double mnm = 1e-6 * axis().rated_torque_unm();                            // of a thousandth of the rated torque
+  const double motor_rad_s = 1000 / known.counts_per_rev * 2 * std::numbers::pi;  // of 1000 counts/s
+  friction_[joint_] = {found.coulomb * mnm, found.viscous * mnm / motor_rad_s, found.rms * mnm};
 }
 
 // To where it was: an arm that is left unfolded stands outside of its workspace, and no order leads it back. From a stop, off it.
 void Commissioning::back_off(Time now) {
   const canopen::DriveSetup& drive = config_.network.drives[joint_];
-  const double way = direction(joint_), window = drive.following_window_counts;
-  const double off_stop = stop_counts_ - way * back_off_windows * window;
-  const double goal = way < 0 ? std::max<double>(started_counts_, off_stop) : std::min<double>(started_counts_, off_stop);
+  const double window = drive.following_window_counts;
+  const double goal = goal_counts();
   const double step = config_.speed_fraction * drive.max_speed_counts_s * network_.config().sync_period.s();
   target_ += std::clamp(goal - target_, -step, step);
   (void)axis().set_target_counts(static_cast<std::int32_t>(std::lround(target_)));
@@ -255,6 +334,7 @@ void Commissioning::back_off(Time now) {
 
 const char* name(Commissioning::State state) {
   switch (state) {
+    case Commissioning::State::rubbing: return "finding its friction";
     case Commissioning::State::booting: return "booting";
     case Commissioning::State::enabling: return "powering up";
     case Commissioning::State::seeking: return "moving to its stop";

@@ -1,7 +1,7 @@
-// Commissioning: what each drive's absolute encoder counts where the arm's own count is 0.
+// Commissioning: what each drive's absolute encoder counts where the arm's own count is 0, and how its motor and gear rub.
 //
-// One joint after the other is powered, moved slowly against a stop with a third of its rated torque, eased off until it only touches, read there, moved
-// back to where it was, and released: the stop's angle is known from the arm's description. What presses is wound up: read under a third of its torque the slew would be 0.4 deg off.
+// One joint after the other is powered, moved slowly against a stop with a third of its rated torque (a screw: two thirds), eased off until it only touches, read there, moved
+// both ways at two speeds over a stretch that it has just passed, from which friction_fit.hpp has its friction, moved back to where it was, and released: the stop's angle is known from the arm's description. What presses is wound up: read under that torque the slew would be 0.4 deg off.
 // The drives' own references are not touched. A plain object like the core, run by the control thread in the core's place: frames and the time in, frames
 // out, no heap. It stands on the core's own network and axes.
 //
@@ -13,8 +13,10 @@
 #include <optional>
 #include <string_view>
 
+#include "firmware/arm/transmission.hpp"
 #include "firmware/canopen/network.hpp"
 #include "hal/config/homing_file.hpp"
+#include "hal/vehicle/friction_fit.hpp"
 #include "shared/messages/joint_io.hpp"
 #include "shared/messages/time.hpp"
 
@@ -26,13 +28,17 @@ class Commissioning {
     canopen::NetworkConfig network;
     std::array<bool, joint_count> joints{true, true, true, true, true};
     std::array<double, joint_count>
-        backlash_rad{};                       // of each gear, as the arm's description has it: the motor touches half of it beyond the stop
-    bool here = false;                        // the arm stands at its zero, in a jig: nothing is moved
-    double speed_fraction = 0.3;              // of each drive's maximum: 0.13 rad/s of the slew, above its stiction of 0.06
-    std::uint16_t torque_permille = 350;      // of the rated torque: free motion under water takes less than a fifth
-    double ease_fraction = 0.02;              // of each drive's maximum speed: 0.007 rad of winding take the slew a second
-    Duration stall = Duration::from_ms(600);  // pressing without a count for so long is standing at the stop
-    Duration longest = Duration::from_ms(150'000);  // of one joint
+        backlash_rad{};  // of each gear, as the arm's description has it: the motor touches half of it beyond the stop
+    std::array<arm::TransmissionSetup, joint_count> transmissions;  // their friction, as far as it is known before
+    bool here = false;                                              // the arm stands at its zero, in a jig: nothing is moved
+    double speed_fraction = 0.3;  // of each drive's maximum: 0.13 rad/s of the slew, above its stiction of 0.06
+    // Of the rated torque: free motion under water takes less than a fifth. At a stroke's end a screw has a third of its lever left: with less than two
+    // thirds of the torque the arm's weight stops the shoulder short.
+    std::uint16_t gear_permille = 350, screw_permille = 700;
+    double slow_fraction = 0.2, fast_fraction = 0.4;  // of each drive's maximum speed, while its friction is found
+    double ease_fraction = 0.02;                      // of each drive's maximum speed: 0.007 rad of winding take the slew a second
+    Duration stall = Duration::from_ms(600);          // pressing without a count for so long is standing at the stop
+    Duration longest = Duration::from_ms(150'000);    // of one joint
   };
 
   enum class State : std::uint8_t {
@@ -40,6 +46,7 @@ class Commissioning {
     enabling,
     seeking,      // toward the stop
     easing,       // off it, until it only touches
+    rubbing,      // both ways over a stretch, twice
     backing_off,  // to where the joint was
     releasing,    // the joint loses power
     halting,      // ended early: quick stop
@@ -64,6 +71,9 @@ class Commissioning {
   std::size_t joint() const { return joint_; }  // under work
   const std::array<std::int32_t, joint_count>& zero_counts() const { return zero_counts_; }
   const std::array<bool, joint_count>& found() const { return found_; }
+  // Not found for a joint that had too little way to its stop, or whose torques make no sense.
+  const std::array<bool, joint_count>& friction_found() const { return friction_found_; }
+  const std::array<config::JointFriction, joint_count>& friction() const { return friction_; }
 
  private:
   canopen::Axis& axis() { return network_.axis(static_cast<Joint>(joint_)); }
@@ -76,7 +86,13 @@ class Commissioning {
   void take_here(Time now);
   void seek(Time now);
   void ease(Time now);
+  double coulomb_permille();
+  void begin_rubbing(Time now);
+  void rub(Time now);
+  void end_rubbing();
   void back_off(Time now);
+  double off_stop_counts() const;
+  double goal_counts() const;  // where it is left: where it was, off the stop
 
   Config config_;
   canopen::Network network_;
@@ -88,6 +104,8 @@ class Commissioning {
   std::size_t joint_ = 0;
   std::array<std::int32_t, joint_count> zero_counts_{};
   std::array<bool, joint_count> found_{};
+  std::array<bool, joint_count> friction_found_{};
+  std::array<config::JointFriction, joint_count> friction_{};
   Time since_;        // in this state
   Time joint_since_;  // with this joint
   Time moved_;        // when it last counted
@@ -99,8 +117,14 @@ class Commissioning {
   std::int32_t started_counts_ = 0;   // where it was powered
   double pressed_permille_ = 0;       // torque when it stood at the stop
   std::int32_t pressed_counts_ = 0;
-  std::optional<std::int32_t> easing_counts_;  // where the torque began to fall
+  double pressed_load_ = 0;                    // what of it the stop felt
+  std::optional<std::int32_t> easing_counts_;  // where the load began to fall
+  double easing_load_ = 0;                     // and the load there
   double stop_counts_ = 0;                     // where it only touches
+  FrictionFit fit_;
+  double rub_from_ = 0, rub_to_ = 0;  // the stretch, counts
+  double rub_speed_ = 0;              // counts/s
+  std::optional<std::size_t> pass_;   // of the fit's; none on the way to the stretch
 };
 
 const char* name(Commissioning::State state);

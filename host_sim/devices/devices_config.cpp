@@ -4,6 +4,7 @@
 #include <set>
 
 #include "host_sim/devices/drive/actuator.hpp"
+#include "shared/arm/motor.hpp"
 #include "shared/can/object_tables.hpp"
 #include "shared/input_error.hpp"
 
@@ -21,6 +22,14 @@ void check_drive(const DriveConfig& drive) {
   require(positive(drive.rated_torque_nm) && drive.peak_torque_nm >= drive.rated_torque_nm, drive,
           "no rated torque, or one above the peak torque");
   require(drive.peak_torque_nm <= 30 * drive.rated_torque_nm, drive, "peak torque above 30 times the rated torque");  // 6077 is 16 bits
+  const GearFriction& friction = drive.friction;
+  require(
+      std::isfinite(friction.coulomb_nm) && friction.coulomb_nm >= 0 && std::isfinite(friction.viscous_nm_s) && friction.viscous_nm_s >= 0,
+      drive, "negative friction");
+  require(
+      positive(friction.efficiency) && friction.efficiency <= 1 && std::isfinite(friction.back_efficiency) && friction.back_efficiency <= 1,
+      drive, "an efficiency above 1, or none");
+  require(positive(drive.counts_per_rev), drive, "no counts in a revolution of the motor");
   require(positive(drive.max_velocity_rad_s) && positive(drive.max_acceleration_rad_s2), drive, "no top speed or acceleration");
   require(std::isfinite(drive.stiction_rad_s) && drive.stiction_rad_s >= 0 && drive.stiction_rad_s < drive.max_velocity_rad_s, drive,
           "stiction speed not below the top speed");
@@ -88,6 +97,14 @@ bool of_the_bus(DeviceFaultKind kind) {
   return kind == drop_frames || kind == error_frames || kind == bus_off || of_a_second_master(kind);
 }
 
+void set_motor(const ArmJoint& joint, double counts_per_rev, DriveConfig& drive) {
+  const Motor motor = motor_of(joint, counts_per_rev);
+  drive.counts_per_rev = counts_per_rev;
+  drive.rated_torque_nm = motor.rated_torque_nm;
+  drive.peak_torque_nm = motor.peak_torque_nm;
+  drive.friction = {motor.coulomb_nm, motor.viscous_nm_s, joint.friction.efficiency, joint.friction.back_efficiency};
+}
+
 DriveConfig drive_config(const ArmJoint& joint, std::uint8_t node) {
   DriveConfig drive;
   drive.node = node;
@@ -95,8 +112,7 @@ DriveConfig drive_config(const ArmJoint& joint, std::uint8_t node) {
   drive.actuator = joint.actuator;
   drive.lower_rad = joint.lower_rad;
   drive.upper_rad = joint.upper_rad;
-  drive.peak_torque_nm = joint.effort_nm;
-  drive.rated_torque_nm = joint.rated_torque_nm;
+  set_motor(joint, drive.counts_per_rev, drive);
   drive.max_velocity_rad_s = joint.velocity_rad_s;
   drive.max_acceleration_rad_s2 = joint.acceleration_rad_s2;
   drive.stiction_rad_s = joint.stiction_rad_s;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "host_sim/devices/drive/drive_habits.hpp"
+#include "host_sim/devices/drive/gear_train.hpp"
 #include "shared/arm/arm_description.hpp"
 #include "shared/can/can_map.hpp"
 #include "shared/messages/joint_io.hpp"
@@ -23,8 +24,9 @@ struct DriveConfig {
   std::string name = "LF servo drive";  // object 1008
   ArmActuator actuator;
   double lower_rad = 0, upper_rad = 0;  // mechanical stroke: defaults of 607D and the limit of a homing run
-  double peak_torque_nm = 0;            // object 6072 at 6076's scale, as a default
-  double rated_torque_nm = 0;           // object 6076, in mNm
+  double peak_torque_nm = 0;            // of the motor, at its shaft; object 6072 at 6076's scale, as a default
+  double rated_torque_nm = 0;           // of the motor, at its shaft; object 6076, in mNm
+  GearFriction friction;                // between motor and joint
   double max_velocity_rad_s = 0;
   double max_acceleration_rad_s2 = 0;
   double stiction_rad_s = 0;             // the joint stands still below it; the drive pulses instead of creeping
@@ -44,6 +46,9 @@ struct DriveConfig {
   double rated_current_a = 1.333;  // at the rated torque
   bool reversed = false;           // it counts against the joint
 };
+
+// The motor's figures and its nominal friction, for an encoder with so many counts in a revolution of the motor.
+void set_motor(const ArmJoint& joint, double counts_per_rev, DriveConfig& drive);
 
 // From the URDF: the only source of the arm's geometry and of its joints' figures.
 DriveConfig drive_config(const ArmJoint& joint, std::uint8_t node);
@@ -74,7 +79,7 @@ enum class DeviceFaultKind : std::uint8_t {
 
   encoder_jump,    // the position reads 0.25 rad too much
   torque_frozen,   // object 6077 keeps its value
-  torque_high,     // 1.2 times the peak torque is added to the torque reading
+  torque_high,     // 1.2 times the peak torque is added to the torque reading of a drive with power
   runaway,         // while enabled the joint moves at 1.5 times its top speed, and the drive's following-error window is gone
   wrong_identity,  // object 1018:02 names another product
 

@@ -58,6 +58,13 @@ Sample draw(const Scenario& s, std::uint64_t seed) {
   static constexpr std::array<const char*, joint_count> joints{"slew", "shoulder", "elbow", "roll", "jaw"};
   for (std::size_t i = 0; i < joint_count; ++i) {
     sample.joint_offset_rad[i] = draws.degrees(s.mounting.joints_deg, std::string("mounting.joints_deg.") + joints[i]);
+    const auto friction = [&](const Spread& spread, const char* name) {
+      return draws.of(spread, std::string("friction.") + name + "." + joints[i]);
+    };
+    sample.coulomb[i] = friction(s.friction.coulomb, "coulomb");
+    sample.viscous[i] = friction(s.friction.viscous, "viscous");
+    sample.efficiency[i] = friction(s.friction.efficiency, "efficiency");
+    sample.back_efficiency[i] = friction(s.friction.back_efficiency, "back_efficiency");
   }
   sample.marker_shift_m = draws.each_axis(s.mounting.marker_m, "mounting.marker_m");
   sample.marker_shift_m.z() = 0;

@@ -100,6 +100,14 @@ struct Physics {
   double water_celsius = 0;
 };
 
+// The machine's true friction between motors and joints, over what the arm's description says and the core takes for it. Drawn for each joint on its own.
+struct Friction {
+  Spread coulomb = Spread::around(1, 0.15);
+  Spread viscous = Spread::around(1, 0.15);
+  Spread efficiency = Spread::around(1, 0.03);
+  Spread back_efficiency = Spread::around(1, 0.03);
+};
+
 struct Latency {
   Latency();  // those of hal::SimConfig
   double image_ms = 0;
@@ -145,6 +153,7 @@ struct Scenario {
   Arm arm;
   Jaw jaw;
   Physics physics;
+  Friction friction;
   Latency latency;
   Sensors sensors;
   Safety safety;

@@ -186,10 +186,11 @@ std::vector<std::string> makes_of(const std::string& profile, const std::filesys
 }
 
 // A simulated drive of the make that the machine's file names. `folder`: of that file.
-void set_make(const config::Drives& drives, std::size_t joint, const std::filesystem::path& folder, devices::DriveConfig& drive) {
+void set_make(const config::Drives& drives, std::size_t joint, const std::filesystem::path& folder, const ArmJoint& arm_joint,
+              devices::DriveConfig& drive) {
   const config::JointDriveChoice choice = config::drive_of(drives, joint);
   drive.node = static_cast<std::uint8_t>(choice.node);
-  drive.counts_per_rev = choice.counts_per_rev;
+  devices::set_motor(arm_joint, choice.counts_per_rev, drive);
   drive.rated_current_a = choice.rated_current_a;
   drive.reversed = choice.polarity == "reversed";
   // The profile's own make, or the nearest of those that it is like.
@@ -213,7 +214,11 @@ devices::DevicesConfig device_config(const Scenario& scenario, const Sample& sam
     devices::DriveConfig& drive = config.drives[i];
     drive.torque_noise_ratio = scenario.physics.torque_noise_ratio;
     drive.water_celsius = scenario.physics.water_celsius;
-    set_make(scenario.drives, i, std::filesystem::path(scenario.file).parent_path(), drive);
+    set_make(scenario.drives, i, std::filesystem::path(scenario.file).parent_path(), arm.joints[i], drive);
+    drive.friction.coulomb_nm *= sample.coulomb[i];
+    drive.friction.viscous_nm_s *= sample.viscous[i];
+    drive.friction.efficiency = std::min(1.0, drive.friction.efficiency * sample.efficiency[i]);
+    drive.friction.back_efficiency = std::min(1.0, drive.friction.back_efficiency * sample.back_efficiency[i]);
   }
   config.io.node = static_cast<std::uint8_t>(scenario.drives.output_node);
   return config;

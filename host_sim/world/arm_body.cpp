@@ -94,7 +94,9 @@ void ArmBody::before_step() {
   btMultiBody& body = part_.body();
   for (std::size_t i = 0; i < joint_count; ++i) {
     plan_[i] = plan_drive(drives_[i], arm_.joints[i].holding_torque_nm, motor_rad_[i], config_.step_s);
-    plan_[i].torque_nm *= driven_links(i);
+    plan_[i].torque_up_nm *= driven_links(i);
+    plan_[i].torque_down_nm *= driven_links(i);
+    plan_[i].push_nm *= driven_links(i);
     rows_[i]->begin();
     stall_nm_[i] = set_drive_rows(*rows_[i], joints_[i], plan_[i], position_rad(i), config_.step_s);
     if (i == jaw) set_coupling_row(*rows_[i], joints_[i], body.getJointPos(finger_b_link) - body.getJointPos(int(jaw)), config_.step_s);

@@ -25,6 +25,10 @@ JointRows::Row flank_row(double flank_rad, const DriveStep& drive, double stiffn
   return row;
 }
 
+double stall_nm(double wound_up_rad, const DriveStep& drive, const DrivenJoint& joint) {
+  return joint.stiffness_nm_rad > 0 ? std::min(drive.push_nm, joint.stiffness_nm_rad * std::max(0.0, wound_up_rad)) : drive.push_nm;
+}
+
 void set_row(JointRows& rows, Slot slot, const DrivenJoint& joint, JointRows::Row row) {
   if (joint.coupled) row.first = row.second = 0.5;
   rows.set(slot, row);
@@ -33,13 +37,16 @@ void set_row(JointRows& rows, Slot slot, const DrivenJoint& joint, JointRows::Ro
 }  // namespace
 
 DriveStep plan_drive(const JointDrive& drive, double holding_torque_nm, double motor_rad, double step_s) {
-  if (drive.released) return {motor_rad, holding_torque_nm, 0};
-  if (!std::isfinite(drive.velocity_rad_s) || !std::isfinite(drive.torque_limit_nm)) return {motor_rad, 0, 0};
-  return {motor_rad + drive.velocity_rad_s * step_s, std::max(0.0, drive.torque_limit_nm), drive.velocity_rad_s};
+  if (drive.released) return {motor_rad, holding_torque_nm, holding_torque_nm, holding_torque_nm, 0};
+  if (!std::isfinite(drive.velocity_rad_s) || !std::isfinite(drive.torque_limit_nm) || !std::isfinite(drive.holding_limit_nm))
+    return {motor_rad, 0, 0, 0, 0};
+  const double push_nm = std::max(0.0, drive.torque_limit_nm), hold_nm = std::max(push_nm, drive.holding_limit_nm);
+  const double up_nm = drive.velocity_rad_s > 0 ? push_nm : hold_nm, down_nm = drive.velocity_rad_s < 0 ? push_nm : hold_nm;
+  return {motor_rad + drive.velocity_rad_s * step_s, up_nm, down_nm, push_nm, drive.velocity_rad_s};
 }
 
 double set_drive_rows(JointRows& rows, const DrivenJoint& joint, const DriveStep& drive, double position_rad, double step_s) {
-  const double impulse = drive.torque_nm * step_s;
+  const double up = drive.torque_up_nm * step_s, down = drive.torque_down_nm * step_s;
   const double lower_rad = drive.motor_rad - 0.5 * joint.backlash_rad;
   const double upper_rad = drive.motor_rad + 0.5 * joint.backlash_rad;
   const bool at_lower_stop = position_rad - stop_reach_rad_s * step_s < joint.lower_rad;
@@ -47,19 +54,19 @@ double set_drive_rows(JointRows& rows, const DrivenJoint& joint, const DriveStep
   if (at_lower_stop) set_row(rows, lower_stop, joint, {(joint.lower_rad - position_rad) / step_s, 0, unlimited_n_m_s});
   if (at_upper_stop) set_row(rows, upper_stop, joint, {(joint.upper_rad - position_rad) / step_s, -unlimited_n_m_s, 0});
 
-  // A drive that asks for what lies beyond a stop: two rows would fight over one joint, so it pushes with all its torque and the stop answers.
-  if (at_lower_stop && upper_rad < joint.lower_rad) return -drive.torque_nm;
-  if (at_upper_stop && lower_rad > joint.upper_rad) return drive.torque_nm;
-  if (impulse <= 0) return 0;
+  // A drive that asks for what lies beyond a stop: two rows would fight over one joint, so it pushes as its spring is wound up, and the stop answers.
+  if (at_lower_stop && upper_rad < joint.lower_rad) return -stall_nm(position_rad - upper_rad, drive, joint);
+  if (at_upper_stop && lower_rad > joint.upper_rad) return stall_nm(lower_rad - position_rad, drive, joint);
+  if (up <= 0 && down <= 0) return 0;
   JointRows::Row lower = flank_row(lower_rad, drive, joint.stiffness_nm_rad, position_rad, step_s);
   JointRows::Row upper = flank_row(upper_rad, drive, joint.stiffness_nm_rad, position_rad, step_s);
-  lower.impulse_max = impulse;
-  upper.impulse_min = -impulse;
+  lower.impulse_max = up;
+  upper.impulse_min = -down;
   if (joint.backlash_rad > 0) {
     set_row(rows, lower_flank, joint, lower);
     set_row(rows, upper_flank, joint, upper);
   } else {
-    lower.impulse_min = -impulse;
+    lower.impulse_min = -down;
     set_row(rows, lower_flank, joint, lower);
   }
   return 0;
@@ -78,9 +85,11 @@ void set_coupling_row(JointRows& rows, const DrivenJoint& joint, double apart_ra
 double drive_torque_nm(const JointRows& rows, double step_s) { return (rows.impulse(lower_flank) + rows.impulse(upper_flank)) / step_s; }
 
 double motor_after(const DriveStep& drive, const DrivenJoint& joint, double position_rad) {
-  const double wound_up_rad = joint.stiffness_nm_rad > 0 ? drive.torque_nm / joint.stiffness_nm_rad : 0;
-  const double reach_rad = 0.5 * joint.backlash_rad + wound_up_rad;
-  return std::clamp(drive.motor_rad, position_rad - reach_rad, position_rad + reach_rad);
+  const double softness = joint.stiffness_nm_rad > 0 ? 1 / joint.stiffness_nm_rad : 0;
+  const double slack_rad = 0.5 * joint.backlash_rad;
+  // Above the joint the motor pushes it up.
+  return std::clamp(drive.motor_rad, position_rad - slack_rad - softness * drive.torque_down_nm,
+                    position_rad + slack_rad + softness * drive.torque_up_nm);
 }
 
 }  // namespace lf::world

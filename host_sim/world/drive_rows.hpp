@@ -3,7 +3,7 @@
 // Motor and joint are a lash apart: |motor - joint| <= backlash / 2. The motor runs at the commanded speed; the joint is free between the two flanks of the
 // play and is carried by the flank it meets, with at most the drive's torque. A joint that the torque cannot move (or that is pushed back by more) holds or
 // drags the motor with it, as a slip clutch would: the motor's position is that of the flank in contact. With no power the motor stands still and the flanks
-// hold with the self-locking gear's friction. This is exact for loads of either sign and for loads that reverse: the joint then crosses the play by itself.
+// hold with the gear's friction. This is exact for loads of either sign and for loads that reverse: the joint then crosses the play by itself.
 //
 // The flanks are springs: what screws, links and pads give way by under load is lumped there. Without it a gripped, misaligned handle sees 900 N.
 #pragma once
@@ -24,8 +24,10 @@ struct DrivenJoint {
 
 // Speed and torque that the drive works with in one step.
 struct DriveStep {
-  double motor_rad = 0;  // where the motor gets to when nothing stalls it
-  double torque_nm = 0;  // most it applies, either way
+  double motor_rad = 0;       // where the motor gets to when nothing stalls it
+  double torque_up_nm = 0;    // most it applies to larger angles
+  double torque_down_nm = 0;  // and to smaller ones; both positive
+  double push_nm = 0;         // with which it presses on a stop
   double speed_rad_s = 0;
 };
 

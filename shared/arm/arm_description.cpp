@@ -235,6 +235,15 @@ ArmActuator read_screw(const Urdf& urdf, const XMLElement* e, const ArmJoint& jo
   return screw;
 }
 
+void read_friction(const Urdf& urdf, const XMLElement* e, ArmFriction& friction) {
+  friction.coulomb_share = urdf.not_negative(e, "coulomb_share");
+  friction.viscous_share = urdf.not_negative(e, "viscous_share");
+  friction.efficiency = urdf.positive(e, "efficiency");
+  friction.back_efficiency = urdf.number(e, "back_efficiency");
+  if (friction.coulomb_share + friction.viscous_share >= 1) urdf.fail(e, "friction takes the whole rated torque");
+  if (friction.efficiency > 1 || friction.back_efficiency > 1) urdf.fail(e, "an efficiency is above 1");
+}
+
 void read_drive(const Urdf& urdf, ArmJoint& joint) {
   const XMLElement* const e = urdf.named("joint", joint.name);
   const XMLElement* const drive = urdf.child(e, "lanternfish:drive");
@@ -243,6 +252,7 @@ void read_drive(const Urdf& urdf, ArmJoint& joint) {
   joint.stiction_rad_s = urdf.not_negative(drive, "stiction_rad_s");
   joint.backlash_rad = urdf.not_negative(drive, "backlash_rad");
   joint.holding_torque_nm = urdf.not_negative(drive, "holding_torque_nm");
+  if (const XMLElement* const friction = e->FirstChildElement("lanternfish:friction")) read_friction(urdf, friction, joint.friction);
   if (joint.rated_torque_nm > joint.effort_nm) urdf.fail(drive, urdf.label(e) + ": rated torque exceeds the peak effort");
   if (joint.stiction_rad_s >= joint.velocity_rad_s) urdf.fail(drive, urdf.label(e) + ": it can never move, stiction reaches its top speed");
   if (const XMLElement* const screw = e->FirstChildElement("lanternfish:screw"))

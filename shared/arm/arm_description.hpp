@@ -33,19 +33,28 @@ struct ArmActuator {
   double counts_per_rad = 0;
 };
 
+// Between motor and joint, nominal: what commissioning is to find. Shares of the motor's rated torque, and what of a load's torque gets through.
+struct ArmFriction {
+  double coulomb_share = 0;
+  double viscous_share = 0;    // at the joint's top speed
+  double efficiency = 1;       // the motor drives the load
+  double back_efficiency = 1;  // the load drives the motor; 0 or less: it cannot
+};
+
 struct ArmJoint {
   std::string name;
   Pose parent_from_joint = Pose::Identity();
   Vec3 axis = Vec3::UnitZ();
   double lower_rad = 0, upper_rad = 0;
-  double effort_nm = 0;        // the drive's peak torque at the joint
-  double rated_torque_nm = 0;  // CiA 402 object 6076
+  double effort_nm = 0;        // what the motor's peak torque gives the joint: driving a load, where the actuator has the most lever
+  double rated_torque_nm = 0;  // the same of its rated torque
   double velocity_rad_s = 0;   // the drive's top speed
   double acceleration_rad_s2 = 0;
   double stiction_rad_s = 0;     // below this speed the joint does not move
   double backlash_rad = 0;       // total play
   double holding_torque_nm = 0;  // of the self-locking gear without power
   ArmActuator actuator;
+  ArmFriction friction;
 };
 
 // Bodies in the order of scene::BodyId: base (vehicle), slew, upper_arm, forearm, wrist, finger_a, finger_b.

@@ -113,6 +113,9 @@ def read_joint(robot, name):
         values[key] = drive.number(key)
     keys = ("pivot_a_m", "pivot_b_m", "offset_rad", "counts_per_m")
     values.update({key: screw.number(key) if screw else 0.0 for key in keys})
+    friction = joint.find("lanternfish:friction")
+    for key, none in (("coulomb_share", 0.0), ("viscous_share", 0.0), ("efficiency", 1.0), ("back_efficiency", 1.0)):
+        values[key] = friction.number(key) if friction else none
     values["counts_per_rad"] = 0.0 if screw else 1 / joint.child("lanternfish:gear").number("rad_per_count")
     if not values["lower_rad"] < values["upper_rad"]:
         limit.fail(f"joint '{name}': lower limit is not below the upper one")

@@ -1,6 +1,6 @@
 // What passes between a drive's power stage and the joint it moves, once per physics step.
 //
-// The arm's linear screws and the wrist's gear lock themselves: a drive imposes a speed, up to a torque, and the load cannot turn it back.
+// A drive imposes a speed, up to a torque. Screws and gears rub: they push less than the motor's torque would, hold more, and hold without power.
 #pragma once
 
 #include <array>
@@ -24,8 +24,10 @@ struct JointReading {
 // From the drive to the world.
 struct JointDrive {
   double velocity_rad_s = 0;   // 0 holds
-  double torque_limit_nm = 0;  // what the drive can apply now
+  double torque_limit_nm = 0;  // what the drive can apply now, pushing the joint the way it moves
   bool released = false;       // no power: only the self-locking gear's friction holds (`holding_torque_nm` in the arm's description)
+  double holding_limit_nm =
+      0;  // with which it holds against being pushed back: friction helps it there. Less than `torque_limit_nm` counts as that
 };
 
 using JointReadings = std::array<JointReading, joint_count>;

@@ -28,12 +28,15 @@ using Angles = std::array<double, joint_count>;
 
 constexpr Zeros somewhere{12'345, -70'000, 7, 100'123, -54'321};
 constexpr Angles parked{0, 0.60, 1.90, 0, 0.3};
-constexpr double allowed_rad = 0.05 * pi / 180;
+// Screws rub, and what is not known of that before costs 0.02 degrees.
+constexpr double allowed_rad = 0.07 * pi / 180;
 
 // The arm with nothing within its reach, and drives whose zeros nobody knows.
 class Bench {
  public:
-  explicit Bench(const Zeros& zeros, const Angles& start_rad = parked, const std::vector<devices::DeviceFault>& faults = {})
+  explicit Bench(
+      const Zeros& zeros, const Angles& start_rad = parked, const std::vector<devices::DeviceFault>& faults = {},
+      const std::function<void(hal::SimConfig&)>& change = [](hal::SimConfig&) {})
       : zeros_(zeros) {
     const scenario::Scenario scenario = scenario::load_scenario("default", {});
     const scenario::Sample sample = scenario::draw(scenario, 1);
@@ -47,6 +50,8 @@ class Bench {
       truth.devices.drives[i].encoder_offset_rad = 0;
       backlash_rad_[i] = truth.world.arm.joints[i].backlash_rad;
     }
+    change(truth);
+    drives_ = truth.devices.drives;
     platform_ = std::make_unique<hal::SimPlatform>(truth, nobody_);
   }
 
@@ -54,6 +59,7 @@ class Bench {
     Commissioning::Config config;
     config.network = nominal_.controller.network;
     config.backlash_rad = backlash_rad_;
+    config.transmissions = nominal_.controller.transmissions;
     return config;
   }
 
@@ -92,12 +98,14 @@ class Bench {
     return all;
   }
   const scenario::Nominal& nominal() const { return nominal_; }
+  const devices::DriveConfig& drive(std::size_t joint) const { return drives_[joint]; }
   const Angles& backlash_rad() const { return backlash_rad_; }
   hal::SimPlatform& platform() { return *platform_; }
 
  private:
   Zeros zeros_;
   Angles backlash_rad_{};
+  std::array<devices::DriveConfig, joint_count> drives_;
   scenario::Nominal nominal_;
   hal::SimObserver nobody_;
   std::unique_ptr<hal::SimPlatform> platform_;
@@ -124,6 +132,33 @@ INSTANTIATE_TEST_SUITE_P(AnyPlace, CommissioningFrom,
                          testing::Values(parked, Angles{-1.2, 1.3, 0.4, 2.9, 1.2}, Angles{0.5, 0.05, 1.0, -3.0, 0.0},
                                          Angles{-1.57, 0.001, 0.001, -3.14, 1.337}),
                          [](const testing::TestParamInfo<Angles>& test) { return "Number" + std::to_string(test.index); });
+
+// Drives whose friction is a fifth more or less than the core takes it for, and whose efficiencies are as drawn.
+TEST(CommissionedArm, HasItsFrictionFound) {
+  Bench bench(somewhere, parked, {}, [](hal::SimConfig& truth) {
+    for (std::size_t i = 0; i < joint_count; ++i) {
+      devices::GearFriction& friction = truth.devices.drives[i].friction;
+      friction.coulomb_nm *= i % 2 == 0 ? 1.2 : 0.8;
+      friction.viscous_nm_s *= i % 2 == 0 ? 0.8 : 1.2;
+    }
+  });
+  Commissioning commissioning(bench.config());
+  bench.run(commissioning);
+  ASSERT_EQ(commissioning.state(), Commissioning::State::done) << commissioning.failure();
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    ASSERT_TRUE(commissioning.friction_found()[i]) << config::joint_name(i);
+    const config::JointFriction& found = commissioning.friction()[i];
+    const devices::DriveConfig& drive = bench.drive(i);
+    EXPECT_NEAR(1e-3 * found.coulomb_mnm, drive.friction.coulomb_nm, 0.1 * drive.friction.coulomb_nm) << config::joint_name(i);
+    // At the top speed viscous friction is 4 % of the rated torque; it is found to 2 %, of the roll, which creeps below its stiction speed of
+    // 0.2 rad/s, to 6 %.
+    const double top_rad_s = 0.04 * drive.rated_torque_nm / bench.nominal().controller.transmissions[i].friction.viscous_nm_s;
+    EXPECT_NEAR(1e-3 * found.viscous_mnm_s * top_rad_s, drive.friction.viscous_nm_s * top_rad_s,
+                (i == 3 ? 0.06 : 0.02) * drive.rated_torque_nm)
+        << config::joint_name(i);
+    EXPECT_LT(found.rms_mnm, 20 * drive.rated_torque_nm) << config::joint_name(i) << ": 2 % of the rated torque";
+  }
+}
 
 // The whole way: found, written, read, and the core's angles are the arm's.
 TEST(CommissionedArm, IsWhereTheCoreTakesItToBe) {

@@ -204,9 +204,19 @@ void pass(S& s, safety::Limits& v) {
   pass_all(s, joints, low, high, stale_position, stale_image, vision_timeout, contact_torque, checksum);
 }
 template <class S>
+void pass(S& s, arm::Friction& v) {
+  auto& [coulomb, viscous, efficiency, back_efficiency, doubt, efficiency_doubt] = v;
+  pass_all(s, coulomb, viscous, efficiency, back_efficiency, doubt, efficiency_doubt);
+}
+template <class S>
+void pass(S& s, arm::TransmissionSetup& v) {
+  auto& [counts_per_rev, friction] = v;
+  pass_all(s, counts_per_rev, friction);
+}
+template <class S>
 void pass(S& s, ControllerConfig& v) {
-  auto& [network, camera, laser, marker, mission, limits, mission_limits] = v;
-  pass_all(s, network, camera, laser, marker, mission, limits, mission_limits);
+  auto& [network, transmissions, camera, laser, marker, mission, limits, mission_limits] = v;
+  pass_all(s, network, transmissions, camera, laser, marker, mission, limits, mission_limits);
 }
 
 // What comes from the vision side.

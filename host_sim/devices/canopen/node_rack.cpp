@@ -7,7 +7,6 @@ namespace lf::devices {
 namespace {
 
 constexpr double encoder_jump_rad = 0.25;     // a coupling that slips by a tooth of some 14 degrees
-constexpr double torque_high_of_peak = 1.2;   // beyond what the drive can apply: a broken current sensor
 constexpr double runaway_of_top_speed = 1.5;  // what is left of the supply's reserve
 constexpr std::uint16_t following_window = 0x6065, torque_actual = 0x6077, identity = 0x1018;
 constexpr std::int64_t no_window = 0xFFFFFFFF;
@@ -61,7 +60,6 @@ void NodeRack::tick_drive(std::size_t joint, Time t, JointReading reading) {
   const Tampering& tampering = tampering_[joint];
   const DriveConfig& config = config_.drives[joint];
   if (tampering.encoder_jump) reading.motor_position_rad += encoder_jump_rad;
-  if (tampering.torque_high) reading.torque_nm += torque_high_of_peak * config.peak_torque_nm;
   out_[joint] = drives_[joint]->tick(t, reading);
   if (tampering.runaway && drives_[joint]->state() == DriveState::operation_enabled)
     out_[joint].velocity_rad_s = runaway_of_top_speed * config.max_velocity_rad_s;
@@ -134,7 +132,7 @@ bool NodeRack::set_fault(const DeviceFault& fault, bool on, Time t) {
     case DeviceFaultKind::estop: estop_faults_ += on ? 1 : -1; return true;
     case DeviceFaultKind::interlock_open: interlock_faults_ += on ? 1 : -1; return true;
     case DeviceFaultKind::encoder_jump: tampering.encoder_jump = on; return true;
-    case DeviceFaultKind::torque_high: tampering.torque_high = on; return true;
+    case DeviceFaultKind::torque_high: drive.high_torque = on; return true;
     case DeviceFaultKind::torque_frozen: {
       const Object* torque = slot < joint_count ? drives_[slot]->node().objects().find(torque_actual, 0) : nullptr;
       tampering.torque_object = torque != nullptr ? torque->value : 0;

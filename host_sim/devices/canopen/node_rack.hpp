@@ -79,7 +79,7 @@ class NodeRack {
   IoNode io_;
   // What is tampered with between a drive and its joint or its dictionary.
   struct Tampering {
-    bool encoder_jump = false, torque_frozen = false, torque_high = false, runaway = false;
+    bool encoder_jump = false, torque_frozen = false, runaway = false;
     std::int64_t torque_object = 0;  // 6077 as it froze
     std::int64_t window = 0;         // 6065 before the runaway
   };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "host_sim/devices/drive/drive_dictionary.hpp"
 
@@ -11,6 +12,7 @@ namespace {
 constexpr double step_s = 1e-3;
 constexpr double torque_filter_s = 0.002;
 constexpr double velocity_filter_s = 0.008;
+constexpr double torque_high_of_peak = 1.2;  // beyond what the drive can apply: a broken current sensor
 
 constexpr std::uint16_t bit_fault_reset = 0x80, bit_4 = 0x10;
 
@@ -49,12 +51,14 @@ Drive402::Drive402(const DriveConfig& config, Duration boot_time, std::uint64_t 
       o_(native_ ? *native_ : node_.objects()),
       noise_(seed ^ (std::uint64_t{config.node} << 56)),
       loop_(loop_config(config)),
+      gear_(config.friction),
       winding_(config.water_celsius, config.rise_at_rated_celsius) {
   if (native_) units_.emplace(config, *native_, node_.objects());
   node_.set_inhibits_synchronous(config.switches.inhibits_synchronous);
 }
 
 void Drive402::power_on(Time now, const JointReading& reading) {
+  motor_rad_ = reading.motor_position_rad;
   measure(reading);
   node_.power_on(now);
 }
@@ -92,15 +96,39 @@ void Drive402::measure(const JointReading& reading) {
   const double counts_per_rad = actuator_.counts_per_rad(reading.motor_position_rad);
   if (!faults_.stuck_encoder) encoder_ = std::llround(actuator_.counts(angle_rad)) + config_.encoder_zero_counts;
   if (std::abs(counts_per_rad) > 1) rad_per_count_ = 1 / counts_per_rad;
-  const double direction = rad_per_count_ < 0 ? -1 : 1;
-  const double torque = direction * reading.torque_nm / config_.rated_torque_nm + config_.torque_noise_ratio * noise_.next();
-  torque_ratio_ += (torque - torque_ratio_) * (step_s / torque_filter_s);
   o_.position_actual_internal.value = encoder_;
   o_.position_actual.value = encoder_ + zero_;
   const auto actual = static_cast<double>(o_.position_actual.value);
   velocity_counts_s_ += ((actual - last_counts_) / step_s - velocity_counts_s_) * (step_s / velocity_filter_s);
   last_counts_ = actual;
+  measure_torque(reading);
   winding_.step(torque_ratio_, step_s);
+}
+
+// Of the motor.
+double Drive402::torque_limit_nm() const {
+  return std::min(config_.peak_torque_nm, 1e-3 * static_cast<double>(o_.max_torque.value) * config_.rated_torque_nm);
+}
+
+double Drive402::ratio() const { return 2 * std::numbers::pi / (config_.counts_per_rev * std::abs(rad_per_count_)); }
+
+// What the motor needs for what the joint was given. Without power there is no current to measure.
+void Drive402::measure_torque(const JointReading& reading) {
+  const double turned_rad = reading.motor_position_rad - motor_rad_;
+  motor_rad_ = reading.motor_position_rad;
+  const double noise = config_.torque_noise_ratio * noise_.next();
+  if (!powered()) {
+    gear_.reset();
+    torque_ratio_ = 0;
+    return;
+  }
+  const double direction = rad_per_count_ < 0 ? -1 : 1;
+  const double motor_nm =
+      gear_.step(direction * reading.torque_nm, direction * turned_rad * ratio() / step_s, ratio(), step_s, direction * output_rad_s_);
+  const double limit_nm = torque_limit_nm();
+  const double high_nm = faults_.high_torque ? torque_high_of_peak * config_.peak_torque_nm : 0;
+  torque_ratio_ += ((std::clamp(motor_nm, -limit_nm, limit_nm) + high_nm) / config_.rated_torque_nm + noise - torque_ratio_) *
+                   (step_s / torque_filter_s);
 }
 
 // What this make takes beside what its dictionary says.

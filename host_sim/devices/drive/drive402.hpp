@@ -1,7 +1,7 @@
 // A servo drive: CiA 402 state machine, modes PP, PV, homing and CSP, its position loop, and what makes it fault.
 //
-// The motor turns a gear that locks itself. With the power stage on, the drive imposes a speed up to object 6072's torque. Off, the joint is released
-// to the gear's friction, except in the fault state when 605E asked for a stop (1, 2): then the holding brake stays closed.
+// With the power stage on, the drive imposes a speed, up to what object 6072's torque of the motor gives the joint through gear and friction. Torque and current are
+// the motor's: without power there are none. Off, the joint is released to the gear's friction, except in the fault state when 605E asked for a stop (1, 2): then the holding brake stays closed.
 // The target of an enabled CSP drive is whatever 607A holds at the next SYNC: who does not seed it with 6064 makes the arm jump.
 // 60B0, 60B1, 60B2 and 6071 are taken and ignored: a self-locking axis has no use for them.
 #pragma once
@@ -16,6 +16,7 @@
 #include "host_sim/devices/drive/drive_objects.hpp"
 #include "host_sim/devices/drive/drive_state.hpp"
 #include "host_sim/devices/drive/drive_units.hpp"
+#include "host_sim/devices/drive/gear_train.hpp"
 #include "host_sim/devices/drive/homing.hpp"
 #include "host_sim/devices/drive/position_loop.hpp"
 #include "host_sim/devices/drive/profile.hpp"
@@ -31,6 +32,7 @@ struct DriveFaults {
   bool hot = false;
   bool jammed = false;
   bool stuck_encoder = false;
+  bool high_torque = false;  // the current sensor says too much
 };
 
 class Drive402 : private Application {
@@ -61,6 +63,9 @@ class Drive402 : private Application {
   bool without_sync(Time now) const;
   bool brake_closed(Time now) const;
   void measure(const JointReading& reading);
+  void measure_torque(const JointReading& reading);
+  double torque_limit_nm() const;
+  double ratio() const;  // turns of the motor per turn of the joint
   void on_controlword(Time now);
   void reset_fault(Time now);
   void enter(DriveState state);
@@ -93,6 +98,7 @@ class Drive402 : private Application {
   Profile profile_;
   CyclicPosition cyclic_;
   Homing homing_;
+  GearTrain gear_;
   Winding winding_;
   DriveFaults faults_;
 
@@ -108,7 +114,8 @@ class Drive402 : private Application {
   std::int64_t encoder_ = 0;  // counts, before homing's shift
   std::int64_t zero_ = 0;     // position actual = encoder + zero
   double rad_per_count_ = 1e-4;
-  double torque_ratio_ = 0;  // of the rated torque, positive in the direction of counts, filtered
+  double motor_rad_ = 0;     // as the joint's angle
+  double torque_ratio_ = 0;  // of the motor's rated torque, positive in the direction of counts, filtered
   double velocity_counts_s_ = 0;
   double last_counts_ = 0;
   double output_rad_s_ = 0;

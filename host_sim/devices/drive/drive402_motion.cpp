@@ -1,6 +1,7 @@
 // What moves: the demand of each mode, the position loop, and what the drive tells about it.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "host_sim/devices/drive/drive402.hpp"
 
@@ -96,7 +97,9 @@ void Drive402::finish_ramp() {
 
 JointDrive Drive402::actuate() {
   JointDrive drive;
-  drive.torque_limit_nm = std::min(config_.peak_torque_nm, 1e-3 * static_cast<double>(o_.max_torque.value) * config_.rated_torque_nm);
+  const double motor_nm = torque_limit_nm();
+  drive.torque_limit_nm = gear_.push_nm(motor_nm, velocity_counts_s_ / config_.counts_per_rev * 2 * std::numbers::pi, ratio());
+  drive.holding_limit_nm = gear_.hold_nm(motor_nm, ratio());
   if (!powered()) {
     drive.released = !brake_;
     output_rad_s_ = 0;

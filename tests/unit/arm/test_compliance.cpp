@@ -100,8 +100,8 @@ TEST(Compliance, RefusesWhatIsNoNumberAndWhatIsNotLater) {
   Compliance compliance;
   Feed feed(compliance);
   feed(100, at_rest_nm);
-  compliance.update(feed.now(), at_rest_nm * 100);
-  compliance.update(feed.now() + Duration::from_s(1), JointVector::Constant(std::numeric_limits<double>::quiet_NaN()));
+  compliance.update(feed.now(), JointVector(at_rest_nm * 100));
+  compliance.update(feed.now() + Duration::from_s(1), JointVector(JointVector::Constant(std::numeric_limits<double>::quiet_NaN())));
   EXPECT_EQ(compliance.refused(), 2u);
   EXPECT_TRUE(compliance.offset_rad().isZero());
 }
@@ -116,6 +116,26 @@ TEST(Compliance, ForgetsWhenItIsReset) {
   EXPECT_TRUE(compliance.offset_rad().isZero());
   feed(1000, at_rest_nm + JointVector(50, 0, 0, 0));
   EXPECT_TRUE(compliance.offset_rad().isZero()) << "that is its rest now";
+}
+
+TEST(Compliance, GivesWayToWhatATorqueHasSurelyRisenBy) {
+  const ComplianceConfig config;
+  const auto offset_after = [&](double rise_nm, double doubt_nm) {
+    Compliance compliance(config);
+    Time t;
+    for (int i = 0; i < 200; ++i) {
+      JointTorques torque(at_rest_nm);
+      if (i >= 100) torque.nm[1] += rise_nm;
+      torque.low_nm = torque.nm.array() - doubt_nm;
+      torque.high_nm = torque.nm.array() + doubt_nm;
+      compliance.update(t = t + Duration::from_s(period_s), torque);
+    }
+    return compliance.offset_rad()[1];
+  };
+  EXPECT_NEAR(offset_after(9, 3), offset_after(6, 0), 0.15 * std::abs(offset_after(6, 0)));  // but for the filter
+  EXPECT_NEAR(offset_after(-9, 3), -offset_after(9, 3), 1e-9);
+  EXPECT_LT(offset_after(9, 3), 0);
+  EXPECT_EQ(offset_after(9, 8), 0);
 }
 
 }  // namespace

@@ -230,5 +230,22 @@ TEST(Gripper, StaysWhereItIsUntilOrderedAndRefusesNonsense) {
   EXPECT_EQ(run.gripper.refused(), 2u);
 }
 
+TEST(Gripper, BelievesAGripThatTheTorqueSurelyHasAndALossThatItSurelyIs) {
+  const GripperConfig config;
+  const auto after = [&](const TorqueEstimate& closing, const TorqueEstimate& holding) {
+    Gripper gripper(config);
+    gripper.close();
+    Time t;
+    for (int i = 0; i < 200; ++i) gripper.update(t = t + Duration::from_ms(4), 0, closing);  // stands at the bar's thickness
+    for (int i = 0; i < 50; ++i) gripper.update(t = t + Duration::from_ms(4), 0, holding);
+    return gripper.state();
+  };
+  const TorqueEstimate firm{-10, -12, -8}, doubtful{-10, -16, -4}, lost{-1, -1.5, 0}, perhaps{-1, -4, 0};
+  EXPECT_EQ(after(firm, firm), GripperState::held);
+  EXPECT_EQ(after(doubtful, doubtful), GripperState::closing);
+  EXPECT_EQ(after(firm, lost), GripperState::dropped);
+  EXPECT_EQ(after(firm, perhaps), GripperState::held);
+}
+
 }  // namespace
 }  // namespace lf::arm

@@ -130,12 +130,41 @@ TEST(GuardedMotion, RefusesNonsenseAndStaleSamplesAndCountsThem) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const Time last = motion.now();
   motion.feed(10, {nan, 0, 0, 0});
-  guard.update(last, JointVector::Zero(), JointVector::Zero(), JointVector::Constant(100));
-  guard.update(Time(), JointVector::Zero(), JointVector::Zero(), JointVector::Constant(100));
+  guard.update(last, JointVector::Zero(), JointVector::Zero(), JointVector(JointVector::Constant(100)));
+  guard.update(Time(), JointVector::Zero(), JointVector::Zero(), JointVector(JointVector::Constant(100)));
   EXPECT_EQ(guard.state(), GuardState::free);
   EXPECT_EQ(guard.refused(), 12u);
   guard.reset();
   EXPECT_EQ(guard.refused(), 12u) << "counters are never reset";
+}
+
+// What is not known of a torque widens the threshold by as much, and by no more; a bound that reaches across it is no contact.
+TEST(GuardedMotion, BelievesOnlyWhatTheTorqueSurelyIs) {
+  for (const double doubt_nm : {0.0, 3.0, 10.0}) {
+    const auto state_at = [&](double rise_nm, double sign) {
+      GuardedMotion guard;
+      Time t;
+      for (int i = 0; i < 150; ++i) {
+        JointTorques torque(friction);
+        if (i >= 100) torque.nm[1] += sign * rise_nm;
+        torque.low_nm = torque.nm.array() - doubt_nm;
+        torque.high_nm = torque.nm.array() + doubt_nm;
+        guard.update(t = t + Duration::from_ms(4), JointVector::Zero(), JointVector::Zero(), torque);
+      }
+      return guard.state();
+    };
+    for (const double sign : {-1.0, 1.0}) {
+      EXPECT_EQ(state_at(4.0 + doubt_nm + 0.8, sign), GuardState::contact) << doubt_nm;
+      EXPECT_EQ(state_at(4.0 + doubt_nm - 0.3, sign), GuardState::free) << doubt_nm;
+    }
+  }
+  // A screw that locks itself stands still: any load is possible, none is sure.
+  GuardedMotion guard;
+  JointTorques unknown(friction);
+  unknown.low_nm.setConstant(-1000);
+  unknown.high_nm.setConstant(1000);
+  for (int i = 0; i < 100; ++i) guard.update(Time() + Duration::from_ms(4 * (i + 1)), JointVector::Zero(), JointVector::Zero(), unknown);
+  EXPECT_EQ(guard.state(), GuardState::free);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "shared/arm/motor.hpp"
 #include "tests/unit/drives/drive_bench.hpp"
 
 namespace lf::test {
@@ -58,12 +59,13 @@ TEST_P(FlyingDrive, MovesTheJointWhereTheArmsCountsSay) {
 
 TEST_P(FlyingDrive, ReportsTorqueInThousandthsOfItsRating) {
   Make make{"", GetParam()};
-  DriveBench bench(make);
+  DriveBench bench(make, [](canopen::NetworkConfig&, devices::DevicesConfig& devices) { devices.drives[2].friction = {}; });
   ASSERT_TRUE(bench.boot()) << bench.sentence();
   EXPECT_NEAR(bench.elbow().rated_torque_unm() * 1e-6, bench.devices_config.drives[2].rated_torque_nm, 1e-3);
   ASSERT_TRUE(enable(bench));
   // Half of the rated torque, drawn at the joint: the encoder's direction is the joint's.
-  bench.load_nm = 0.5 * bench.devices_config.drives[2].rated_torque_nm;
+  const devices::DriveConfig& drive = bench.devices_config.drives[2];
+  bench.load_nm = 0.5 * drive.rated_torque_nm * motor_ratio(drive.actuator, bench.joints[2].position_rad, drive.counts_per_rev);
   bench.run(Duration::from_ms(100));
   EXPECT_NEAR(bench.elbow().torque_permille(), 500, 30);
 }

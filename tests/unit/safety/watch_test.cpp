@@ -81,7 +81,7 @@ class EachLimit : public testing::Test {
 
   static Limits loose() {
     Limits limits;
-    for (JointLimit& joint : limits.joints) joint = {-1, 1, 100, 100};
+    for (JointLimit& joint : limits.joints) joint = {-1, 1, 100, 1e5};
     limits.workspace_min_m = {-1, -1, -1};
     limits.workspace_max_m = {1, 1, 1};
     limits.stale_position_s = 0.012;
@@ -90,7 +90,7 @@ class EachLimit : public testing::Test {
 
   // How often `fault` begins within some cycles under these limits. Joint 2 turns at `speed_rad_s`, from 0.
   int begins(const Limits& limits, Fault fault, double speed_rad_s = 0, const Vec3& tool_m = Vec3::Zero(), int cycles = 60) {
-    Watch watch{limits};
+    Watch watch{limits, transmissions};
     int began = 0;
     double rad = 0;
     for (int i = 0; i < cycles; ++i) {
@@ -104,6 +104,7 @@ class EachLimit : public testing::Test {
     return began;
   }
 
+  Watch::Transmissions transmissions;
   canopen::test::Bus bus{canopen::test::plain_config()};
 };
 
@@ -118,7 +119,18 @@ TEST_F(EachLimit, OfTorque) {
   Limits limits = loose();
   bus.nodes[2].torque_permille = 500;
   EXPECT_EQ(begins(limits, Fault::overload), 0);
-  limits.joints[2].max_torque_nm = 0.4e-3 * bus.network.axis(Joint::elbow).rated_torque_unm() * 1e-3;
+  // The motor's torque, through the screw at angle 0: half of the rated one.
+  const double joint_nm = 0.5e-6 * bus.network.axis(Joint::elbow).rated_torque_unm() * arm::Transmission(Joint::elbow).ratio(0);
+  limits.joints[2].max_torque_nm = 0.95 * joint_nm;
+  EXPECT_EQ(begins(limits, Fault::overload), 1);
+  // A reading may be wrong by a hundredth of the rated torque: what may be within the limit is no overload.
+  limits.joints[2].max_torque_nm = 0.985 * joint_nm;
+  EXPECT_EQ(begins(limits, Fault::overload), 0);
+  // At rest, through a screw that rubs, the same reading is surely less torque, and may be any more.
+  limits.joints[2].max_torque_nm = 0.75 * joint_nm;
+  transmissions[2].friction = {0, 0, 0.7, 0};
+  EXPECT_EQ(begins(limits, Fault::overload), 0);
+  limits.joints[2].max_torque_nm = 0.65 * joint_nm;
   EXPECT_EQ(begins(limits, Fault::overload), 1);
 }
 

@@ -43,7 +43,7 @@ TEST(Limits, AChangedValueWithoutItsChecksumIsRefusedAndTheRightOneNamed) {
 
 TEST(Limits, EveryLimitHasToBeStated) {
   EXPECT_THAT(said_of(changed("vision_timeout_s: 2.0", "")), ::testing::HasSubstr("'vision_timeout_s' is missing"));
-  EXPECT_THAT(said_of(changed("max_torque_nm: 70}", "}")), ::testing::HasSubstr("'joints.slew.max_torque_nm' is missing"));
+  EXPECT_THAT(said_of(changed("max_torque_nm: 26}", "}")), ::testing::HasSubstr("'joints.slew.max_torque_nm' is missing"));
 }
 
 TEST(Limits, MisspeltAndSenselessOnesAreRefusedWithTheirLine) {

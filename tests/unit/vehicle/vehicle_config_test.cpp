@@ -106,7 +106,7 @@ TEST(VehicleConfig, LimitsWithAnotherChecksumAreRefused) {
   const TemporaryFolder folder;
   std::ifstream shipped(LANTERNFISH_SOURCE_DIR "/shared/safety/limits.yaml");
   std::string text{std::istreambuf_iterator<char>(shipped), {}};
-  text.replace(text.find("max_torque_nm: 70"), 17, "max_torque_nm: 71");
+  text.replace(text.find("max_torque_nm: 26"), 17, "max_torque_nm: 27");
   folder.write("limits.yaml", text);
   EXPECT_THAT(problems_of(folder.write("v.yaml", "safety: {limits: limits.yaml}\n")), ElementsAre(HasSubstr("checksum")));
 }
@@ -159,11 +159,21 @@ TEST(HomingFile, ComesBackAsItWentAndRefusesWhatIsNotValid) {
   offsets.zero_counts = {1, 2, -3, 4, 5};
   offsets.known = {true, false, true, true, true};
   offsets.found[2] = "at its lower stop";
+  offsets.friction_known[2] = true;
+  offsets.friction[2] = {2.5, 0.0125, 0.25};
   config::write_homing_file(folder / "h.yaml", offsets);
   const config::HomingOffsets read = config::read_homing_file(folder / "h.yaml");
   EXPECT_EQ(read.zero_counts, (std::array<std::int32_t, joint_count>{1, 0, -3, 4, 5}));
   EXPECT_EQ(read.known, offsets.known) << "commissioning one joint wrote zeros for the other four";
   EXPECT_EQ(read.found, offsets.found);
+  EXPECT_EQ(read.friction_known, offsets.friction_known);
+  arm::Friction friction{1, 1, 0.8, 0.75, 1, 0.05};
+  config::set_friction(read, 0, friction);
+  EXPECT_EQ(friction.coulomb_nm, 1) << "what was not found stays";
+  config::set_friction(read, 2, friction);
+  EXPECT_DOUBLE_EQ(friction.coulomb_nm, 2.5e-3);
+  EXPECT_DOUBLE_EQ(friction.viscous_nm_s, 1.25e-5);
+  EXPECT_DOUBLE_EQ(friction.doubt, 0.15) << "a tenth that the fit left, and a twentieth for another day";
   EXPECT_FALSE(std::filesystem::exists(folder / "h.yaml.partial"));
   EXPECT_THROW((void)config::read_homing_file(folder.write("a.yaml", "slew: {found: here}\n")), InputError);
   EXPECT_THROW((void)config::read_homing_file(folder.write("b.yaml", "slew: {zero_counts: x}\n")), InputError);

@@ -230,5 +230,34 @@ TEST(ArmBody, commandThatIsNotANumberGivesNoTorque) {
   EXPECT_TRUE(std::isfinite(bench.reading(elbow).position_rad));
 }
 
+// Friction helps a gear that is pushed back: what the motor cannot raise it still holds, whichever way it tries.
+TEST(ArmBody, AGearHoldsMoreThanItPushes) {
+  WorldConfig config = nominal_config();
+  for (ArmLink& link : config.arm.links) link.wet_weight_n = 9.81 * link.mass_kg;
+  Bench held(config);
+  held.run(1, hold());
+  const double load_nm = held.reading(shoulder).torque_nm;
+  ASSERT_GT(std::abs(load_nm), 10);
+  for (const double way : {0.0}) {  // a drive that moves slips at its push: not modelled there
+    for (const bool rubs : {false, true}) {
+      Bench bench(config);
+      bench.run(1, hold());
+      const double before = bench.reading(shoulder).position_rad;
+      JointDrives drives = hold();
+      drives[shoulder] = {way * 0.02, 0.5 * std::abs(load_nm), false, rubs ? 1.5 * std::abs(load_nm) : 0};
+      bench.run(0.5, drives);
+      const double fell_rad = -std::copysign(1.0, load_nm) * (bench.reading(shoulder).position_rad - before);
+      if (!rubs) {
+        EXPECT_GT(fell_rad, 0.05) << way;
+      } else if (way * load_nm >= 0) {
+        EXPECT_LT(std::abs(fell_rad), 0.006) << way;
+        EXPECT_NEAR(bench.reading(shoulder).torque_nm, load_nm, 0.05 * std::abs(load_nm)) << way;
+      } else {
+        EXPECT_NEAR(fell_rad, 0.01, 0.006) << "it is let down at the drive's speed";
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace lf::world

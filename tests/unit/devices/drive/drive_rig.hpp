@@ -9,15 +9,18 @@
 
 namespace lf::devices::test {
 
-// The elbow's screw. Its counts per radian run from 2,700 to 10,000 over the stroke.
+// Turns of the elbow's motor per turn of the joint, at 1 rad: by virtual work the motor has 1/974 of the joint's torque.
+inline constexpr double ratio_at_start = 973.671;
+
+// The elbow's screw, without friction. Its counts per radian run from 2,700 to 10,000 over the stroke.
 inline DriveConfig elbow() {
   DriveConfig c;
   c.node = 3;
   c.actuator = {0.26, 0.06, 0.2115, 166667, 0};
   c.lower_rad = 0;
   c.upper_rad = 2.15294;
-  c.peak_torque_nm = 90;
-  c.rated_torque_nm = 30;
+  c.peak_torque_nm = 90 / ratio_at_start;
+  c.rated_torque_nm = 30 / ratio_at_start;
   c.max_velocity_rad_s = 0.35;
   c.max_acceleration_rad_s2 = 0.8;
   c.stiction_rad_s = 0.06;

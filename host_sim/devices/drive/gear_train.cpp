@@ -1,0 +1,39 @@
+#include "host_sim/devices/drive/gear_train.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lf::devices {
+
+void GearTrain::reset() { load_nm_ = speed_rad_s_ = held_nm_ = 0; }
+
+double GearTrain::raising_nm(double load_nm) const {
+  return friction_.coulomb_nm + load_nm * (load_nm >= 0 ? 1 / friction_.efficiency : friction_.back_efficiency);
+}
+
+double GearTrain::step(double joint_nm, double motor_rad_s, double ratio, double dt_s, double wanted_rad_s) {
+  const double share = std::min(1.0, dt_s / smoothing_s);
+  load_nm_ += (joint_nm / ratio - load_nm_) * share;
+  speed_rad_s_ += (motor_rad_s - speed_rad_s_) * share;
+  const double forward_nm = raising_nm(load_nm_), backward_nm = -raising_nm(-load_nm_);
+  if (std::abs(speed_rad_s_) >= standing_rad_s) {
+    held_nm_ = speed_rad_s_ > 0 ? forward_nm : backward_nm;
+  } else {
+    if (wanted_rad_s != 0) held_nm_ += ((wanted_rad_s > 0 ? forward_nm : backward_nm) - held_nm_) * share;
+    // A gear without friction has both equal, but for rounding.
+    held_nm_ = std::max(std::min(held_nm_, std::max(forward_nm, backward_nm)), std::min(forward_nm, backward_nm));
+  }
+  return held_nm_ + friction_.viscous_nm_s * speed_rad_s_;
+}
+
+double GearTrain::push_nm(double motor_nm, double motor_rad_s, double ratio) const {
+  const double rubbing_nm = friction_.coulomb_nm + friction_.viscous_nm_s * std::abs(motor_rad_s);
+  return ratio * friction_.efficiency * std::max(0.0, motor_nm - rubbing_nm);
+}
+
+double GearTrain::hold_nm(double motor_nm, double ratio) const {
+  if (friction_.back_efficiency <= 0) return breaking_nm;
+  return std::min(breaking_nm, ratio * (motor_nm + friction_.coulomb_nm) / friction_.back_efficiency);
+}
+
+}  // namespace lf::devices

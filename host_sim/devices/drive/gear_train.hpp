@@ -1,0 +1,47 @@
+// The screw or gear between a motor and its joint: what the motor feels of the joint's load, and what the joint gets of the motor's torque.
+//
+// Friction is Coulomb's and viscous, at the motor, and grows with the load: the motor gives 1 / efficiency of what a load without friction would take, and
+// gets back back_efficiency of what it would give. Between the two the gear sticks: a motor that stands keeps the torque with which it came to rest, as
+// far as that neither moves the load nor is moved by it (the stop operator of Prandtl and Ishlinskii). A gear with a back efficiency of 0 or less locks itself.
+#pragma once
+
+namespace lf::devices {
+
+struct GearFriction {
+  double coulomb_nm = 0;
+  double viscous_nm_s = 0;  // per rad/s of the motor
+  double efficiency = 1;
+  double back_efficiency = 1;
+};
+
+class GearTrain {
+ public:
+  // Rotor and gear smooth what comes in shorter than this: a drive that creeps by single milliseconds of motion pulls no current peak for each.
+  static constexpr double smoothing_s = 0.016;
+  // Slower than this the motor stands, rad/s: an eighth of a turn a second, 0.7 mrad/s at a joint.
+  static constexpr double standing_rad_s = 0.5;
+  // What a locked gear holds before it breaks, at the joint.
+  static constexpr double breaking_nm = 1000;
+
+  explicit GearTrain(const GearFriction& friction) : friction_(friction) {}
+
+  // The motor has no current.
+  void reset();
+  // `wanted_rad_s`: what the drive asks of a motor that stands: its controller winds up to what would move the load.
+  // The motor's torque after `dt_s` in which the gear gave `joint_nm` to the joint. `ratio`: turns of the motor per turn of the joint, here; positive.
+  double step(double joint_nm, double motor_rad_s, double ratio, double dt_s, double wanted_rad_s = 0);
+
+  // What the joint gets at most from a motor with this torque, at this speed of the motor's: pushing a load, and holding against one that pushes back.
+  double push_nm(double motor_nm, double motor_rad_s, double ratio) const;
+  double hold_nm(double motor_nm, double ratio) const;
+
+ private:
+  double raising_nm(double load_nm) const;  // at the motor, less viscous friction: what turns it forward against this load
+
+  GearFriction friction_;
+  double load_nm_ = 0;  // over the ratio, smoothed
+  double speed_rad_s_ = 0;
+  double held_nm_ = 0;
+};
+
+}  // namespace lf::devices
