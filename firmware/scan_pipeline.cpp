@@ -229,7 +229,7 @@ bool BasicScanPipeline<capacity>::add_points(const Stripe& stripe, bool final) {
   const Pose base_from_laser = arm::base_from_laser(q, config_.laser);
   arm_ = arm::link_capsules(q, jaw_while_scanning_rad);
   const std::span<const scan::Peak> peaks = std::span(stripe.peaks).first(stripe.count);
-  const std::uint32_t apart = std::max(config_.columns_apart, 1u);
+  const std::uint32_t apart = std::max<std::uint32_t>(config_.columns_apart, 1u);
   const std::uint32_t shift = stripes_seen_++ % apart;
   for (std::size_t begin = 0; begin < peaks.size();) {
     std::size_t end = begin + 1;

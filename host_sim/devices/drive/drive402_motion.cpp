@@ -105,8 +105,9 @@ JointDrive Drive402::actuate() {
     output_rad_s_ = 0;
     return drive;
   }
+  const bool own_ramp = state_ != DriveState::operation_enabled;
   output_rad_s_ =
-      loop_.step(profile_.position(), profile_.velocity(), static_cast<double>(o_.position_actual.value), rad_per_count_, step_s);
+      loop_.step(profile_.position(), profile_.velocity(), static_cast<double>(o_.position_actual.value), rad_per_count_, step_s, own_ramp);
   const double top_rad_s = top_speed() * std::abs(rad_per_count_);
   drive.velocity_rad_s = faults_.jammed ? 0 : std::clamp(output_rad_s_, -top_rad_s, top_rad_s);
   return drive;

@@ -17,9 +17,10 @@ void PositionLoop::reset() {
   awake_ = saturated_ = false;
 }
 
-double PositionLoop::step(double demand, double demand_velocity, double actual, double rad_per_count, double dt_s) {
+double PositionLoop::step(double demand, double demand_velocity, double actual, double rad_per_count, double dt_s, bool smooth) {
   const double error_counts = demand - actual;
-  feed_forward_rad_s_ += (demand_velocity * rad_per_count - feed_forward_rad_s_) * std::min(1.0, dt_s / config_.feed_forward_filter_s);
+  const double share = smooth ? 1.0 : std::min(1.0, dt_s / config_.feed_forward_filter_s);
+  feed_forward_rad_s_ += (demand_velocity * rad_per_count - feed_forward_rad_s_) * share;
   const bool moving = std::abs(feed_forward_rad_s_) > still * config_.stiction_rad_s;
   if (moving || std::abs(error_counts) > config_.wake_counts) awake_ = true;
   if (!moving && std::abs(error_counts) < config_.sleep_counts) awake_ = false;

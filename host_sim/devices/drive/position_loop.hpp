@@ -27,7 +27,8 @@ class PositionLoop {
   void reset();
 
   // Joint velocity for the next `dt_s`. `demand` and its velocity are in counts and counts/s, `rad_per_count` is the geometry's at this place.
-  double step(double demand, double demand_velocity, double actual, double rad_per_count, double dt_s);
+  // `smooth`: the drive's own ramp, whose velocity needs no filter.
+  double step(double demand, double demand_velocity, double actual, double rad_per_count, double dt_s, bool smooth = false);
 
   bool saturated() const { return saturated_; }  // the last step asked for more than the top speed or acceleration
 

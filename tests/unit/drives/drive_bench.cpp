@@ -22,6 +22,7 @@ canopen::NetworkConfig network_config(const Make& make) {
   machine.file = "bench";
   machine.homing_file = "homing/simulator.yaml";
   config::JointDriveChoice& choice = machine.drives.joints[elbow_index];
+  machine.drives.rated_current_a = 1.333;
   choice.profile = make.profile.empty() ? make.dictionary : make.profile;
   choice.polarity = make.reversed ? "reversed" : "forward";
   return config::make_core(machine).controller.network;
