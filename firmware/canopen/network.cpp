@@ -146,6 +146,7 @@ void Network::on_error_frame(const CanFrame& frame) {
 void Network::dispatch(const CanFrame& frame, Time now) {
   const std::uint8_t id = cob_id::node_of(frame.id);
   const std::uint32_t function = cob_id::function_of(frame.id);
+  if (frame.id == cob_id::nmt) foreign_nmt_ = now;
   if (frame.id == cob_id::nmt || frame.id == cob_id::sync || frame.id == cob_id::heartbeat + can_map::master_node) {
     return refuse_foreign_master(frame.id);
   }

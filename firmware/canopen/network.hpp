@@ -102,12 +102,16 @@ class Network {
   void remove_power();    // disable voltage for every axis, at once
   // NMT stop of one node with the next tick, for a drive that does not heed its process data: 6007 makes it a quick stop. Only `start_boot` leads back.
   void stop_node(std::size_t node) { nmt_due_[node] = NmtCommand::stop; }
+  // NMT reset node: whatever its make, a drive restarts without power.
+  void reset_node(std::size_t node) { nmt_due_[node] = NmtCommand::reset_node; }
   // Power and outputs off, and NMT stop of every node four SYNC periods later, when the drives have heard of it. Only `start_boot` leads back.
   void shut_down();
 
   // The identifier of the last frame that only this master may send and somebody else sent; `stats().refused` counts them. The core never receives what
   // it sent itself.
   std::uint32_t foreign_id() const { return foreign_id_; }
+  // Another master sent an NMT command within the last `window`.
+  bool foreign_nmt_since(Time now, Duration window) const { return foreign_nmt_ && now - *foreign_nmt_ < window; }
   std::uint32_t foreign_frames() const { return stats_.refused[static_cast<std::size_t>(Refusal::foreign_master)]; }
   // The CAN controller said in an error frame that it is off the bus, and neither that it restarted nor any other frame came since.
   bool bus_off() const { return bus_off_; }
@@ -150,6 +154,7 @@ class Network {
   bool boot_up_sent_ = false;
   bool bus_off_ = false;
   std::uint32_t foreign_id_ = 0;
+  std::optional<Time> foreign_nmt_;
   std::size_t misconfigured_node_ = node_count;  // what `check` found; node_count: nothing
   std::uint8_t shut_down_syncs_ = 0;             // left until NMT stop; 0: not shutting down
   std::array<std::optional<NmtCommand>, node_count> nmt_due_{};

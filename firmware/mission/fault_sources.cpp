@@ -1,7 +1,5 @@
 #include "firmware/mission/fault_sources.hpp"
 
-#include <cmath>
-
 namespace lf::mission {
 
 using safety::Fault;
@@ -10,9 +8,6 @@ namespace {
 
 // One late tick is jitter; three are the time after which a position is stale.
 constexpr std::uint32_t clock_lost_ticks = 3;
-
-// A joint's estimated torque over free motion's from which on something holds it back: 10 N at the tool. The friction's doubt is within.
-const arm::JointVector load_nm(4, 4, 4, 2);
 
 }  // namespace
 
@@ -87,11 +82,8 @@ void FaultSources::collect_contact(const StepTick& tick) {
   if (!joints.valid) return;
   free_guard_.update(joints.t, bench.motion.target(), bench.measured_rad(), bench.measured_nm());
   if (!free_guard_.touched()) return;
-  // A joint that stays behind without a load has met nothing: its encoder or its drive is not to be trusted.
-  const auto joint = static_cast<Eigen::Index>(free_guard_.joint());
-  const bool behind = free_guard_.cause() == arm::GuardCause::following_error;
-  const bool without_load = behind && std::abs(free_guard_.excess_torque_nm()[joint]) < load_nm[joint];
-  tick.faults.report(without_load ? Fault::following_error : Fault::unexpected_contact, static_cast<std::int32_t>(joint));
+  const Fault fault = lags_without_load(free_guard_) ? Fault::following_error : Fault::unexpected_contact;
+  tick.faults.report(fault, static_cast<std::int32_t>(free_guard_.joint()));
 }
 
 void FaultSources::collect_jaw(const StepTick& tick) {

@@ -138,7 +138,12 @@ void Mission::react(const StepTick& tick, const safety::FaultArbiter::Verdict& v
     case Reaction::retreat: return retreat(tick);
     case Reaction::hold:
       // A shut-down takes the power anyway: holding must not keep it from that.
-      if (step_ == Step::held || step_ == Step::shut_down) return;
+      if (step_ == Step::shut_down) return;
+      // What overloads a held arm is not held against: it is pinned, or somebody leans on it.
+      if (step_ == Step::held) {
+        bench_.power.stop(tick.now, tick.network);
+        return end_without_power(tick, Step::stopped);
+      }
       bench_.motion.stop();
       // What the jaw holds stays held, but it does not go on moving.
       if (const arm::GripperState jaw = bench_.gripper.state(); jaw == arm::GripperState::opening || jaw == arm::GripperState::closing) {

@@ -76,6 +76,7 @@ void Mission::forget(const StepTick& tick) {
   bench_.map = PanelMap(config.mission.layout, config.marker, config.camera);
   bench_.motion.freeze();
   bench_.job.begin_anew();
+  empty_jaw_ = EmptyJaw();
   outcome_ = {};
   faults_after_end_.fill(0);
   enter(tick, Step::idle);

@@ -8,6 +8,8 @@ constexpr double limit_margin_rad = 0.01;
 // The face is where the look says to 3 mm, and the tip where the joints say to 2: what is touched farther out is something else, and what is touched so much
 // deeper than its bottom is not the button.
 constexpr double face_m = 0.008;
+// How far the face may be from where it is believed after a look, and what the tip's end is off.
+constexpr double face_doubt_m = 0.0015;
 // Of a press, until it goes at its speed.
 constexpr double to_speed_m = 0.012;
 // A press that works shows nearly its whole stroke, a stuck cap a tenth of a default one: what is felt late, and what the arm gives way by.
@@ -93,6 +95,10 @@ Progress PressButton::run_press(const StepTick& tick) {
   learn_under_way(bench);
   guard_.update(tick.now, bench.motion.target(), bench.measured_rad(), bench.measured_nm());
   feel(tick);
+  if (lags_without_load(guard_)) {
+    tick.faults.report(safety::Fault::following_error, static_cast<std::int32_t>(guard_.joint()));
+    return Progress::running();
+  }
   const Progress motion = bench.follow_motion();
   if (!guard_.touched() && !motion.is_done()) return motion;
   if (guard_.touched()) bench.motion.stop();
@@ -100,6 +106,8 @@ Progress PressButton::run_press(const StepTick& tick) {
   result.travel_m = feel_.travel_m();
   result.click_felt = feel_.clicked();
   result.failure = judge(bench);
+  // What may have gone in unfelt is not pressed again.
+  if (result.failure == StepFailure::button_stuck) return Progress::failed_for_good(result.failure);
   if (result.failure != StepFailure::none) return Progress::failed(result.failure);
   pressed_ = true;
   ++result.presses;
@@ -126,6 +134,7 @@ void PressButton::feel(const StepTick& tick) {
   const Vec3 tip = arm::base_from_tool(q) * Vec3(0, 0, closed_tip_beyond_tool_m());
   const double depth_m = (tip - bench.map.button_m(bench.job.task().button)).dot(inward);
   // Far from the face a small force is the friction of the way, which the guard still learns; a large one is the guard's to notice.
+  bottom_m_ = depth_m;
   if (depth_m < -face_m) return;
   feel_.update(tick.network.config().sync_period.s(), force_n, depth_m);
 }
@@ -136,7 +145,9 @@ StepFailure PressButton::judge(const Workbench& bench) const {
   if (feel_.touch_depth_m() < -face_m) return StepFailure::early_contact;
   if (feel_.touch_depth_m() > stroke_m + face_m) return StepFailure::button_missing;
   if (!guard_.touched()) return StepFailure::button_yields;
-  return feel_.travel_m() < least_travel * stroke_m ? StepFailure::button_stuck : StepFailure::none;
+  // A strong spring, or a panel that is nearer than believed, hides the beginning of the way; the end of it is seen by the joints.
+  const bool deep = bottom_m_ > least_travel * stroke_m + face_doubt_m;
+  return feel_.travel_m() < least_travel * stroke_m && !deep ? StepFailure::button_stuck : StepFailure::none;
 }
 
 Progress PressButton::run_back(const StepTick& tick) {

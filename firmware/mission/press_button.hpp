@@ -28,6 +28,7 @@ class PressButton {
   ButtonFeel feel_;
   bool pressed_ = false;
   bool learned_under_way_ = false;
+  double bottom_m_ = 0;  // the tip's depth below the face where it is believed to be, at the press's end
 };
 
 }  // namespace lf::mission

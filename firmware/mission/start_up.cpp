@@ -54,7 +54,9 @@ Progress StartUp::run_enable(const StepTick& tick) {
     canopen::Axis& axis = tick.network.axis(static_cast<Joint>(i));
     // A fault from before is reset. One that comes once power was asked for is a fault of this mission.
     const bool asked = axis.requested() == canopen::AxisRequest::hold_enabled;
-    if (asked && axis.fault() == canopen::AxisFault::drive_fault) {
+    // Power that was taken by hardware (safe torque off) does not come back without an order.
+    const bool fails = axis.fault() == canopen::AxisFault::drive_fault || axis.fault() == canopen::AxisFault::dropped_out;
+    if (asked && fails) {
       tick.faults.report(Fault::drive_fault, static_cast<std::int32_t>(i));
       return Progress::running();
     }
@@ -80,7 +82,7 @@ Progress StartUp::run_home(const StepTick& tick) {
     if (axis.enabled() && axis.homed()) continue;
     all = false;
     if (axis.setup().homing_method != 0) tick.clock.expect(axis.setup().homing_timeout);
-    if (axis.fault() == canopen::AxisFault::drive_fault) {
+    if (axis.fault() == canopen::AxisFault::drive_fault || axis.fault() == canopen::AxisFault::dropped_out) {
       tick.faults.report(Fault::drive_fault, static_cast<std::int32_t>(i));
       return Progress::running();
     }

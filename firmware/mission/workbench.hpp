@@ -32,6 +32,9 @@ enum class Course : std::uint8_t {
 // a joint nine tenths of its own limit if that is less. The overload is the watch's.
 arm::GuardConfig free_motion_guard(const safety::Limits& limits);
 
+// A joint stays behind its target, and nothing holds it back: its encoder or its drive is not to be trusted.
+bool lags_without_load(const arm::GuardedMotion& guard);
+
 struct Workbench {
   explicit Workbench(const ControllerConfig& told);
 

@@ -2,15 +2,13 @@
 
 #include <cmath>
 
-#include "firmware/canopen/cob_id.hpp"
-
 namespace lf::safety {
 
 void Power::stop(Time now, canopen::Network& network) {
   if (state_ == State::stopping || state_ == State::removing) return;
   network.quick_stop_all();
   state_ = State::stopping;
-  expect_heed(now, network);
+  insist_at_ = now + heed_time;
   since_ = now;
   rest_since_.fill(now);
   rest_rad_.fill(HUGE_VAL);
@@ -21,7 +19,7 @@ void Power::remove(Time now, canopen::Network& network) {
   if (state_ == State::removing) return;
   state_ = State::removing;
   since_ = now;
-  expect_heed(now, network);
+  insist_at_ = now + heed_time;
 }
 
 void Power::lower(Time now, canopen::Network& network) {
@@ -31,26 +29,26 @@ void Power::lower(Time now, canopen::Network& network) {
   since_ = now;
 }
 
-void Power::expect_heed(Time now, const canopen::Network& network) {
-  // Another master's NMT command may just have taken all nodes out of operation: they are told at once, whatever they said last.
-  taken_over_ = network.foreign_frames() > 0 && network.foreign_id() == canopen::cob_id::nmt;
-  insist_at_ = taken_over_ ? now : now + heed_time;
-}
-
+// Braking, NMT stop makes what does not heed its process data stop by itself (6007). Where the power is to go, only a restart is sure for every make: some
+// stay powered after their quick stop, and deaf to process data once they are stopped.
 void Power::insist(Time now, canopen::Network& network) {
   if (now < insist_at_) return;
   insist_at_ = now + insist_period;
   for (std::size_t i = 0; i < joint_count; ++i) {
-    if (taken_over_ || !heeds(i, now, network)) network.stop_node(i);
+    if (heeds(i, now, network)) continue;
+    if (state_ == State::stopping) {
+      network.stop_node(i);
+    } else if (!network.fault(i).rebooted) {
+      network.reset_node(i);
+    }
   }
-  taken_over_ = false;
 }
 
 // A drive that is not heard may hear: it is given time before it is made deaf to process data, too.
 bool Power::heeds(std::size_t joint, Time now, const canopen::Network& network) const {
   const canopen::Axis& axis = network.axis(static_cast<Joint>(joint));
   if (axis.fresh(now)) return state_ == State::stopping ? !axis.runs() : !axis.powered();
-  if (network.fault(joint).left_operational) return false;
+  if (network.fault(joint).left_operational || network.foreign_nmt_since(now, insist_period)) return false;
   return state_ != State::removing || now - since_ < silent_time;
 }
 
@@ -101,8 +99,9 @@ bool Power::confirmed(Time now, const canopen::Network& network) const {
     const canopen::Axis& axis = network.axis(static_cast<Joint>(i));
     // A node that was not started, or that has restarted, has no power; one that was lost or taken out of operation may have it still.
     const canopen::NodeFault& link = network.fault(i);
-    const bool lost = !link.rebooted && (link.heartbeat_lost || link.left_operational);
-    if ((axis.state() == canopen::AxisState::offline && !lost) || axis.confirmed_unpowered(now)) continue;
+    const bool lost = link.heartbeat_lost || link.left_operational;
+    const bool never_on = axis.state() == canopen::AxisState::offline && !lost;
+    if (link.rebooted || never_on || axis.confirmed_unpowered(now)) continue;
     const bool given_time = state_ == State::removing && now - since_ >= blind_time;
     if (axis.fresh(now) || !given_time) return false;
   }

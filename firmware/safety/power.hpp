@@ -28,10 +28,11 @@ class Power {
     removing,  // power off is ordered, but not confirmed yet
   };
 
-  // A drive that has not heeded an order by now does not hear its process data: lost frames, or somebody took the node out of operation. Seven SYNC periods.
-  static constexpr Duration heed_time = Duration::from_ms(28);
+  // A drive that has not heeded an order by now does not hear its process data: lost frames, or somebody took the node out of operation. Four SYNC periods:
+  // the order acts with the next SYNC, and the answer comes with the one after.
+  static constexpr Duration heed_time = Duration::from_ms(16);
   static constexpr Duration insist_period = Duration::from_ms(100);
-  // What is not heard is told by process data for so long before it is stopped by NMT.
+  // What is not heard is told by process data for so long before it is restarted by NMT.
   static constexpr Duration silent_time = Duration::from_ms(300);
   // Two SYNC periods until the order acts are 8 ms: the power is off within 1.2 s of the stop.
   static constexpr Duration longest_stop = Duration::from_ms(1100);
@@ -63,15 +64,13 @@ class Power {
  private:
   bool standing(const JointStates& joints, Time now, const canopen::Network& network);
   bool confirmed(Time now, const canopen::Network& network) const;
-  // Stops by NMT what does not heed its process data.
+  // Stops or restarts by NMT what does not heed its process data.
   void insist(Time now, canopen::Network& network);
-  void expect_heed(Time now, const canopen::Network& network);
   bool heeds(std::size_t joint, Time now, const canopen::Network& network) const;
 
   State state_ = State::off;
   Time insist_at_;
-  bool taken_over_ = false;  // by another master's NMT command
-  Time since_;               // of the state
+  Time since_;  // of the state
   std::array<double, joint_count> rest_rad_{};
   std::array<std::int32_t, joint_count> rest_counts_{};
   std::array<Time, joint_count> rest_since_{};

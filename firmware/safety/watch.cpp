@@ -15,7 +15,7 @@ constexpr double torque_doubt = 0.01;
 // The tool's box is a coarse fence; calibration and quantisation are worth a millimetre.
 constexpr double workspace_tolerance_m = 0.002;
 // A torque over its limit has to last: breakaway peaks of a gear last some milliseconds.
-constexpr int overload_ticks = 25;  // 100 ms
+constexpr int overload_ticks = 75;  // 300 ms
 
 }  // namespace
 

@@ -72,12 +72,12 @@ void add_machine(Keys& all, Scenario& s) {
                     "1 sigma of a drive's torque reading over its rated torque"));
   all.push_back(
       key("physics.water_celsius", "deg C", -2, 60, &s.physics.water_celsius, "water temperature: where the motors' windings start"));
-  all.push_back(key("friction.coulomb", "", 0, 10, &s.friction.coulomb,
+  all.push_back(key("friction.coulomb", "", 0, 3, &s.friction.coulomb,
                     "true Coulomb friction of each drive's screw or gear, over what the core takes it for"));
   all.push_back(key("friction.viscous", "", 0, 10, &s.friction.viscous, "the same of the viscous friction"));
-  all.push_back(
-      key("friction.efficiency", "", 0.1, 2, &s.friction.efficiency, "the same of the efficiency with which a motor drives its load"));
-  all.push_back(key("friction.back_efficiency", "", 0, 2, &s.friction.back_efficiency,
+  all.push_back(key("friction.efficiency", "", 0.6, 1.3, &s.friction.efficiency,
+                    "the same of the efficiency with which a motor drives its load, which is never above 1"));
+  all.push_back(key("friction.back_efficiency", "", 0, 1.3, &s.friction.back_efficiency,
                     "the same of the efficiency with which a load drives its motor; 0: the screw locks itself"));
   all.push_back(key("latency.image_ms", "ms", 0, 1000, &s.latency.image_ms, "from the start of an exposure until the core has its image"));
   all.push_back(key("latency.panel_vision_ms", "ms", 0, 10000, &s.latency.panel_vision_ms,

@@ -91,16 +91,29 @@ TEST_F(PowerTest, AStopReachesADriveThatIsSilentAndTheOthersDoNotWaitForIt) {
   EXPECT_LT(until([this] { return power.off(); }), 1.1);
 }
 
-// It does not hear its process data, or somebody took it out of operation: 6007 makes NMT stop a quick stop.
-TEST_F(PowerTest, ADriveThatDoesNotHeedIsStoppedByNmtAndTheOthersAreNot) {
+// It does not hear its process data, or somebody took it out of operation: 6007 makes NMT stop a quick stop, and a restart takes any make's power.
+TEST_F(PowerTest, ADriveThatDoesNotHeedIsStoppedAndThenRestartedByNmtAndTheOthersAreNot) {
   bus.nodes[3].ignores_controlword = true;
   power.stop(bus.now, bus.network);
-  EXPECT_LT(until([this] { return bus.nodes[3].nmt() == 4; }), 0.04);
+  EXPECT_LT(until([this] { return bus.nodes[3].nmt() == 4; }), 0.03) << "stopped";
   EXPECT_LT(until([this] { return bus.nodes[0].drive_state_bits() == unpowered; }), 0.35);
   EXPECT_EQ(bus.nodes[0].nmt(), 5) << "operational";
+  EXPECT_LT(until([this] { return power.off(); }), 0.5);
+  EXPECT_TRUE(all_in(unpowered)) << "by its restart";
+  EXPECT_EQ(bus.nodes[0].nmt(), 5);
+}
+
+// A frame of long ago, or before the boot, makes no later stop another one.
+TEST_F(PowerTest, AnotherMastersNmtOfLongAgoChangesNoStop) {
+  CanFrame frame;
+  frame.id = 0;
+  frame.length = 2;
+  frame.data = {1, 99};
+  bus.network.on_frame(frame, bus.now);
   for (int i = 0; i < 100; ++i) step();
-  EXPECT_FALSE(power.off()) << "it has not said so";
-  EXPECT_LT(until([this] { return power.off(); }), 1.1) << "nothing more can be done";
+  power.stop(bus.now, bus.network);
+  EXPECT_LT(until([this] { return power.off(); }), 0.3);
+  for (std::size_t i = 0; i < joint_count; ++i) EXPECT_EQ(bus.nodes[i].nmt(), 5) << "no node was stopped";
 }
 
 TEST_F(PowerTest, AMilderStopNeverTakesBackASeverer) {

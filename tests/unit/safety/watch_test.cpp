@@ -89,7 +89,7 @@ class EachLimit : public testing::Test {
   }
 
   // How often `fault` begins within some cycles under these limits. Joint 2 turns at `speed_rad_s`, from 0.
-  int begins(const Limits& limits, Fault fault, double speed_rad_s = 0, const Vec3& tool_m = Vec3::Zero(), int cycles = 60) {
+  int begins(const Limits& limits, Fault fault, double speed_rad_s = 0, const Vec3& tool_m = Vec3::Zero(), int cycles = 100) {
     Watch watch{limits, transmissions};
     int began = 0;
     double rad = 0;
