@@ -8,8 +8,9 @@ constexpr double limit_margin_rad = 0.01;
 // The face is where the look says to 3 mm, and the tip where the joints say to 2: what is touched farther out is something else, and what is touched so much
 // deeper than its bottom is not the button.
 constexpr double face_m = 0.008;
-// How far the face may be from where it is believed after a look, and what the tip's end is off.
-constexpr double face_doubt_m = 0.0015;
+// A stuck cap ends a press no deeper than this below where its face is believed to be, and a tenth of its stroke: the two doubts above, added in squares.
+constexpr double deepest_stuck_m = 0.0036;
+constexpr double stuck_share = 0.1;
 // Of a press, until it goes at its speed.
 constexpr double to_speed_m = 0.012;
 // A press that works shows nearly its whole stroke, a stuck cap a tenth of a default one: what is felt late, and what the arm gives way by.
@@ -79,6 +80,7 @@ Progress PressButton::begin_press(Workbench& bench) {
   guard_ = arm::GuardedMotion(config);
   feel_ = ButtonFeel();
   learned_under_way_ = false;
+  bottom_m_ = 0;
   bench.job.result().failure = StepFailure::none;
   const double depth = bench.mission().layout.button_stroke_m + bench.mission().press_overtravel_m;
   const Vec3 tip = bench.map.button_m(bench.job.task().button) - bench.map.normal() * depth;
@@ -133,8 +135,8 @@ void PressButton::feel(const StepTick& tick) {
   const double force_n = along.dot(guard_.excess_torque_nm()) / along.squaredNorm();
   const Vec3 tip = arm::base_from_tool(q) * Vec3(0, 0, closed_tip_beyond_tool_m());
   const double depth_m = (tip - bench.map.button_m(bench.job.task().button)).dot(inward);
-  // Far from the face a small force is the friction of the way, which the guard still learns; a large one is the guard's to notice.
   bottom_m_ = depth_m;
+  // Far from the face a small force is the friction of the way, which the guard still learns; a large one is the guard's to notice.
   if (depth_m < -face_m) return;
   feel_.update(tick.network.config().sync_period.s(), force_n, depth_m);
 }
@@ -146,7 +148,7 @@ StepFailure PressButton::judge(const Workbench& bench) const {
   if (feel_.touch_depth_m() > stroke_m + face_m) return StepFailure::button_missing;
   if (!guard_.touched()) return StepFailure::button_yields;
   // A strong spring, or a panel that is nearer than believed, hides the beginning of the way; the end of it is seen by the joints.
-  const bool deep = bottom_m_ > least_travel * stroke_m + face_doubt_m;
+  const bool deep = bottom_m_ > deepest_stuck_m + stuck_share * stroke_m;
   return feel_.travel_m() < least_travel * stroke_m && !deep ? StepFailure::button_stuck : StepFailure::none;
 }
 

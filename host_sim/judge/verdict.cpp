@@ -63,9 +63,9 @@ Deadline report_of(const Seen& seen, const Cause& cause, double begins_s, const 
       return {std::max(heard_s, begins_s - 0.004), unread_s};
     }
     case Report::unheard: return {begins_s, figures.self_stop_s};
-    // Three ticks without a time are a lost clock; an order is read with the next tick.
     // The arm halts on its own path first, then each drive goes down through every state.
     case Report::halt: return {begins_s + 0.004, figures.halt_s};
+    // Three ticks without a time are a lost clock; an order is read with the next tick.
     case Report::at_once: return {begins_s + (cause.rule->kind == "clock_lost" ? 0.012 : 0.004), stop_s};
     case Report::none: break;
   }

@@ -1,51 +1,17 @@
-// One axis through the network against a scripted drive: enabling, stopping, faults, homing, and what a target may do.
+// One axis through the network against a scripted drive: enabling, stopping, faults, and what a target may do.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "firmware/canopen/codec.hpp"
-#include "tests/unit/canopen/scripted_node.hpp"
+#include "tests/unit/canopen/axis_bench.hpp"
 
 namespace lf::canopen {
 namespace {
 
+using test::AxisTest;
 using test::Bus;
 using test::ScriptedNode;
-
-class AxisTest : public ::testing::Test {
- protected:
-  static NetworkConfig config() {
-    NetworkConfig c = test::plain_config();
-    c.sdo_timeout = Duration::from_ms(20);
-    c.transition_timeout = Duration::from_ms(400);
-    c.drives[1].quick_stop_option = 2;  // shoulder: stop, then no power
-    c.drives[2].homing_method = -3;     // elbow: to a hard stop
-    c.drives[2].homing_speed_counts_s = 400;
-    c.drives[2].homing_accel_counts_s2 = 5000;
-    c.drives[2].home_offset_counts = -77;
-    c.drives[2].homing_timeout = Duration::from_ms(1500);
-    return c;
-  }
-  void SetUp() override { ASSERT_TRUE(bus.boot()); }
-
-  Axis& axis() { return bus.network.axis(Joint::slew); }
-  ScriptedNode& drive() { return bus.nodes[0]; }
-  Axis& elbow() { return bus.network.axis(Joint::elbow); }
-  ScriptedNode& elbow_drive() { return bus.nodes[2]; }
-  bool enable(Axis& a) {
-    a.request(AxisRequest::hold_enabled);
-    return bus.run_until([&a] { return a.enabled(); }, Duration::from_ms(500));
-  }
-  CanFrame last_rpdo(std::uint8_t node = 1) {
-    for (const CanFrame& f : bus.sent) {
-      if (f.id == 0x200u + node) return f;
-    }
-    ADD_FAILURE() << "no RPDO";
-    return {};
-  }
-
-  Bus bus{config()};
-};
 
 TEST_F(AxisTest, StartsDisabledAndStaysSoUntilAsked) {
   bus.step(100);
@@ -367,62 +333,6 @@ TEST_F(AxisTest, RequestsBeforeTheBootAreForgotten) {
   EXPECT_EQ(fresh.network.axis(Joint::slew).state(), AxisState::disabled);
 }
 
-// ---- homing ----
-
-TEST_F(AxisTest, AbsoluteEncodersAreHomedFromTheStart) {
-  EXPECT_TRUE(axis().homed());
-  EXPECT_FALSE(elbow().homed());
-  axis().request(AxisRequest::home);
-  bus.step(2);
-  EXPECT_EQ(axis().state(), AxisState::disabled);
-  EXPECT_TRUE(axis().homed());
-}
-
-TEST_F(AxisTest, HomingRunsInItsModeAndEndsDisabledInCyclicMode) {
-  elbow_drive().controlwords.clear();
-  elbow().request(AxisRequest::home);
-  bus.step(3);
-  EXPECT_EQ(elbow().state(), AxisState::homing);
-  ASSERT_TRUE(bus.run_until([&] { return elbow().homed(); }, Duration::from_ms(1400)));
-  EXPECT_EQ(elbow().state(), AxisState::disabled);
-  EXPECT_EQ(elbow().actual_counts(), -77);
-  EXPECT_EQ(elbow_drive().object(0x6061, 0), 8u);
-  EXPECT_EQ(elbow_drive().controlwords, (std::vector<std::uint16_t>{0x06, 0x07, 0x0F, 0x1F, 0x07, 0x06, 0x00}));
-  ASSERT_TRUE(enable(elbow()));
-  bus.step(5);
-  EXPECT_EQ(elbow().target_counts(), -77);
-}
-
-TEST_F(AxisTest, AHomedZeroSurvivesABootThatTheMasterCauses) {
-  elbow().request(AxisRequest::home);
-  ASSERT_TRUE(bus.run_until([&] { return elbow().homed(); }, Duration::from_ms(1400)));
-  ASSERT_TRUE(bus.boot());
-  EXPECT_TRUE(elbow().homed());
-}
-
-// A drive that lost its power lost its zero, whenever that happened.
-TEST_F(AxisTest, AHomedZeroDoesNotSurviveAPowerCycleAfterAFailedBoot) {
-  elbow().request(AxisRequest::home);
-  ASSERT_TRUE(bus.run_until([&] { return elbow().homed(); }, Duration::from_ms(1400)));
-  bus.nodes[0].dead = true;
-  ASSERT_FALSE(bus.boot());
-  elbow_drive().reboot();
-  bus.step(20);
-  bus.nodes[0].dead = false;
-  ASSERT_TRUE(bus.boot());
-  EXPECT_FALSE(elbow().homed());
-}
-
-TEST_F(AxisTest, ADriveThatWasSilentMayHaveBeenWithoutPower) {
-  elbow().request(AxisRequest::home);
-  ASSERT_TRUE(bus.run_until([&] { return elbow().homed(); }, Duration::from_ms(1400)));
-  elbow_drive().dead = true;
-  bus.step(120);
-  elbow_drive().dead = false;
-  ASSERT_TRUE(bus.boot());
-  EXPECT_FALSE(elbow().homed());
-}
-
 TEST_F(AxisTest, TargetsStandStillUntilTheBrakeIsOpen) {
   NetworkConfig braked = config();
   braked.drives[0].profile.brake_opens = Duration::from_ms(200);
@@ -474,60 +384,6 @@ TEST_F(AxisTest, TheMasterTimesTheFollowingErrorOfADriveThatDoesNot) {
     changed.step(200);
     EXPECT_EQ(slew.fault(), times ? AxisFault::following_error : AxisFault::none);
   }
-}
-
-TEST_F(AxisTest, StatusBitsOfAnEarlierHomingAreNotTakenForThisOne) {
-  elbow_drive().homing_cycles = 100;  // the script shows "attained" until the start bit arrives
-  elbow().request(AxisRequest::home);
-  ASSERT_TRUE(bus.run_until([&] { return (elbow().controlword() & 0x10) != 0; }, Duration::from_ms(500)));
-  bus.step(50);
-  EXPECT_FALSE(elbow().homed());
-  EXPECT_EQ(elbow().state(), AxisState::homing);
-  ASSERT_TRUE(bus.run_until([&] { return elbow().homed(); }, Duration::from_ms(800)));
-}
-
-TEST_F(AxisTest, AHomingErrorIsAFault) {
-  elbow_drive().homing_fails = true;
-  elbow().request(AxisRequest::home);
-  ASSERT_TRUE(bus.run_until([&] { return elbow().fault() != AxisFault::none; }, Duration::from_ms(1000)));
-  EXPECT_EQ(elbow().fault(), AxisFault::homing_error);
-  EXPECT_FALSE(elbow().homed());
-}
-
-TEST_F(AxisTest, AHomingWithoutEndTimesOut) {
-  elbow_drive().homing_cycles = 1'000'000;
-  elbow().request(AxisRequest::home);
-  ASSERT_TRUE(bus.run_until([&] { return elbow().fault() != AxisFault::none; }, Duration::from_ms(1600)));
-  EXPECT_EQ(elbow().fault(), AxisFault::homing_timeout);
-}
-
-TEST_F(AxisTest, AHomingThatIsInterruptedReturnsToCyclicModeBeforeMoving) {
-  elbow_drive().homing_cycles = 1'000'000;
-  elbow().request(AxisRequest::home);
-  ASSERT_TRUE(bus.run_until([&] { return (elbow().controlword() & 0x10) != 0; }, Duration::from_ms(500)));
-  elbow().request(AxisRequest::quick_stop);
-  bus.step(20);
-  EXPECT_EQ(elbow().state(), AxisState::stopped);
-  elbow_drive().targets_while_enabled.clear();
-  ASSERT_TRUE(enable(elbow()));
-  EXPECT_EQ(elbow_drive().object(0x6061, 0), 8u);
-  EXPECT_FALSE(elbow().homed());
-  ASSERT_FALSE(elbow_drive().targets_while_enabled.empty());
-  for (const std::int32_t target : elbow_drive().targets_while_enabled) EXPECT_EQ(target, 1000);
-}
-
-TEST_F(AxisTest, AModeThatIsRefusedOrDoesNotFollowIsAFault) {
-  elbow_drive().trick = ScriptedNode::Trick{ScriptedNode::Trick::What::abort, -1, 0x6060, 0x08000022, 1};
-  elbow().request(AxisRequest::home);
-  ASSERT_TRUE(bus.run_until([&] { return elbow().fault() != AxisFault::none; }, Duration::from_ms(500)));
-  EXPECT_EQ(elbow().fault(), AxisFault::mode_refused);
-
-  elbow().request(AxisRequest::reset_fault);
-  bus.step(10);
-  elbow_drive().ignores_mode = true;
-  elbow().request(AxisRequest::home);
-  ASSERT_TRUE(bus.run_until([&] { return elbow().fault() != AxisFault::none; }, Duration::from_ms(1000)));
-  EXPECT_EQ(elbow().fault(), AxisFault::mode_refused);
 }
 
 }  // namespace

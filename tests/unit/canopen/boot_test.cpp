@@ -7,31 +7,17 @@
 #include <vector>
 
 #include "firmware/canopen/sdo_abort.hpp"
-#include "tests/unit/canopen/scripted_node.hpp"
+#include "tests/unit/canopen/boot_bench.hpp"
 
 namespace lf::canopen {
 namespace {
 
 using test::Bus;
+using test::elbow;
+using test::full_config;
+using test::io;
 using test::ScriptedNode;
 using Trick = ScriptedNode::Trick;
-
-constexpr std::size_t elbow = static_cast<std::size_t>(Joint::elbow);
-constexpr std::size_t io = Network::io_index;
-
-NetworkConfig full_config() {
-  NetworkConfig config = test::plain_config();
-  config.sdo_timeout = Duration::from_ms(20);
-  config.boot_up_timeout = Duration::from_ms(300);
-  for (DriveSetup& drive : config.drives) drive.identity = {0x1234, 0x5678};
-  config.drives[elbow].homing_method = -3;
-  config.drives[elbow].homing_speed_counts_s = 402;
-  config.drives[elbow].homing_accel_counts_s2 = 5000;
-  config.drives[elbow].home_offset_counts = -77;
-  config.drives[elbow].quick_stop_counts_s2 = 90'000;
-  config.drives[elbow].max_motor_speed_rpm = 3000;
-  return config;
-}
 
 TEST(Boot, AHealthyBusIsBootedWithinASecondAndOperational) {
   Bus bus(full_config());
@@ -406,95 +392,6 @@ TEST(Boot, ABootCanBeRepeatedAfterAFailureAndInOperation) {
   ASSERT_TRUE(bus.boot());
   EXPECT_EQ(bus.network.axis(Joint::slew).requested(), AxisRequest::disable);
   EXPECT_TRUE(bus.network.operational());
-}
-
-TEST(Boot, ANumberGoesToTheObjectThatTheProfileNames) {
-  NetworkConfig config = full_config();
-  ASSERT_TRUE(config.drives[elbow].profile.absences.push_back({BootValue::max_torque, Substitute::other_object, 0x30B0, 2}));
-  Bus bus(config);
-  bus.nodes[elbow].remove_object(0x6072, 0);
-  bus.nodes[elbow].set_object(0x30B0, 2, 0, 2);
-  ASSERT_TRUE(bus.boot());
-  EXPECT_EQ(bus.nodes[elbow].object(0x30B0, 2), config.drives[elbow].max_torque_permille);
-}
-
-TEST(Boot, AnAbsentObjectIsPassedOverOnlyWhereTheProfileHasASubstitute) {
-  for (const bool has_one : {true, false}) {
-    NetworkConfig config = full_config();
-    // The other entry is of an object that the drive has.
-    ASSERT_TRUE(config.drives[elbow].profile.absences.push_back({BootValue::following_window, Substitute::master_times_following}));
-    if (has_one) (void)config.drives[elbow].profile.absences.push_back({BootValue::max_speed, Substitute::master_limits_speed});
-    Bus bus(config);
-    bus.nodes[elbow].remove_object(0x607F, 0);
-    EXPECT_EQ(bus.boot(), has_one);
-    const NodeBoot report = bus.network.boot().nodes[elbow];
-    if (!has_one) {
-      ASSERT_NE(bus.network.boot().failed(), nullptr);
-      EXPECT_EQ(report.index, 0x607F);
-      continue;
-    }
-    EXPECT_EQ(bus.network.boot().failed(), nullptr);
-    ASSERT_EQ(report.substitutions.size(), 1u);
-    EXPECT_EQ(report.substitutions[0].index, 0x607F);
-    EXPECT_EQ(report.substitutions[0].by, Substitute::master_limits_speed);
-  }
-}
-
-// 605A and 6007 take few values on many drives.
-TEST(Boot, ARefusedOptionCodeIsTriedOnceMoreWithTheProfilesSecondChoice) {
-  struct Case {
-    std::uint16_t index;
-    std::int16_t quick_stop, abort;
-    bool boots;
-  };
-  for (const Case& c : {Case{0x605A, 2, 0, true}, Case{0x6007, 0, 1, true}, Case{0x605A, 0, 1, false}, Case{0x6007, 2, 0, false}}) {
-    NetworkConfig config = full_config();
-    config.drives[elbow].profile.quick_stop_fallback = c.quick_stop;
-    config.drives[elbow].profile.abort_fallback = c.abort;
-    Bus bus(config);
-    // The reading before the first writing is one of the two.
-    bus.nodes[elbow].trick = Trick{.what = Trick::What::refuse_write, .index = c.index, .code = sdo_abort::bad_value, .times = 2};
-    ASSERT_EQ(bus.boot(), c.boots) << c.index;
-    if (!c.boots) {
-      EXPECT_EQ(bus.network.boot().failed()->failure, BootFailure::sdo_aborted);
-      continue;
-    }
-    const auto taken = static_cast<std::uint32_t>(c.quick_stop + c.abort);
-    EXPECT_EQ(bus.nodes[elbow].object(c.index, 0), taken);
-    if (c.quick_stop != 0) {
-      EXPECT_EQ(bus.network.boot().nodes[elbow].quick_stop_option, c.quick_stop);
-    }
-  }
-}
-
-// The scripted drive says 12,000 mN m.
-TEST(Boot, ARatingThatIsNotTheStatedOneEndsTheBoot) {
-  for (const auto& [stated_unm, boots] : {std::pair{12'900'000U, true}, std::pair{11'100'000U, true}, std::pair{12'000U, false}}) {
-    NetworkConfig config = full_config();
-    config.drives[elbow].profile.rated_torque_unm = stated_unm;
-    Bus bus(config);
-    ASSERT_EQ(bus.boot(), boots) << stated_unm;
-    if (boots) continue;
-    EXPECT_EQ(bus.network.boot().failed()->failure, BootFailure::wrong_rating);
-    EXPECT_EQ(bus.network.boot().failed()->expected, 12U);
-    EXPECT_EQ(bus.network.boot().failed()->read, 12'000U);
-  }
-}
-
-TEST(Boot, AJointWithoutAZeroTakesNoPower) {
-  NetworkConfig config = full_config();
-  config.drives[0].zero_known = false;
-  Bus bus(config);
-  ASSERT_TRUE(bus.boot());
-  EXPECT_FALSE(bus.network.may_have_power());
-  bus.network.axis(Joint::slew).request(AxisRequest::hold_enabled);
-  bus.network.axis(Joint::slew).request(AxisRequest::home);
-  bus.step(50);
-  EXPECT_EQ(bus.network.axis(Joint::slew).requested(), AxisRequest::disable);
-  EXPECT_EQ(bus.network.axis(Joint::slew).stats().power_refused, 2U);
-  EXPECT_FALSE(bus.network.axis(Joint::slew).powered());
-  Bus known(full_config());
-  EXPECT_TRUE(known.network.may_have_power());
 }
 
 }  // namespace
