@@ -43,30 +43,46 @@ bool cut_off(const Cause& cause) { return cause.rule->kind == "silent" || cause.
 
 // Until an order acts: up to a SYNC period until the SYNC, one that is interpolated, and the arm's own compliance.
 constexpr std::size_t takes_effect_ms = 20;
+constexpr double sync_s = 0.004;
+
+// A master that nobody hears: the drives stop by themselves when its heartbeat is missing.
+bool cuts_off_the_master(const Cause& cause) { return cause.rule->report == Report::unheard || cause.node == "master"; }
+
+// A master that hears nothing.
+bool deafens_the_master(const Cause& cause) { return cause.rule->kind == "can_receive_fails" || cause.node == "master"; }
 
 struct Deadline {
   double at_s = 0;       // from when on time counts
   double allowed_s = 0;  // until the stop is on the bus
+
+  double end_s() const { return at_s + allowed_s; }
 };
 
+// When a frame told the core of a cause; nothing for one that no frame tells, or that none has told.
+std::optional<double> told_by_a_frame_s(const Seen& seen, const Cause& cause, double begins_s) {
+  if (cause.rule->report == Report::second_master) return seen.second_master_s;
+  if (cause.rule->report != Report::frame) return std::nullopt;
+  const std::optional<double> said_s = cause.rule->kind == "estop" ? seen.chain_open_s : seen.fault_reported_s;
+  return said_s ? std::optional(std::max(begins_s, *said_s)) : std::nullopt;
+}
+
+bool told_by_a_frame(const Cause& cause) { return cause.rule->report == Report::frame || cause.rule->report == Report::second_master; }
+
 Deadline report_of(const Seen& seen, const Cause& cause, double begins_s, const SafetyFigures& figures) {
-  const double stop_s = figures.stop_ms * ms, unread_s = figures.unread_ms * ms;
+  const double stop_s = figures.stop_ms * ms, unread_s = figures.unread_ms * ms, self_stop_s = figures.self_stop_s;
   switch (cause.rule->report) {
-    case Report::frame: {
-      const std::optional<double> said = cause.rule->kind == "estop" ? seen.chain_open_s : seen.fault_reported_s;
-      return {std::max(begins_s, said.value_or(begins_s)), stop_s};
-    }
-    case Report::second_master: return {seen.second_master_s.value_or(begins_s), stop_s};
+    case Report::frame:
+    case Report::second_master: return {told_by_a_frame_s(seen, cause, begins_s).value_or(begins_s), stop_s};
     case Report::silence: {
       const std::size_t node = node_index(cause.node);
       const double heard_s = cut_off(cause) && node < seen.last_heard_s.size() ? seen.last_heard_s[node] : begins_s;
-      return {std::max(heard_s, begins_s - 0.004), unread_s};
+      return {std::max(heard_s, begins_s - sync_s), cuts_off_the_master(cause) ? self_stop_s : unread_s};
     }
-    case Report::unheard: return {begins_s, figures.self_stop_s};
+    case Report::unheard: return {begins_s, self_stop_s};
     // The arm halts on its own path first, then each drive goes down through every state.
-    case Report::halt: return {begins_s + 0.004, figures.halt_s};
+    case Report::halt: return {begins_s + sync_s, figures.halt_s};
     // Three ticks without a time are a lost clock; an order is read with the next tick.
-    case Report::at_once: return {begins_s + (cause.rule->kind == "clock_lost" ? 0.012 : 0.004), stop_s};
+    case Report::at_once: return {begins_s + (cause.rule->kind == "clock_lost" ? 3 : 1) * sync_s, stop_s};
     case Report::none: break;
   }
   return {begins_s, stop_s};
@@ -79,7 +95,7 @@ class Judge {
 
   Verdict verdict() {
     forces();
-    if (const Cause* stopping = find_stop(); stopping != nullptr && !situation_.powering_up) stop(*stopping);
+    if (const auto deadline = strictest(); deadline && !situation_.powering_up) stop(*deadline);
     if (situation_.powering_up) nothing_moves();
     the_end();
     the_account();
@@ -89,52 +105,71 @@ class Judge {
  private:
   void wrong(const std::string& what) { verdict_.wrong.push_back(what); }
 
-  // The cause that has to stop the arm, the first of them.
-  const Cause* find_stop() {
-    const Cause* first = nullptr;
+  // Of all causes that have to stop the arm, the one by which it has to be stopped first.
+  std::optional<Deadline> strictest() const {
+    std::optional<Deadline> strictest;
+    const std::size_t stops = static_cast<std::size_t>(std::count_if(situation_.causes.begin(), situation_.causes.end(), demands_stop));
     for (std::size_t i = 0; i < situation_.causes.size(); ++i) {
-      if (situation_.causes[i].rule->demand != Demand::stop) continue;
-      if (first != nullptr && situation_.begins_s[i] >= begins_s_) continue;
-      first = &situation_.causes[i];
-      begins_s_ = situation_.begins_s[i];
+      const Cause& cause = situation_.causes[i];
+      if (!demands_stop(cause) || (stops > 1 && never_heard(i))) continue;
+      const Deadline deadline = delayed_by_a_cut(report_of(seen_, cause, situation_.begins_s[i], figures_));
+      if (!strictest || deadline.end_s() < strictest->end_s()) strictest = deadline;
     }
-    return first;
+    return strictest;
   }
 
-  std::uint8_t unreachable() const {
+  static bool demands_stop(const Cause& cause) { return cause.rule->demand == Demand::stop; }
+
+  // The frame that tells of this cause was never sent, or came when the master heard nothing any more. Another cause has stopped the arm, or has to.
+  bool never_heard(std::size_t index) const {
+    const Cause& cause = situation_.causes[index];
+    if (!told_by_a_frame(cause)) return false;
+    const std::optional<double> told_s = told_by_a_frame_s(seen_, cause, situation_.begins_s[index]);
+    if (!told_s) return true;
+    for (std::size_t i = 0; i < situation_.causes.size(); ++i) {
+      if (deafens_the_master(situation_.causes[i]) && *told_s > situation_.begins_s[i] - sync_s) return true;
+    }
+    return false;
+  }
+
+  // A stop that was due after the master was cut off reaches no drive: they stop when they miss the master's heartbeat.
+  Deadline delayed_by_a_cut(Deadline deadline) const {
+    for (std::size_t i = 0; i < situation_.causes.size(); ++i) {
+      if (!cuts_off_the_master(situation_.causes[i]) || deadline.end_s() < situation_.begins_s[i]) continue;
+      deadline.allowed_s = std::max(deadline.allowed_s, situation_.begins_s[i] + figures_.self_stop_s - deadline.at_s);
+    }
+    return deadline;
+  }
+
+  // Bit a joint: its drive hears nothing.
+  std::uint8_t cut_off_joints() const {
     std::uint8_t bits = 0;
     for (const Cause& cause : situation_.causes) {
       const std::size_t joint = node_index(cause.node);
       if (cut_off(cause) && joint < joint_count) bits |= static_cast<std::uint8_t>(1u << joint);
-      if (cause.rule->report == Report::unheard || cause.node == "master") bits = 0xFF;
     }
     return bits;
   }
+
+  bool master_is_cut_off() const { return std::any_of(situation_.causes.begin(), situation_.causes.end(), cuts_off_the_master); }
 
   void forces() {
     for (const Moment& moment : moments_) verdict_.force_n = std::max(verdict_.force_n, double(moment.force_n));
     if (verdict_.force_n > figures_.force_n) wrong(formatted("%.0f N of contact", verdict_.force_n));
   }
 
-  void stop(const Cause& cause) {
-    const std::uint8_t reachable = static_cast<std::uint8_t>(~unreachable());
-    Deadline report = report_of(seen_, cause, begins_s_, figures_);
-    if (cause.node == "master") report.allowed_s = figures_.self_stop_s;
-    const double stopped_s = last_s(moments_, report.at_s, [&](const Moment& m) { return (m.told_to_run & reachable) != 0; });
-    const double self_s = report.at_s + figures_.self_stop_s;
-    const double on_bus_s =
-        reachable == 0 ? std::min(self_s, last_s(moments_, report.at_s, [](const Moment& m) { return m.told_to_run != 0; })) : stopped_s;
-    verdict_.stop_ms = (on_bus_s - report.at_s) / ms;
-    if (on_bus_s - report.at_s > report.allowed_s + ms)
-      wrong(formatted("still told to run %.0f ms after the report", (on_bus_s - report.at_s) / ms));
-    // A drive that cannot be reached stops when it misses the master.
-    const double from_s = std::min(on_bus_s, report.at_s + report.allowed_s);
+  void stop(const Deadline& deadline) {
+    const auto reachable = static_cast<std::uint8_t>(~cut_off_joints());
+    const double on_bus_s = last_s(moments_, deadline.at_s, [&](const Moment& m) { return (m.told_to_run & reachable) != 0; });
+    verdict_.stop_ms = (on_bus_s - deadline.at_s) / ms;
+    if (on_bus_s > deadline.end_s() + ms) wrong(formatted("still told to run %.0f ms after the report", *verdict_.stop_ms));
+    const double from_s = std::min(on_bus_s, deadline.end_s());
     stands(from_s);
     loses_power(from_s);
   }
 
   void stands(double from_s) {
-    const std::uint8_t cut = unreachable();
+    const std::uint8_t cut = cut_off_joints();
     double standing_s = from_s;
     for (std::size_t joint = 0; joint < joint_count; ++joint) {
       const auto at = static_cast<std::size_t>(from_s / ms);
@@ -142,6 +177,7 @@ class Judge {
       double speed = 0;
       for (std::size_t i = at; i < std::min(at + takes_effect_ms, moments_.size()); ++i)
         speed = std::max<double>(speed, moments_[i].speed_rad_s[joint]);
+      // A drive that cannot be reached stops when it misses the master.
       const double late_s = (cut & (1u << joint)) != 0 ? figures_.self_stop_s : 0;
       const double allowed_s = speed / situation_.deceleration_rad_s2[joint] + figures_.settling_s + late_s;
       const double moved_s = last_s(moments_, from_s, [&](const Moment& m) { return m.speed_rad_s[joint] >= figures_.standing_rad_s; });
@@ -154,7 +190,7 @@ class Judge {
 
   void loses_power(double from_s) {
     const double standing_s = from_s + verdict_.standing_s.value_or(0);
-    const std::uint8_t reachable = static_cast<std::uint8_t>(~unreachable());
+    const auto reachable = static_cast<std::uint8_t>(master_is_cut_off() ? 0 : ~cut_off_joints());
     const double reached_off_s = last_s(moments_, from_s, [&](const Moment& m) { return (m.power & reachable) != 0; });
     const double off_s = last_s(moments_, from_s, [](const Moment& m) { return m.power != 0; });
     verdict_.power_off_s = std::max(0.0, reached_off_s - standing_s);
@@ -166,8 +202,9 @@ class Judge {
   }
 
   void nothing_moves() {
-    const Cause* cause = find_stop();
-    if (cause == nullptr || cause->rule->kind == "reboot") return;  // what has rebooted is booted again
+    const auto ends_it = [](const Cause& cause) { return demands_stop(cause) && cause.rule->kind != "reboot"; };
+    // What has rebooted is booted again.
+    if (std::none_of(situation_.causes.begin(), situation_.causes.end(), ends_it)) return;
     // Without power the joints settle in their gears.
     const double moved_s = last_s(moments_, 0, [&](const Moment& m) { return m.power != 0 && moves(m, figures_.standing_rad_s); });
     if (moved_s > 0) wrong(formatted("the arm moves at %.2f s although powering up had to end", moved_s));
@@ -213,7 +250,6 @@ class Judge {
   const Ending& ending_;
   const SafetyFigures& figures_;
   Verdict verdict_;
-  double begins_s_ = 0;
 };
 
 }  // namespace

@@ -128,6 +128,105 @@ TEST(Verdict, AnUnreadChainHasSixAndTwentyMillisecondsFromTheLastGoodData) {
   EXPECT_THAT(judge(seen, earlier, failed("emergency-stop chain unread")).wrong, ElementsAre("still told to run 40 ms after the report"));
 }
 
+// Two causes 0.1 s apart, the first 90 ms after watching began.
+Situation situation_of(const Cause& first, const Cause& second) {
+  Situation situation = situation_of(first);
+  situation.causes.push_back(second);
+  situation.begins_s.push_back(0.19);
+  return situation;
+}
+
+TEST(Verdict, AShutDownMayHaltOnItsPathFirst) {
+  Seen seen = Stopping{.stop_ms = 400}.seen();
+  seen.fault_reported_s.reset();
+  EXPECT_THAT(judge(seen, situation_of(cause_of("shut_down_ordered")), failed("shut down")).wrong, IsEmpty());
+}
+
+TEST(Verdict, AnEmergencyStopAfterAShutDownHasItsOwnDeadline) {
+  const Situation situation = situation_of(cause_of("shut_down_ordered"), cause_of("estop"));
+  const auto wrong = [&](int stop_ms) {
+    Seen seen = Stopping{.stop_ms = stop_ms}.seen();
+    seen.chain_open_s = seen.fault_reported_s = 0.2;
+    return judge(seen, situation, failed("emergency stop: the chain is open")).wrong;
+  };
+  EXPECT_THAT(wrong(112), IsEmpty());
+  EXPECT_THAT(wrong(114), ElementsAre("still told to run 14 ms after the report"));
+}
+
+TEST(Verdict, ADriveFaultAfterAShutDownHasItsOwnDeadline) {
+  const Situation situation = situation_of(cause_of("shut_down_ordered"), cause_of("overcurrent elbow"));
+  const auto wrong = [&](int stop_ms) {
+    Seen seen = Stopping{.stop_ms = stop_ms}.seen();
+    seen.fault_reported_s = 0.2;
+    return judge(seen, situation, failed("drive fault: elbow")).wrong;
+  };
+  EXPECT_THAT(wrong(112), IsEmpty());
+  EXPECT_THAT(wrong(114), ElementsAre("still told to run 14 ms after the report"));
+}
+
+TEST(Verdict, ALaterCauseDoesNotExcuseALateReactionToTheFirst) {
+  Seen seen = Stopping{.stop_ms = 40}.seen();
+  seen.chain_open_s = seen.fault_reported_s = 0.1;
+  EXPECT_THAT(judge(seen, situation_of(cause_of("estop"), cause_of("shut_down_ordered")), failed("emergency stop")).wrong,
+              ElementsAre("still told to run 40 ms after the report"));
+}
+
+TEST(Verdict, AFaultThatNoFrameReportedHasNoDeadlineOfItsOwnBesideAnother) {
+  Seen seen = Stopping{.stop_ms = 400}.seen();  // the halt was over before the drive noticed
+  seen.fault_reported_s.reset();
+  EXPECT_THAT(judge(seen, situation_of(cause_of("shut_down_ordered"), cause_of("hot elbow")), failed("shut down")).wrong, IsEmpty());
+  EXPECT_THAT(judge(seen, situation_of(cause_of("hot elbow")), failed("drive fault: elbow")).wrong,
+              testing::Contains("still told to run 410 ms after the report"))
+      << "alone it counts from its beginning";
+}
+
+TEST(Verdict, AMasterThatIsCutOffIsJudgedByTheDrivesOwnStop) {
+  const auto wrong = [](const Situation& situation, int stop_ms) {
+    Seen seen = Stopping{.stop_ms = stop_ms}.seen();
+    seen.chain_open_s = seen.fault_reported_s = 0.2;
+    return judge(seen, situation, failed("CAN bus off, emergency stop")).wrong;
+  };
+  for (const char* cut : {"can_send_fails", "bus_off master"}) {
+    SCOPED_TRACE(cut);
+    EXPECT_THAT(wrong(situation_of(cause_of(cut)), 385), IsEmpty());
+    EXPECT_THAT(wrong(situation_of(cause_of(cut)), 500), testing::Contains(testing::StartsWith("still told to run 51")));
+    EXPECT_THAT(wrong(situation_of(cause_of(cut), cause_of("estop")), 385), IsEmpty()) << "no frame tells the drives of the later stop";
+    EXPECT_THAT(wrong(situation_of(cause_of("estop"), cause_of(cut)), 385), IsEmpty()) << "the chain's frame came after the cut";
+  }
+}
+
+TEST(Verdict, AStopBeforeTheMasterIsCutOffHasToBeOnTheBusByThen) {
+  Seen seen = Stopping{.stop_ms = 60}.seen();
+  seen.chain_open_s = seen.fault_reported_s = 0.1;  // 90 ms before the cut
+  EXPECT_THAT(judge(seen, situation_of(cause_of("estop"), cause_of("can_send_fails")), failed("emergency stop")).wrong,
+              ElementsAre("still told to run 60 ms after the report"));
+}
+
+TEST(Verdict, AMasterThatHearsNothingIsNotBlamedForAReportItMissed) {
+  Seen seen = Stopping{.stop_ms = 14}.seen();  // 24 ms after the receiving call began to fail
+  seen.chain_open_s = seen.fault_reported_s = 0.095;
+  Situation situation = situation_of(cause_of("can_receive_fails"), cause_of("estop"));
+  situation.begins_s[1] = 0.094;
+  EXPECT_THAT(judge(seen, situation, failed("emergency-stop chain unread")).wrong, IsEmpty());
+  seen = Stopping{.stop_ms = 20}.seen();
+  EXPECT_THAT(judge(seen, situation, failed("emergency-stop chain unread")).wrong, ElementsAre("still told to run 30 ms after the report"));
+}
+
+// A joint may brake from the highest speed of the 20 ms after the order: at 2 rad/s2 and 0.15 s it may move for 0.30 s after 0.3 rad/s.
+TEST(Verdict, AnOrderTakesEffectWithinTwentyMilliseconds) {
+  const auto wrong = [](int peak_ms) {
+    Seen seen = Stopping{.stop_ms = 8}.seen();
+    for (int t = 108; t < 3000; ++t) seen.moments[static_cast<std::size_t>(t)].speed_rad_s[2] = t < 108 + 250 ? 0.03f : 0;
+    // The elbow creeps for 250 ms, which only a peak of at least 0.2 rad/s allows.
+    seen.moments[static_cast<std::size_t>(108 + peak_ms)].speed_rad_s[2] = 0.3f;
+    for (int t = 108 + 250; t < 3000; ++t) seen.moments[static_cast<std::size_t>(t)].power = 0;
+    return judge(seen, situation_of(cause_of("overcurrent elbow")), failed("drive fault: elbow")).wrong;
+  };
+  EXPECT_THAT(wrong(0), IsEmpty());
+  EXPECT_THAT(wrong(19), IsEmpty()) << "the last millisecond of the window";
+  EXPECT_THAT(wrong(20), ElementsAre(testing::HasSubstr("elbow moves 0.25 s after the stop, 0.16 s are allowed")));
+}
+
 TEST(Verdict, WhatMustGoOnIsUnclearWhenItEnds) {
   const Verdict verdict = judge(Stopping().seen(), situation_of(cause_of("image_lost")), failed("image lost, in step scan"));
   EXPECT_THAT(verdict.unclear, ElementsAre("it should have gone on: image lost, in step scan"));
