@@ -35,6 +35,7 @@ std::string cause(Fault fault, std::int32_t code) {
     case Fault::vision_poor: return name(static_cast<StepFailure>(code));
     case Fault::second_master: return "identifier " + hex(static_cast<unsigned>(code));
     case Fault::estop: return code == 0 ? "the chain is open" : "by order";
+    case Fault::aborted: return code == 0 ? "" : "shut down by order";
     case Fault::io_lost: return "";
     default: return code == 0 ? "" : std::to_string(code);
   }

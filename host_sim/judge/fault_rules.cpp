@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 
 #include "hal/config/fault_kinds.hpp"
 #include "shared/can/can_map.hpp"
@@ -11,75 +12,70 @@ namespace lf::judge {
 namespace {
 
 constexpr std::array<const char*, joint_count + 1> node_names{"slew", "shoulder", "elbow", "roll", "jaw", "io"};
-constexpr std::uint32_t first_tpdo = 0x180, first_rpdo = 0x200;
+constexpr std::uint32_t first_tpdo = 0x180, first_rpdo = 0x200, sdo_request = 0x600;
 
 const std::vector<FaultRule>& rules() {
   using enum Demand;
-  // A drive that misbehaves shows itself in one of these ways.
-  static const std::vector<std::string> misbehaves{"drive fault", "following error", "stale position", "joint limit", "overspeed",
-                                                   "overload",    "workspace",       "contact",        "grip lost",   "step",
-                                                   "torque"};
-  static const std::vector<std::string> link{"step timed out", "node", "stale position", "chain",
-                                             "emergency stop", "bus",  "drive fault",    "boot"};
-  static const std::vector<std::string> sight{"image", "camera", "vision", "step", "platform call"};
+  // What a drive does that gets wrong readings or does not obey.
+  static const std::vector<std::string> misbehaves{"drive fault", "following error", "stale position",    "joint limit",
+                                                   "overspeed",   "overload",        "unexpected contact"};
+  // A false position moves the computed place of the tool, which all joints make. An arm that stands elsewhere than it believes touches what lies there:
+  // the joint that feels it most is not the one that reads wrongly.
+  static const std::vector<std::string> led_astray{"tool outside its workspace", "unexpected contact", "touched something"};
+  static const std::vector<std::string> link{"node lost", "node rebooted", "stale position", "drive fault", "boot failed"};
+  static const std::vector<std::string> bus_off_of_the_master{"CAN bus off"};
+  static const std::vector<std::string> sight{"image", "camera", "panel vision", "platform call", "no panel seen", "too few points"};
   static const std::vector<std::string> other_master{"another master"};
   static const std::vector<FaultRule> all{
-      {"overcurrent", stop, Report::frame, 0, {"drive fault", "step timed out"}},
-      {"hot", stop, Report::frame, 0, {"drive fault"}},
-      {"following", safe_end, Report::none, 0, misbehaves},
-      {"stuck_encoder", safe_end, Report::none, 0, misbehaves},
-      {"encoder_jump", safe_end, Report::none, 0, misbehaves},
-      {"torque_frozen", safe_end, Report::none, 0, misbehaves},
-      {"torque_high", safe_end, Report::none, 0, misbehaves},
-      {"runaway", safe_end, Report::none, 0, misbehaves},
-      {"silent", stop, Report::silence, 0, link},
-      {"reboot", stop, Report::silence, 0, link},
-      {"wrong_identity", safe_end, Report::none, 0, {"boot", "identity"}},
-      {"bus_off", stop, Report::silence, 0, link},
+      {"overcurrent", stop, Report::frame, 0, {"drive fault"}, {}},
+      {"hot", stop, Report::frame, 0, {"drive fault"}, {}},
+      {"following", safe_end, Report::none, 0, misbehaves, {}},
+      {"stuck_encoder", safe_end, Report::none, 0, misbehaves, led_astray},
+      {"encoder_jump", safe_end, Report::none, 0, misbehaves, led_astray},
+      {"torque_frozen", safe_end, Report::none, 0, misbehaves, {}},
+      {"torque_high", safe_end, Report::none, 0, misbehaves, {}},
+      {"runaway", safe_end, Report::none, 0, misbehaves, led_astray},
+      {"silent", stop, Report::silence, 0, link, {}},
+      {"reboot", stop, Report::silence, 0, link, {}},
+      {"wrong_identity", safe_end, Report::none, 0, {"boot failed"}, {}},
+      {"bus_off", stop, Report::silence, 0, link, bus_off_of_the_master},
       {"drop_frames",
        safe_end,
        Report::none,
        0,
-       {"node", "stale position", "chain", "emergency stop", "drive fault", "following error", "step", "contact", "boot failed", "camera"}},
-      {"drop_frames", go_on, Report::none, 0.004, {}, "one frame"},
-      {"estop", stop, Report::frame, 0, {"emergency stop"}},
-      {"interlock_open", safe_end, Report::none, 0, {"interlock", "step"}},
-      {"error_frames", go_on, Report::none, 0, {}},
-      {"foreign_rpdo", stop, Report::second_master, 0, other_master},
-      {"foreign_sdo", stop, Report::second_master, 0, other_master},
-      {"foreign_sync", stop, Report::second_master, 0, other_master},
-      {"foreign_nmt", stop, Report::second_master, 0, other_master},
-      {"foreign_heartbeat", stop, Report::second_master, 0, other_master},
-      {"clock_lost", stop, Report::at_once, 0, {"clock"}},
-      {"can_receive_fails",
-       stop,
-       Report::silence,
-       0,
-       {"platform call", "stale position", "node", "chain", "emergency stop", "bus", "CAN", "boot"}},
-      {"can_send_fails",
-       stop,
-       Report::unheard,
-       0,
-       {"platform call", "stale position", "node", "chain", "drive fault", "bus", "CAN", "boot"}},
-      {"camera_fails", safe_end, Report::none, 0, sight},
-      {"panel_submit_fails", safe_end, Report::none, 0, sight},
-      {"panel_receive_fails", safe_end, Report::none, 0, sight},
-      {"telemetry_fails", go_on, Report::none, 0, {}},
-      {"vision_stalled", safe_end, Report::none, 0, sight},
-      {"image_lost", go_on, Report::none, 0, {}},
-      {"camera_silent", safe_end, Report::none, 0, sight},
-      {"camera_silent", go_on, Report::none, 0.6, {}, "0.6 s"},
-      {"camera_frozen", safe_end, Report::none, 0, sight},
-      {"sensor_frozen", safe_end, Report::none, 0, sight},
-      {"vision_late", go_on, Report::none, 0, {}},
-      {"vision_silent", safe_end, Report::none, 0, sight},
-      {"vision_poor", safe_end, Report::none, 0, sight},
-      {"handle_breaks", safe_end, Report::none, 0, {"grip", "step", "contact", "held", "handle"}},
-      {"obstacle", safe_end, Report::none, 0, misbehaves},
-      {"abort_ordered", safe_end, Report::none, 0, {"aborted"}},
-      {"estop_ordered", stop, Report::at_once, 0, {"emergency stop"}},
-      {"shut_down_ordered", stop, Report::halt, 0, {"aborted", "shut down"}},
-      {"limits_refused", safe_end, Report::none, 0, {"limits"}},
+       {"stale position", "following error", "drive fault", "boot failed", "output node lost"},
+       {}},
+      {"drop_frames", go_on, Report::none, 0.004, {}, {}, "one frame"},
+      {"estop", stop, Report::frame, 0, {"emergency stop"}, {}},
+      {"interlock_open", safe_end, Report::none, 0, {"interlock"}, {}},
+      {"error_frames", go_on, Report::none, 0, {}, {}},
+      {"foreign_rpdo", stop, Report::second_master, 0, other_master, {}},
+      {"foreign_sdo", stop, Report::second_master, 0, other_master, {}},
+      {"foreign_sync", stop, Report::second_master, 0, other_master, {}},
+      {"foreign_nmt", stop, Report::second_master, 0, other_master, {}},
+      {"foreign_heartbeat", stop, Report::second_master, 0, other_master, {}},
+      {"clock_lost", stop, Report::at_once, 0, {"clock lost"}, {}},
+      {"can_receive_fails", stop, Report::silence, 0, {"platform call", "stale position", "node lost", "boot failed"}, {}},
+      {"can_send_fails", stop, Report::unheard, 0, {"platform call", "stale position", "node lost", "drive fault", "boot failed"}, {}},
+      {"camera_fails", safe_end, Report::none, 0, sight, {}},
+      {"panel_submit_fails", safe_end, Report::none, 0, sight, {}},
+      {"panel_receive_fails", safe_end, Report::none, 0, sight, {}},
+      {"telemetry_fails", go_on, Report::none, 0, {}, {}},
+      {"vision_stalled", safe_end, Report::none, 0, sight, {}},
+      {"image_lost", go_on, Report::none, 0, {}, {}},
+      {"camera_silent", safe_end, Report::none, 0, sight, {}},
+      {"camera_silent", go_on, Report::none, 0.6, {}, {}, "0.6 s"},
+      {"camera_frozen", safe_end, Report::none, 0, sight, {}},
+      {"sensor_frozen", safe_end, Report::none, 0, sight, {}},
+      {"vision_late", go_on, Report::none, 0, {}, {}},
+      {"vision_silent", safe_end, Report::none, 0, sight, {}},
+      {"vision_poor", safe_end, Report::none, 0, sight, {}},
+      {"handle_breaks", safe_end, Report::none, 0, {"grip lost", "nothing held", "nothing to touch", "contact", "handle"}, {}},
+      {"obstacle", safe_end, Report::none, 0, misbehaves, led_astray},
+      {"abort_ordered", safe_end, Report::none, 0, {"aborted"}, {}},
+      {"estop_ordered", stop, Report::at_once, 0, {"emergency stop"}, {}},
+      {"shut_down_ordered", stop, Report::halt, 0, {"shut down"}, {}},
+      {"limits_refused", safe_end, Report::none, 0, {"limits refused"}, {}},
   };
   return all;
 }
@@ -94,7 +90,37 @@ std::int64_t frame_of(const std::string& node) {
   return 0;
 }
 
+// "elbow" of "tpdo elbow"; nothing where a cause has no node.
+std::string node_name(const std::string& node) { return node.substr(node.find_last_of(' ') + 1); }
+
+bool has_any(const std::string& reason, const std::vector<std::string>& words) {
+  return std::any_of(words.begin(), words.end(), [&](const std::string& word) { return reason.find(word) != std::string::npos; });
+}
+
+// The node as a reason says it: ": elbow", "output node", or in the identifier of a frame for it.
+bool names_node(const std::string& reason, const std::string& node) {
+  const auto index = static_cast<std::size_t>(std::find(node_names.begin(), node_names.end(), node) - node_names.begin());
+  if (index == node_names.size()) return false;
+  if (index == joint_count && reason.find("output node") != std::string::npos) return true;
+  const std::uint32_t id = index < joint_count ? can_map::drive_nodes[index] : can_map::io_node;
+  for (const std::uint32_t function : {first_rpdo, sdo_request}) {
+    char identifier[8];
+    std::snprintf(identifier, sizeof identifier, "0x%04X", function + id);
+    if (reason.find(identifier) != std::string::npos) return true;
+  }
+  const std::size_t at = reason.find(": " + node);
+  if (at == std::string::npos) return false;
+  const std::size_t end = at + 2 + node.size();
+  return end == reason.size() || reason[end] == ',' || reason[end] == ' ';
+}
+
 }  // namespace
+
+bool Cause::named_in(const std::string& reason) const {
+  if (has_any(reason, rule->named_without_node)) return true;
+  const bool named = has_any(reason, rule->named_by) || (node_name(node) == "io" && reason.find("output node lost") != std::string::npos);
+  return named && (node.empty() || names_node(reason, node_name(node)));
+}
 
 std::span<const FaultRule> fault_rules() { return rules(); }
 

@@ -32,9 +32,12 @@ struct FaultRule {
   std::string kind;
   Demand demand = Demand::safe_end;
   Report report = Report::none;
-  double duration_s = 0;              // 0: for the rest of the run
-  std::vector<std::string> named_by;  // parts of a reason that name this cause; any one will do
-  const char* variant = "";           // tells rules of the same kind apart
+  double duration_s = 0;  // 0: for the rest of the run
+  // Parts of a reason that name this cause; any one will do. A cause at a node must be named with its node.
+  std::vector<std::string> named_by;
+  // Those that name it without its node, because the core cannot know the node.
+  std::vector<std::string> named_without_node;
+  const char* variant = "";  // tells rules of the same kind apart
 };
 
 std::span<const FaultRule> fault_rules();
@@ -45,6 +48,8 @@ struct Cause {
   std::string node;  // or "tpdo slew", "rpdo io" for lost frames
 
   std::string name() const;  // "overcurrent elbow"
+  // Whether the reason says what happened, and at which node.
+  bool named_in(const std::string& reason) const;
   config::Fault fault() const;
 };
 

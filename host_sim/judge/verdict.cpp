@@ -236,11 +236,7 @@ class Judge {
         std::all_of(situation_.causes.begin(), situation_.causes.end(), [](const Cause& c) { return c.rule->demand == Demand::go_on; });
     if (all_go_on && !ending_.success) verdict_.unclear.push_back("it should have gone on: " + ending_.reason);
     if (ending_.success || all_go_on) return;
-    for (const Cause& cause : situation_.causes) {
-      for (const std::string& word : cause.rule->named_by) {
-        if (ending_.reason.find(word) != std::string::npos) return;
-      }
-    }
+    if (std::any_of(situation_.causes.begin(), situation_.causes.end(), [&](const Cause& c) { return c.named_in(ending_.reason); })) return;
     verdict_.unclear.push_back("the reason does not name the cause: " + (ending_.reason.empty() ? "none is given" : ending_.reason));
   }
 

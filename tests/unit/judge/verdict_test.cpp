@@ -61,7 +61,7 @@ Ending failed(const std::string& reason) {
   return ending;
 }
 
-Verdict judged(const Stopping& run, const std::string& reason = "drive fault (elbow), in step scan") {
+Verdict judged(const Stopping& run, const std::string& reason = "drive fault: elbow, EMCY 0x2310 (continuous over-current)") {
   return judge(run.seen(), situation_of(cause_of("overcurrent elbow")), failed(reason));
 }
 
@@ -98,6 +98,25 @@ TEST(Verdict, TooMuchForceIsUnsafe) { EXPECT_THAT(judged({.force_n = 151}).wrong
 TEST(Verdict, AnEndThatDoesNotNameTheCauseIsUnclear) {
   EXPECT_THAT(judged({}, "panel vision unsure, in step scan").unclear,
               ElementsAre("the reason does not name the cause: panel vision unsure, in step scan"));
+}
+
+TEST(Verdict, AReasonNamesTheCauseAndItsNode) {
+  const auto named = [](const char* cause, const char* reason) { return cause_of(cause).named_in(reason); };
+  EXPECT_TRUE(named("overcurrent elbow", "drive fault: elbow, EMCY 0x2310 (continuous over-current)"));
+  EXPECT_FALSE(named("overcurrent elbow", "drive fault: slew, EMCY 0x2310 (continuous over-current)")) << "another node";
+  EXPECT_FALSE(named("overcurrent elbow", "step timed out"));
+  EXPECT_FALSE(named("stuck_encoder roll", "step failed: the turn stalled")) << "a step that fails says nothing of the encoder";
+  EXPECT_TRUE(named("silent io", "output node lost"));
+  EXPECT_FALSE(named("silent io", "stale position: slew"));
+  EXPECT_TRUE(named("reboot io", "node rebooted: io"));
+  EXPECT_TRUE(named("drop_frames tpdo slew", "stale position: slew"));
+  EXPECT_FALSE(named("drop_frames tpdo slew", "stale position: shoulder"));
+  EXPECT_TRUE(named("foreign_rpdo io", "another master on the bus: identifier 0x0206"));
+  EXPECT_FALSE(named("foreign_rpdo io", "another master on the bus: identifier 0x0201"));
+  EXPECT_TRUE(named("foreign_sdo jaw", "another master on the bus: identifier 0x0605"));
+  EXPECT_TRUE(named("foreign_sync", "another master on the bus: identifier 0x0080"));
+  EXPECT_TRUE(named("bus_off master", "CAN bus off"));
+  EXPECT_TRUE(named("encoder_jump elbow", "tool outside its workspace")) << "all joints make the tool's place";
 }
 
 TEST(Verdict, ASuccessThatTheTruthContradictsIsFalse) {
