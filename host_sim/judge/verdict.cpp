@@ -180,12 +180,24 @@ class Judge {
       // A drive that cannot be reached stops when it misses the master.
       const double late_s = (cut & (1u << joint)) != 0 ? figures_.self_stop_s : 0;
       const double allowed_s = speed / situation_.deceleration_rad_s2[joint] + figures_.settling_s + late_s;
-      const double moved_s = last_s(moments_, from_s, [&](const Moment& m) { return m.speed_rad_s[joint] >= figures_.standing_rad_s; });
+      const double moved_s =
+          last_s(moments_, from_s, [&](const Moment& m) { return m.speed_rad_s[joint] >= figures_.standing_rad_s; });
       standing_s = std::max(standing_s, moved_s);
-      if (moved_s - from_s > allowed_s)
+      if (moved_s - from_s > allowed_s && !stands_but_for_play(joint, from_s, from_s + allowed_s))
         wrong(std::string(joint_names[joint]) + formatted(" moves %.2f s after the stop, %.2f s are allowed", moved_s - from_s, allowed_s));
     }
     verdict_.standing_s = standing_s - from_s;
+  }
+
+  // It stood before its time was up and is pulled through the play of its gear afterwards, as by a bar in the jaw.
+  bool stands_but_for_play(std::size_t joint, double from_s, double until_s) const {
+    std::size_t i = std::min(static_cast<std::size_t>(until_s / ms), moments_.size());
+    const std::size_t from = static_cast<std::size_t>(from_s / ms);
+    while (i > from && moments_[i - 1].speed_rad_s[joint] >= figures_.standing_rad_s) --i;
+    if (i <= from) return false;
+    const float stood_rad = moments_[i - 1].angle_rad[joint];
+    return std::all_of(moments_.begin() + std::ptrdiff_t(i), moments_.end(),
+                       [&](const Moment& m) { return std::abs(m.angle_rad[joint] - stood_rad) <= figures_.play_rad; });
   }
 
   void loses_power(double from_s) {
@@ -218,13 +230,20 @@ class Judge {
     if (!ending_.ended) return;
     constexpr std::size_t tail = 200;  // ms
     const std::size_t from = moments_.size() > tail ? moments_.size() - tail : 0;
-    bool moving = false, powered = false;
-    for (std::size_t i = from; i < moments_.size(); ++i) {
-      moving = moving || moves(moments_[i], figures_.standing_rad_s);
-      powered = powered || moments_[i].power != 0;
-    }
-    if (moving) wrong("the arm moves after the end");
+    const bool powered = std::any_of(moments_.begin() + std::ptrdiff_t(from), moments_.end(), [](const Moment& m) { return m.power != 0; });
+    if (travels(from)) wrong("the arm moves after the end");
     if (powered && !ending_.holds) wrong("power is on after the end");
+  }
+
+  // From a moment to the last one, by more than a joint that stands: bodies that press on each other quiver where they are.
+  bool travels(std::size_t from) const {
+    const double least_rad = figures_.standing_rad_s * static_cast<double>(moments_.size() - from) * ms;
+    for (std::size_t joint = 0; joint < joint_count; ++joint) {
+      const auto by_angle = [joint](const Moment& a, const Moment& b) { return a.angle_rad[joint] < b.angle_rad[joint]; };
+      const auto [low, high] = std::minmax_element(moments_.begin() + std::ptrdiff_t(from), moments_.end(), by_angle);
+      if (high->angle_rad[joint] - low->angle_rad[joint] > least_rad) return true;
+    }
+    return false;
   }
 
   void the_account() {

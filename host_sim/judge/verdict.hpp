@@ -16,6 +16,7 @@ struct SafetyFigures {
   double stop_ms = 12;           // on the bus, from the report: three SYNC periods
   double unread_ms = 26;         // on the bus, after the last good process data: six SYNC periods and the bus's own time
   double standing_rad_s = 0.02;  // the drives' compliance lets a stopped arm swing by less
+  double play_rad = 0.004;       // by which a joint that stood may still be pulled: its gear's play (1.7 mrad), and its wind-up
   double settling_s = 0.15;      // over what speed and deceleration ask for
   double off_after_standing_s = 0.100;
   double off_after_stop_s = 1.2;

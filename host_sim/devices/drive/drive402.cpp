@@ -235,6 +235,8 @@ bool Drive402::ramp_wanted(DriveState next) const {
 void Drive402::enter(DriveState state) {
   const bool was_enabled = state_ == DriveState::operation_enabled;
   const bool was_powered = powered();
+  // A set-point moves by whole counts from SYNC to SYNC: its speed is a count's or none. The ramp begins at what the loop's filter made of it.
+  if (was_enabled && mode_ == mode_cyclic_position) profile_.move(profile_.position(), loop_.demand_velocity_rad_s() / rad_per_count_);
   ramping_ = was_enabled && ramp_wanted(state) && !profile_.standing();
   if (state == DriveState::quick_stop_active && o_.quick_stop_option.value == 0) state = DriveState::switch_on_disabled;
   state_ = state;

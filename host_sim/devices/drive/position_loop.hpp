@@ -30,6 +30,7 @@ class PositionLoop {
   // `smooth`: the drive's own ramp, whose velocity needs no filter.
   double step(double demand, double demand_velocity, double actual, double rad_per_count, double dt_s, bool smooth = false);
 
+  double demand_velocity_rad_s() const { return feed_forward_rad_s_; }  // filtered
   bool saturated() const { return saturated_; }  // the last step asked for more than the top speed or acceleration
 
  private:

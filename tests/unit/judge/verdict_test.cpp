@@ -27,15 +27,20 @@ Cause cause_of(const std::string& name) {
 struct Stopping {
   int stop_ms = 8, off_ms = 50;
   double force_n = 20, stands_at_rad_s = 0;
+  double pulled_rad = 0;  // through its play, in 50 ms, a second after the report
 
   Seen seen() const {
     Seen seen;
     seen.fault_reported_s = 0.100;
+    double angle_rad = 0;
     for (int t = 0; t < 3000; ++t) {
       Moment moment;
       const int braking_ms = t - (100 + stop_ms);
-      const double speed = std::clamp(0.3 - 0.002 * braking_ms, stands_at_rad_s, 0.3);
+      double speed = std::clamp(0.3 - 0.002 * braking_ms, stands_at_rad_s, 0.3);
+      if (t >= 1100 && t < 1150) speed += pulled_rad / 0.050;
+      angle_rad += 0.001 * speed;
       moment.speed_rad_s[2] = static_cast<float>(speed);
+      moment.angle_rad[2] = static_cast<float>(angle_rad);
       moment.force_n = static_cast<float>(force_n);
       moment.told_to_run = braking_ms < 0 ? all_joints : 0;
       moment.power = braking_ms < 140 + off_ms ? all_joints : 0;  // 0.02 rad/s are reached after 140 ms
@@ -91,6 +96,23 @@ TEST(Verdict, AJointThatCreepsOnIsNotStopped) {
   const std::vector<std::string> wrong = judged({.stands_at_rad_s = 0.03}).wrong;
   ASSERT_FALSE(wrong.empty());
   EXPECT_THAT(wrong.front(), testing::HasSubstr("elbow moves"));
+}
+
+TEST(Verdict, AJointThatStoodMayBePulledThroughItsPlayAndNoFarther) {
+  EXPECT_THAT(judged({.pulled_rad = 0.0039}).wrong, IsEmpty());
+  const std::vector<std::string> wrong = judged({.pulled_rad = 0.0041}).wrong;
+  ASSERT_EQ(wrong.size(), 1u);
+  EXPECT_THAT(wrong.front(), testing::HasSubstr("elbow moves 1.04 s after the stop"));
+}
+
+// At the end: 0.02 rad/s for 0.2 s.
+TEST(Verdict, AtTheEndAJointThatTravelsMovesAndOneThatQuiversStands) {
+  Seen seen = Stopping().seen();
+  for (std::size_t t = 2500; t < seen.moments.size(); ++t) seen.moments[t].speed_rad_s[4] = 0.03f;
+  const Situation situation = situation_of(cause_of("camera_silent"));
+  EXPECT_THAT(judge(seen, situation, failed("camera silent")).wrong, IsEmpty());
+  for (std::size_t t = 2500; t < seen.moments.size(); ++t) seen.moments[t].angle_rad[4] = 0.00003f * float(t - 2500);
+  EXPECT_THAT(judge(seen, situation, failed("camera silent")).wrong, ElementsAre("the arm moves after the end"));
 }
 
 TEST(Verdict, TooMuchForceIsUnsafe) { EXPECT_THAT(judged({.force_n = 151}).wrong, ElementsAre("151 N of contact")); }

@@ -212,6 +212,40 @@ TEST(DriveMotion, a_quick_stop_ends_disabled_with_option_2) {
   EXPECT_TRUE(rig.output.released);
 }
 
+// A count of the wrist is 3 mrad: in one SYNC the target moves by one count or by none, which is 0.8 rad/s or nothing.
+TEST(DriveMotion, a_quick_stop_brakes_from_the_speed_of_the_joint_however_coarse_the_counts) {
+  DriveConfig wrist = elbow();
+  wrist.actuator = {0, 0, 0, 0, 318.3};
+  wrist.lower_rad = -3;
+  wrist.upper_rad = 3;
+  wrist.max_velocity_rad_s = 0.7;
+  wrist.max_acceleration_rad_s2 = 2;
+  wrist.stiction_rad_s = 0.2;
+  constexpr double speed_rad_s = 0.35, filter_s = 0.016, ripple = 1.3;  // of a filter that sees a count each 9 ms
+  for (int stopped_at = 250; stopped_at < 262; ++stopped_at) {
+    DriveRig rig(wrist, 0);
+    rig.joint.lower_rad = -3;
+    rig.joint.upper_rad = 3;
+    rig.enable();
+    for (int i = 1; i <= stopped_at; ++i) {
+      rig.target = static_cast<std::int32_t>(std::lround(318.3 * speed_rad_s * 0.004 * i));
+      rig.run_ms(4);
+    }
+    rig.controlword = 0x02;
+    const double begin_rad = rig.joint.q_rad;
+    double fastest_rad_s = 0;
+    int moving_ms = 0;
+    for (int ms = 1; ms <= 1000; ++ms) {
+      rig.step();
+      fastest_rad_s = std::max(fastest_rad_s, std::abs(rig.joint.moved_rad_s));
+      if (std::abs(rig.joint.moved_rad_s) > 0.02) moving_ms = ms;
+    }
+    EXPECT_LT(fastest_rad_s, ripple * speed_rad_s) << stopped_at;
+    EXPECT_LT(moving_ms, 1000 * ripple * speed_rad_s / 2 + 50) << stopped_at;
+    EXPECT_LT(rig.joint.q_rad - begin_rad, 0.5 * std::pow(ripple * speed_rad_s, 2) / 2 + 2 * filter_s * speed_rad_s) << stopped_at;
+  }
+}
+
 TEST(DriveMotion, profile_position_runs_to_its_set_point_with_a_handshake) {
   DriveRig rig;
   rig.enable(1);
