@@ -180,8 +180,7 @@ class Judge {
       // A drive that cannot be reached stops when it misses the master.
       const double late_s = (cut & (1u << joint)) != 0 ? figures_.self_stop_s : 0;
       const double allowed_s = speed / situation_.deceleration_rad_s2[joint] + figures_.settling_s + late_s;
-      const double moved_s =
-          last_s(moments_, from_s, [&](const Moment& m) { return m.speed_rad_s[joint] >= figures_.standing_rad_s; });
+      const double moved_s = last_s(moments_, from_s, [&](const Moment& m) { return m.speed_rad_s[joint] >= figures_.standing_rad_s; });
       standing_s = std::max(standing_s, moved_s);
       if (moved_s - from_s > allowed_s && !stands_but_for_play(joint, from_s, from_s + allowed_s))
         wrong(std::string(joint_names[joint]) + formatted(" moves %.2f s after the stop, %.2f s are allowed", moved_s - from_s, allowed_s));

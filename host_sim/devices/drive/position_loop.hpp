@@ -31,7 +31,7 @@ class PositionLoop {
   double step(double demand, double demand_velocity, double actual, double rad_per_count, double dt_s, bool smooth = false);
 
   double demand_velocity_rad_s() const { return feed_forward_rad_s_; }  // filtered
-  bool saturated() const { return saturated_; }  // the last step asked for more than the top speed or acceleration
+  bool saturated() const { return saturated_; }                         // the last step asked for more than the top speed or acceleration
 
  private:
   double wanted(double error_rad, double error_counts, double dt_s);
