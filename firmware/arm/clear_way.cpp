@@ -10,6 +10,8 @@ namespace {
 
 constexpr std::size_t forearm = 3, wrist = 4, finger = 5;  // scene::BodyId
 
+constexpr Distances nowhere_near{HUGE_VAL, HUGE_VAL, HUGE_VAL};
+
 // How far from each joint's axis any point of what it moves can be, at most, in whatever pose the joints after it are.
 JointVector reach_m(double jaw_rad) {
   const LinkPoses links = base_from_links(JointVector::Zero(), jaw_rad);
@@ -50,14 +52,16 @@ double jaw_reach_m() {
 
 }  // namespace
 
-void ClearWay::begin(const JointVector& from_rad, const Surroundings& surroundings, const Distances& wanted) {
+void ClearWay::begin(const JointVector& from_rad, const Surroundings& surroundings, const Distances& at_first, const Distances& wanted) {
   const Room& room = surroundings.room();
   *this = ClearWay();
   from_rad_ = from_rad;
   reach_m_ = reach_m(room.jaw);
   jaw_reach_m_ = jaw_reach_m();
   jaw_rad_ = room.jaw.low_rad;
+  kept_ = at_first;
   wanted_ = wanted;
+  nearest_ = nowhere_near;
   slack_m_ = least_slack_m_ = HUGE_VAL;
   const bool numbers = std::isfinite(room.jaw.low_rad + room.jaw.high_rad) && room.base_from_panel.matrix().allFinite() &&
                        std::isfinite(room.doubt.shift_m + room.doubt.turn_rad) && from_rad.allFinite();
@@ -87,10 +91,18 @@ void ClearWay::move_on() {
   budget_m_ = 0;
 }
 
+void ClearWay::keep_half_of_what_is_gained() {
+  const auto keep = [](double kept_m, double nearest_m, double wanted_m) { return std::max(kept_m, std::min(wanted_m, nearest_m / 2)); };
+  kept_.panel_m = keep(kept_.panel_m, nearest_.panel_m, wanted_.panel_m);
+  kept_.vehicle_m = keep(kept_.vehicle_m, nearest_.vehicle_m, wanted_.vehicle_m);
+  kept_.itself_m = keep(kept_.itself_m, nearest_.itself_m, wanted_.itself_m);
+  nearest_ = nowhere_near;
+}
+
 void ClearWay::look(const Surroundings& surroundings) {
   const Distances here = surroundings.distances(from_rad_ + fraction_ * way_rad_, jaw_rad_);
   ++poses_;
-  const std::array<double, 3> slacks{here.panel_m - wanted_.panel_m, here.vehicle_m - wanted_.vehicle_m, here.itself_m - wanted_.itself_m};
+  const std::array<double, 3> slacks{here.panel_m - kept_.panel_m, here.vehicle_m - kept_.vehicle_m, here.itself_m - kept_.itself_m};
   const auto* least = std::min_element(slacks.begin(), slacks.end());
   if (*least < least_slack_m_ || std::isnan(*least)) {
     least_slack_m_ = *least;
@@ -101,6 +113,8 @@ void ClearWay::look(const Surroundings& surroundings) {
     return;
   }
   slack_m_ = std::min(slack_m_, *least);
+  nearest_ = {std::min(nearest_.panel_m, here.panel_m), std::min(nearest_.vehicle_m, here.vehicle_m),
+              std::min(nearest_.itself_m, here.itself_m)};
   const double high_rad = surroundings.room().jaw.high_rad;
   if (jaw_rad_ < high_rad) {  // the jaw's next angle, for which half of this one's distance vouches
     jaw_rad_ = std::min(high_rad, jaw_rad_ + std::max(*least / 2, resolution_m) / jaw_reach_m_);
@@ -110,6 +124,7 @@ void ClearWay::look(const Surroundings& surroundings) {
   budget_m_ = std::max(swept ? slack_m_ / 2 : slack_m_, resolution_m);
   jaw_rad_ = surroundings.room().jaw.low_rad;
   slack_m_ = HUGE_VAL;
+  keep_half_of_what_is_gained();
   move_on();
 }
 

@@ -22,7 +22,11 @@ class ClearWay {
   static constexpr int max_poses = 2000;
 
   // Begins a way at `from_rad`, joint angles within their limits, in the room that `surroundings` is in. `wanted` is to be kept all along.
-  void begin(const JointVector& from_rad, const Surroundings& surroundings, const Distances& wanted);
+  void begin(const JointVector& from_rad, const Surroundings& surroundings, const Distances& wanted) {
+    begin(from_rad, surroundings, wanted, wanted);
+  }
+  // A way out of a place that is too near: `at_first` is to be kept; of what the way gains it has to keep half, up to `wanted`.
+  void begin(const JointVector& from_rad, const Surroundings& surroundings, const Distances& at_first, const Distances& wanted);
   // One more straight stretch, to be looked at from now on. Only once the way so far is clear, or straight after begin().
   void add(const JointVector& to_rad);
 
@@ -36,13 +40,16 @@ class ClearWay {
 
  private:
   void look(const Surroundings& surroundings);
+  void keep_half_of_what_is_gained();
   void move_on();
 
   JointVector from_rad_ = JointVector::Zero();
   JointVector way_rad_ = JointVector::Zero();
   JointVector reach_m_ = JointVector::Zero();  // how far a radian of each joint moves any point, at most
   double jaw_reach_m_ = 0;
-  Distances wanted_;
+  Distances kept_;        // by the next pose
+  Distances wanted_;      // in the end
+  Distances nearest_;     // of the pose at `fraction_`, over the jaw's angles so far
   double longest_m_ = 0;  // that any point of the arm moves on the whole stretch, at most
   double fraction_ = 0;   // of the next pose
   double jaw_rad_ = 0;    // of the next pose

@@ -120,7 +120,14 @@ void Gripper::move(Time t, double jaw_rad, const TorqueEstimate& torque, double 
 
 // Opening is positive, so that a closing torque is negative.
 void Gripper::stalled(double jaw_rad, const TorqueEstimate& torque) {
-  if (state_ == GripperState::opening) return;  // a jaw at rest below its stiction is no jam: it gets until the time-out
+  if (state_ == GripperState::opening) {
+    // A jaw at rest below its stiction is no jam: it gets until the time-out. One that presses on something is, whichever way it was told to go.
+    const double pressing_nm = goal_rad_ > jaw_rad ? torque.low_nm : -torque.high_nm;
+    if (pressing_nm < config_.grip_torque_nm) return;
+    state_ = GripperState::jammed;
+    target_rad_ = jaw_rad;
+    return;
+  }
   if (-torque.high_nm < config_.grip_torque_nm) return;
   const double gap = gap_from_jaw(jaw_rad);
   grip_rad_ = jaw_rad;

@@ -41,7 +41,8 @@ void ClearRoute::begin(const arm::JointVector& from_rad, const arm::JointVector&
 
 void ClearRoute::look_at(Leg leg, const arm::Surroundings& surroundings) {
   leg_ = leg;
-  way_.begin(leg == Leg::from_park ? via_[0] : from_rad_, surroundings, leg == Leg::from_park ? wanted_everywhere : leaving_);
+  way_.begin(leg == Leg::from_park ? via_[0] : from_rad_, surroundings, leg == Leg::from_park ? wanted_everywhere : leaving_,
+             wanted_everywhere);
   way_.add(leg == Leg::to_park ? via_[0] : via_[1]);
 }
 

@@ -23,7 +23,7 @@ Progress EmptyJaw::run(const StepTick& tick) {
     case Step::free_jaw:
       if (jaw == arm::GripperState::jammed) return Progress::failed_for_good(StepFailure::jaw_stuck);
       return Progress::done_if(jaw == arm::GripperState::open);
-    case Step::back_out: return tick.bench.follow_back_off(tick.now);
+    case Step::back_out: return tick.bench.follow_back_off(tick);
     default: return Progress::running();
   }
 }
@@ -46,6 +46,7 @@ Progress EmptyJaw::run_check(const StepTick& tick) {
 Progress EmptyJaw::begin_back_out(Workbench& bench) {
   const arm::JointVector here = bench.measured_rad();
   bench.standoff_m = arm::base_from_tool(here).translation() - bench.mission().approach_distance_m * arm::approach_axis(here);
+  bench.wound_up = false;
   bench.begin_back_off();
   return Progress::running();
 }

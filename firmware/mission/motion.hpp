@@ -37,8 +37,9 @@ class Motion {
   void go_clear(const arm::JointVector& goal_rad, const Room& room, double jaw_rad, double speed_fraction);
   // Of the tool.
   void line(const Vec3& goal_m, double goal_roll_rad, const Room& room, double jaw_rad, double speed_m_s);
-  // Of the held bar on the room's panel.
-  void turn(double from_rad, double to_rad, const Room& room, double jaw_rad, double speed_rad_s);
+  // Of the held bar on the room's panel. `pushed_rad`: what the arm gives way by meanwhile; its way is looked at from there.
+  void turn(double from_rad, double to_rad, const Room& room, double jaw_rad, double speed_rad_s,
+            const arm::JointVector& pushed_rad = arm::JointVector::Zero());
   // Plans a sweep and goes where it begins; `sweep` carries it out, with the jaw at rest where the way there leaves it.
   void go_to_sweep(const scan::SweepRequest& request, const LaserCalibration& laser, const Room& room, double jaw_rad,
                    double speed_fraction);
@@ -85,7 +86,7 @@ class Motion {
   void refuse(StepFailure failure);
   void plan_route(const arm::JointVector& goal_rad);
   // Begins the way from here, to be looked at.
-  void begin_way(const Room& room, double jaw_rad);
+  void begin_way(const Room& room, double jaw_rad, const arm::JointVector& pushed_rad = arm::JointVector::Zero());
   void advance_plan();
   void advance_route();
   void advance_line();

@@ -40,7 +40,7 @@ Progress PressButton::begin(const StepTick& tick) {
   switch (tick.step) {
     case Step::reach_button: return begin_reach(tick.bench);
     case Step::press: return begin_press(tick.bench);
-    case Step::button_back: tick.bench.begin_back_off(Workbench::after_a_press_m); break;
+    case Step::button_back: tick.bench.begin_back_off(); break;
     default: break;
   }
   return Progress::running();
@@ -57,7 +57,7 @@ Progress PressButton::run(const StepTick& tick) {
 
 Progress PressButton::begin_reach(Workbench& bench) {
   bench.take_up_task();
-  pressed_ = false;
+  pressed_ = bench.wound_up = false;
   bench.tool_roll_rad = 0;
   const Vec3 tip = bench.map.button_m(bench.job.task().button) + bench.map.normal() * bench.mission().approach_distance_m;
   arm::JointVector q;
@@ -81,6 +81,7 @@ Progress PressButton::begin_press(Workbench& bench) {
   feel_ = ButtonFeel();
   learned_under_way_ = false;
   bottom_m_ = 0;
+  bench.wound_up = true;
   bench.job.result().failure = StepFailure::none;
   const double depth = bench.mission().layout.button_stroke_m + bench.mission().press_overtravel_m;
   const Vec3 tip = bench.map.button_m(bench.job.task().button) - bench.map.normal() * depth;
@@ -153,7 +154,7 @@ StepFailure PressButton::judge(const Workbench& bench) const {
 }
 
 Progress PressButton::run_back(const StepTick& tick) {
-  const Progress motion = tick.bench.follow_back_off(tick.now);
+  const Progress motion = tick.bench.follow_back_off(tick);
   if (!motion.is_done()) return motion;
   if (!pressed_) return Progress::other_way();
   TaskResult& result = tick.bench.job.result();

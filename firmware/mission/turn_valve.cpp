@@ -65,7 +65,7 @@ Progress TurnValve::run(const StepTick& tick) {
     case Step::grip: return run_grip(tick);
     case Step::turn: return run_turn(tick);
     case Step::let_go: return run_let_go(tick);
-    case Step::back_off: return tick.bench.follow_back_off(tick.now);
+    case Step::back_off: return tick.bench.follow_back_off(tick);
     default: return Progress::running();
   }
 }
@@ -74,6 +74,7 @@ Progress TurnValve::run(const StepTick& tick) {
 Progress TurnValve::begin_reach(Workbench& bench) {
   const Progress unreachable = Progress::failed(StepFailure::unreachable);
   bench.take_up_task();
+  bench.wound_up = false;
   const PanelMap& map = bench.map;
   const Vec3 centre = map.handle_centre_m();
   bench.standoff_m = centre + map.normal() * bench.mission().approach_distance_m;
@@ -133,7 +134,7 @@ void TurnValve::begin_turn(const StepTick& tick) {
   following_since_ = tick.now;
   bench.turn_ended = false;
   bench.motion.turn(bench.map.handle_rad(), bench.turn_goal_rad, bench.room(bench.jaw_rad(), bench.meant_parts()), bench.jaw_rad(),
-                    bench.mission().turn_speed_rad_s);
+                    bench.mission().turn_speed_rad_s, bench.compliance.offset_rad());
 }
 
 // A turn that ends early leaves the handle on its way: the jaw lets go, and the second look finds it.

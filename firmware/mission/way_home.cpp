@@ -8,8 +8,7 @@ void WayHome::begin(const StepTick& tick) {
     case Step::abandon:  // out of a contact: the jaw opens, whatever it holds, before the arm goes back
       bench.let_off_roll();
       return bench.gripper.open_to(bench.mission().jaw_open_m);
-    case Step::abandon_back:
-      return bench.begin_back_off(bench.job.task().kind == Task::Kind::press_button ? Workbench::after_a_press_m : 0);
+    case Step::abandon_back: return bench.begin_back_off();
     case Step::stow: return bench.go_clear(bench.mission().park_rad, 0);
     case Step::shut_down: return begin_shut_down(tick);
     default: return;
@@ -20,7 +19,7 @@ Progress WayHome::run(const StepTick& tick) {
   switch (tick.step) {
     case Step::abandon: return run_abandon(tick.bench);
     case Step::abandon_back: {
-      const Progress motion = tick.bench.follow_back_off(tick.now);
+      const Progress motion = tick.bench.follow_back_off(tick);
       if (!motion.is_done()) return motion;
       return tick.bench.course == Course::retrying ? Progress::other_way() : Progress::done();
     }

@@ -10,6 +10,17 @@ namespace {
 // A contact is told long before it is an overload: at 13 N m on the default's arm, 33 N at the tool. At 9, a sweep after a turn was taken for one (seed 52).
 constexpr double contact_share = 0.5;
 
+// Of the way back from a press: twice what the arm gives way by at 60 N.
+constexpr double unwinding_m = 0.006;
+
+// While the load of a press is let off its change is no contact.
+arm::GuardConfig unwinding_guard() {
+  arm::GuardConfig guard;
+  guard.contact_torque_nm.setConstant(HUGE_VAL);
+  guard.overload_torque_nm.setConstant(HUGE_VAL);
+  return guard;
+}
+
 CameraWork::Config camera_config(const ControllerConfig& config) {
   CameraWork::Config camera;
   camera.exposure = config.camera.exposure;
@@ -146,17 +157,23 @@ void Workbench::let_off_roll() {
   motion.start_at(rest_rad);
 }
 
-void Workbench::begin_back_off(double unwinding_m) {
-  back_guard.reset();
-  unwinding_m_ = unwinding_m;
+void Workbench::begin_back_off() {
+  back_guard = arm::GuardedMotion(wound_up ? unwinding_guard() : free_motion_guard(config.mission_limits));
   back_from_m_ = arm::base_from_tool(motion.target()).translation();
   go_straight(standoff_m, motion.target()[3], config.mission.approach_speed_m_s, meant_parts());
 }
 
-Progress Workbench::follow_back_off(Time now) {
-  const bool unwinding = (arm::base_from_tool(motion.target()).translation() - back_from_m_).norm() < unwinding_m_;
-  if (!motion.planning() && !unwinding && watch.joints().valid) back_guard.update(now, pushed_target(), measured_rad(), measured_nm());
+Progress Workbench::follow_back_off(const StepTick& tick) {
+  if (wound_up && (arm::base_from_tool(motion.target()).translation() - back_from_m_).norm() >= unwinding_m) {
+    wound_up = false;
+    back_guard = arm::GuardedMotion(free_motion_guard(config.mission_limits));
+  }
+  if (!motion.planning() && watch.joints().valid) back_guard.update(tick.now, pushed_target(), measured_rad(), measured_nm());
   if (!back_guard.touched()) return follow_motion();
+  if (lags_without_load(back_guard)) {
+    tick.faults.report(safety::Fault::following_error, static_cast<std::int32_t>(back_guard.joint()));
+    return Progress::running();
+  }
   motion.stop();
   return Progress::failed(StepFailure::touched_on_the_way_back);
 }

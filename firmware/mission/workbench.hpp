@@ -35,6 +35,8 @@ arm::GuardConfig free_motion_guard(const safety::Limits& limits);
 // A joint stays behind its target, and nothing holds it back: its encoder or its drive is not to be trusted.
 bool lags_without_load(const arm::GuardedMotion& guard);
 
+struct StepTick;
+
 struct Workbench {
   explicit Workbench(const ControllerConfig& told);
 
@@ -86,14 +88,13 @@ struct Workbench {
   // The arm's targets become its positions: it presses on nothing, and a drive whose encoder stands still is not driven on.
   void stay_where_measured();
   // Straight back to the stand-off, under guard: whoever leaves a contact may touch nothing new. After a press the arm is wound up against the button: what it
-  // lets off on its first `unwinding_m` is no contact.
-  static constexpr double after_a_press_m = 0.006;  // twice what it gives way by at 60 N
-  void begin_back_off(double unwinding_m = 0);
-  Progress follow_back_off(Time now);
+  // lets off on its first millimetres is no contact. A joint that does not follow is one, or a fault where no load holds it.
+  void begin_back_off();
+  Progress follow_back_off(const StepTick& tick);
+  bool wound_up = false;  // against a button
 
  private:
   Room room_on_the_way(double jaw_opening_m);
-  double unwinding_m_ = 0;
   Vec3 back_from_m_ = Vec3::Zero();
   std::optional<double> jaw_order_m_;  // what the jaw does once the way is clear
 };

@@ -90,6 +90,36 @@ TEST(ClearWay, LetsNothingSlipBetweenTwoPoses) {
   EXPECT_GT(close, 3) << "nothing was put to the test";
 }
 
+// Out of a place that is too near, and back to it: what the way has gained it keeps half of.
+TEST(ClearWay, MayLeaveAPlaceThatIsTooNearAndNotComeBackToIt) {
+  SCOPED_TRACE(testing::Message() << "seed " << seed);
+  RandomJoints random(seed);
+  const PanelLayout board;
+  const Room room = room_at(board.nominal_base_from_panel());
+  const Surroundings surroundings = before(board, room);
+  int left = 0;
+  for (int k = 0; k < 20000 && left < 20; ++k) {
+    const JointVector from = random.next(), to = random.next();
+    const Distances here = surroundings.distances(from, 0), there = surroundings.distances(to, 0);
+    const bool too_near = here.panel_m > 0.002 && here.panel_m < 0.010 && std::min(here.vehicle_m, here.itself_m) > wanted_m;
+    if (!too_near || there.panel_m < 3 * wanted_m) continue;
+    ClearWay way;
+    const auto look = [&] {
+      while (way.advance(surroundings, 4) == ClearWay::State::looking) {
+      }
+      return way.state();
+    };
+    way.begin(from, surroundings, {here.panel_m - 0.001, wanted_m, wanted_m}, wanted);
+    way.add(to);
+    if (look() != ClearWay::State::clear) continue;
+    ++left;
+    way.add(from);
+    EXPECT_EQ(look(), ClearWay::State::blocked) << "draw " << k;
+    EXPECT_EQ(way.barrier(), Barrier::panel) << "draw " << k;
+  }
+  EXPECT_EQ(left, 20);
+}
+
 TEST(ClearWay, NeedsFewPosesWhereThereIsRoom) {
   const PanelLayout layout;
   const Surroundings surroundings = before(layout, room_at(layout.nominal_base_from_panel()));

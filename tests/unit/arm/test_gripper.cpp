@@ -147,8 +147,18 @@ TEST(Gripper, OpensToAGapAndIsJammedWhenItCannot) {
   ASSERT_EQ(run.run(4), GripperState::held);
   run.jaw.stop_opening_rad = run.jaw.q_rad + 0.01;
   run.gripper.open_to(0.09);
-  EXPECT_EQ(run.run(2), GripperState::opening);
-  EXPECT_EQ(run.run(8), GripperState::jammed);
+  EXPECT_EQ(run.run(2), GripperState::jammed) << "with a load at once, without one after the time-out";
+}
+
+// By hand, the other way: whatever is between the fingers is not squeezed until the time-out.
+TEST(Gripper, TurnedOntoSomethingStopsThere) {
+  GripperRun run;
+  run.jaw.q_rad = 0.8;
+  run.jaw.stop_closing_rad = 0.4;
+  run.gripper.turn_to(0.1);
+  ASSERT_EQ(run.run(3), GripperState::jammed);
+  EXPECT_NEAR(run.jaw.q_rad, 0.4, 0.01);
+  EXPECT_NEAR(run.gripper.target_rad(), run.jaw.q_rad, 1e-9) << "it presses on nothing";
 }
 
 TEST(Gripper, TurnsToAnAngleEitherWay) {
