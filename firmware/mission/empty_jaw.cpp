@@ -23,7 +23,7 @@ Progress EmptyJaw::run(const StepTick& tick) {
     case Step::free_jaw:
       if (jaw == arm::GripperState::jammed) return Progress::failed_for_good(StepFailure::jaw_stuck);
       return Progress::done_if(jaw == arm::GripperState::open);
-    case Step::back_out: return tick.bench.follow_back_off(tick.now);
+    case Step::back_out: return tick.bench.follow_back_off(tick);
     default: return Progress::running();
   }
 }

@@ -153,7 +153,7 @@ StepFailure PressButton::judge(const Workbench& bench) const {
 }
 
 Progress PressButton::run_back(const StepTick& tick) {
-  const Progress motion = tick.bench.follow_back_off(tick.now);
+  const Progress motion = tick.bench.follow_back_off(tick);
   if (!motion.is_done()) return motion;
   if (!pressed_) return Progress::other_way();
   TaskResult& result = tick.bench.job.result();

@@ -65,7 +65,7 @@ Progress TurnValve::run(const StepTick& tick) {
     case Step::grip: return run_grip(tick);
     case Step::turn: return run_turn(tick);
     case Step::let_go: return run_let_go(tick);
-    case Step::back_off: return tick.bench.follow_back_off(tick.now);
+    case Step::back_off: return tick.bench.follow_back_off(tick);
     default: return Progress::running();
   }
 }

@@ -20,7 +20,7 @@ Progress WayHome::run(const StepTick& tick) {
   switch (tick.step) {
     case Step::abandon: return run_abandon(tick.bench);
     case Step::abandon_back: {
-      const Progress motion = tick.bench.follow_back_off(tick.now);
+      const Progress motion = tick.bench.follow_back_off(tick);
       if (!motion.is_done()) return motion;
       return tick.bench.course == Course::retrying ? Progress::other_way() : Progress::done();
     }

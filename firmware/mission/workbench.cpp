@@ -153,10 +153,14 @@ void Workbench::begin_back_off(double unwinding_m) {
   go_straight(standoff_m, motion.target()[3], config.mission.approach_speed_m_s, meant_parts());
 }
 
-Progress Workbench::follow_back_off(Time now) {
+Progress Workbench::follow_back_off(const StepTick& tick) {
   const bool unwinding = (arm::base_from_tool(motion.target()).translation() - back_from_m_).norm() < unwinding_m_;
-  if (!motion.planning() && !unwinding && watch.joints().valid) back_guard.update(now, pushed_target(), measured_rad(), measured_nm());
+  if (!motion.planning() && !unwinding && watch.joints().valid) back_guard.update(tick.now, pushed_target(), measured_rad(), measured_nm());
   if (!back_guard.touched()) return follow_motion();
+  if (lags_without_load(back_guard)) {
+    tick.faults.report(safety::Fault::following_error, static_cast<std::int32_t>(back_guard.joint()));
+    return Progress::running();
+  }
   motion.stop();
   return Progress::failed(StepFailure::touched_on_the_way_back);
 }

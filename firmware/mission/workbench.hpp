@@ -35,6 +35,8 @@ arm::GuardConfig free_motion_guard(const safety::Limits& limits);
 // A joint stays behind its target, and nothing holds it back: its encoder or its drive is not to be trusted.
 bool lags_without_load(const arm::GuardedMotion& guard);
 
+struct StepTick;
+
 struct Workbench {
   explicit Workbench(const ControllerConfig& told);
 
@@ -89,7 +91,7 @@ struct Workbench {
   // lets off on its first `unwinding_m` is no contact.
   static constexpr double after_a_press_m = 0.006;  // twice what it gives way by at 60 N
   void begin_back_off(double unwinding_m = 0);
-  Progress follow_back_off(Time now);
+  Progress follow_back_off(const StepTick& tick);
 
  private:
   Room room_on_the_way(double jaw_opening_m);
