@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Builds the fuzz targets of tests/fuzz with Clang's libFuzzer and sanitizers, runs them one after the other, and prints a table.
-# Usage: tests/fuzz.sh [--seconds N | --runs N | --wanted] [--keep] [TARGET...]     default: 60 seconds each of all targets
+# Usage: tests/fuzz.sh [--seconds N | --runs N | --wanted] [--seed N] [--keep] [TARGET...]     default: 60 seconds each of all targets
 #   --wanted  as many runs of each as the nightly shard wants (the table `wanted` below)
+#   --seed    of the changes (default 1): shards of one target take different ones
 #   --keep    add to tests/fuzz/corpus up to 12 inputs of at most 400 bytes that reach code which the kept ones do not, 4 KB a target in all
 # What is found stays in build/fuzz/corpus/TARGET from call to call; an input that ends a target in build/fuzz/crashes/TARGET-*.
 # Exit status: 0 when no input ended a target; 77 without Clang.
@@ -11,11 +12,12 @@ declare -A wanted=([operator_line]=10000000 [frame_ring]=10000000 [can_core]=100
   [vehicle_yaml]=1000000 [scenario_yaml]=1000000 [drive_yaml]=1000000 [small_yaml]=1000000 [urdf]=1000000
   [image_peaks]=100000 [image_marker]=100000 [cloud]=100000)
 most_kept=4096
-limit=(-max_total_time=60) by_table='' keep='' targets=()
+limit=(-max_total_time=60) seed=1 by_table='' keep='' targets=()
 while [ $# -gt 0 ]; do
   case $1 in
     --seconds) limit=("-max_total_time=$2"); shift ;;
     --runs) limit=("-runs=$2"); shift ;;
+    --seed) seed=$2; shift ;;
     --wanted) by_table=yes ;;
     --keep) keep=yes ;;
     -*) sed -n '2,/^set/s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
@@ -59,7 +61,7 @@ for target in "${targets[@]}"; do
   [[ $target != can_* && $target != frame_ring ]] || length=1024
   before=$(find "$build/crashes" -name "$target-*" | wc -l)
   begin=$SECONDS
-  "$build/tests/fuzz_$target" "${limit[@]}" -seed=1 -max_len="$length" "${dictionary[@]}" -timeout=25 -rss_limit_mb=4096 -print_final_stats=1 -use_value_profile=1 \
+  "$build/tests/fuzz_$target" "${limit[@]}" -seed="$seed" -max_len="$length" "${dictionary[@]}" -timeout=25 -rss_limit_mb=4096 -print_final_stats=1 -use_value_profile=1 \
     -artifact_prefix="$build/crashes/$target-" "$found" "$kept" "$build/tests/fuzz/seeds/$target" >"$log" 2>&1 </dev/null || status=1
   crashes=$(($(find "$build/crashes" -name "$target-*" | wc -l) - before))
   seconds=$((SECONDS - begin))

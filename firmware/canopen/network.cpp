@@ -169,7 +169,7 @@ void Network::dispatch(const CanFrame& frame, Time now) {
 }
 
 void Network::refuse_foreign_master(std::uint32_t id) {
-  foreign_id_ = id;
+  foreign_.add(id);
   refuse(Refusal::foreign_master);
 }
 

@@ -17,6 +17,7 @@
 #include "firmware/canopen/axis.hpp"
 #include "firmware/canopen/boot_report.hpp"
 #include "firmware/canopen/emcy.hpp"
+#include "firmware/canopen/foreign_frames.hpp"
 #include "firmware/canopen/io_module.hpp"
 #include "firmware/canopen/node.hpp"
 #include "firmware/canopen/setup.hpp"
@@ -107,9 +108,8 @@ class Network {
   // Power and outputs off, and NMT stop of every node four SYNC periods later, when the drives have heard of it. Only `start_boot` leads back.
   void shut_down();
 
-  // The identifier of the last frame that only this master may send and somebody else sent; `stats().refused` counts them. The core never receives what
-  // it sent itself.
-  std::uint32_t foreign_id() const { return foreign_id_; }
+  // Frames that only this master may send and somebody else sent, by their identifiers. The core never receives what it sent itself.
+  const ForeignFrames& foreign() const { return foreign_; }
   // Another master sent an NMT command within the last `window`.
   bool foreign_nmt_since(Time now, Duration window) const { return foreign_nmt_ && now - *foreign_nmt_ < window; }
   std::uint32_t foreign_frames() const { return stats_.refused[static_cast<std::size_t>(Refusal::foreign_master)]; }
@@ -153,7 +153,7 @@ class Network {
   bool nodes_started_ = false;
   bool boot_up_sent_ = false;
   bool bus_off_ = false;
-  std::uint32_t foreign_id_ = 0;
+  ForeignFrames foreign_;
   std::optional<Time> foreign_nmt_;
   std::size_t misconfigured_node_ = node_count;  // what `check` found; node_count: nothing
   std::uint8_t shut_down_syncs_ = 0;             // left until NMT stop; 0: not shutting down

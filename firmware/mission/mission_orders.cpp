@@ -70,7 +70,7 @@ void Mission::forget(const StepTick& tick) {
   if (stop) bench_.mailbox.put(*stop);
   if (shut_down) bench_.mailbox.put(*shut_down);
   const ControllerConfig& config = bench_.config;
-  bench_.watch = safety::Watch(config.mission_limits, config.transmissions, tick.network.foreign_frames());
+  bench_.watch = safety::Watch(config.mission_limits, config.transmissions, tick.network.foreign());
   bench_.gripper = bench_.new_gripper();
   bench_.compliance.reset();
   bench_.map = PanelMap(config.mission.layout, config.marker, config.camera);

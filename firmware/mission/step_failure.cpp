@@ -67,7 +67,8 @@ Words words(StepFailure failure) {
               "It was touched and did not go in by half its stroke: free it; check panel.button_stroke_m and mission.press_torque_nm."};
     case StepFailure::button_missing:
       return {"no button there",
-              "Nothing was touched down to its bottom: look whether it broke off; check panel.buttons_m and panel.button_height_m."};
+              "Nothing was touched down to its bottom: look whether it broke off; check panel.buttons_m and panel.button_height_m. If it "
+              "is there, a joint's torque reading stands still."};
     case StepFailure::button_yields:
       return {"the button gives way without bottoming",
               "Check panel.button_stroke_m, mission.press_overtravel_m and mission.press_torque_nm."};

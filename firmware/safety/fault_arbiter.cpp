@@ -1,15 +1,12 @@
 #include "firmware/safety/fault_arbiter.hpp"
 
+#include "firmware/canopen/foreign_frames.hpp"
+
 namespace lf::safety {
 
-namespace {
-
-// An RPDO's COB-ID in the predefined connection set: function codes 0x200, 0x300, 0x400 and 0x500.
-bool is_rpdo(std::int32_t cob_id) { return cob_id >= 0x200 && cob_id < 0x580 && (cob_id & 0x80) == 0; }
-
-}  // namespace
-
-bool drives_are_told_otherwise(const FaultReport& report) { return report.fault == Fault::second_master && is_rpdo(report.code); }
+bool drives_are_told_otherwise(const FaultReport& report) {
+  return report.fault == Fault::second_master && canopen::is_rpdo(static_cast<std::uint32_t>(report.code));
+}
 
 Reaction reaction_in(const FaultReport& report, const Circumstances& circumstances) {
   if (report.only_counted) return Reaction::count_only;

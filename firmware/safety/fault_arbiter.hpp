@@ -18,9 +18,9 @@ struct FaultReport {
   bool only_counted = false;  // the mission knows of it and goes on
 };
 
-// A tick's worst case: the watch reports 46 (two for the links, two for each of six nodes, six for each of five joints, the workspace and the output
-// node), the mission's own sources 12.
-using FaultReports = StaticVector<FaultReport, 64>;
+// A tick's worst case: the watch reports 55 (two for the links, nine for another master, two for each of six nodes, six for each of five joints, the
+// workspace and the output node), the mission's own sources 12.
+using FaultReports = StaticVector<FaultReport, 72>;
 
 // What a reaction depends on besides fault and phase.
 struct Circumstances {

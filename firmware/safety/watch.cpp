@@ -108,10 +108,12 @@ void Watch::check_bus(const canopen::Network& network, Time now, FaultArbiter& b
   raise(io.seen() && io.fresh(now) && !io.estop_closed(), 0, {Fault::estop}, began);
   raise(network.bus_off(), 0, {Fault::bus_off}, began);
   // Before the boot the bus is not this master's.
-  const std::uint32_t foreign = network.foreign_frames();
   const bool ours = network.boot().state != canopen::BootState::idle;
-  raise(ours && foreign != foreign_frames_, 0, {Fault::second_master, static_cast<std::int32_t>(network.foreign_id())}, began);
-  foreign_frames_ = foreign;
+  for (std::size_t i = 0; i < canopen::ForeignFrames::slots; ++i) {
+    const auto& sender = network.foreign()[i];
+    raise(ours && sender.frames != foreign_[i].frames, i, {Fault::second_master, static_cast<std::int32_t>(sender.id)}, began);
+  }
+  foreign_ = network.foreign();
 }
 
 // While drives are being enabled an old latched silence is being reset: only the data themselves count then.

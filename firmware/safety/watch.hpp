@@ -36,10 +36,10 @@ enum class Vigilance : std::uint8_t {
 
 class Watch {
  public:
-  // `foreign_frames`: what the network has counted of another master's, and what was reported already.
+  // `foreign`: what the network has counted of another master's, and what was reported already.
   using Transmissions = std::array<arm::TransmissionSetup, joint_count>;
-  explicit Watch(const Limits& limits, const Transmissions& transmissions = {}, std::uint32_t foreign_frames = 0)
-      : limits_(limits), transmissions_(transmissions), foreign_frames_(foreign_frames) {}
+  explicit Watch(const Limits& limits, const Transmissions& transmissions = {}, const canopen::ForeignFrames& foreign = {})
+      : limits_(limits), transmissions_(transmissions), foreign_(foreign) {}
 
   // Reads the joints; call once a tick after the frames came in. `rad` are the positions decoded from counts.
   void observe(const canopen::Network& network, const std::array<double, joint_count>& rad, Time now);
@@ -78,11 +78,11 @@ class Watch {
   bool tolerating_ = false;
   double tolerated_m_ = 0;  // of the tool, outside of its workspace
   bool tool_outside_ = false;
-  std::array<double, joint_count> tolerated_rad_{};  // outside of the limits
-  static constexpr std::size_t index_count = 8;      // joints and nodes
+  std::array<double, joint_count> tolerated_rad_{};                          // outside of the limits
+  static constexpr std::size_t index_count = canopen::ForeignFrames::slots;  // joints, nodes, another master's identifiers
   static_assert(joint_count <= index_count && canopen::Network::node_count <= index_count);
   std::array<std::array<bool, index_count>, fault_count> present_{};
-  std::uint32_t foreign_frames_ = 0;  // known of
+  canopen::ForeignFrames foreign_;  // known of
 };
 
 }  // namespace lf::safety

@@ -77,6 +77,26 @@ CanFrame foreign_frame(const DeviceFault& fault) {
   }
 }
 
+// A master that runs the arm sends all of its frames in every SYNC period.
+std::vector<CanFrame> foreign_frames(const DeviceFault& fault) {
+  if (fault.kind != DeviceFaultKind::foreign_master) return {foreign_frame(fault)};
+  DeviceFault part = fault;
+  part.kind = DeviceFaultKind::foreign_sync;
+  std::vector<CanFrame> frames{foreign_frame(part)};
+  part.kind = DeviceFaultKind::foreign_rpdo;
+  for (const std::uint8_t node : can_map::drive_nodes) {
+    part.node = node;
+    frames.push_back(foreign_frame(part));
+  }
+  part.kind = DeviceFaultKind::foreign_heartbeat;
+  frames.push_back(foreign_frame(part));
+  return frames;
+}
+
+Duration period_of(const DeviceFault& fault) {
+  return fault.kind == DeviceFaultKind::foreign_master ? can_map::sync_period : second_master_period;
+}
+
 }  // namespace
 
 void Devices::Impl::set_second_master(const DeviceFault& fault, bool on) {
@@ -87,8 +107,8 @@ void Devices::Impl::set_second_master(const DeviceFault& fault, bool on) {
 void Devices::Impl::run_second_master() {
   for (Foreign& each : foreign) {
     if (now < each.due) continue;
-    bus.send(second_master, foreign_frame(each.what), now);
-    each.due = each.due + second_master_period;
+    for (const CanFrame& frame : foreign_frames(each.what)) bus.send(second_master, frame, now);
+    each.due = each.due + period_of(each.what);
   }
 }
 

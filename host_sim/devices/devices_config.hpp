@@ -83,12 +83,13 @@ enum class DeviceFaultKind : std::uint8_t {
   runaway,         // while enabled the joint moves at 1.5 times its top speed, and the drive's following-error window is gone
   wrong_identity,  // object 1018:02 names another product
 
-  // A second master, with a controller of its own on the bus, sends every 50 ms:
+  // A second master, with a controller of its own on the bus, sends every 50 ms, if not said otherwise:
   foreign_rpdo,       // the node's first RPDO: a drive's target, or the output node's laser
   foreign_sdo,        // an SDO upload request to the node
   foreign_sync,       // a SYNC
   foreign_nmt,        // NMT "enter pre-operational", to all nodes
   foreign_heartbeat,  // a heartbeat with the master's own node number
+  foreign_master,     // every SYNC period SYNC, the RPDO of each drive and a heartbeat, as a master that runs the arm
 };
 
 // Frames of a second master come from this controller on the simulated bus; the number stands for no node.

@@ -17,11 +17,13 @@ constexpr std::uint32_t first_tpdo = 0x180, first_rpdo = 0x200, sdo_request = 0x
 const std::vector<FaultRule>& rules() {
   using enum Demand;
   // What a drive does that gets wrong readings or does not obey.
-  static const std::vector<std::string> misbehaves{"drive fault", "following error", "stale position",    "joint limit",
-                                                   "overspeed",   "overload",        "unexpected contact"};
+  static const std::vector<std::string> misbehaves{"drive fault", "following error", "stale position",     "joint limit",
+                                                   "overspeed",   "overload",        "unexpected contact", "the jaw does not open"};
   // A false position moves the computed place of the tool, which all joints make. An arm that stands elsewhere than it believes touches what lies there:
   // the joint that feels it most is not the one that reads wrongly.
   static const std::vector<std::string> led_astray{"tool outside its workspace", "unexpected contact", "touched something"};
+  // A torque that stands still is felt nowhere: the core sees a press that meets nothing, and no joint that would differ from the others.
+  static const std::vector<std::string> feels_nothing{"torque reading stands still"};
   static const std::vector<std::string> link{"node lost", "node rebooted", "stale position", "drive fault", "boot failed"};
   static const std::vector<std::string> bus_off_of_the_master{"CAN bus off"};
   static const std::vector<std::string> sight{"image", "camera", "panel vision", "platform call", "no panel seen", "too few points"};
@@ -32,7 +34,7 @@ const std::vector<FaultRule>& rules() {
       {"following", safe_end, Report::none, 0, misbehaves, {}},
       {"stuck_encoder", safe_end, Report::none, 0, misbehaves, led_astray},
       {"encoder_jump", safe_end, Report::none, 0, misbehaves, led_astray},
-      {"torque_frozen", safe_end, Report::none, 0, misbehaves, {}},
+      {"torque_frozen", safe_end, Report::none, 0, misbehaves, feels_nothing},
       {"torque_high", safe_end, Report::none, 0, misbehaves, {}},
       {"runaway", safe_end, Report::none, 0, misbehaves, led_astray},
       {"silent", stop, Report::silence, 0, link, {}},
@@ -54,6 +56,7 @@ const std::vector<FaultRule>& rules() {
       {"foreign_sync", stop, Report::second_master, 0, other_master, {}},
       {"foreign_nmt", stop, Report::second_master, 0, other_master, {}},
       {"foreign_heartbeat", stop, Report::second_master, 0, other_master, {}},
+      {"foreign_master", stop, Report::second_master, 0, other_master, {}},
       {"clock_lost", stop, Report::at_once, 0, {"clock lost"}, {}},
       {"can_receive_fails", stop, Report::silence, 0, {"platform call", "stale position", "node lost", "boot failed"}, {}},
       {"can_send_fails", stop, Report::unheard, 0, {"platform call", "stale position", "node lost", "drive fault", "boot failed"}, {}},
@@ -108,6 +111,7 @@ bool names_node(const std::string& reason, const std::string& node) {
     std::snprintf(identifier, sizeof identifier, "0x%04X", function + id);
     if (reason.find(identifier) != std::string::npos) return true;
   }
+  if (node == "jaw" && reason.find("the jaw does not open") != std::string::npos) return true;
   const std::size_t at = reason.find(": " + node);
   if (at == std::string::npos) return false;
   const std::size_t end = at + 2 + node.size();

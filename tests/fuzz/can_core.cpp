@@ -1,6 +1,7 @@
 // Frames from the bus, in any order and at any time, into the core's master: before, in and after the boot, and with powered axes.
 //
-// Held against: what leaves the master is its own, complete, and no more than it says; no frame makes it give power to a drive unasked.
+// Held against: what leaves the master is its own, complete, and no more than it says; and a book of the orders that this file gave: whatever the frames
+// say, no drive is told "operation enabled" after a stop or a latched fault before a fresh order to enable it.
 #include <vector>
 
 #include "firmware/canopen/cob_id.hpp"
@@ -56,9 +57,58 @@ std::vector<Beginning> make_beginnings() {
   return all;
 }
 
+// What a drive may be told, by the orders that were given for it.
+class OrderBook {
+ public:
+  void begin(const canopen::Axis& axis) {
+    newest_ = axis.requested();
+    running_ = runs(axis.controlword());
+    enabled_ = enables(newest_) && axis.fault() == canopen::AxisFault::none;
+  }
+
+  // An order to enable counts when the axis took it; one to stop always does.
+  void order(AxisRequest request, const canopen::Axis& axis) {
+    if (enables(request) && axis.requested() != request) return;
+    newest_ = request;
+    enabled_ = enables(request);
+    if (enabled_) after_stop_ = 0;
+  }
+
+  // After each tick. A latched fault is a stop, and so is the end of a homing.
+  void see(const canopen::Axis& axis) {
+    const bool homed = newest_ == AxisRequest::home && axis.requested() == AxisRequest::disable;
+    if (axis.fault() == canopen::AxisFault::none && !homed) return;
+    enabled_ = false;
+  }
+
+  // One RPDO to the drive, and what the drive said last.
+  void check(const CanFrame& rpdo, const canopen::Axis& axis) {
+    const bool runs_now = runs(rpdo.data[0]);
+    expect(!runs_now || running_ || (enabled_ && axis.fault() == canopen::AxisFault::none),
+           "a stopped drive is enabled by a fresh order only");
+    running_ = runs_now;
+    if (!runs_now || enabled_) return;
+    ++after_stop_;
+    expect(after_stop_ <= canopen::Axis::handshake_syncs, "a stop is sent within a handshake");
+    expect(newest_ != AxisRequest::remove_power, "power is removed at once");
+    expect(newest_ != AxisRequest::quick_stop || !axis.runs(), "a drive in operation is told to quick stop at once");
+  }
+
+ private:
+  static bool runs(std::uint32_t controlword) { return (controlword & 0x0FU) == 0x0FU; }
+  static bool enables(AxisRequest request) { return request == AxisRequest::hold_enabled || request == AxisRequest::home; }
+
+  AxisRequest newest_ = AxisRequest::disable;
+  bool enabled_ = false;  // by an order since the last stop
+  bool running_ = false;  // the newest RPDO says operation enabled
+  int after_stop_ = 0;    // RPDOs that said so since the stop
+};
+
 class Session {
  public:
-  Session(Network& network, Time now) : network_(network), now_(now) {}
+  Session(Network& network, Time now) : network_(network), now_(now) {
+    for (std::size_t i = 0; i < joint_count; ++i) books_[i].begin(network.axis(static_cast<Joint>(i)));
+  }
 
   void run(Input& in) {
     while (!in.empty() && ticks_ < most_ticks) step(in);
@@ -88,7 +138,39 @@ class Session {
         return tick(steps_ms[more & 7U]);
       }
       default:
-        for (std::uint32_t i = 0; i <= more; ++i) tick(4);
+        for (std::uint32_t i = 0; i <= more % 16; ++i) {
+          if (more >= 16) answer_as_drives(in.byte());
+          tick(4);
+        }
+    }
+  }
+
+  // Bit a joint: its drive obeys its newest RPDO; the others are all in one state, which the three high bits choose.
+  void answer_as_drives(std::uint8_t what) {
+    static constexpr std::array<std::uint8_t, 8> states{0x40, 0x21, 0x23, 0x27, 0x07, 0x0F, 0x08, 0x00};
+    constexpr std::uint8_t remote_and_follows = 0x12;  // bits 9 and 12
+    for (std::size_t i = 0; i < joint_count; ++i) {
+      const bool obeys = (what & (1U << i)) != 0;
+      status_[i] = obeys ? obeyed(status_[i], told_[i].data[0]) : states[what >> 5U];
+      CanFrame tpdo;
+      tpdo.id = canopen::cob_id::tpdo1 + static_cast<std::uint32_t>(i + 1);
+      tpdo.length = 8;
+      tpdo.data = {status_[i], remote_and_follows, told_[i].data[2], told_[i].data[3], told_[i].data[4], told_[i].data[5], 0, 0};
+      receive(tpdo);
+    }
+  }
+
+  // CiA 402's transitions, as far as a drive takes them at once.
+  static std::uint8_t obeyed(std::uint8_t status, std::uint8_t controlword) {
+    const bool fault = (status & 0x08) != 0;
+    if (fault) return (controlword & 0x80) != 0 ? 0x40 : 0x08;
+    if ((controlword & 0x02) == 0) return 0x40;                          // disable voltage
+    if ((controlword & 0x04) == 0) return status == 0x27 ? 0x07 : 0x40;  // quick stop
+    switch (controlword & 0x0F) {
+      case 0x06: return 0x21;
+      case 0x07: return status == 0x40 ? 0x40 : 0x23;
+      case 0x0F: return status == 0x40 || status == 0x21 ? status : 0x27;
+      default: return status;
     }
   }
 
@@ -108,18 +190,26 @@ class Session {
   void command(Input& in, std::uint32_t which) {
     canopen::Axis& axis = network_.axis(static_cast<Joint>(which % joint_count));
     switch (in.byte() % 12U) {
-      case 0: return network_.start_boot(now_);
-      case 1: return network_.shut_down();
-      case 2: return network_.quick_stop_all();
-      case 3: return network_.disable_all();
-      case 4: return network_.remove_power();
+      case 0: network_.start_boot(now_); return write_down(AxisRequest::disable);
+      case 1: network_.shut_down(); return write_down(AxisRequest::disable);
+      case 2: network_.quick_stop_all(); return write_down(AxisRequest::quick_stop);
+      case 3: network_.disable_all(); return write_down(AxisRequest::disable);
+      case 4: network_.remove_power(); return write_down(AxisRequest::remove_power);
       case 5: return network_.acknowledge(which % Network::node_count);
       case 6: return network_.io().set_outputs(in.byte());
       case 7: return (void)network_.io().trigger_camera(Duration::from_us(in.take<std::uint16_t>()));
       case 8: return (void)axis.set_target_counts(in.take<std::int32_t>());
       case 9: return axis.set_torque_offset_permille(in.take<std::int16_t>());
-      default: return axis.request(static_cast<AxisRequest>(in.byte() % 6U));
+      default: {
+        const auto request = static_cast<AxisRequest>(in.byte() % 6U);
+        axis.request(request);
+        return books_[which % joint_count].order(request, axis);
+      }
     }
+  }
+
+  void write_down(AxisRequest request) {
+    for (std::size_t i = 0; i < joint_count; ++i) books_[i].order(request, network_.axis(static_cast<Joint>(i)));
   }
 
   void tick(std::int32_t ms) {
@@ -129,7 +219,10 @@ class Session {
     network_.tick(now_, outbox);
     expect(outbox.size() <= 31 && network_.stats().outbox_overflows == 0, "a tick sends what it says it does");
     for (const CanFrame& frame : outbox) check(frame);
-    for (std::size_t i = 0; i < joint_count; ++i) check(network_.axis(static_cast<Joint>(i)));
+    for (std::size_t i = 0; i < joint_count; ++i) {
+      check(network_.axis(static_cast<Joint>(i)));
+      books_[i].see(network_.axis(static_cast<Joint>(i)));
+    }
   }
 
   void check(const CanFrame& frame) {
@@ -143,16 +236,8 @@ class Session {
     if (guard) return;
     for (std::size_t i = frame.length; i < frame.data.size(); ++i) expect(frame.data[i] == 0, "what is not sent is 0");
     if (function == id::sdo_request) asked_[node - 1] = frame;
-    if (function == id::rpdo1 && node <= joint_count) check_power(network_.axis(static_cast<Joint>(node - 1)), frame);
-  }
-
-  static void check_power(const canopen::Axis& axis, const CanFrame& frame) {
-    const bool operation = (frame.data[0] & 0x0FU) == 0x0FU;
-    const AxisRequest asked = axis.requested();
-    expect(!operation || asked == AxisRequest::hold_enabled || asked == AxisRequest::home || asked == AxisRequest::disable ||
-               asked == AxisRequest::quick_stop,
-           "operation is enabled on request");
-    expect(!operation || axis.state() != canopen::AxisState::fault, "a fault that is latched is not enabled");
+    if (function == id::rpdo1 && node <= joint_count) told_[node - 1] = frame;
+    if (function == id::rpdo1 && node <= joint_count) books_[node - 1].check(frame, network_.axis(static_cast<Joint>(node - 1)));
   }
 
   static void check(const canopen::Axis& axis) {
@@ -163,6 +248,9 @@ class Session {
   Network& network_;
   Time now_;
   int ticks_ = 0;
+  std::array<OrderBook, joint_count> books_;
+  std::array<CanFrame, joint_count> told_{};        // the newest RPDO
+  std::array<std::uint8_t, joint_count> status_{};  // the low byte of the statusword that was answered
   std::array<CanFrame, Network::node_count> asked_{};
 };
 

@@ -2,7 +2,7 @@
 //
 //   fuzz_urdf --runs 1000 --seed 1 FOLDER_OR_FILE...
 //
-// Exit status 0 when every input was borne. An input that ends the program is kept as ./crash-TARGET, or where --crash says.
+// Exit status 0 when every input was borne. An input that ends the program, or takes longer than 2 s, is kept as ./crash-TARGET, or where --crash says.
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -37,10 +37,15 @@ void keep_and_die(int signal) {
   std::raise(signal);
 }
 
+// An input that takes longer hangs.
+constexpr unsigned longest_s = 2;
+
 void run(const Bytes& input) {
   running = &input;
+  alarm(longest_s);
   const Bytes exact(input);  // no byte to spare behind it
   (void)LLVMFuzzerTestOneInput(exact.data(), exact.size());
+  alarm(0);
 }
 
 void read_into(std::vector<Bytes>& corpus, const fs::path& path) {

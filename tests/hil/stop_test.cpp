@@ -2,6 +2,7 @@
 // standstill to the power off, in every phase in which a drive has power, and in any order with a shut-down.
 #include <gtest/gtest.h>
 
+#include <set>
 #include <string>
 
 #include "tests/hil/operator.hpp"
@@ -275,6 +276,48 @@ TEST(SecondMaster, ThatGoesOnEnablingADriveMovesNothing) {
     EXPECT_LE(times.power_off_s, 0.1);
     EXPECT_EQ(rig.outcome().fault, Fault::second_master) << rig.story();
   }
+}
+
+// One that runs the whole arm sends more in a SYNC period than one identifier: each is told, and the one that orders drives takes the power.
+TEST(SecondMaster, ThatRunsTheArmIsToldWithEachIdentifierAndMovesNothing) {
+  double at_s = 0;
+  {
+    Rig rehearsal(turn_only());
+    ASSERT_TRUE(reach(rehearsal, {Step::deploy, 1.0, ""})) << rehearsal.story();
+    at_s = rehearsal.now().s();
+  }
+  std::vector<std::string> overrides = turn_only();
+  overrides.push_back("faults=[{at_s: " + std::to_string(at_s) + ", kind: foreign_master}]");
+  Rig rig(overrides);
+  (void)reach(rig, {Step::deploy, 1.0, ""});
+  const Times times = watch_stop(rig);
+  EXPECT_GE(times.standstill_s, 0);
+  EXPECT_GE(times.power_off_s, 0);
+  EXPECT_LE(times.power_off_s, 0.1);
+  std::set<std::int32_t> told;
+  for (const Event& event : rig.events()) {
+    if (event.kind == Event::Kind::fault && event.fault == Fault::second_master) told.insert(event.code);
+  }
+  EXPECT_EQ(told, (std::set<std::int32_t>{0x080, 0x201, 0x202, 0x203, 0x204, 0x205, 0x77F})) << rig.story();
+  EXPECT_EQ(rig.count(Fault::second_master), 7u) << "each once, however long it sends";
+  EXPECT_EQ(rig.outcome().fault, Fault::second_master);
+}
+
+// A joint that hears no targets stays behind without a load: that is no contact, wherever the arm is on its way.
+TEST(LostTargets, NameTheJointThatStaysBehindOnTheWayOutOfAContact) {
+  double at_s = 0;
+  {
+    Rig rehearsal(turn_only());
+    ASSERT_TRUE(reach(rehearsal, {Step::back_off, 0.1, ""})) << rehearsal.story();
+    at_s = rehearsal.now().s();
+  }
+  std::vector<std::string> overrides = turn_only();
+  overrides.push_back("faults=[{at_s: " + std::to_string(at_s) + ", kind: drop_frames, can_id: 514}]");
+  Rig rig(overrides);
+  rig.start();
+  ASSERT_TRUE(rig.run_to_end(60)) << rig.story();
+  EXPECT_EQ(rig.outcome().fault, Fault::following_error) << rig.story();
+  EXPECT_EQ(rig.outcome().code, 1) << "the shoulder";
 }
 
 TEST(DriveFault, NamesTheJointAndItsComplaint) {

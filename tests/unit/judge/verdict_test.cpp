@@ -137,6 +137,8 @@ TEST(Verdict, AReasonNamesTheCauseAndItsNode) {
   EXPECT_FALSE(named("foreign_rpdo io", "another master on the bus: identifier 0x0201"));
   EXPECT_TRUE(named("foreign_sdo jaw", "another master on the bus: identifier 0x0605"));
   EXPECT_TRUE(named("foreign_sync", "another master on the bus: identifier 0x0080"));
+  EXPECT_TRUE(named("stuck_encoder jaw", "step failed: the jaw does not open (Look at what it holds; free it by hand without power.)"));
+  EXPECT_FALSE(named("stuck_encoder roll", "step failed: the jaw does not open (Look at what it holds; free it by hand without power.)"));
   EXPECT_TRUE(named("bus_off master", "CAN bus off"));
   EXPECT_TRUE(named("encoder_jump elbow", "tool outside its workspace")) << "all joints make the tool's place";
 }

@@ -1,6 +1,7 @@
 // The watch over the joints' places, on a booted bus of scripted nodes: the places themselves are the test's.
 #include "firmware/safety/watch.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -247,6 +248,56 @@ TEST_F(Links, FramesOfASecondMasterAreAFaultWithTheirIdentifier) {
     EXPECT_EQ(reports[0].fault, Fault::second_master);
     EXPECT_EQ(reports[0].code, static_cast<std::int32_t>(id));
   }
+}
+
+void send_foreign(canopen::Network& network, std::uint32_t id, Time now) {
+  CanFrame foreign;
+  foreign.id = id;
+  foreign.length = 2;
+  network.on_frame(foreign, now);
+}
+
+std::vector<std::int32_t> codes(const std::vector<FaultReport>& reports) {
+  std::vector<std::int32_t> codes;
+  for (const FaultReport& report : reports) {
+    EXPECT_EQ(report.fault, Fault::second_master);
+    codes.push_back(report.code);
+  }
+  return codes;
+}
+
+TEST_F(Links, EachIdentifierOfASecondMasterInOneTickIsAFault) {
+  EXPECT_TRUE(reports_of(10, Vigilance::nodes).empty());
+  for (const std::uint32_t id : {0x203u, 0x080u, 0x203u, 0x602u}) send_foreign(bus.network, id, bus.now);
+  EXPECT_THAT(codes(reports_of(1, Vigilance::nodes)), testing::ElementsAre(0x203, 0x080, 0x602));
+  EXPECT_EQ(bus.network.foreign()[0].frames, 2u);
+  EXPECT_EQ(bus.network.foreign()[1].frames, 1u);
+}
+
+TEST_F(Links, AnIdentifierThatJoinsASecondMasterThatSendsInEveryTickIsAFault) {
+  EXPECT_TRUE(reports_of(10, Vigilance::nodes).empty());
+  for (int tick = 0; tick < 10; ++tick) {
+    send_foreign(bus.network, 0x080, bus.now);
+    if (tick >= 5) send_foreign(bus.network, 0x201, bus.now);
+    const std::vector<std::int32_t> seen = codes(reports_of(1, Vigilance::nodes));
+    const std::vector<std::int32_t> wanted = tick == 0   ? std::vector<std::int32_t>{0x080}
+                                             : tick == 5 ? std::vector<std::int32_t>{0x201}
+                                                         : std::vector<std::int32_t>{};
+    EXPECT_EQ(seen, wanted) << "tick " << tick;
+  }
+}
+
+// Nine identifiers that order no drive fill every named place: a tenth that does is not hidden by them.
+TEST_F(Links, AnIdentifierBeyondTheNamedOnesIsAFaultAndAnRpdoIsToldRatherThanOthers) {
+  EXPECT_TRUE(reports_of(10, Vigilance::nodes).empty());
+  for (std::uint32_t node = 1; node <= 9; ++node) send_foreign(bus.network, 0x600 + node, bus.now);
+  EXPECT_EQ(reports_of(1, Vigilance::nodes).size(), 9u);
+  EXPECT_TRUE(reports_of(1, Vigilance::nodes).empty());
+  send_foreign(bus.network, 0x204, bus.now);
+  send_foreign(bus.network, 0x60A, bus.now);
+  EXPECT_THAT(codes(reports_of(1, Vigilance::nodes)), testing::ElementsAre(0x204));
+  EXPECT_EQ(bus.network.foreign()[canopen::ForeignFrames::others].frames, 3u);
+  EXPECT_EQ(bus.network.foreign_frames(), 11u);
 }
 
 }  // namespace
