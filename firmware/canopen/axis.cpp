@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::uint16_t mode_object = 0x6060;
 constexpr std::uint16_t mode_display_object = 0x6061;
+constexpr int least_following_timeout_ms = 40;  // some drives take only 0: ten SYNCs, as long as a target may lie ahead for
 constexpr std::uint16_t word_of(Command command) { return static_cast<std::uint16_t>(command); }
 
 constexpr std::int64_t ns_per_s = 1'000'000'000;  // steps are budgeted in thousand-millionths of a count
@@ -229,11 +230,13 @@ void Axis::watch_brake(Time now) {
   if (!profile.waits_to_follow || drive_follows() || mode_ != OperationMode::cyclic_position) brake_open_ = true;
 }
 
-// For drives that do not time it themselves.
+// For drives that do not time it themselves; a drive that does gets twice its time, and then its own watch is taken to have failed.
 bool Axis::follows_badly(Time now) {
   const std::int64_t apart = following_counts() < 0 ? -following_counts() : following_counts();
-  if (!enabled() || apart <= setup_.following_window_counts) in_step_since_ = now;
-  return setup_.profile.master_times_following && now - in_step_since_ > Duration::from_ms(setup_.following_timeout_ms);
+  const bool follows = enabled() && mode_ == OperationMode::cyclic_position;
+  if (!follows || apart <= setup_.following_window_counts) in_step_since_ = now;
+  const Duration timeout = Duration::from_ms(std::max<int>(setup_.following_timeout_ms, least_following_timeout_ms));
+  return now - in_step_since_ > (setup_.profile.master_times_following ? timeout : timeout * 2);
 }
 
 DriveGoal Axis::goal() const {

@@ -140,11 +140,17 @@ RowResult fly_row(const config::Drives& drives, Flight& flight, Watched& watched
   const double limit_s = situation.over                                                                 ? over_s
                          : walk.by_hand() && mission::row(row.moment.step).phase == safety::Phase::free ? by_hand_s
                                                                                                         : longest_s;
-  double ended_s = -1;
+  // An end may lead to another one: what held the arm may take its power.
+  mission::Step end = flight.mission().step();
+  double ended_s = situation.over ? limit_s - after_end_s : longest_s;
   while (true) {
     const double now_s = (flight.now() - begin).s();
-    if (!situation.over && ended_s < 0 && flight.mission().outcome().ended) ended_s = now_s;
-    if (now_s >= limit_s || (ended_s >= 0 && now_s >= ended_s + after_end_s)) break;
+    if (flight.mission().outcome().ended && flight.mission().step() != end) {
+      end = flight.mission().step();
+      ended_s = std::max(situation.over ? ended_s : 0, now_s);
+    }
+    const bool ended = flight.mission().outcome().ended;
+    if (now_s >= (ended ? ended_s + after_end_s : limit_s)) break;
     walk.give_orders(flight);
     flight.step();
   }

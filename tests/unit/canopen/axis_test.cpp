@@ -370,7 +370,8 @@ TEST_F(AxisTest, PositionsAndTorquesAreInTheDrivesUnitsOnTheBusAndInTheArmsInsid
   EXPECT_EQ(changed.nodes[0].targets_while_enabled.back(), -56'813);  // (910 + 100) x 56.25, halves away from zero
 }
 
-TEST_F(AxisTest, TheMasterTimesTheFollowingErrorOfADriveThatDoesNot) {
+TEST_F(AxisTest, TheMasterTimesTheFollowingErrorOfADriveThatDoesNotAndTwiceAsLongOfOneThatDoes) {
+  int ticks[2] = {0, 0};
   for (const bool times : {false, true}) {
     NetworkConfig other = config();
     other.drives[0].profile.master_times_following = times;
@@ -381,9 +382,11 @@ TEST_F(AxisTest, TheMasterTimesTheFollowingErrorOfADriveThatDoesNot) {
     ASSERT_TRUE(changed.run_until([&] { return slew.enabled(); }, Duration::from_ms(500)));
     changed.nodes[0].jammed = true;
     ASSERT_TRUE(slew.set_target_counts(3000));
-    changed.step(200);
-    EXPECT_EQ(slew.fault(), times ? AxisFault::following_error : AxisFault::none);
+    for (int& n = ticks[times]; n < 200 && slew.fault() == AxisFault::none; ++n) changed.step(1);
+    EXPECT_EQ(slew.fault(), AxisFault::following_error);
   }
+  // The target takes as long to leave the window both times.
+  EXPECT_NEAR(4.0 * (ticks[0] - ticks[1]), config().drives[0].following_timeout_ms, 4);
 }
 
 }  // namespace
