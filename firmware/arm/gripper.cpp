@@ -63,6 +63,7 @@ GripperState Gripper::state() const {
 void Gripper::wait(Duration d) {
   still_since_ = still_since_ + d;
   began_ = began_ + d;
+  unloaded_ = unloaded_ + d;
   last_ = last_ + d;
 }
 
@@ -73,7 +74,7 @@ void Gripper::begin(Time t, double jaw_rad) {
   // From where the jaw is: a squeeze's lead or an old target must not make it jump.
   target_rad_ = std::clamp(jaw_rad, lower_rad, upper_rad);
   still_rad_ = jaw_rad;
-  still_since_ = began_ = t;
+  still_since_ = began_ = unloaded_ = t;
   low_torque_run_ = 0;
 }
 
@@ -88,6 +89,7 @@ double Gripper::update(Time t, double jaw_rad, const TorqueEstimate& torque) {
   if (order_ != Order::none) begin(t, jaw_rad);
   if (state_ == GripperState::opening || state_ == GripperState::closing) move(t, jaw_rad, torque, dt_s);
   if (state_ == GripperState::held) hold(jaw_rad, torque);
+  if (state_ == GripperState::open) rest(t, jaw_rad, torque);
   return target_rad_;
 }
 
@@ -116,6 +118,14 @@ void Gripper::move(Time t, double jaw_rad, const TorqueEstimate& torque, double 
     state_ = GripperState::jammed;
     target_rad_ = jaw_rad;  // pressing on would only heat the motor
   }
+}
+
+// Open, it touches nothing. A drive whose encoder stands still creeps on until the fingers meet their stop.
+void Gripper::rest(Time t, double jaw_rad, const TorqueEstimate& torque) {
+  if (std::abs(torque.at_least_nm()) < config_.grip_torque_nm) unloaded_ = t;
+  if (t - unloaded_ < config_.lost_time) return;
+  state_ = GripperState::lost;
+  target_rad_ = jaw_rad;
 }
 
 // Opening is positive, so that a closing torque is negative.

@@ -227,6 +227,30 @@ TEST(Gripper, IsLostWhenItReportsTheSameAngleWithoutALoad) {
   }
 }
 
+// Its encoder stands still: the drive creeps on, and the fingers come to press on their stop.
+TEST(Gripper, IsLostWhenItPressesThoughItIsOpen) {
+  for (const double pressing_nm : {-8.0, 8.0}) {
+    Gripper gripper;
+    Time t;
+    const auto run = [&](double seconds, double torque_nm) {
+      for (const Time end = t + Duration::from_s(seconds); t < end;) {
+        t = t + Duration::from_ms(4);
+        (void)gripper.update(t, 0.5, torque_nm);
+      }
+    };
+    run(0.1, 0);
+    gripper.turn_to(0.5);
+    run(0.1, 0);
+    ASSERT_EQ(gripper.state(), GripperState::open);
+    run(0.25, pressing_nm);
+    run(0.05, 0);
+    run(0.25, pressing_nm);
+    EXPECT_EQ(gripper.state(), GripperState::open) << "a brush of the bar is shorter";
+    run(0.1, pressing_nm);
+    EXPECT_EQ(gripper.state(), GripperState::lost);
+  }
+}
+
 TEST(Gripper, StaysWhereItIsUntilOrderedAndRefusesNonsense) {
   GripperRun run;
   run.jaw.q_rad = 0.3;
