@@ -11,6 +11,7 @@
 #include "host_sim/app/interrupt.hpp"
 #include "host_sim/app/run_experiment.hpp"
 #include "host_sim/app/run_session.hpp"
+#include "host_sim/scenario/instance.hpp"
 #include "shared/input_error.hpp"
 
 namespace lf::app {
@@ -83,6 +84,7 @@ void tell(const RunOutcome& outcome, const std::string& folder) {
 int run(const Options& options) {
   RunRequest request;
   request.scenario = scenario::load_scenario(options.scenario, options.set);
+  scenario::check_runnable(request.scenario);
   request.seed = options.seed;
   request.realtime = options.realtime;
   request.outside = options.outside;
