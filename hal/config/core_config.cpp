@@ -375,29 +375,15 @@ mission::Tasks core_tasks(const std::vector<Task>& tasks, const std::string& whe
 
 namespace {
 
-// The simulator's friction.* may be so many times the description's; what commissioning finds of that is off by a tenth at most.
-constexpr double most_coulomb = 3, most_viscous = 10, fit_error = 1.1;
-
-// A figure that is a typing error, or another machine's. A description without friction still bounds it: no motor turns against more than its rating.
-void check_friction(const std::string& file, std::size_t joint, const JointFriction& found, const Motor& motor) {
-  const auto check = [&](const char* key, double value_mnm, double described_nm, double times, double most_nm) {
-    const double most_mnm = 1e3 * (described_nm > 0 ? times * fit_error * described_nm : most_nm);
-    if (value_mnm >= 0 && value_mnm <= most_mnm) return;  // not a number is neither
-    char text[224];
-    std::snprintf(text, sizeof text,
-                  "'%s.%s' is %.4g: with this motor it is 0 to %.4g (the arm's description has %.4g). Commission the joint again",
-                  joint_name(joint), key, value_mnm, most_mnm, 1e3 * described_nm);
-    throw InputError(file + ": " + text);
-  };
-  check("coulomb_mnm", found.coulomb_mnm, motor.coulomb_nm, most_coulomb, motor.rated_torque_nm);
-  check("viscous_mnm_s", found.viscous_mnm_s, motor.viscous_nm_s, most_viscous, motor.rated_torque_nm / motor.top_speed_rad_s);
-}
-
 void check_frictions(const Machine& machine, const HomingOffsets& offsets, const ArmDescription& arm, const std::string& file,
                      const Steps& steps) {
   for (std::size_t i = 0; i < joint_count; ++i) {
     if (!offsets.friction_known[i]) continue;
-    steps.take([&] { check_friction(file, i, offsets.friction[i], motor_of(arm.joints[i], drive_of(machine.drives, i).counts_per_rev)); });
+    steps.take([&] {
+      const Motor motor = motor_of(arm.joints[i], drive_of(machine.drives, i).counts_per_rev);
+      if (const std::optional<std::string> problem = friction_problem(i, offsets.friction[i], motor))
+        throw InputError(file + ": " + *problem);
+    });
   }
 }
 

@@ -176,9 +176,7 @@ int follow_commissioning(const std::string& socket, bool json) {
     if (state == "done" || state == "failed") {
       if (json) std::printf("%s\n", now.dump(1).c_str());
       if (state == "failed") complain(now.value("why", std::string("failed")));
-      for (const auto& [joint, zero] : now.value("zeros", Json::object()).items()) {
-        if (!json) std::printf("%-9s zero at %d counts\n", joint.c_str(), zero.get<int>());
-      }
+      if (!json) std::printf("%s", commissioning_text(now).c_str());
       return state == "done" ? done : failed;
     }
     const std::string line = now.value("joint", std::string("the nodes")) + ": " + state;
