@@ -13,7 +13,9 @@
 #include <string>
 #include <vector>
 
+#include "hal/config/arm_notes.hpp"
 #include "hal/config/drive_kind.hpp"
+#include "hal/config/share.hpp"
 #include "hal/vehicle/bus_doctor.hpp"
 #include "hal/vehicle/daemon.hpp"
 #include "hal/vehicle/instance_lock.hpp"
@@ -86,6 +88,8 @@ int run_daemon(const Options& options) {
   if (options.config.empty()) throw InputError("--config FILE is needed; `lanternfishd --help` has more");
   if (options.check) return check(options);
   const VehicleConfig config = load_vehicle_config(options.config);
+  const std::string urdf = config::find_file(config.machine.arm_urdf, std::filesystem::path(options.config).parent_path());
+  for (const std::string& note : config::arm_notes(urdf)) std::fprintf(stderr, "lanternfishd: note: %s\n", note.c_str());
   const int signals = take_signals();
   const auto daemon = std::make_unique<Daemon>(config);  // megabytes
   const bool well = daemon->run(signals, options.run_job);

@@ -58,7 +58,8 @@ std::string histogram_text(const Json& h) {
 std::string commissioning_text(const Json& done) {
   std::string text;
   const Json friction = done.value("friction", Json::object());
-  for (const auto& [joint, zero] : done.value("zeros", Json::object()).items()) {
+  const Json zeros = done.value("zeros", Json::object());
+  for (const auto& [joint, zero] : zeros.items()) {
     char line[192];
     std::snprintf(line, sizeof line, "%-9s zero at %d counts", joint.c_str(), zero.get<int>());
     text += line;

@@ -95,6 +95,20 @@ TEST_F(BadInput, AScenarioIsCheckedAsItsRunIs) {
   EXPECT_THAT(all.err, HasSubstr("node"));
 }
 
+TEST_F(BadInput, AnArmWithoutFrictionIsToldOnceAtTheStart) {
+  std::string urdf = text_of(std::string(LANTERNFISH_SOURCE_DIR) + "/shared/arm/arm5e.urdf");
+  const std::size_t joint = urdf.find("<joint name=\"elbow\""), from = urdf.find("<lanternfish:friction", joint);
+  ASSERT_NE(from, std::string::npos);
+  urdf.erase(from, urdf.find("/>", from) + 2 - from);
+  const std::string arm = "--set arm.urdf=" + file("bare.urdf", urdf);
+  const Said bare = run("run --no-outside --set time_limit_s=1 --out bare " + arm);
+  const std::string note = "bare.urdf: no <lanternfish:friction> for elbow: ";
+  const std::size_t at = bare.err.find(note);
+  EXPECT_NE(at, std::string::npos) << bare.err;
+  EXPECT_EQ(bare.err.find(note, at + 1), std::string::npos) << bare.err;
+  EXPECT_EQ(run("run --no-outside --set time_limit_s=1 --out usual").err.find("note:"), std::string::npos);
+}
+
 TEST_F(BadInput, ABadUrdfIsRefusedWithItsLine) {
   std::string urdf = text_of(std::string(LANTERNFISH_SOURCE_DIR) + "/shared/arm/arm5e.urdf");
   const std::size_t at = urdf.find("upper=\"0.5488\"");
