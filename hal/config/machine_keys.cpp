@@ -114,8 +114,8 @@ void add_mission(Keys& all, mission::MissionConfig& m) {
   all.push_back(key("mission.press_speed_m_s", "m/s", 0.001, 0.2, &m.press_speed_m_s, "of a press"));
   all.push_back(
       key("mission.press_overtravel_m", "m", 0, 0.05, &m.press_overtravel_m, "beyond a button's bottom before the press counts as missed"));
-  all.push_back(
-      key("mission.press_torque_nm", "N m", 0.1, 100, &m.press_torque_nm, "rise of a joint's torque that says the button has bottomed"));
+  all.push_back(key("mission.press_torque_nm", "N m", 0.1, 20, &m.press_torque_nm,
+                    "rise of a joint's torque that says the button has bottomed; the drives give 26 N m, and at 25 no press is told"));
   all.push_back(key("mission.turn_speed_rad_s", "rad/s", 0.01, rad_s, &m.turn_speed_rad_s, "of the handle; no faster than the wrist"));
   all.push_back(
       key("mission.valve_tolerance_rad", "rad", 0.015, 0.045, &m.valve_tolerance_rad,
