@@ -53,7 +53,7 @@ enum class GripperState : std::uint8_t {
   empty,    // closed past the bar, nothing between the pads
   dropped,  // was held, and is no more
   jammed,   // stalled where it should not, or took too long
-  lost,     // told to move, it reports the same angle without a load, or presses where it is open: its encoder or its drive is not to be trusted
+  lost,  // told to move, it reports the same angle without a load, or presses where it is open: its encoder or its drive is not to be trusted
 };
 
 class Gripper {
@@ -96,7 +96,7 @@ class Gripper {
   double target_rad_ = 0;
   double grip_rad_ = 0;
   double grip_gap_m_ = 0;
-  double still_rad_ = 0;  // where the jaw was when it last moved
+  double still_rad_ = 0;                        // where the jaw was when it last moved
   Time still_since_, began_, last_, unloaded_;  // the last: when nothing pressed on the open jaw
   bool started_ = false;
   std::uint32_t low_torque_run_ = 0;

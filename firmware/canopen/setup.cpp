@@ -10,6 +10,7 @@ const char* name(ConfigError error) {
     case ConfigError::node_id: return "node id out of 1..126";
     case ConfigError::node_twice: return "node id used twice";
     case ConfigError::position_limits: return "minimum position not below maximum";
+    case ConfigError::positions: return "positions over the joint's range do not fit 32 bits in the drive's units";
     case ConfigError::speed: return "maximum speed is zero";
     case ConfigError::torque: return "maximum torque is zero";
     case ConfigError::following: return "following error window is zero";
@@ -46,6 +47,16 @@ namespace {
 // Node heartbeats come every 100 ms and are watched once a SYNC.
 constexpr Duration longest_sync_period = Duration::from_ms(100);
 
+// Targets beyond 32 bits would be held at their end, and the joint would stop short without a word.
+bool positions_fit_32_bits(const DriveSetup& drive) {
+  const auto fits = [&](std::int64_t counts) {
+    const std::int64_t units = drive.profile.scale.position.times(counts + drive.encoder_zero_counts);
+    return units > INT32_MIN && units <= INT32_MAX;  // the least number has no opposite, which a reversed drive needs
+  };
+  return fits(std::int64_t{drive.min_counts} - drive.drive_margin_counts) &&
+         fits(std::int64_t{drive.max_counts} + drive.drive_margin_counts);
+}
+
 bool fits_32_bits(const DriveSetup& drive) {
   const DriveScale& scale = drive.profile.scale;
   return scale.speed.times(drive.max_speed_counts_s) <= UINT32_MAX && scale.acceleration.times(drive.quick_stop_counts_s2) <= UINT32_MAX &&
@@ -59,6 +70,7 @@ ConfigError check_drive(const DriveSetup& drive) {
   if (drive.max_torque_permille == 0) return ConfigError::torque;
   if (drive.following_window_counts == 0) return ConfigError::following;
   if (!drive.profile.scale.valid() || !fits_32_bits(drive)) return ConfigError::profile;
+  if (!positions_fit_32_bits(drive)) return ConfigError::positions;
   // 35 and 37 take the present position and need no speed.
   const bool moves = drive.homing_method != 0 && drive.homing_method != 35 && drive.homing_method != 37;
   if (moves && (drive.homing_speed_counts_s == 0 || drive.homing_accel_counts_s2 == 0)) return ConfigError::homing;

@@ -78,6 +78,7 @@ enum class ConfigError : std::uint8_t {
   node_id,
   node_twice,
   position_limits,
+  positions,
   speed,
   torque,
   following,

@@ -14,6 +14,15 @@ constexpr double beyond_handle_m = 0.006;
 
 }  // namespace
 
+scan::SweepRequest sweep_over_panel(const MissionConfig& mission) {
+  scan::SweepRequest request;
+  request.base_from_panel = mission.layout.nominal_base_from_panel();
+  request.docking_shift_m = mission.docking.shift_m;
+  request.docking_turn_rad = mission.docking.turn_rad;
+  request.slowest_rad_s = mission.sweep_speed_rad_s;
+  return request;
+}
+
 void Look::on_panel(const PanelResult& result) {
   if (result.id != sweep_) return;
   panel_ = result;
@@ -48,20 +57,7 @@ Progress Look::run(const StepTick& tick) {
   }
 }
 
-void Look::go_to_sweep(const StepTick& tick, scan::SweepRequest request) {
-  Workbench& bench = tick.bench;
-  request.slowest_rad_s = bench.mission().sweep_speed_rad_s;
-  bench.go_to_sweep(request);
-}
-
-void Look::begin_deploy(const StepTick& tick) {
-  const MissionConfig& mission = tick.bench.mission();
-  scan::SweepRequest request;
-  request.base_from_panel = mission.layout.nominal_base_from_panel();
-  request.docking_shift_m = mission.docking.shift_m;
-  request.docking_turn_rad = mission.docking.turn_rad;
-  go_to_sweep(tick, request);
-}
+void Look::begin_deploy(const StepTick& tick) { tick.bench.go_to_sweep(sweep_over_panel(tick.bench.mission())); }
 
 // The second look needs only the handle's surroundings, and knows where they are.
 void Look::begin_verify_reach(const StepTick& tick) {
@@ -76,7 +72,8 @@ void Look::begin_verify_reach(const StepTick& tick) {
   request.margin_m = 0.010;
   request.docking_shift_m = bench.map.doubt().shift_m;
   request.docking_turn_rad = bench.map.doubt().turn_rad;
-  go_to_sweep(tick, request);
+  request.slowest_rad_s = bench.mission().sweep_speed_rad_s;
+  bench.go_to_sweep(request);
 }
 
 void Look::begin_scan(const StepTick& tick) {

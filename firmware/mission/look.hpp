@@ -6,6 +6,9 @@
 
 namespace lf::mission {
 
+// The first sweep: over the panel wherever the docked vehicle may have brought it.
+scan::SweepRequest sweep_over_panel(const MissionConfig& mission);
+
 class Look {
  public:
   void begin(const StepTick& tick);
@@ -16,7 +19,6 @@ class Look {
  private:
   void begin_deploy(const StepTick& tick);
   void begin_verify_reach(const StepTick& tick);
-  void go_to_sweep(const StepTick& tick, scan::SweepRequest request);
   void begin_scan(const StepTick& tick);
   Progress run_scan(const StepTick& tick);
   void begin_question(const StepTick& tick);

@@ -109,8 +109,9 @@ Progress PressButton::run_press(const StepTick& tick) {
   result.travel_m = feel_.travel_m();
   result.click_felt = feel_.clicked();
   result.failure = judge(bench);
-  // What may have gone in unfelt is not pressed again.
-  if (result.failure == StepFailure::button_stuck) return Progress::failed_for_good(result.failure);
+  // What may have gone in unfelt is not pressed again, and what is in the way is not run into again.
+  if (result.failure == StepFailure::button_stuck || result.failure == StepFailure::early_contact)
+    return Progress::failed_for_good(result.failure);
   if (result.failure != StepFailure::none) return Progress::failed(result.failure);
   pressed_ = true;
   ++result.presses;
@@ -147,10 +148,13 @@ StepFailure PressButton::judge(const Workbench& bench) const {
   if (!feel_.touched()) return guard_.touched() ? StepFailure::early_contact : StepFailure::button_missing;
   if (feel_.touch_depth_m() < -face_m) return StepFailure::early_contact;
   if (feel_.touch_depth_m() > stroke_m + face_m) return StepFailure::button_missing;
-  if (!guard_.touched()) return StepFailure::button_yields;
+  const bool moved = feel_.travel_m() >= least_travel * stroke_m;
+  // Where the torque that says bottom is set high, a stuck cap holds the press up to the end of its way. The arm gives way by millimetres then: how deep its
+  // joints say the tip is tells nothing, only the travel does.
+  if (!guard_.touched()) return moved ? StepFailure::button_yields : StepFailure::button_stuck;
   // A strong spring, or a panel that is nearer than believed, hides the beginning of the way; the end of it is seen by the joints.
   const bool deep = bottom_m_ > deepest_stuck_m + stuck_share * stroke_m;
-  return feel_.travel_m() < least_travel * stroke_m && !deep ? StepFailure::button_stuck : StepFailure::none;
+  return moved || deep ? StepFailure::none : StepFailure::button_stuck;
 }
 
 Progress PressButton::run_back(const StepTick& tick) {

@@ -16,6 +16,7 @@
 #include "hal/config/limits_file.hpp"
 #include "hal/config/machine.hpp"
 #include "hal/config/share.hpp"
+#include "hal/config/sweep_check.hpp"
 #include "hal/vision/calibration_file.hpp"
 #include "shared/arm/arm_description.hpp"
 #include "shared/arm/motor.hpp"
@@ -94,10 +95,37 @@ std::map<std::string, DriveKind> read_profiles(const Machine& machine, const Ste
   return profiles;
 }
 
+// Figures of a motor that its joint cannot have. A gear that is wrong shows in the ratio, a torque that is the joint's and not the motor's in the rating.
+void check_motor(const JointDriveChoice& choice, std::size_t joint, const ArmJoint& description, const std::string& where) {
+  constexpr double direct_drive = 0.999;  // a ratio of 1, computed
+  constexpr double other_motor = 3;  // a motor that is larger or smaller by more than this is not the one that the arm was described with
+  char text[320];
+  const double ratio = best_motor_ratio(description, choice.counts_per_rev);
+  if (ratio < direct_drive) {
+    std::snprintf(
+        text, sizeof text,
+        "'counts_per_rev' is %.6g: the motor would turn %.3g times for a turn of the joint, and a gear slows down. It is how many of the "
+        "arm's counts (%.4g to a radian of the %s at most) go to a revolution of the motor, not the encoder's resolution",
+        choice.counts_per_rev, ratio, ratio * choice.counts_per_rev / (2 * pi), joint_name(joint));
+    throw InputError(where + ": " + text);
+  }
+  if (choice.rated_torque_nm == 0) return;
+  const double expected_nm = motor_of(description, choice.counts_per_rev).rated_torque_nm;
+  if (choice.rated_torque_nm <= other_motor * expected_nm && choice.rated_torque_nm >= expected_nm / other_motor) return;
+  std::snprintf(
+      text, sizeof text,
+      "'rated_torque_nm' is %.4g N m: the arm's description rates the joint at %.4g N m, which is %.4g N m at the motor, through a ratio "
+      "of %.4g. "
+      "State the motor's own rated torque, without its gear; if this motor is right, correct the rated torque of the arm's description",
+      choice.rated_torque_nm, description.rated_torque_nm, expected_nm, ratio);
+  throw InputError(where + ": " + text);
+}
+
 // The profile's units, objects and option codes, and the machine's node numbers.
 void set_drive(const Machine& machine, std::size_t joint, const DriveKind& kind, const ArmJoint& description, canopen::DriveSetup& setup) {
   const JointDriveChoice choice = drive_of(machine.drives, joint);
   const std::string where = machine.file + ": drives." + joint_name(joint);
+  check_motor(choice, joint, description, where);
   setup.node = static_cast<std::uint8_t>(choice.node);
   // A drive that says its rated torque is only checked against a stated one; one that does not, has the arm's description's.
   const bool described = choice.rated_torque_nm == 0 && kind.rating == "configured";
@@ -139,8 +167,27 @@ void check_network(const Machine& machine, const canopen::NetworkConfig& network
   std::size_t offender = 0;
   const canopen::ConfigError error = canopen::check(network, offender);
   if (error == canopen::ConfigError::none) return;
-  const std::string who = offender < joint_count ? std::string("drives.") + joint_name(offender) : "outputs, or the bus";
-  throw InputError(machine.file + ": " + who + ": " + canopen::name(error));
+  const auto name_of = [](std::size_t i) { return i < joint_count ? std::string("drives.") + joint_name(i) : std::string("outputs"); };
+  if (error == canopen::ConfigError::node_twice) {
+    const auto node_of = [&](std::size_t i) { return i < joint_count ? network.drives[i].node : network.io.node; };
+    std::size_t first = 0;
+    while (node_of(first) != node_of(offender)) ++first;
+    throw InputError(machine.file + ": " + name_of(first) + " and " + name_of(offender) + " have the same node number, " +
+                     std::to_string(node_of(offender)));
+  }
+  if (error == canopen::ConfigError::positions) {
+    const canopen::DriveSetup& drive = network.drives[offender];
+    const double units = static_cast<double>(drive.profile.scale.position.num) / drive.profile.scale.position.den;
+    char text[256];
+    std::snprintf(
+        text, sizeof text,
+        "its profile makes %.6g of the drive's units of one of the arm's counts: over the joint's range the drive would count beyond the "
+        "2147483647 that 32 bits hold. Set a coarser position unit in the drive and in its profile, or check 'counts_per_rev'",
+        units);
+    throw InputError(machine.file + ": " + name_of(offender) + ": " + text);
+  }
+  throw InputError(machine.file + ": " + (offender < joint_count ? name_of(offender) : "outputs, or the bus") + ": " +
+                   canopen::name(error));
 }
 
 CameraCalibration camera_calibration(const Camera& camera) {
@@ -328,12 +375,28 @@ mission::Tasks core_tasks(const std::vector<Task>& tasks, const std::string& whe
 
 namespace {
 
+void check_frictions(const Machine& machine, const HomingOffsets& offsets, const ArmDescription& arm, const std::string& file,
+                     const Steps& steps) {
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    if (!offsets.friction_known[i]) continue;
+    steps.take([&] {
+      const Motor motor = motor_of(arm.joints[i], drive_of(machine.drives, i).counts_per_rev);
+      if (const std::optional<std::string> problem = friction_problem(i, offsets.friction[i], motor))
+        throw InputError(file + ": " + *problem);
+    });
+  }
+}
+
 // A joint without a line in the file, and every joint without a file, takes no power.
-void set_zeros(const std::string& file, const std::filesystem::path& folder, ControllerConfig& controller) {
+void set_zeros(const Machine& machine, const std::filesystem::path& folder, const ArmDescription* arm, const Steps& steps,
+               ControllerConfig& controller) {
+  const std::string& file = machine.homing_file;
   canopen::NetworkConfig& network = controller.network;
   for (canopen::DriveSetup& drive : network.drives) drive.zero_known = false;
   if (file.empty()) return;
-  const HomingOffsets offsets = read_homing_file(find_file(file, folder));
+  const std::string found = find_file(file, folder);
+  const HomingOffsets offsets = read_homing_file(found);
+  if (arm != nullptr) check_frictions(machine, offsets, *arm, found, steps);
   for (std::size_t i = 0; i < joint_count; ++i) {
     network.drives[i].zero_known = offsets.known[i];
     network.drives[i].encoder_zero_counts = offsets.zero_counts[i];
@@ -349,6 +412,7 @@ Core assemble(const Machine& machine, const Steps& steps) {
   const bool arm = steps.take([&] { description = load_arm_urdf(find_file(machine.arm_urdf, folder)); });
   const bool limits = steps.take([&] { controller.limits = read_limits(find_file(machine.safety_limits, folder)); });
   controller.mission_limits = controller.limits;
+  bool drives_known = false;
   if (arm && limits) {
     controller.network = network_config(description, controller.limits);
     controller.network.io.node = static_cast<std::uint8_t>(machine.drives.output_node);
@@ -363,9 +427,10 @@ Core assemble(const Machine& machine, const Steps& steps) {
       drives =
           known && steps.take([&] { set_drive(machine, i, kind->second, description.joints[i], controller.network.drives[i]); }) && drives;
     }
-    if (drives) steps.take([&] { check_network(machine, controller.network); });
+    drives_known = drives;
   }
-  steps.take([&] { set_zeros(machine.homing_file, folder, controller); });
+  steps.take([&] { set_zeros(machine, folder, arm ? &description : nullptr, steps, controller); });
+  if (drives_known) steps.take([&] { check_network(machine, controller.network); });
   controller.camera = camera_calibration(machine.camera);
   const bool camera = steps.take([&] {
     if (machine.camera_calibration.empty()) return;
@@ -373,15 +438,20 @@ Core assemble(const Machine& machine, const Steps& steps) {
   });
   controller.laser = laser_calibration(machine.laser);
   controller.marker = {machine.panel.marker_id, machine.panel.marker_size_m, machine.panel.panel_from_tag()};
-  steps.take([&] { controller.mission = mission_config(machine); });
+  const bool mission = steps.take([&] { controller.mission = mission_config(machine); });
   core.scan.camera = controller.camera;
   core.scan.laser = controller.laser;
   set_region(machine.panel, core.scan.triangulation);
   set_frame_rate(machine.mission, core.scan);
   steps.take([&] { check_exposure(machine); });
-  steps.take([&] { check_reach_of_tasks(machine); });
+  const bool reach = steps.take([&] { check_reach_of_tasks(machine); });
   if (arm && limits) steps.take([&] { check_turn_speed(machine, description, controller.limits); });
   if (camera) steps.take([&] { check_view(machine, controller.camera); });
+  if (limits && mission && reach) {
+    steps.take([&] {
+      if (const std::optional<std::string> problem = sweep_problem(controller)) refuse(machine, *problem);
+    });
+  }
   return core;
 }
 

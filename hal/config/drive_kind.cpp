@@ -258,20 +258,30 @@ class Reader {
   std::vector<std::string>& problems_;
 };
 
+std::string like_forms(const std::filesystem::path& file) {
+  std::string list;
+  for (const std::string& name : shipped_drive_kinds()) list += (list.empty() ? "" : ", ") + name;
+  return ". It takes the name of a shipped profile (" + list + "), or the name without .yaml of a file in " +
+         std::filesystem::absolute(file).parent_path().string();
+}
+
 // `depth`: how many files stand over this one. A chain of more than 4 is a circle.
 DriveKind read_with_base(const std::filesystem::path& file, std::vector<std::string>& problems, int depth) {
   Reader reader(file, problems);
   const YAML::Node root = parse_yaml(read_text_file(file.string()), reader.source());
   if (!root.IsMap()) reader.source().refuse(root.Mark(), "a drive's profile is a group of keys");
   DriveKind kind;
-  if (const YAML::Node like = root["like"]; like && like.IsScalar()) {
+  const YAML::Node like = root["like"];
+  if (like && !like.IsScalar()) reader.source().refuse(like.Mark(), "'like' takes one name" + like_forms(file));
+  if (like) {
     if (depth >= 4) reader.source().refuse(like.Mark(), "'like' leads in a circle");
     const std::filesystem::path beside = file.parent_path() / (like.Scalar() + ".yaml");
     const std::filesystem::path shipped = share_folder() / "drives" / (like.Scalar() + ".yaml");
     std::error_code ignored;  // a name that is no file's, too long for instance, is not there
     const std::filesystem::path& base = std::filesystem::exists(beside, ignored) ? beside : shipped;
     if (!std::filesystem::exists(base, ignored))
-      reader.source().refuse(like.Mark(), "no profile '" + like.Scalar() + "'" + suggestion(like.Scalar(), shipped_drive_kinds()));
+      reader.source().refuse(like.Mark(), "no profile '" + like.Scalar() + "' for 'like'" +
+                                              suggestion(like.Scalar(), shipped_drive_kinds()) + like_forms(file));
     kind = read_with_base(base, problems, depth + 1);
     kind.like.insert(kind.like.begin(), kind.file);
   }

@@ -51,6 +51,26 @@ HomingOffsets read_homing_file(const std::string& path) {
   return offsets;
 }
 
+std::optional<std::string> friction_problem(std::size_t joint, const JointFriction& found, const Motor& motor) {
+  // The simulator's friction.* goes up to so many times the description's; what commissioning finds of that is off by a tenth at most.
+  constexpr double most_coulomb = 3, most_viscous = 10, fit_error = 1.1;
+  const auto problem = [&](const char* key, double value_mnm, double described_nm, double times,
+                           double rated) -> std::optional<std::string> {
+    const double most_mnm = 1e3 * (described_nm > 0 ? times * fit_error * described_nm : rated);
+    if (value_mnm >= 0 && value_mnm <= most_mnm) return std::nullopt;  // what is not a number is neither
+    char text[320];
+    std::snprintf(
+        text, sizeof text,
+        "'%s.%s' is %.4g: with this motor it is 0 to %.4g (the arm's description has %.4g). See whether something rubs, and commission the "
+        "joint again; or correct the friction in the arm's description",
+        joint_name(joint), key, value_mnm, most_mnm, 1e3 * described_nm);
+    return text;
+  };
+  // A description without friction leaves the motor's rating as the bound: no motor turns against more.
+  if (auto coulomb = problem("coulomb_mnm", found.coulomb_mnm, motor.coulomb_nm, most_coulomb, motor.rated_torque_nm)) return coulomb;
+  return problem("viscous_mnm_s", found.viscous_mnm_s, motor.viscous_nm_s, most_viscous, motor.rated_torque_nm / motor.top_speed_rad_s);
+}
+
 void set_friction(const HomingOffsets& offsets, std::size_t joint, arm::Friction& friction) {
   if (!offsets.friction_known[joint]) return;
   constexpr double other_day = 0.05, most = 0.5;

@@ -5,9 +5,11 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "firmware/arm/transmission.hpp"
+#include "shared/arm/motor.hpp"
 #include "shared/messages/joint_io.hpp"
 
 namespace lf::config {
@@ -30,6 +32,10 @@ struct HomingOffsets {
 // The friction as the core takes it: its doubt is what the fit left, and a twentieth for the temperature of another day. Nothing is changed for a joint whose
 // friction is not known.
 void set_friction(const HomingOffsets& offsets, std::size_t joint, arm::Friction& friction);
+
+// Friction that this motor cannot have, in words with the key that says so, or nothing: a typing error, another machine's file, or a joint that something rubs
+// against. The bounds are those of a scenario's friction.*, over what the arm's description has.
+std::optional<std::string> friction_problem(std::size_t joint, const JointFriction& found, const Motor& motor);
 
 const char* joint_name(std::size_t joint);  // "slew" ...
 

@@ -59,7 +59,8 @@ void add_vehicle(Keys& all, Vehicle& v) {
 void add_drives(Keys& all, Drives& d) {
   constexpr double most_counts = 1e6, most_nm = 1000, most_a = 1000;
   all.push_back(key("drives.profile", "", 0, 0, &d.profile, "make of the joints' drives: a shipped profile's name, or a file"));
-  all.push_back(key("drives.counts_per_rev", "counts", 1, most_counts, &d.counts_per_rev, "the arm's counts in a revolution of a motor"));
+  all.push_back(key("drives.counts_per_rev", "counts", 1, most_counts, &d.counts_per_rev,
+                    "the arm's counts in a revolution of a motor: fewer than in a turn of the joint"));
   all.push_back(key("drives.rated_current_a", "A", 0, most_a, &d.rated_current_a,
                     "a motor's current at its rated torque, for drives that count in it; 0: not stated"));
   for (std::size_t i = 0; i < joint_count; ++i) {
@@ -71,7 +72,9 @@ void add_drives(Keys& all, Drives& d) {
         key(joint + "polarity", "", 0, 0, &one.polarity, "whether the drive counts with the joint or against it", {"forward", "reversed"}));
     all.push_back(key(joint + "counts_per_rev", "counts", 0, most_counts, &one.counts_per_rev, "0: drives.counts_per_rev"));
     all.push_back(key(joint + "rated_torque_nm", "N m", 0, most_nm, &one.rated_torque_nm,
-                      "the motor's rated torque, for drives that do not say it, and to check those that do; 0: not stated"));
+                      "the motor's rated torque, not the joint's, for drives that do not say it, and to check those that do; within a "
+                      "factor of 3 of what the "
+                      "arm's description gives; 0: not stated"));
     all.push_back(key(joint + "rated_current_a", "A", 0, most_a, &one.rated_current_a, "0: drives.rated_current_a"));
   }
   all.push_back(key("outputs.node", "", 1, 126, &d.output_node, "node number of the output node"));
@@ -88,9 +91,13 @@ JointDriveChoice drive_of(const Drives& drives, std::size_t joint) {
 
 void add_mission(Keys& all, mission::MissionConfig& m) {
   const double rad_s = 3;
-  all.push_back(key("mission.docking_m", "m", 0, 0.1, &m.docking.shift_m,
-                    "how far the panel may be off its nominal place along each of the base's axes: kept clear of until it was looked at"));
-  all.push_back(key("mission.docking_rad", "rad", 0, 0.2, &m.docking.turn_rad, "how far it may be turned about each of them"));
+  all.push_back(key("mission.docking_m", "m", 0, 0.025, &m.docking.shift_m,
+                    "how far the panel may be off its nominal place along each of the base's axes: kept clear of until it was looked at. "
+                    "At 0.03 the only "
+                    "sweep that passes over such a panel is too fast to show the handle"));
+  all.push_back(key(
+      "mission.docking_rad", "rad", 0, 0.05, &m.docking.turn_rad,
+      "how far it may be turned about each of them. At 0.1 no sweep passes over such a panel, and with docking_m at its most not at 0.08"));
   all.push_back(key("mission.camera_syncs", "SYNC", 2, 20, &m.camera_syncs,
                     "SYNCs from one exposure to the next; 10 are 25 Hz. At 1 no report confirms the outputs; beyond 20 the stripes on the "
                     "handle are no longer one"));
@@ -107,8 +114,8 @@ void add_mission(Keys& all, mission::MissionConfig& m) {
   all.push_back(key("mission.press_speed_m_s", "m/s", 0.001, 0.2, &m.press_speed_m_s, "of a press"));
   all.push_back(
       key("mission.press_overtravel_m", "m", 0, 0.05, &m.press_overtravel_m, "beyond a button's bottom before the press counts as missed"));
-  all.push_back(
-      key("mission.press_torque_nm", "N m", 0.1, 100, &m.press_torque_nm, "rise of a joint's torque that says the button has bottomed"));
+  all.push_back(key("mission.press_torque_nm", "N m", 0.1, 20, &m.press_torque_nm,
+                    "rise of a joint's torque that says the button has bottomed; the drives give 26 N m, and at 25 no press is told"));
   all.push_back(key("mission.turn_speed_rad_s", "rad/s", 0.01, rad_s, &m.turn_speed_rad_s, "of the handle; no faster than the wrist"));
   all.push_back(
       key("mission.valve_tolerance_rad", "rad", 0.015, 0.045, &m.valve_tolerance_rad,

@@ -41,11 +41,25 @@ config::HomingOffsets read_and_check(const std::string& file) {
 
 }  // namespace
 
+Json friction_json(const config::HomingOffsets& offsets) {
+  Json all = Json::object();
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    const config::JointFriction& friction = offsets.friction[i];
+    if (offsets.friction_known[i])
+      all[config::joint_name(i)] = {
+          {"coulomb_mnm", friction.coulomb_mnm}, {"viscous_mnm_s", friction.viscous_mnm_s}, {"rms_mnm", friction.rms_mnm}};
+  }
+  return all;
+}
+
 Commissioner::Commissioner(const VehicleConfig& config, LoopRings& rings, Log log)
     : core_(config.core.controller), file_(config.machine.homing_file), rings_(rings), log_(std::move(log)) {
   const std::filesystem::path folder = std::filesystem::path(config.machine.file).parent_path();
   const ArmDescription arm = load_arm_urdf(config::find_file(config.machine.arm_urdf, folder));
-  for (std::size_t i = 0; i < joint_count; ++i) backlash_rad_[i] = arm.joints[i].backlash_rad;
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    backlash_rad_[i] = arm.joints[i].backlash_rad;
+    motors_[i] = motor_of(arm.joints[i], core_.transmissions[i].counts_per_rev);
+  }
 }
 
 // The control thread has ended before: what was lent is the owner's again.
@@ -155,7 +169,7 @@ void Commissioner::store(const Commissioning& ended) {
   prepared_ = std::make_shared<Prepared>();
   const std::string how = (order_.here ? "in the jig, " : "at its stop, ") + now_text() + " UTC";
   const bool posted = worker_.post([prepared = prepared_, file = file_, how, found = ended.found(), zeros = ended.zero_counts(),
-                                    rubs = ended.friction_found(), friction = ended.friction(), core = core_]() mutable {
+                                    rubs = ended.friction_found(), friction = ended.friction(), core = core_, motors = motors_]() mutable {
     std::string problem;
     config::HomingOffsets offsets;
     std::unique_ptr<Controller> with_zeros;
@@ -167,6 +181,7 @@ void Commissioner::store(const Commissioning& ended) {
         offsets.known[i] = true;
         offsets.found[i] = how;
         if (!rubs[i]) continue;
+        if (const auto rubbing = config::friction_problem(i, friction[i], motors[i])) throw InputError("nothing was written: " + *rubbing);
         offsets.friction[i] = friction[i];
         offsets.friction_known[i] = true;
       }
@@ -202,7 +217,7 @@ void Commissioner::install() {
   }
   core_given_ = std::move(prepared_->core);
   (void)rings_.cores.push(core_given_.get());
-  end_with({{"state", "done"}, {"zeros", zeros}, {"file", file_}});
+  end_with({{"state", "done"}, {"zeros", zeros}, {"friction", friction_json(prepared_->offsets)}, {"file", file_}});
 }
 
 }  // namespace lf::hal

@@ -4,6 +4,7 @@
 // Files and memory are a worker's business: nothing here blocks. One thread owns it, the one that serves the socket.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -17,6 +18,10 @@
 #include "hal/vehicle/worker.hpp"
 
 namespace lf::hal {
+
+// {"elbow": {"coulomb_mnm", "viscous_mnm_s", "rms_mnm"}, ...} of the joints whose friction is known: at the motor's shaft, viscous per rad/s of the motor, and
+// what the fit left.
+Json friction_json(const config::HomingOffsets& offsets);
 
 class Commissioner {
  public:
@@ -62,6 +67,7 @@ class Commissioner {
   ControllerConfig core_;
   std::string file_;
   std::array<double, joint_count> backlash_rad_{};
+  std::array<Motor, joint_count> motors_;
   LoopRings& rings_;
   Log log_;
   Stage stage_ = Stage::idle;

@@ -13,7 +13,9 @@
 #include <string>
 #include <vector>
 
+#include "hal/config/arm_notes.hpp"
 #include "hal/config/drive_kind.hpp"
+#include "hal/config/share.hpp"
 #include "hal/vehicle/bus_doctor.hpp"
 #include "hal/vehicle/daemon.hpp"
 #include "hal/vehicle/instance_lock.hpp"
@@ -86,6 +88,8 @@ int run_daemon(const Options& options) {
   if (options.config.empty()) throw InputError("--config FILE is needed; `lanternfishd --help` has more");
   if (options.check) return check(options);
   const VehicleConfig config = load_vehicle_config(options.config);
+  const std::string urdf = config::find_file(config.machine.arm_urdf, std::filesystem::path(options.config).parent_path());
+  for (const std::string& note : config::arm_notes(urdf)) std::fprintf(stderr, "lanternfishd: note: %s\n", note.c_str());
   const int signals = take_signals();
   const auto daemon = std::make_unique<Daemon>(config);  // megabytes
   const bool well = daemon->run(signals, options.run_job);
@@ -176,9 +180,7 @@ int follow_commissioning(const std::string& socket, bool json) {
     if (state == "done" || state == "failed") {
       if (json) std::printf("%s\n", now.dump(1).c_str());
       if (state == "failed") complain(now.value("why", std::string("failed")));
-      for (const auto& [joint, zero] : now.value("zeros", Json::object()).items()) {
-        if (!json) std::printf("%-9s zero at %d counts\n", joint.c_str(), zero.get<int>());
-      }
+      if (!json) std::printf("%s", commissioning_text(now).c_str());
       return state == "done" ? done : failed;
     }
     const std::string line = now.value("joint", std::string("the nodes")) + ": " + state;

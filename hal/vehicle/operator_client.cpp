@@ -55,6 +55,27 @@ std::string histogram_text(const Json& h) {
 
 }  // namespace
 
+std::string commissioning_text(const Json& done) {
+  std::string text;
+  const Json friction = done.value("friction", Json::object());
+  const Json zeros = done.value("zeros", Json::object());
+  for (const auto& [joint, zero] : zeros.items()) {
+    char line[192];
+    std::snprintf(line, sizeof line, "%-9s zero at %d counts", joint.c_str(), zero.get<int>());
+    text += line;
+    if (friction.contains(joint)) {
+      const Json& found = friction[joint];
+      std::snprintf(line, sizeof line, "; friction %.4g mN m and %.4g mN m per rad/s at the motor, residual %.4g mN m",
+                    found["coulomb_mnm"].get<double>(), found["viscous_mnm_s"].get<double>(), found["rms_mnm"].get<double>());
+      text += line;
+    } else {
+      text += "; friction not measured: as the arm's description has it";
+    }
+    text += "\n";
+  }
+  return text;
+}
+
 std::string status_text(const Json& status) {
   std::string text = status["standing"].get<std::string>() + ", step " + status["step"].get<std::string>() + "\n";
   if (status.contains("failure")) {

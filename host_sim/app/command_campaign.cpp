@@ -21,6 +21,7 @@
 #include "host_sim/app/interrupt.hpp"
 #include "host_sim/app/run_experiment.hpp"
 #include "host_sim/record/run_folder.hpp"
+#include "host_sim/scenario/instance.hpp"
 #include "host_sim/scenario/scenario.hpp"
 #include "shared/input_error.hpp"
 
@@ -215,6 +216,7 @@ int campaign(const Options& options) {
   if (options.seeds.empty()) throw InputError("--seeds is required, or --faults, or --ranges");
   const Seeds seeds = parse_seeds(options.seeds);
   const scenario::Scenario checked = scenario::load_scenario(options.scenario, options.set);
+  scenario::check_runnable(checked);
   const CampaignFolder folder(options, checked, "campaign");
   catch_interrupts();
   const CampaignTable table = tabulate(Campaign(options, checked, folder.path()).run(seeds));

@@ -3,6 +3,7 @@
 #include "hal/config/fault_kinds.hpp"
 #include "host_sim/app/command.hpp"
 #include "host_sim/scenario/describe.hpp"
+#include "host_sim/scenario/instance.hpp"
 #include "host_sim/scenario/scenario.hpp"
 
 namespace lf::app {
@@ -42,6 +43,7 @@ int scenarios(const Options& options) {
     return list(options.json);
   } else {
     const scenario::Scenario shown = scenario::load_scenario(options.name, options.set);
+    scenario::check_runnable(shown);
     if (options.json) {
       print_json(
           {{"name", shown.name}, {"description", shown.description}, {"file", shown.file}, {"yaml", scenario::scenario_yaml(shown)}});

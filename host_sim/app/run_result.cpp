@@ -103,9 +103,9 @@ std::map<std::string, std::uint64_t> rejected_inputs(const Controller& controlle
 }
 
 std::vector<std::pair<std::string, std::string>> conditions(const scenario::Sample& s) {
-  const auto mm = [](const Vec3& v) { return formatted("%.1f, %.1f, %.1f mm", 1e3 * v.x(), 1e3 * v.y(), 1e3 * v.z()); };
+  const auto mm = [](const Vec3& v) { return formatted("[%.1f, %.1f, %.1f] mm", 1e3 * v.x(), 1e3 * v.y(), 1e3 * v.z()); };
   const auto deg = [](const Vec3& v) {
-    return formatted("%.2f, %.2f, %.2f deg", deg_from_rad(v.x()), deg_from_rad(v.y()), deg_from_rad(v.z()));
+    return formatted("[%.2f, %.2f, %.2f] deg", deg_from_rad(v.x()), deg_from_rad(v.y()), deg_from_rad(v.z()));
   };
   return {
       {"docking error, shift", mm(s.docking_shift_m)},

@@ -17,6 +17,9 @@ using Nominal = config::Core;
 // out of the arm's reach, a panel that the camera does not see.
 Nominal make_nominal(const Scenario& scenario, bool lamps_lit);
 
+// Throws InputError with every problem for which a run would be refused, a line each: what make_nominal refuses, and drives that are not simulated.
+void check_runnable(const Scenario& scenario);
+
 // Adds what make_nominal would refuse.
 void add_job_problems(const Scenario& scenario, std::vector<std::string>& problems);
 std::string joined(const std::vector<std::string>& problems);  // a line each

@@ -227,6 +227,22 @@ devices::DevicesConfig device_config(const Scenario& scenario, const Sample& sam
 
 }  // namespace
 
+void check_runnable(const Scenario& scenario) {
+  std::vector<std::string> problems;
+  add_job_problems(scenario, problems);
+  if (!problems.empty()) throw InputError(joined(problems));
+  const ArmDescription arm = true_arm(scenario);
+  for (std::size_t joint = 0; joint < joint_count; ++joint) {
+    devices::DriveConfig drive;
+    try {
+      set_make(scenario.drives, joint, std::filesystem::path(scenario.file).parent_path(), arm.joints[joint], drive);
+    } catch (const InputError& problem) {
+      problems.push_back(scenario.file + ": " + problem.what());
+    }
+  }
+  if (!problems.empty()) throw InputError(joined(problems));
+}
+
 void check_overheard(const config::Drives& drives, std::size_t joint) {
   const config::JointDriveChoice drive = config::drive_of(drives, joint);
   const bool plain = drive.profile == "lanternfish" || drive.profile == "cia402";

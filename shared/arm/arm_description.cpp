@@ -236,6 +236,7 @@ ArmActuator read_screw(const Urdf& urdf, const XMLElement* e, const ArmJoint& jo
 }
 
 void read_friction(const Urdf& urdf, const XMLElement* e, ArmFriction& friction) {
+  friction.stated = true;
   friction.coulomb_share = urdf.not_negative(e, "coulomb_share");
   friction.viscous_share = urdf.not_negative(e, "viscous_share");
   friction.efficiency = urdf.positive(e, "efficiency");

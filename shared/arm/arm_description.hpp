@@ -39,6 +39,7 @@ struct ArmFriction {
   double viscous_share = 0;    // at the joint's top speed
   double efficiency = 1;       // the motor drives the load
   double back_efficiency = 1;  // the load drives the motor; 0 or less: it cannot
+  bool stated = false;         // false: the file has no friction for this joint, and it moves without any
 };
 
 struct ArmJoint {

@@ -69,6 +69,18 @@ TEST_P(AButton, ThatIsStuckIsNotPressedAndSaidToBeStuck) {
   }
 }
 
+// With 30 N m, more than the drives give, the press ends at the end of its way and not by the torque.
+TEST(AStuckButton, IsStuckWhateverTorqueSaysBottom) {
+  for (const double torque_nm : {15.0, 20.0, 30.0}) {
+    Rig rig({"tasks=[{press_buttons: {order: [left]}}]", "buttons.stuck=[left]"}, 1,
+            [&](ControllerConfig& told) { told.mission.press_torque_nm = torque_nm; });
+    rig.start();
+    ASSERT_TRUE(rig.run_to_end()) << rig.story();
+    EXPECT_EQ(rig.outcome().code, static_cast<std::int32_t>(StepFailure::button_stuck)) << torque_nm << " N m: " << rig.story();
+    EXPECT_LT(rig.world().contacts().peak_force_n, 150) << torque_nm;
+  }
+}
+
 TEST_P(AButton, ThatIsGoneIsMissed) {
   std::vector<std::string> scenario = press(GetParam());
   scenario.push_back(std::string("buttons.missing=[") + GetParam() + "]");

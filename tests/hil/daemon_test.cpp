@@ -328,7 +328,10 @@ TEST_F(AssembledDaemon, CommissionsAJointAndUsesItsZero) {
     ASSERT_TRUE(wait_standing("commissioning", 5));
     ASSERT_TRUE(wait_until("the commissioning's end", ended, 120));
   }
-  EXPECT_EQ(ask("status")["commissioning"]["state"], "done") << ask("status").dump();
+  const Json done = ask("status")["commissioning"];
+  EXPECT_EQ(done["state"], "done") << ask("status").dump();
+  EXPECT_GT(done["friction"]["jaw"].value("coulomb_mnm", 0.0), 0) << done.dump();
+  EXPECT_TRUE(done["friction"]["jaw"].contains("rms_mnm")) << done.dump();
   EXPECT_FALSE(sea->any_powered());
   offsets = config::read_homing_file(folder / "homing.yaml");
   EXPECT_TRUE(offsets.known[4]);

@@ -31,8 +31,7 @@ TEST(AVehicleInTheWay, IsNamedBeforeAnythingMoves) {
   usual.start();
   ASSERT_TRUE(usual.run_to(Step::scan)) << usual.story();
   const Vec3 tool = usual.world().base_from_tool().translation();
-  const std::string ball = std::to_string(tool.x()) + "," + std::to_string(tool.y()) + "," + std::to_string(tool.z());
-  Rig rig({"vehicle.capsules_m=[[" + ball + "," + ball + ",0.02]]"});
+  Rig rig({}, 1, [&](ControllerConfig& told) { (void)told.mission.vehicle.rods.push_back({tool, tool, 0.02}); });
   rig.start();
   ASSERT_TRUE(rig.run_to(Step::deploy)) << rig.story();
   const JointReadings before = rig.world().readings();
@@ -45,7 +44,7 @@ TEST(AVehicleInTheWay, IsNamedBeforeAnythingMoves) {
 
 // The same where the panel may stand anywhere within a decimetre.
 TEST(ADockingThatIsHardlyKnown, KeepsTheArmWhereItIs) {
-  Rig rig({"mission.docking_m=0.1"});
+  Rig rig({}, 1, [](ControllerConfig& told) { told.mission.docking.shift_m = 0.1; });
   rig.start();
   ASSERT_TRUE(rig.run_to_end()) << rig.story();
   EXPECT_EQ(rig.outcome().step, Step::deploy) << rig.story();

@@ -69,11 +69,44 @@ TEST_F(BadInput, ScenariosThatAreNotWhatTheyShouldBe) {
 }
 
 TEST_F(BadInput, JobsThatTheMachineCannotDo) {
-  expect_refused("run --set panel.handle_height_m=0.3 --set panel.ahead_m=0.3", "out of");
+  expect_refused("run --set panel.ahead_m=1.15 --set \"camera.position_m=[0.6, -0.245, 0.06]\"", "out of the arm's reach");
   expect_refused("run --set camera.down_deg=10", "out of the camera's view");
   expect_refused("run --set arm.urdf=missing.urdf", "missing.urdf");
   file("jointless.urdf", "<robot name=\"none\">\n</robot>\n");
   expect_refused("run --set arm.urdf=" + (folder() / "jointless.urdf").string(), "jointless.urdf");
+}
+
+// Whoever checks a file hears what a run of it would say, word for word, all of it.
+TEST_F(BadInput, AScenarioIsCheckedAsItsRunIs) {
+  file("elsewhere.yaml", "camera: {down_deg: 10}\ndrives: {jaw: {node: 3}}\n");
+  file("blocked.yaml", "vehicle: {boxes_m: [[0, 0, 0.3, 0.2, 0.2, 0.2]]}\n");
+  file("drive.yaml", "title: a drive of ours\n");
+  file("unsimulated.yaml", "drives: {profile: drive.yaml}\n");
+  for (const char* scenario : {"elsewhere.yaml", "blocked.yaml", "unsimulated.yaml"}) {
+    SCOPED_TRACE(scenario);
+    const Said ran = run(std::string("run ./") + scenario), checked = run(std::string("scenarios ./") + scenario);
+    EXPECT_EQ(ran.status, 2) << ran.err;
+    EXPECT_EQ(checked.status, 2);
+    EXPECT_EQ(checked.err, ran.err);
+    EXPECT_EQ(checked.out, "");
+  }
+  const Said all = run("scenarios ./elsewhere.yaml");
+  EXPECT_THAT(all.err, HasSubstr("out of the camera's view"));
+  EXPECT_THAT(all.err, HasSubstr("node"));
+}
+
+TEST_F(BadInput, AnArmWithoutFrictionIsToldOnceAtTheStart) {
+  std::string urdf = text_of(std::string(LANTERNFISH_SOURCE_DIR) + "/shared/arm/arm5e.urdf");
+  const std::size_t joint = urdf.find("<joint name=\"elbow\""), from = urdf.find("<lanternfish:friction", joint);
+  ASSERT_NE(from, std::string::npos);
+  urdf.erase(from, urdf.find("/>", from) + 2 - from);
+  const std::string arm = "--set arm.urdf=" + file("bare.urdf", urdf);
+  const Said bare = run("run --no-outside --set time_limit_s=1 --out bare " + arm);
+  const std::string note = "bare.urdf: no <lanternfish:friction> for elbow: ";
+  const std::size_t at = bare.err.find(note);
+  EXPECT_NE(at, std::string::npos) << bare.err;
+  EXPECT_EQ(bare.err.find(note, at + 1), std::string::npos) << bare.err;
+  EXPECT_EQ(run("run --no-outside --set time_limit_s=1 --out usual").err.find("note:"), std::string::npos);
 }
 
 TEST_F(BadInput, ABadUrdfIsRefusedWithItsLine) {

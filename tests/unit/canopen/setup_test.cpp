@@ -35,6 +35,8 @@ TEST(Setup, EachImpossibleNumberIsNamedWithItsNode) {
       {[](NetworkConfig& c) { c.drives[1].profile.scale.speed.num = 0; }, ConfigError::profile, 1},
       {[](NetworkConfig& c) { c.drives[1].profile.scale.sign = 0; }, ConfigError::profile, 1},
       {[](NetworkConfig& c) { c.drives[1].profile.scale.speed.num = 1'000'000'000; }, ConfigError::profile, 1},
+      {[](NetworkConfig& c) { c.drives[1].profile.scale.position.num = 1'000'000; }, ConfigError::positions, 1},
+      {[](NetworkConfig& c) { c.drives[1].encoder_zero_counts = INT32_MAX; }, ConfigError::positions, 1},
       {[](NetworkConfig& c) { c.sync_period = Duration::from_ns(4'000'001); }, ConfigError::sync_period, joint_count},
       {[](NetworkConfig& c) { c.sync_period = Duration::from_ms(200); }, ConfigError::sync_period, joint_count},
       {[](NetworkConfig& c) { c.sync_period = Duration{}; }, ConfigError::sync_period, joint_count},

@@ -72,6 +72,12 @@ TEST(DriveProfileFile, AGroupThatIsNoneIsRefusedInWords) {
 
 // The C++ library throws where the name of a file is too long to be one.
 TEST(DriveProfileFile, ALikenessThatIsNoFilesNameIsRefusedInWords) {
+  for (const char* like : {"epos5", "../epos4.yaml", "[epos4]"}) {
+    const std::string problems = problems_of("title: mine\nlike: " + std::string(like) + "\n");
+    for (const char* part :
+         {"mine.yaml:2: ", "'like'", "the name of a shipped profile (c5e, cia402,", "the name without .yaml of a file in "})
+      EXPECT_NE(problems.find(part), std::string::npos) << like << ": " << problems;
+  }
   EXPECT_NE(problems_of("title: mine\nlike: " + std::string(300, 'x') + "\n").find("mine.yaml:2: no profile 'xxx"), std::string::npos);
 }
 

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "firmware/mission/look.hpp"
 #include "hal/config/text_file.hpp"
 #include "tests/unit/scenario/scenario_file.hpp"
 #include "tests/unit/temporary_folder.hpp"
@@ -73,6 +74,41 @@ TEST(Nominal, AVehicleOfNoExtentOrOfTooManyPartsIsRefused) {
   std::string many = "[[-4, 0, 0, 1, 1, 1]";
   for (std::size_t i = 0; i < arm::VehicleShape::capacity; ++i) many += ", [-4, 0, 0, 1, 1, 1]";
   EXPECT_THAT(refusal(load_scenario("default", {"vehicle.boxes_m=" + many + "]"})), ::testing::HasSubstr("more than 16 boxes"));
+}
+
+// A mission would end before its first look: the sweep begins above the panel wherever it may stand, and the arm lifts the line only so far.
+TEST(Nominal, ADockingAtWhichTheLaserDoesNotPassOverThePanelIsRefused) {
+  Scenario scenario = load_scenario("default", {"mission.docking_m=0.025", "mission.docking_rad=0.05"});
+  EXPECT_EQ(refusal(scenario), "");
+  scenario.mission.docking.shift_m = 0.05;
+  EXPECT_THAT(refusal(scenario), ::testing::HasSubstr("the laser cannot be swept over the whole panel wherever it may stand with "
+                                                      "'mission.docking_m' at 0.05 and 'mission.docking_rad' at 0.05: "));
+}
+
+// A panel that may stand where the arm is folded up: the refusal says which part of it.
+TEST(Nominal, APanelThatMayStandWhereTheArmIsIsNamed) {
+  Scenario scenario = load_scenario("default");
+  scenario.mission.docking.shift_m = 0.3;
+  EXPECT_THAT(refusal(scenario), ::testing::ContainsRegex("folded up the arm comes as near as [0-9]+ mm to the panel's [a-z ]+, with "
+                                                          "'mission.docking_m' at 0.3"));
+}
+
+TEST(Nominal, WhatStandsInTheWayOfTheFirstSweepIsNamed) {
+  const auto with_ball_at = [](const arm::JointVector& q_rad) {
+    const Vec3 tool = arm::base_from_tool(q_rad).translation();
+    const std::string place = std::to_string(tool.x()) + ", " + std::to_string(tool.y()) + ", " + std::to_string(tool.z());
+    return load_scenario("default", {"vehicle.capsules_m=[[-2, 0, 0, -2, 0, 0, 0.1], [" + place + ", " + place + ", 0.02]]"});
+  };
+  const Nominal nominal = make_nominal(load_scenario("default"), true);
+  const mission::MissionConfig& mission = nominal.controller.mission;
+  EXPECT_THAT(refusal(with_ball_at(mission.park_rad)),
+              ::testing::HasSubstr("folded up the arm comes as near as 0 mm to capsule 2 of 'vehicle.capsules_m'"));
+  const scan::SweepPlan plan = scan::plan_sweep(mission::sweep_over_panel(mission), nominal.controller.laser);
+  const auto& start = plan.start_rad;
+  EXPECT_THAT(refusal(with_ball_at({start[0], start[1], start[2], start[3]})),
+              ::testing::HasSubstr("sweeping the laser over the panel the arm comes as near as 0 mm to capsule 2 of 'vehicle.capsules_m'"));
+  EXPECT_THAT(refusal(load_scenario("default", {"vehicle.boxes_m=[[-2, 0, 0, 0.1, 0.1, 0.1], [0, 0, 0.3, 0.2, 0.2, 0.2]]"})),
+              ::testing::HasSubstr("to box 2 of 'vehicle.boxes_m', at [0, 0, 0.3]"));
 }
 
 TEST(Nominal, ACloudThinsItsColumnsWhereTheCameraIsFaster) {

@@ -138,6 +138,19 @@ TEST(Load, AProblemOfAKeyDoesNotHideThatTheJobCannotBeDone) {
   EXPECT_THAT(told, HasSubstr("is behind the camera"));
 }
 
+TEST(Load, AButtonIsStuckOrMissingNotBoth) {
+  EXPECT_THAT(complaint("buttons: {stuck: [left, right], missing: [right]}\n"),
+              ::testing::HasSubstr("'buttons.stuck' and 'buttons.missing' both name right"));
+  EXPECT_EQ(complaint("buttons: {stuck: [left], missing: [right]}\n"), "");
+}
+
+TEST(Load, AButtonThatThePressDoesNotMoveIsRefusedWithTheTorqueThatItTakes) {
+  EXPECT_THAT(complaint("buttons: {preload_n: 25}\n"), ::testing::HasSubstr("take 30 N at half the stroke"));
+  EXPECT_THAT(complaint("buttons: {spring_n_m: 9000}\n"), ::testing::HasSubstr("would take the button for stuck. It takes 9.62 N m"));
+  EXPECT_EQ(complaint("buttons: {preload_n: 15}\n"), "");
+  EXPECT_EQ(complaint("buttons: {preload_n: 25}\nmission: {press_torque_nm: 14}\n"), "");
+}
+
 TEST(Load, AFaultHappensAtATimeOrAtAStep) {
   const ScenarioFile file(
       "faults:\n  - {at_step: turn, after_s: 0.5, kind: silent, node: io}\n  - {at_step: 'abandon, back', kind: obstacle}\n");

@@ -7,6 +7,8 @@
 
 #include "firmware/arm/actuator.hpp"
 #include "hal/config/homing_file.hpp"
+#include "shared/arm/arm_description.hpp"
+#include "shared/arm/motor.hpp"
 #include "shared/input_error.hpp"
 #include "tests/unit/temporary_folder.hpp"
 
@@ -100,6 +102,66 @@ TEST(VehicleConfig, ADriveThatCountsInCurrentAsksForItsMotors) {
                 testing::Not(testing::Contains(HasSubstr("rated_current_a"))))
         << make;
   }
+}
+
+// The shipped arm's elbow is rated at 26.9 N m, through a screw with a ratio of some hundred: a joint's figure in a motor's place is a hundred times off.
+TEST(VehicleConfig, ARatingThatIsTheJointsAndNotTheMotorsIsRefusedWithBothNumbers) {
+  const TemporaryFolder folder;
+  const ArmDescription arm = load_arm_urdf(LANTERNFISH_SOURCE_DIR "/shared/arm/arm5e.urdf");
+  const ArmJoint& elbow = arm.joints[2];
+  const double motor_nm = motor_of(elbow, 64).rated_torque_nm;
+  ASSERT_GT(elbow.rated_torque_nm / motor_nm, 10);
+  const auto with = [&](double nm) {
+    return problems_of(folder.write("v.yaml", "drives: {elbow: {rated_torque_nm: " + std::to_string(nm) + "}}\n"));
+  };
+  EXPECT_THAT(with(elbow.rated_torque_nm),
+              ElementsAre(testing::AllOf(HasSubstr("drives.elbow: 'rated_torque_nm' is "), HasSubstr("rates the joint at "),
+                                         HasSubstr("State the motor's own rated torque"))));
+  EXPECT_THAT(with(3.1 * motor_nm), testing::SizeIs(1));
+  EXPECT_THAT(with(motor_nm / 3.1), testing::SizeIs(1));
+  for (const double share : {0.4, 1.0, 2.9}) EXPECT_THAT(with(share * motor_nm), IsEmpty()) << share;
+}
+
+// An encoder's resolution in place of the arm's counts: the motor would turn slower than its joint.
+TEST(VehicleConfig, CountsThatLeaveNoGearAreRefusedWithTheReason) {
+  const TemporaryFolder folder;
+  EXPECT_THAT(problems_of(folder.write("v.yaml", "drives: {elbow: {counts_per_rev: 1000000}}\n")),
+              ElementsAre(HasSubstr("drives.elbow: 'counts_per_rev' is 1e+06: the motor would turn 0.0")));
+  EXPECT_THAT(problems_of(folder.write("v.yaml", "drives: {elbow: {counts_per_rev: 128}}\n")), IsEmpty());
+}
+
+// 32 bits hold no such positions; without the refusal they would be held at their end, and the joint would stop short.
+TEST(VehicleConfig, PositionsThatDoNotFitADrivesCountAreRefused) {
+  const TemporaryFolder folder;
+  folder.write("fine.yaml", "title: fine\nlike: lanternfish\nposition: {units_per_count: 1000000}\n");
+  EXPECT_THAT(problems_of(folder.write("v.yaml", "drives: {elbow: {profile: fine.yaml}}\n")),
+              testing::Contains(HasSubstr("drives.elbow: its profile makes 1e+06 of the drive's units of one of the arm's counts")));
+}
+
+TEST(VehicleConfig, ANodeNumberUsedTwiceNamesBothThatHaveIt) {
+  const TemporaryFolder folder;
+  EXPECT_THAT(problems_of(folder.write("v.yaml", "drives: {jaw: {node: 3}}\n")),
+              ElementsAre(HasSubstr("drives.elbow and drives.jaw have the same node number, 3")));
+  EXPECT_THAT(problems_of(folder.write("v.yaml", "outputs: {node: 2}\n")),
+              ElementsAre(HasSubstr("drives.shoulder and outputs have the same node number, 2")));
+}
+
+TEST(VehicleConfig, AHomingFilesFrictionIsHeldAgainstTheArms) {
+  const TemporaryFolder folder;
+  const Motor motor = motor_of(load_arm_urdf(LANTERNFISH_SOURCE_DIR "/shared/arm/arm5e.urdf").joints[2], 64);
+  const auto with = [&](const std::string& coulomb, const std::string& viscous) {
+    folder.write("h.yaml", "elbow: {zero_counts: 7, coulomb_mnm: " + coulomb + ", viscous_mnm_s: " + viscous + "}\n");
+    return problems_of(folder.write("v.yaml", "homing: {file: h.yaml}\n"));
+  };
+  const double coulomb = 1e3 * motor.coulomb_nm, viscous = 1e3 * motor.viscous_nm_s;
+  ASSERT_GT(coulomb, 0);
+  const auto text = [](double value) { return std::to_string(value); };
+  for (const double share : {0.0, 1.0, 3.0}) EXPECT_THAT(with(text(share * coulomb), text(share * viscous)), IsEmpty()) << share;
+  for (const std::string& bad : {text(100 * coulomb), std::string("-1"), std::string(".nan")}) {
+    EXPECT_THAT(with(bad, text(viscous)), ElementsAre(testing::AllOf(HasSubstr("h.yaml"), HasSubstr("'elbow.coulomb_mnm'")))) << bad;
+  }
+  EXPECT_THAT(with(text(coulomb), text(100 * viscous)),
+              ElementsAre(testing::AllOf(HasSubstr("h.yaml"), HasSubstr("'elbow.viscous_mnm_s'"))));
 }
 
 TEST(VehicleConfig, LimitsWithAnotherChecksumAreRefused) {

@@ -1,0 +1,20 @@
+#include "hal/config/arm_notes.hpp"
+
+#include "hal/config/homing_file.hpp"
+#include "shared/arm/arm_description.hpp"
+
+namespace lf::config {
+
+std::vector<std::string> arm_notes(const std::string& urdf_file) {
+  const ArmDescription arm = load_arm_urdf(urdf_file);
+  std::string frictionless;
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    if (!arm.joints[i].friction.stated) frictionless += (frictionless.empty() ? "" : ", ") + std::string(joint_name(i));
+  }
+  if (frictionless.empty()) return {};
+  return {urdf_file + ": no <lanternfish:friction> for " + frictionless +
+          ": there, motor and gear are taken to have no friction, in the simulator and in the core. `lanternfishd commission` measures a "
+          "real joint's"};
+}
+
+}  // namespace lf::config

@@ -1,0 +1,140 @@
+#include "hal/config/sweep_check.hpp"
+
+#include <cstdarg>
+#include <cstdio>
+
+#include "firmware/arm/gripper.hpp"
+#include "firmware/mission/look.hpp"
+#include "firmware/mission/motion.hpp"
+
+namespace lf::config {
+
+namespace {
+
+using arm::JointVector;
+
+// A bar is seen from several lines across it. With lines 0.57 of its thickness apart it was found in 4 of 4 missions, with 0.79 in none of 2.
+constexpr double widest_of_bar = 0.65;
+
+std::string formatted(const char* form, ...) __attribute__((format(printf, 1, 2)));
+
+std::string formatted(const char* form, ...) {
+  char text[320];
+  va_list values;
+  va_start(values, form);
+  std::vsnprintf(text, sizeof text, form, values);
+  va_end(values);
+  return text;
+}
+
+std::string docking_text(const mission::MissionConfig& mission) {
+  return formatted("with 'mission.docking_m' at %.3g and 'mission.docking_rad' at %.3g", mission.docking.shift_m, mission.docking.turn_rad);
+}
+
+const char* words(scan::SweepOutcome outcome) {
+  switch (outcome) {
+    case scan::SweepOutcome::top_unreachable: return "no pose of the arm puts the laser's line above the panel";
+    case scan::SweepOutcome::bottom_unreachable: return "no pose of the arm puts the laser's line below the panel";
+    case scan::SweepOutcome::fan_too_narrow: return "the laser's line is shorter than the panel is wide";
+    case scan::SweepOutcome::no_way: return "the tool would come too near to the panel";
+    case scan::SweepOutcome::bad_request:
+    case scan::SweepOutcome::ok: break;
+  }
+  return "the sweep is not defined";
+}
+
+// What is nearest to the arm in one pose, and how near.
+struct Nearest {
+  double distance_m = HUGE_VAL;
+  std::string what;
+};
+
+class Neighbours {
+ public:
+  explicit Neighbours(const mission::MissionConfig& mission)
+      : mission_(mission),
+        base_from_panel_(mission.layout.nominal_base_from_panel()),
+        panel_(arm::PanelShape(mission.layout).grown(base_from_panel_, mission.docking)) {}
+
+  Nearest of(const JointVector& q_rad, double jaw_rad) const {
+    const arm::LinkCapsules capsules = arm::link_capsules(q_rad, jaw_rad);
+    const arm::Clearance panel = panel_.clearance(capsules, base_from_panel_);
+    Nearest nearest{panel.distance_m, std::string("the panel's ") + arm::name(panel.part) + ", " + docking_text(mission_)};
+    const auto hold_against = [&](double distance_m, const std::string& what) {
+      if (distance_m < nearest.distance_m) nearest = {distance_m, what};
+    };
+    for (std::size_t i = 0; i < mission_.vehicle.boxes.size(); ++i) {
+      arm::VehicleShape one;
+      (void)one.boxes.push_back(mission_.vehicle.boxes[i]);
+      const Vec3& at = mission_.vehicle.boxes[i].centre_m;
+      hold_against(arm::clearance_to_vehicle(capsules, one),
+                   formatted("box %zu of 'vehicle.boxes_m', at [%.3g, %.3g, %.3g]", i + 1, at.x(), at.y(), at.z()));
+    }
+    for (std::size_t i = 0; i < mission_.vehicle.rods.size(); ++i) {
+      arm::VehicleShape one;
+      (void)one.rods.push_back(mission_.vehicle.rods[i]);
+      const Vec3& at = mission_.vehicle.rods[i].a_m;
+      hold_against(arm::clearance_to_vehicle(capsules, one),
+                   formatted("capsule %zu of 'vehicle.capsules_m', at [%.3g, %.3g, %.3g]", i + 1, at.x(), at.y(), at.z()));
+    }
+    hold_against(arm::clearance_to_itself(capsules), "the arm itself");
+    return nearest;
+  }
+
+ private:
+  const mission::MissionConfig& mission_;
+  Pose base_from_panel_;
+  arm::PanelShape panel_;
+};
+
+std::string too_near(const char* when, const Nearest& nearest) {
+  return formatted("%s the arm comes as near as %.0f mm to ", when, 1e3 * std::max(0.0, nearest.distance_m)) + nearest.what +
+         formatted("; it has to keep %.0f mm off", 1e3 * mission::clearance_m);
+}
+
+JointVector vector_of(const std::array<double, arm_joint_count>& q) { return {q[0], q[1], q[2], q[3]}; }
+
+}  // namespace
+
+std::optional<std::string> sweep_problem(const ControllerConfig& controller) {
+  const mission::MissionConfig& mission = controller.mission;
+  const Neighbours neighbours(mission);
+  const double jaw_rad = arm::jaw_from_gap(0);
+  if (const Nearest parked = neighbours.of(mission.park_rad, jaw_rad); parked.distance_m < mission::clearance_m)
+    return too_near("folded up", parked);
+
+  const scan::SweepRequest request = mission::sweep_over_panel(mission);
+  const scan::SweepPlan plan = scan::plan_sweep(request, controller.laser);
+  if (plan.outcome != scan::SweepOutcome::ok) {
+    return "the laser cannot be swept over the whole panel wherever it may stand " + docking_text(mission) + ": " + words(plan.outcome);
+  }
+  const double frame_share = mission.camera_syncs * can_map::sync_period.s() / request.stripe_period.s();
+  const double spacing_m = plan.widest_spacing_m * frame_share;
+  if (spacing_m > widest_of_bar * mission.layout.handle_thickness_m) {
+    return "the laser's lines would lie " + formatted("%.1f mm", 1e3 * spacing_m) + " apart on the panel " + docking_text(mission) +
+           formatted(" and 'mission.sweep_speed_rad_s' at %.3g: no more than %.1f mm show a handle of this thickness",
+                     mission.sweep_speed_rad_s, 1e3 * widest_of_bar * mission.layout.handle_thickness_m);
+  }
+  mission::Motion motion(controller.limits, mission.layout, mission.vehicle, mission.park_rad);
+  motion.start_at(mission.park_rad);
+  const arm::Room room{request.base_from_panel, mission.docking, {jaw_rad, jaw_rad}, 0};
+  motion.go_to_sweep(request, controller.laser, room, jaw_rad, mission.move_speed_fraction);
+  while (motion.planning()) motion.step(can_map::sync_period.s());
+  if (motion.failure() == StepFailure::none) return std::nullopt;
+  if (motion.failure() == StepFailure::unreachable) return "the arm does not reach the poses from which the laser is swept over the panel";
+
+  // The sweep, and the straight way to it: the core looks at more poses, and stops at the first that is too near.
+  constexpr int poses = 200;
+  Nearest nearest;
+  const auto look_along = [&](const JointVector& from_rad, const JointVector& to_rad) {
+    for (int i = 0; i <= poses; ++i) {
+      const Nearest here = neighbours.of(from_rad + (to_rad - from_rad) * i / poses, jaw_rad);
+      if (here.distance_m < nearest.distance_m) nearest = here;
+    }
+  };
+  look_along(mission.park_rad, vector_of(plan.start_rad));
+  look_along(vector_of(plan.start_rad), vector_of(plan.end_rad));
+  return too_near("sweeping the laser over the panel", nearest);
+}
+
+}  // namespace lf::config
