@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Builds firmware/, its unit tests and the fuzz targets with AddressSanitizer and UndefinedBehaviorSanitizer, runs the tests, and replays the targets' kept
-# inputs and seeded changes of them: a test of ./test.sh and a shard of tests/nightly.sh.
+# inputs and seeded changes of them: a shard of tests/nightly.sh.
 # The assembled daemon is one of them where it is built (tests/unit/vehicle). `./test.sh asan` and `./test.sh tsan` do the same for everything.
 # Usage: tests/sanitized_core.sh [PROGRAM]...     PROGRAM: of build/core-asan/tests; default: the core's
 set -euo pipefail

@@ -64,16 +64,6 @@ TorqueEstimate Transmission::joint_torque(double q_rad, double speed_rad_s, int 
   return estimate;
 }
 
-double Transmission::push_nm(double q_rad, double motor_nm) const {
-  return ratio(q_rad) * setup_.friction.efficiency * std::max(0.0, motor_nm - setup_.friction.coulomb_nm);
-}
-
-double Transmission::hold_nm(double q_rad, double motor_nm) const {
-  const Friction& friction = setup_.friction;
-  if (friction.back_efficiency <= 0) return breaking_nm;
-  return std::min(breaking_nm, ratio(q_rad) / friction.back_efficiency * (motor_nm + friction.coulomb_nm));
-}
-
 TorqueEstimate TorqueObserver::update(const Transmission& transmission, double rad_per_count, double q_rad, double speed_rad_s,
                                       double motor_nm, double motor_doubt_nm) {
   const bool standing = std::abs(speed_rad_s) < standing_counts_s * rad_per_count;

@@ -51,9 +51,6 @@ class Transmission {
   // The other way round. `direction` is that of the present motion, or of the last one where the joint stands (0: it has not moved yet, both are
   // possible); `standing` widens the bounds to all loads that the motor's torque could stand still with. `motor_doubt_nm`: of the reading.
   TorqueEstimate joint_torque(double q_rad, double speed_rad_s, int direction, bool standing, double motor_nm, double motor_doubt_nm) const;
-  // The most that the joint gets from a motor with this much torque, at rest: pushing it, and holding it against being pushed back.
-  double push_nm(double q_rad, double motor_nm) const;
-  double hold_nm(double q_rad, double motor_nm) const;
 
  private:
   Joint joint_;

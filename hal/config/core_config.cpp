@@ -32,8 +32,8 @@ constexpr double following_window_rad = 0.15;
 // Of a joint's best acceleration: drives refuse a ramp above what they are able to. As delivered some would take seconds to stop.
 constexpr double quick_stop_share = 0.95;
 
-// Friction of the description's, not of this machine's measurement: parts and temperature differ by so much.
-constexpr double friction_doubt = 0.2, efficiency_doubt = 0.05;
+// Friction of the description's, not of this machine's measurement: what a catalogue says is wrong by 20 to 30 % in the force that follows from it.
+constexpr double friction_doubt = 0.3, efficiency_doubt = 0.05;
 // What the cap lies above the torque of an overload, and what a reading can be wrong by, of the rated torque.
 constexpr double overload_reserve = 1.05, torque_noise = 0.01;
 

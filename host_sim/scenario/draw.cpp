@@ -65,6 +65,9 @@ Sample draw(const Scenario& s, std::uint64_t seed) {
     sample.viscous[i] = friction(s.friction.viscous, "viscous");
     sample.efficiency[i] = friction(s.friction.efficiency, "efficiency");
     sample.back_efficiency[i] = friction(s.friction.back_efficiency, "back_efficiency");
+    sample.breakaway[i] = friction(s.friction.breakaway, "breakaway");
+    sample.one_way[i] = friction(s.friction.one_way, "one_way");
+    sample.pivot_m[i] = friction(s.friction.pivot_m, "pivot_m");
   }
   sample.marker_shift_m = draws.each_axis(s.mounting.marker_m, "mounting.marker_m");
   sample.marker_shift_m.z() = 0;

@@ -29,8 +29,9 @@ struct Sample {
   Vec3 laser_turn_rad = Vec3::Zero();
   std::array<double, joint_count> joint_offset_rad{};
   std::array<double, joint_count> coulomb{}, viscous{}, efficiency{}, back_efficiency{};  // over the description's
-  Vec3 marker_shift_m = Vec3::Zero();                                                     // in the panel frame, within its plane: z is 0
-  double marker_turn_rad = 0;                                                             // about the panel's normal
+  std::array<double, joint_count> breakaway{}, one_way{}, pivot_m{};
+  Vec3 marker_shift_m = Vec3::Zero();  // in the panel frame, within its plane: z is 0
+  double marker_turn_rad = 0;          // about the panel's normal
   std::uint64_t optics_seed = 0;
   std::uint64_t devices_seed = 0;
 };

@@ -79,6 +79,11 @@ void add_machine(Keys& all, Scenario& s) {
                     "the same of the efficiency with which a motor drives its load, which is never above 1"));
   all.push_back(key("friction.back_efficiency", "", 0, 1.3, &s.friction.back_efficiency,
                     "the same of the efficiency with which a load drives its motor; 0: the screw locks itself"));
+  all.push_back(
+      key("friction.breakaway", "", 1, 2, &s.friction.breakaway, "Coulomb friction of a motor that stands over that of one that moves"));
+  all.push_back(key("friction.one_way", "", -0.5, 0.5, &s.friction.one_way, "share by which it is more forward and less backward"));
+  all.push_back(key("friction.pivot_m", "m", -0.0005, 0.0005, &s.friction.pivot_m,
+                    "how much longer the true linkage of each screw is from its joint to its far pivot than the core takes it for"));
   all.push_back(key("latency.image_ms", "ms", 0, 1000, &s.latency.image_ms, "from the start of an exposure until the core has its image"));
   all.push_back(key("latency.panel_vision_ms", "ms", 0, 10000, &s.latency.panel_vision_ms,
                     "from the question until the core has the panel vision's answer"));

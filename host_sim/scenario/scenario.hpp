@@ -106,6 +106,10 @@ struct Friction {
   Spread viscous = Spread::around(1, 0.15);
   Spread efficiency = Spread::around(1, 0.03);
   Spread back_efficiency = Spread::around(1, 0.03);
+  // What the core does not know of at all.
+  Spread breakaway = Spread::around(1.3, 0.2);  // greased screws: 1.1 to 1.5
+  Spread one_way = Spread::around(0, 0.1);
+  Spread pivot_m = Spread::around(0, 5e-5);  // bores and bolts of H7/g6 at 10 mm, and the survey of their places
 };
 
 struct Latency {

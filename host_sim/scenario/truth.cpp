@@ -220,6 +220,9 @@ devices::DevicesConfig device_config(const Scenario& scenario, const Sample& sam
     drive.friction.viscous_nm_s *= sample.viscous[i];
     drive.friction.efficiency = std::min(1.0, drive.friction.efficiency * sample.efficiency[i]);
     drive.friction.back_efficiency = std::min(1.0, drive.friction.back_efficiency * sample.back_efficiency[i]);
+    drive.friction.breakaway = sample.breakaway[i];
+    drive.friction.one_way = sample.one_way[i];
+    if (drive.actuator.pivot_a_m > 0) drive.actuator.pivot_a_m += sample.pivot_m[i];
   }
   config.io.node = static_cast<std::uint8_t>(scenario.drives.output_node);
   return config;

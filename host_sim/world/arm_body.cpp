@@ -93,7 +93,7 @@ double ArmBody::velocity_rad_s(std::size_t joint) const {
 void ArmBody::before_step() {
   btMultiBody& body = part_.body();
   for (std::size_t i = 0; i < joint_count; ++i) {
-    plan_[i] = plan_drive(drives_[i], arm_.joints[i].holding_torque_nm, motor_rad_[i], config_.step_s);
+    plan_[i] = plan_drive(drives_[i], arm_.joints[i].holding_torque_nm, joints_[i], motor_rad_[i], position_rad(i), config_.step_s);
     plan_[i].torque_up_nm *= driven_links(i);
     plan_[i].torque_down_nm *= driven_links(i);
     plan_[i].push_nm *= driven_links(i);

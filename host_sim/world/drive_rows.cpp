@@ -36,11 +36,20 @@ void set_row(JointRows& rows, Slot slot, const DrivenJoint& joint, JointRows::Ro
 
 }  // namespace
 
-DriveStep plan_drive(const JointDrive& drive, double holding_torque_nm, double motor_rad, double step_s) {
+DriveStep plan_drive(const JointDrive& drive, double holding_torque_nm, const DrivenJoint& joint, double motor_rad, double position_rad,
+                     double step_s) {
   if (drive.released) return {motor_rad, holding_torque_nm, holding_torque_nm, holding_torque_nm, 0};
   if (!std::isfinite(drive.velocity_rad_s) || !std::isfinite(drive.torque_limit_nm) || !std::isfinite(drive.holding_limit_nm))
     return {motor_rad, 0, 0, 0, 0};
   const double push_nm = std::max(0.0, drive.torque_limit_nm), hold_nm = std::max(push_nm, drive.holding_limit_nm);
+  if (joint.stiffness_nm_rad > 0) {
+    const double stiffness_nm_rad = joint.coupled ? 0.5 * joint.stiffness_nm_rad : joint.stiffness_nm_rad;
+    const double wound_up_rad = 0.5 * joint.backlash_rad + push_nm / stiffness_nm_rad;
+    const double highest_rad = std::max(motor_rad, position_rad + wound_up_rad),
+                 lowest_rad = std::min(motor_rad, position_rad - wound_up_rad);
+    const double wanted_rad = std::clamp(motor_rad + drive.velocity_rad_s * step_s, lowest_rad, highest_rad);
+    return {wanted_rad, hold_nm, hold_nm, push_nm, (wanted_rad - motor_rad) / step_s};
+  }
   const double up_nm = drive.velocity_rad_s > 0 ? push_nm : hold_nm, down_nm = drive.velocity_rad_s < 0 ? push_nm : hold_nm;
   return {motor_rad + drive.velocity_rad_s * step_s, up_nm, down_nm, push_nm, drive.velocity_rad_s};
 }

@@ -31,8 +31,10 @@ struct DriveStep {
   double speed_rad_s = 0;
 };
 
-// The step's target for a motor at `motor_rad`. A drive command that is not finite applies no torque.
-DriveStep plan_drive(const JointDrive& drive, double holding_torque_nm, double motor_rad, double step_s);
+// The step's target for a motor at `motor_rad` of a joint at `position_rad`. The motor winds its spring up to the torque that it can push, and stalls there:
+// friction holds it against a load that is larger. A drive command that is not finite applies no torque.
+DriveStep plan_drive(const JointDrive& drive, double holding_torque_nm, const DrivenJoint& joint, double motor_rad, double position_rad,
+                     double step_s);
 
 // Sets the rows of a coordinate at `position_rad`, flanks and stops, and returns the torque that stalls against a stop (0 when it does not),
 // to be applied to the coordinate as it is.

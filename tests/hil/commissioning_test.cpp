@@ -133,13 +133,15 @@ INSTANTIATE_TEST_SUITE_P(AnyPlace, CommissioningFrom,
                                          Angles{-1.57, 0.001, 0.001, -3.14, 1.337}),
                          [](const testing::TestParamInfo<Angles>& test) { return "Number" + std::to_string(test.index); });
 
-// Drives whose friction is a fifth more or less than the core takes it for, and whose efficiencies are as drawn.
+// Drives whose friction is not what the core takes it for, and whose efficiencies are as drawn. The viscous part is three times or a fifth of what the core
+// believes: who keeps the belief, or finds none, is beyond the tolerance.
 TEST(CommissionedArm, HasItsFrictionFound) {
-  Bench bench(somewhere, parked, {}, [](hal::SimConfig& truth) {
+  const auto viscous_share = [](std::size_t joint) { return joint % 2 == 0 || joint == 3 ? 3.0 : 0.2; };
+  Bench bench(somewhere, parked, {}, [&](hal::SimConfig& truth) {
     for (std::size_t i = 0; i < joint_count; ++i) {
       devices::GearFriction& friction = truth.devices.drives[i].friction;
       friction.coulomb_nm *= i % 2 == 0 ? 1.2 : 0.8;
-      friction.viscous_nm_s *= i % 2 == 0 ? 0.8 : 1.2;
+      friction.viscous_nm_s *= viscous_share(i);
     }
   });
   Commissioning commissioning(bench.config());
@@ -149,14 +151,25 @@ TEST(CommissionedArm, HasItsFrictionFound) {
     ASSERT_TRUE(commissioning.friction_found()[i]) << config::joint_name(i);
     const config::JointFriction& found = commissioning.friction()[i];
     const devices::DriveConfig& drive = bench.drive(i);
-    EXPECT_NEAR(1e-3 * found.coulomb_mnm, drive.friction.coulomb_nm, 0.1 * drive.friction.coulomb_nm) << config::joint_name(i);
-    // At the top speed viscous friction is 4 % of the rated torque; it is found to 2 %, of the roll, which creeps below its stiction speed of
-    // 0.2 rad/s, to 6 %.
+    // The roll creeps below its stiction speed of 0.2 rad/s: its drive pulses, and its gear breaks away again and again.
+    const bool pulses = i == 3;
+    EXPECT_NEAR(1e-3 * found.coulomb_mnm, drive.friction.coulomb_nm, (pulses ? 0.3 : 0.1) * drive.friction.coulomb_nm)
+        << config::joint_name(i);
+    // At the top speed the viscous friction that the core believes in is 4 % of the rated torque; the true one, 12 % or 0.8 %, is found to 2 %, the roll's to 4 %.
     const double top_rad_s = 0.04 * drive.rated_torque_nm / bench.nominal().controller.transmissions[i].friction.viscous_nm_s;
     EXPECT_NEAR(1e-3 * found.viscous_mnm_s * top_rad_s, drive.friction.viscous_nm_s * top_rad_s,
-                (i == 3 ? 0.06 : 0.02) * drive.rated_torque_nm)
+                (pulses ? 0.04 : 0.02) * drive.rated_torque_nm)
         << config::joint_name(i);
     EXPECT_LT(found.rms_mnm, 20 * drive.rated_torque_nm) << config::joint_name(i) << ": 2 % of the rated torque";
+    // The doubt shrinks to what the fit left, and a twentieth for another day.
+    arm::Friction told = bench.nominal().controller.transmissions[i].friction;
+    const double before = told.doubt;
+    config::HomingOffsets offsets;
+    offsets.friction_known[i] = true;
+    offsets.friction[i] = found;
+    config::set_friction(offsets, i, told);
+    EXPECT_LT(told.doubt, before) << config::joint_name(i);
+    EXPECT_NEAR(told.doubt * told.coulomb_nm, 0.05 * told.coulomb_nm + 1e-3 * found.rms_mnm, 1e-9) << config::joint_name(i);
   }
 }
 

@@ -3,6 +3,9 @@
 // Friction is Coulomb's and viscous, at the motor, and grows with the load: the motor gives 1 / efficiency of what a load without friction would take, and
 // gets back back_efficiency of what it would give. Between the two the gear sticks: a motor that stands keeps the torque with which it came to rest, as
 // far as that neither moves the load nor is moved by it (the stop operator of Prandtl and Ishlinskii). A gear with a back efficiency of 0 or less locks itself.
+//
+// The core knows Coulomb's and viscous friction and the efficiencies only. Here a gear also takes more to break away than to keep moving, falling off with the
+// speed as Stribeck found, and rubs more one way than the other.
 #pragma once
 
 namespace lf::devices {
@@ -12,6 +15,8 @@ struct GearFriction {
   double viscous_nm_s = 0;  // per rad/s of the motor
   double efficiency = 1;
   double back_efficiency = 1;
+  double breakaway = 1;  // Coulomb friction of a motor that stands over that of one that moves; at least 1
+  double one_way = 0;    // share by which Coulomb friction is more forward and less backward
 };
 
 class GearTrain {
@@ -20,6 +25,8 @@ class GearTrain {
   static constexpr double smoothing_s = 0.016;
   // Slower than this the motor stands, rad/s: an eighth of a turn a second, 0.7 mrad/s at a joint.
   static constexpr double standing_rad_s = 0.5;
+  // The speed of the motor over which the greater friction of standing falls off: boundary lubrication ends at some turns a second.
+  static constexpr double stribeck_rad_s = 10;
   // What a locked gear holds before it breaks, at the joint.
   static constexpr double breaking_nm = 1000;
 
@@ -36,7 +43,9 @@ class GearTrain {
   double hold_nm(double motor_nm, double ratio) const;
 
  private:
-  double raising_nm(double load_nm) const;  // at the motor, less viscous friction: what turns it forward against this load
+  double coulomb_nm(double way, double motor_rad_s) const;
+  double turning_nm(double way,
+                    double load_nm) const;  // at the motor, less viscous friction: what turns it this way against or with this load
 
   GearFriction friction_;
   double load_nm_ = 0;  // over the ratio, smoothed

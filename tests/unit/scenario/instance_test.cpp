@@ -150,6 +150,27 @@ TEST(Truth, HasTheSamplesErrorsAndTheCoreHasNone) {
   EXPECT_GT(sample.camera_shift_m.norm(), 1e-6) << "otherwise this test says nothing";
 }
 
+// The core's own model of a gear is the description's, whatever the truth is.
+TEST(Truth, HasGearsOfWhichTheCoreKnowsLess) {
+  const auto drives_of = [](const std::vector<std::string>& overrides, Nominal& nominal) {
+    const Scenario scenario = load_scenario("default", overrides);
+    const Sample sample = draw(scenario, 1);
+    nominal = make_nominal(scenario, sample.lamps_lit);
+    return make_truth(scenario, sample, nominal, 1).devices.drives;
+  };
+  Nominal told, plainly_told;
+  const auto drives = drives_of({"friction.breakaway=1.5", "friction.one_way=0.2", "friction.pivot_m=0.0003"}, told);
+  const auto plain = drives_of({"friction.breakaway=1", "friction.one_way=0", "friction.pivot_m=0"}, plainly_told);
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    EXPECT_EQ(drives[i].friction.breakaway, 1.5);
+    EXPECT_EQ(drives[i].friction.one_way, 0.2);
+    const bool has_screw = plain[i].actuator.pivot_a_m > 0;
+    EXPECT_NEAR(drives[i].actuator.pivot_a_m - plain[i].actuator.pivot_a_m, has_screw ? 0.0003 : 0, 1e-12);
+    EXPECT_EQ(told.controller.transmissions[i].friction.coulomb_nm, plainly_told.controller.transmissions[i].friction.coulomb_nm);
+  }
+  EXPECT_GT(plain[1].actuator.pivot_a_m, 0) << "otherwise this test says nothing";
+}
+
 TEST(Truth, WithoutErrorsTheWorldIsAsTheCoreIsTold) {
   const Scenario scenario =
       load_scenario("default", {"docking.x_m=0", "docking.y_m=0", "docking.z_m=0", "docking.roll_deg=0", "docking.pitch_deg=0",

@@ -230,33 +230,41 @@ TEST(ArmBody, commandThatIsNotANumberGivesNoTorque) {
   EXPECT_TRUE(std::isfinite(bench.reading(elbow).position_rad));
 }
 
-// Friction helps a gear that is pushed back: what the motor cannot raise it still holds, whichever way it tries.
-TEST(ArmBody, AGearHoldsMoreThanItPushes) {
+// The arm's weight on the shoulder, N m, and how far a drive of these shares of it comes in half a second, positive against the load.
+struct Lifting {
+  double load_nm = 0, way_rad = 0, torque_nm = 0;
+};
+Lifting lift(double speed_rad_s, double push_share, double hold_share) {
   WorldConfig config = nominal_config();
   for (ArmLink& link : config.arm.links) link.wet_weight_n = 9.81 * link.mass_kg;
-  Bench held(config);
-  held.run(1, hold());
-  const double load_nm = held.reading(shoulder).torque_nm;
+  Bench bench(config);
+  bench.run(1, hold());
+  Lifting lifting;
+  lifting.load_nm = bench.reading(shoulder).torque_nm;
+  const double up = std::copysign(1.0, lifting.load_nm), load_nm = std::abs(lifting.load_nm),
+               before_rad = bench.reading(shoulder).position_rad;
+  JointDrives drives = hold();
+  drives[shoulder] = {up * speed_rad_s, push_share * load_nm, false, hold_share * load_nm};
+  bench.run(0.5, drives);
+  lifting.way_rad = up * (bench.reading(shoulder).position_rad - before_rad);
+  lifting.torque_nm = bench.reading(shoulder).torque_nm;
+  return lifting;
+}
+
+// Friction helps a gear that is pushed back: between the torque that it pushes with and the torque that it holds, it stalls, whichever way it tries.
+TEST(ArmBody, AGearHoldsMoreThanItPushes) {
+  constexpr double speed_rad_s = 0.02, way_rad = 0.5 * speed_rad_s;
+  const double load_nm = lift(0, 2, 2).load_nm;
   ASSERT_GT(std::abs(load_nm), 10);
-  for (const double way : {0.0}) {  // a drive that moves slips at its push: not modelled there
-    for (const bool rubs : {false, true}) {
-      Bench bench(config);
-      bench.run(1, hold());
-      const double before = bench.reading(shoulder).position_rad;
-      JointDrives drives = hold();
-      drives[shoulder] = {way * 0.02, 0.5 * std::abs(load_nm), false, rubs ? 1.5 * std::abs(load_nm) : 0};
-      bench.run(0.5, drives);
-      const double fell_rad = -std::copysign(1.0, load_nm) * (bench.reading(shoulder).position_rad - before);
-      if (!rubs) {
-        EXPECT_GT(fell_rad, 0.05) << way;
-      } else if (way * load_nm >= 0) {
-        EXPECT_LT(std::abs(fell_rad), 0.006) << way;
-        EXPECT_NEAR(bench.reading(shoulder).torque_nm, load_nm, 0.05 * std::abs(load_nm)) << way;
-      } else {
-        EXPECT_NEAR(fell_rad, 0.01, 0.006) << "it is let down at the drive's speed";
-      }
-    }
+  EXPECT_NEAR(lift(speed_rad_s, 1.5, 2).way_rad, way_rad, 0.003) << "it lifts what it can push";
+  for (const double asked_rad_s : {0.0, speed_rad_s}) {
+    SCOPED_TRACE(asked_rad_s);
+    const Lifting stalled = lift(asked_rad_s, 0.5, 1.5);
+    EXPECT_NEAR(stalled.way_rad, 0, 0.003);
+    EXPECT_NEAR(stalled.torque_nm, load_nm, 0.05 * std::abs(load_nm));
+    EXPECT_LT(lift(asked_rad_s, 0.5, 0.5).way_rad, -0.05) << "what it does not hold falls";
   }
+  EXPECT_NEAR(lift(-speed_rad_s, 0.5, 1.5).way_rad, -way_rad, 0.006) << "it lets down at its own speed";
 }
 
 }  // namespace
