@@ -59,7 +59,7 @@ void ClearWay::begin(const JointVector& from_rad, const Surroundings& surroundin
   reach_m_ = reach_m(room.jaw);
   jaw_reach_m_ = jaw_reach_m();
   jaw_rad_ = room.jaw.low_rad;
-  kept_ = at_first;
+  at_first_ = kept_ = at_first;
   wanted_ = wanted;
   nearest_ = nowhere_near;
   slack_m_ = least_slack_m_ = HUGE_VAL;
@@ -92,10 +92,13 @@ void ClearWay::move_on() {
 }
 
 void ClearWay::keep_half_of_what_is_gained() {
-  const auto keep = [](double kept_m, double nearest_m, double wanted_m) { return std::max(kept_m, std::min(wanted_m, nearest_m / 2)); };
-  kept_.panel_m = keep(kept_.panel_m, nearest_.panel_m, wanted_.panel_m);
-  kept_.vehicle_m = keep(kept_.vehicle_m, nearest_.vehicle_m, wanted_.vehicle_m);
-  kept_.itself_m = keep(kept_.itself_m, nearest_.itself_m, wanted_.itself_m);
+  const auto keep = [this](double Distances::*of) {
+    const double half_gained_m = (at_first_.*of + nearest_.*of) / 2;
+    kept_.*of = std::max(kept_.*of, std::min(wanted_.*of, half_gained_m));
+  };
+  keep(&Distances::panel_m);
+  keep(&Distances::vehicle_m);
+  keep(&Distances::itself_m);
   nearest_ = nowhere_near;
 }
 

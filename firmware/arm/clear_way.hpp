@@ -47,14 +47,14 @@ class ClearWay {
   JointVector way_rad_ = JointVector::Zero();
   JointVector reach_m_ = JointVector::Zero();  // how far a radian of each joint moves any point, at most
   double jaw_reach_m_ = 0;
-  Distances kept_;        // by the next pose
-  Distances wanted_;      // in the end
-  Distances nearest_;     // of the pose at `fraction_`, over the jaw's angles so far
-  double longest_m_ = 0;  // that any point of the arm moves on the whole stretch, at most
-  double fraction_ = 0;   // of the next pose
-  double jaw_rad_ = 0;    // of the next pose
-  double slack_m_ = 0;    // of the pose at `fraction_`, over the jaw's angles so far
-  double budget_m_ = 0;   // how far any point may move before the next pose has to be looked at
+  Distances at_first_, kept_;  // the latter by the next pose
+  Distances wanted_;           // in the end
+  Distances nearest_;          // of the pose at `fraction_`, over the jaw's angles so far
+  double longest_m_ = 0;       // that any point of the arm moves on the whole stretch, at most
+  double fraction_ = 0;        // of the next pose
+  double jaw_rad_ = 0;         // of the next pose
+  double slack_m_ = 0;         // of the pose at `fraction_`, over the jaw's angles so far
+  double budget_m_ = 0;        // how far any point may move before the next pose has to be looked at
   int poses_ = 0;
   State state_ = State::blocked;
   Barrier barrier_ = Barrier::none;

@@ -16,7 +16,9 @@ Words words(StepFailure failure) {
     case StepFailure::no_motion: return {"no way there", "Something stands in every way that was tried: check the panel's layout."};
     case StepFailure::early_contact: return {"touched something before the aim", "Check the panel's layout and what hangs before it."};
     case StepFailure::no_contact: return {"nothing to touch where the aim should be", "Check the panel's layout."};
-    case StepFailure::not_gripped: return {"nothing held", "Check panel.handle_thickness_m, and the jaw's torque."};
+    case StepFailure::not_gripped:
+      return {"the jaw holds nothing",
+              "Check panel.handle_thickness_m, the jaw's torque, and that each joint stands where its encoder says."};
     case StepFailure::wrong_angle: return {"the handle is not where it was turned to", "Check valve.stop_min_deg and valve.stop_max_deg."};
     case StepFailure::no_panel:
       return {"no panel seen",

@@ -17,11 +17,13 @@ constexpr std::uint32_t first_tpdo = 0x180, first_rpdo = 0x200, sdo_request = 0x
 const std::vector<FaultRule>& rules() {
   using enum Demand;
   // What a drive does that gets wrong readings or does not obey.
-  static const std::vector<std::string> misbehaves{"drive fault", "following error", "stale position",     "joint limit",
-                                                   "overspeed",   "overload",        "unexpected contact", "the jaw does not open"};
-  // A false position moves the computed place of the tool, which all joints make. An arm that stands elsewhere than it believes touches what lies there:
+  static const std::vector<std::string> misbehaves{
+      "drive fault", "following error",    "stale position",        "joint limit",          "overspeed",
+      "overload",    "unexpected contact", "the jaw does not open", "the jaw holds nothing"};
+  // A false position moves the computed place of the tool, which all joints make. An arm that stands elsewhere than it believes touches what lies there, and grips beside the bar:
   // the joint that feels it most is not the one that reads wrongly.
-  static const std::vector<std::string> led_astray{"tool outside its workspace", "unexpected contact", "touched something"};
+  static const std::vector<std::string> led_astray{"tool outside its workspace", "unexpected contact", "touched something",
+                                                   "the jaw holds nothing"};
   // A torque that stands still is felt nowhere: the core sees a press that meets nothing, and no joint that would differ from the others.
   static const std::vector<std::string> feels_nothing{"torque reading stands still"};
   static const std::vector<std::string> link{"node lost", "node rebooted", "stale position", "drive fault", "boot failed"};
@@ -73,7 +75,7 @@ const std::vector<FaultRule>& rules() {
       {"vision_late", go_on, Report::none, 0, {}, {}},
       {"vision_silent", safe_end, Report::none, 0, sight, {}},
       {"vision_poor", safe_end, Report::none, 0, sight, {}},
-      {"handle_breaks", safe_end, Report::none, 0, {"grip lost", "nothing held", "nothing to touch", "contact", "handle"}, {}},
+      {"handle_breaks", safe_end, Report::none, 0, {"grip lost", "holds nothing", "nothing to touch", "contact", "handle"}, {}},
       {"obstacle", safe_end, Report::none, 0, misbehaves, led_astray},
       {"abort_ordered", safe_end, Report::none, 0, {"aborted"}, {}},
       {"estop_ordered", stop, Report::at_once, 0, {"emergency stop"}, {}},
