@@ -68,6 +68,8 @@ void add_machine(Keys& all, Scenario& s) {
   all.push_back(key("jaw.pad_friction", "", 0, 3, &s.jaw.pad_friction, "friction of the finger pads; 0: as the URDF says"));
   all.push_back(key("physics.restitution", "", 0, 1, &s.physics.restitution, "of every contact"));
   all.push_back(key("physics.joint_drag_nm_s", "N m s/rad", 0, 100, &s.physics.joint_drag_nm_s, "drag of the water on each joint"));
+  all.push_back(key("physics.drag_coefficient", "", 0, 3, &s.physics.drag_coefficient,
+                    "of the water on the links, across them; a cylinder's is 1.1"));
   all.push_back(key("physics.torque_noise_ratio", "", 0, 1, &s.physics.torque_noise_ratio,
                     "1 sigma of a drive's torque reading over its rated torque"));
   all.push_back(

@@ -128,6 +128,7 @@ Physics::Physics() {
   const world::WorldConfig world;
   restitution = world.restitution;
   joint_drag_nm_s = world.joint_drag_nm_s;
+  drag_coefficient = world.drag_coefficient;
   const devices::DriveConfig drive;
   torque_noise_ratio = drive.torque_noise_ratio;
   water_celsius = drive.water_celsius;

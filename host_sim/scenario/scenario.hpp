@@ -96,6 +96,7 @@ struct Physics {
   Physics();  // those of world::WorldConfig and devices::DriveConfig
   double restitution = 0;
   double joint_drag_nm_s = 0;
+  double drag_coefficient = 0;
   double torque_noise_ratio = 0;
   double water_celsius = 0;
 };

@@ -67,6 +67,7 @@ world::WorldConfig world_config(const Scenario& scenario, const Sample& sample) 
   for (const std::string& name : scenario.buttons.missing)
     world.scene[std::size_t(scene::BodyId::button_left) + button_of(name)].shapes.clear();
   world.joint_drag_nm_s = scenario.physics.joint_drag_nm_s;
+  world.drag_coefficient = scenario.physics.drag_coefficient;
   world.restitution = scenario.physics.restitution;
   return world;
 }

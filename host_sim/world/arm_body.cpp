@@ -56,6 +56,7 @@ void ArmBody::set_up_links() {
     if (com_from_frame.linear().determinant() < 0) com_from_frame.linear().col(2) *= -1;
     link_from_frame_[index] = description.link_from_com * com_from_frame;
     principal_kg_m2_[index] = axes.eigenvalues();
+    drag_[index] = LinkDrag(description.shapes, link_from_frame_[index].inverse());
 
     const ArmJoint& joint = joint_before(arm_, link);
     const int parent = parent_of(link);
@@ -108,6 +109,19 @@ void ArmBody::before_step() {
     body.addJointTorque(link, stall_nm_[joint] / driven_links(joint) - drag_nm_s * body.getJointVel(link));
     body.addLinkForce(link, btVector3(0, 0, arm_.links[body_of(link)].wet_weight_n));
   }
+  if (config_.drag_coefficient > 0) add_drag();
+}
+
+void ArmBody::add_drag() {
+  const LinkMotions motions = link_motions();
+  for (int link = 0; link < bullet_links; ++link) {
+    const auto index = body_of(link);
+    const Mat3 turn = part_.base_from_link(link).linear();
+    const LinkDrag::Wrench drag = drag_[index].at(turn.transpose() * motions.speed_m_s[index], turn.transpose() * motions.turn_rad_s[index],
+                                                  config_.drag_coefficient);
+    part_.body().addLinkForce(link, to_bullet(Vec3(turn * drag.force_n)));
+    part_.body().addLinkTorque(link, to_bullet(Vec3(turn * drag.torque_nm)));
+  }
 }
 
 void ArmBody::after_step() {
@@ -124,25 +138,33 @@ Pose ArmBody::base_from_link(std::size_t link) const {
 
 Pose ArmBody::base_from_tool() const { return base_from_link(4) * arm_.wrist_from_tool; }
 
-double ArmBody::kinetic_energy_j() const {
-  // Velocities of the links from the joints', outward along the chain.
+// Velocities of the links from the joints', outward along the chain.
+ArmBody::LinkMotions ArmBody::link_motions() const {
   const btMultiBody& body = part_.body();
-  std::array<Vec3, ArmDescription::link_count> turn;
-  std::array<Vec3, ArmDescription::link_count> speed;  // of the centre of mass
-  turn[0] = speed[0] = Vec3::Zero();
-  double energy = 0;
+  LinkMotions motions;
+  motions.turn_rad_s[0] = motions.speed_m_s[0] = Vec3::Zero();
   for (int link = 0; link < bullet_links; ++link) {
     const auto index = body_of(link);
     const auto parent = body_of(parent_of(link));
-    const Pose frame = part_.base_from_link(link);
     const Pose origin = base_from_link(index);
     const Vec3 axis = origin.linear() * joint_before(arm_, link).axis.normalized();
-    turn[index] = turn[parent] + axis * body.getJointVel(link);
-    const Vec3 at_origin = speed[parent] + turn[parent].cross(origin.translation() - part_.base_from_link(parent_of(link)).translation());
-    speed[index] = at_origin + turn[index].cross(frame.translation() - origin.translation());
-    const Vec3 in_frame = frame.linear().transpose() * turn[index];
-    energy +=
-        0.5 * arm_.links[index].mass_kg * speed[index].squaredNorm() + 0.5 * in_frame.dot(principal_kg_m2_[index].cwiseProduct(in_frame));
+    const Vec3 turn = motions.turn_rad_s[parent] + axis * body.getJointVel(link);
+    const Vec3 from_parent = origin.translation() - part_.base_from_link(parent_of(link)).translation();
+    const Vec3 at_origin = motions.speed_m_s[parent] + motions.turn_rad_s[parent].cross(from_parent);
+    motions.turn_rad_s[index] = turn;
+    motions.speed_m_s[index] = at_origin + turn.cross(part_.base_from_link(link).translation() - origin.translation());
+  }
+  return motions;
+}
+
+double ArmBody::kinetic_energy_j() const {
+  const LinkMotions motions = link_motions();
+  double energy = 0;
+  for (int link = 0; link < bullet_links; ++link) {
+    const auto index = body_of(link);
+    const Vec3 in_frame = part_.base_from_link(link).linear().transpose() * motions.turn_rad_s[index];
+    energy += 0.5 * arm_.links[index].mass_kg * motions.speed_m_s[index].squaredNorm() +
+              0.5 * in_frame.dot(principal_kg_m2_[index].cwiseProduct(in_frame));
   }
   return energy;
 }

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "host_sim/world/drive_rows.hpp"
+#include "host_sim/world/link_drag.hpp"
 #include "host_sim/world/multibody_part.hpp"
 #include "shared/arm/arm_description.hpp"
 
@@ -17,6 +18,7 @@ class ArmBody {
     std::array<double, joint_count> drive_stiffness_nm_rad{};
     double restitution = 0;
     double step_s = 0.001;
+    double drag_coefficient = 0;  // of the links, across
   };
 
   ArmBody(const ArmDescription& arm, const scene::Scene& scene, const Config& config);
@@ -39,6 +41,12 @@ class ArmBody {
   static constexpr int bullet_links = int(ArmDescription::link_count) - 1;  // Bullet counts the base as -1
 
   void set_up_links();
+  struct LinkMotions {
+    std::array<Vec3, ArmDescription::link_count> turn_rad_s;
+    std::array<Vec3, ArmDescription::link_count> speed_m_s;  // of the centre of mass
+  };
+  LinkMotions link_motions() const;
+  void add_drag();
   void start_at(const std::array<double, joint_count>& start_rad);
   double position_rad(std::size_t joint) const;
   double velocity_rad_s(std::size_t joint) const;
@@ -51,6 +59,7 @@ class ArmBody {
   std::array<double, joint_count> stall_nm_{};
   std::array<Pose, ArmDescription::link_count> link_from_frame_;  // Bullet's link frames: centre of mass, principal axes
   std::array<Vec3, ArmDescription::link_count> principal_kg_m2_;
+  std::array<LinkDrag, ArmDescription::link_count> drag_;  // in Bullet's link frames
   std::array<DriveStep, joint_count> plan_{};
   std::array<double, joint_count> motor_rad_{};
   JointDrives drives_{};

@@ -71,6 +71,7 @@ void check(const WorldConfig& config) {
   for (std::size_t i = 0; i < PanelLayout::button_count; ++i) check_button(config.buttons[i], button_names[i]);
   check_arm(config);
   expect_not_negative(config.joint_drag_nm_s, "joint_drag_nm_s");
+  expect_not_negative(config.drag_coefficient, "drag_coefficient");
   expect(config.restitution >= 0 && config.restitution <= 1, "restitution", "must lie in 0..1");
   expect(config.step_s > 0 && config.step_s <= 0.01, "step_s", "must lie in 0..0.01");
   expect(config.force_window_s >= config.step_s && config.force_window_s <= 10, "force_window_s", "must lie in step_s..10");

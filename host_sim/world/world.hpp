@@ -57,6 +57,8 @@ struct WorldConfig {
   // What screws, links and pads give way by under load, lumped at the joints; 0 rigid. 4000 N m/rad is 30 kN/m at the tool, and 0.2 mm of sag from the arm's
   // weight in water.
   std::array<double, joint_count> drive_stiffness_nm_rad{1500, 4000, 4000, 1000, 1000};
+  double drag_coefficient =
+      1.1;  // of the links across the flow: a cylinder's at Reynolds numbers of 1e3 to 1e5 (Hoerner, Fluid-Dynamic Drag, 1965)
   double joint_drag_nm_s = 0.5;  // viscous, each arm joint in water, per rad/s; the jaw's fingers a tenth of it
   double restitution = 0;        // of every contact
   double step_s = 0.001;
