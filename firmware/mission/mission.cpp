@@ -207,10 +207,12 @@ Progress Mission::work(const StepTick& tick) {
     motions_before_ = bench_.motion.begun();
     const bool takes_hold = step_ == Step::grip || step_ == Step::free_jaw;
     if (!yielding() || takes_hold) bench_.stay_where_pushed();
+    bench_.grip_guard.reset();
     if (step_ == Step::held) bench_.stay_where_measured();
     const Progress begun = begin(tick);
     if (!begun.is_running()) return begun;
   }
+  watch_grip(tick);
   const Progress progress = run(tick);
   expect_duration();
   return progress;
@@ -287,6 +289,13 @@ void Mission::drive(const StepTick& tick) {
   const double jaw_rad = bench_.gripper.update(joints().t, joints().position_rad[jaw],
                                                {joints().torque_nm[jaw], joints().torque_low_nm[jaw], joints().torque_high_nm[jaw]});
   tick.network.axis(Joint::jaw).set_target_counts(arm::counts_from_rad(Joint::jaw, jaw_rad));
+}
+
+// A slew that runs off squeezes the bar against the jaw long before it is an overload, which friction hides from its motor.
+void Mission::watch_grip(const StepTick& tick) {
+  if (!yielding() || !bench_.powered || !joints().valid) return;
+  bench_.grip_guard.update(joints().t, bench_.pushed_target(), bench_.measured_rad(), bench_.measured_nm());
+  if (bench_.grip_guard.touched()) tick.faults.report(Fault::following_error, static_cast<std::int32_t>(bench_.grip_guard.joint()));
 }
 
 void Mission::report(const StepTick& tick) {

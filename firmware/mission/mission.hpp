@@ -99,6 +99,7 @@ class Mission {
   bool yielding() const;
   void expect_duration();
   void drive(const StepTick& tick);
+  void watch_grip(const StepTick& tick);
   void report(const StepTick& tick);
 
   Workbench bench_;

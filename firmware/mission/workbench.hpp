@@ -46,6 +46,7 @@ struct Workbench {
   Motion motion;
   arm::Gripper gripper;
   arm::Compliance compliance;     // of the arm while it grips
+  arm::GuardedMotion grip_guard;  // of the same: what leaves its place by more than that gives way is driven off it
   arm::GuardedMotion back_guard;  // of the way out of a contact
   PanelMap map;
   Job job;
