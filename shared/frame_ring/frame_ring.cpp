@@ -101,8 +101,10 @@ bool FrameRingReader::load(void* to, std::size_t from, std::size_t bytes) const 
     return true;
   }
   if (file_->read(to, offset_ + from, bytes) != 0) return false;
+#ifndef __SANITIZE_THREAD__  // GCC refuses a fence there
   // The kernel has copied with this thread's loads. Later loads, the kernel's too, stay behind them.
   std::atomic_thread_fence(std::memory_order_acquire);
+#endif
   return true;
 }
 
