@@ -16,7 +16,12 @@ constexpr Duration look_again = Duration::from_ms(1);
 PortStatus RingCamera::open() {
   if (config_.offset >= config_.bytes || config_.offset % frame_ring_page != 0) return EINVAL;
   if (const int error = file_.open(config_.path, config_.bytes); error != 0) return error;
-  reader_ = FrameRingReader(file_.bytes().subspan(config_.offset));
+  std::uint64_t word = 0;
+  if (const int error = file_.read(&word, config_.offset, sizeof word); error != 0) {
+    file_.close();
+    return error;
+  }
+  reader_ = FrameRingReader(file_, config_.offset, config_.bytes - config_.offset);
   return port_ok;
 }
 

@@ -1,5 +1,8 @@
 // A camera whose frames come through a shared frame ring (shared/frame_ring): the simulator's, on this machine or beyond a guest's border.
 //
+// The file is read, not mapped: whatever others do to it, the camera is silent at worst. A file that is shortened gives no frames until it has its size again
+// and a writer has laid the ring out anew. One that is deleted or replaced stays the one that was opened.
+//
 // Frames carry the trigger counter that asked for them, so that they are matched with their exposures whatever the writer's clock says.
 #pragma once
 
@@ -9,7 +12,7 @@
 
 #include "hal/ports.hpp"
 #include "shared/frame_ring/frame_ring.hpp"
-#include "shared/frame_ring/mapped_file.hpp"
+#include "shared/frame_ring/shared_file.hpp"
 #include "shared/messages/image.hpp"
 
 namespace lf::hal {
@@ -24,7 +27,7 @@ class RingCamera {
 
   explicit RingCamera(const Config& config) : config_(config) {}
 
-  // 0, or errno. A ring that nobody has laid out yet is no error: it is waited for.
+  // 0, or errno: ESPIPE for a pipe or socket. A ring that nobody has laid out yet is no error: it is waited for.
   PortStatus open();
   // Takes one frame, oldest first; port_empty when there is none; EPROTO for a ring of another layout. Its pixels stay valid until the next call.
   PortStatus receive(Image& image);
@@ -37,7 +40,7 @@ class RingCamera {
 
  private:
   Config config_;
-  MappedFile file_;
+  SharedFile file_;
   FrameRingReader reader_;
   std::vector<std::byte> pixels_ = std::vector<std::byte>(camera_ring_payload);
   RecordInfo info_;

@@ -1,6 +1,7 @@
 #include "shared/frame_ring/frame_ring.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 #include <new>
 
@@ -11,6 +12,7 @@ namespace {
 constexpr std::size_t record_header_bytes = 128;
 constexpr std::size_t word = sizeof(std::uint64_t);
 constexpr std::uint32_t most_slots = 4096;
+constexpr int most_head_readings = 8;  // a camera's writer changes its header every 40 ms, a reading takes a microsecond
 static_assert(sizeof(RecordInfo) % word == 0);
 
 std::size_t round_up(std::size_t bytes, std::size_t to) { return (bytes + to - 1) / to * to; }
@@ -90,55 +92,81 @@ void FrameRingWriter::beat(std::int64_t now_ns) {
   if (header_ != nullptr) header_->writer_beat_ns.store(now_ns, std::memory_order_relaxed);
 }
 
-FrameRingReader::Answer FrameRingReader::attach(Layout& layout) {
-  if (memory_.size() < frame_ring_page || !aligned(memory_.data())) return Answer::other_layout;
-  const auto* header = reinterpret_cast<const RingHeader*>(memory_.data());
-  if (header->magic.load(std::memory_order_acquire) != frame_ring_magic) return Answer::no_ring;
-  const std::uint64_t slots = header->slots.load(), slot_bytes = header->slot_bytes.load(), payload = header->payload_bytes.load();
-  const bool fits = header->version.load() == frame_ring_version && slots >= 2 && slots <= most_slots &&
-                    payload + record_header_bytes <= slot_bytes && slot_bytes % record_header_bytes == 0 &&
-                    frame_ring_page + slots * slot_bytes <= memory_.size();
-  if (!fits) return Answer::other_layout;
-  layout = {slots, slot_bytes};
-  const std::uint64_t generation = header->generation.load();
-  if (generation != generation_) {
-    // What was written before this reader came is old news; what a new writer has written since it started is not.
-    next_ = generation_ == 0 ? header->published.load(std::memory_order_acquire) : 0;
-    if (generation_ != 0) ++stats_.restarts;
-    generation_ = generation;
+FrameRingReader::FrameRingReader(std::span<const std::byte> memory)
+    : memory_(memory.data()), bytes_(aligned(memory.data()) ? memory.size() : 0) {}
+
+bool FrameRingReader::load(void* to, std::size_t from, std::size_t bytes) const {
+  if (file_ == nullptr) {
+    load_words(to, memory_ + from, bytes);
+    return true;
   }
+  if (file_->read(to, offset_ + from, bytes) != 0) return false;
+#ifndef __SANITIZE_THREAD__  // GCC refuses a fence there
+  // The kernel has copied with this thread's loads. Later loads, the kernel's too, stay behind them.
+  std::atomic_thread_fence(std::memory_order_acquire);
+#endif
+  return true;
+}
+
+FrameRingReader::Answer FrameRingReader::load_head(Head& head) const {
+  if (!load(&head, 0, sizeof head)) return Answer::no_ring;
+  // The kernel need not copy a number in one piece. One that two readings agree on was not being written.
+  bool settled = file_ == nullptr;
+  for (int again = 0; !settled && again < most_head_readings; ++again) {
+    const Head before = head;
+    if (!load(&head, 0, sizeof head)) return Answer::no_ring;
+    settled = std::memcmp(&head, &before, sizeof head) == 0;
+  }
+  if (!settled) return Answer::empty;
+  return head.magic == frame_ring_magic ? Answer::record : Answer::no_ring;
+}
+
+FrameRingReader::Answer FrameRingReader::attach(Head& head) {
+  if (bytes_ < frame_ring_page) return Answer::other_layout;
+  if (const Answer answer = load_head(head); answer != Answer::record) return answer;
+  const std::uint64_t slots = head.slots, slot_bytes = head.slot_bytes, payload = head.payload_bytes;
+  const bool fits = head.version == frame_ring_version && slots >= 2 && slots <= most_slots &&
+                    payload + record_header_bytes <= slot_bytes && slot_bytes % record_header_bytes == 0 &&
+                    frame_ring_page + slots * slot_bytes <= bytes_;
+  if (!fits) return Answer::other_layout;
+  if (head.generation != generation_) {
+    // What was written before this reader came is old news; what a new writer has written since it started is not.
+    next_ = generation_ == 0 ? head.published : 0;
+    if (generation_ != 0) ++stats_.restarts;
+    generation_ = head.generation;
+  }
+  // A file that was emptied has lost its generation, too: the writer that lays the ring out again counts from 1, as the first one did.
+  if (head.published < next_) next_ = 0;
   return Answer::record;
 }
 
+bool FrameRingReader::copy_record(std::uint64_t number, const Head& head, RecordInfo& info, std::span<std::byte> payload) const {
+  const std::size_t place = frame_ring_page + number % head.slots * head.slot_bytes;
+  const std::uint64_t whole = 2 * number + 2;
+  std::uint64_t ticket = 0, generation = 0;
+  if (!load(&ticket, place + offsetof(RecordHeader, ticket), sizeof ticket) || ticket != whole) return false;
+  if (!load(&info, place + offsetof(RecordHeader, info), sizeof info)) return false;
+  const std::size_t bytes = std::min({std::size_t{info.bytes}, payload.size(), head.slot_bytes - record_header_bytes});
+  if (!load(payload.data(), place + record_header_bytes, bytes)) return false;
+  return load(&ticket, place + offsetof(RecordHeader, ticket), sizeof ticket) && ticket == whole &&
+         load(&generation, offsetof(RingHeader, generation), sizeof generation) && generation == generation_;
+}
+
 FrameRingReader::Answer FrameRingReader::take(RecordInfo& info, std::span<std::byte> payload) {
-  Layout layout;
-  if (const Answer answer = attach(layout); answer != Answer::record) return answer;
-  const auto [slots, slot_bytes] = layout;
-  const auto* header = reinterpret_cast<const RingHeader*>(memory_.data());
-  for (std::uint64_t round = 0; round < slots; ++round) {
-    const std::uint64_t published = header->published.load(std::memory_order_acquire);
-    if (published <= next_) return Answer::empty;
-    if (published - next_ > slots) {
-      stats_.missed += published - slots - next_;
-      next_ = published - slots;
-    }
-    const std::byte* place = memory_.data() + frame_ring_page + (next_ % slots) * slot_bytes;
-    const auto* record = reinterpret_cast<const RecordHeader*>(place);
-    const std::uint64_t whole = 2 * next_ + 2;
-    const bool there = record->ticket.load(std::memory_order_acquire) == whole;
+  Head head;
+  if (const Answer answer = attach(head); answer != Answer::record) return answer;
+  if (head.published > next_ && head.published - next_ > head.slots) {
+    stats_.missed += head.published - head.slots - next_;
+    next_ = head.published - head.slots;
+  }
+  while (next_ < head.published) {
     RecordInfo read;
-    if (there) {
-      load_words(&read, reinterpret_cast<const std::byte*>(&record->info), sizeof read);
-      const std::size_t bytes = std::min({std::size_t{read.bytes}, payload.size(), slot_bytes - record_header_bytes});
-      load_words(payload.data(), place + record_header_bytes, bytes);
-    }
-    ++next_;
-    if (!there || record->ticket.load(std::memory_order_acquire) != whole || header->generation.load() != generation_) {
+    if (!copy_record(next_++, head, read, payload)) {
       ++stats_.torn;
       ++stats_.missed;
       continue;
     }
-    if (read.bytes > slot_bytes - record_header_bytes) {
+    if (read.bytes > head.slot_bytes - record_header_bytes) {
       ++stats_.malformed;
       continue;
     }
@@ -150,9 +178,10 @@ FrameRingReader::Answer FrameRingReader::take(RecordInfo& info, std::span<std::b
 }
 
 std::int64_t FrameRingReader::writer_beat_ns() const {
-  if (memory_.size() < frame_ring_page || !aligned(memory_.data())) return 0;
-  const auto* header = reinterpret_cast<const RingHeader*>(memory_.data());
-  return header->magic.load(std::memory_order_acquire) == frame_ring_magic ? header->writer_beat_ns.load(std::memory_order_relaxed) : 0;
+  std::uint64_t magic = 0;
+  std::int64_t beat = 0;
+  if (bytes_ < frame_ring_page || !load(&magic, offsetof(RingHeader, magic), sizeof magic) || magic != frame_ring_magic) return 0;
+  return load(&beat, offsetof(RingHeader, writer_beat_ns), sizeof beat) ? beat : 0;
 }
 
 }  // namespace lf

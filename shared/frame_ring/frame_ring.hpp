@@ -19,6 +19,8 @@
 #include <cstdint>
 #include <span>
 
+#include "shared/frame_ring/shared_file.hpp"
+
 namespace lf {
 
 // What is said of a record. Of a camera's frame everything counts; of other records what their kind says.
@@ -91,20 +93,22 @@ class FrameRingReader {
   enum class Answer : std::uint8_t {
     record,       // `info` and `payload` are a whole record
     empty,        // nothing new
-    no_ring,      // nobody has laid a ring out here yet
+    no_ring,      // nobody has laid a ring out here yet, or its file cannot be read: it is shorter than it was
     other_layout  // another version, or sizes that do not fit the memory
   };
 
   struct Stats {
     std::uint64_t records = 0;
     std::uint64_t missed = 0;     // overwritten before they were read
-    std::uint64_t torn = 0;       // overwritten while they were read; among the missed
+    std::uint64_t torn = 0;       // overwritten, or cut off with the end of the file, while they were read; among the missed
     std::uint32_t malformed = 0;  // records whose header makes no sense
     std::uint32_t restarts = 0;   // of the writer
   };
 
   // `memory` outlives the reader. Whether there is a ring in it is seen at each take(): the writer may come later. Records from before are passed over.
-  explicit FrameRingReader(std::span<const std::byte> memory = {}) : memory_(memory) {}
+  explicit FrameRingReader(std::span<const std::byte> memory = {});
+  // The ring in `bytes` of `file` from `offset` on; `file` is open and outlives the reader. Nothing that others do to the file ends the process.
+  FrameRingReader(const SharedFile& file, std::size_t offset, std::size_t bytes) : file_(&file), offset_(offset), bytes_(bytes) {}
 
   // Copies the oldest record not read yet into `payload`, which has room for the ring's payload_bytes; at most its size is copied. Never blocks.
   Answer take(RecordInfo& info, std::span<std::byte> payload);
@@ -113,13 +117,25 @@ class FrameRingReader {
   const Stats& stats() const { return stats_; }
 
  private:
-  // Read once and checked: the other side may change the memory's numbers at any time.
-  struct Layout {
-    std::uint64_t slots = 0, slot_bytes = 0;
+  // The header's numbers, read once and checked: the other side may change them at any time.
+  struct Head {
+    std::uint64_t magic = 0;
+    std::uint32_t version = 0, slot_bytes = 0, slots = 0, payload_bytes = 0;
+    std::uint64_t generation = 0, published = 0;
   };
-  Answer attach(Layout& layout);
+  static_assert(sizeof(Head) == offsetof(RingHeader, writer_beat_ns));
 
-  std::span<const std::byte> memory_;
+  // False when the file does not reach so far.
+  bool load(void* to, std::size_t from, std::size_t bytes) const;
+  // `record` when there is a head; `empty` when it changed in all readings.
+  Answer load_head(Head& head) const;
+  Answer attach(Head& head);
+  // Copies record `number` out. False when it is not there, or no longer.
+  bool copy_record(std::uint64_t number, const Head& head, RecordInfo& info, std::span<std::byte> payload) const;
+
+  const std::byte* memory_ = nullptr;  // or the file
+  const SharedFile* file_ = nullptr;
+  std::size_t offset_ = 0, bytes_ = 0;
   std::uint64_t generation_ = 0;
   std::uint64_t next_ = 0;  // number of the record to be read
   Stats stats_;

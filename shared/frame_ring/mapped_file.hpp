@@ -1,4 +1,6 @@
-// A file of fixed size in memory, shared with another process or, as User Mode Linux's /dev/mmapper, with another kernel.
+// A shared file (shared_file.hpp) in memory, for who writes it.
+//
+// A mapping ends its process by SIGBUS when another process shortens the file. Who must not end so reads with SharedFile::read.
 #pragma once
 
 #include <cstddef>
@@ -16,8 +18,8 @@ class MappedFile {
   MappedFile(const MappedFile&) = delete;
   MappedFile& operator=(const MappedFile&) = delete;
 
-  // Maps `bytes` of `path` for reading and writing; `bytes` is a multiple of the page size. A regular file is made if need be and grown to `bytes`,
-  // never shrunk, so that a mapping of the other side stays whole; a device is taken as it is. 0, or errno: EINVAL for a size that does not fit.
+  // Opens `path` as SharedFile does and maps `bytes` of it for reading and writing; `bytes` is a multiple of the page size. 0, or errno: EINVAL for a size
+  // that does not fit.
   int open(const std::string& path, std::size_t bytes);
   void close();
   bool is_open() const { return data_ != nullptr; }

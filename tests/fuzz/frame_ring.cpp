@@ -5,6 +5,7 @@
 #include <new>
 
 #include "hal/vehicle/ring_camera.hpp"
+#include "shared/frame_ring/mapped_file.hpp"
 #include "tests/fuzz/input.hpp"
 
 namespace lf::fuzz {

@@ -150,6 +150,7 @@ TEST(Orders, ThatHaveExpiredAreRefusedButAStopIsObeyed) {
   EXPECT_TRUE(rig.controller().on_order(order, rig.now()));
   rig.run_for(0.1);
   EXPECT_TRUE(rig.outcome().ended) << rig.story();
+  EXPECT_EQ(rig.outcome().fault, Fault::estop) << rig.story();
 }
 
 TEST(SetTasks, ReplacesTheJob) {

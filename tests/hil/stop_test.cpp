@@ -176,6 +176,8 @@ INSTANTIATE_TEST_SUITE_P(InAnyOrder, StopAndShutDown,
 struct Loss {
   const char* name;
   const char* fault;  // as a scenario has it, without its time
+  Fault seen;         // as the core names it
+  std::int32_t code;  // the joint
 };
 void PrintTo(const Loss& loss, std::ostream* out) { *out << loss.name; }
 
@@ -197,18 +199,21 @@ TEST_P(LostDrive, EndsWithoutPower) {
   ASSERT_GE(times.power_off_s, 0) << "a drive has power " << rig.story();
   EXPECT_LE(times.power_off_s, after_stop_s + 0.4);  // the master's heartbeat may have to be missed first
   EXPECT_EQ(rig.step_now(), Step::stopped) << rig.story();
+  EXPECT_EQ(rig.outcome().fault, GetParam().seen) << rig.story();
+  EXPECT_EQ(rig.outcome().code, GetParam().code) << rig.story();
   rig.run_for(1.5);
   EXPECT_TRUE(rig.mission().over()) << rig.story();
   RecordProperty("power_off_ms", static_cast<int>(times.power_off_s * 1e3));
 }
 
 INSTANTIATE_TEST_SUITE_P(WhileDeploying, LostDrive,
-                         testing::Values(Loss{"Faulted", "kind: overcurrent, node: elbow"}, Loss{"Silent", "kind: silent, node: shoulder"},
-                                         Loss{"Rebooted", "kind: reboot, node: shoulder"},
-                                         Loss{"HeartbeatLost", "kind: drop_frames, can_id: 1794"},
-                                         Loss{"EncoderStuck", "kind: stuck_encoder, node: elbow"},
-                                         Loss{"PositionsLost", "kind: drop_frames, can_id: 386"},
-                                         Loss{"MasterOffTheBus", "kind: bus_off, node: master"}),
+                         testing::Values(Loss{"Faulted", "kind: overcurrent, node: elbow", Fault::drive_fault, 2},
+                                         Loss{"Silent", "kind: silent, node: shoulder", Fault::stale_position, 1},
+                                         Loss{"Rebooted", "kind: reboot, node: shoulder", Fault::stale_position, 1},
+                                         Loss{"HeartbeatLost", "kind: drop_frames, can_id: 1794", Fault::node_lost, 1},
+                                         Loss{"EncoderStuck", "kind: stuck_encoder, node: elbow", Fault::following_error, 2},
+                                         Loss{"PositionsLost", "kind: drop_frames, can_id: 386", Fault::stale_position, 1},
+                                         Loss{"MasterOffTheBus", "kind: bus_off, node: master", Fault::bus_off, 0}),
                          [](const testing::TestParamInfo<Loss>& test) { return std::string(test.param.name); });
 
 TEST(StopAfterTheEnd, IsObeyedAndChangesNoOutcome) {
@@ -234,6 +239,7 @@ TEST(StopOfAHeldArm, TakesItsPower) {
   rig.devices().set_estop_closed(false);
   const Times times = watch_stop(rig);
   EXPECT_GE(times.power_off_s, 0);
+  EXPECT_LE(times.power_off_s, after_stop_s);
   EXPECT_EQ(rig.step_now(), Step::stopped);
 }
 

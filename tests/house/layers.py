@@ -48,9 +48,10 @@ OWNERS = {
     r"^apriltag": ["hal/vision/", "host_sim/optics/"],
     r"^opencv2/": ["hal/vision/", "host_sim/record/", "host_sim/optics/", "host_sim/app/"],
     r"^linux/|^sys/socket|^net/": ["hal/vehicle/", "host_sim/serve/v4l2_target"],
-    # POSIX beside those: the vehicle's side, the desktop program's processes and terminal, the one file of shared memory, and the one that has to reach the disk.
+    # POSIX beside those: the vehicle's side, the desktop program's processes and terminal, the files shared with other processes, and the one that has to reach the disk.
     r"^(unistd|fcntl|poll|sched|pthread|pwd|grp|termios|dirent|dlfcn|ifaddrs|syslog|signal)\.h$|^csignal$|^sys/|^netinet/|^arpa/":
         ["hal/vehicle/", "host_sim/app/", "host_sim/serve/come_first", "host_sim/serve/serve_orders", "host_sim/serve/v4l2_target", "shared/frame_ring/mapped_file",
+         "shared/frame_ring/shared_file",
          "hal/config/homing_file", "host_sim/record/folder_in_writing"],  # fsync, flock
     r"^kdl/": [],
 }

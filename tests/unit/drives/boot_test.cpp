@@ -85,10 +85,18 @@ TEST(DriveBoot, EachDictionaryBootsOrEndsBeforeThereIsPowerWithTheObjectAndWhatT
 }
 
 TEST(DriveBoot, WithoutAProfileTheDeliveredDrivesAreRefused) {
-  for (const char* make : {"epos4", "elmo_gold", "ipos", "c5e", "ingenia", "lmdrive", "eyou", "copley"}) {
-    DriveBench bench({"cia402", make});
-    EXPECT_FALSE(bench.boot()) << make;
-    EXPECT_FALSE(bench.sentence().empty());
+  struct Case {
+    const char* make;
+    const char* reason;
+  };
+  for (const Case& c :
+       {Case{"epos4", "605A:00 quick stop option: invalid value"}, Case{"elmo_gold", "6076:00 rated torque is 0"},
+        Case{"ipos", "6076:00 rated torque does not exist"}, Case{"c5e", "6076:00 rated torque does not exist"},
+        Case{"ingenia", "1016:01 consumer heartbeat time does not exist"}, Case{"lmdrive", "6076:00 rated torque does not exist"},
+        Case{"eyou", "6076:00 rated torque does not exist"}, Case{"copley", "1016:01 consumer heartbeat time does not exist"}}) {
+    DriveBench bench({"cia402", c.make});
+    EXPECT_FALSE(bench.boot()) << c.make;
+    EXPECT_NE(bench.sentence().find(c.reason), std::string::npos) << c.make << ": " << bench.sentence();
   }
 }
 

@@ -37,6 +37,24 @@ bool move_by(DriveBench& bench, std::int32_t counts, double counts_s) {
   return bench.elbow().fault() == AxisFault::none;
 }
 
+// 0.4 s towards a target 3000 counts away, in which no drive gets there. Returns the target.
+std::int32_t set_off(DriveBench& bench) {
+  const std::int32_t far = bench.elbow().actual_counts() + 3000;
+  for (int i = 0; i < 100; ++i) {
+    (void)bench.elbow().set_target_counts(far);
+    bench.run(Duration::from_ms(4));
+  }
+  return far;
+}
+
+// Remembers whether the elbow's drive sends an emergency message with this code.
+void watch_emcy(DriveBench& bench, int code, Time& seen) {
+  bench.devices.set_tap([&bench, &seen, code](const devices::BusRecord& record) {
+    const CanFrame& frame = record.frame;
+    if (frame.id == 0x083 && (frame.data[0] | frame.data[1] << 8) == code && seen == Time{}) seen = bench.now;
+  });
+}
+
 class FlyingDrive : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(All, FlyingDrive, testing::ValuesIn(flying), [](const auto& make) { return std::string(make.param); });
 
@@ -90,21 +108,23 @@ TEST_P(FlyingDrive, StopsWhenTheMasterIsGone) {
   DriveBench bench({"", GetParam()});
   ASSERT_TRUE(bench.boot()) << bench.sentence();
   ASSERT_TRUE(enable(bench));
-  const std::int32_t far = bench.elbow().actual_counts() + 3000;
-  for (int i = 0; i < 100; ++i) {
-    (void)bench.elbow().set_target_counts(far);
-    bench.run(Duration::from_ms(4));
-  }
+  (void)set_off(bench);
+  Time complained;
+  watch_emcy(bench, 0x8130, complained);
+  const Time gone = bench.now;
   bench.master_alive = false;
   // The master's heartbeat, or its guard request, is missed after 300 ms; then comes the ramp.
   bench.run(Duration::from_ms(1200));
   const double stopped = bench.joint_counts();
   bench.run(Duration::from_ms(500));
   EXPECT_NEAR(bench.joint_counts(), stopped, 0.5);
+  // The last heartbeat, of one every 100 ms, was up to that old.
+  EXPECT_GE((complained - gone).s(), 0.19) << "EMCY 8130";
+  EXPECT_LE((complained - gone).s(), 0.31) << "EMCY 8130";
   // The node said so, and is no longer operational: a new master has to boot it anew.
   bench.master_alive = true;
   bench.run(Duration::from_ms(400));
-  EXPECT_NE(bench.elbow().fault(), AxisFault::none);
+  EXPECT_EQ(bench.elbow().fault(), AxisFault::node_lost) << canopen::name(bench.elbow().fault());
   EXPECT_TRUE(bench.boot()) << bench.sentence();
 }
 
@@ -147,19 +167,27 @@ TEST(UnconfirmedDrive, InhibitTimesThatHoldBackSynchronousPdosAreWrittenAway) {
 
 TEST(UnconfirmedDrive, ADriveThatFaultsWithoutSyncStopsByItself) {
   for (const char* name : {"ipos", "ingenia", "lmdrive", "eyou"}) {
+    double gone_counts[2] = {};
     for (const bool faults : {false, true}) {
       Make make{"", name};
       make.switches.faults_without_sync = faults;
       DriveBench bench(make);
       ASSERT_TRUE(bench.boot()) << bench.sentence();
       ASSERT_TRUE(enable(bench)) << name;
+      (void)set_off(bench);
+      Time complained;
+      watch_emcy(bench, 0x8250, complained);
+      const double before = bench.joint_counts();
       bench.master_alive = false;
       bench.run(Duration::from_ms(100));  // shorter than the heartbeat's time-out
+      EXPECT_EQ(complained != Time{}, faults) << name << " and its EMCY 8250";
+      gone_counts[faults] = bench.joint_counts() - before;
       bench.master_alive = true;
       bench.run(Duration::from_ms(100));
       // The master latches its own stale data in both.
-      EXPECT_NE(bench.elbow().fault(), AxisFault::none) << name;
+      EXPECT_EQ(bench.elbow().fault(), AxisFault::stale) << name << ": " << canopen::name(bench.elbow().fault());
     }
+    EXPECT_LT(gone_counts[true], gone_counts[false]) << name;
   }
 }
 
@@ -182,11 +210,15 @@ TEST(UnconfirmedDrive, AnEyouThatIgnoresALostMasterStandsAtItsLastTarget) {
   DriveBench bench(make);
   ASSERT_TRUE(bench.boot()) << bench.sentence();
   ASSERT_TRUE(enable(bench));
+  (void)set_off(bench);
+  const std::int32_t target = bench.elbow().target_counts();
   bench.master_alive = false;
   bench.run(Duration::from_ms(1000));
   const double stopped = bench.joint_counts();
   bench.run(Duration::from_ms(500));
   EXPECT_NEAR(bench.joint_counts(), stopped, 0.5);
+  EXPECT_NEAR(stopped, target, 15);
+  EXPECT_FALSE(bench.devices.drives()[2].released);
 }
 
 // Methods by the makers' numbers: a hard stop found by current, and "here is home".

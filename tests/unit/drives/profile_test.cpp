@@ -87,7 +87,8 @@ TEST(DriveProfileFile, AScaleIsNeverAssumed) {
     std::string text = whole;
     const std::size_t at = text.find(std::string(key) + ":");
     text.erase(at, text.find('\n', at) - at + 1);
-    EXPECT_NE(problems_of(text), "") << key;
+    const std::string reason = key == std::string("torque") ? "'torque.basis' is missing" : "'" + std::string(key) + "' takes one scale";
+    EXPECT_NE(problems_of(text).find(reason), std::string::npos) << key << ": " << problems_of(text);
   }
 }
 

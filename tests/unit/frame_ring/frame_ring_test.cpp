@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "shared/frame_ring/mapped_file.hpp"
+#include "shared/frame_ring/shared_file.hpp"
 
 namespace lf {
 namespace {
@@ -171,43 +172,6 @@ TEST(FrameRing, NotTooSmallAMemory) {
   EXPECT_FALSE(writer.is_open());
 }
 
-// The payload is a function of the sequence: whatever the reader gets must agree with itself, however fast the writer overruns it.
-TEST(FrameRing, AReaderThatIsOverrunSeesOnlyWholeRecords) {
-  Memory memory;
-  FrameRingWriter writer;
-  ASSERT_TRUE(writer.open(memory.span(), slots, payload));
-  FrameRingReader reader(memory.span());
-  std::vector<std::byte> out(payload);
-  RecordInfo info;
-  ASSERT_EQ(reader.take(info, out), Answer::empty);
-  constexpr std::uint32_t records = 20'000;
-  std::atomic<bool> done{false};
-  std::thread writing([&] {
-    for (std::uint32_t n = 0; n < records; ++n) (void)writer.write(info_of(n), pattern(n, payload), n);
-    done = true;
-  });
-  std::uint64_t read = 0;
-  std::int64_t last = -1;
-  while (true) {
-    const bool finished = done;
-    const Answer answer = reader.take(info, out);
-    if (answer == Answer::empty) {
-      if (finished) break;
-      std::this_thread::yield();
-      continue;
-    }
-    ASSERT_EQ(answer, Answer::record);
-    ASSERT_GT(static_cast<std::int64_t>(info.sequence), last);
-    last = info.sequence;
-    ASSERT_EQ(info.trigger, static_cast<std::int32_t>(info.sequence % 256));
-    ASSERT_EQ(out, pattern(info.sequence, payload)) << "record " << info.sequence;
-    ++read;
-  }
-  writing.join();
-  EXPECT_EQ(last, records - 1);
-  EXPECT_EQ(read + reader.stats().missed, records);
-}
-
 // The other side changes the layout between the reader's look at it and its use: what is checked has to be what is used. Behind the memory there is none.
 TEST(FrameRing, ALayoutThatChangesWhileItIsReadLeadsNowhereElse) {
   const std::size_t bytes = frame_ring_bytes(slots, payload);
@@ -257,6 +221,124 @@ class TemporaryFile {
   ~TemporaryFile() { std::remove(path.c_str()); }
   const std::string path;
 };
+
+// The payload is a function of the sequence: whatever the reader gets must agree with itself, however fast the writer overruns it.
+void overrun(std::span<std::byte> memory, FrameRingReader reader) {
+  FrameRingWriter writer;
+  ASSERT_TRUE(writer.open(memory, slots, payload));
+  std::vector<std::byte> out(payload);
+  RecordInfo info;
+  ASSERT_EQ(reader.take(info, out), Answer::empty);
+  constexpr std::uint32_t records = 20'000;
+  std::atomic<bool> done{false};
+  std::thread writing([&] {
+    for (std::uint32_t n = 0; n < records; ++n) (void)writer.write(info_of(n), pattern(n, payload), n);
+    done = true;
+  });
+  std::uint64_t read = 0;
+  std::int64_t last = -1;
+  while (true) {
+    const bool finished = done;
+    const Answer answer = reader.take(info, out);
+    if (answer == Answer::empty) {
+      if (finished) break;
+      std::this_thread::yield();
+      continue;
+    }
+    ASSERT_EQ(answer, Answer::record);
+    ASSERT_GT(static_cast<std::int64_t>(info.sequence), last);
+    last = info.sequence;
+    ASSERT_EQ(info.trigger, static_cast<std::int32_t>(info.sequence % 256));
+    ASSERT_EQ(out, pattern(info.sequence, payload)) << "record " << info.sequence;
+    ++read;
+  }
+  writing.join();
+  EXPECT_EQ(last, records - 1);
+  EXPECT_EQ(read + reader.stats().missed, records);
+}
+
+TEST(FrameRing, AReaderThatIsOverrunSeesOnlyWholeRecords) {
+  Memory memory;
+  overrun(memory.span(), FrameRingReader(memory.span()));
+}
+
+TEST(FrameRing, AReaderOfAFileThatIsOverrunSeesOnlyWholeRecords) {
+  const TemporaryFile path;
+  const std::size_t bytes = frame_ring_bytes(slots, payload);
+  MappedFile mapped;
+  SharedFile file;
+  ASSERT_EQ(mapped.open(path.path, bytes), 0);
+  ASSERT_EQ(file.open(path.path, bytes), 0);
+  overrun(mapped.bytes(), FrameRingReader(file, 0, bytes));
+}
+
+// Slots 2 and 3 are cut off. What the reader had not yet read there is missed; the writer that comes back is read from its first record on.
+TEST(FrameRing, AFileCutShortLosesItsLastSlotsOnly) {
+  const TemporaryFile path;
+  const std::size_t bytes = frame_ring_bytes(slots, payload);
+  MappedFile mapped;
+  SharedFile file;
+  ASSERT_EQ(mapped.open(path.path, bytes), 0);
+  ASSERT_EQ(file.open(path.path, bytes), 0);
+  FrameRingWriter writer;
+  ASSERT_TRUE(writer.open(mapped.bytes(), slots, payload));
+  FrameRingReader reader(file, 0, bytes);
+  std::vector<std::byte> out(payload);
+  RecordInfo info;
+  ASSERT_EQ(reader.take(info, out), Answer::empty);
+  for (std::uint32_t n = 0; n < slots; ++n) ASSERT_TRUE(writer.write(info_of(n), pattern(n, payload), n));
+  ASSERT_EQ(truncate(path.path.c_str(), static_cast<off_t>(frame_ring_page + 2 * 1152)), 0);
+  for (std::uint32_t n = 0; n < 2; ++n) {
+    ASSERT_EQ(reader.take(info, out), Answer::record);
+    EXPECT_EQ(info.sequence, n);
+    EXPECT_EQ(out, pattern(n, payload));
+  }
+  EXPECT_EQ(reader.take(info, out), Answer::empty);
+  EXPECT_EQ(reader.stats().missed, 2u);
+  EXPECT_EQ(reader.writer_beat_ns(), 3);
+  ASSERT_EQ(truncate(path.path.c_str(), 0), 0);
+  EXPECT_EQ(reader.take(info, out), Answer::no_ring);
+  EXPECT_EQ(reader.writer_beat_ns(), 0);
+  ASSERT_EQ(truncate(path.path.c_str(), static_cast<off_t>(bytes)), 0);
+  EXPECT_EQ(reader.take(info, out), Answer::no_ring);
+  ASSERT_TRUE(writer.open(mapped.bytes(), slots, payload));
+  ASSERT_TRUE(writer.write(info_of(50), pattern(50, payload), 0));
+  ASSERT_EQ(reader.take(info, out), Answer::record);
+  EXPECT_EQ(info.sequence, 50u);
+  EXPECT_EQ(out, pattern(50, payload));
+}
+
+// Slots 2 and 3 are cut off and come back as zeroes. Every record that is taken is whole.
+TEST(FrameRing, AFileCutShortWhileItIsReadGivesOnlyWholeRecords) {
+  const TemporaryFile path;
+  const std::size_t bytes = frame_ring_bytes(slots, payload);
+  MappedFile mapped;
+  SharedFile file;
+  ASSERT_EQ(mapped.open(path.path, bytes), 0);
+  ASSERT_EQ(file.open(path.path, bytes), 0);
+  std::atomic<bool> over = false;
+  std::thread cutting([&] {
+    FrameRingWriter writer;
+    for (std::uint32_t n = 0; n < 2000; ++n) {
+      // The writer maps the file, so it writes only while all of it is there.
+      (void)writer.open(mapped.bytes(), slots, payload);
+      for (std::uint32_t i = 0; i < slots; ++i) (void)writer.write(info_of(slots * n + i), pattern(slots * n + i, payload), n);
+      (void)!truncate(path.path.c_str(), static_cast<off_t>(frame_ring_page + 2 * 1152));
+      (void)!truncate(path.path.c_str(), static_cast<off_t>(bytes));
+    }
+    over = true;
+  });
+  FrameRingReader reader(file, 0, bytes);
+  std::vector<std::byte> out(payload);
+  RecordInfo info;
+  bool all_whole = true;
+  while (!over) {
+    if (reader.take(info, out) == Answer::record) all_whole = all_whole && out == pattern(info.sequence, payload);
+  }
+  cutting.join();
+  EXPECT_TRUE(all_whole);
+  EXPECT_GT(reader.stats().records, 0u);
+}
 
 TEST(MappedFile, IsTheSameMemoryForTwoProcessesAndOutlivesAKilledWriter) {
   const TemporaryFile file;
