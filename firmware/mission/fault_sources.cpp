@@ -96,13 +96,14 @@ void FaultSources::collect_timeout(const StepTick& tick) {
   const double margin_s = row(tick.step).margin_s;
   const Duration limit = tick.clock.planned() + Duration::from_s(margin_s);
   if (margin_s <= 0 || tick.clock.elapsed(tick.now) <= limit) return;
-  // What keeps the arm from being enabled is a drive that does not leave its fault.
-  for (std::size_t i = 0; i < joint_count && tick.step == Step::enable; ++i) {
-    const canopen::Axis& axis = tick.network.axis(static_cast<Joint>(i));
-    const canopen::NodeFault& link = tick.network.fault(i);
-    if (!axis.drive_in_fault()) continue;
-    tick.faults.report({Fault::drive_fault, static_cast<std::int32_t>(i), link.emcy_code});
-    return;
+  // What keeps the arm from being enabled is a drive that does not leave its fault, or else one that does not do as it is told.
+  for (const bool in_fault : {true, false}) {
+    for (std::size_t i = 0; i < joint_count && tick.step == Step::enable; ++i) {
+      const canopen::Axis& axis = tick.network.axis(static_cast<Joint>(i));
+      if (in_fault ? !axis.drive_in_fault() : !axis.homed() || axis.enabled()) continue;
+      tick.faults.report({Fault::drive_fault, static_cast<std::int32_t>(i), tick.network.fault(i).emcy_code});
+      return;
+    }
   }
   tick.faults.report(Fault::step_timeout);
 }

@@ -24,8 +24,8 @@ const std::vector<FaultRule>& rules() {
   // the joint that feels it most is not the one that reads wrongly.
   static const std::vector<std::string> led_astray{"tool outside its workspace", "unexpected contact", "touched something",
                                                    "the jaw holds nothing"};
-  // A torque that stands still is felt nowhere: the core sees a press that meets nothing, and no joint that would differ from the others.
-  static const std::vector<std::string> feels_nothing{"torque reading stands still"};
+  // A torque that stands still is felt nowhere, or everywhere: the core sees a press that meets nothing, or something too early.
+  static const std::vector<std::string> feels_wrongly{"torque reading stands still", "touched something"};
   static const std::vector<std::string> link{"node lost", "node rebooted", "stale position", "drive fault", "boot failed"};
   static const std::vector<std::string> bus_off_of_the_master{"CAN bus off"};
   static const std::vector<std::string> sight{"image", "camera", "panel vision", "platform call", "no panel seen", "too few points"};
@@ -36,8 +36,8 @@ const std::vector<FaultRule>& rules() {
       {"following", safe_end, Report::none, 0, misbehaves, {}},
       {"stuck_encoder", safe_end, Report::none, 0, misbehaves, led_astray},
       {"encoder_jump", safe_end, Report::none, 0, misbehaves, led_astray},
-      {"torque_frozen", safe_end, Report::none, 0, misbehaves, feels_nothing},
-      {"torque_high", safe_end, Report::none, 0, misbehaves, {}},
+      {"torque_frozen", safe_end, Report::none, 0, misbehaves, feels_wrongly},
+      {"torque_high", safe_end, Report::none, 0, misbehaves, feels_wrongly},
       {"runaway", safe_end, Report::none, 0, misbehaves, led_astray},
       {"silent", stop, Report::silence, 0, link, {}},
       {"reboot", stop, Report::silence, 0, link, {}},
@@ -113,7 +113,7 @@ bool names_node(const std::string& reason, const std::string& node) {
     std::snprintf(identifier, sizeof identifier, "0x%04X", function + id);
     if (reason.find(identifier) != std::string::npos) return true;
   }
-  if (node == "jaw" && reason.find("the jaw does not open") != std::string::npos) return true;
+  if (node == "jaw" && reason.find("the jaw ") != std::string::npos) return true;
   const std::size_t at = reason.find(": " + node);
   if (at == std::string::npos) return false;
   const std::size_t end = at + 2 + node.size();
@@ -124,7 +124,9 @@ bool names_node(const std::string& reason, const std::string& node) {
 
 bool Cause::named_in(const std::string& reason) const {
   if (has_any(reason, rule->named_without_node)) return true;
-  const bool named = has_any(reason, rule->named_by) || (node_name(node) == "io" && reason.find("output node lost") != std::string::npos);
+  // The output node triggers the camera, too.
+  if (node_name(node) == "io" && has_any(reason, {"output node lost", "camera silent"})) return true;
+  const bool named = has_any(reason, rule->named_by);
   return named && (node.empty() || names_node(reason, node_name(node)));
 }
 

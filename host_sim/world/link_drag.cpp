@@ -62,7 +62,8 @@ LinkDrag::LinkDrag(const std::vector<scene::Shape>& shapes, const Pose& frame_fr
 void LinkDrag::cut(const Pose& frame_from_rod, double length_m, double diameter_m) {
   const double slice_m = length_m / slices_a_rod;
   for (int i = 0; i < slices_a_rod; ++i)
-    slices_.push_back({frame_from_rod * Vec3(0, 0, (i + 0.5) * slice_m - length_m / 2), frame_from_rod.linear().col(2), diameter_m * slice_m});
+    slices_.push_back(
+        {frame_from_rod * Vec3(0, 0, (i + 0.5) * slice_m - length_m / 2), frame_from_rod.linear().col(2), diameter_m * slice_m});
 }
 
 LinkDrag::Wrench LinkDrag::at(const Vec3& velocity_m_s, const Vec3& turn_rad_s, double coefficient) const {
