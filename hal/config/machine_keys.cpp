@@ -4,28 +4,28 @@
 namespace lf::config {
 
 void add_panel(Keys& all, PanelLayout& p) {
-  all.push_back(key("panel.ahead_m", "m", 0.1, 1.2, &p.nominal_x_m, "nominal distance of the panel's plane from the arm's base"));
-  all.push_back(key("panel.right_m", "m", -1, 1, &p.nominal_y_m, "nominal place of the valve, to the right"));
-  all.push_back(key("panel.down_m", "m", -1, 1.5, &p.nominal_z_m, "nominal place of the valve, downward"));
+  all.push_back(key("panel.ahead_m", "m", 0.25, 0.7, &p.nominal_x_m, "nominal distance of the panel's plane from the arm's base"));
+  all.push_back(key("panel.right_m", "m", -0.4, 0.4, &p.nominal_y_m, "nominal place of the valve, to the right"));
+  all.push_back(key("panel.down_m", "m", 0.3, 0.9, &p.nominal_z_m, "nominal place of the valve, downward"));
   all.push_back(
-      key("panel.plate_min_m", "m", -2, 2, &p.plate_min_m, "lower left corner of the plate as the robot sees it, from the valve"));
-  all.push_back(key("panel.plate_max_m", "m", -2, 2, &p.plate_max_m, "upper right corner"));
+      key("panel.plate_min_m", "m", -1, 0, &p.plate_min_m, "lower left corner of the plate as the robot sees it, from the valve"));
+  all.push_back(key("panel.plate_max_m", "m", 0, 1, &p.plate_max_m, "upper right corner"));
   all.push_back(key("panel.handle_length_m", "m", 0.06, 0.16, &p.handle_length_m,
                     "length of the T-bar: longer than the pads are wide, and clear of buttons and marker"));
   all.push_back(key("panel.handle_thickness_m", "m", 0.008, 0.05, &p.handle_thickness_m, "its thickness"));
-  all.push_back(key("panel.handle_height_m", "m", 0.03, 0.3, &p.handle_height_m, "its centre line's height over the panel"));
+  all.push_back(key("panel.handle_height_m", "m", 0.05, 0.18, &p.handle_height_m, "its centre line's height over the panel"));
   all.push_back(key("panel.pointer", "", 0, 0, &p.pointer,
                     "the mark at that end of the bar which points up at 0 degrees; without one a bar looks the same after half a turn",
                     {pointer_words.begin(), pointer_words.end()}));
-  all.push_back(key("panel.pointer_length_m", "m", 0.015, 0.2, &p.pointer_length_m, "how much of the bar the mark covers, from its end"));
-  all.push_back(key("panel.buttons_m", "m", -1, 1, &p.buttons_m, "left, centre and right button's [right, up] from the valve"));
-  all.push_back(key("panel.button_width_m", "m", 0.005, 0.2, &p.button_width_m, "diameter of a button's cap"));
-  all.push_back(key("panel.button_height_m", "m", 0.005, 0.1, &p.button_height_m, "its height over the panel"));
-  all.push_back(key("panel.button_stroke_m", "m", 0.001, 0.05, &p.button_stroke_m, "how far it goes in"));
+  all.push_back(key("panel.pointer_length_m", "m", 0.015, 0.06, &p.pointer_length_m, "how much of the bar the mark covers, from its end"));
+  all.push_back(key("panel.buttons_m", "m", -0.4, 0.4, &p.buttons_m, "left, centre and right button's [right, up] from the valve"));
+  all.push_back(key("panel.button_width_m", "m", 0.005, 0.06, &p.button_width_m, "diameter of a button's cap"));
+  all.push_back(key("panel.button_height_m", "m", 0.005, 0.07, &p.button_height_m, "its height over the panel"));
+  all.push_back(key("panel.button_stroke_m", "m", 0.001, 0.02, &p.button_stroke_m, "how far it goes in"));
   all.push_back(key("panel.marker_id", "", 0, 586, &p.marker_id, "the AprilTag 36h11 beside the valve"));
-  all.push_back(key("panel.marker_size_m", "m", 0.01, 0.5, &p.marker_size_m, "side of its black square"));
-  all.push_back(key("panel.marker_plate_m", "m", 0.01, 0.6, &p.marker_plate_m, "side of its plate"));
-  all.push_back(key("panel.marker_centre_m", "m", -1, 1, &p.marker_centre_m, "its centre's [right, up] from the valve"));
+  all.push_back(key("panel.marker_size_m", "m", 0.02, 0.16, &p.marker_size_m, "side of its black square"));
+  all.push_back(key("panel.marker_plate_m", "m", 0.02, 0.2, &p.marker_plate_m, "side of its plate"));
+  all.push_back(key("panel.marker_centre_m", "m", -0.6, 0.6, &p.marker_centre_m, "its centre's [right, up] from the valve"));
 }
 
 void add_valve_stops(Keys& all, ValveStops& valve) {
@@ -90,7 +90,6 @@ JointDriveChoice drive_of(const Drives& drives, std::size_t joint) {
 }
 
 void add_mission(Keys& all, mission::MissionConfig& m) {
-  const double rad_s = 3;
   all.push_back(key("mission.docking_m", "m", 0, 0.025, &m.docking.shift_m,
                     "how far the panel may be off its nominal place along each of the base's axes: kept clear of until it was looked at. "
                     "At 0.03 the only "
@@ -102,21 +101,21 @@ void add_mission(Keys& all, mission::MissionConfig& m) {
                     "SYNCs from one exposure to the next; 10 are 25 Hz. At 1 no report confirms the outputs; beyond 20 the stripes on the "
                     "handle are no longer one"));
   all.push_back(
-      key("mission.frames_per_background", "", 2, 100, &m.frames_per_background, "one frame in so many is taken without the laser"));
-  all.push_back(key("mission.sweep_speed_rad_s", "rad/s", 0.001, rad_s, &m.sweep_speed_rad_s,
+      key("mission.frames_per_background", "", 2, 50, &m.frames_per_background, "one frame in so many is taken without the laser"));
+  all.push_back(key("mission.sweep_speed_rad_s", "rad/s", 0.001, 0.2, &m.sweep_speed_rad_s,
                     "of the slowest moving joint while scanning: slower is denser, down to the joints' stiction"));
   all.push_back(key("mission.verify_band_m", "m", 0.01, 0.5, &m.verify_band_m,
                     "half height of the second look's sweep around the valve, no less than the handle needs"));
   all.push_back(key("mission.move_speed_fraction", "", 0.01, 1, &m.move_speed_fraction, "of the joints' speed limits, in free motion"));
-  all.push_back(key("mission.approach_distance_m", "m", 0.01, 0.3, &m.approach_distance_m,
+  all.push_back(key("mission.approach_distance_m", "m", 0.04, 0.3, &m.approach_distance_m,
                     "where straight approaches start, along the panel's normal"));
   all.push_back(key("mission.approach_speed_m_s", "m/s", 0.001, 0.5, &m.approach_speed_m_s, "of straight guarded motions"));
   all.push_back(key("mission.press_speed_m_s", "m/s", 0.001, 0.2, &m.press_speed_m_s, "of a press"));
   all.push_back(
       key("mission.press_overtravel_m", "m", 0, 0.05, &m.press_overtravel_m, "beyond a button's bottom before the press counts as missed"));
-  all.push_back(key("mission.press_torque_nm", "N m", 0.1, 20, &m.press_torque_nm,
+  all.push_back(key("mission.press_torque_nm", "N m", 2, 20, &m.press_torque_nm,
                     "rise of a joint's torque that says the button has bottomed; the drives give 26 N m, and at 25 no press is told"));
-  all.push_back(key("mission.turn_speed_rad_s", "rad/s", 0.01, rad_s, &m.turn_speed_rad_s, "of the handle; no faster than the wrist"));
+  all.push_back(key("mission.turn_speed_rad_s", "rad/s", 0.01, 1, &m.turn_speed_rad_s, "of the handle; no faster than the wrist"));
   all.push_back(
       key("mission.valve_tolerance_rad", "rad", 0.015, 0.045, &m.valve_tolerance_rad,
           "what the second look accepts without turning again: more than its own error of 0.6 degrees, less than 3 degrees with it"));

@@ -6,7 +6,8 @@ namespace lf::scenario {
 
 namespace {
 
-constexpr double far_m = 0.5;  // farther than this nothing of the layout is near its place
+// What mission.docking_m and mission.docking_rad may be told at most, and a little.
+constexpr double far_m = 0.03, far_deg = 3;
 constexpr double huge = std::numeric_limits<std::int32_t>::max();
 
 using config::key;
@@ -17,21 +18,22 @@ void add_place(Keys& all, Scenario& s) {
                     "how far the docked vehicle's panel stands off its place, away from the robot"));
   all.push_back(key("docking.y_m", "m", -far_m, far_m, &s.docking.y_m, "the same to the right"));
   all.push_back(key("docking.z_m", "m", -far_m, far_m, &s.docking.z_m, "the same downward"));
-  all.push_back(key("docking.roll_deg", "deg", -45, 45, &s.docking.roll_deg, "turn of the panel about the base's x axis, at the valve"));
-  all.push_back(key("docking.pitch_deg", "deg", -45, 45, &s.docking.pitch_deg, "the same about the base's y axis"));
-  all.push_back(key("docking.yaw_deg", "deg", -45, 45, &s.docking.yaw_deg, "the same about the base's z axis"));
+  all.push_back(
+      key("docking.roll_deg", "deg", -far_deg, far_deg, &s.docking.roll_deg, "turn of the panel about the base's x axis, at the valve"));
+  all.push_back(key("docking.pitch_deg", "deg", -far_deg, far_deg, &s.docking.pitch_deg, "the same about the base's y axis"));
+  all.push_back(key("docking.yaw_deg", "deg", -far_deg, far_deg, &s.docking.yaw_deg, "the same about the base's z axis"));
   all.push_back(key("valve.start_deg", "deg", -180, 180, &s.valve.start_deg,
                     "the handle's angle at the start: 0 is a vertical bar, positive counter-clockwise"));
   all.push_back(key("valve.friction_nm", "N m", 0, 20, &s.valve.friction_nm, "torque that it takes to turn the handle"));
   config::add_valve_stops(all, s.valve);
   all.push_back(key("valve.detents_deg", "deg", -360, 360, &s.valve.detents_deg, "the named positions, in which the handle settles"));
-  all.push_back(key("valve.detent_nm", "N m", 0, 20, &s.valve.detent_nm, "peak pull toward a detent"));
+  all.push_back(key("valve.detent_nm", "N m", 0, 6, &s.valve.detent_nm, "peak pull toward a detent"));
   all.push_back(key("valve.viscous_nm_s", "N m s/rad", 0, 20, &s.valve.viscous_nm_s, "viscous friction of the handle"));
-  all.push_back(key("buttons.preload_n", "N", 0, 100, &s.buttons.preload_n, "force at which a button starts to move"));
-  all.push_back(key("buttons.spring_n_m", "N/m", 0, 50000, &s.buttons.spring_n_m, "return spring of a button"));
-  all.push_back(key("buttons.click_depth_m", "m", 0.0005, 0.05, &s.buttons.click_depth_m, "depth at which a button clicks and counts"));
-  all.push_back(key("buttons.release_depth_m", "m", 0, 0.05, &s.buttons.release_depth_m, "depth at which it lets go on the way out"));
-  all.push_back(key("buttons.click_drop_n", "N", 0, 100, &s.buttons.click_drop_n, "force that a clicked button gives less"));
+  all.push_back(key("buttons.preload_n", "N", 0, 25, &s.buttons.preload_n, "force at which a button starts to move"));
+  all.push_back(key("buttons.spring_n_m", "N/m", 0, 9000, &s.buttons.spring_n_m, "return spring of a button"));
+  all.push_back(key("buttons.click_depth_m", "m", 0.0005, 0.02, &s.buttons.click_depth_m, "depth at which a button clicks and counts"));
+  all.push_back(key("buttons.release_depth_m", "m", 0, 0.02, &s.buttons.release_depth_m, "depth at which it lets go on the way out"));
+  all.push_back(key("buttons.click_drop_n", "N", 0, 20, &s.buttons.click_drop_n, "force that a clicked button gives less"));
   all.push_back(key("buttons.stuck", "", 0, 0, &s.buttons.stuck, "buttons that do not move", {"left", "centre", "right"}));
   all.push_back(key("buttons.missing", "", 0, 0, &s.buttons.missing, "buttons that broke off", {"left", "centre", "right"}));
 }
@@ -52,29 +54,30 @@ void add_sight(Keys& all, Scenario& s) {
   all.push_back(
       key("laser.waist_sigma_m", "m", 0.0001, 0.02, &s.laser.waist_sigma_m, "standard deviation of its cross-section at the emitter"));
   config::add_laser(all, s.laser);
-  all.push_back(key("mounting.camera_m", "m", -0.1, 0.1, &s.mounting.camera_m, "unknown shift of the camera, each axis"));
-  all.push_back(key("mounting.camera_deg", "deg", -10, 10, &s.mounting.camera_deg, "unknown turn of the camera, each axis"));
-  all.push_back(key("mounting.laser_m", "m", -0.1, 0.1, &s.mounting.laser_m, "unknown shift of the laser, each axis"));
-  all.push_back(key("mounting.laser_deg", "deg", -10, 10, &s.mounting.laser_deg, "unknown turn of the laser, each axis"));
-  all.push_back(key("mounting.joints_deg", "deg", -10, 10, &s.mounting.joints_deg, "unknown offset of each joint's encoder"));
-  all.push_back(key("mounting.marker_m", "m", -0.1, 0.1, &s.mounting.marker_m, "unknown shift of the marker within the panel, each axis"));
-  all.push_back(key("mounting.marker_deg", "deg", -10, 10, &s.mounting.marker_deg, "unknown turn of the marker within the panel"));
+  all.push_back(key("mounting.camera_m", "m", -0.005, 0.005, &s.mounting.camera_m, "unknown shift of the camera, each axis"));
+  all.push_back(key("mounting.camera_deg", "deg", -1, 1, &s.mounting.camera_deg, "unknown turn of the camera, each axis"));
+  all.push_back(key("mounting.laser_m", "m", -0.005, 0.005, &s.mounting.laser_m, "unknown shift of the laser, each axis"));
+  all.push_back(key("mounting.laser_deg", "deg", -0.5, 0.5, &s.mounting.laser_deg, "unknown turn of the laser, each axis"));
+  all.push_back(key("mounting.joints_deg", "deg", -0.5, 0.5, &s.mounting.joints_deg, "unknown offset of each joint's encoder"));
+  all.push_back(
+      key("mounting.marker_m", "m", -0.005, 0.005, &s.mounting.marker_m, "unknown shift of the marker within the panel, each axis"));
+  all.push_back(key("mounting.marker_deg", "deg", -1, 1, &s.mounting.marker_deg, "unknown turn of the marker within the panel"));
 }
 
 void add_machine(Keys& all, Scenario& s) {
   config::add_vehicle(all, s.vehicle);
   all.push_back(key("arm.urdf", "", 0, 0, &s.arm.urdf, "the arm; relative to the scenario's folder, then to the shipped files"));
   all.push_back(key("jaw.torque_nm", "N m", 0, 200, &s.jaw.torque_nm, "closing torque at each finger; 0: as the URDF says"));
-  all.push_back(key("jaw.pad_friction", "", 0, 3, &s.jaw.pad_friction, "friction of the finger pads; 0: as the URDF says"));
-  all.push_back(key("physics.restitution", "", 0, 1, &s.physics.restitution, "of every contact"));
-  all.push_back(key("physics.joint_drag_nm_s", "N m s/rad", 0, 100, &s.physics.joint_drag_nm_s, "drag of the water on each joint"));
+  all.push_back(key("jaw.pad_friction", "", 0, 2, &s.jaw.pad_friction, "friction of the finger pads; 0: as the URDF says"));
+  all.push_back(key("physics.restitution", "", 0, 0.1, &s.physics.restitution, "of every contact"));
+  all.push_back(key("physics.joint_drag_nm_s", "N m s/rad", 0, 5, &s.physics.joint_drag_nm_s, "drag of the water on each joint"));
   all.push_back(key("physics.drag_coefficient", "", 0, 3, &s.physics.drag_coefficient,
                     "of the water on the links, across them; a cylinder's is 1.1"));
-  all.push_back(key("physics.torque_noise_ratio", "", 0, 1, &s.physics.torque_noise_ratio,
+  all.push_back(key("physics.torque_noise_ratio", "", 0, 0.02, &s.physics.torque_noise_ratio,
                     "1 sigma of a drive's torque reading over its rated torque"));
   all.push_back(
       key("physics.water_celsius", "deg C", -2, 60, &s.physics.water_celsius, "water temperature: where the motors' windings start"));
-  all.push_back(key("friction.coulomb", "", 0, 3, &s.friction.coulomb,
+  all.push_back(key("friction.coulomb", "", 0, 2, &s.friction.coulomb,
                     "true Coulomb friction of each drive's screw or gear, over what the core takes it for"));
   all.push_back(key("friction.viscous", "", 0, 10, &s.friction.viscous, "the same of the viscous friction"));
   all.push_back(key("friction.efficiency", "", 0.6, 1.3, &s.friction.efficiency,
@@ -86,8 +89,8 @@ void add_machine(Keys& all, Scenario& s) {
   all.push_back(key("friction.one_way", "", -0.5, 0.5, &s.friction.one_way, "share by which it is more forward and less backward"));
   all.push_back(key("friction.pivot_m", "m", -0.0005, 0.0005, &s.friction.pivot_m,
                     "how much longer the true linkage of each screw is from its joint to its far pivot than the core takes it for"));
-  all.push_back(key("latency.image_ms", "ms", 0, 1000, &s.latency.image_ms, "from the start of an exposure until the core has its image"));
-  all.push_back(key("latency.panel_vision_ms", "ms", 0, 10000, &s.latency.panel_vision_ms,
+  all.push_back(key("latency.image_ms", "ms", 0, 250, &s.latency.image_ms, "from the start of an exposure until the core has its image"));
+  all.push_back(key("latency.panel_vision_ms", "ms", 0, 4000, &s.latency.panel_vision_ms,
                     "from the question until the core has the panel vision's answer"));
   all.push_back(key("sensors.seed", "", 0, huge, &s.sensors.seed, "of camera and drive noise; 0: from the run's seed"));
   all.push_back(key("safety.limits", "", 0, 0, &s.safety.limits, "the checksummed file of limits; found as arm.urdf is"));

@@ -197,9 +197,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 // The panel stands where the arm is told to deploy: it has docked 220 mm too near.
 TEST(UnexpectedContact, OnTheWayToTheScanStopsTheArmAndHoldsIt) {
-  std::vector<std::string> overrides = turn_only();
-  overrides.push_back("docking.x_m=-0.22");
-  Rig rig(overrides);
+  Rig rig(turn_only(), 1, {}, [](hal::SimConfig& truth) { truth.world.base_from_panel.translation().x() -= 0.22; });
   rig.start();
   ASSERT_TRUE(rig.run_to_end()) << rig.story();
   EXPECT_EQ(rig.step_now(), Step::held) << rig.story();

@@ -69,7 +69,7 @@ TEST_F(BadInput, ScenariosThatAreNotWhatTheyShouldBe) {
 }
 
 TEST_F(BadInput, JobsThatTheMachineCannotDo) {
-  expect_refused("run --set panel.ahead_m=1.15 --set \"camera.position_m=[0.6, -0.245, 0.06]\"", "out of the arm's reach");
+  expect_refused("run --set panel.ahead_m=0.69 --set \"camera.position_m=[0.2, -0.245, 0.06]\"", "out of the arm's reach");
   expect_refused("run --set camera.down_deg=10", "out of the camera's view");
   expect_refused("run --set arm.urdf=missing.urdf", "missing.urdf");
   file("jointless.urdf", "<robot name=\"none\">\n</robot>\n");

@@ -59,7 +59,7 @@ TEST(VehicleConfig, EveryProblemIsListedWithItsLine) {
                                         "  ring_bytes: 5000\n"
                                         "  match_window_us: 20000\n"
                                         "tasks: [{turn_valve: {to_deg: 900}}]\n"
-                                        "panel: {ahead_m: 1.1}\n"
+                                        "panel: {ahead_m: 0.7}\n"
                                         "arm: {urdf: no_such.urdf}\n"
                                         "safety: {limits: nothing.yaml}\n"
                                         "realtime: 7\n"
