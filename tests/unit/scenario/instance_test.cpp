@@ -56,7 +56,8 @@ TEST(Nominal, DrivesAreSetUpWithinTheSafetyLimits) {
 }
 
 TEST(Nominal, AnUnreachableValveIsRefusedWithTheLimitThatStopsIt) {
-  const std::string far = refusal(load_scenario("default", {"panel.ahead_m=0.69", "panel.right_m=0.39", "camera.position_m=[0.2, 0.145, 0.06]"}));
+  const std::string far =
+      refusal(load_scenario("default", {"panel.ahead_m=0.69", "panel.right_m=0.39", "camera.position_m=[0.2, 0.145, 0.06]"}));
   EXPECT_THAT(far, ::testing::HasSubstr("the valve is out of the arm's reach at its nominal place: "));
   EXPECT_THAT(far, ::testing::HasSubstr(" by "));
 }
