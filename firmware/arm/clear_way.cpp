@@ -62,7 +62,7 @@ void ClearWay::begin(const JointVector& from_rad, const Surroundings& surroundin
   at_first_ = kept_ = at_first;
   wanted_ = wanted;
   nearest_ = nowhere_near;
-  slack_m_ = least_slack_m_ = HUGE_VAL;
+  least_slack_m_ = HUGE_VAL;
   const bool numbers = std::isfinite(room.jaw.low_rad + room.jaw.high_rad) && room.base_from_panel.matrix().allFinite() &&
                        std::isfinite(room.doubt.shift_m + room.doubt.turn_rad) && from_rad.allFinite();
   state_ = numbers && room.jaw.low_rad <= room.jaw.high_rad ? State::looking : State::blocked;
@@ -91,15 +91,18 @@ void ClearWay::move_on() {
   budget_m_ = 0;
 }
 
-void ClearWay::keep_half_of_what_is_gained() {
-  const auto keep = [this](double Distances::*of) {
+double ClearWay::keep_half_of_what_is_gained() {
+  double least_m = HUGE_VAL;
+  const auto keep = [&](double Distances::*of) {
     const double half_gained_m = (at_first_.*of + nearest_.*of) / 2;
     kept_.*of = std::max(kept_.*of, std::min(wanted_.*of, half_gained_m));
+    least_m = std::min(least_m, nearest_.*of - kept_.*of);
   };
   keep(&Distances::panel_m);
   keep(&Distances::vehicle_m);
   keep(&Distances::itself_m);
   nearest_ = nowhere_near;
+  return least_m;
 }
 
 void ClearWay::look(const Surroundings& surroundings) {
@@ -115,7 +118,6 @@ void ClearWay::look(const Surroundings& surroundings) {
     state_ = State::blocked;
     return;
   }
-  slack_m_ = std::min(slack_m_, *least);
   nearest_ = {std::min(nearest_.panel_m, here.panel_m), std::min(nearest_.vehicle_m, here.vehicle_m),
               std::min(nearest_.itself_m, here.itself_m)};
   const double high_rad = surroundings.room().jaw.high_rad;
@@ -124,10 +126,9 @@ void ClearWay::look(const Surroundings& surroundings) {
     return;
   }
   const bool swept = surroundings.room().jaw.low_rad < high_rad;
-  budget_m_ = std::max(swept ? slack_m_ / 2 : slack_m_, resolution_m);
+  const double slack_m = keep_half_of_what_is_gained();
+  budget_m_ = std::max(swept ? slack_m / 2 : slack_m, resolution_m);
   jaw_rad_ = surroundings.room().jaw.low_rad;
-  slack_m_ = HUGE_VAL;
-  keep_half_of_what_is_gained();
   move_on();
 }
 

@@ -40,7 +40,7 @@ class ClearWay {
 
  private:
   void look(const Surroundings& surroundings);
-  void keep_half_of_what_is_gained();
+  double keep_half_of_what_is_gained();  // and returns what the pose has over that
   void move_on();
 
   JointVector from_rad_ = JointVector::Zero();
@@ -53,7 +53,6 @@ class ClearWay {
   double longest_m_ = 0;       // that any point of the arm moves on the whole stretch, at most
   double fraction_ = 0;        // of the next pose
   double jaw_rad_ = 0;         // of the next pose
-  double slack_m_ = 0;         // of the pose at `fraction_`, over the jaw's angles so far
   double budget_m_ = 0;        // how far any point may move before the next pose has to be looked at
   int poses_ = 0;
   State state_ = State::blocked;

@@ -108,7 +108,9 @@ void Gripper::move(Time t, double jaw_rad, const TorqueEstimate& torque, double 
     return;
   }
   const bool pushing = target_rad_ == goal_rad_ || std::abs(target_rad_ - jaw_rad) >= 0.99 * config_.lead_rad;
-  if (pushing && t - still_since_ >= config_.stall_time) stalled(jaw_rad, torque);
+  // A screw that has clamped needs more than a moment to break loose.
+  const bool widening = state_ == GripperState::opening && goal_rad_ > jaw_rad;
+  if (pushing && t - still_since_ >= (widening ? config_.lost_time * 4 : config_.stall_time)) stalled(jaw_rad, torque);
   if (pushing && t - still_since_ >= config_.lost_time && std::abs(torque.nm) < config_.hold_torque_nm) {
     state_ = GripperState::lost;
     target_rad_ = jaw_rad;
@@ -123,9 +125,8 @@ void Gripper::move(Time t, double jaw_rad, const TorqueEstimate& torque, double 
 // Open, it touches nothing. A drive whose encoder stands still creeps on until the fingers meet their stop.
 void Gripper::rest(Time t, double jaw_rad, const TorqueEstimate& torque) {
   if (std::abs(torque.at_least_nm()) < config_.grip_torque_nm) unloaded_ = t;
-  if (t - unloaded_ < config_.lost_time) return;
-  state_ = GripperState::lost;
-  target_rad_ = jaw_rad;
+  if (t - unloaded_ >= config_.stall_time) target_rad_ = jaw_rad;  // a stop that is nearer than believed is let go of
+  if (t - unloaded_ >= config_.lost_time * 2) state_ = GripperState::lost;
 }
 
 // Opening is positive, so that a closing torque is negative.

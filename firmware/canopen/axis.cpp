@@ -12,7 +12,8 @@ namespace {
 
 constexpr std::uint16_t mode_object = 0x6060;
 constexpr std::uint16_t mode_display_object = 0x6061;
-constexpr int least_following_timeout_ms = 40;  // some drives take only 0: ten SYNCs, as long as a target may lie ahead for
+constexpr int least_following_timeout_ms = 40;    // some drives take only 0: ten SYNCs, as long as a target may lie ahead for
+constexpr int latest_following_timeout_ms = 200;  // whatever the drive is told: a slew at 0.3 rad/s goes 0.06 rad meanwhile
 constexpr std::uint16_t word_of(Command command) { return static_cast<std::uint16_t>(command); }
 
 constexpr std::int64_t ns_per_s = 1'000'000'000;  // steps are budgeted in thousand-millionths of a count
@@ -236,7 +237,8 @@ bool Axis::follows_badly(Time now) {
   const bool follows = enabled() && mode_ == OperationMode::cyclic_position;
   if (!follows || apart <= setup_.following_window_counts) in_step_since_ = now;
   const Duration timeout = Duration::from_ms(std::max<int>(setup_.following_timeout_ms, least_following_timeout_ms));
-  return now - in_step_since_ > (setup_.profile.master_times_following ? timeout : timeout * 2);
+  const Duration late = std::min(timeout * 2, Duration::from_ms(latest_following_timeout_ms));
+  return now - in_step_since_ > (setup_.profile.master_times_following ? timeout : late);
 }
 
 DriveGoal Axis::goal() const {

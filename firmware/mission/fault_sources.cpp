@@ -100,7 +100,8 @@ void FaultSources::collect_timeout(const StepTick& tick) {
   for (const bool in_fault : {true, false}) {
     for (std::size_t i = 0; i < joint_count && tick.step == Step::enable; ++i) {
       const canopen::Axis& axis = tick.network.axis(static_cast<Joint>(i));
-      if (in_fault ? !axis.drive_in_fault() : !axis.homed() || axis.enabled()) continue;
+      const bool asked = axis.requested() == canopen::AxisRequest::hold_enabled;
+      if (in_fault ? !axis.drive_in_fault() : !asked || axis.enabled()) continue;
       tick.faults.report({Fault::drive_fault, static_cast<std::int32_t>(i), tick.network.fault(i).emcy_code});
       return;
     }

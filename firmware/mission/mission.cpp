@@ -18,6 +18,7 @@ void Mission::tick(Time now, canopen::Network& network, ScanOrders& orders, Tele
   take_reset(tick);
   take_shut_down(tick);
   sources_.collect(tick, vigilance(network));
+  watch_grip(tick);
   if (on_hold()) {
     clock_.wait(now - last_tick_);
     bench_.gripper.wait(now - last_tick_);
@@ -208,11 +209,11 @@ Progress Mission::work(const StepTick& tick) {
     const bool takes_hold = step_ == Step::grip || step_ == Step::free_jaw;
     if (!yielding() || takes_hold) bench_.stay_where_pushed();
     bench_.grip_guard.reset();
+    grip_lag_rad_.reset();
     if (step_ == Step::held) bench_.stay_where_measured();
     const Progress begun = begin(tick);
     if (!begun.is_running()) return begun;
   }
-  watch_grip(tick);
   const Progress progress = run(tick);
   expect_duration();
   return progress;
@@ -221,7 +222,6 @@ Progress Mission::work(const StepTick& tick) {
 bool Mission::yielding() const {
   switch (step_) {
     case Step::free_jaw:
-    case Step::back_out:
     case Step::grip:
     case Step::turn:
     case Step::let_go:
@@ -292,9 +292,12 @@ void Mission::drive(const StepTick& tick) {
 }
 
 // A slew that runs off squeezes the bar against the jaw long before it is an overload, which friction hides from its motor.
+// What it lags by at the beginning of a step is that of the contact with which the last one ended.
 void Mission::watch_grip(const StepTick& tick) {
-  if (!yielding() || !bench_.powered || !joints().valid) return;
-  bench_.grip_guard.update(joints().t, bench_.pushed_target(), bench_.measured_rad(), bench_.measured_nm());
+  if (!(yielding() || step_ == Step::held) || !bench_.powered || !joints().valid) return;
+  const arm::JointVector target_rad = bench_.pushed_target(), measured_rad = bench_.measured_rad();
+  if (!grip_lag_rad_) grip_lag_rad_ = target_rad - measured_rad;
+  bench_.grip_guard.update(joints().t, target_rad - *grip_lag_rad_, measured_rad, bench_.measured_nm());
   if (bench_.grip_guard.touched()) tick.faults.report(Fault::following_error, static_cast<std::int32_t>(bench_.grip_guard.joint()));
 }
 

@@ -127,7 +127,8 @@ class Mission {
   StepClock clock_;
   std::uint32_t motions_before_ = 0;  // begun before this step
   Time last_tick_;
-  std::optional<CameraWork::Mode> hold_;  // the operator holds the arm: what the camera did when it was held
+  std::optional<arm::JointVector> grip_lag_rad_;  // of the step under way, as it began
+  std::optional<CameraWork::Mode> hold_;          // the operator holds the arm: what the camera did when it was held
   Outcome outcome_;
   ScanStats scan_stats_;
   bool nodes_stopped_ = false;  // for good, after a shut-down

@@ -50,10 +50,9 @@ void Motion::go(std::span<const arm::JointVector> points_rad, double speed_fract
   begin(Kind::path, path_.duration_s());
 }
 
-void Motion::begin_way(const Room& room, double jaw_rad, const arm::JointVector& pushed_rad) {
+void Motion::begin_way(const Room& room, double jaw_rad) {
   surroundings_.enter(room);
-  const arm::JointVector from_rad = target_.q_rad + pushed_rad;
-  way_.begin(from_rad, surroundings_, wanted_from(from_rad, jaw_rad, surroundings_), wanted_everywhere);
+  way_.begin(target_.q_rad, surroundings_, wanted_from(target_.q_rad, jaw_rad, surroundings_), wanted_everywhere);
 }
 
 void Motion::advance_way(Kind then, double duration_s) {
@@ -154,7 +153,10 @@ void Motion::turn(double from_rad, double to_rad, const Room& room, double jaw_r
   if (!turn_.plan(target_.q_rad, room.base_from_panel.linear(), from_rad, to_rad, bar, limits.lower_rad[3], limits.upper_rad[3])) {
     return refuse(StepFailure::unreachable);
   }
-  begin_way(room, jaw_rad, pushed_rad);
+  // The tool stays where it is: what is near stays near.
+  surroundings_.enter(room);
+  const arm::JointVector here_rad = target_.q_rad + pushed_rad;
+  way_.begin(here_rad, surroundings_, wanted_from(here_rad, jaw_rad, surroundings_));
   way_.add(turn_.goal_rad() + pushed_rad);
   begin(Kind::look_at_turn, 0);
 }

@@ -86,7 +86,7 @@ class Motion {
   void refuse(StepFailure failure);
   void plan_route(const arm::JointVector& goal_rad);
   // Begins the way from here, to be looked at.
-  void begin_way(const Room& room, double jaw_rad, const arm::JointVector& pushed_rad = arm::JointVector::Zero());
+  void begin_way(const Room& room, double jaw_rad);
   void advance_plan();
   void advance_route();
   void advance_line();

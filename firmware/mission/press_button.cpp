@@ -81,7 +81,6 @@ Progress PressButton::begin_press(Workbench& bench) {
   feel_ = ButtonFeel();
   learned_under_way_ = false;
   bottom_m_ = 0;
-  bench.wound_up = true;
   bench.job.result().failure = StepFailure::none;
   const double depth = bench.mission().layout.button_stroke_m + bench.mission().press_overtravel_m;
   const Vec3 tip = bench.map.button_m(bench.job.task().button) - bench.map.normal() * depth;
@@ -103,6 +102,7 @@ Progress PressButton::run_press(const StepTick& tick) {
     return Progress::running();
   }
   const Progress motion = bench.follow_motion();
+  bench.wound_up = bench.wound_up || guard_.touched() || feel_.touched();
   if (!guard_.touched() && !motion.is_done()) return motion;
   if (guard_.touched()) bench.motion.stop();
   TaskResult& result = bench.job.result();
@@ -110,8 +110,8 @@ Progress PressButton::run_press(const StepTick& tick) {
   result.click_felt = feel_.clicked();
   result.failure = judge(bench);
   // What may have gone in unfelt is not pressed again, and what is in the way is not run into again.
-  if (result.failure == StepFailure::button_stuck || result.failure == StepFailure::early_contact)
-    return Progress::failed_for_good(result.failure);
+  const bool ran_into_something = result.failure == StepFailure::early_contact && learned_under_way_;
+  if (result.failure == StepFailure::button_stuck || ran_into_something) return Progress::failed_for_good(result.failure);
   if (result.failure != StepFailure::none) return Progress::failed(result.failure);
   pressed_ = true;
   ++result.presses;

@@ -24,8 +24,8 @@ const std::vector<FaultRule>& rules() {
   // the joint that feels it most is not the one that reads wrongly.
   static const std::vector<std::string> led_astray{"tool outside its workspace", "unexpected contact", "touched something",
                                                    "the jaw holds nothing"};
-  // A torque that stands still is felt nowhere, or everywhere: the core sees a press that meets nothing, or something too early.
-  static const std::vector<std::string> feels_wrongly{"torque reading stands still", "touched something"};
+  // A torque that stands still is felt nowhere, one that is too high everywhere: the core sees a press that meets nothing, or something too early.
+  static const std::vector<std::string> feels_nothing{"nothing to touch", "touched something"}, feels_much{"touched something"};
   static const std::vector<std::string> link{"node lost", "node rebooted", "stale position", "drive fault", "boot failed"};
   static const std::vector<std::string> bus_off_of_the_master{"CAN bus off"};
   static const std::vector<std::string> sight{"image", "camera", "panel vision", "platform call", "no panel seen", "too few points"};
@@ -36,9 +36,9 @@ const std::vector<FaultRule>& rules() {
       {"following", safe_end, Report::none, 0, misbehaves, {}},
       {"stuck_encoder", safe_end, Report::none, 0, misbehaves, led_astray},
       {"encoder_jump", safe_end, Report::none, 0, misbehaves, led_astray},
-      {"torque_frozen", safe_end, Report::none, 0, misbehaves, feels_wrongly},
-      {"torque_high", safe_end, Report::none, 0, misbehaves, feels_wrongly},
-      {"runaway", safe_end, Report::none, 0, misbehaves, led_astray},
+      {"torque_frozen", safe_end, Report::none, 0, misbehaves, feels_nothing},
+      {"torque_high", safe_end, Report::none, 0, misbehaves, feels_much},
+      {"runaway", safe_end, Report::none, 0, misbehaves, {}},
       {"silent", stop, Report::silence, 0, link, {}},
       {"reboot", stop, Report::silence, 0, link, {}},
       {"wrong_identity", safe_end, Report::none, 0, {"boot failed"}, {}},
@@ -122,10 +122,12 @@ bool names_node(const std::string& reason, const std::string& node) {
 
 }  // namespace
 
-bool Cause::named_in(const std::string& reason) const {
+bool Cause::named_in(const std::string& told) const {
+  const std::string reason = told.substr(0, told.find(" ("));  // without the advice
   if (has_any(reason, rule->named_without_node)) return true;
   // The output node triggers the camera, too.
-  if (node_name(node) == "io" && has_any(reason, {"output node lost", "camera silent"})) return true;
+  if (node_name(node) == "io" && reason.find("output node lost") != std::string::npos) return true;
+  if (node_name(node) == "io" && rule->kind == "drop_frames" && reason.find("camera silent") != std::string::npos) return true;
   const bool named = has_any(reason, rule->named_by);
   return named && (node.empty() || names_node(reason, node_name(node)));
 }

@@ -115,6 +115,14 @@ class Judge {
       const Deadline deadline = delayed_by_a_cut(report_of(seen_, cause, situation_.begins_s[i], figures_));
       if (!strictest || deadline.end_s() < strictest->end_s()) strictest = deadline;
     }
+    // None of several was told: the last of them to begin has stopped the arm, or has to.
+    if (!strictest && stops > 0) {
+      std::size_t last = 0;
+      for (std::size_t i = 0; i < situation_.causes.size(); ++i) {
+        if (demands_stop(situation_.causes[i])) last = i;
+      }
+      strictest = delayed_by_a_cut(report_of(seen_, situation_.causes[last], situation_.begins_s[last], figures_));
+    }
     return strictest;
   }
 
@@ -181,22 +189,30 @@ class Judge {
       const double late_s = (cut & (1u << joint)) != 0 ? figures_.self_stop_s : 0;
       const double allowed_s = speed / situation_.deceleration_rad_s2[joint] + figures_.settling_s + late_s;
       const double moved_s = last_s(moments_, from_s, [&](const Moment& m) { return m.speed_rad_s[joint] >= figures_.standing_rad_s; });
-      standing_s = std::max(standing_s, moved_s);
-      if (moved_s - from_s > allowed_s && !stands_but_for_play(joint, from_s, from_s + allowed_s))
+      std::optional<double> stood_s;
+      if (moved_s - from_s > allowed_s) stood_s = stood_but_for_play(joint, from_s, from_s + allowed_s);
+      standing_s = std::max(standing_s, stood_s.value_or(moved_s));
+      if (moved_s - from_s > allowed_s && !stood_s)
         wrong(std::string(joint_names[joint]) + formatted(" moves %.2f s after the stop, %.2f s are allowed", moved_s - from_s, allowed_s));
     }
     verdict_.standing_s = standing_s - from_s;
   }
 
-  // It stood before its time was up and is pulled through the play of its gear afterwards, as by a bar in the jaw.
-  bool stands_but_for_play(std::size_t joint, double from_s, double until_s) const {
-    std::size_t i = std::min(static_cast<std::size_t>(until_s / ms), moments_.size());
-    const std::size_t from = static_cast<std::size_t>(from_s / ms);
-    while (i > from && moments_[i - 1].speed_rad_s[joint] >= figures_.standing_rad_s) --i;
-    if (i <= from) return false;
-    const float stood_rad = moments_[i - 1].angle_rad[joint];
-    return std::all_of(moments_.begin() + std::ptrdiff_t(i), moments_.end(),
-                       [&](const Moment& m) { return std::abs(m.angle_rad[joint] - stood_rad) <= figures_.play_rad; });
+  // When it stood, for 20 ms, before its time was up, if it is only pulled through the play of its gear afterwards, as by a bar in the jaw.
+  std::optional<double> stood_but_for_play(std::size_t joint, double from_s, double until_s) const {
+    constexpr std::size_t long_enough = 20;
+    const std::size_t from = static_cast<std::size_t>(from_s / ms),
+                      until = std::min(static_cast<std::size_t>(until_s / ms), moments_.size());
+    std::size_t slow = 0, stood = 0;
+    for (std::size_t i = from; i < until; ++i) {
+      slow = moments_[i].speed_rad_s[joint] < figures_.standing_rad_s ? slow + 1 : 0;
+      if (slow >= long_enough) stood = i;
+    }
+    if (stood == 0) return std::nullopt;
+    const float stood_rad = moments_[stood].angle_rad[joint];
+    const bool stays = std::all_of(moments_.begin() + std::ptrdiff_t(stood), moments_.end(),
+                                   [&](const Moment& m) { return std::abs(m.angle_rad[joint] - stood_rad) <= figures_.play_rad; });
+    return stays ? std::optional(static_cast<double>(stood) * ms) : std::nullopt;
   }
 
   void loses_power(double from_s) {

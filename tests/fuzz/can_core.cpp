@@ -89,7 +89,7 @@ class OrderBook {
     running_ = runs_now;
     if (!runs_now || enabled_) return;
     ++after_stop_;
-    expect(after_stop_ <= canopen::Axis::handshake_syncs, "a stop is sent within a handshake");
+    expect(after_stop_ <= 3, "a stop is sent within three SYNCs");
     expect(newest_ != AxisRequest::remove_power, "power is removed at once");
     expect(newest_ != AxisRequest::quick_stop || !axis.runs(), "a drive in operation is told to quick stop at once");
   }

@@ -165,7 +165,7 @@ TEST(UnconfirmedDrive, InhibitTimesThatHoldBackSynchronousPdosAreWrittenAway) {
   }
 }
 
-TEST(UnconfirmedDrive, ADriveThatFaultsWithoutSyncStopsByItself) {
+TEST(UnconfirmedDrive, ADriveThatFaultsWithoutSyncSaysSoAndGoesNoFartherThanItsRamp) {
   for (const char* name : {"ipos", "ingenia", "lmdrive", "eyou"}) {
     double gone_counts[2] = {};
     for (const bool faults : {false, true}) {

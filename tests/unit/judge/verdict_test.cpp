@@ -105,6 +105,23 @@ TEST(Verdict, AJointThatStoodMayBePulledThroughItsPlayAndNoFarther) {
   EXPECT_THAT(wrong.front(), testing::HasSubstr("elbow moves 1.04 s after the stop"));
 }
 
+TEST(Verdict, TwoCausesThatNoFrameToldAreStillAStop) {
+  Seen seen = Stopping{.stop_ms = 900}.seen();
+  seen.fault_reported_s.reset();
+  Situation situation = situation_of(cause_of("overcurrent elbow"));
+  situation.causes.push_back(cause_of("hot slew"));
+  situation.begins_s.push_back(0.3);
+  EXPECT_FALSE(judge(seen, situation, failed("drive fault: elbow")).wrong.empty());
+}
+
+TEST(Verdict, TheAdviceOfAReasonNamesNothing) {
+  EXPECT_TRUE(cause_of("torque_frozen elbow").named_in("step failed: nothing to touch there (Or something.)"));
+  EXPECT_FALSE(cause_of("torque_high elbow").named_in("step failed: the jaw does not open (The overload: elbow.)"));
+  EXPECT_FALSE(cause_of("runaway slew").named_in("unexpected contact: roll"));
+  EXPECT_TRUE(cause_of("runaway slew").named_in("following error: slew, in step grip"));
+  EXPECT_FALSE(cause_of("silent io").named_in("camera silent"));
+}
+
 // At the end: 0.02 rad/s for 0.2 s.
 TEST(Verdict, AtTheEndAJointThatTravelsMovesAndOneThatQuiversStands) {
   Seen seen = Stopping().seen();
