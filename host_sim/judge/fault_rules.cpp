@@ -25,7 +25,7 @@ const std::vector<FaultRule>& rules() {
   static const std::vector<std::string> led_astray{"tool outside its workspace", "unexpected contact", "touched something",
                                                    "the jaw holds nothing"};
   // A torque that stands still is felt nowhere, one that is too high everywhere: the core sees a press that meets nothing, or something too early.
-  static const std::vector<std::string> feels_nothing{"nothing to touch", "touched something"}, feels_much{"touched something"};
+  static const std::vector<std::string> feels_nothing{"no button there", "touched something"}, feels_much{"touched something"};
   static const std::vector<std::string> link{"node lost", "node rebooted", "stale position", "drive fault", "boot failed"};
   static const std::vector<std::string> bus_off_of_the_master{"CAN bus off"};
   static const std::vector<std::string> sight{"image", "camera", "panel vision", "platform call", "no panel seen", "too few points"};

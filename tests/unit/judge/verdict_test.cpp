@@ -115,7 +115,7 @@ TEST(Verdict, TwoCausesThatNoFrameToldAreStillAStop) {
 }
 
 TEST(Verdict, TheAdviceOfAReasonNamesNothing) {
-  EXPECT_TRUE(cause_of("torque_frozen elbow").named_in("step failed: nothing to touch there (Or something.)"));
+  EXPECT_TRUE(cause_of("torque_frozen elbow").named_in("step failed: no button there (Or something.)"));
   EXPECT_FALSE(cause_of("torque_high elbow").named_in("step failed: the jaw does not open (The overload: elbow.)"));
   EXPECT_FALSE(cause_of("runaway slew").named_in("unexpected contact: roll"));
   EXPECT_TRUE(cause_of("runaway slew").named_in("following error: slew, in step grip"));
