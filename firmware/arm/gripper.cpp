@@ -126,7 +126,7 @@ void Gripper::move(Time t, double jaw_rad, const TorqueEstimate& torque, double 
 void Gripper::rest(Time t, double jaw_rad, const TorqueEstimate& torque) {
   if (std::abs(torque.at_least_nm()) < config_.grip_torque_nm) unloaded_ = t;
   if (t - unloaded_ >= config_.stall_time) target_rad_ = jaw_rad;  // a stop that is nearer than believed is let go of
-  if (t - unloaded_ >= config_.lost_time * 2) state_ = GripperState::lost;
+  if (t - unloaded_ >= config_.lost_time) state_ = GripperState::lost;
 }
 
 // Opening is positive, so that a closing torque is negative.

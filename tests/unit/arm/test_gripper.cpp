@@ -242,9 +242,9 @@ TEST(Gripper, IsLostWhenItPressesThoughItIsOpen) {
     gripper.turn_to(0.5);
     run(0.1, 0);
     ASSERT_EQ(gripper.state(), GripperState::open);
-    run(0.55, pressing_nm);
+    run(0.25, pressing_nm);
     run(0.05, 0);
-    run(0.55, pressing_nm);
+    run(0.25, pressing_nm);
     EXPECT_EQ(gripper.state(), GripperState::open) << "a brush of the bar is shorter";
     run(0.1, pressing_nm);
     EXPECT_EQ(gripper.state(), GripperState::lost);
