@@ -292,9 +292,10 @@ void Mission::drive(const StepTick& tick) {
 }
 
 // A slew that runs off squeezes the bar against the jaw long before it is an overload, which friction hides from its motor.
-// What it lags by at the beginning of a step is that of the contact with which the last one ended.
+// What it lags by at the beginning of a step is that of the contact with which the last one ended. Until the arm has come to rest its lag falls off.
 void Mission::watch_grip(const StepTick& tick) {
-  if (!(yielding() || step_ == Step::held) || !bench_.powered || !joints().valid) return;
+  const bool stays = yielding() || step_ == Step::held;
+  if (!stays || stage_ != Stage::under_way || !bench_.powered || !joints().valid) return;
   const arm::JointVector target_rad = bench_.pushed_target(), measured_rad = bench_.measured_rad();
   if (!grip_lag_rad_) grip_lag_rad_ = target_rad - measured_rad;
   bench_.grip_guard.update(joints().t, target_rad - *grip_lag_rad_, measured_rad, bench_.measured_nm());
