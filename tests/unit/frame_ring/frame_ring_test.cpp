@@ -222,6 +222,18 @@ class TemporaryFile {
   const std::string path;
 };
 
+// One file, as its writer maps it and as its reader reads it.
+struct BothSides {
+  BothSides() {
+    EXPECT_EQ(mapped.open(path.path, bytes), 0);
+    EXPECT_EQ(file.open(path.path, bytes), 0);
+  }
+  const TemporaryFile path;
+  const std::size_t bytes = frame_ring_bytes(slots, payload);
+  MappedFile mapped;
+  SharedFile file;
+};
+
 // The payload is a function of the sequence: whatever the reader gets must agree with itself, however fast the writer overruns it.
 void overrun(std::span<std::byte> memory, FrameRingReader reader) {
   FrameRingWriter writer;
@@ -263,31 +275,21 @@ TEST(FrameRing, AReaderThatIsOverrunSeesOnlyWholeRecords) {
 }
 
 TEST(FrameRing, AReaderOfAFileThatIsOverrunSeesOnlyWholeRecords) {
-  const TemporaryFile path;
-  const std::size_t bytes = frame_ring_bytes(slots, payload);
-  MappedFile mapped;
-  SharedFile file;
-  ASSERT_EQ(mapped.open(path.path, bytes), 0);
-  ASSERT_EQ(file.open(path.path, bytes), 0);
-  overrun(mapped.bytes(), FrameRingReader(file, 0, bytes));
+  BothSides ring;
+  overrun(ring.mapped.bytes(), FrameRingReader(ring.file, 0, ring.bytes));
 }
 
 // Slots 2 and 3 are cut off. What the reader had not yet read there is missed; the writer that comes back is read from its first record on.
 TEST(FrameRing, AFileCutShortLosesItsLastSlotsOnly) {
-  const TemporaryFile path;
-  const std::size_t bytes = frame_ring_bytes(slots, payload);
-  MappedFile mapped;
-  SharedFile file;
-  ASSERT_EQ(mapped.open(path.path, bytes), 0);
-  ASSERT_EQ(file.open(path.path, bytes), 0);
+  BothSides ring;
   FrameRingWriter writer;
-  ASSERT_TRUE(writer.open(mapped.bytes(), slots, payload));
-  FrameRingReader reader(file, 0, bytes);
+  ASSERT_TRUE(writer.open(ring.mapped.bytes(), slots, payload));
+  FrameRingReader reader(ring.file, 0, ring.bytes);
   std::vector<std::byte> out(payload);
   RecordInfo info;
   ASSERT_EQ(reader.take(info, out), Answer::empty);
   for (std::uint32_t n = 0; n < slots; ++n) ASSERT_TRUE(writer.write(info_of(n), pattern(n, payload), n));
-  ASSERT_EQ(truncate(path.path.c_str(), static_cast<off_t>(frame_ring_page + 2 * 1152)), 0);
+  ASSERT_EQ(truncate(ring.path.path.c_str(), static_cast<off_t>(frame_ring_page + 2 * 1152)), 0);
   for (std::uint32_t n = 0; n < 2; ++n) {
     ASSERT_EQ(reader.take(info, out), Answer::record);
     EXPECT_EQ(info.sequence, n);
@@ -296,12 +298,12 @@ TEST(FrameRing, AFileCutShortLosesItsLastSlotsOnly) {
   EXPECT_EQ(reader.take(info, out), Answer::empty);
   EXPECT_EQ(reader.stats().missed, 2u);
   EXPECT_EQ(reader.writer_beat_ns(), 3);
-  ASSERT_EQ(truncate(path.path.c_str(), 0), 0);
+  ASSERT_EQ(truncate(ring.path.path.c_str(), 0), 0);
   EXPECT_EQ(reader.take(info, out), Answer::no_ring);
   EXPECT_EQ(reader.writer_beat_ns(), 0);
-  ASSERT_EQ(truncate(path.path.c_str(), static_cast<off_t>(bytes)), 0);
+  ASSERT_EQ(truncate(ring.path.path.c_str(), static_cast<off_t>(ring.bytes)), 0);
   EXPECT_EQ(reader.take(info, out), Answer::no_ring);
-  ASSERT_TRUE(writer.open(mapped.bytes(), slots, payload));
+  ASSERT_TRUE(writer.open(ring.mapped.bytes(), slots, payload));
   ASSERT_TRUE(writer.write(info_of(50), pattern(50, payload), 0));
   ASSERT_EQ(reader.take(info, out), Answer::record);
   EXPECT_EQ(info.sequence, 50u);
