@@ -375,28 +375,20 @@ mission::Tasks core_tasks(const std::vector<Task>& tasks, const std::string& whe
 
 namespace {
 
-void check_frictions(const Machine& machine, const HomingOffsets& offsets, const ArmDescription& arm, const std::string& file,
-                     const Steps& steps) {
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    if (!offsets.friction_known[i]) continue;
-    steps.take([&] {
-      const Motor motor = motor_of(arm.joints[i], drive_of(machine.drives, i).counts_per_rev);
-      if (const std::optional<std::string> problem = friction_problem(i, offsets.friction[i], motor))
-        throw InputError(file + ": " + *problem);
-    });
-  }
-}
-
 // A joint without a line in the file, and every joint without a file, takes no power.
-void set_zeros(const Machine& machine, const std::filesystem::path& folder, const ArmDescription* arm, const Steps& steps,
-               ControllerConfig& controller) {
+void set_zeros(const Machine& machine, const std::filesystem::path& folder, const ArmDescription* arm, Core& core) {
+  ControllerConfig& controller = core.controller;
   const std::string& file = machine.homing_file;
   canopen::NetworkConfig& network = controller.network;
   for (canopen::DriveSetup& drive : network.drives) drive.zero_known = false;
   if (file.empty()) return;
   const std::string found = find_file(file, folder);
-  const HomingOffsets offsets = read_homing_file(found);
-  if (arm != nullptr) check_frictions(machine, offsets, *arm, found, steps);
+  HomingOffsets offsets = read_homing_file(found);
+  if (arm != nullptr) {
+    std::array<Motor, joint_count> motors;
+    for (std::size_t i = 0; i < joint_count; ++i) motors[i] = motor_of(arm->joints[i], drive_of(machine.drives, i).counts_per_rev);
+    for (const std::string& doubtful : leave_out_doubtful(offsets, motors)) core.notes.push_back(found + ": " + doubtful);
+  }
   for (std::size_t i = 0; i < joint_count; ++i) {
     network.drives[i].zero_known = offsets.known[i];
     network.drives[i].encoder_zero_counts = offsets.zero_counts[i];
@@ -429,7 +421,7 @@ Core assemble(const Machine& machine, const Steps& steps) {
     }
     drives_known = drives;
   }
-  steps.take([&] { set_zeros(machine, folder, arm ? &description : nullptr, steps, controller); });
+  steps.take([&] { set_zeros(machine, folder, arm ? &description : nullptr, core); });
   if (drives_known) steps.take([&] { check_network(machine, controller.network); });
   controller.camera = camera_calibration(machine.camera);
   const bool camera = steps.take([&] {

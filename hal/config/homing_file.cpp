@@ -71,6 +71,18 @@ std::optional<std::string> friction_problem(std::size_t joint, const JointFricti
   return problem("viscous_mnm_s", found.viscous_mnm_s, motor.viscous_nm_s, most_viscous, motor.rated_torque_nm / motor.top_speed_rad_s);
 }
 
+std::vector<std::string> leave_out_doubtful(HomingOffsets& offsets, const std::array<Motor, joint_count>& motors) {
+  std::vector<std::string> left_out;
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    if (!offsets.friction_known[i]) continue;
+    const std::optional<std::string> problem = friction_problem(i, offsets.friction[i], motors[i]);
+    if (!problem) continue;
+    left_out.push_back(*problem + ". Until then this joint takes no power");
+    offsets.known[i] = offsets.friction_known[i] = false;
+  }
+  return left_out;
+}
+
 void set_friction(const HomingOffsets& offsets, std::size_t joint, arm::Friction& friction) {
   if (!offsets.friction_known[joint]) return;
   constexpr double other_day = 0.05, most = 0.5;

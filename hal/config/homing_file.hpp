@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "firmware/arm/transmission.hpp"
 #include "shared/arm/motor.hpp"
@@ -36,6 +37,9 @@ void set_friction(const HomingOffsets& offsets, std::size_t joint, arm::Friction
 // Friction that this motor cannot have, in words with the key that says so, or nothing: a typing error, another machine's file, or a joint that something rubs
 // against. The bounds are those of a scenario's friction.*, over what the arm's description has.
 std::optional<std::string> friction_problem(std::size_t joint, const JointFriction& found, const Motor& motor);
+
+// Joints with such a friction are no longer known, so that they take no power until they are commissioned again. A sentence for each.
+std::vector<std::string> leave_out_doubtful(HomingOffsets& offsets, const std::array<Motor, joint_count>& motors);
 
 const char* joint_name(std::size_t joint);  // "slew" ...
 

@@ -107,6 +107,7 @@ JointDriveChoice drive_of(const Drives& drives, std::size_t joint);
 struct Core {
   ControllerConfig controller;
   ScanConfig scan;
+  std::vector<std::string> notes;  // what is accepted and yet to be known, a sentence each
 };
 
 // Reads the arm's URDF, the file of limits and the camera's calibration. Throws InputError for these, and for a job that the machine as it is described

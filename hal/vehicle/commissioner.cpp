@@ -52,6 +52,25 @@ Json friction_json(const config::HomingOffsets& offsets) {
   return all;
 }
 
+std::string take_over(const Commissioned& commissioned, const std::array<Motor, joint_count>& motors, config::HomingOffsets& offsets) {
+  std::string left_out;
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    if (!commissioned.found[i]) continue;
+    const bool rubs = commissioned.friction_found[i];
+    if (const auto doubtful = rubs ? config::friction_problem(i, commissioned.friction[i], motors[i]) : std::nullopt) {
+      left_out += (left_out.empty() ? "" : "; ") + *doubtful;
+      continue;
+    }
+    offsets.zero_counts[i] = commissioned.zero_counts[i];
+    offsets.known[i] = true;
+    offsets.found[i] = commissioned.how;
+    if (!rubs) continue;
+    offsets.friction[i] = commissioned.friction[i];
+    offsets.friction_known[i] = true;
+  }
+  return left_out;
+}
+
 Commissioner::Commissioner(const VehicleConfig& config, LoopRings& rings, Log log)
     : core_(config.core.controller), file_(config.machine.homing_file), rings_(rings), log_(std::move(log)) {
   const std::filesystem::path folder = std::filesystem::path(config.machine.file).parent_path();
@@ -168,24 +187,16 @@ void Commissioner::store(const Commissioning& ended) {
   stage_ = Stage::storing;
   prepared_ = std::make_shared<Prepared>();
   const std::string how = (order_.here ? "in the jig, " : "at its stop, ") + now_text() + " UTC";
-  const bool posted = worker_.post([prepared = prepared_, file = file_, how, found = ended.found(), zeros = ended.zero_counts(),
-                                    rubs = ended.friction_found(), friction = ended.friction(), core = core_, motors = motors_]() mutable {
-    std::string problem;
+  const Commissioned commissioned{ended.found(), ended.zero_counts(), ended.friction_found(), ended.friction(), how};
+  const bool posted = worker_.post([prepared = prepared_, file = file_, commissioned, core = core_, motors = motors_]() mutable {
+    std::string problem, left_out;
     config::HomingOffsets offsets;
     std::unique_ptr<Controller> with_zeros;
     try {
       offsets = read_and_check(file);
-      for (std::size_t i = 0; i < joint_count; ++i) {
-        if (!found[i]) continue;
-        offsets.zero_counts[i] = zeros[i];
-        offsets.known[i] = true;
-        offsets.found[i] = how;
-        if (!rubs[i]) continue;
-        if (const auto rubbing = config::friction_problem(i, friction[i], motors[i])) throw InputError("nothing was written: " + *rubbing);
-        offsets.friction[i] = friction[i];
-        offsets.friction_known[i] = true;
-      }
+      left_out = take_over(commissioned, motors, offsets);
       config::write_homing_file(file, offsets);
+      (void)config::leave_out_doubtful(offsets, motors);  // an older file's
       for (std::size_t i = 0; i < joint_count; ++i) {
         core.network.drives[i].encoder_zero_counts = offsets.zero_counts[i];
         core.network.drives[i].zero_known = offsets.known[i];
@@ -197,6 +208,7 @@ void Commissioner::store(const Commissioning& ended) {
     }
     const std::lock_guard lock(prepared->mutex);
     prepared->problem = problem;
+    prepared->left_out = left_out;
     prepared->offsets = offsets;
     prepared->core = std::move(with_zeros);
     prepared->done = true;
@@ -217,7 +229,10 @@ void Commissioner::install() {
   }
   core_given_ = std::move(prepared_->core);
   (void)rings_.cores.push(core_given_.get());
-  end_with({{"state", "done"}, {"zeros", zeros}, {"friction", friction_json(prepared_->offsets)}, {"file", file_}});
+  Json outcome{{"state", "done"}, {"zeros", zeros}, {"friction", friction_json(prepared_->offsets)}, {"file", file_}};
+  if (!prepared_->left_out.empty())
+    outcome.update({{"state", "failed"}, {"why", "not all was written: " + prepared_->left_out}, {"without_power", true}});
+  end_with(outcome);
 }
 
 }  // namespace lf::hal

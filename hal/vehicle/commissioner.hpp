@@ -23,6 +23,17 @@ namespace lf::hal {
 // what the fit left.
 Json friction_json(const config::HomingOffsets& offsets);
 
+// What a commissioning has found.
+struct Commissioned {
+  std::array<bool, joint_count> found{};
+  std::array<std::int32_t, joint_count> zero_counts{};
+  std::array<bool, joint_count> friction_found{};
+  std::array<config::JointFriction, joint_count> friction{};
+  std::string how;  // and when
+};
+// Takes it over into `offsets`, but for the joints whose friction cannot be: their names and figures, or "".
+std::string take_over(const Commissioned& commissioned, const std::array<Motor, joint_count>& motors, config::HomingOffsets& offsets);
+
 class Commissioner {
  public:
   using Log = std::function<void(const Json&)>;
@@ -52,6 +63,7 @@ class Commissioner {
     std::mutex mutex;
     bool done = false;
     std::string problem;
+    std::string left_out;  // joints whose friction cannot be, a sentence each: their lines of the file stay as they were
     std::unique_ptr<Commissioning> commissioning;
     std::unique_ptr<Controller> core;
     config::HomingOffsets offsets;

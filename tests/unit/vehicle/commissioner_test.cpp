@@ -21,5 +21,38 @@ TEST(Commissioned, TheFrictionOfEachJointIsToldWithItsResidual) {
             "jaw       zero at 0 counts; friction not measured: as the arm's description has it\n");
 }
 
+TEST(Commissioned, AJointThatSomethingRubsAgainstIsLeftOutAndTheOthersAreTakenOver) {
+  std::array<Motor, joint_count> motors;
+  for (Motor& motor : motors) motor.coulomb_nm = 1e-3, motor.viscous_nm_s = 1e-6;
+  config::HomingOffsets offsets;
+  offsets.known[1] = true;
+  offsets.zero_counts[1] = 11;
+  Commissioned commissioned;
+  commissioned.found = {true, true, false, true, false};
+  commissioned.zero_counts = {5, 6, 7, 8, 9};
+  commissioned.friction_found = {true, true, true, false, false};
+  commissioned.friction = {{{1, 1e-3, 0.1}, {100, 1e-3, 0.1}, {1, 1e-3, 0.1}, {}, {}}};
+  commissioned.how = "in the jig";
+  const std::string left_out = take_over(commissioned, motors, offsets);
+  EXPECT_NE(left_out.find("'shoulder.coulomb_mnm' is 100"), std::string::npos) << left_out;
+  EXPECT_EQ(offsets.known, (std::array<bool, joint_count>{true, true, false, true, false}));
+  EXPECT_EQ(offsets.zero_counts, (std::array<std::int32_t, joint_count>{5, 11, 0, 8, 0})) << "what was there stays";
+  EXPECT_EQ(offsets.friction_known, (std::array<bool, joint_count>{true, false, false, false, false}));
+  EXPECT_EQ(offsets.friction[0].coulomb_mnm, 1);
+}
+
+TEST(HomingFile, JointsWhoseFrictionCannotBeTakeNoPower) {
+  std::array<Motor, joint_count> motors;
+  for (Motor& motor : motors) motor.coulomb_nm = 1e-3, motor.viscous_nm_s = 1e-6;
+  config::HomingOffsets offsets;
+  offsets.known.fill(true);
+  offsets.friction_known = {true, true, false, false, false};
+  offsets.friction = {{{1, 1e-3, 0.1}, {1, 1, 0.1}, {100, 1, 0.1}, {}, {}}};
+  const std::vector<std::string> left_out = config::leave_out_doubtful(offsets, motors);
+  ASSERT_EQ(left_out.size(), 1U);
+  EXPECT_NE(left_out[0].find("'shoulder.viscous_mnm_s' is 1"), std::string::npos) << left_out[0];
+  EXPECT_EQ(offsets.known, (std::array<bool, joint_count>{true, false, true, true, true})) << "what was not measured is not judged";
+}
+
 }  // namespace
 }  // namespace lf::hal

@@ -149,17 +149,24 @@ TEST(VehicleConfig, ANodeNumberUsedTwiceNamesBothThatHaveIt) {
 TEST(VehicleConfig, AHomingFilesFrictionIsHeldAgainstTheArms) {
   const TemporaryFolder folder;
   const Motor motor = motor_of(load_arm_urdf(LANTERNFISH_SOURCE_DIR "/shared/arm/arm5e.urdf").joints[2], 64);
+  // The daemon starts all the same: commissioning the joint again is an order of the running daemon.
   const auto with = [&](const std::string& coulomb, const std::string& viscous) {
-    folder.write("h.yaml", "elbow: {zero_counts: 7, coulomb_mnm: " + coulomb + ", viscous_mnm_s: " + viscous + "}\n");
-    return problems_of(folder.write("v.yaml", "homing: {file: h.yaml}\n"));
+    folder.write("h.yaml",
+                 "slew: {zero_counts: 3}\nelbow: {zero_counts: 7, coulomb_mnm: " + coulomb + ", viscous_mnm_s: " + viscous + "}\n");
+    const config::Core core = load_vehicle_config(folder.write("v.yaml", "homing: {file: h.yaml}\n")).core;
+    const auto& drives = core.controller.network.drives;
+    EXPECT_TRUE(drives[0].may_have_power());
+    EXPECT_EQ(drives[2].may_have_power(), core.notes.empty());
+    return core.notes;
   };
   const double coulomb = 1e3 * motor.coulomb_nm, viscous = 1e3 * motor.viscous_nm_s;
   ASSERT_GT(coulomb, 0);
   const auto text = [](double value) { return std::to_string(value); };
   for (const double share : {0.0, 1.0, 3.0}) EXPECT_THAT(with(text(share * coulomb), text(share * viscous)), IsEmpty()) << share;
-  for (const std::string& bad : {text(100 * coulomb), std::string("-1"), std::string(".nan")}) {
+  for (const std::string& bad : {text(3.5 * coulomb), text(100 * coulomb)}) {
     EXPECT_THAT(with(bad, text(viscous)), ElementsAre(testing::AllOf(HasSubstr("h.yaml"), HasSubstr("'elbow.coulomb_mnm'")))) << bad;
   }
+  for (const std::string bad : {"-1", ".nan"}) EXPECT_THROW((void)with(bad, text(viscous)), InputError) << bad;
   EXPECT_THAT(with(text(coulomb), text(100 * viscous)),
               ElementsAre(testing::AllOf(HasSubstr("h.yaml"), HasSubstr("'elbow.viscous_mnm_s'"))));
 }
