@@ -124,6 +124,7 @@ RowResult fly_row(const config::Drives& drives, Flight& flight, Watched& watched
   judge::Situation situation;
   situation.causes = row.causes;
   situation.deceleration_rad_s2 = flight.deceleration_rad_s2();
+  situation.gear_gives_rad = flight.gear_gives_rad();
   situation.powering_up = mission::row(row.moment.step).phase == safety::Phase::boot;
   situation.over = flight.mission().outcome().ended;
   situation.fails_anyway = row.moment.walk != "mission" && !walk.by_hand();

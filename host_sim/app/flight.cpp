@@ -14,7 +14,11 @@ Flight::Flight(const scenario::Scenario& scenario, std::uint64_t seed, hal::SimO
   hal::SimConfig sim = scenario::make_truth(scenario, sample, nominal, 1);
   sim.given_sight = true;
   sim.world.force_window_s = force_window_s;
-  for (std::size_t i = 0; i < joint_count; ++i) deceleration_rad_s2_[i] = sim.devices.drives[i].max_acceleration_rad_s2;
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    deceleration_rad_s2_[i] = sim.devices.drives[i].max_acceleration_rad_s2;
+    gear_gives_rad_[i] =
+        sim.world.arm.joints[i].backlash_rad + nominal.controller.limits.joints[i].max_torque_nm / sim.world.drive_stiffness_nm_rad[i];
+  }
   platform_ = std::make_unique<hal::SimPlatform>(sim, observer);
   controller_ = std::make_unique<Controller>(nominal.controller);
   pipeline_ = std::make_unique<ScanPipeline>(nominal.scan);

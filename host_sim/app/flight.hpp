@@ -29,9 +29,11 @@ class Flight {
   hal::SimPlatform& platform() { return *platform_; }
   // Of the joints, by their drives' best: what a stop may take.
   const std::array<double, joint_count>& deceleration_rad_s2() const { return deceleration_rad_s2_; }
+  // Of the joints, by which one may be off its motor: its gear's play, and its wind-up under the torque that its limit allows.
+  const std::array<double, joint_count>& gear_gives_rad() const { return gear_gives_rad_; }
 
  private:
-  std::array<double, joint_count> deceleration_rad_s2_{};
+  std::array<double, joint_count> deceleration_rad_s2_{}, gear_gives_rad_{};
   std::unique_ptr<hal::SimPlatform> platform_;
   std::unique_ptr<Controller> controller_;
   std::unique_ptr<ScanPipeline> pipeline_;

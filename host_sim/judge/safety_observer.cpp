@@ -59,6 +59,7 @@ void SafetyObserver::on_step(Time, const world::World& world) {
   for (std::size_t i = 0; i < joint_count; ++i) {
     moment.speed_rad_s[i] = static_cast<float>(std::abs(readings[i].velocity_rad_s));
     moment.angle_rad[i] = static_cast<float>(readings[i].position_rad);
+    moment.motor_rad[i] = static_cast<float>(readings[i].motor_position_rad);
     const devices::DrivePower power = devices_->power(i);
     if (power != devices::DrivePower::off) moment.power |= static_cast<std::uint8_t>(1u << i);
     if (power == devices::DrivePower::operation && run_ordered_[i]) moment.told_to_run |= static_cast<std::uint8_t>(1u << i);

@@ -15,6 +15,7 @@ namespace lf::judge {
 struct Moment {
   std::array<float, joint_count> speed_rad_s{};  // true, absolute
   std::array<float, joint_count> angle_rad{};    // true
+  std::array<float, joint_count> motor_rad{};    // the motor's, in the joint's units: differs by what the gear gives
   float force_n = 0;                             // of all contacts on the robot, over the world's force window
   std::uint8_t power = 0;                        // bit a joint: its power stage holds or moves it
   std::uint8_t told_to_run = 0;                  // bit a joint: in operation, and the newest RPDO says operation enabled

@@ -41,6 +41,11 @@ std::size_t node_index(const std::string& node) {
 // A drive that hears nothing of the master any more.
 bool cut_off(const Cause& cause) { return cause.rule->kind == "silent" || cause.rule->kind == "bus_off"; }
 
+// A drive that hears NMT commands, and no process data.
+bool loses_process_data(const Cause& cause) {
+  return cause.rule->kind == "drop_frames" && cause.rule->duration_s == 0 && cause.node.starts_with("rpdo ");
+}
+
 // Until an order acts: up to a SYNC period until the SYNC, one that is interpolated, and the arm's own compliance.
 constexpr std::size_t takes_effect_ms = 20;
 constexpr double sync_s = 0.004;
@@ -52,6 +57,7 @@ bool cuts_off_the_master(const Cause& cause) { return cause.rule->report == Repo
 bool deafens_the_master(const Cause& cause) { return cause.rule->kind == "can_receive_fails" || cause.node == "master"; }
 
 struct Deadline {
+  const Cause* cause = nullptr;
   double at_s = 0;       // from when on time counts
   double allowed_s = 0;  // until the stop is on the bus
 
@@ -72,20 +78,20 @@ Deadline report_of(const Seen& seen, const Cause& cause, double begins_s, const 
   const double stop_s = figures.stop_ms * ms, unread_s = figures.unread_ms * ms, self_stop_s = figures.self_stop_s;
   switch (cause.rule->report) {
     case Report::frame:
-    case Report::second_master: return {told_by_a_frame_s(seen, cause, begins_s).value_or(begins_s), stop_s};
+    case Report::second_master: return {&cause, told_by_a_frame_s(seen, cause, begins_s).value_or(begins_s), stop_s};
     case Report::silence: {
       const std::size_t node = node_index(cause.node);
       const double heard_s = cut_off(cause) && node < seen.last_heard_s.size() ? seen.last_heard_s[node] : begins_s;
-      return {std::max(heard_s, begins_s - sync_s), cuts_off_the_master(cause) ? self_stop_s : unread_s};
+      return {&cause, std::max(heard_s, begins_s - sync_s), cuts_off_the_master(cause) ? self_stop_s : unread_s};
     }
-    case Report::unheard: return {begins_s, self_stop_s};
+    case Report::unheard: return {&cause, begins_s, self_stop_s};
     // The arm halts on its own path first, then each drive goes down through every state.
-    case Report::halt: return {begins_s + sync_s, figures.halt_s};
+    case Report::halt: return {&cause, begins_s + sync_s, figures.halt_s};
     // Three ticks without a time are a lost clock; an order is read with the next tick.
-    case Report::at_once: return {begins_s + (cause.rule->kind == "clock_lost" ? 3 : 1) * sync_s, stop_s};
+    case Report::at_once: return {&cause, begins_s + (cause.rule->kind == "clock_lost" ? 3 : 1) * sync_s, stop_s};
     case Report::none: break;
   }
-  return {begins_s, stop_s};
+  return {&cause, begins_s, stop_s};
 }
 
 class Judge {
@@ -95,7 +101,7 @@ class Judge {
 
   Verdict verdict() {
     forces();
-    if (const auto deadline = strictest(); deadline && !situation_.powering_up) stop(*deadline);
+    if (const auto deadline = strictest(); deadline && !situation_.powering_up && !taken_over()) stop(*deadline);
     if (situation_.powering_up) nothing_moves();
     the_end();
     the_account();
@@ -149,17 +155,29 @@ class Judge {
     return deadline;
   }
 
-  // Bit a joint: its drive hears nothing.
-  std::uint8_t cut_off_joints() const {
+  // Another master keeps the drives running, and nothing that ours sends arrives: only the drives' own chain could stop them.
+  bool taken_over() const { return master_is_cut_off() && has(obeyed_in_our_place); }
+  static bool obeyed_in_our_place(const Cause& cause) {
+    return cause.rule->kind == "foreign_master" || cause.rule->kind == "foreign_heartbeat";
+  }
+
+  template <class Is>
+  bool has(Is is) const {
+    return std::any_of(situation_.causes.begin(), situation_.causes.end(), is);
+  }
+
+  // Bit a joint.
+  template <class Is>
+  std::uint8_t joints_that(Is is) const {
     std::uint8_t bits = 0;
     for (const Cause& cause : situation_.causes) {
-      const std::size_t joint = node_index(cause.node);
-      if (cut_off(cause) && joint < joint_count) bits |= static_cast<std::uint8_t>(1u << joint);
+      const std::size_t joint = node_index(cause.node.substr(cause.node.find_last_of(' ') + 1));
+      if (is(cause) && joint < joint_count) bits |= static_cast<std::uint8_t>(1u << joint);
     }
     return bits;
   }
 
-  bool master_is_cut_off() const { return std::any_of(situation_.causes.begin(), situation_.causes.end(), cuts_off_the_master); }
+  bool master_is_cut_off() const { return has(cuts_off_the_master); }
 
   void forces() {
     for (const Moment& moment : moments_) verdict_.force_n = std::max(verdict_.force_n, double(moment.force_n));
@@ -167,57 +185,60 @@ class Judge {
   }
 
   void stop(const Deadline& deadline) {
-    const auto reachable = static_cast<std::uint8_t>(~cut_off_joints());
-    const double on_bus_s = last_s(moments_, deadline.at_s, [&](const Moment& m) { return (m.told_to_run & reachable) != 0; });
+    const std::uint8_t cut = joints_that(cut_off), untold = joints_that(loses_process_data);
+    const auto told_to_run_s = [&](std::uint8_t joints) {
+      return last_s(moments_, deadline.at_s, [&](const Moment& m) { return (m.told_to_run & joints) != 0; });
+    };
+    const double on_bus_s = told_to_run_s(static_cast<std::uint8_t>(~(cut | untold)));
     verdict_.stop_ms = (on_bus_s - deadline.at_s) / ms;
     if (on_bus_s > deadline.end_s() + ms) wrong(formatted("still told to run %.0f ms after the report", *verdict_.stop_ms));
+    const bool halts = deadline.cause->rule->report == Report::halt;
+    const double by_nmt_s = told_to_run_s(untold), late_s = halts ? figures_.unheeded_lowering_s : figures_.unheeded_stop_s;
+    if (by_nmt_s > deadline.end_s() + late_s + ms)
+      wrong(formatted("still runs without process data %.0f ms after the report", (by_nmt_s - deadline.at_s) / ms));
     const double from_s = std::min(on_bus_s, deadline.end_s());
     stands(from_s);
     loses_power(from_s);
   }
 
   void stands(double from_s) {
-    const std::uint8_t cut = cut_off_joints();
+    const std::uint8_t cut = joints_that(cut_off), untold = joints_that(loses_process_data);
+    // Without power a gear holds by its friction alone: who pushes harder moves it.
+    const bool pushed = has([](const Cause& cause) { return cause.rule->kind == "obstacle"; });
     double standing_s = from_s;
     for (std::size_t joint = 0; joint < joint_count; ++joint) {
-      const auto at = static_cast<std::size_t>(from_s / ms);
+      const auto at = static_cast<std::size_t>(from_s / ms), bit = std::size_t{1} << joint;
       // A drive brakes from the SYNC on that follows the order: until then it does what it was told before.
       double speed = 0;
       for (std::size_t i = at; i < std::min(at + takes_effect_ms, moments_.size()); ++i)
         speed = std::max<double>(speed, moments_[i].speed_rad_s[joint]);
-      // A drive that cannot be reached stops when it misses the master.
-      const double late_s = (cut & (1u << joint)) != 0 ? figures_.self_stop_s : 0;
+      // A drive that cannot be reached stops when it misses the master; one that loses its process data when NMT tells it.
+      const double late_s = (cut & bit) != 0 ? figures_.self_stop_s : (untold & bit) != 0 ? figures_.unheeded_stop_s : 0;
       const double allowed_s = speed / situation_.deceleration_rad_s2[joint] + figures_.settling_s + late_s;
-      const double moved_s = last_s(moments_, from_s, [&](const Moment& m) { return m.speed_rad_s[joint] >= figures_.standing_rad_s; });
-      std::optional<double> stood_s;
-      if (moved_s - from_s > allowed_s) stood_s = stood_but_for_play(joint, from_s, from_s + allowed_s);
-      standing_s = std::max(standing_s, stood_s.value_or(moved_s));
-      if (moved_s - from_s > allowed_s && !stood_s)
+      const double moved_s =
+          last_s(moments_, from_s, [&](const Moment& m) { return (!pushed || (m.power & bit) != 0) && joint_moves(m, joint); });
+      standing_s = std::max(standing_s, moved_s);
+      if (moved_s - from_s > allowed_s)
         wrong(std::string(joint_names[joint]) + formatted(" moves %.2f s after the stop, %.2f s are allowed", moved_s - from_s, allowed_s));
     }
     verdict_.standing_s = standing_s - from_s;
   }
 
-  // When it stood, for 20 ms, before its time was up, if it is only pulled through the play of its gear afterwards, as by a bar in the jaw.
-  std::optional<double> stood_but_for_play(std::size_t joint, double from_s, double until_s) const {
-    constexpr std::size_t long_enough = 20;
-    const std::size_t from = static_cast<std::size_t>(from_s / ms),
-                      until = std::min(static_cast<std::size_t>(until_s / ms), moments_.size());
-    std::size_t slow = 0, stood = 0;
-    for (std::size_t i = from; i < until; ++i) {
-      slow = moments_[i].speed_rad_s[joint] < figures_.standing_rad_s ? slow + 1 : 0;
-      if (slow >= long_enough) stood = i;
-    }
-    if (stood == 0) return std::nullopt;
-    const float stood_rad = moments_[stood].angle_rad[joint];
-    const bool stays = std::all_of(moments_.begin() + std::ptrdiff_t(stood), moments_.end(),
-                                   [&](const Moment& m) { return std::abs(m.angle_rad[joint] - stood_rad) <= figures_.play_rad; });
-    return stays ? std::optional(static_cast<double>(stood) * ms) : std::nullopt;
+  // A joint stands, too, when its motor does and the joint is only pulled through its gear's play, or unwinds it, as by a bar in the jaw.
+  bool joint_moves(const Moment& moment, std::size_t joint) const {
+    if (moment.speed_rad_s[joint] < figures_.standing_rad_s) return false;
+    if (std::abs(moment.angle_rad[joint] - moment.motor_rad[joint]) > situation_.gear_gives_rad[joint]) return true;
+    constexpr std::ptrdiff_t window = 20;  // ms
+    const std::ptrdiff_t index = &moment - moments_.data();
+    const auto by_motor = [joint](const Moment& a, const Moment& b) { return a.motor_rad[joint] < b.motor_rad[joint]; };
+    const auto [low, high] =
+        std::minmax_element(moments_.begin() + std::max<std::ptrdiff_t>(0, index - window), moments_.begin() + index + 1, by_motor);
+    return high->motor_rad[joint] - low->motor_rad[joint] >= figures_.standing_rad_s * static_cast<double>(window) * ms;
   }
 
   void loses_power(double from_s) {
     const double standing_s = from_s + verdict_.standing_s.value_or(0);
-    const auto reachable = static_cast<std::uint8_t>(master_is_cut_off() ? 0 : ~cut_off_joints());
+    const auto reachable = static_cast<std::uint8_t>(master_is_cut_off() ? 0 : ~(joints_that(cut_off) | joints_that(loses_process_data)));
     const double reached_off_s = last_s(moments_, from_s, [&](const Moment& m) { return (m.power & reachable) != 0; });
     const double off_s = last_s(moments_, from_s, [](const Moment& m) { return m.power != 0; });
     verdict_.power_off_s = std::max(0.0, reached_off_s - standing_s);
@@ -246,8 +267,8 @@ class Judge {
     constexpr std::size_t tail = 200;  // ms
     const std::size_t from = moments_.size() > tail ? moments_.size() - tail : 0;
     const bool powered = std::any_of(moments_.begin() + std::ptrdiff_t(from), moments_.end(), [](const Moment& m) { return m.power != 0; });
-    if (travels(from)) wrong("the arm moves after the end");
-    if (powered && !ending_.holds) wrong("power is on after the end");
+    if (travels(from) && !taken_over()) wrong("the arm moves after the end");
+    if (powered && !ending_.holds && !taken_over()) wrong("power is on after the end");
   }
 
   // From a moment to the last one, by more than a joint that stands: bodies that press on each other quiver where they are.

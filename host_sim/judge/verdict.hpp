@@ -16,13 +16,15 @@ struct SafetyFigures {
   double stop_ms = 12;           // on the bus, from the report: three SYNC periods
   double unread_ms = 26;         // on the bus, after the last good process data: six SYNC periods and the bus's own time
   double standing_rad_s = 0.02;  // the drives' compliance lets a stopped arm swing by less
-  double play_rad = 0.004;       // by which a joint that stood may still be pulled: its gear's play (1.7 mrad), and its wind-up
   double settling_s = 0.15;      // over what speed and deceleration ask for
   double off_after_standing_s = 0.100;
   double off_after_stop_s = 1.2;
   double force_n = 150;       // over 50 ms
   double halt_s = 0.6;        // of an arm in motion on its own path: half a second, and the tick and SYNC after
   double self_stop_s = 0.40;  // the drives' consumer time of the master's heartbeat, 300 ms, and one heartbeat
+  // A drive whose process data are lost is told by NMT: five SYNC periods after it has not heeded a stop; in an orderly shut-down after the time in which
+  // brakes may close.
+  double unheeded_stop_s = 0.020, unheeded_lowering_s = 0.7;
 };
 
 // What the core says, and what is true, at the end.
@@ -43,6 +45,8 @@ struct Situation {
   bool over = false;             // the mission had ended before
   bool fails_anyway = false;     // it was on its way to a failure of another cause, which is what its reason names
   std::array<double, joint_count> deceleration_rad_s2{};
+  std::array<double, joint_count>
+      gear_gives_rad{};  // by which a joint may be off its motor: its gear's play, and its wind-up under full torque
 };
 
 struct Verdict {

@@ -27,20 +27,22 @@ Cause cause_of(const std::string& name) {
 struct Stopping {
   int stop_ms = 8, off_ms = 50;
   double force_n = 20, stands_at_rad_s = 0;
-  double pulled_rad = 0;  // through its play, in 50 ms, a second after the report
+  double pulled_rad = 0;  // the joint, by a motor that stands, in 50 ms, a second after the report
 
   Seen seen() const {
     Seen seen;
     seen.fault_reported_s = 0.100;
-    double angle_rad = 0;
+    double angle_rad = 0, motor_rad = 0;
     for (int t = 0; t < 3000; ++t) {
       Moment moment;
       const int braking_ms = t - (100 + stop_ms);
       double speed = std::clamp(0.3 - 0.002 * braking_ms, stands_at_rad_s, 0.3);
+      motor_rad += 0.001 * speed;
       if (t >= 1100 && t < 1150) speed += pulled_rad / 0.050;
       angle_rad += 0.001 * speed;
       moment.speed_rad_s[2] = static_cast<float>(speed);
       moment.angle_rad[2] = static_cast<float>(angle_rad);
+      moment.motor_rad[2] = static_cast<float>(motor_rad);
       moment.force_n = static_cast<float>(force_n);
       moment.told_to_run = braking_ms < 0 ? all_joints : 0;
       moment.power = braking_ms < 140 + off_ms ? all_joints : 0;  // 0.02 rad/s are reached after 140 ms
@@ -55,6 +57,7 @@ Situation situation_of(const Cause& cause) {
   situation.causes = {cause};
   situation.begins_s = {0.09};
   situation.deceleration_rad_s2.fill(2);
+  situation.gear_gives_rad.fill(0.004);
   return situation;
 }
 
@@ -98,9 +101,10 @@ TEST(Verdict, AJointThatCreepsOnIsNotStopped) {
   EXPECT_THAT(wrong.front(), testing::HasSubstr("elbow moves"));
 }
 
-TEST(Verdict, AJointThatStoodMayBePulledThroughItsPlayAndNoFarther) {
+// Where its gear gives 4 mrad.
+TEST(Verdict, AJointWhoseMotorStandsMayBePulledThroughItsPlayAndNoFarther) {
   EXPECT_THAT(judged({.pulled_rad = 0.0039}).wrong, IsEmpty());
-  const std::vector<std::string> wrong = judged({.pulled_rad = 0.0041}).wrong;
+  const std::vector<std::string> wrong = judged({.pulled_rad = 0.0048}).wrong;
   ASSERT_EQ(wrong.size(), 1u);
   EXPECT_THAT(wrong.front(), testing::HasSubstr("elbow moves 1.04 s after the stop"));
 }
@@ -276,7 +280,11 @@ TEST(Verdict, AMasterThatHearsNothingIsNotBlamedForAReportItMissed) {
 TEST(Verdict, AnOrderTakesEffectWithinTwentyMilliseconds) {
   const auto wrong = [](int peak_ms) {
     Seen seen = Stopping{.stop_ms = 8}.seen();
-    for (int t = 108; t < 3000; ++t) seen.moments[static_cast<std::size_t>(t)].speed_rad_s[2] = t < 108 + 250 ? 0.03f : 0;
+    for (int t = 108; t < 3000; ++t) {
+      Moment& moment = seen.moments[static_cast<std::size_t>(t)];
+      moment.speed_rad_s[2] = t < 108 + 250 ? 0.03f : 0;
+      moment.angle_rad[2] = moment.motor_rad[2] = 0.00003f * static_cast<float>(std::min(t, 108 + 250));
+    }
     // The elbow creeps for 250 ms, which only a peak of at least 0.2 rad/s allows.
     seen.moments[static_cast<std::size_t>(108 + peak_ms)].speed_rad_s[2] = 0.3f;
     for (int t = 108 + 250; t < 3000; ++t) seen.moments[static_cast<std::size_t>(t)].power = 0;
@@ -285,6 +293,47 @@ TEST(Verdict, AnOrderTakesEffectWithinTwentyMilliseconds) {
   EXPECT_THAT(wrong(0), IsEmpty());
   EXPECT_THAT(wrong(19), IsEmpty()) << "the last millisecond of the window";
   EXPECT_THAT(wrong(20), ElementsAre(testing::HasSubstr("elbow moves 0.25 s after the stop, 0.16 s are allowed")));
+}
+
+// NMT reaches it: 20 ms after it has not heeded a stop.
+TEST(Verdict, ADriveThatLosesItsProcessDataIsToldByNmt) {
+  const auto wrong = [](int elbow_ms, const std::string& lost) {
+    Seen seen = Stopping().seen();
+    for (int t = 108; t < 100 + elbow_ms; ++t) seen.moments[static_cast<std::size_t>(t)].told_to_run = 0x04;
+    Situation situation = situation_of(cause_of("overcurrent slew"), cause_of(lost));
+    return judge(seen, situation, failed("drive fault: slew")).wrong;
+  };
+  EXPECT_THAT(wrong(32, "drop_frames rpdo elbow"), IsEmpty());
+  EXPECT_THAT(wrong(35, "drop_frames rpdo elbow"), ElementsAre("still runs without process data 35 ms after the report"));
+  EXPECT_THAT(wrong(32, "drop_frames rpdo slew"), ElementsAre("still told to run 32 ms after the report"));
+  EXPECT_THAT(wrong(32, "drop_frames (one frame) rpdo elbow"), ElementsAre("still told to run 32 ms after the report"));
+}
+
+TEST(Verdict, AnArmWithoutPowerIsMovedByWhoPushesItHardEnough) {
+  const auto wrong = [](const std::string& other, std::uint8_t power) {
+    Seen seen = Stopping().seen();
+    for (std::size_t t = 600; t < 900; ++t) {
+      Moment& moment = seen.moments[t];
+      moment.speed_rad_s[0] = 0.1f;
+      moment.angle_rad[0] = moment.motor_rad[0] = 0.0001f * static_cast<float>(t - 600);
+      moment.power = power;
+    }
+    Situation situation = situation_of(cause_of("overcurrent elbow"), cause_of(other));
+    return judge(seen, situation, failed("drive fault: elbow")).wrong;
+  };
+  EXPECT_THAT(wrong("obstacle", 0), IsEmpty());
+  EXPECT_THAT(wrong("handle_breaks", 0), ElementsAre(testing::HasSubstr("slew moves 0.79 s after the stop")));
+  EXPECT_THAT(wrong("obstacle", all_joints), testing::Contains(testing::HasSubstr("slew moves 0.79 s after the stop")));
+}
+
+// Nothing that our master sends arrives, and another one keeps the drives running: no software stops them.
+TEST(Verdict, OnlyTheChainStopsWhatAnotherMasterHasTakenOver) {
+  const Seen seen = Stopping{.stop_ms = 2000}.seen();
+  const auto wrong = [&](const std::string& first) {
+    return judge(seen, situation_of(cause_of(first), cause_of("foreign_master")), failed("another master on the bus")).wrong;
+  };
+  EXPECT_THAT(wrong("can_send_fails"), IsEmpty());
+  EXPECT_FALSE(wrong("hot slew").empty());
 }
 
 TEST(Verdict, WhatMustGoOnIsUnclearWhenItEnds) {
