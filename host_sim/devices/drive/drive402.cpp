@@ -232,11 +232,19 @@ bool Drive402::ramp_wanted(DriveState next) const {
   return false;
 }
 
+// A set-point moves by whole counts from SYNC to SYNC: its speed is a count's or none. The ramp begins at what the loop's filter made of it, and where the
+// demand is; but where the joint is, and as it moves, if that is off by more than the loop lags: a stop makes up for no following error.
+void Drive402::begin_ramp() {
+  const double demand = profile_.position(), actual = static_cast<double>(o_.position_actual.value);
+  const double velocity = loop_.demand_velocity_rad_s() / rad_per_count_;
+  const bool follows = std::abs(demand - actual) <= loop_.lag_counts(velocity);
+  profile_.move(follows ? demand : actual, follows ? velocity : velocity_counts_s_);
+}
+
 void Drive402::enter(DriveState state) {
   const bool was_enabled = state_ == DriveState::operation_enabled;
   const bool was_powered = powered();
-  // A set-point moves by whole counts from SYNC to SYNC: its speed is a count's or none. The ramp begins at what the loop's filter made of it.
-  if (was_enabled && mode_ == mode_cyclic_position) profile_.move(profile_.position(), loop_.demand_velocity_rad_s() / rad_per_count_);
+  if (was_enabled && mode_ == mode_cyclic_position) begin_ramp();
   ramping_ = was_enabled && ramp_wanted(state) && !profile_.standing();
   if (state == DriveState::quick_stop_active && o_.quick_stop_option.value == 0) state = DriveState::switch_on_disabled;
   state_ = state;

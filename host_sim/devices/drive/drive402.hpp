@@ -68,6 +68,7 @@ class Drive402 : private Application {
   double ratio() const;  // turns of the motor per turn of the joint
   void on_controlword(Time now);
   void reset_fault(Time now);
+  void begin_ramp();
   void enter(DriveState state);
   void fault(std::uint16_t code, Time now);
   void watch(Time now);

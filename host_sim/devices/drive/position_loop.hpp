@@ -6,6 +6,7 @@
 // sleeps again at the first reading within 0.75: no hunting, and a target is held within 2 counts.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 namespace lf::devices {
@@ -31,7 +32,9 @@ class PositionLoop {
   double step(double demand, double demand_velocity, double actual, double rad_per_count, double dt_s, bool smooth = false);
 
   double demand_velocity_rad_s() const { return feed_forward_rad_s_; }  // filtered
-  bool saturated() const { return saturated_; }                         // the last step asked for more than the top speed or acceleration
+  // By which a joint lags at most that follows: where its error alone would ask for the speed.
+  double lag_counts(double counts_s) const { return std::abs(counts_s) / config_.gain_per_s + 2 * config_.wake_counts; }
+  bool saturated() const { return saturated_; }  // the last step asked for more than the top speed or acceleration
 
  private:
   double wanted(double error_rad, double error_counts, double dt_s);
