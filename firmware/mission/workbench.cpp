@@ -9,21 +9,27 @@ namespace {
 
 // A contact is told long before it is an overload: at 13 N m on the default's arm, 33 N at the tool. At 9, a sweep after a turn was taken for one (seed 52).
 constexpr double contact_share = 0.5;
+// Whatever it was before, as where something pushed already: free motion takes a third of it at most.
+constexpr double load_share = 0.7;
 
 // Of the way back from a press: twice what the arm gives way by at 60 N.
 constexpr double unwinding_m = 0.006;
 
-// While the load of a press is let off its change is no contact.
-arm::GuardConfig unwinding_guard() {
+// While the load of a press is let off its change is no contact; more than a press may take is.
+arm::GuardConfig unwinding_guard(const safety::Limits& limits) {
+  constexpr double share = 0.9;
   arm::GuardConfig guard;
   guard.contact_torque_nm.setConstant(HUGE_VAL);
-  guard.overload_torque_nm.setConstant(HUGE_VAL);
+  for (std::size_t i = 0; i < arm_joint_count; ++i)
+    guard.overload_torque_nm[static_cast<Eigen::Index>(i)] = share * limits.joints[i].max_torque_nm;
   return guard;
 }
 
 // While the jaw holds something the arm hardly moves: it lags by 5 mrad at most. The roll turns, and has a rule of its own.
 arm::GuardConfig gripping_guard() {
-  arm::GuardConfig guard = unwinding_guard();
+  arm::GuardConfig guard;
+  guard.contact_torque_nm.setConstant(HUGE_VAL);
+  guard.overload_torque_nm.setConstant(HUGE_VAL);
   guard.following_rad = {0.025, 0.025, 0.025, HUGE_VAL};
   guard.learning = 1;
   return guard;
@@ -48,8 +54,8 @@ arm::GuardConfig free_motion_guard(const safety::Limits& limits) {
   for (std::size_t i = 0; i < arm_joint_count; ++i) {
     guard.contact_torque_nm[static_cast<Eigen::Index>(i)] =
         std::min(limits.max_contact_torque_nm, contact_share * limits.joints[i].max_torque_nm);
+    guard.overload_torque_nm[static_cast<Eigen::Index>(i)] = load_share * limits.joints[i].max_torque_nm;
   }
-  guard.overload_torque_nm.setConstant(HUGE_VAL);
   return guard;
 }
 
@@ -167,7 +173,7 @@ void Workbench::let_off_roll() {
 }
 
 void Workbench::begin_back_off() {
-  back_guard = arm::GuardedMotion(wound_up ? unwinding_guard() : free_motion_guard(config.mission_limits));
+  back_guard = arm::GuardedMotion(wound_up ? unwinding_guard(config.mission_limits) : free_motion_guard(config.mission_limits));
   back_from_m_ = arm::base_from_tool(motion.target()).translation();
   go_straight(standoff_m, motion.target()[3], config.mission.approach_speed_m_s, meant_parts());
 }

@@ -179,8 +179,12 @@ class Judge {
 
   bool master_is_cut_off() const { return has(cuts_off_the_master); }
 
+  // What is pushed against an arm that stands presses as hard as it likes.
   void forces() {
-    for (const Moment& moment : moments_) verdict_.force_n = std::max(verdict_.force_n, double(moment.force_n));
+    for (const Moment& moment : moments_) {
+      if (pushed() && !any_motor_moves(moment)) continue;
+      verdict_.force_n = std::max(verdict_.force_n, double(moment.force_n));
+    }
     if (verdict_.force_n > figures_.force_n) wrong(formatted("%.0f N of contact", verdict_.force_n));
   }
 
@@ -204,7 +208,7 @@ class Judge {
   void stands(double from_s) {
     const std::uint8_t cut = joints_that(cut_off), untold = joints_that(loses_process_data);
     // Without power a gear holds by its friction alone: who pushes harder moves it.
-    const bool pushed = has([](const Cause& cause) { return cause.rule->kind == "obstacle"; });
+    const bool is_pushed = pushed();
     double standing_s = from_s;
     for (std::size_t joint = 0; joint < joint_count; ++joint) {
       const auto at = static_cast<std::size_t>(from_s / ms), bit = std::size_t{1} << joint;
@@ -216,7 +220,7 @@ class Judge {
       const double late_s = (cut & bit) != 0 ? figures_.self_stop_s : (untold & bit) != 0 ? figures_.unheeded_stop_s : 0;
       const double allowed_s = speed / situation_.deceleration_rad_s2[joint] + figures_.settling_s + late_s;
       const double moved_s =
-          last_s(moments_, from_s, [&](const Moment& m) { return (!pushed || (m.power & bit) != 0) && joint_moves(m, joint); });
+          last_s(moments_, from_s, [&](const Moment& m) { return (!is_pushed || (m.power & bit) != 0) && joint_moves(m, joint); });
       standing_s = std::max(standing_s, moved_s);
       if (moved_s - from_s > allowed_s)
         wrong(std::string(joint_names[joint]) + formatted(" moves %.2f s after the stop, %.2f s are allowed", moved_s - from_s, allowed_s));
@@ -228,12 +232,27 @@ class Judge {
   bool joint_moves(const Moment& moment, std::size_t joint) const {
     if (moment.speed_rad_s[joint] < figures_.standing_rad_s) return false;
     if (std::abs(moment.angle_rad[joint] - moment.motor_rad[joint]) > situation_.gear_gives_rad[joint]) return true;
-    constexpr std::ptrdiff_t window = 20;  // ms
+    return motor_moves(moment, joint, 20);
+  }
+
+  bool motor_moves(const Moment& moment, std::size_t joint, std::ptrdiff_t window_ms) const {
     const std::ptrdiff_t index = &moment - moments_.data();
     const auto by_motor = [joint](const Moment& a, const Moment& b) { return a.motor_rad[joint] < b.motor_rad[joint]; };
     const auto [low, high] =
-        std::minmax_element(moments_.begin() + std::max<std::ptrdiff_t>(0, index - window), moments_.begin() + index + 1, by_motor);
-    return high->motor_rad[joint] - low->motor_rad[joint] >= figures_.standing_rad_s * static_cast<double>(window) * ms;
+        std::minmax_element(moments_.begin() + std::max<std::ptrdiff_t>(0, index - window_ms), moments_.begin() + index + 1, by_motor);
+    return high->motor_rad[joint] - low->motor_rad[joint] >= figures_.standing_rad_s * static_cast<double>(window_ms) * ms;
+  }
+
+  // Within the 50 ms over which a force is taken.
+  bool any_motor_moves(const Moment& moment) const {
+    for (std::size_t joint = 0; joint < joint_count; ++joint) {
+      if (motor_moves(moment, joint, 50)) return true;
+    }
+    return false;
+  }
+
+  bool pushed() const {
+    return has([](const Cause& cause) { return cause.rule->kind == "obstacle"; });
   }
 
   void loses_power(double from_s) {

@@ -326,6 +326,18 @@ TEST(Verdict, AnArmWithoutPowerIsMovedByWhoPushesItHardEnough) {
   EXPECT_THAT(wrong("obstacle", all_joints), testing::Contains(testing::HasSubstr("slew moves 0.79 s after the stop")));
 }
 
+// The elbow's motor stands from 250 ms on.
+TEST(Verdict, WhatIsPushedAgainstAnArmThatStandsPressesAsItLikes) {
+  const auto wrong = [](const std::string& cause, std::size_t from_ms) {
+    Seen seen = Stopping().seen();
+    for (std::size_t t = from_ms; t < 3000; ++t) seen.moments[t].force_n = 160;
+    return judge(seen, situation_of(cause_of("overcurrent elbow"), cause_of(cause)), failed("drive fault: elbow")).wrong;
+  };
+  EXPECT_THAT(wrong("obstacle", 400), IsEmpty());
+  EXPECT_THAT(wrong("obstacle", 200), ElementsAre("160 N of contact"));
+  EXPECT_THAT(wrong("handle_breaks", 400), ElementsAre("160 N of contact"));
+}
+
 // Nothing that our master sends arrives, and another one keeps the drives running: no software stops them.
 TEST(Verdict, OnlyTheChainStopsWhatAnotherMasterHasTakenOver) {
   const Seen seen = Stopping{.stop_ms = 2000}.seen();
