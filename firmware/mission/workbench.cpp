@@ -15,21 +15,17 @@ constexpr double load_share = 0.7;
 // Of the way back from a press: twice what the arm gives way by at 60 N.
 constexpr double unwinding_m = 0.006;
 
-// While the load of a press is let off its change is no contact; more than a press may take is.
-arm::GuardConfig unwinding_guard(const safety::Limits& limits) {
-  constexpr double share = 0.9;
+// While the load of a press is let off its change is no contact. Nor is the load: a press may leave 28 N m in the shoulder's gear, which holds it by itself.
+arm::GuardConfig unwinding_guard() {
   arm::GuardConfig guard;
   guard.contact_torque_nm.setConstant(HUGE_VAL);
-  for (std::size_t i = 0; i < arm_joint_count; ++i)
-    guard.overload_torque_nm[static_cast<Eigen::Index>(i)] = share * limits.joints[i].max_torque_nm;
+  guard.overload_torque_nm.setConstant(HUGE_VAL);
   return guard;
 }
 
 // While the jaw holds something the arm hardly moves: it lags by 5 mrad at most. The roll turns, and has a rule of its own.
 arm::GuardConfig gripping_guard() {
-  arm::GuardConfig guard;
-  guard.contact_torque_nm.setConstant(HUGE_VAL);
-  guard.overload_torque_nm.setConstant(HUGE_VAL);
+  arm::GuardConfig guard = unwinding_guard();
   guard.following_rad = {0.025, 0.025, 0.025, HUGE_VAL};
   guard.learning = 1;
   return guard;
@@ -49,13 +45,20 @@ CameraWork::Config camera_config(const ControllerConfig& config) {
 
 }  // namespace
 
-arm::GuardConfig free_motion_guard(const safety::Limits& limits) {
+arm::GuardConfig rise_guard(const safety::Limits& limits) {
   arm::GuardConfig guard;
   for (std::size_t i = 0; i < arm_joint_count; ++i) {
     guard.contact_torque_nm[static_cast<Eigen::Index>(i)] =
         std::min(limits.max_contact_torque_nm, contact_share * limits.joints[i].max_torque_nm);
-    guard.overload_torque_nm[static_cast<Eigen::Index>(i)] = load_share * limits.joints[i].max_torque_nm;
   }
+  guard.overload_torque_nm.setConstant(HUGE_VAL);
+  return guard;
+}
+
+arm::GuardConfig free_motion_guard(const safety::Limits& limits) {
+  arm::GuardConfig guard = rise_guard(limits);
+  for (std::size_t i = 0; i < arm_joint_count; ++i)
+    guard.overload_torque_nm[static_cast<Eigen::Index>(i)] = load_share * limits.joints[i].max_torque_nm;
   return guard;
 }
 
@@ -73,7 +76,7 @@ Workbench::Workbench(const ControllerConfig& told)
       motion(told.mission_limits, told.mission.layout, told.mission.vehicle, told.mission.park_rad),
       gripper(new_gripper()),
       grip_guard(gripping_guard()),
-      back_guard(free_motion_guard(told.mission_limits)),
+      back_guard(rise_guard(told.mission_limits)),
       map(told.mission.layout, told.marker, told.camera),
       job(told.mission.tasks, told.mission.tries) {}
 
@@ -173,7 +176,7 @@ void Workbench::let_off_roll() {
 }
 
 void Workbench::begin_back_off() {
-  back_guard = arm::GuardedMotion(wound_up ? unwinding_guard(config.mission_limits) : free_motion_guard(config.mission_limits));
+  back_guard = arm::GuardedMotion(wound_up ? unwinding_guard() : rise_guard(config.mission_limits));
   back_from_m_ = arm::base_from_tool(motion.target()).translation();
   go_straight(standoff_m, motion.target()[3], config.mission.approach_speed_m_s, meant_parts());
 }
@@ -181,7 +184,7 @@ void Workbench::begin_back_off() {
 Progress Workbench::follow_back_off(const StepTick& tick) {
   if (wound_up && (arm::base_from_tool(motion.target()).translation() - back_from_m_).norm() >= unwinding_m) {
     wound_up = false;
-    back_guard = arm::GuardedMotion(free_motion_guard(config.mission_limits));
+    back_guard = arm::GuardedMotion(rise_guard(config.mission_limits));
   }
   if (!motion.planning() && watch.joints().valid) back_guard.update(tick.now, pushed_target(), measured_rad(), measured_nm());
   if (!back_guard.touched()) return follow_motion();
