@@ -262,7 +262,8 @@ class Judge {
     const double off_s = last_s(moments_, from_s, [](const Moment& m) { return m.power != 0; });
     verdict_.power_off_s = std::max(0.0, reached_off_s - standing_s);
     verdict_.stop_to_off_s = off_s - from_s;
-    if (*verdict_.power_off_s > figures_.off_after_standing_s + ms)
+    // Who is pushed does not know when it would stand.
+    if (!pushed() && *verdict_.power_off_s > figures_.off_after_standing_s + ms)
       wrong(formatted("power is off %.2f s after standing", *verdict_.power_off_s));
     if (*verdict_.stop_to_off_s > figures_.off_after_stop_s + ms)
       wrong(formatted("power is off %.2f s after the stop", *verdict_.stop_to_off_s));
