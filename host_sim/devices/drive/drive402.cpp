@@ -233,11 +233,12 @@ bool Drive402::ramp_wanted(DriveState next) const {
 }
 
 // A set-point moves by whole counts from SYNC to SYNC: its speed is a count's or none. The ramp begins at what the loop's filter made of it, and where the
-// demand is; but where the joint is, if that is off by more than the loop lags: a stop makes up for no following error.
+// demand is. A joint that is off by more than the loop lags stops where it is: a stop makes up for no following error.
 void Drive402::begin_ramp() {
   const double demand = profile_.position(), actual = static_cast<double>(o_.position_actual.value);
   const double velocity = loop_.demand_velocity_rad_s() / rad_per_count_;
-  profile_.move(std::abs(demand - actual) <= loop_.lag_counts(velocity) ? demand : actual, velocity);
+  if (std::abs(demand - actual) > loop_.lag_counts(velocity)) return profile_.hold(actual);
+  profile_.move(demand, velocity);
 }
 
 void Drive402::enter(DriveState state) {
