@@ -76,7 +76,7 @@ Workbench::Workbench(const ControllerConfig& told)
       motion(told.mission_limits, told.mission.layout, told.mission.vehicle, told.mission.park_rad),
       gripper(new_gripper()),
       grip_guard(gripping_guard()),
-      back_guard(rise_guard(told.mission_limits)),
+      back_guard(free_motion_guard(told.mission_limits)),
       map(told.mission.layout, told.marker, told.camera),
       job(told.mission.tasks, told.mission.tries) {}
 
@@ -128,9 +128,9 @@ Room Workbench::room_on_the_way(double jaw_opening_m) {
 
 void Workbench::go_clear(const arm::JointVector& goal_rad, double jaw_opening_m) {
   // Whoever gives up may have touched what nobody knows of: it may stand in the way home, too.
-  constexpr double calm = 0.5;
-  const double speed_fraction = config.mission.move_speed_fraction * (course == Course::giving_up ? calm : 1);
-  motion.go_clear(goal_rad, room_on_the_way(jaw_opening_m), jaw_rad(), speed_fraction);
+  constexpr double calm = 0.3;
+  const double usual = config.mission.move_speed_fraction;
+  motion.go_clear(goal_rad, room_on_the_way(jaw_opening_m), jaw_rad(), course == Course::giving_up ? std::min(usual, calm) : usual);
 }
 
 void Workbench::go_to_sweep(const scan::SweepRequest& request) {
@@ -179,7 +179,7 @@ void Workbench::let_off_roll() {
 }
 
 void Workbench::begin_back_off() {
-  back_guard = arm::GuardedMotion(wound_up ? unwinding_guard() : rise_guard(config.mission_limits));
+  back_guard = arm::GuardedMotion(wound_up ? unwinding_guard() : free_motion_guard(config.mission_limits));
   back_from_m_ = arm::base_from_tool(motion.target()).translation();
   go_straight(standoff_m, motion.target()[3], config.mission.approach_speed_m_s, meant_parts());
 }
@@ -187,7 +187,7 @@ void Workbench::begin_back_off() {
 Progress Workbench::follow_back_off(const StepTick& tick) {
   if (wound_up && (arm::base_from_tool(motion.target()).translation() - back_from_m_).norm() >= unwinding_m) {
     wound_up = false;
-    back_guard = arm::GuardedMotion(rise_guard(config.mission_limits));
+    back_guard = arm::GuardedMotion(free_motion_guard(config.mission_limits));
   }
   if (!motion.planning() && watch.joints().valid) back_guard.update(tick.now, pushed_target(), measured_rad(), measured_nm());
   if (!back_guard.touched()) return follow_motion();

@@ -16,8 +16,8 @@ Flight::Flight(const scenario::Scenario& scenario, std::uint64_t seed, hal::SimO
   sim.world.force_window_s = force_window_s;
   for (std::size_t i = 0; i < joint_count; ++i) {
     deceleration_rad_s2_[i] = sim.devices.drives[i].max_acceleration_rad_s2;
-    gear_gives_rad_[i] =
-        sim.world.arm.joints[i].backlash_rad + nominal.controller.limits.joints[i].max_torque_nm / sim.world.drive_stiffness_nm_rad[i];
+    const ArmJoint& joint = sim.world.arm.joints[i];
+    gear_gives_rad_[i] = 0.5 * joint.backlash_rad + joint.effort_nm / sim.world.drive_stiffness_nm_rad[i];
   }
   platform_ = std::make_unique<hal::SimPlatform>(sim, observer);
   controller_ = std::make_unique<Controller>(nominal.controller);

@@ -155,10 +155,16 @@ class Judge {
     return deadline;
   }
 
-  // Another master keeps the drives running, and nothing that ours sends arrives: only the drives' own chain could stop them.
-  bool taken_over() const { return master_is_cut_off() && has(obeyed_in_our_place); }
-  static bool obeyed_in_our_place(const Cause& cause) {
-    return cause.rule->kind == "foreign_master" || cause.rule->kind == "foreign_heartbeat";
+  // Another master keeps the drives running, and nothing that ours sends arrives since before it could have told them to stop: only the drives' own chain
+  // stops them.
+  bool taken_over() const {
+    for (std::size_t i = 0; i < situation_.causes.size(); ++i) {
+      for (std::size_t other = 0; other < situation_.causes.size(); ++other) {
+        if (!cuts_off_the_master(situation_.causes[i]) || situation_.causes[other].rule->kind != "foreign_master") continue;
+        if (situation_.begins_s[i] <= seen_.second_master_s.value_or(situation_.begins_s[other]) + figures_.stop_ms * ms) return true;
+      }
+    }
+    return false;
   }
 
   template <class Is>
@@ -179,17 +185,20 @@ class Judge {
 
   bool master_is_cut_off() const { return has(cuts_off_the_master); }
 
-  // What is pushed against an arm that stands presses as hard as it likes.
+  // What is pushed against an arm that is not led anywhere presses as hard as it likes.
   void forces() {
     for (const Moment& moment : moments_) {
-      if (pushed() && !any_motor_moves(moment)) continue;
+      if (moment.led == 0 && pushed_at(moment)) continue;
       verdict_.force_n = std::max(verdict_.force_n, double(moment.force_n));
     }
     if (verdict_.force_n > figures_.force_n) wrong(formatted("%.0f N of contact", verdict_.force_n));
   }
 
   void stop(const Deadline& deadline) {
-    const std::uint8_t cut = joints_that(cut_off), untold = joints_that(loses_process_data);
+    const std::uint8_t cut = joints_that(cut_off);
+    // Whose process data are lost later has to hear of it.
+    const std::uint8_t untold =
+        joints_that([&](const Cause& cause) { return loses_process_data(cause) && begins_s(cause) < deadline.end_s(); });
     const auto told_to_run_s = [&](std::uint8_t joints) {
       return last_s(moments_, deadline.at_s, [&](const Moment& m) { return (m.told_to_run & joints) != 0; });
     };
@@ -202,13 +211,13 @@ class Judge {
       wrong(formatted("still runs without process data %.0f ms after the report", (by_nmt_s - deadline.at_s) / ms));
     const double from_s = std::min(on_bus_s, deadline.end_s());
     stands(from_s);
-    loses_power(from_s);
+    loses_power(from_s, halts);
   }
+
+  double begins_s(const Cause& cause) const { return situation_.begins_s[static_cast<std::size_t>(&cause - situation_.causes.data())]; }
 
   void stands(double from_s) {
     const std::uint8_t cut = joints_that(cut_off), untold = joints_that(loses_process_data);
-    // Without power a gear holds by its friction alone: who pushes harder moves it.
-    const bool is_pushed = pushed();
     double standing_s = from_s;
     for (std::size_t joint = 0; joint < joint_count; ++joint) {
       const auto at = static_cast<std::size_t>(from_s / ms), bit = std::size_t{1} << joint;
@@ -219,8 +228,8 @@ class Judge {
       // A drive that cannot be reached stops when it misses the master; one that loses its process data when NMT tells it.
       const double late_s = (cut & bit) != 0 ? figures_.self_stop_s : (untold & bit) != 0 ? figures_.unheeded_stop_s : 0;
       const double allowed_s = speed / situation_.deceleration_rad_s2[joint] + figures_.settling_s + late_s;
-      const double moved_s =
-          last_s(moments_, from_s, [&](const Moment& m) { return (!is_pushed || (m.power & bit) != 0) && joint_moves(m, joint); });
+      const double unwound_s = from_s + allowed_s + figures_.unwinding_s;
+      const double moved_s = last_s(moments_, from_s, [&](const Moment& m) { return joint_moves(m, joint, unwound_s); });
       standing_s = std::max(standing_s, moved_s);
       if (moved_s - from_s > allowed_s)
         wrong(std::string(joint_names[joint]) + formatted(" moves %.2f s after the stop, %.2f s are allowed", moved_s - from_s, allowed_s));
@@ -228,42 +237,50 @@ class Judge {
     verdict_.standing_s = standing_s - from_s;
   }
 
-  // A joint stands, too, when its motor does and the joint is only pulled through its gear's play, or unwinds it, as by a bar in the jaw.
-  bool joint_moves(const Moment& moment, std::size_t joint) const {
-    if (moment.speed_rad_s[joint] < figures_.standing_rad_s) return false;
+  // A joint whose motor stands may be pulled through its gear's play, or unwind it, as by a bar in the jaw: for a time, and by what the gear gives. Who is
+  // pushed winds it up by as much as the push.
+  bool joint_moves(const Moment& moment, std::size_t joint, double unwound_s) const {
+    if (motor_moves(moment, joint)) return true;
+    if (moment.speed_rad_s[joint] < figures_.standing_rad_s || pushed_at(moment)) return false;
     if (std::abs(moment.angle_rad[joint] - moment.motor_rad[joint]) > situation_.gear_gives_rad[joint]) return true;
-    return motor_moves(moment, joint, 20);
+    return time_s(moment) > unwound_s && travels_in_a_moment(moment, &Moment::angle_rad, joint);
   }
 
-  bool motor_moves(const Moment& moment, std::size_t joint, std::ptrdiff_t window_ms) const {
+  double time_s(const Moment& moment) const { return static_cast<double>(&moment - moments_.data()) * ms; }
+
+  // By more than what stands, in the 20 ms before.
+  bool travels_in_a_moment(const Moment& moment, const std::array<float, joint_count> Moment::*rad, std::size_t joint) const {
+    constexpr std::ptrdiff_t window_ms = 20;
     const std::ptrdiff_t index = &moment - moments_.data();
-    const auto by_motor = [joint](const Moment& a, const Moment& b) { return a.motor_rad[joint] < b.motor_rad[joint]; };
+    const auto by_angle = [&](const Moment& a, const Moment& b) { return (a.*rad)[joint] < (b.*rad)[joint]; };
     const auto [low, high] =
-        std::minmax_element(moments_.begin() + std::max<std::ptrdiff_t>(0, index - window_ms), moments_.begin() + index + 1, by_motor);
-    return high->motor_rad[joint] - low->motor_rad[joint] >= figures_.standing_rad_s * static_cast<double>(window_ms) * ms;
+        std::minmax_element(moments_.begin() + std::max<std::ptrdiff_t>(0, index - window_ms), moments_.begin() + index + 1, by_angle);
+    return ((*high).*rad)[joint] - ((*low).*rad)[joint] >= figures_.standing_rad_s * static_cast<double>(window_ms) * ms;
   }
 
-  // Within the 50 ms over which a force is taken.
-  bool any_motor_moves(const Moment& moment) const {
-    for (std::size_t joint = 0; joint < joint_count; ++joint) {
-      if (motor_moves(moment, joint, 50)) return true;
-    }
-    return false;
+  bool motor_moves(const Moment& moment, std::size_t joint) const { return travels_in_a_moment(moment, &Moment::motor_rad, joint); }
+
+  // Something is pushed against the arm, and touches something of it.
+  bool pushed_at(const Moment& moment) const {
+    const bool since = has([&](const Cause& cause) { return cause.rule->kind == "obstacle" && begins_s(cause) <= time_s(moment); });
+    return since && moment.force_n > 0;
   }
 
-  bool pushed() const {
-    return has([](const Cause& cause) { return cause.rule->kind == "obstacle"; });
-  }
-
-  void loses_power(double from_s) {
+  void loses_power(double from_s, bool halts) {
     const double standing_s = from_s + verdict_.standing_s.value_or(0);
-    const auto reachable = static_cast<std::uint8_t>(master_is_cut_off() ? 0 : ~(joints_that(cut_off) | joints_that(loses_process_data)));
-    const double reached_off_s = last_s(moments_, from_s, [&](const Moment& m) { return (m.power & reachable) != 0; });
+    const std::uint8_t untold = joints_that(loses_process_data);
+    const auto reachable = static_cast<std::uint8_t>(master_is_cut_off() ? 0 : ~(joints_that(cut_off) | untold));
+    const auto powered_s = [&](std::uint8_t joints) {
+      return last_s(moments_, from_s, [&](const Moment& m) { return (m.power & joints) != 0; });
+    };
+    const double reached_off_s = powered_s(reachable);
+    const double late_s = halts ? figures_.unheeded_lowering_s : figures_.unheeded_off_s;
+    if (!master_is_cut_off() && powered_s(untold) - standing_s > figures_.off_after_standing_s + late_s + ms)
+      wrong(formatted("power is off %.2f s after standing without process data", powered_s(untold) - standing_s));
     const double off_s = last_s(moments_, from_s, [](const Moment& m) { return m.power != 0; });
     verdict_.power_off_s = std::max(0.0, reached_off_s - standing_s);
     verdict_.stop_to_off_s = off_s - from_s;
-    // Who is pushed does not know when it would stand.
-    if (!pushed() && *verdict_.power_off_s > figures_.off_after_standing_s + ms)
+    if (*verdict_.power_off_s > figures_.off_after_standing_s + ms)
       wrong(formatted("power is off %.2f s after standing", *verdict_.power_off_s));
     if (*verdict_.stop_to_off_s > figures_.off_after_stop_s + ms)
       wrong(formatted("power is off %.2f s after the stop", *verdict_.stop_to_off_s));

@@ -25,6 +25,8 @@ struct SafetyFigures {
   // A drive whose process data are lost is told by NMT: five SYNC periods after it has not heeded a stop; in an orderly shut-down after the time in which
   // brakes may close.
   double unheeded_stop_s = 0.020, unheeded_lowering_s = 0.7;
+  double unheeded_off_s = 0.120;  // until it is restarted, from when its power had to be off
+  double unwinding_s = 0.5;       // in which a joint whose motor stands may still unwind its gear
 };
 
 // What the core says, and what is true, at the end.
@@ -46,7 +48,7 @@ struct Situation {
   bool fails_anyway = false;     // it was on its way to a failure of another cause, which is what its reason names
   std::array<double, joint_count> deceleration_rad_s2{};
   std::array<double, joint_count>
-      gear_gives_rad{};  // by which a joint may be off its motor: its gear's play, and its wind-up under full torque
+      gear_gives_rad{};  // by which a joint may be off its motor: half of its gear's play, and the wind-up under full torque
 };
 
 struct Verdict {

@@ -11,7 +11,8 @@ namespace {
 
 constexpr double step_s = 1e-3;
 constexpr double torque_filter_s = 0.002;
-constexpr double velocity_filter_s = 0.008;
+constexpr double velocity_filter_s = 0.008, ramp_filter_s = 0.016;
+constexpr double fastest_of_top = 2;
 constexpr double torque_high_of_peak = 1.2;  // beyond what the drive can apply: a broken current sensor
 
 constexpr std::uint16_t bit_fault_reset = 0x80, bit_4 = 0x10;
@@ -75,7 +76,7 @@ void Drive402::restarted(Time) {
   o_.position_actual.value = encoder_ + zero_;
   last_counts_ = static_cast<double>(o_.position_actual.value);
   profile_.hold(last_counts_);
-  velocity_counts_s_ = 0;
+  velocity_counts_s_ = ramp_counts_s_ = 0;
   if (units_) units_->give_outputs();
 }
 
@@ -100,6 +101,9 @@ void Drive402::measure(const JointReading& reading) {
   o_.position_actual.value = encoder_ + zero_;
   const auto actual = static_cast<double>(o_.position_actual.value);
   velocity_counts_s_ += ((actual - last_counts_) / step_s - velocity_counts_s_) * (step_s / velocity_filter_s);
+  // An encoder that jumps is no motion: nothing turns at many times the top speed.
+  const double fastest = fastest_of_top * top_speed();
+  ramp_counts_s_ += (std::clamp((actual - last_counts_) / step_s, -fastest, fastest) - ramp_counts_s_) * (step_s / ramp_filter_s);
   last_counts_ = actual;
   measure_torque(reading);
   winding_.step(torque_ratio_, step_s);
@@ -233,12 +237,14 @@ bool Drive402::ramp_wanted(DriveState next) const {
 }
 
 // A set-point moves by whole counts from SYNC to SYNC: its speed is a count's or none. The ramp begins at what the loop's filter made of it, and where the
-// demand is. A joint that is off by more than the loop lags stops where it is: a stop makes up for no following error.
+// demand is; but where the joint is, and as it moves, if that is off by more than the loop lags: a stop makes up for no following error.
 void Drive402::begin_ramp() {
   const double demand = profile_.position(), actual = static_cast<double>(o_.position_actual.value);
   const double velocity = loop_.demand_velocity_rad_s() / rad_per_count_;
-  if (std::abs(demand - actual) > loop_.lag_counts(velocity)) return profile_.hold(actual);
-  profile_.move(demand, velocity);
+  const bool follows = config_.switches.ramps_from_demand || std::abs(demand - actual) <= loop_.lag_counts(velocity);
+  if (follows) return profile_.move(demand, velocity);
+  profile_.move(actual, ramp_counts_s_);
+  loop_.take_up(ramp_counts_s_ * rad_per_count_);
 }
 
 void Drive402::enter(DriveState state) {

@@ -53,6 +53,7 @@ struct DriveSwitches {
   bool faults_without_sync = false;   // iPOS, Ingenia, LMDrive
   bool speeds_in_rpm = false;         // LMDrive
   bool ignores_lost_master = false;   // Eyou, which has no 6007
+  bool ramps_from_demand = false;     // of every make: its stop makes up for the following error
 };
 
 std::span<const DriveHabit> drive_habits();

@@ -26,6 +26,8 @@ class PositionLoop {
   explicit PositionLoop(const Config& config) : config_(config) {}
 
   void reset();
+  // Goes on from a joint that moves so, whatever the loop has asked for.
+  void take_up(double velocity_rad_s) { feed_forward_rad_s_ = velocity_rad_s_ = velocity_rad_s; }
 
   // Joint velocity for the next `dt_s`. `demand` and its velocity are in counts and counts/s, `rad_per_count` is the geometry's at this place.
   // `smooth`: the drive's own ramp, whose velocity needs no filter.

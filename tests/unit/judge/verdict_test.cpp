@@ -27,7 +27,8 @@ Cause cause_of(const std::string& name) {
 struct Stopping {
   int stop_ms = 8, off_ms = 50;
   double force_n = 20, stands_at_rad_s = 0;
-  double pulled_rad = 0;  // the joint, by a motor that stands, in 50 ms, a second after the report
+  double pulled_rad = 0;  // the joint, by a motor that stands, in 50 ms
+  int pulled_ms = 600;    // then
 
   Seen seen() const {
     Seen seen;
@@ -38,7 +39,7 @@ struct Stopping {
       const int braking_ms = t - (100 + stop_ms);
       double speed = std::clamp(0.3 - 0.002 * braking_ms, stands_at_rad_s, 0.3);
       motor_rad += 0.001 * speed;
-      if (t >= 1100 && t < 1150) speed += pulled_rad / 0.050;
+      if (t >= pulled_ms && t < pulled_ms + 50) speed += pulled_rad / 0.050;
       angle_rad += 0.001 * speed;
       moment.speed_rad_s[2] = static_cast<float>(speed);
       moment.angle_rad[2] = static_cast<float>(angle_rad);
@@ -101,12 +102,13 @@ TEST(Verdict, AJointThatCreepsOnIsNotStopped) {
   EXPECT_THAT(wrong.front(), testing::HasSubstr("elbow moves"));
 }
 
-// Where its gear gives 4 mrad.
-TEST(Verdict, AJointWhoseMotorStandsMayBePulledThroughItsPlayAndNoFarther) {
+// Where its gear gives 4 mrad. Half a second after the joint had to stand its gear has unwound.
+TEST(Verdict, AJointWhoseMotorStandsMayBePulledThroughItsPlayForATimeAndNoFarther) {
   EXPECT_THAT(judged({.pulled_rad = 0.0039}).wrong, IsEmpty());
-  const std::vector<std::string> wrong = judged({.pulled_rad = 0.0048}).wrong;
-  ASSERT_EQ(wrong.size(), 1u);
-  EXPECT_THAT(wrong.front(), testing::HasSubstr("elbow moves 1.04 s after the stop"));
+  EXPECT_THAT(judged({.pulled_rad = 0.0048}).wrong, ElementsAre(testing::HasSubstr("elbow moves 0.54 s after the stop")));
+  EXPECT_THAT(judged({.pulled_rad = 0.0039, .pulled_ms = 800}).wrong, IsEmpty());
+  EXPECT_THAT(judged({.pulled_rad = 0.0039, .pulled_ms = 1100}).wrong,
+              ElementsAre(testing::HasSubstr("elbow moves 1.04 s after the stop")));
 }
 
 TEST(Verdict, TwoCausesThatNoFrameToldAreStillAStop) {
@@ -297,55 +299,87 @@ TEST(Verdict, AnOrderTakesEffectWithinTwentyMilliseconds) {
 
 // NMT reaches it: 20 ms after it has not heeded a stop.
 TEST(Verdict, ADriveThatLosesItsProcessDataIsToldByNmt) {
-  const auto wrong = [](int elbow_ms, const std::string& lost) {
+  const auto wrong = [](int elbow_ms, const std::string& lost, double lost_s = 0.05) {
     Seen seen = Stopping().seen();
     for (int t = 108; t < 100 + elbow_ms; ++t) seen.moments[static_cast<std::size_t>(t)].told_to_run = 0x04;
     Situation situation = situation_of(cause_of("overcurrent slew"), cause_of(lost));
+    situation.begins_s[1] = lost_s;
     return judge(seen, situation, failed("drive fault: slew")).wrong;
   };
+  EXPECT_THAT(wrong(32, "drop_frames rpdo elbow", 0.115), ElementsAre("still told to run 32 ms after the report"))
+      << "lost after it had to be told";
   EXPECT_THAT(wrong(32, "drop_frames rpdo elbow"), IsEmpty());
   EXPECT_THAT(wrong(35, "drop_frames rpdo elbow"), ElementsAre("still runs without process data 35 ms after the report"));
   EXPECT_THAT(wrong(32, "drop_frames rpdo slew"), ElementsAre("still told to run 32 ms after the report"));
   EXPECT_THAT(wrong(32, "drop_frames (one frame) rpdo elbow"), ElementsAre("still told to run 32 ms after the report"));
 }
 
-TEST(Verdict, AnArmWithoutPowerIsMovedByWhoPushesItHardEnough) {
-  const auto wrong = [](const std::string& other, std::uint8_t power) {
+// Its motor stands.
+TEST(Verdict, WhoIsPushedWindsUpItsGear) {
+  const auto wrong = [](const std::string& other, double begins_s, float force_n, bool motor_turns) {
     Seen seen = Stopping().seen();
     for (std::size_t t = 600; t < 900; ++t) {
       Moment& moment = seen.moments[t];
       moment.speed_rad_s[0] = 0.1f;
-      moment.angle_rad[0] = moment.motor_rad[0] = 0.0001f * static_cast<float>(t - 600);
-      moment.power = power;
+      moment.angle_rad[0] = 0.0001f * static_cast<float>(t - 600);
+      moment.motor_rad[0] = motor_turns ? moment.angle_rad[0] : 0;
+      moment.force_n = force_n;
     }
     Situation situation = situation_of(cause_of("overcurrent elbow"), cause_of(other));
+    situation.begins_s[1] = begins_s;
     return judge(seen, situation, failed("drive fault: elbow")).wrong;
   };
-  EXPECT_THAT(wrong("obstacle", 0), IsEmpty());
-  EXPECT_THAT(wrong("handle_breaks", 0), ElementsAre(testing::HasSubstr("slew moves 0.79 s after the stop")));
-  EXPECT_THAT(wrong("obstacle", all_joints), testing::Contains(testing::HasSubstr("slew moves 0.79 s after the stop")));
+  const auto moves = ElementsAre(testing::HasSubstr("slew moves 0.79 s after the stop"));
+  EXPECT_THAT(wrong("obstacle", 0.5, 80, false), IsEmpty());
+  EXPECT_THAT(wrong("obstacle", 0.5, 80, true), moves);
+  EXPECT_THAT(wrong("obstacle", 0.5, 0, false), moves) << "nothing touches it";
+  EXPECT_THAT(wrong("obstacle", 1.5, 80, false), moves) << "not yet";
+  EXPECT_THAT(wrong("handle_breaks", 0.5, 80, false), moves);
 }
 
-// The elbow's motor stands from 250 ms on.
-TEST(Verdict, WhatIsPushedAgainstAnArmThatStandsPressesAsItLikes) {
-  const auto wrong = [](const std::string& cause, std::size_t from_ms) {
+TEST(Verdict, WhatIsPushedAgainstAnArmThatIsNotLedPressesAsItLikes) {
+  const auto wrong = [](const std::string& cause, std::uint8_t led) {
     Seen seen = Stopping().seen();
-    for (std::size_t t = from_ms; t < 3000; ++t) seen.moments[t].force_n = 160;
+    for (std::size_t t = 1000; t < 3000; ++t) {
+      seen.moments[t].force_n = 160;
+      seen.moments[t].led = led;
+    }
     return judge(seen, situation_of(cause_of("overcurrent elbow"), cause_of(cause)), failed("drive fault: elbow")).wrong;
   };
-  EXPECT_THAT(wrong("obstacle", 400), IsEmpty());
-  EXPECT_THAT(wrong("obstacle", 200), ElementsAre("160 N of contact"));
-  EXPECT_THAT(wrong("handle_breaks", 400), ElementsAre("160 N of contact"));
+  EXPECT_THAT(wrong("obstacle", 0), IsEmpty());
+  EXPECT_THAT(wrong("obstacle", 0x02), ElementsAre("160 N of contact")) << "at the cap of its torque its motor stands, too";
+  EXPECT_THAT(wrong("handle_breaks", 0), ElementsAre("160 N of contact"));
+}
+
+// The elbow hears no process data: it is restarted.
+TEST(Verdict, ADriveThatIsRestartedLosesItsPowerALittleLater) {
+  const auto wrong = [](int off_ms, const std::string& lost) {
+    Seen seen = Stopping().seen();
+    for (int t = 0; t < 3000; ++t) {
+      std::uint8_t& power = seen.moments[static_cast<std::size_t>(t)].power;
+      power = static_cast<std::uint8_t>((power & ~0x04) | (t < 108 + 140 + off_ms ? 0x04 : 0));
+    }
+    return judge(seen, situation_of(cause_of("overcurrent slew"), cause_of(lost)), failed("drive fault: slew")).wrong;
+  };
+  EXPECT_THAT(wrong(210, "drop_frames rpdo elbow"), IsEmpty());
+  EXPECT_THAT(wrong(230, "drop_frames rpdo elbow"), ElementsAre("power is off 0.23 s after standing without process data"));
+  EXPECT_THAT(wrong(210, "drop_frames tpdo elbow"), ElementsAre("power is off 0.21 s after standing"));
 }
 
 // Nothing that our master sends arrives, and another one keeps the drives running: no software stops them.
 TEST(Verdict, OnlyTheChainStopsWhatAnotherMasterHasTakenOver) {
-  const Seen seen = Stopping{.stop_ms = 2000}.seen();
-  const auto wrong = [&](const std::string& first) {
-    return judge(seen, situation_of(cause_of(first), cause_of("foreign_master")), failed("another master on the bus")).wrong;
+  Seen seen = Stopping{.stop_ms = 2000}.seen();
+  seen.second_master_s = 0.1;
+  const auto wrong = [&](const std::string& first, double first_s, const std::string& second) {
+    Situation situation = situation_of(cause_of(first), cause_of(second));
+    situation.begins_s[0] = first_s;
+    return judge(seen, situation, failed("another master on the bus")).wrong;
   };
-  EXPECT_THAT(wrong("can_send_fails"), IsEmpty());
-  EXPECT_FALSE(wrong("hot slew").empty());
+  EXPECT_THAT(wrong("can_send_fails", 0.05, "foreign_master"), IsEmpty());
+  EXPECT_THAT(wrong("can_send_fails", 0.111, "foreign_master"), IsEmpty()) << "before it could have told them";
+  EXPECT_FALSE(wrong("can_send_fails", 0.13, "foreign_master").empty());
+  EXPECT_FALSE(wrong("can_send_fails", 0.05, "foreign_heartbeat").empty()) << "the drives miss our heartbeat";
+  EXPECT_FALSE(wrong("hot slew", 0.05, "foreign_master").empty());
 }
 
 TEST(Verdict, WhatMustGoOnIsUnclearWhenItEnds) {

@@ -212,6 +212,52 @@ TEST(DriveMotion, a_quick_stop_ends_disabled_with_option_2) {
   EXPECT_TRUE(rig.output.released);
 }
 
+// A joint that has run off by 0.1 rad brakes from the speed that it has, and stays where that ends. What no maker's document says: a stop whose ramp is the
+// demand's takes it back to its set-point.
+TEST(DriveMotion, a_quick_stop_of_a_joint_that_is_off_its_set_point) {
+  for (const bool from_demand : {false, true}) {
+    DriveConfig config = elbow();
+    config.switches.ramps_from_demand = from_demand;
+    DriveRig rig(config, 1.0);
+    rig.client.write(0x605A, 0, 2, 2);
+    rig.client.write(0x6065, 0, 0xFFFFFFFF, 4);
+    rig.enable();
+    const double set_point_rad = rig.joint.q_rad, speed = 0.25, deceleration = 0.8;
+    rig.joint.runs_off_rad_s = speed;
+    rig.run_ms(400);
+    const double begin_rad = rig.joint.q_rad;
+    ASSERT_NEAR(begin_rad - set_point_rad, 0.4 * speed, 1e-3);
+    rig.controlword = 0x02;
+    while (rig.drive.state() == DriveState::operation_enabled) rig.step();
+    rig.joint.runs_off_rad_s = 0;
+    int powered_ms = 0;
+    double farthest_rad = begin_rad;
+    for (; powered_ms < 3000 && rig.drive.state() == DriveState::quick_stop_active; ++powered_ms) {
+      rig.step();
+      farthest_rad = std::max(farthest_rad, rig.joint.q_rad);
+    }
+    if (from_demand) {
+      EXPECT_LT(farthest_rad - begin_rad, 0.005) << "it turns back at once";
+      continue;
+    }
+    EXPECT_NEAR(1e-3 * powered_ms, speed / deceleration, 0.05) << "its power stays on while it brakes";
+    EXPECT_NEAR(rig.joint.q_rad - begin_rad, 0.5 * speed * speed / deceleration, 0.02);
+  }
+}
+
+// The encoder is off by a tenth of a radian from one millisecond to the next, as by a slipped coupling: that is no speed to brake from.
+TEST(DriveMotion, a_quick_stop_takes_no_jump_of_the_encoder_for_a_speed) {
+  DriveRig rig(elbow(), 1.0);
+  rig.client.write(0x6065, 0, 0xFFFFFFFF, 4);
+  rig.enable();
+  rig.joint.q_rad += 0.1;
+  const double begin_rad = rig.joint.q_rad;
+  rig.controlword = 0x02;
+  rig.run_ms(1000);
+  EXPECT_EQ(rig.drive.state(), DriveState::switch_on_disabled);
+  EXPECT_NEAR(rig.joint.q_rad, begin_rad, 0.02);
+}
+
 // A count of the wrist is 3 mrad: in one SYNC the target moves by one count or by none, which is 0.8 rad/s or nothing.
 TEST(DriveMotion, a_quick_stop_brakes_from_the_speed_of_the_joint_however_coarse_the_counts) {
   DriveConfig wrist = elbow();

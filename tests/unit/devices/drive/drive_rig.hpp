@@ -35,9 +35,11 @@ struct ScriptedJoint {
   double load_nm = 0;
   double moved_rad_s = 0;
   bool at_stop = false;
+  double runs_off_rad_s = 0;  // whatever it is told
 
   void step(const JointDrive& drive) {
     double v = drive.released || std::abs(drive.velocity_rad_s) < stiction_rad_s ? 0 : drive.velocity_rad_s;
+    if (runs_off_rad_s != 0) v = runs_off_rad_s;
     const double next = q_rad + 1e-3 * v;
     at_stop = next <= lower_rad || next >= upper_rad;
     const double clamped = std::clamp(next, lower_rad, upper_rad);
