@@ -45,20 +45,13 @@ CameraWork::Config camera_config(const ControllerConfig& config) {
 
 }  // namespace
 
-arm::GuardConfig rise_guard(const safety::Limits& limits) {
+arm::GuardConfig free_motion_guard(const safety::Limits& limits) {
   arm::GuardConfig guard;
   for (std::size_t i = 0; i < arm_joint_count; ++i) {
-    guard.contact_torque_nm[static_cast<Eigen::Index>(i)] =
-        std::min(limits.max_contact_torque_nm, contact_share * limits.joints[i].max_torque_nm);
+    const auto joint = static_cast<Eigen::Index>(i);
+    guard.contact_torque_nm[joint] = std::min(limits.max_contact_torque_nm, contact_share * limits.joints[i].max_torque_nm);
+    guard.overload_torque_nm[joint] = load_share * limits.joints[i].max_torque_nm;
   }
-  guard.overload_torque_nm.setConstant(HUGE_VAL);
-  return guard;
-}
-
-arm::GuardConfig free_motion_guard(const safety::Limits& limits) {
-  arm::GuardConfig guard = rise_guard(limits);
-  for (std::size_t i = 0; i < arm_joint_count; ++i)
-    guard.overload_torque_nm[static_cast<Eigen::Index>(i)] = load_share * limits.joints[i].max_torque_nm;
   return guard;
 }
 

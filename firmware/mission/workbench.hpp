@@ -29,9 +29,7 @@ enum class Course : std::uint8_t {
 };
 
 // A contact in motion that may touch nothing: what free motion takes of torque is learned on the way; how much more is a contact, the limits say, and for
-// a joint half of its own limit if that is less. The overload is the watch's.
-arm::GuardConfig rise_guard(const safety::Limits& limits);
-// The same for an arm that nothing loads when it begins: seven tenths of a joint's limit is a contact, too, however slowly it came.
+// a joint half of its own limit if that is less; so is seven tenths of that limit, however slowly it came. The overload is the watch's.
 arm::GuardConfig free_motion_guard(const safety::Limits& limits);
 
 // A joint stays behind its target, and nothing holds it back: its encoder or its drive is not to be trusted.

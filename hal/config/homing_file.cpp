@@ -47,6 +47,8 @@ HomingOffsets read_homing_file(const std::string& path) {
       source.refuse(joint.Mark(), std::string("'") + joint_name(i) + ".zero_counts' is missing: commission this joint");
     offsets.known[i] = true;
     offsets.friction_known[i] = joint["coulomb_mnm"] && joint["viscous_mnm_s"];
+    if (!offsets.friction_known[i] && (joint["coulomb_mnm"] || joint["viscous_mnm_s"]))
+      source.refuse(joint.Mark(), std::string("'") + joint_name(i) + "' has one of coulomb_mnm and viscous_mnm_s: a friction needs both");
   }
   return offsets;
 }

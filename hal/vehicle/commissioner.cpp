@@ -59,14 +59,19 @@ std::string take_over(const Commissioned& commissioned, const std::array<Motor, 
     const bool rubs = commissioned.friction_found[i];
     if (const auto doubtful = rubs ? config::friction_problem(i, commissioned.friction[i], motors[i]) : std::nullopt) {
       left_out += (left_out.empty() ? "" : "; ") + *doubtful;
+      // What was known of it before may be as wrong.
+      offsets.known[i] = offsets.friction_known[i] = false;
       continue;
     }
     offsets.zero_counts[i] = commissioned.zero_counts[i];
     offsets.known[i] = true;
     offsets.found[i] = commissioned.how;
-    if (!rubs) continue;
-    offsets.friction[i] = commissioned.friction[i];
-    offsets.friction_known[i] = true;
+    if (rubs) {
+      offsets.friction[i] = commissioned.friction[i];
+      offsets.friction_known[i] = true;
+    } else if (offsets.friction_known[i] && config::friction_problem(i, offsets.friction[i], motors[i])) {
+      offsets.friction_known[i] = false;  // an older file's: the description's holds
+    }
   }
   return left_out;
 }
@@ -196,7 +201,7 @@ void Commissioner::store(const Commissioning& ended) {
       offsets = read_and_check(file);
       left_out = take_over(commissioned, motors, offsets);
       config::write_homing_file(file, offsets);
-      (void)config::leave_out_doubtful(offsets, motors);  // an older file's
+      for (const std::string& older : config::leave_out_doubtful(offsets, motors)) left_out += (left_out.empty() ? "" : "; ") + older;
       for (std::size_t i = 0; i < joint_count; ++i) {
         core.network.drives[i].encoder_zero_counts = offsets.zero_counts[i];
         core.network.drives[i].zero_known = offsets.known[i];
@@ -231,7 +236,7 @@ void Commissioner::install() {
   (void)rings_.cores.push(core_given_.get());
   Json outcome{{"state", "done"}, {"zeros", zeros}, {"friction", friction_json(prepared_->offsets)}, {"file", file_}};
   if (!prepared_->left_out.empty())
-    outcome.update({{"state", "failed"}, {"why", "not all was written: " + prepared_->left_out}, {"without_power", true}});
+    outcome.update({{"state", "failed"}, {"why", "these joints take no power: " + prepared_->left_out}, {"without_power", true}});
   end_with(outcome);
 }
 

@@ -31,7 +31,7 @@ struct Commissioned {
   std::array<config::JointFriction, joint_count> friction{};
   std::string how;  // and when
 };
-// Takes it over into `offsets`, but for the joints whose friction cannot be: their names and figures, or "".
+// Takes it over into `offsets`. A joint whose friction cannot be is no longer known there: its name and figures come back, or "".
 std::string take_over(const Commissioned& commissioned, const std::array<Motor, joint_count>& motors, config::HomingOffsets& offsets);
 
 class Commissioner {
@@ -63,7 +63,7 @@ class Commissioner {
     std::mutex mutex;
     bool done = false;
     std::string problem;
-    std::string left_out;  // joints whose friction cannot be, a sentence each: their lines of the file stay as they were
+    std::string left_out;  // joints whose friction cannot be, a sentence each: they take no power
     std::unique_ptr<Commissioning> commissioning;
     std::unique_ptr<Controller> core;
     config::HomingOffsets offsets;

@@ -35,10 +35,26 @@ TEST(Commissioned, AJointThatSomethingRubsAgainstIsLeftOutAndTheOthersAreTakenOv
   commissioned.how = "in the jig";
   const std::string left_out = take_over(commissioned, motors, offsets);
   EXPECT_NE(left_out.find("'shoulder.coulomb_mnm' is 100"), std::string::npos) << left_out;
-  EXPECT_EQ(offsets.known, (std::array<bool, joint_count>{true, true, false, true, false}));
-  EXPECT_EQ(offsets.zero_counts, (std::array<std::int32_t, joint_count>{5, 11, 0, 8, 0})) << "what was there stays";
+  EXPECT_EQ(offsets.known, (std::array<bool, joint_count>{true, false, false, true, false})) << "the old zero may be as wrong";
+  EXPECT_EQ(offsets.zero_counts[0], 5);
+  EXPECT_EQ(offsets.zero_counts[3], 8);
   EXPECT_EQ(offsets.friction_known, (std::array<bool, joint_count>{true, false, false, false, false}));
   EXPECT_EQ(offsets.friction[0].coulomb_mnm, 1);
+}
+
+// In a jig no friction is measured: that of the file is forgotten when it cannot be, and does not take the power again.
+TEST(Commissioned, AZeroOfAJigHealsAJointWhoseFileHasAFrictionThatCannotBe) {
+  std::array<Motor, joint_count> motors;
+  for (Motor& motor : motors) motor.coulomb_nm = 1e-3, motor.viscous_nm_s = 1e-6;
+  config::HomingOffsets offsets;
+  offsets.known = offsets.friction_known = {true, true, false, false, false};
+  offsets.friction = {{{1, 1e-3, 0.1}, {100, 1e-3, 0.1}, {}, {}, {}}};
+  Commissioned commissioned;
+  commissioned.found = {true, true, false, false, false};
+  EXPECT_EQ(take_over(commissioned, motors, offsets), "");
+  EXPECT_EQ(offsets.friction_known, (std::array<bool, joint_count>{true, false, false, false, false}));
+  EXPECT_TRUE(config::leave_out_doubtful(offsets, motors).empty());
+  EXPECT_TRUE(offsets.known[1]);
 }
 
 TEST(HomingFile, JointsWhoseFrictionCannotBeTakeNoPower) {

@@ -246,6 +246,7 @@ TEST(HomingFile, ComesBackAsItWentAndRefusesWhatIsNotValid) {
   EXPECT_FALSE(std::filesystem::exists(folder / "h.yaml.partial"));
   EXPECT_THROW((void)config::read_homing_file(folder.write("a.yaml", "slew: {found: here}\n")), InputError);
   EXPECT_THROW((void)config::read_homing_file(folder.write("b.yaml", "slew: {zero_counts: x}\n")), InputError);
+  EXPECT_THROW((void)config::read_homing_file(folder.write("d.yaml", "slew: {zero_counts: 1, coulomb_mnm: 2}\n")), InputError);
   EXPECT_THROW((void)config::read_homing_file(folder.write("c.yaml", "neck: {zero_counts: 1}\n")), InputError);
   EXPECT_THROW(config::write_homing_file(folder / "no/such/folder.yaml", offsets), InputError);
 }
