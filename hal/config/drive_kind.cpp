@@ -118,6 +118,16 @@ class Reader {
       else
         scalars.force_insert(entry.first, entry.second);
     }
+    // One scale a quantity: a file's own takes the place of the one that it was like.
+    const auto own_scale = [&](const char* name, UnitScale& unit) {
+      const YAML::Node own = root[name];
+      if (own && own.IsMap() &&
+          std::any_of(own.begin(), own.end(), [](const auto& e) { return e.first.Scalar().starts_with("units_per_"); }))
+        unit = {};
+    };
+    own_scale("position", kind.position);
+    own_scale("speed", kind.speed);
+    own_scale("acceleration", kind.acceleration);
     std::string like, vendor, product;
     read_map(scalars, "", "", scalar_keys(kind, like, vendor, product), source_);
     attempt([&] { read_identity(vendor, scalars, "vendor", kind.identity.vendor); });

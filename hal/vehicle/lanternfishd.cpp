@@ -58,11 +58,12 @@ int take_signals() {
   return signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK);
 }
 
-void tell_notes(const VehicleConfig& config) {
+std::vector<std::string> notes_of(const VehicleConfig& config) {
   const std::string urdf = config::find_file(config.machine.arm_urdf, std::filesystem::path(config.machine.file).parent_path());
   std::vector<std::string> notes = config::arm_notes(urdf);
   notes.insert(notes.end(), config.core.notes.begin(), config.core.notes.end());
   for (const std::string& note : notes) std::fprintf(stderr, "lanternfishd: note: %s\n", note.c_str());
+  return notes;
 }
 
 // The file, then what this machine has of it.
@@ -71,7 +72,7 @@ int check(const Options& options) {
   int status = done;
   try {
     const VehicleConfig config = load_vehicle_config(options.config);
-    tell_notes(config);
+    report["notes"] = notes_of(config);
     for (const Finding& finding : check_machine(config)) {
       report["problems"].push_back({{"key", finding.key}, {"problem", finding.problem}, {"remedy", finding.remedy}});
       status = environment;
@@ -96,7 +97,7 @@ int run_daemon(const Options& options) {
   if (options.config.empty()) throw InputError("--config FILE is needed; `lanternfishd --help` has more");
   if (options.check) return check(options);
   const VehicleConfig config = load_vehicle_config(options.config);
-  tell_notes(config);
+  (void)notes_of(config);
   const int signals = take_signals();
   const auto daemon = std::make_unique<Daemon>(config);  // megabytes
   const bool well = daemon->run(signals, options.run_job);

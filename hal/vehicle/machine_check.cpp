@@ -121,8 +121,27 @@ void check_zeros(const VehicleConfig& config, Findings& found) {
     if (!config.core.controller.network.drives[i].may_have_power())
       unknown += (unknown.empty() ? "" : ", ") + std::string(config::joint_name(i));
   }
-  if (!unknown.empty())
-    found.push_back({"homing.file", "no zero is known of " + unknown + ": no power", "`lanternfishd commission`, while the daemon runs"});
+  if (unknown.empty()) return;
+  const bool no_file = config.machine.homing_file.empty();
+  found.push_back({"homing.file", (no_file ? "no file is named for the zeros of " : "no zero is known of ") + unknown + ": no power",
+                   no_file ? "name an empty one (`touch homing.yaml`), then `lanternfishd commission`, while the daemon runs"
+                           : "`lanternfishd commission`, while the daemon runs"});
+}
+
+void check_estop(const VehicleConfig& config, Findings& found) {
+  if (config.estop_input.empty() || access(config.estop_input.c_str(), R_OK) == 0) return;
+  found.push_back(
+      {"estop.input", config.estop_input + ": " + std::strerror(errno), "as long as it cannot be read, the chain counts as open"});
+}
+
+void check_processors(const VehicleConfig& config, Findings& found) {
+  const long processors = sysconf(_SC_NPROCESSORS_CONF);
+  const auto check = [&](const char* key, int cpu) {
+    if (cpu < processors) return;
+    found.push_back({key, "there is no processor " + std::to_string(cpu), "this machine has 0 to " + std::to_string(processors - 1)});
+  };
+  check("realtime.cpu", config.realtime.cpu);
+  check("realtime.vision_cpu", config.vision_cpu);
 }
 
 }  // namespace
@@ -139,6 +158,8 @@ std::vector<Finding> check_machine(const VehicleConfig& config) {
   check_folder(fs::path(config.operator_socket).parent_path().string(), "operator.socket", found);
   check_log_space(config, found);
   check_realtime(config, found);
+  check_processors(config, found);
+  check_estop(config, found);
   check_zeros(config, found);
   return found;
 }

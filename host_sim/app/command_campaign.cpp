@@ -238,11 +238,12 @@ void add_campaign(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("campaign", "Run a scenario over many seeds and tabulate what came of them");
   auto options = std::make_shared<Options>();
   command->add_option("SCENARIO", options->scenario, "A file or a shipped name")->required();
-  command->add_option("--seeds", options->seeds, "A-B, both included");
+  CLI::Option* seeds = command->add_option("--seeds", options->seeds, "A-B, both included");
   CLI::Option* faults =
       command->add_flag("--faults", options->faults, "The fault matrix: every kind of fault in every step, on given sight");
   CLI::Option* ranges = command->add_flag("--ranges", options->ranges, "Every key of the scenario, drawn over its documented range");
   faults->excludes(ranges);
+  seeds->excludes(faults)->excludes(ranges);
   command->add_option("--draws", options->draws, "--ranges: draws of each key by itself")->check(CLI::Range(0, 1000))->needs(ranges);
   command->add_option("--many", options->many, "--ranges: runs with eight keys at once")->check(CLI::Range(0, 100000))->needs(ranges);
   command->add_option("--kinds", options->kinds, "--faults: these kinds only; --ranges: these keys only")->delimiter(',');

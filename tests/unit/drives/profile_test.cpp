@@ -92,6 +92,14 @@ TEST(DriveProfileFile, AScaleIsNeverAssumed) {
   }
 }
 
+// One of its own took its place beside the inherited one, and both were refused as two.
+TEST(DriveProfileFile, AScaleOfItsOwnTakesThePlaceOfTheOneThatItWasLike) {
+  EXPECT_EQ(problems_of("title: mine\nlike: cia402\nposition: {units_per_rev: 4096}\nspeed: {units_per_rev_s: 60}\n"), "");
+  EXPECT_EQ(problems_of("title: mine\nlike: epos4\nposition: {units_per_count: 2}\n"), "");
+  EXPECT_NE(problems_of("title: mine\nlike: cia402\nposition: {units_per_rev: 4096, units_per_count: 1}\n").find("takes one scale"),
+            std::string::npos);
+}
+
 TEST(DriveProfileFile, AnUnknownProfileIsRefusedWithTheNearestName) {
   try {
     (void)find_drive_kind("epos5", "");

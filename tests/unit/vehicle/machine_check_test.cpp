@@ -25,13 +25,18 @@ TEST(MachineCheck, NamesWhatIsNotThere) {
                                                                 "can: {interface: can99}\n"
                                                                 "camera: {device: /dev/video77}\n"
                                                                 "operator: {operators: [nobody-of-this-name, \"@no-such-group\"]}\n"
+                                                                "estop: {input: /sys/class/gpio/no/value}\n"
+                                                                "realtime: {cpu: 1000, vision_cpu: 0}\n"
                                                                 "log: {folder: /proc/lanternfish}\n"));
   const std::vector<Finding> found = check_machine(config);
   EXPECT_THAT(said_of(found, "can.interface"), HasSubstr("no interface can99"));
   EXPECT_THAT(said_of(found, "camera.device"), HasSubstr("/dev/video77"));
   EXPECT_THAT(said_of(found, "operator.operators"), HasSubstr("no user nobody-of-this-name"));
   EXPECT_THAT(said_of(found, "log.folder"), HasSubstr("nothing can be written"));
-  EXPECT_THAT(said_of(found, "homing.file"), HasSubstr("slew, shoulder, elbow, roll, jaw"));
+  EXPECT_THAT(said_of(found, "homing.file"), HasSubstr("no file is named for the zeros of slew, shoulder, elbow, roll, jaw"));
+  EXPECT_THAT(said_of(found, "estop.input"), HasSubstr("/sys/class/gpio/no/value: No such file"));
+  EXPECT_THAT(said_of(found, "realtime.cpu"), HasSubstr("there is no processor 1000"));
+  EXPECT_EQ(said_of(found, "realtime.vision_cpu"), "nothing");
   EXPECT_EQ(std::count_if(found.begin(), found.end(), [](const Finding& f) { return f.key == "operator.operators"; }), 2);
 }
 
