@@ -248,14 +248,14 @@ class Judge {
 
   double time_s(const Moment& moment) const { return static_cast<double>(&moment - moments_.data()) * ms; }
 
-  // By more than what stands, in the 20 ms before.
+  // By more than what stands, in the 20 ms around it: a drive turns slowly by pulses.
   bool travels_in_a_moment(const Moment& moment, const std::array<float, joint_count> Moment::*rad, std::size_t joint) const {
-    constexpr std::ptrdiff_t window_ms = 20;
-    const std::ptrdiff_t index = &moment - moments_.data();
+    constexpr std::ptrdiff_t around_ms = 10;
+    const std::ptrdiff_t index = &moment - moments_.data(), size = std::ssize(moments_);
     const auto by_angle = [&](const Moment& a, const Moment& b) { return (a.*rad)[joint] < (b.*rad)[joint]; };
-    const auto [low, high] =
-        std::minmax_element(moments_.begin() + std::max<std::ptrdiff_t>(0, index - window_ms), moments_.begin() + index + 1, by_angle);
-    return ((*high).*rad)[joint] - ((*low).*rad)[joint] >= figures_.standing_rad_s * static_cast<double>(window_ms) * ms;
+    const auto [low, high] = std::minmax_element(moments_.begin() + std::max<std::ptrdiff_t>(0, index - around_ms),
+                                                 moments_.begin() + std::min(size, index + around_ms + 1), by_angle);
+    return ((*high).*rad)[joint] - ((*low).*rad)[joint] >= figures_.standing_rad_s * 2 * static_cast<double>(around_ms) * ms;
   }
 
   bool motor_moves(const Moment& moment, std::size_t joint) const { return travels_in_a_moment(moment, &Moment::motor_rad, joint); }
