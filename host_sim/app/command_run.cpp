@@ -73,6 +73,7 @@ void tell(const RunOutcome& outcome, const std::string& folder) {
   tell_error("peaks away from edges, rms", result.errors.peak_rms_smooth_px, "px");
   tell_error("peaks, recall", result.errors.peak_recall, "");
   print("%.1f s simulated in %.1f s, %.1f x real time\n", result.time.simulated_s, result.time.wall_s, result.time.real_time_factor);
+  for (const std::string& fault : result.faults_not_made) print("note: this fault did not happen: %s\n", fault.c_str());
   if (result.success) {
     const std::string expected = result.expected_failure ? ": it failed as expected, " + result.expected_failure->reason : "";
     print("SUCCESS%s\n", expected.c_str());

@@ -1,5 +1,6 @@
 #include "host_sim/app/run_result.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -65,6 +66,25 @@ std::vector<record::TaskRecord> task_records(const Controller& controller, const
     records.push_back(task);
   }
   return records;
+}
+
+std::vector<std::string> faults_not_made(const std::vector<config::Fault>& faults, const std::vector<record::PhaseRecord>& phases,
+                                         double end_s) {
+  std::vector<std::string> missed;
+  for (const config::Fault& fault : faults) {
+    double begins_s = fault.at_s;
+    if (!fault.at_step.empty()) {
+      const auto step =
+          std::find_if(phases.begin(), phases.end(), [&](const record::PhaseRecord& phase) { return phase.name == fault.at_step; });
+      begins_s = step == phases.end() ? HUGE_VAL : step->start_s + fault.after_s;
+    }
+    if (begins_s <= end_s) continue;
+    char when[48];
+    std::snprintf(when, sizeof when, ", at %g s", fault.at_s);
+    missed.push_back(fault.kind + (fault.node.empty() ? "" : " " + fault.node) +
+                     (fault.at_step.empty() ? when : ", at step " + fault.at_step));
+  }
+  return missed;
 }
 
 record::ErrorRecord score(const RunRecorder& recorder, const hal::SimConfig& truth) {

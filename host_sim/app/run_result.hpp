@@ -26,6 +26,10 @@ std::optional<record::FailureRecord> disagreement(const Controller& controller, 
 // Done when the core says so and the truth agrees (judge::truly_done).
 std::vector<record::TaskRecord> task_records(const Controller& controller, const world::World& world, const RunRecorder& recorder);
 
+// Those that the run ended before, or whose step it never came to: "overcurrent elbow, at step free jaw".
+std::vector<std::string> faults_not_made(const std::vector<config::Fault>& faults, const std::vector<record::PhaseRecord>& phases,
+                                         double end_s);
+
 record::ErrorRecord score(const RunRecorder& recorder, const hal::SimConfig& truth);
 
 std::map<std::string, std::uint64_t> rejected_inputs(const Controller& controller, const ScanPipeline& pipeline,

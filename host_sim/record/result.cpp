@@ -102,6 +102,7 @@ std::string result_json(const RunResult& result) {
   if (result.expected_failure)
     document["expected_failure"] = {{"phase", result.expected_failure->phase}, {"reason", result.expected_failure->reason}};
   document["false_success"] = result.false_success;
+  if (!result.faults_not_made.empty()) document["faults_not_made"] = result.faults_not_made;
   document["drawn"] = to_json(result.drawn);
   document["phases"] = list(result.phases);
   document["tasks"] = list(result.tasks);

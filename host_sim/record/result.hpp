@@ -106,6 +106,7 @@ struct RunResult {
   std::optional<FailureRecord> failure;
   std::optional<FailureRecord> expected_failure;  // that the scenario asked for, and got
   bool false_success = false;                     // the mission believes it succeeded, and the truth disagrees
+  std::vector<std::string> faults_not_made;       // of the scenario: the run had ended before, or never came to their step
   DrawnRecord drawn;
   std::vector<PhaseRecord> phases;
   std::vector<TaskRecord> tasks;

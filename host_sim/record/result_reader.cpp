@@ -134,6 +134,7 @@ RunResult result_from(const Json& document) {
     read(failure, "reason", result.expected_failure->reason);
   }
   read(document, "false_success", result.false_success);
+  read(document, "faults_not_made", result.faults_not_made);
   result.drawn = drawn_from(section(document, "drawn"));
   for (const Json& phase : section(document, "phases")) result.phases.push_back(phase_from(phase));
   for (const Json& task : section(document, "tasks")) result.tasks.push_back(task_from(task));

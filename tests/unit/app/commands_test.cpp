@@ -170,7 +170,12 @@ TEST_F(Commands, AnExpectedSafeFailureIsSuccessAndEndsWithoutPower) {
   const Json result = json_of("run drive_fault --no-outside --out r --set 'faults=[{at_s: 3, kind: overcurrent, node: elbow}]'");
   EXPECT_EQ(result["success"], true) << result.dump(2);
   EXPECT_NE(std::string(result["expected_failure"]["reason"]).find("drive fault: elbow"), std::string::npos);
-  const Json other = json_of("run drive_fault --no-outside --out s --set 'faults=[{at_s: 3, kind: estop}]'", 1);
+  EXPECT_FALSE(result.contains("faults_not_made"));
+  const Json other = json_of(
+      "run drive_fault --no-outside --out s --set 'faults=[{at_s: 3, kind: estop}, {at_s: 300, kind: image_lost}, "
+      "{at_step: press, kind: hot, node: jaw}]'",
+      1);
+  EXPECT_EQ(other["faults_not_made"], Json::parse(R"(["image_lost, at 300 s", "hot jaw, at step press"])"));
   EXPECT_NE(std::string(other["failure"]["reason"]).find("expected was 'drive fault'"), std::string::npos);
 }
 
