@@ -40,7 +40,8 @@ fs::path find_file(const std::string& name, const fs::path& folder) {
   if (path.is_absolute()) return path;
   std::error_code ignored;
   if (fs::exists(folder / path, ignored)) return folder / path;
-  return share_folder() / path;
+  const fs::path shipped = share_folder() / path;
+  return fs::exists(shipped, ignored) ? shipped : folder / path;  // what is nowhere is missed where its user put it
 }
 
 }  // namespace lf::config

@@ -10,7 +10,7 @@ namespace lf::config {
 // Throws InputError when $LANTERNFISH_SHARE is set and has none, or when there is none at all.
 std::filesystem::path share_folder();
 
-// `name` as a path: itself when absolute, else beside `folder` if it is there, else in the share folder (whether or not it exists).
+// `name` as a path: itself when absolute, else in `folder` if it is there, else in the share folder if it is there, else in `folder`.
 std::filesystem::path find_file(const std::string& name, const std::filesystem::path& folder);
 
 }  // namespace lf::config

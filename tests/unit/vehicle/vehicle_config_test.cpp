@@ -171,6 +171,13 @@ TEST(VehicleConfig, AHomingFilesFrictionIsHeldAgainstTheArms) {
               ElementsAre(testing::AllOf(HasSubstr("h.yaml"), HasSubstr("'elbow.viscous_mnm_s'"))));
 }
 
+// It was missed among the shipped files, where nobody had put it.
+TEST(VehicleConfig, AFileThatIsNowhereIsMissedBesideTheConfiguration) {
+  const TemporaryFolder folder;
+  EXPECT_THAT(problems_of(folder.write("v.yaml", "safety: {limits: mylimits.yaml}\n")),
+              ElementsAre(HasSubstr((folder.path() / "mylimits.yaml").string() + ": No such file")));
+}
+
 TEST(VehicleConfig, LimitsWithAnotherChecksumAreRefused) {
   const TemporaryFolder folder;
   std::ifstream shipped(LANTERNFISH_SOURCE_DIR "/shared/safety/limits.yaml");
