@@ -34,6 +34,7 @@ constexpr std::array<std::pair<const char*, Substitute>, 9> substitute_words{{
 
 std::vector<std::string> words_of_substitutes() {
   std::vector<std::string> words;
+  words.reserve(substitute_words.size());
   for (const auto& [word, substitute] : substitute_words) words.emplace_back(word);
   return words;
 }
