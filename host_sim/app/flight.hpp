@@ -29,7 +29,7 @@ class Flight {
   hal::SimPlatform& platform() { return *platform_; }
   // Of the joints, by their drives' best: what a stop may take.
   const std::array<double, joint_count>& deceleration_rad_s2() const { return deceleration_rad_s2_; }
-  // Of the joints, by which one may be off its motor: half of its gear's play, and the wind-up under the motor's peak torque.
+  // Of the joints, by which one may be off its motor: half of its gear's play, and the wind-up under the motor's rated torque.
   const std::array<double, joint_count>& gear_gives_rad() const { return gear_gives_rad_; }
 
  private:
