@@ -387,7 +387,8 @@ void set_zeros(const Machine& machine, const std::filesystem::path& folder, cons
   if (arm != nullptr) {
     std::array<Motor, joint_count> motors;
     for (std::size_t i = 0; i < joint_count; ++i) motors[i] = motor_of(arm->joints[i], drive_of(machine.drives, i).counts_per_rev);
-    for (const std::string& doubtful : leave_out_doubtful(offsets, motors)) core.notes.push_back(found + ": " + doubtful);
+    for (const std::string& doubtful : leave_out_doubtful(offsets, motors))
+      core.notes.push_back(found + ": " + doubtful + ". Until then this joint takes no power");
   }
   for (std::size_t i = 0; i < joint_count; ++i) {
     network.drives[i].zero_known = offsets.known[i];

@@ -79,7 +79,7 @@ std::vector<std::string> leave_out_doubtful(HomingOffsets& offsets, const std::a
     if (!offsets.friction_known[i]) continue;
     const std::optional<std::string> problem = friction_problem(i, offsets.friction[i], motors[i]);
     if (!problem) continue;
-    left_out.push_back(*problem + ". Until then this joint takes no power");
+    left_out.push_back(*problem);
     offsets.known[i] = offsets.friction_known[i] = false;
   }
   return left_out;

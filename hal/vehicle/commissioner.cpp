@@ -52,13 +52,14 @@ Json friction_json(const config::HomingOffsets& offsets) {
   return all;
 }
 
-std::string take_over(const Commissioned& commissioned, const std::array<Motor, joint_count>& motors, config::HomingOffsets& offsets) {
-  std::string left_out;
+std::vector<std::string> take_over(const Commissioned& commissioned, const std::array<Motor, joint_count>& motors,
+                                   config::HomingOffsets& offsets) {
+  std::vector<std::string> left_out;
   for (std::size_t i = 0; i < joint_count; ++i) {
     if (!commissioned.found[i]) continue;
     const bool rubs = commissioned.friction_found[i];
     if (const auto doubtful = rubs ? config::friction_problem(i, commissioned.friction[i], motors[i]) : std::nullopt) {
-      left_out += (left_out.empty() ? "" : "; ") + *doubtful;
+      left_out.push_back(*doubtful);
       // What was known of it before may be as wrong.
       offsets.known[i] = offsets.friction_known[i] = false;
       continue;
@@ -194,14 +195,17 @@ void Commissioner::store(const Commissioning& ended) {
   const std::string how = (order_.here ? "in the jig, " : "at its stop, ") + now_text() + " UTC";
   const Commissioned commissioned{ended.found(), ended.zero_counts(), ended.friction_found(), ended.friction(), how};
   const bool posted = worker_.post([prepared = prepared_, file = file_, commissioned, core = core_, motors = motors_]() mutable {
-    std::string problem, left_out;
+    std::string problem;
+    std::vector<std::string> left_out;
     config::HomingOffsets offsets;
     std::unique_ptr<Controller> with_zeros;
     try {
       offsets = read_and_check(file);
       left_out = take_over(commissioned, motors, offsets);
       config::write_homing_file(file, offsets);
-      for (const std::string& older : config::leave_out_doubtful(offsets, motors)) left_out += (left_out.empty() ? "" : "; ") + older;
+      const std::vector<std::string> older =
+          config::leave_out_doubtful(offsets, motors);  // the file's, of joints that were not commissioned now
+      left_out.insert(left_out.end(), older.begin(), older.end());
       for (std::size_t i = 0; i < joint_count; ++i) {
         core.network.drives[i].encoder_zero_counts = offsets.zero_counts[i];
         core.network.drives[i].zero_known = offsets.known[i];
@@ -235,8 +239,9 @@ void Commissioner::install() {
   core_given_ = std::move(prepared_->core);
   (void)rings_.cores.push(core_given_.get());
   Json outcome{{"state", "done"}, {"zeros", zeros}, {"friction", friction_json(prepared_->offsets)}, {"file", file_}};
-  if (!prepared_->left_out.empty())
-    outcome.update({{"state", "failed"}, {"why", "these joints take no power: " + prepared_->left_out}, {"without_power", true}});
+  std::string why;
+  for (const std::string& sentence : prepared_->left_out) why += (why.empty() ? "these joints take no power: " : "; ") + sentence;
+  if (!why.empty()) outcome.update({{"state", "failed"}, {"why", why}, {"without_power", true}});
   end_with(outcome);
 }
 

@@ -31,8 +31,9 @@ struct Commissioned {
   std::array<config::JointFriction, joint_count> friction{};
   std::string how;  // and when
 };
-// Takes it over into `offsets`. A joint whose friction cannot be is no longer known there: its name and figures come back, or "".
-std::string take_over(const Commissioned& commissioned, const std::array<Motor, joint_count>& motors, config::HomingOffsets& offsets);
+// Takes it over into `offsets`. A joint whose friction cannot be is no longer known there: a sentence for each comes back.
+std::vector<std::string> take_over(const Commissioned& commissioned, const std::array<Motor, joint_count>& motors,
+                                   config::HomingOffsets& offsets);
 
 class Commissioner {
  public:
@@ -63,7 +64,7 @@ class Commissioner {
     std::mutex mutex;
     bool done = false;
     std::string problem;
-    std::string left_out;  // joints whose friction cannot be, a sentence each: they take no power
+    std::vector<std::string> left_out;  // a sentence for each joint that takes no power, since its friction cannot be
     std::unique_ptr<Commissioning> commissioning;
     std::unique_ptr<Controller> core;
     config::HomingOffsets offsets;

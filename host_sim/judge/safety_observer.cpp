@@ -33,7 +33,7 @@ void SafetyObserver::on_bus_frame(const devices::BusRecord& record) {
   const bool from_master = record.sender == can_map::master_node;
   if (from_master && (frame.id & function_mask) == first_rpdo && node >= 1 && node <= joint_count) {
     run_ordered_[node - 1] = (frame.data[0] & run_bits) == run_bits;
-    std::uint32_t set_point = 0;
+    std::uint32_t set_point = 0;  // every profile has it behind the controlword
     std::memcpy(&set_point, &frame.data[2], sizeof set_point);
     if (std::exchange(set_point_[node - 1], set_point) != set_point) led_until_[node - 1] = record.delivered + force_window;
   }

@@ -260,7 +260,7 @@ class Judge {
 
   bool motor_moves(const Moment& moment, std::size_t joint) const { return travels_in_a_moment(moment, &Moment::motor_rad, joint); }
 
-  // Something is pushed against the arm, and touches something of it.
+  // The obstacle is there, and the arm touches it, or something else.
   bool pushed_at(const Moment& moment) const {
     const bool since = has([&](const Cause& cause) { return cause.rule->kind == "obstacle" && begins_s(cause) <= time_s(moment); });
     return since && moment.force_n > 0;

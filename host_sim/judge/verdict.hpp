@@ -22,8 +22,8 @@ struct SafetyFigures {
   double force_n = 150;       // over 50 ms
   double halt_s = 0.6;        // of an arm in motion on its own path: half a second, and the tick and SYNC after
   double self_stop_s = 0.40;  // the drives' consumer time of the master's heartbeat, 300 ms, and one heartbeat
-  // A drive whose process data are lost is told by NMT: five SYNC periods after it has not heeded a stop; in an orderly shut-down after the time in which
-  // brakes may close.
+  // A drive whose process data are lost is told by NMT: five SYNC periods after the stop, which it does not heed; in an orderly shut-down after the time in
+  // which brakes may close.
   double unheeded_stop_s = 0.020, unheeded_lowering_s = 0.7;
   double unheeded_off_s = 0.120;  // until it is restarted, from when its power had to be off
   double unwinding_s = 0.5;       // in which a joint whose motor stands may still unwind its gear

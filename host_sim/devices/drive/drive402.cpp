@@ -11,8 +11,9 @@ namespace {
 
 constexpr double step_s = 1e-3;
 constexpr double torque_filter_s = 0.002;
-constexpr double velocity_filter_s = 0.008, ramp_filter_s = 0.016;
-constexpr double fastest_of_top = 2;
+constexpr double velocity_filter_s = 0.008;
+constexpr double ramp_filter_s = 0.016;      // the position loop's of its feed-forward: a count an 8 ms is a speed to it, too
+constexpr double fastest_of_top = 2;         // a joint that has run off turns at 1.5 times the top speed
 constexpr double torque_high_of_peak = 1.2;  // beyond what the drive can apply: a broken current sensor
 
 constexpr std::uint16_t bit_fault_reset = 0x80, bit_4 = 0x10;

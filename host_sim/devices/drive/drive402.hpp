@@ -118,7 +118,7 @@ class Drive402 : private Application {
   double motor_rad_ = 0;     // as the joint's angle
   double torque_ratio_ = 0;  // of the motor's rated torque, positive in the direction of counts, filtered
   double velocity_counts_s_ = 0;
-  double ramp_counts_s_ = 0;  // where a stop's ramp may begin: slower to follow, and no jump of the encoder is in it
+  double ramp_counts_s_ = 0;  // that a stop's ramp may begin with: no jump of the encoder is in it
   double last_counts_ = 0;
   double output_rad_s_ = 0;
 

@@ -20,7 +20,7 @@ bool touches(arm::GuardedMotion& guard, double& t_s, double& nm, double nm_s, do
     nm += 0.004 * nm_s;
     arm::JointVector torque_nm = arm::JointVector::Zero();
     torque_nm[2] = nm;
-    if (guard.update(Time::from_s(t_s), arm::JointVector::Zero(), arm::JointVector::Zero(), torque_nm) == arm::GuardState::free) continue;
+    guard.update(Time::from_s(t_s), arm::JointVector::Zero(), arm::JointVector::Zero(), torque_nm);
     if (guard.touched()) return true;
   }
   return false;

@@ -33,8 +33,9 @@ TEST(Commissioned, AJointThatSomethingRubsAgainstIsLeftOutAndTheOthersAreTakenOv
   commissioned.friction_found = {true, true, true, false, false};
   commissioned.friction = {{{1, 1e-3, 0.1}, {100, 1e-3, 0.1}, {1, 1e-3, 0.1}, {}, {}}};
   commissioned.how = "in the jig";
-  const std::string left_out = take_over(commissioned, motors, offsets);
-  EXPECT_NE(left_out.find("'shoulder.coulomb_mnm' is 100"), std::string::npos) << left_out;
+  const std::vector<std::string> left_out = take_over(commissioned, motors, offsets);
+  ASSERT_EQ(left_out.size(), 1U);
+  EXPECT_NE(left_out[0].find("'shoulder.coulomb_mnm' is 100"), std::string::npos) << left_out[0];
   EXPECT_EQ(offsets.known, (std::array<bool, joint_count>{true, false, false, true, false})) << "the old zero may be as wrong";
   EXPECT_EQ(offsets.zero_counts[0], 5);
   EXPECT_EQ(offsets.zero_counts[3], 8);
@@ -51,7 +52,7 @@ TEST(Commissioned, AZeroOfAJigHealsAJointWhoseFileHasAFrictionThatCannotBe) {
   offsets.friction = {{{1, 1e-3, 0.1}, {100, 1e-3, 0.1}, {}, {}, {}}};
   Commissioned commissioned;
   commissioned.found = {true, true, false, false, false};
-  EXPECT_EQ(take_over(commissioned, motors, offsets), "");
+  EXPECT_TRUE(take_over(commissioned, motors, offsets).empty());
   EXPECT_EQ(offsets.friction_known, (std::array<bool, joint_count>{true, false, false, false, false}));
   EXPECT_TRUE(config::leave_out_doubtful(offsets, motors).empty());
   EXPECT_TRUE(offsets.known[1]);
