@@ -8,6 +8,7 @@ void Power::stop(Time now, canopen::Network& network) {
   if (state_ == State::stopping || state_ == State::removing) return;
   network.quick_stop_all();
   state_ = State::stopping;
+  told_by_nmt_.fill(false);
   insist_at_ = now + heed_time;
   since_ = now;
   rest_since_.fill(now);
@@ -17,6 +18,7 @@ void Power::stop(Time now, canopen::Network& network) {
 void Power::remove(Time now, canopen::Network& network) {
   network.remove_power();
   if (state_ == State::removing) return;
+  if (state_ != State::stopping) told_by_nmt_.fill(false);
   state_ = State::removing;
   since_ = now;
   insist_at_ = now + heed_time;
@@ -38,18 +40,28 @@ void Power::insist(Time now, canopen::Network& network) {
     if (heeds(i, now, network)) continue;
     if (state_ == State::stopping) {
       network.stop_node(i);
+      told_by_nmt_[i] = true;
     } else if (!network.fault(i).rebooted) {
       network.reset_node(i);
     }
   }
 }
 
-// A drive that is not heard may hear: it is given time before it is made deaf to process data, too.
+// A drive that is not heard may hear, and brakes in good order then: it is given time before NMT makes it deaf to process data. Where none is heard, nobody
+// knows which of them hear.
 bool Power::heeds(std::size_t joint, Time now, const canopen::Network& network) const {
   const canopen::Axis& axis = network.axis(static_cast<Joint>(joint));
   if (axis.fresh(now)) return state_ == State::stopping ? !axis.runs() : !axis.powered();
   if (network.fault(joint).left_operational || network.foreign_nmt_since(now, insist_period)) return false;
-  return state_ != State::removing || now - since_ < silent_time;
+  if (state_ == State::stopping) return !hears_none(now, network);
+  return !told_by_nmt_[joint] && now - since_ < silent_time;
+}
+
+bool Power::hears_none(Time now, const canopen::Network& network) {
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    if (network.axis(static_cast<Joint>(i)).fresh(now)) return false;
+  }
+  return true;
 }
 
 void Power::tick(const JointStates& joints, Time now, canopen::Network& network) {

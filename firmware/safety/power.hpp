@@ -32,7 +32,8 @@ class Power {
   // the order acts with the next SYNC, and the answer comes with the one after.
   static constexpr Duration heed_time = Duration::from_ms(16);
   static constexpr Duration insist_period = Duration::from_ms(100);
-  // What is not heard is told by process data for so long before it is restarted by NMT.
+  // A drive that is not heard is told by process data for so long before it is restarted by NMT. Where no drive is heard it is this master that is deaf: then
+  // each is told twice, by process data and by NMT.
   static constexpr Duration silent_time = Duration::from_ms(300);
   // Two SYNC periods until the order acts are 8 ms: the power is off within 1.2 s of the stop.
   static constexpr Duration longest_stop = Duration::from_ms(1100);
@@ -67,6 +68,7 @@ class Power {
   // Stops or restarts by NMT what does not heed its process data.
   void insist(Time now, canopen::Network& network);
   bool heeds(std::size_t joint, Time now, const canopen::Network& network) const;
+  static bool hears_none(Time now, const canopen::Network& network);
 
   State state_ = State::off;
   Time insist_at_;
@@ -74,6 +76,7 @@ class Power {
   std::array<double, joint_count> rest_rad_{};
   std::array<std::int32_t, joint_count> rest_counts_{};
   std::array<Time, joint_count> rest_since_{};
+  std::array<bool, joint_count> told_by_nmt_{};  // since the stop began: deaf to process data
 };
 
 const char* name(Power::State state);

@@ -103,6 +103,18 @@ TEST_F(PowerTest, ADriveThatDoesNotHeedIsStoppedAndThenRestartedByNmtAndTheOther
   EXPECT_EQ(bus.nodes[0].nmt(), 5);
 }
 
+// The master is deaf: it cannot know which drive does not hear it.
+TEST_F(PowerTest, WhereNoDriveIsHeardEachIsToldByProcessDataAndByNmt) {
+  for (auto& node : bus.nodes) node.mute_tpdo = true;
+  bus.nodes[3].ignores_controlword = true;
+  for (int i = 0; i < 6; ++i) step();
+  power.stop(bus.now, bus.network);
+  EXPECT_LT(until([this] { return bus.nodes[0].drive_state_bits() == holding; }), 0.012) << "the quick stop comes first";
+  EXPECT_LT(until([this] { return bus.nodes[3].nmt() == 4 && bus.nodes[0].nmt() == 4; }), 0.024) << "stopped";
+  EXPECT_LT(until([this] { return all_in(unpowered); }), 0.35) << "by their restart";
+  EXPECT_LT(until([this] { return power.off(); }), 1.1);
+}
+
 // A frame of long ago, or before the boot, makes no later stop another one.
 TEST_F(PowerTest, AnotherMastersNmtOfLongAgoChangesNoStop) {
   CanFrame frame;
