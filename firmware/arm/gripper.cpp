@@ -111,12 +111,16 @@ void Gripper::move(Time t, double jaw_rad, const TorqueEstimate& torque, double 
   // A screw that has clamped needs more than a moment to break loose.
   const bool widening = state_ == GripperState::opening && goal_rad_ > jaw_rad;
   if (pushing && t - still_since_ >= (widening ? config_.lost_time * 4 : config_.stall_time)) stalled(jaw_rad, torque);
-  if (pushing && t - still_since_ >= config_.lost_time && std::abs(torque.nm) < config_.hold_torque_nm) {
+  if (state_ != GripperState::opening && state_ != GripperState::closing) return;
+  // A drive that goes on pushing the other way does not hear its target; a screw that is turning round gets time for it.
+  const double towards_nm = target_rad_ > jaw_rad ? torque.nm : -torque.nm;
+  const Duration patience = towards_nm < -config_.hold_torque_nm ? config_.lost_time * 4 : config_.lost_time;
+  if (pushing && t - still_since_ >= patience && towards_nm < config_.hold_torque_nm) {
     state_ = GripperState::lost;
     target_rad_ = jaw_rad;
     return;
   }
-  if (t - began_ >= config_.move_timeout && (state_ == GripperState::opening || state_ == GripperState::closing)) {
+  if (t - began_ >= config_.move_timeout) {
     state_ = GripperState::jammed;
     target_rad_ = jaw_rad;  // pressing on would only heat the motor
   }

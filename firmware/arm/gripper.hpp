@@ -53,7 +53,7 @@ enum class GripperState : std::uint8_t {
   empty,    // closed past the bar, nothing between the pads
   dropped,  // was held, and is no more
   jammed,   // stalled where it should not, or took too long
-  lost,  // told to move, it reports the same angle without a load, or presses where it is open: its encoder or its drive is not to be trusted
+  lost,  // told to move, it reports the same angle without a load or under a load of its own the other way, or presses where it is open: its encoder or its drive is not to be trusted
 };
 
 class Gripper {

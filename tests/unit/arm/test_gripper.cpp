@@ -227,6 +227,26 @@ TEST(Gripper, IsLostWhenItReportsTheSameAngleWithoutALoad) {
   }
 }
 
+// Its drive hears no target any more: told to open, it goes on squeezing.
+TEST(Gripper, IsLostWhenItGoesOnPushingTheOtherWay) {
+  for (const double squeezing_nm : {-8.0, -2.5}) {
+    Gripper gripper;
+    Time t;
+    const auto run = [&](double seconds) {
+      for (const Time end = t + Duration::from_s(seconds); t < end;) {
+        t = t + Duration::from_ms(4);
+        (void)gripper.update(t, 0.1, squeezing_nm);
+      }
+    };
+    run(0.1);
+    gripper.open_to(0.1);
+    run(1.1);
+    EXPECT_EQ(gripper.state(), GripperState::opening) << "a screw that has clamped gets time";
+    run(0.3);
+    EXPECT_EQ(gripper.state(), GripperState::lost) << squeezing_nm;
+  }
+}
+
 // Its encoder stands still: the drive creeps on, and the fingers come to press on their stop.
 TEST(Gripper, IsLostWhenItPressesThoughItIsOpen) {
   for (const double pressing_nm : {-8.0, 8.0}) {
