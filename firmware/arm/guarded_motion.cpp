@@ -39,12 +39,13 @@ GuardState GuardedMotion::update(Time t, const JointVector& command_rad, const J
   const bool learning = samples_ <= config_.learning;
   if (learning) baseline_nm_ += (torque.nm - baseline_nm_) / samples_;
   excess_nm_ = filtered_.nm - baseline_nm_;
+  error_rad_ = command_rad - position_rad;
 
   for (std::size_t i = 0; i < arm_joint_count; ++i) {
     const auto joint = static_cast<Eigen::Index>(i);
     const bool over = std::abs(filtered_.sure_excess_nm(joint, 0)) > config_.overload_torque_nm[i];
     const bool pushed = !learning && std::abs(filtered_.sure_excess_nm(joint, baseline_nm_[joint])) > config_.contact_torque_nm[i];
-    const bool behind = !learning && std::abs(command_rad[i] - position_rad[i]) > config_.following_rad[i];
+    const bool behind = !learning && std::abs(error_rad_[i]) > config_.following_rad[i];
     if (run_of(over, config_.debounce, overload_run_[i])) latch(GuardState::overload, GuardCause::torque, i);
     if (run_of(pushed, config_.debounce, torque_run_[i])) latch(GuardState::contact, GuardCause::torque, i);
     if (run_of(behind, config_.debounce, following_run_[i])) latch(GuardState::contact, GuardCause::following_error, i);

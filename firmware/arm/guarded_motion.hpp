@@ -47,6 +47,7 @@ class GuardedMotion {
   Joint joint() const { return joint_; }  // that showed it first
   bool touched() const { return state_ == GuardState::contact || state_ == GuardState::overload; }
   const JointVector& excess_torque_nm() const { return excess_nm_; }  // filtered torque less baseline
+  const JointVector& error_rad() const { return error_rad_; }         // command less position
   std::uint32_t refused() const { return refused_; }
 
  private:
@@ -62,6 +63,7 @@ class GuardedMotion {
   JointTorques filtered_;
   JointVector baseline_nm_ = JointVector::Zero();
   JointVector excess_nm_ = JointVector::Zero();
+  JointVector error_rad_ = JointVector::Zero();
   std::array<std::uint32_t, arm_joint_count> torque_run_{}, following_run_{}, overload_run_{};
 };
 

@@ -12,6 +12,9 @@ constexpr double contact_share = 0.5;
 // Whatever it was before, as where something pushed already. The default's free motion takes a fifth of the limit (limits.yaml).
 constexpr double load_share = 0.7;
 
+// Behind its set-point a joint stands by 3 mrad at most where the tool goes at some centimetres a second: position loops have 20 / s.
+constexpr double slow_lag_rad = 0.006;
+
 // Of the way back from a press: twice what the arm gives way by at 60 N.
 constexpr double unwinding_m = 0.006;
 
@@ -60,6 +63,13 @@ bool lags_without_load(const arm::GuardedMotion& guard) {
   const arm::JointVector load_nm(4, 4, 4, 2);
   const auto joint = static_cast<Eigen::Index>(guard.joint());
   return guard.touched() && guard.cause() == arm::GuardCause::following_error && std::abs(guard.excess_torque_nm()[joint]) < load_nm[joint];
+}
+
+bool runs_off(const arm::GuardedMotion& guard) {
+  const auto joint = static_cast<Eigen::Index>(guard.joint());
+  const double error_rad = guard.error_rad()[joint];
+  const bool away = error_rad * guard.excess_torque_nm()[joint] < 0;
+  return guard.touched() && guard.cause() == arm::GuardCause::torque && away && std::abs(error_rad) > slow_lag_rad;
 }
 
 Workbench::Workbench(const ControllerConfig& told)

@@ -1,4 +1,4 @@
-// What the arm takes for a contact where nothing may be touched.
+// What the arm takes for a contact where nothing may be touched, and what for a drive that does not do as told.
 #include <gtest/gtest.h>
 
 #include "firmware/mission/workbench.hpp"
@@ -47,6 +47,30 @@ TEST(FreeMotionGuard, ARiseByHalfOfTheLimitIsAContact) {
     EXPECT_FALSE(touches(guard, t_s, nm, 0, 0.1)) << limit_nm;
     nm = 1.2 * rise_nm;
     EXPECT_TRUE(touches(guard, t_s, nm, 0, 0.1)) << limit_nm;
+  }
+}
+
+// A press: the elbow's set-point stands still, the joint is `error_rad` behind it, and the motor pushes with `nm`.
+arm::GuardedMotion pressed(double error_rad, double nm) {
+  arm::GuardConfig config;
+  config.contact_torque_nm.setConstant(7);
+  arm::GuardedMotion guard(config);
+  double t_s = 0, free_nm = 0;
+  EXPECT_FALSE(touches(guard, t_s, free_nm, 0, 0.5));
+  arm::JointVector command_rad = arm::JointVector::Zero(), torque_nm = arm::JointVector::Zero();
+  command_rad[2] = error_rad;
+  torque_nm[2] = nm;
+  for (int i = 0; i < 25; ++i) guard.update(Time::from_s(t_s += 0.004), command_rad, arm::JointVector::Zero(), torque_nm);
+  EXPECT_TRUE(guard.touched());
+  return guard;
+}
+
+TEST(RunsOff, IsADriveThatPushesItsJointAwayFromTheSetPoint) {
+  for (const double way : {-1.0, 1.0}) {
+    EXPECT_TRUE(runs_off(pressed(way * 0.01, way * -10)));
+    EXPECT_FALSE(runs_off(pressed(way * 0.01, way * 10))) << "something holds the joint back, or pushes it ahead: the drive resists";
+    EXPECT_FALSE(runs_off(pressed(way * 0.003, way * -10))) << "no further than a joint lags";
+    EXPECT_FALSE(runs_off(pressed(way * 0.05, way * -10))) << "told by its lag already";
   }
 }
 
