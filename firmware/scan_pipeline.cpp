@@ -138,16 +138,18 @@ void BasicScanPipeline<capacity>::store(const Image& image, Time start, StoredIm
 template <ScanCapacity capacity>
 bool BasicScanPipeline<capacity>::repeats(const Image& image) {
   static_assert(image_width % 8 == 0);
-  std::uint64_t pixels = 0xcbf29ce484222325u;
+  std::uint64_t pixels = 0xcbf29ce484222325u, white = ~std::uint64_t{0};
   for (std::int32_t v = 0; v < image_height; v += rows_a_sample) {
     const std::uint8_t* row = image.view.row(v);
     for (std::int32_t u = 0; u < image_width; u += 8) {
       std::uint64_t eight = 0;
       std::memcpy(&eight, row + u, sizeof eight);
       pixels = (pixels ^ eight) * 0x100000001b3u;
+      white &= eight;
     }
   }
-  const bool again = pixels == last_pixels_;
+  // Pictures that are white everywhere are alike because of the light.
+  const bool again = pixels == last_pixels_ && white != ~std::uint64_t{0};
   last_pixels_ = pixels;
   return again;
 }

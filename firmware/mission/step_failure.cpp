@@ -22,7 +22,8 @@ Words words(StepFailure failure) {
     case StepFailure::wrong_angle: return {"the handle is not where it was turned to", "Check valve.stop_min_deg and valve.stop_max_deg."};
     case StepFailure::no_panel:
       return {"no panel seen",
-              "The laser's line was not found on a plane: the water is too turbid, the laser is off, or the exposure is too short."};
+              "The laser's line was not found on a plane: the water is too turbid, the laser is off, or the exposure is too short, or so "
+              "long that all is white."};
     case StepFailure::no_marker:
       return {"no usable marker seen",
               "It is hidden, out of view, or too dim: look at the still image; check panel.marker_id and the lamps."};

@@ -65,6 +65,11 @@ class ScanBench {
     sent_[0] = ++images_sent_;
     send_again(start);
   }
+  // Without the mark that makes each picture another one.
+  void send_just(Time start, const std::vector<std::uint8_t>& pixels) {
+    sent_ = pixels;
+    send_again(start);
+  }
   void send_again(Time start) {
     pipeline_->on_image(0, {.view = {sent_.data(), width, height, width}, .exposure_start = start, .exposure = exposure});
   }
@@ -264,6 +269,16 @@ TEST_F(ScanOrders, ImagesWithoutAnOrderAreUnexpected) {
   bench_->send(ScanBench::time(20), stripe_);
   EXPECT_EQ(stats().images_unexpected, 3u) << "one image an order";
   EXPECT_EQ(points(), stats().points);
+}
+
+// Two pictures of too much light are alike, and yet the camera is alive.
+TEST_F(ScanOrders, PicturesThatAreWhiteEverywhereAreNoFrozenCamera) {
+  begin();
+  for (int i = 1; i <= 3; ++i) bench_->order(ScanBench::time(10 * i), ExposureKind::laser_on);
+  const std::vector<std::uint8_t> white(stripe_.size(), 255);
+  for (int i = 1; i <= 3; ++i) bench_->send_just(ScanBench::time(10 * i), white);
+  EXPECT_EQ(stats().images, 3u);
+  EXPECT_EQ(stats().images_repeated, 0u);
 }
 
 TEST_F(ScanOrders, ThePictureBeforeOnceMoreIsRefused) {
