@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::size_t jaw = std::size_t(Joint::jaw);
 constexpr int finger_b_link = 5;
+constexpr double finger_drag_share = 0.1;
 
 // The joint that drives Bullet's link: the two fingers share the jaw's.
 // Of the arm's bodies; the base is Bullet's link -1.
@@ -101,12 +102,12 @@ void ArmBody::before_step() {
     rows_[i]->begin();
     stall_nm_[i] = set_drive_rows(*rows_[i], joints_[i], plan_[i], position_rad(i), config_.step_s);
     if (i == jaw) set_coupling_row(*rows_[i], joints_[i], body.getJointPos(finger_b_link) - body.getJointPos(int(jaw)), config_.step_s);
+    set_water_row(*rows_[i], joints_[i], config_.joint_drag_nm_s * (i == jaw ? finger_drag_share : 1.0), config_.step_s);
     rows_[i]->apply_start(config_.step_s);
   }
   for (int link = 0; link < bullet_links; ++link) {
     const std::size_t joint = joint_of(link);
-    const double drag_nm_s = config_.joint_drag_nm_s * (joint == jaw ? 0.1 : 1.0);
-    body.addJointTorque(link, stall_nm_[joint] / driven_links(joint) - drag_nm_s * body.getJointVel(link));
+    body.addJointTorque(link, stall_nm_[joint] / driven_links(joint));
     body.addLinkForce(link, btVector3(0, 0, arm_.links[body_of(link)].wet_weight_n));
   }
   if (config_.drag_coefficient > 0) add_drag();

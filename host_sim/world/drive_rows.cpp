@@ -6,7 +6,7 @@
 namespace lf::world {
 namespace {
 
-enum Slot : std::size_t { lower_flank = 0, upper_flank = 1, lower_stop = 2, upper_stop = 3, coupling = 4 };
+enum Slot : std::size_t { lower_flank = 0, upper_flank = 1, lower_stop = 2, upper_stop = 3, coupling = 4, water = 5 };
 
 constexpr double unlimited_n_m_s = 1e6;  // a stop, and the fingers' coupling, give what it takes
 // A stop's row is set when it could be met within the step: 20 rad/s is an order above any joint's speed.
@@ -89,6 +89,10 @@ void set_coupling_row(JointRows& rows, const DrivenJoint& joint, double apart_ra
   row.first = -1;
   row.second = 1;
   rows.set(coupling, row);
+}
+
+void set_water_row(JointRows& rows, const DrivenJoint& joint, double drag_nm_s, double step_s) {
+  if (drag_nm_s > 0) set_row(rows, water, joint, JointRows::damper(joint.coupled ? 2 * drag_nm_s : drag_nm_s, step_s));
 }
 
 double drive_torque_nm(const JointRows& rows, double step_s) { return (rows.impulse(lower_flank) + rows.impulse(upper_flank)) / step_s; }

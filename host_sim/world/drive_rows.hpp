@@ -43,6 +43,9 @@ double set_drive_rows(JointRows& rows, const DrivenJoint& joint, const DriveStep
 // Holds two coupled joints together: the second less the first is `apart_rad` as the step begins.
 void set_coupling_row(JointRows& rows, const DrivenJoint& joint, double apart_rad, double step_s);
 
+// The water's drag, N m a rad/s of each of the joints.
+void set_water_row(JointRows& rows, const DrivenJoint& joint, double drag_nm_s, double step_s);
+
 // After the step: the torque that the flanks gave the joint.
 double drive_torque_nm(const JointRows& rows, double step_s);
 

@@ -18,6 +18,15 @@ void soften(btMultiBodySolverConstraint& row, double softness) {
 
 }  // namespace
 
+JointRows::Row JointRows::damper(double nm_s, double step_s) {
+  constexpr double unlimited_n_m_s = 1e6;
+  Row row;
+  row.impulse_min = -unlimited_n_m_s;
+  row.impulse_max = unlimited_n_m_s;
+  row.softness = 1 / (nm_s * step_s);
+  return row;
+}
+
 JointRows::JointRows(btMultiBody* body, int link, int second_link)
     : btMultiBodyConstraint(body, nullptr, link, -1, int(slot_count), false, MULTIBODY_CONSTRAINT_1DOF_JOINT_MOTOR),
       second_link_(second_link) {

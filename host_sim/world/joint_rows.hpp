@@ -15,7 +15,7 @@ namespace lf::world {
 class JointRows : public btMultiBodyConstraint {
  public:
   // Rows have fixed slots, so that each finds its own impulse of the step before.
-  static constexpr std::size_t slot_count = 5;
+  static constexpr std::size_t slot_count = 6;
 
   struct Row {
     double speed = 0;                         // rad/s or m/s
@@ -23,6 +23,9 @@ class JointRows : public btMultiBodyConstraint {
     double first = 1, second = 0;             // the row's coordinate: first x joint + second x second joint
     double softness = 0;                      // the joint gives way by softness x impulse: the row holds speed + softness x impulse
   };
+
+  // A damper: torque against the coordinate's speed at the step's end, so that any coefficient is stable on any inertia.
+  static Row damper(double nm_s, double step_s);
 
   // `second_link` -1: there is none.
   JointRows(btMultiBody* body, int link, int second_link = -1);

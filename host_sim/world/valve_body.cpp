@@ -7,7 +7,7 @@
 namespace lf::world {
 namespace {
 
-enum Slot : std::size_t { friction = 0, lower_stop = 1, upper_stop = 2 };
+enum Slot : std::size_t { friction = 0, lower_stop = 1, upper_stop = 2, viscous = 3 };
 
 constexpr double stop_impulse_n_m_s = 1e6;
 constexpr double stop_reach_rad_s = 20;  // a stop's row is set when the handle could meet it within the step
@@ -45,8 +45,9 @@ void ValveBody::before_step() {
   const double reach = stop_reach_rad_s * step_s_;
   if (angle - reach < config_.stop_min_rad) rows_->set(lower_stop, {(config_.stop_min_rad - angle) / step_s_, 0, stop_impulse_n_m_s});
   if (angle + reach > config_.stop_max_rad) rows_->set(upper_stop, {(config_.stop_max_rad - angle) / step_s_, -stop_impulse_n_m_s, 0});
+  if (config_.viscous_nm_s > 0) rows_->set(viscous, JointRows::damper(config_.viscous_nm_s, step_s_));
   rows_->apply_start(step_s_);
-  part_.body().addJointTorque(0, detent_nm() - config_.viscous_nm_s * speed_rad_s());
+  part_.body().addJointTorque(0, detent_nm());
 }
 
 bool ValveBody::at_rest() const { return std::abs(speed_rad_s()) < rest_speed_rad_s && std::abs(detent_nm()) <= config_.friction_nm; }

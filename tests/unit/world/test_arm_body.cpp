@@ -158,6 +158,24 @@ TEST(ArmBody, driveReachesItsSpeedAndItsMotorRunsAhead) {
               1e-5);  // play, and what the drag winds up
 }
 
+// A finger weighs little: drag taken from the step before would throw it to and fro.
+TEST(ArmBody, drivesGiveTheDragOfAnyCoefficientAndStandAfterIt) {
+  for (const double drag_nm_s : {0.5, 2.0, 5.0}) {
+    WorldConfig config = weightless();
+    config.joint_drag_nm_s = drag_nm_s;
+    config.start_rad = {0, 0.8, 1.0, 0, 0.5};
+    Bench bench(config);
+    JointDrives drives = hold();
+    drives[roll].velocity_rad_s = drives[jaw].velocity_rad_s = 0.2;
+    bench.run(1.0, drives);
+    EXPECT_NEAR(bench.reading(roll).torque_nm, 0.2 * drag_nm_s, 0.002 * drag_nm_s) << drag_nm_s;
+    EXPECT_NEAR(bench.reading(jaw).torque_nm, 0.2 * 0.1 * drag_nm_s, 0.002 * drag_nm_s) << "of each finger, at " << drag_nm_s;
+    for (JointDrive& drive : drives) drive.released = true;
+    bench.run(0.5, drives);
+    for (std::size_t joint = 0; joint < joint_count; ++joint) EXPECT_LT(std::abs(bench.reading(joint).velocity_rad_s), 1e-3) << joint;
+  }
+}
+
 // At a steady speed the slew's drive gives what the water takes. The test sums the drag of each link's shapes over 2,000 strips of its own.
 TEST(ArmBody, aSteadySlewTakesTheTorqueOfTheWatersDrag) {
   WorldConfig config = weightless();

@@ -81,6 +81,22 @@ TEST(Valve, reachesTheSpeedWhereViscousAndDryFrictionBalanceTheTorque) {
   EXPECT_NEAR(bench.valve.speed_rad_s(), 1 - std::exp(-0.5 / time_constant_s), 1e-3);
 }
 
+// Twenty newton metres a radian per second brake such a shaft within 50 us, and the step has a millisecond.
+TEST(Valve, turnsSteadilyWhereItsViscousFrictionIsStiffForTheStep) {
+  for (const double viscous_nm_s : {2.0, 5.0, 20.0}) {
+    ValveConfig config = plain();
+    config.viscous_nm_s = viscous_nm_s;
+    config.start_rad = -1.5;
+    Bench bench(config);
+    for (int i = 0; i < 100; ++i) {
+      bench.run(step_s, config.friction_nm + 3);
+      EXPECT_NEAR(bench.valve.speed_rad_s(), 3 / viscous_nm_s, i < 10 ? 1.5 : 1e-4) << viscous_nm_s << ", step " << i;
+    }
+    bench.run(0.1, 0);
+    EXPECT_NEAR(bench.valve.speed_rad_s(), 0, 1e-20);
+  }
+}
+
 TEST(Valve, endStopsHoldAnyTorque) {
   ValveConfig config = plain();
   Bench bench(config);
