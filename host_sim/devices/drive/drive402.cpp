@@ -13,6 +13,7 @@ constexpr double step_s = 1e-3;
 constexpr double torque_filter_s = 0.002;
 constexpr double velocity_filter_s = 0.008;
 constexpr double ramp_filter_s = 0.016;      // the position loop's of its feed-forward: a count an 8 ms is a speed to it, too
+constexpr double jump_of_top = 0.5;          // a joint that follows is not so much slower than its set-point; four SYNCs' filter are in it
 constexpr double fastest_of_top = 2;         // a joint that has run off turns at 1.5 times the top speed
 constexpr double torque_high_of_peak = 1.2;  // beyond what the drive can apply: a broken current sensor
 
@@ -238,13 +239,15 @@ bool Drive402::ramp_wanted(DriveState next) const {
 }
 
 // A set-point moves by whole counts from SYNC to SYNC: its speed is a count's or none. The ramp begins at what the loop's filter made of it, and where the
-// demand is; but where the joint is, and as it moves, if that is off by more than the loop lags: a stop makes up for no following error.
+// demand is; but where the joint is, and as it moves, if that is off by more than the loop lags, or if the demand has just jumped: a stop makes up for no
+// following error. No ramp is faster than the drive.
 void Drive402::begin_ramp() {
   const double demand = profile_.position(), actual = static_cast<double>(o_.position_actual.value);
   const double velocity = loop_.demand_velocity_rad_s() / rad_per_count_;
-  const bool follows = config_.switches.ramps_from_demand || std::abs(demand - actual) <= loop_.lag_counts(velocity);
-  if (follows) return profile_.move(demand, velocity);
-  profile_.move(actual, ramp_counts_s_);
+  const bool jumped = std::abs(velocity - ramp_counts_s_) > jump_of_top * top_speed();
+  const bool follows = !jumped && std::abs(demand - actual) <= loop_.lag_counts(velocity);
+  if (follows || config_.switches.ramps_from_demand) return profile_.move(demand, velocity);
+  profile_.move(actual, std::clamp(ramp_counts_s_, -top_speed(), top_speed()));
   loop_.take_up(ramp_counts_s_ * rad_per_count_);
 }
 

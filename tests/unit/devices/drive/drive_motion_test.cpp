@@ -245,6 +245,50 @@ TEST(DriveMotion, a_quick_stop_of_a_joint_that_is_off_its_set_point) {
   }
 }
 
+// A jaw's squeeze is let go of in one step, and the stop comes a SYNC later: the set-point has jumped, and the joint stood.
+TEST(DriveMotion, a_quick_stop_takes_no_jump_of_the_set_point_for_a_speed) {
+  DriveRig rig(elbow(), 1.0);
+  rig.client.write(0x605A, 0, 2, 2);
+  rig.client.write(0x6065, 0, 0xFFFFFFFF, 4);
+  rig.joint.lower_rad = rig.joint.upper_rad = 1.0;
+  rig.enable();
+  const std::int32_t held = rig.target;
+  rig.target = held - 150;
+  rig.run_ms(60);
+  rig.target = held;
+  rig.run_ms(8);
+  rig.joint.lower_rad = 0, rig.joint.upper_rad = 2;
+  rig.controlword = 0x02;
+  double farthest_rad = 0;
+  for (int i = 0; i < 1000; ++i) {
+    rig.step();
+    farthest_rad = std::max(farthest_rad, std::abs(rig.joint.q_rad - 1.0));
+  }
+  EXPECT_EQ(rig.drive.state(), DriveState::switch_on_disabled);
+  EXPECT_LT(farthest_rad, 0.005);
+}
+
+// A drive that has run off goes faster than its limit allows: its ramp begins at the limit.
+TEST(DriveMotion, a_quick_stop_from_above_the_top_speed_ends_as_one_from_it) {
+  DriveConfig config = elbow();
+  DriveRig rig(config, 0.8);
+  rig.client.write(0x605A, 0, 2, 2);
+  rig.client.write(0x6065, 0, 0xFFFFFFFF, 4);
+  rig.enable();
+  const double top_counts_s = static_cast<double>(rig.client.read(0x607F, 0));
+  rig.joint.runs_off_rad_s = 1.5 * config.max_velocity_rad_s;
+  rig.run_ms(300);
+  const std::int32_t before = rig.actual();
+  rig.run_ms(4);
+  ASSERT_GT(rig.actual() - before, 4e-3 * top_counts_s) << "faster than its limit";
+  rig.controlword = 0x02;
+  while (rig.drive.state() == DriveState::operation_enabled) rig.step();
+  rig.joint.runs_off_rad_s = 0;
+  int powered_ms = 0;
+  for (; powered_ms < 3000 && rig.drive.state() == DriveState::quick_stop_active; ++powered_ms) rig.step();
+  EXPECT_LT(1e-3 * powered_ms, config.max_velocity_rad_s / config.max_acceleration_rad_s2 + 0.15);
+}
+
 // The encoder is off by a tenth of a radian from one millisecond to the next, as by a slipped coupling: that is no speed to brake from.
 TEST(DriveMotion, a_quick_stop_takes_no_jump_of_the_encoder_for_a_speed) {
   DriveRig rig(elbow(), 1.0);
