@@ -98,7 +98,6 @@ std::map<std::string, DriveKind> read_profiles(const Machine& machine, const Ste
 // Figures of a motor that its joint cannot have. A gear that is wrong shows in the ratio, a torque that is the joint's and not the motor's in the rating.
 void check_motor(const JointDriveChoice& choice, std::size_t joint, const ArmJoint& description, const std::string& where) {
   constexpr double direct_drive = 0.999;  // a ratio of 1, computed
-  constexpr double other_motor = 3;  // a motor that is larger or smaller by more than this is not the one that the arm was described with
   char text[320];
   const double ratio = best_motor_ratio(description, choice.counts_per_rev);
   if (ratio < direct_drive) {

@@ -9,8 +9,6 @@ namespace lf::config {
 
 namespace {
 
-// Two angles a turn apart look the same, and a look errs by a few degrees.
-constexpr double widest_range_deg = 350;
 // The mark's edge is looked for 3 mm to either side of its place, and has to stay on its own half of the bar.
 constexpr double bare_beyond_middle_m = 0.005;
 // The pads are 40 mm wide, and the scan tells a bar's angle from its length over its thickness: at half this ratio its points are a blot.
@@ -50,20 +48,23 @@ void check_bar(const PanelLayout& panel, std::vector<std::string>& problems) {
   if (panel.handle_height_m < lowest_bar_m(panel.handle_thickness_m))
     problems.push_back("'panel.handle_height_m' is " + number(panel.handle_height_m) + ": the open jaw would touch the panel below " +
                        number(lowest_bar_m(panel.handle_thickness_m)) + " m");
-  const double thickest_m = std::min(arm::thickest_bar_m(), panel.handle_length_m / shortest_over_thickness);
+  const double thickest_m = thickest_bar_m(panel);
   if (panel.handle_thickness_m < arm::thinnest_bar_m)
     problems.push_back("'panel.handle_thickness_m' is " + number(panel.handle_thickness_m) + ": the jaw does not tell a bar thinner than " +
                        number(arm::thinnest_bar_m) + " m from nothing");
   if (panel.handle_thickness_m > thickest_m)
     problems.push_back("'panel.handle_thickness_m' is " + number(panel.handle_thickness_m) + ": a bar of this length can be " +
                        number(thickest_m) + " m thick, else its angle cannot be seen or the jaw does not open for it");
-  const double longest_mark_m = panel.handle_length_m / 2 - bare_beyond_middle_m;
-  if (panel.pointer != PanelLayout::Pointer::none && panel.pointer_length_m > longest_mark_m)
-    problems.push_back("'panel.pointer_length_m' is " + number(panel.pointer_length_m) + ": more than " + number(longest_mark_m) +
+  if (panel.pointer != PanelLayout::Pointer::none && panel.pointer_length_m > longest_mark_m(panel))
+    problems.push_back("'panel.pointer_length_m' is " + number(panel.pointer_length_m) + ": more than " + number(longest_mark_m(panel)) +
                        " m of this bar would not tell its ends apart");
 }
 
 }  // namespace
+
+double thickest_bar_m(const PanelLayout& panel) { return std::min(arm::thickest_bar_m(), panel.handle_length_m / shortest_over_thickness); }
+
+double longest_mark_m(const PanelLayout& panel) { return panel.handle_length_m / 2 - bare_beyond_middle_m; }
 
 std::vector<std::string> handle_problems(const PanelLayout& panel, const ValveStops& stops, const std::vector<Task>& tasks) {
   std::vector<std::string> problems;

@@ -13,7 +13,7 @@ void add_panel(Keys& all, PanelLayout& p) {
   all.push_back(key("panel.handle_length_m", "m", 0.06, 0.16, &p.handle_length_m,
                     "length of the T-bar: longer than the pads are wide, and clear of buttons and marker"));
   all.push_back(key("panel.handle_thickness_m", "m", 0.008, 0.05, &p.handle_thickness_m, "its thickness"));
-  all.push_back(key("panel.handle_height_m", "m", 0.05, 0.18, &p.handle_height_m, "its centre line's height over the panel"));
+  all.push_back(key("panel.handle_height_m", "m", 0.05, 0.13, &p.handle_height_m, "its centre line's height over the panel"));
   all.push_back(key("panel.pointer", "", 0, 0, &p.pointer,
                     "the mark at that end of the bar which points up at 0 degrees; without one a bar looks the same after half a turn",
                     {pointer_words.begin(), pointer_words.end()}));

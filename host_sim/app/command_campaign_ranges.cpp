@@ -55,7 +55,7 @@ void judge(const record::RunResult& run, RangeResult& result) {
   }
 }
 
-RangeResult fly(const CampaignOptions& options, const RangeRow& row) {
+RangeResult fly_once(const CampaignOptions& options, const RangeRow& row) {
   RangeResult result{row.name, row.key, "", "", ""};
   std::vector<std::string> set = options.set;
   set.insert(set.end(), row.set.begin(), row.set.end());
@@ -71,6 +71,13 @@ RangeResult fly(const CampaignOptions& options, const RangeRow& row) {
     result.verdict = "refused";
     result.reason = error.what();
   }
+  return result;
+}
+
+RangeResult fly(const CampaignOptions& options, const RangeRow& row) {
+  RangeResult result = fly_once(options, row);
+  for (std::uint64_t i = 2; row.key == "many" && result.verdict == "refused" && i <= combinations; ++i)
+    result = fly_once(options, many_row(row.seed, i));
   return result;
 }
 

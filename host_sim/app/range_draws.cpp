@@ -4,8 +4,11 @@
 #include <charconv>
 #include <cmath>
 #include <concepts>
+#include <limits>
 #include <optional>
 
+#include "hal/config/share.hpp"
+#include "host_sim/scenario/bounds.hpp"
 #include "host_sim/scenario/draw.hpp"
 
 namespace lf::app {
@@ -26,12 +29,12 @@ std::string text_of(double value) {
 // Each draw has a generator of its own, made of the key's name.
 class Draw {
  public:
-  Draw(const Key& key, std::uint64_t seed) : key_(key), seed_(seed) {}
+  Draw(const Key& key, const scenario::Bounds& bounds, std::uint64_t seed) : key_(key), bounds_(bounds), seed_(seed) {}
 
   std::string operator()(double*) { return text_of(rounded(number())); }
   template <std::integral Integer>
   std::string operator()(Integer*) {
-    return text_of(std::clamp(std::round(number()), key_.min, key_.max));
+    return text_of(std::clamp(std::round(number()), bounds_.min, bounds_.max));
   }
   std::string operator()(bool*) { return share() < 0.5 ? "false" : "true"; }
   std::string operator()(config::Spread*) { return text_of(rounded(number())); }
@@ -44,11 +47,11 @@ class Draw {
   }
   template <std::size_t Count>
   std::string operator()(std::vector<std::array<double, Count>>*) {
-    std::string text = "[" + list(Count);
-    while (share() < 0.5) text += ", " + list(Count);
+    std::string text = "[" + body(Count);
+    while (share() < 0.5) text += ", " + body(Count);
     return text + "]";
   }
-  std::string operator()(std::vector<config::Task>*) { return "[{turn_valve: {to_deg: " + text_of(rounded(360 * share() - 180)) + "}}]"; }
+  std::string operator()(std::vector<config::Task>*) { return "[{turn_valve: {to_deg: " + text_of(rounded(number())) + "}}]"; }
   std::string operator()(PanelLayout::Pointer*) {
     return key_.words[static_cast<std::size_t>(share() * static_cast<double>(key_.words.size()))];
   }
@@ -61,27 +64,46 @@ class Draw {
 
   double number() {
     const double at = share();
-    const bool logarithmic = key_.min > 0 && key_.max > logarithmic_from * key_.min;
-    return logarithmic ? key_.min * std::pow(key_.max / key_.min, at) : key_.min + (key_.max - key_.min) * at;
+    const auto [min, max] = bounds_;
+    const bool logarithmic = min > 0 && max > logarithmic_from * min;
+    return logarithmic ? min * std::pow(max / min, at) : min + (max - min) * at;
   }
 
   // Four digits: what a person would write.
   double rounded(double value) const {
     if (value == 0) return 0;
     const double unit = std::pow(10, std::floor(std::log10(std::abs(value))) - 3);
-    return std::clamp(std::round(value / unit) * unit, key_.min < key_.max ? key_.min : value, key_.min < key_.max ? key_.max : value);
+    return std::clamp(std::round(value / unit) * unit, bounds_.min, bounds_.max);
   }
 
-  std::string list(std::size_t count) {
+  std::string list(std::size_t count, std::size_t positive_from = std::numeric_limits<std::size_t>::max()) {
     std::string text = "[";
-    for (std::size_t i = 0; i < count; ++i) text += (i > 0 ? ", " : "") + text_of(rounded(number()));
+    for (std::size_t i = 0; i < count; ++i) {
+      const double value = rounded(number());
+      text += (i > 0 ? ", " : "") + text_of(i >= positive_from ? std::abs(value) : value);
+    }
     return text + "]";
+  }
+  // A place, then its extents or its radius.
+  std::string body(std::size_t count) {
+    constexpr std::size_t box = 6;
+    return list(count, count == box ? 3 : count - 1);
   }
 
   const Key& key_;
+  scenario::Bounds bounds_;
   std::uint64_t seed_;
   int count_ = 0;
 };
+
+// The default machine's.
+const ArmDescription& arm_of(const scenario::Scenario& scenario) {
+  static const ArmDescription arm = load_arm_urdf(config::find_file(scenario.arm.urdf, ""));
+  return arm;
+}
+
+// What names a run, or says how long it may last.
+bool is_about_the_run(const std::string& path) { return path == "time_limit_s"; }
 
 // What these say is seen, or where it is looked from.
 bool is_seen(const std::string& key) {
@@ -100,7 +122,7 @@ std::vector<std::string> drawn_keys() {
   std::vector<std::string> paths;
   for (const Key& key : scenario::keys(scenario)) {
     const bool text = std::holds_alternative<std::string*>(key.value) || std::holds_alternative<std::vector<std::string>*>(key.value);
-    if (!text && !std::holds_alternative<std::vector<config::Fault>*>(key.value)) paths.push_back(key.path);
+    if (!text && !is_about_the_run(key.path) && !std::holds_alternative<std::vector<config::Fault>*>(key.value)) paths.push_back(key.path);
   }
   return paths;
 }
@@ -108,9 +130,20 @@ std::vector<std::string> drawn_keys() {
 std::string drawn_value(const std::string& path, std::uint64_t draw) {
   scenario::Scenario scenario;
   for (const Key& key : scenario::keys(scenario)) {
-    if (key.path == path) return std::visit(Draw(key, draw), key.value);
+    if (key.path == path) return std::visit(Draw(key, scenario::bounds_of(key, scenario, arm_of(scenario)), draw), key.value);
   }
   return "";
+}
+
+RangeRow many_row(std::uint64_t index, std::uint64_t combination) {
+  const std::vector<std::string> paths = drawn_keys();
+  RangeRow row{"many " + std::to_string(index), "many", {}, index, true};
+  const std::uint64_t seed = (combinations * 1000 + 1) * combination + index;
+  for (std::size_t k = 0; k < keys_at_once; ++k) {
+    const std::string& path = paths[scenario::bits(seed, "many " + std::to_string(k)) % paths.size()];
+    row.set.push_back(path + "=" + drawn_value(path, 1000 + seed));
+  }
+  return row;
 }
 
 std::vector<RangeRow> range_rows(std::size_t draws, std::size_t many) {
@@ -122,14 +155,7 @@ std::vector<RangeRow> range_rows(std::size_t draws, std::size_t many) {
       rows.push_back({path + " " + value + " #" + std::to_string(draw), path, {path + "=" + value}, draw, is_seen(path)});
     }
   }
-  for (std::uint64_t i = 1; i <= many; ++i) {
-    RangeRow row{"many " + std::to_string(i), "many", {}, i, true};
-    for (std::size_t k = 0; k < keys_at_once; ++k) {
-      const std::string& path = paths[scenario::bits(i, "many " + std::to_string(k)) % paths.size()];
-      row.set.push_back(path + "=" + drawn_value(path, 1000 + i));
-    }
-    rows.push_back(row);
-  }
+  for (std::uint64_t i = 1; i <= many; ++i) rows.push_back(many_row(i, 1));
   return rows;
 }
 

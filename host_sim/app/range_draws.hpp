@@ -17,11 +17,18 @@ struct RangeRow {
   bool sees = false;             // the key is about seeing: the run renders, else sight is given
 };
 
+// Of several keys at once most combinations are refused. One that is, is drawn again, up to so many times.
+inline constexpr std::uint64_t combinations = 40;
+
 // The keys that have something to draw, by path. Not: texts, files, the faults, and what only names or limits a run.
 std::vector<std::string> drawn_keys();
 
-// Draw number `draw` (from 1) of a key as YAML. Even over the range; where it spans more than a factor of a hundred above 0, even in the logarithm.
+// Draw number `draw` (from 1) of a key as YAML. Even over the range, as far as the default scenario's other keys let it reach (scenario/bounds.hpp); where it
+// spans more than a factor of a hundred above 0, even in the logarithm.
 std::string drawn_value(const std::string& key, std::uint64_t draw);
+
+// Row `index` (from 1) of those with eight keys at once; `combination`: from 1.
+RangeRow many_row(std::uint64_t index, std::uint64_t combination);
 
 // `draws` rows a key, one key at a time; then `many` rows with eight keys at once.
 std::vector<RangeRow> range_rows(std::size_t draws, std::size_t many);

@@ -31,9 +31,12 @@ void add_place(Keys& all, Scenario& s) {
   all.push_back(key("valve.viscous_nm_s", "N m s/rad", 0, 20, &s.valve.viscous_nm_s, "viscous friction of the handle"));
   all.push_back(key("buttons.preload_n", "N", 0, 25, &s.buttons.preload_n, "force at which a button starts to move"));
   all.push_back(key("buttons.spring_n_m", "N/m", 0, 9000, &s.buttons.spring_n_m, "return spring of a button"));
-  all.push_back(key("buttons.click_depth_m", "m", 0.0005, 0.02, &s.buttons.click_depth_m, "depth at which a button clicks and counts"));
-  all.push_back(key("buttons.release_depth_m", "m", 0, 0.02, &s.buttons.release_depth_m, "depth at which it lets go on the way out"));
-  all.push_back(key("buttons.click_drop_n", "N", 0, 20, &s.buttons.click_drop_n, "force that a clicked button gives less"));
+  all.push_back(key("buttons.click_depth_m", "m", 0.0005, 0.02, &s.buttons.click_depth_m,
+                    "depth at which a button clicks and counts; within its stroke"));
+  all.push_back(key("buttons.release_depth_m", "m", 0.0001, 0.02, &s.buttons.release_depth_m,
+                    "depth at which it lets go on the way out; less than where it clicks"));
+  all.push_back(key("buttons.click_drop_n", "N", 0, 20, &s.buttons.click_drop_n,
+                    "force that a clicked button gives less; less than its spring gives where it lets go"));
   all.push_back(key("buttons.stuck", "", 0, 0, &s.buttons.stuck, "buttons that do not move", {"left", "centre", "right"}));
   all.push_back(key("buttons.missing", "", 0, 0, &s.buttons.missing, "buttons that broke off", {"left", "centre", "right"}));
 }
@@ -55,13 +58,13 @@ void add_sight(Keys& all, Scenario& s) {
       key("laser.waist_sigma_m", "m", 0.0001, 0.02, &s.laser.waist_sigma_m, "standard deviation of its cross-section at the emitter"));
   config::add_laser(all, s.laser);
   all.push_back(key("mounting.camera_m", "m", -0.005, 0.005, &s.mounting.camera_m, "unknown shift of the camera, each axis"));
-  all.push_back(key("mounting.camera_deg", "deg", -1, 1, &s.mounting.camera_deg, "unknown turn of the camera, each axis"));
+  all.push_back(key("mounting.camera_deg", "deg", -0.4, 0.4, &s.mounting.camera_deg, "unknown turn of the camera, each axis"));
   all.push_back(key("mounting.laser_m", "m", -0.005, 0.005, &s.mounting.laser_m, "unknown shift of the laser, each axis"));
   all.push_back(key("mounting.laser_deg", "deg", -0.5, 0.5, &s.mounting.laser_deg, "unknown turn of the laser, each axis"));
-  all.push_back(key("mounting.joints_deg", "deg", -0.5, 0.5, &s.mounting.joints_deg, "unknown offset of each joint's encoder"));
+  all.push_back(key("mounting.joints_deg", "deg", -0.3, 0.3, &s.mounting.joints_deg, "unknown offset of each joint's encoder"));
   all.push_back(
       key("mounting.marker_m", "m", -0.005, 0.005, &s.mounting.marker_m, "unknown shift of the marker within the panel, each axis"));
-  all.push_back(key("mounting.marker_deg", "deg", -1, 1, &s.mounting.marker_deg, "unknown turn of the marker within the panel"));
+  all.push_back(key("mounting.marker_deg", "deg", -0.4, 0.4, &s.mounting.marker_deg, "unknown turn of the marker within the panel"));
 }
 
 void add_machine(Keys& all, Scenario& s) {
@@ -69,7 +72,7 @@ void add_machine(Keys& all, Scenario& s) {
   all.push_back(key("arm.urdf", "", 0, 0, &s.arm.urdf, "the arm; relative to the scenario's folder, then to the shipped files"));
   all.push_back(key("jaw.torque_nm", "N m", 0, 200, &s.jaw.torque_nm, "closing torque at each finger; 0: as the URDF says"));
   all.push_back(key("jaw.pad_friction", "", 0, 2, &s.jaw.pad_friction, "friction of the finger pads; 0: as the URDF says"));
-  all.push_back(key("physics.restitution", "", 0, 0.1, &s.physics.restitution, "of every contact"));
+  all.push_back(key("physics.restitution", "", 0, 0.02, &s.physics.restitution, "of every contact"));
   all.push_back(key("physics.joint_drag_nm_s", "N m s/rad", 0, 5, &s.physics.joint_drag_nm_s, "drag of the water on each joint"));
   all.push_back(key("physics.drag_coefficient", "", 0, 3, &s.physics.drag_coefficient,
                     "of the water on the links, across them; a cylinder's is 1.1"));

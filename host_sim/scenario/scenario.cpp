@@ -12,6 +12,7 @@
 #include "hal/config/text_file.hpp"
 #include "hal/config/yaml_reader.hpp"
 #include "hal/sim/sim_config.hpp"
+#include "host_sim/scenario/bounds.hpp"
 #include "host_sim/scenario/instance.hpp"
 #include "host_sim/scenario/keys.hpp"
 #include "shared/input_error.hpp"
@@ -60,23 +61,20 @@ void apply_override(Scenario& scenario, const std::string& text) {
   config::read_value(parse_yaml(text.substr(equals + 1), source), path, *found, source);
 }
 
-// Force at which a press ends, over the torque that says bottom. A button of 20 N at half its stroke is pressed with 7 N m, one of 25 N is not; 30 N with 14.
-constexpr double force_of_press_n_nm = 20.0 / 7;
-
 void check_buttons(const Scenario& s, const std::function<void(const std::string&)>& refuse) {
   for (const std::string& name : s.buttons.stuck) {
     if (std::find(s.buttons.missing.begin(), s.buttons.missing.end(), name) != s.buttons.missing.end())
       refuse("'buttons.stuck' and 'buttons.missing' both name " + name + ": a button that broke off cannot be stuck");
   }
   const double half_way_n = s.buttons.preload_n + s.buttons.spring_n_m * s.panel.button_stroke_m / 2;
-  const double pressed_n = force_of_press_n_nm * s.mission.press_torque_nm;
+  const double pressed_n = pressed_force_n(s);
   if (half_way_n > pressed_n * 1.001) {
     char text[256];
     std::snprintf(text, sizeof text,
                   "'buttons.preload_n' and 'buttons.spring_n_m' take %.3g N at half the stroke: with 'mission.press_torque_nm' at %.3g a "
                   "press ends at "
                   "%.3g N and would take the button for stuck. It takes %.3g N m",
-                  half_way_n, s.mission.press_torque_nm, pressed_n, half_way_n / force_of_press_n_nm);
+                  half_way_n, s.mission.press_torque_nm, pressed_n, half_way_n / pressed_n * s.mission.press_torque_nm);
     refuse(text);
   }
 }
@@ -89,6 +87,13 @@ void check_together(const Scenario& s, const std::string& where, std::vector<std
     refuse("'valve.start_deg' lies beyond the valve's stops");
   check_buttons(s, refuse);
   if (s.buttons.release_depth_m >= s.buttons.click_depth_m) refuse("'buttons.release_depth_m' is not below 'buttons.click_depth_m'");
+  if (s.buttons.click_drop_n >= returning_force_n(s)) {
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "'buttons.click_drop_n' is %.3g: the clicked cap would not return, the spring gives %.3g N at 'buttons.release_depth_m'",
+                  s.buttons.click_drop_n, returning_force_n(s));
+    refuse(text);
+  }
   if (s.buttons.click_depth_m > s.panel.button_stroke_m) refuse("'buttons.click_depth_m' is beyond 'panel.button_stroke_m'");
   if ((s.panel.plate_min_m.array() >= s.panel.plate_max_m.array()).any()) refuse("'panel.plate_min_m' is not below 'panel.plate_max_m'");
   if (s.panel.marker_plate_m <= s.panel.marker_size_m) refuse("'panel.marker_plate_m' is not larger than 'panel.marker_size_m'");

@@ -1,0 +1,94 @@
+#include "host_sim/scenario/bounds.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "firmware/arm/gripper.hpp"
+#include "hal/config/handle_check.hpp"
+#include "hal/config/homing_file.hpp"
+#include "shared/arm/motor.hpp"
+
+namespace lf::scenario {
+
+namespace {
+
+// Force at which a press ends, over the torque that says bottom. A button of 20 N at half its stroke is pressed with 7 N m, one of 25 N is not; 30 N with 14.
+constexpr double force_of_press_n_nm = 20.0 / 7;
+// A bound that must not be met is missed by this share of itself, or of the range.
+constexpr double clearly = 0.01;
+
+Bounds within(const config::Key& key, double min, double max) {
+  const double least = std::clamp(min, key.min, key.max);
+  return {least, std::clamp(max, least, key.max)};
+}
+
+Bounds of_stops(const config::Key& key, const Scenario& s) {
+  if (key.path == "tasks" || key.path == "valve.start_deg") return {s.valve.stop_min_deg, s.valve.stop_max_deg};
+  double least = s.valve.start_deg.min, most = s.valve.start_deg.max;
+  for (const Task& task : s.tasks) {
+    if (task.kind != Task::Kind::turn_valve) continue;
+    least = std::min(least, task.to_deg);
+    most = std::max(most, task.to_deg);
+  }
+  if (key.path == "valve.stop_min_deg") return within(key, s.valve.stop_max_deg - config::widest_range_deg, least);
+  return within(key, most, s.valve.stop_min_deg + config::widest_range_deg);
+}
+
+Bounds of_buttons(const config::Key& key, const Scenario& s) {
+  const double half_way_m = s.panel.button_stroke_m / 2, pressed_n = pressed_force_n(s);
+  const Buttons& b = s.buttons;
+  if (key.path == "buttons.preload_n") return within(key, key.min, pressed_n - b.spring_n_m * half_way_m);
+  if (key.path == "buttons.spring_n_m") return within(key, (b.click_drop_n - b.preload_n) / b.release_depth_m * (1 + clearly), (pressed_n - b.preload_n) / half_way_m);
+  if (key.path == "buttons.click_depth_m") return within(key, b.release_depth_m * (1 + clearly), s.panel.button_stroke_m);
+  if (key.path == "buttons.release_depth_m") return within(key, key.min, b.click_depth_m * (1 - clearly));
+  if (key.path == "buttons.click_drop_n") return within(key, key.min, returning_force_n(s) * (1 - clearly));
+  return {key.min, key.max};
+}
+
+Bounds of_panel(const config::Key& key, const Scenario& s) {
+  const PanelLayout& panel = s.panel;
+  if (key.path == "panel.button_stroke_m")
+    return within(key, s.buttons.click_depth_m, 2 * (pressed_force_n(s) - s.buttons.preload_n) / s.buttons.spring_n_m);
+  if (key.path == "panel.marker_size_m") return within(key, key.min, panel.marker_plate_m * (1 - clearly));
+  if (key.path == "panel.marker_plate_m") return within(key, panel.marker_size_m * (1 + clearly), key.max);
+  if (key.path == "panel.handle_thickness_m") return within(key, arm::thinnest_bar_m, config::thickest_bar_m(panel));
+  if (key.path == "panel.pointer_length_m") return within(key, key.min, config::longest_mark_m(panel));
+  return {key.min, key.max};
+}
+
+// Of a joint's motor, or of all of them.
+Bounds of_drives(const config::Key& key, const Scenario& s, const ArmDescription& arm) {
+  Bounds bounds{key.min, key.max};
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    const bool all = key.path == "drives.counts_per_rev";
+    if (!all && !key.path.starts_with("drives." + std::string(config::joint_name(i)) + ".")) continue;
+    const double counts = config::drive_of(s.drives, i).counts_per_rev;
+    if (key.path.ends_with(".counts_per_rev"))
+      bounds = within(key, bounds.min, std::min(bounds.max, best_motor_ratio(arm.joints[i], counts) * counts * (1 - clearly)));
+    if (key.path.ends_with(".rated_torque_nm")) {
+      const double nm = motor_of(arm.joints[i], counts).rated_torque_nm;
+      bounds = within(key, nm / config::other_motor * (1 + clearly), nm * config::other_motor * (1 - clearly));
+    }
+  }
+  return bounds;
+}
+
+}  // namespace
+
+double pressed_force_n(const Scenario& s) { return force_of_press_n_nm * s.mission.press_torque_nm; }
+
+double returning_force_n(const Scenario& s) { return s.buttons.preload_n + s.buttons.spring_n_m * s.buttons.release_depth_m; }
+
+Bounds bounds_of(const config::Key& key, const Scenario& scenario, const ArmDescription& arm) {
+  if (key.path == "tasks" || key.path == "valve.start_deg" || key.path.starts_with("valve.stop_")) return of_stops(key, scenario);
+  if (key.path == "mission.press_torque_nm") {
+    const Buttons& b = scenario.buttons;
+    return within(key, (b.preload_n + b.spring_n_m * scenario.panel.button_stroke_m / 2) / force_of_press_n_nm, key.max);
+  }
+  if (key.path.starts_with("buttons.")) return of_buttons(key, scenario);
+  if (key.path.starts_with("panel.")) return of_panel(key, scenario);
+  if (key.path.starts_with("drives.")) return of_drives(key, scenario, arm);
+  return {key.min, key.max};
+}
+
+}  // namespace lf::scenario
