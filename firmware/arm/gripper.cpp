@@ -74,6 +74,7 @@ void Gripper::begin(Time t, double jaw_rad) {
   // From where the jaw is: a squeeze's lead or an old target must not make it jump.
   target_rad_ = std::clamp(jaw_rad, lower_rad, upper_rad);
   still_rad_ = jaw_rad;
+  nearest_rad_ = std::abs(goal_rad_ - jaw_rad);
   still_since_ = began_ = unloaded_ = t;
   low_torque_run_ = 0;
 }
@@ -98,6 +99,12 @@ void Gripper::move(Time t, double jaw_rad, const TorqueEstimate& torque, double 
   const double speed = std::min(top, config_.ramp_rad_s2 * (t - began_).s());
   target_rad_ += std::clamp(goal_rad_ - target_rad_, -speed * dt_s, speed * dt_s);
   target_rad_ = std::clamp(target_rad_, jaw_rad - config_.lead_rad, jaw_rad + config_.lead_rad);
+  nearest_rad_ = std::min(nearest_rad_, std::abs(goal_rad_ - jaw_rad));
+  if (std::abs(goal_rad_ - jaw_rad) > nearest_rad_ + config_.wrong_way_rad) {
+    state_ = GripperState::lost;
+    target_rad_ = jaw_rad;
+    return;
+  }
   if (std::abs(jaw_rad - still_rad_) > config_.stall_rad) {
     still_rad_ = jaw_rad;
     still_since_ = t;

@@ -40,6 +40,7 @@ struct GripperConfig {
   double stall_rad = 0.002;  // less movement than this within `stall_time` is a stall; 4 encoder counts
   Duration stall_time = Duration::from_ms(150);
   Duration lost_time = Duration::from_ms(300);      // so long without an answer; the jaw may have gone 0.15 rad meanwhile
+  double wrong_way_rad = 0.05;                      // farther from the goal than it was by this: the drive goes its own way
   double slip_rad = 0.03;                           // closing further than this from the grip while holding: it slipped out
   Duration move_timeout = Duration::from_ms(8000);  // the full stroke takes 5.6 s at the closing speed
 };
@@ -53,7 +54,7 @@ enum class GripperState : std::uint8_t {
   empty,    // closed past the bar, nothing between the pads
   dropped,  // was held, and is no more
   jammed,   // stalled where it should not, or took too long
-  lost,  // told to move, it reports the same angle without a load or under a load of its own the other way, or presses where it is open: its encoder or its drive is not to be trusted
+  lost,  // told to move, it reports the same angle without a load or under a load of its own the other way, goes the other way, or presses where it is open: its encoder or its drive is not to be trusted
 };
 
 class Gripper {
@@ -96,6 +97,7 @@ class Gripper {
   double target_rad_ = 0;
   double grip_rad_ = 0;
   double grip_gap_m_ = 0;
+  double nearest_rad_ = 0;                      // to the goal, since the order
   double still_rad_ = 0;                        // where the jaw was when it last moved
   Time still_since_, began_, last_, unloaded_;  // the last: when nothing pressed on the open jaw
   bool started_ = false;

@@ -247,6 +247,25 @@ TEST(Gripper, IsLostWhenItGoesOnPushingTheOtherWay) {
   }
 }
 
+// Told to open it closes, or the other way round: with fingers in between, before it has gone far.
+TEST(Gripper, IsLostWhenItGoesTheOtherWay) {
+  for (const double way : {-1.0, 1.0}) {
+    Gripper gripper;
+    Time t;
+    double jaw_rad = 0.5;
+    (void)gripper.update(t, jaw_rad, 0.0);
+    way < 0 ? gripper.turn_to(1.0) : gripper.close();
+    int steps = 0;
+    for (; steps < 500 && gripper.state() != GripperState::lost; ++steps) {
+      t = t + Duration::from_ms(4);
+      (void)gripper.update(t, jaw_rad += way * 0.001, 0.0);
+    }
+    EXPECT_EQ(gripper.state(), GripperState::lost);
+    EXPECT_NEAR(jaw_rad, 0.5 + way * 0.05, 0.003);
+    EXPECT_NEAR(gripper.target_rad(), jaw_rad, 1e-12);
+  }
+}
+
 // Its encoder stands still: the drive creeps on, and the fingers come to press on their stop.
 TEST(Gripper, IsLostWhenItPressesThoughItIsOpen) {
   for (const double pressing_nm : {-8.0, 8.0}) {
