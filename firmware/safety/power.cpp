@@ -1,5 +1,6 @@
 #include "firmware/safety/power.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace lf::safety {
@@ -53,7 +54,7 @@ bool Power::heeds(std::size_t joint, Time now, const canopen::Network& network) 
   const canopen::Axis& axis = network.axis(static_cast<Joint>(joint));
   if (axis.fresh(now)) return state_ == State::stopping ? !axis.runs() : !axis.powered();
   if (network.fault(joint).left_operational || network.foreign_nmt_since(now, insist_period)) return false;
-  if (state_ == State::stopping) return !hears_none(now, network);
+  if (state_ == State::stopping) return deaf_ticks_ < deaf_ticks;
   return !told_by_nmt_[joint] && now - since_ < silent_time;
 }
 
@@ -65,6 +66,7 @@ bool Power::hears_none(Time now, const canopen::Network& network) {
 }
 
 void Power::tick(const JointStates& joints, Time now, canopen::Network& network) {
+  deaf_ticks_ = hears_none(now, network) ? std::min(deaf_ticks_ + 1, deaf_ticks) : 0;
   if (state_ == State::stopping || state_ == State::removing) insist(now, network);
   if (state_ == State::stopping) {
     if (confirmed(now, network) || standing(joints, now, network) || now - since_ >= longest_stop) remove(now, network);

@@ -35,6 +35,8 @@ class Power {
   // A drive that is not heard is told by process data for so long before it is restarted by NMT. Where no drive is heard it is this master that is deaf: then
   // each is told twice, by process data and by NMT.
   static constexpr Duration silent_time = Duration::from_ms(300);
+  // A tick that comes late finds old data of every drive, once.
+  static constexpr int deaf_ticks = 3;
   // Two SYNC periods until the order acts are 8 ms: the power is off within 1.2 s of the stop.
   static constexpr Duration longest_stop = Duration::from_ms(1100);
   // A joint stands when it has moved by no more than `still_rad`, or by one count of its encoder, for so long: 0.02 rad/s.
@@ -77,6 +79,7 @@ class Power {
   std::array<std::int32_t, joint_count> rest_counts_{};
   std::array<Time, joint_count> rest_since_{};
   std::array<bool, joint_count> told_by_nmt_{};  // since the stop began: deaf to process data
+  int deaf_ticks_ = 0;                           // in a row
 };
 
 const char* name(Power::State state);

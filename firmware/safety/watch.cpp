@@ -42,6 +42,7 @@ void Watch::observe(const canopen::Network& network, const std::array<double, jo
     }
     joints_.velocity_rad_s[i] = observers_[i].velocity_rad_s();
     observe_torque(axis, i);
+    if (i < arm_joint_count) observe_encoder(axis, i, now);
   }
   joints_.t = newest;
   observing_ = true;
@@ -57,6 +58,18 @@ void Watch::observe_torque(const canopen::Axis& axis, std::size_t joint) {
   joints_.torque_nm[joint] = torque.nm;
   joints_.torque_low_nm[joint] = torque.low_nm;
   joints_.torque_high_nm[joint] = torque.high_nm;
+}
+
+void Watch::observe_encoder(const canopen::Axis& axis, std::size_t joint, Time now) {
+  constexpr double free_share = 0.5;  // of the joint's torque limit: what takes more is held by something
+  StuckEncoder::Sample sample;
+  sample.t = now;
+  sample.actual_counts = axis.actual_counts();
+  sample.target_counts = axis.target_counts();
+  sample.rad_per_count = arm::rad_per_count(static_cast<Joint>(joint), joints_.position_rad[joint]);
+  sample.torque_nm = joints_.torque_nm[joint];
+  sample.follows = axis.enabled() && std::abs(sample.torque_nm) < free_share * limits_.joints[joint].max_torque_nm;
+  stuck_[joint] = encoders_[joint].update(sample);
 }
 
 // Half a SYNC period more than the limit, for the loop's jitter.
@@ -144,7 +157,7 @@ void Watch::check_drive(const canopen::Network& network, std::size_t joint, Faul
   const AxisFault fault = network.axis(static_cast<Joint>(joint)).fault();
   const canopen::NodeFault& link = network.fault(joint);
   const auto code = static_cast<std::int32_t>(joint);
-  raise(fault == AxisFault::following_error, joint, {Fault::following_error, code, link.emcy_code}, began);
+  raise(fault == AxisFault::following_error || stuck_[joint], joint, {Fault::following_error, code, link.emcy_code}, began);
   const bool others = fault == AxisFault::following_error || fault == AxisFault::stale || fault == AxisFault::node_lost;
   const bool complains = link.emcy_active && link.error_register != 0;
   raise((fault != AxisFault::none && !others) || complains, joint, {Fault::drive_fault, code, link.emcy_code}, began);

@@ -9,6 +9,7 @@
 #include "firmware/safety/fault_arbiter.hpp"
 #include "firmware/safety/joint_observer.hpp"
 #include "firmware/safety/limits.hpp"
+#include "firmware/safety/stuck_encoder.hpp"
 #include "shared/geometry/pose.hpp"
 #include "shared/messages/joint_io.hpp"
 #include "shared/messages/time.hpp"
@@ -60,6 +61,7 @@ class Watch {
   double excursion_rad(std::size_t joint) const;
   bool is_fresh(const canopen::Axis& axis, Time now) const;
   void observe_torque(const canopen::Axis& axis, std::size_t joint);
+  void observe_encoder(const canopen::Axis& axis, std::size_t joint, Time now);
   void check_bus(const canopen::Network& network, Time now, FaultArbiter& began);
   void check_nodes(const canopen::Network& network, Vigilance vigilance, Time now, FaultArbiter& began);
   void check_drive(const canopen::Network& network, std::size_t joint, FaultArbiter& began);
@@ -74,6 +76,8 @@ class Watch {
   std::array<arm::TorqueObserver, joint_count> torque_observers_;
   bool observing_ = false;
   JointStates joints_;
+  std::array<StuckEncoder, arm_joint_count> encoders_;  // the jaw's gripper has a rule of its own
+  std::array<bool, joint_count> stuck_{};
   std::array<int, joint_count> overload_ticks_{};
   bool tolerating_ = false;
   double tolerated_m_ = 0;  // of the tool, outside of its workspace

@@ -1,0 +1,45 @@
+// A position that stands still while its set-point goes on and nothing holds the joint: what is reported is not where the joint is.
+//
+// A drive whose encoder is stuck goes on moving its joint, and faster the farther the set-point is. Drives that follow show the first count within 0.1 s, and
+// lag by less than a tenth of these thresholds.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "shared/messages/time.hpp"
+
+namespace lf::safety {
+
+class StuckEncoder {
+ public:
+  static constexpr std::int64_t least_counts = 8;
+  static constexpr double least_rad = 0.003;  // of the set-point, since the position last changed
+  static constexpr Duration least_time = Duration::from_ms(300);
+  static constexpr double load_nm = 4;  // a joint whose torque has changed by this since then is held by something
+
+  struct Sample {
+    Time t;
+    std::int32_t actual_counts = 0, target_counts = 0;
+    double rad_per_count = 0;
+    double torque_nm = 0;
+    bool follows = false;  // it has power, is told where to go, and is not at the end of its torque
+  };
+
+  // True while it is stuck.
+  bool update(const Sample& now) {
+    if (!now.follows || !began_.follows || now.actual_counts != began_.actual_counts) {
+      began_ = now;
+      return false;
+    }
+    const std::int64_t gone = std::abs(std::int64_t{now.target_counts} - began_.target_counts);
+    const bool held = std::abs(now.torque_nm - began_.torque_nm) >= load_nm;
+    return !held && gone >= least_counts && static_cast<double>(gone) * std::abs(now.rad_per_count) >= least_rad &&
+           now.t - began_.t >= least_time;
+  }
+
+ private:
+  Sample began_;
+};
+
+}  // namespace lf::safety
