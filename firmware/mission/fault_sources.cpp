@@ -82,7 +82,7 @@ void FaultSources::collect_contact(const StepTick& tick) {
   if (!joints.valid) return;
   free_guard_.update(joints.t, bench.motion.target(), bench.measured_rad(), bench.measured_nm());
   if (!free_guard_.touched()) return;
-  const Fault fault = lags_without_load(free_guard_) ? Fault::following_error : Fault::unexpected_contact;
+  const Fault fault = does_not_follow(free_guard_) ? Fault::following_error : Fault::unexpected_contact;
   tick.faults.report(fault, static_cast<std::int32_t>(free_guard_.joint()));
 }
 

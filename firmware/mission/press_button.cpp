@@ -97,7 +97,7 @@ Progress PressButton::run_press(const StepTick& tick) {
   learn_under_way(bench);
   guard_.update(tick.now, bench.motion.target(), bench.measured_rad(), bench.measured_nm());
   feel(tick);
-  if (lags_without_load(guard_) || runs_off(guard_)) {
+  if (does_not_follow(guard_)) {
     tick.faults.report(safety::Fault::following_error, static_cast<std::int32_t>(guard_.joint()));
     return Progress::running();
   }

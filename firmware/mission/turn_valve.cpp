@@ -110,7 +110,7 @@ Progress TurnValve::run_advance(const StepTick& tick) {
   if (!motion.is_running() || bench.motion.planning()) return motion;
   guard_.update(tick.now, bench.motion.target(), bench.measured_rad(), bench.measured_nm());
   if (!guard_.touched()) return Progress::running();
-  if (lags_without_load(guard_) || runs_off(guard_)) {
+  if (does_not_follow(guard_)) {
     tick.faults.report(safety::Fault::following_error, static_cast<std::int32_t>(guard_.joint()));
     return Progress::running();
   }

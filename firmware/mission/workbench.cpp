@@ -12,7 +12,8 @@ constexpr double contact_share = 0.5;
 // Whatever it was before, as where something pushed already. The default's free motion takes a fifth of the limit (limits.yaml).
 constexpr double load_share = 0.7;
 
-// Behind its set-point a joint stands by 3 mrad at most where the tool goes at some centimetres a second: position loops have 20 / s.
+// Behind its set-point a joint stands by 3 mrad at most where the tool goes at some centimetres a second: position loops have 20 / s. A joint on a fast way
+// that is pushed from behind may be named for it: it is stopped in either case.
 constexpr double slow_lag_rad = 0.006;
 
 // Of the way back from a press: twice what the arm gives way by at 60 N.
@@ -71,6 +72,8 @@ bool runs_off(const arm::GuardedMotion& guard) {
   const bool away = error_rad * guard.excess_torque_nm()[joint] < 0;
   return guard.touched() && guard.cause() == arm::GuardCause::torque && away && std::abs(error_rad) > slow_lag_rad;
 }
+
+bool does_not_follow(const arm::GuardedMotion& guard) { return lags_without_load(guard) || runs_off(guard); }
 
 Workbench::Workbench(const ControllerConfig& told)
     : config(told),
@@ -194,7 +197,7 @@ Progress Workbench::follow_back_off(const StepTick& tick) {
   }
   if (!motion.planning() && watch.joints().valid) back_guard.update(tick.now, pushed_target(), measured_rad(), measured_nm());
   if (!back_guard.touched()) return follow_motion();
-  if (lags_without_load(back_guard)) {
+  if (does_not_follow(back_guard)) {
     tick.faults.report(safety::Fault::following_error, static_cast<std::int32_t>(back_guard.joint()));
     return Progress::running();
   }

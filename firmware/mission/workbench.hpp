@@ -34,8 +34,10 @@ arm::GuardConfig free_motion_guard(const safety::Limits& limits);
 
 // A joint stays behind its target, and nothing holds it back: its encoder or its drive is not to be trusted.
 bool lags_without_load(const arm::GuardedMotion& guard);
-// It pushes its joint away from the set-point, in a slow motion: a drive that has run off. What is touched makes a drive push towards its set-point.
+// It pushes its joint away from the set-point: a drive that has run off. What is touched makes a drive push towards its set-point.
 bool runs_off(const arm::GuardedMotion& guard);
+// Either: what was felt is the drive's own doing, and no contact.
+bool does_not_follow(const arm::GuardedMotion& guard);
 
 struct StepTick;
 
