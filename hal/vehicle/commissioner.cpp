@@ -188,6 +188,16 @@ void Commissioner::end_with(const Json& outcome) {
   log_(line);
 }
 
+void Commissioner::give(Prepared& prepared, const std::string& problem, const std::vector<std::string>& left_out,
+                        const config::HomingOffsets& offsets, std::unique_ptr<Controller> core) {
+  const std::lock_guard lock(prepared.mutex);
+  prepared.problem = problem;
+  prepared.left_out = left_out;
+  prepared.offsets = offsets;
+  prepared.core = std::move(core);
+  prepared.done = true;
+}
+
 // The file is read again: it keeps what this commissioning has not found.
 void Commissioner::store(const Commissioning& ended) {
   stage_ = Stage::storing;
@@ -202,7 +212,16 @@ void Commissioner::store(const Commissioning& ended) {
     try {
       offsets = read_and_check(file);
       left_out = take_over(commissioned, motors, offsets);
-      config::write_homing_file(file, offsets);
+      try {
+        config::write_homing_file(file, offsets);
+      } catch (const InputError& error) {
+        // What was found is lost; that a joint must not have power is not.
+        problem = error.what();
+        for (std::size_t i = 0; i < joint_count; ++i)
+          core.network.drives[i].zero_known = core.network.drives[i].zero_known && offsets.known[i];
+        with_zeros = std::make_unique<Controller>(core);
+      }
+      if (!problem.empty()) return give(*prepared, problem, left_out, offsets, std::move(with_zeros));
       const std::vector<std::string> older =
           config::leave_out_doubtful(offsets, motors);  // the file's, of joints that were not commissioned now
       left_out.insert(left_out.end(), older.begin(), older.end());
@@ -215,20 +234,27 @@ void Commissioner::store(const Commissioning& ended) {
     } catch (const InputError& error) {
       problem = error.what();
     }
-    const std::lock_guard lock(prepared->mutex);
-    prepared->problem = problem;
-    prepared->left_out = left_out;
-    prepared->offsets = offsets;
-    prepared->core = std::move(with_zeros);
-    prepared->done = true;
+    give(*prepared, problem, left_out, offsets, std::move(with_zeros));
   });
   if (!posted) end_with({{"state", "failed"}, {"why", "nothing was written: too much is waiting to be done"}, {"without_power", true}});
+}
+
+void Commissioner::give_core(std::unique_ptr<Controller> core) {
+  core_given_ = std::move(core);
+  (void)rings_.cores.push(core_given_.get());
 }
 
 void Commissioner::install() {
   const std::lock_guard lock(prepared_->mutex);
   if (!prepared_->done) return;
-  if (!prepared_->problem.empty()) return end_with({{"state", "failed"}, {"why", prepared_->problem}, {"without_power", true}});
+  std::string why;
+  for (const std::string& sentence : prepared_->left_out) why += (why.empty() ? "these joints take no power: " : "; ") + sentence;
+  if (!prepared_->problem.empty()) {
+    for (std::size_t i = 0; i < joint_count && prepared_->core; ++i)
+      core_.network.drives[i].zero_known = core_.network.drives[i].zero_known && prepared_->offsets.known[i];
+    if (prepared_->core) give_core(std::move(prepared_->core));
+    return end_with({{"state", "failed"}, {"why", prepared_->problem + (why.empty() ? "" : "; " + why)}, {"without_power", true}});
+  }
   Json zeros = Json::object();
   for (std::size_t i = 0; i < joint_count; ++i) {
     core_.network.drives[i].encoder_zero_counts = prepared_->offsets.zero_counts[i];
@@ -236,11 +262,8 @@ void Commissioner::install() {
     config::set_friction(prepared_->offsets, i, core_.transmissions[i].friction);
     if (prepared_->offsets.known[i]) zeros[config::joint_name(i)] = prepared_->offsets.zero_counts[i];
   }
-  core_given_ = std::move(prepared_->core);
-  (void)rings_.cores.push(core_given_.get());
+  give_core(std::move(prepared_->core));
   Json outcome{{"state", "done"}, {"zeros", zeros}, {"friction", friction_json(prepared_->offsets)}, {"file", file_}};
-  std::string why;
-  for (const std::string& sentence : prepared_->left_out) why += (why.empty() ? "these joints take no power: " : "; ") + sentence;
   if (!why.empty()) outcome.update({{"state", "failed"}, {"why", why}, {"without_power", true}});
   end_with(outcome);
 }

@@ -74,7 +74,10 @@ class Commissioner {
   void lend();
   void take_back(const CommissioningResult& result);
   void store(const Commissioning& ended);
+  static void give(Prepared& prepared, const std::string& problem, const std::vector<std::string>& left_out,
+                   const config::HomingOffsets& offsets, std::unique_ptr<Controller> core);
   void install();
+  void give_core(std::unique_ptr<Controller> core);
   void end_with(const Json& outcome);
 
   ControllerConfig core_;
