@@ -1,8 +1,6 @@
 #include "host_sim/judge/safety_observer.hpp"
 
 #include <cmath>
-#include <cstring>
-#include <utility>
 
 #include "shared/can/can_map.hpp"
 
@@ -13,8 +11,6 @@ namespace {
 // CiA 301's pre-defined connection set.
 constexpr std::uint32_t emergency = 0x080, first_tpdo = 0x180, first_rpdo = 0x200, heartbeat = 0x700, function_mask = 0x780,
                         node_mask = 0x7F;
-// A contact's force is taken over so long: what was ordered in it is in it.
-constexpr Duration force_window = Duration::from_ms(50);
 constexpr std::uint8_t boot_up = 0;
 // CiA 402: the statusword's fault bit; a controlword of "enable operation" has its four low bits set.
 constexpr std::uint8_t status_fault = 0x08, run_bits = 0x0F;
@@ -33,9 +29,6 @@ void SafetyObserver::on_bus_frame(const devices::BusRecord& record) {
   const bool from_master = record.sender == can_map::master_node;
   if (from_master && (frame.id & function_mask) == first_rpdo && node >= 1 && node <= joint_count) {
     run_ordered_[node - 1] = (frame.data[0] & run_bits) == run_bits;
-    std::uint32_t set_point = 0;  // every profile has it behind the controlword
-    std::memcpy(&set_point, &frame.data[2], sizeof set_point);
-    if (std::exchange(set_point_[node - 1], set_point) != set_point) led_until_[node - 1] = record.delivered + force_window;
   }
   if (devices_ == nullptr || record.delivered < begin_) return;
   const double t_s = (record.delivered - begin_).s();
@@ -60,7 +53,7 @@ void SafetyObserver::judge_report(const CanFrame& frame, double t_s) {
   if (chain_open && !seen_.chain_open_s) seen_.chain_open_s = t_s;
 }
 
-void SafetyObserver::on_step(Time now, const world::World& world) {
+void SafetyObserver::on_step(Time, const world::World& world) {
   if (devices_ == nullptr) return;
   Moment moment;
   const JointReadings readings = world.readings();
@@ -71,10 +64,9 @@ void SafetyObserver::on_step(Time now, const world::World& world) {
     const devices::DrivePower power = devices_->power(i);
     const auto bit = static_cast<std::uint8_t>(1u << i);
     if (power != devices::DrivePower::off) moment.power |= bit;
-    if (power != devices::DrivePower::off && now <= led_until_[i]) moment.led |= bit;
     if (power == devices::DrivePower::operation && run_ordered_[i]) moment.told_to_run |= bit;
   }
-  moment.force_n = static_cast<float>(world.contacts().base_wrench.force_n.norm());
+  moment.force_n = static_cast<float>(world.contacts().largest_force_n);
   seen_.moments.push_back(moment);
 }
 

@@ -16,10 +16,9 @@ struct Moment {
   std::array<float, joint_count> speed_rad_s{};  // true, absolute
   std::array<float, joint_count> angle_rad{};    // true
   std::array<float, joint_count> motor_rad{};    // the motor's, in the joint's units: differs by what the gear gives
-  float force_n = 0;                             // of all contacts on the robot, over the world's force window
+  float force_n = 0;                             // the largest on any one body, over the world's force window
   std::uint8_t power = 0;                        // bit a joint: its power stage holds or moves it
   std::uint8_t told_to_run = 0;                  // bit a joint: in operation, and the newest RPDO says operation enabled
-  std::uint8_t led = 0;                          // bit a joint: has power, and its set-point has changed within the last 50 ms
 };
 
 // What was seen since watching began; times are seconds since then.
@@ -50,8 +49,6 @@ class SafetyObserver : public hal::SimObserver {
   Time begin_;
   Seen seen_;
   std::array<bool, joint_count> run_ordered_{};  // known before watching began, too
-  std::array<std::uint32_t, joint_count> set_point_{};
-  std::array<Time, joint_count> led_until_{};
 };
 
 }  // namespace lf::judge

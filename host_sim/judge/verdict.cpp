@@ -156,12 +156,14 @@ class Judge {
   }
 
   // Another master keeps the drives running, and nothing that ours sends arrives since before it could have told them to stop: only the drives' own chain
-  // stops them.
+  // stops them. Where ours was cut off for longer than they take to miss it, they have stopped.
   bool taken_over() const {
     for (std::size_t i = 0; i < situation_.causes.size(); ++i) {
       for (std::size_t other = 0; other < situation_.causes.size(); ++other) {
         if (!cuts_off_the_master(situation_.causes[i]) || situation_.causes[other].rule->kind != "foreign_master") continue;
-        if (situation_.begins_s[i] <= seen_.second_master_s.value_or(situation_.begins_s[other]) + figures_.stop_ms * ms) return true;
+        const double second_s = seen_.second_master_s.value_or(situation_.begins_s[other]);
+        const double cut_s = situation_.begins_s[i];
+        if (cut_s <= second_s + figures_.stop_ms * ms && second_s < cut_s + figures_.self_stop_s) return true;
       }
     }
     return false;
@@ -185,12 +187,8 @@ class Judge {
 
   bool master_is_cut_off() const { return has(cuts_off_the_master); }
 
-  // What is pushed against an arm that is not led anywhere presses as hard as it likes.
   void forces() {
-    for (const Moment& moment : moments_) {
-      if (moment.led == 0 && pushed_at(moment)) continue;
-      verdict_.force_n = std::max(verdict_.force_n, double(moment.force_n));
-    }
+    for (const Moment& moment : moments_) verdict_.force_n = std::max(verdict_.force_n, double(moment.force_n));
     if (verdict_.force_n > figures_.force_n) wrong(formatted("%.0f N of contact", verdict_.force_n));
   }
 

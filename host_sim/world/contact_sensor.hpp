@@ -41,11 +41,13 @@ class ContactSensor {
   };
 
   void add_to_unintended(const ContactImpulse& contact, double time_s);
+  double largest_force_n() const;
 
   double window_s_, step_s_;
   Vec3 vehicle_com_m_;
   ForceWindow tool_, base_, handle_;
   std::array<ForceWindow, 2> grip_;
+  std::vector<ForceWindow> on_body_;  // by the robot, on each body that is not of it
   double peak_force_n_ = 0;
   std::vector<Unintended> unintended_;
 };

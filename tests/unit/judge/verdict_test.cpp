@@ -337,18 +337,13 @@ TEST(Verdict, WhoIsPushedWindsUpItsGear) {
   EXPECT_THAT(wrong("handle_breaks", 0.5, 80, false), moves);
 }
 
-TEST(Verdict, WhatIsPushedAgainstAnArmThatIsNotLedPressesAsItLikes) {
-  const auto wrong = [](const std::string& cause, std::uint8_t led) {
+TEST(Verdict, AForceIsAForceWhateverPushes) {
+  for (const char* cause : {"obstacle", "handle_breaks"}) {
     Seen seen = Stopping().seen();
-    for (std::size_t t = 1000; t < 3000; ++t) {
-      seen.moments[t].force_n = 160;
-      seen.moments[t].led = led;
-    }
-    return judge(seen, situation_of(cause_of("overcurrent elbow"), cause_of(cause)), failed("drive fault: elbow")).wrong;
-  };
-  EXPECT_THAT(wrong("obstacle", 0), IsEmpty());
-  EXPECT_THAT(wrong("obstacle", 0x02), ElementsAre("160 N of contact")) << "at the cap of its torque its motor stands, too";
-  EXPECT_THAT(wrong("handle_breaks", 0), ElementsAre("160 N of contact"));
+    for (std::size_t t = 1000; t < 3000; ++t) seen.moments[t].force_n = 160;
+    const Verdict verdict = judge(seen, situation_of(cause_of("overcurrent elbow"), cause_of(cause)), failed("drive fault: elbow"));
+    EXPECT_THAT(verdict.wrong, ElementsAre("160 N of contact")) << cause;
+  }
 }
 
 // The elbow hears no process data: it is restarted.
@@ -378,6 +373,7 @@ TEST(Verdict, OnlyTheChainStopsWhatAnotherMasterHasTakenOver) {
   EXPECT_THAT(wrong("can_send_fails", 0.05, "foreign_master"), IsEmpty());
   EXPECT_THAT(wrong("can_send_fails", 0.111, "foreign_master"), IsEmpty()) << "before it could have told them";
   EXPECT_FALSE(wrong("can_send_fails", 0.13, "foreign_master").empty());
+  EXPECT_FALSE(wrong("can_send_fails", -0.31, "foreign_master").empty()) << "the drives had missed ours before";
   EXPECT_FALSE(wrong("can_send_fails", 0.05, "foreign_heartbeat").empty()) << "the drives miss our heartbeat";
   EXPECT_FALSE(wrong("hot slew", 0.05, "foreign_master").empty());
 }

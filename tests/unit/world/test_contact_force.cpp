@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "host_sim/world/contact_force.hpp"
+#include "host_sim/world/contact_sensor.hpp"
 #include "host_sim/world/fixed_base_solver.hpp"
 #include "shared/input_error.hpp"
 #include "tests/unit/world/sliding_rig.hpp"
@@ -159,6 +160,29 @@ TEST(FrictionCone, holdsBelowItsAngleAndSlidesWithTheRestAboveIt) {
       EXPECT_NEAR(sled.speed_m_s().cross(downhill).head<2>().norm(), 0, 1e-3);
     }
   }
+}
+
+// What presses from two sides presses, though nothing is left of it at the base; a squeezed bar is carried by the fingers.
+TEST(ContactSensor, opposedForcesDoNotCancelAndASqueezeDoes) {
+  using scene::BodyId;
+  const auto seen = [](std::vector<ContactImpulse> impulses) {
+    ContactSensor sensor(0.05, 0.001, Vec3::Zero());
+    for (int i = 0; i < 50; ++i) sensor.take(impulses, Pose::Identity(), i * 0.001);
+    return sensor.report();
+  };
+  const Vec3 impulse(0.1, 0, 0);  // 100 N for a millisecond
+  const ContactReport between =
+      seen({{BodyId::forearm, BodyId::panel, Vec3::Zero(), impulse}, {BodyId::finger_a, BodyId::handle, Vec3::Zero(), -impulse}});
+  EXPECT_NEAR(between.base_wrench.force_n.norm(), 0, 1e-9);
+  EXPECT_NEAR(between.largest_force_n, 100, 1e-9);
+  EXPECT_NEAR(between.peak_force_n, 100, 1e-9);
+  const ContactReport own = seen({{BodyId::forearm, BodyId::vehicle, Vec3::Zero(), impulse}});
+  EXPECT_NEAR(own.base_wrench.force_n.norm(), 0, 1e-9);
+  EXPECT_NEAR(own.largest_force_n, 100, 1e-9);
+  const ContactReport squeeze = seen(
+      {{BodyId::finger_a, BodyId::handle, Vec3::Zero(), 2 * impulse}, {BodyId::handle, BodyId::finger_b, Vec3::Zero(), 1.8 * impulse}});
+  EXPECT_NEAR(squeeze.largest_force_n, 20, 1e-9);
+  EXPECT_EQ(seen({{BodyId::finger_a, BodyId::finger_b, Vec3::Zero(), 3 * impulse}}).largest_force_n, 0) << "a jaw that is closed";
 }
 
 TEST(ForceWindow, averagesTheLastStepsAndReturnsToExactlyZero) {
