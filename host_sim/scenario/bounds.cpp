@@ -38,7 +38,8 @@ Bounds of_buttons(const config::Key& key, const Scenario& s) {
   const double half_way_m = s.panel.button_stroke_m / 2, pressed_n = pressed_force_n(s);
   const Buttons& b = s.buttons;
   if (key.path == "buttons.preload_n") return within(key, key.min, pressed_n - b.spring_n_m * half_way_m);
-  if (key.path == "buttons.spring_n_m") return within(key, (b.click_drop_n - b.preload_n) / b.release_depth_m * (1 + clearly), (pressed_n - b.preload_n) / half_way_m);
+  if (key.path == "buttons.spring_n_m")
+    return within(key, (b.click_drop_n - b.preload_n) / b.release_depth_m * (1 + clearly), (pressed_n - b.preload_n) / half_way_m);
   if (key.path == "buttons.click_depth_m") return within(key, b.release_depth_m * (1 + clearly), s.panel.button_stroke_m);
   if (key.path == "buttons.release_depth_m") return within(key, key.min, b.click_depth_m * (1 - clearly));
   if (key.path == "buttons.click_drop_n") return within(key, key.min, returning_force_n(s) * (1 - clearly));

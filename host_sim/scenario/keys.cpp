@@ -80,6 +80,8 @@ void add_machine(Keys& all, Scenario& s) {
                     "1 sigma of a drive's torque reading over its rated torque"));
   all.push_back(
       key("physics.water_celsius", "deg C", -2, 60, &s.physics.water_celsius, "water temperature: where the motors' windings start"));
+  all.push_back(key("physics.stops_from_demand", "", 0, 0, &s.physics.stops_from_demand,
+                    "a drive's stop begins where its set-point is, and not where its joint is: makers do not say which"));
   all.push_back(key("friction.coulomb", "", 0, 2, &s.friction.coulomb,
                     "true Coulomb friction of each drive's screw or gear, over what the core takes it for"));
   all.push_back(key("friction.viscous", "", 0, 10, &s.friction.viscous, "the same of the viscous friction"));

@@ -99,6 +99,7 @@ struct Physics {
   double drag_coefficient = 0;
   double torque_noise_ratio = 0;
   double water_celsius = 0;
+  bool stops_from_demand = false;  // what no maker's document says
 };
 
 // The machine's true friction between motors and joints, over what the arm's description says and the core takes for it. Drawn for each joint on its own.

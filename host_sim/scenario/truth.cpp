@@ -217,6 +217,7 @@ devices::DevicesConfig device_config(const Scenario& scenario, const Sample& sam
     drive.torque_noise_ratio = scenario.physics.torque_noise_ratio;
     drive.water_celsius = scenario.physics.water_celsius;
     set_make(scenario.drives, i, std::filesystem::path(scenario.file).parent_path(), arm.joints[i], drive);
+    drive.switches.ramps_from_demand = scenario.physics.stops_from_demand;
     drive.friction.coulomb_nm *= sample.coulomb[i];
     drive.friction.viscous_nm_s *= sample.viscous[i];
     drive.friction.efficiency = std::min(1.0, drive.friction.efficiency * sample.efficiency[i]);
