@@ -42,7 +42,7 @@ void Watch::observe(const canopen::Network& network, const std::array<double, jo
     }
     joints_.velocity_rad_s[i] = observers_[i].velocity_rad_s();
     observe_torque(axis, i);
-    if (i < arm_joint_count) observe_encoder(axis, i, now);
+    if (i < encoders_.size()) observe_encoder(axis, i, now);
   }
   joints_.t = newest;
   observing_ = true;

@@ -76,7 +76,8 @@ class Watch {
   std::array<arm::TorqueObserver, joint_count> torque_observers_;
   bool observing_ = false;
   JointStates joints_;
-  std::array<StuckEncoder, arm_joint_count> encoders_;  // the jaw's gripper has a rule of its own
+  std::array<StuckEncoder, static_cast<std::size_t>(Joint::roll)>
+      encoders_;  // the roll's turn and the jaw's gripper have rules of their own
   std::array<bool, joint_count> stuck_{};
   std::array<int, joint_count> overload_ticks_{};
   bool tolerating_ = false;
