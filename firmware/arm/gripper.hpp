@@ -54,7 +54,9 @@ enum class GripperState : std::uint8_t {
   empty,    // closed past the bar, nothing between the pads
   dropped,  // was held, and is no more
   jammed,   // stalled where it should not, or took too long
-  lost,  // told to move, it reports the same angle without a load or under a load of its own the other way, goes the other way, or presses where it is open: its encoder or its drive is not to be trusted
+  // Its encoder or its drive is not to be trusted. Told to move, it stands without a load, pushes the other way, or goes the other way; or it presses though
+  // it is open.
+  lost,
 };
 
 class Gripper {

@@ -10,9 +10,9 @@ namespace lf::config {
 
 // Two angles a turn apart look the same, and a look errs by a few degrees.
 inline constexpr double widest_range_deg = 350;
-// That the jaw opens for, and whose angle a scan still tells.
+// The thickest bar that the jaw opens for and whose angle a scan still tells.
 double thickest_bar_m(const PanelLayout& panel);
-// Of the mark on the bar's end: longer, it would not tell the ends apart.
+// The longest mark on the bar's end that still tells its ends apart.
 double longest_mark_m(const PanelLayout& panel);
 
 // A sentence a problem, without the file's name: a target beyond the stops, a mark that covers too much of the bar, a bar that the jaw cannot hold.
