@@ -22,8 +22,9 @@ done
 [ -z "$fresh" ] || rm -rf "$state"
 mkdir -p "$state"
 
-# The sources that the results are of: the commit, and what differs from it.
-revision=$(git rev-parse HEAD 2>/dev/null || echo "no repository")-$(git diff HEAD 2>/dev/null | sha256sum | cut -c1-12)
+# The sources that the results are of, as they are now. A page of the docs changes no result.
+sources() { git ls-files -s -- ':!*.md' ':!docs' && git diff -- ':!*.md' ':!docs'; }
+revision=$(git rev-parse HEAD >/dev/null 2>&1 && sources | sha256sum | cut -c1-12 || echo "no repository")
 [ -e "$state/revision" ] || echo "$revision" >"$state/revision"
 if [ "$(cat "$state/revision")" != "$revision" ]; then
   echo "nightly: $state has results of $(cat "$state/revision"), the sources are $revision. --fresh begins anew, --state FOLDER keeps both." >&2

@@ -212,7 +212,10 @@ void Source::refuse(const YAML::Mark& mark, const std::string& message) const {
 
 YAML::Node parse_yaml(const std::string& text, const Source& source) {
   try {
-    return YAML::Load(text);
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    if (documents.size() > 1)
+      source.refuse(documents[1].Mark(), "a second document begins here, and one is read: put all keys into the first");
+    return documents.empty() ? YAML::Node() : documents.front();
   } catch (const YAML::Exception& error) {
     source.refuse(error.mark, "not YAML: " + error.msg);
   }
@@ -235,8 +238,12 @@ std::string suggest_path(const std::string& path, const std::vector<Key>& table)
 
 namespace {
 
+// `seen`: of the whole document, since 'a: {b: 1}' and 'a.b: 1' are one key.
+void read_entries(const YAML::Node& node, const std::string& prefix, const std::string& shown, const Keys& table, const Source& source,
+                  std::set<std::string>& seen);
+
 void read_entry(const YAML::Node& name, const YAML::Node& value, const std::string& path, const std::string& shown, const Keys& table,
-                const Source& source) {
+                const Source& source, std::set<std::string>& seen) {
   const auto exact = std::find_if(table.begin(), table.end(), [&](const Key& key) { return key.path == path; });
   if (exact != table.end()) {
     if (value.IsNull()) source.refuse(name.Mark(), "'" + shown + path + "' takes " + type_name(*exact) + ", not nothing");
@@ -246,24 +253,29 @@ void read_entry(const YAML::Node& name, const YAML::Node& value, const std::stri
   if (!section) source.refuse(name.Mark(), "unknown key '" + shown + path + "'" + suggest_path(path, table));
   if (value.IsNull()) return;
   if (!value.IsMap()) source.refuse(value.Mark(), "'" + shown + path + "' takes a group of keys, not " + shape_of(value));
-  read_map(value, path + ".", shown, table, source);
+  read_entries(value, path + ".", shown, table, source, seen);
+}
+
+void read_entries(const YAML::Node& node, const std::string& prefix, const std::string& shown, const Keys& table, const Source& source,
+                  std::set<std::string>& seen) {
+  for (const auto& entry : node) {
+    try {
+      if (!entry.first.IsScalar()) source.refuse(entry.first.Mark(), "a key must be a word");
+      const std::string path = prefix + entry.first.Scalar();
+      if (!seen.insert(path).second) source.refuse(entry.first.Mark(), "'" + shown + path + "' is given twice");
+      read_entry(entry.first, entry.second, path, shown, table, source, seen);
+    } catch (const InputError& problem) {
+      if (source.problems() == nullptr) throw;
+      source.problems()->emplace_back(problem.what());
+    }
+  }
 }
 
 }  // namespace
 
 void read_map(const YAML::Node& node, const std::string& prefix, const std::string& shown, const Keys& table, const Source& source) {
   std::set<std::string> seen;
-  for (const auto& entry : node) {
-    try {
-      if (!entry.first.IsScalar()) source.refuse(entry.first.Mark(), "a key must be a word");
-      const std::string path = prefix + entry.first.Scalar();
-      if (!seen.insert(path).second) source.refuse(entry.first.Mark(), "'" + shown + path + "' is given twice");
-      read_entry(entry.first, entry.second, path, shown, table, source);
-    } catch (const InputError& problem) {
-      if (source.problems() == nullptr) throw;
-      source.problems()->emplace_back(problem.what());
-    }
-  }
+  read_entries(node, prefix, shown, table, source, seen);
 }
 
 void read_value(const YAML::Node& node, const std::string& shown_path, const Key& key, const Source& source) {

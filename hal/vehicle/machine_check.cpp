@@ -1,6 +1,7 @@
 #include "hal/vehicle/machine_check.hpp"
 
 #include <grp.h>
+#include <linux/can.h>
 #include <net/if.h>
 #include <net/if_arp.h>
 #include <pwd.h>
@@ -34,6 +35,12 @@ void check_interface(const VehicleConfig& config, Findings& found) {
   name.copy(request.ifr_name, sizeof request.ifr_name - 1);
   const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   const auto ask = [&](unsigned long what) { return ioctl(fd, what, &request) == 0; };
+  if (const int can = socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC, CAN_RAW); can >= 0) {
+    close(can);
+  } else {
+    found.push_back({"can", std::string("this kernel gives no CAN socket: ") + std::strerror(errno),
+                     "`modprobe can_raw`, or a kernel with CONFIG_CAN"});
+  }
   if (if_nametoindex(name.c_str()) == 0) {
     add("there is no interface " + name, "`ip link` lists them");
   } else if (!ask(SIOCGIFHWADDR) || request.ifr_hwaddr.sa_family != ARPHRD_CAN) {
@@ -87,6 +94,13 @@ void check_folder(const std::string& folder, const char* key, Findings& found) {
   } else if (pseudo || access(at.c_str(), W_OK | X_OK) != 0) {
     found.push_back({key, folder + ": nothing can be written in " + at.string(), "give this user the right, or name another place"});
   }
+}
+
+// The log's and the socket's folders are made; this one is the system's, and a lock elsewhere than the other masters' would keep none out.
+void check_lock_folder(const VehicleConfig& config, Findings& found) {
+  std::error_code ignored;
+  if (fs::exists(config.lock_folder, ignored)) return check_folder(config.lock_folder, "lock_folder", found);
+  found.push_back({"lock_folder", config.lock_folder + " is not there", "`mkdir " + config.lock_folder + "`, or name another place"});
 }
 
 void check_log_space(const VehicleConfig& config, Findings& found) {
@@ -154,7 +168,7 @@ std::vector<Finding> check_machine(const VehicleConfig& config) {
   check_users(config.engineers, "operator.engineers", found);
   if (!config.operator_group.empty()) check_users({"@" + config.operator_group}, "operator.group", found);
   check_folder(config.log_folder, "log.folder", found);
-  check_folder(config.lock_folder, "lock_folder", found);
+  check_lock_folder(config, found);
   check_folder(fs::path(config.operator_socket).parent_path().string(), "operator.socket", found);
   check_log_space(config, found);
   check_realtime(config, found);

@@ -1,10 +1,12 @@
 // The `lanternfish` command: picks the sub-command and turns what it throws into one line and an exit status.
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "hal/config/nearest.hpp"
@@ -33,10 +35,21 @@ void add_commands(CLI::App& app, Action& action) {
   add_version(app, action);
 }
 
-// A line for each problem.
+bool json_wanted = false;
+
+// A line for each problem; with --json a document on stdout, too.
 int complain(const std::string& message, int status) {
+  Json problems = Json::array();
   std::istringstream lines(message);
-  for (std::string line; std::getline(lines, line);) std::fprintf(stderr, "lanternfish: %s\n", line.c_str());
+  for (std::string line; std::getline(lines, line);) {
+    std::fprintf(stderr, "lanternfish: %s\n", line.c_str());
+    problems.push_back(line);
+  }
+  if (!json_wanted) return status;
+  try {
+    print_json({{"problems", problems}, {"exit_status", status}});
+  } catch (const EnvironmentError&) {  // stdout is what failed: stderr has it already
+  }
   return status;
 }
 
@@ -79,6 +92,7 @@ int run_command(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);  // a reader that went away is a failed write, not a death
+  lf::app::json_wanted = std::any_of(argv, argv + argc, [](std::string_view word) { return word == "--json"; });
   try {
     return lf::app::run_command(argc, argv);
   } catch (const lf::InputError& error) {

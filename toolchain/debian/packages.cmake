@@ -62,7 +62,7 @@ if(TARGET lanternfishd)
   install_packed(${CMAKE_SOURCE_DIR}/docs/man/lanternfish-vehicle.5 share/man/man5 lanternfish-vehicle.5 lanternfishd)
   install(FILES ${CMAKE_SOURCE_DIR}/shared/vehicle/vehicle.yaml DESTINATION /etc/lanternfish COMPONENT lanternfishd)
   # The pages that the configuration and the units point to.
-  foreach(page operating installing security)
+  foreach(page operating installing security safety vehicle canopen mission)
     install(FILES ${CMAKE_SOURCE_DIR}/docs/${page}.md DESTINATION share/doc/lanternfishd COMPONENT lanternfishd)
   endforeach()
 endif()

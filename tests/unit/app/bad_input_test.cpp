@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "tests/unit/app/program.hpp"
 
@@ -45,6 +46,19 @@ TEST_F(BadInput, UnknownCommandsAndOptions) {
   }
   for (const char* number : {"0", "-1", "nan", "inf"})
     expect_refused(std::string("serve --can x --for=") + number, "--for: takes a number above 0");
+}
+
+// A script that asked for JSON reads why from stdout, as a person does from stderr.
+TEST_F(BadInput, AreADocumentWhereJsonWasAskedFor) {
+  file("bad.yaml", "valve: {fricton_nm: 2}\nwater: {attenuation_per_m: 9}\n");
+  const Said two = run("run ./bad.yaml --json");
+  EXPECT_EQ(two.status, 2);
+  const auto document = nlohmann::json::parse(two.out);
+  EXPECT_EQ(document["exit_status"], 2);
+  ASSERT_EQ(document["problems"].size(), 2u);
+  EXPECT_THAT(document["problems"][1].get<std::string>(), StartsWith("./bad.yaml:2: 'water.attenuation_per_m' is 9"));
+  EXPECT_EQ(nlohmann::json::parse(run("run defualt --json").out)["problems"].size(), 1u);
+  EXPECT_EQ(nlohmann::json::parse(run("run --sed 3 --json").out)["exit_status"], 2);
 }
 
 TEST_F(BadInput, ScenariosThatAreNotWhatTheyShouldBe) {

@@ -69,6 +69,8 @@ const BadText bad_texts[] = {
     {"KeyInTheWrongSection", "water:\n  friction_nm: 3\n", ":2: unknown key 'water.friction_nm'; did you mean 'valve.friction_nm'?"},
     {"ForeignKey", "hydraulics: 3\n", ":1: unknown key 'hydraulics'"},
     {"KeyTwice", "valve:\n  stop_max_deg: 100\n  stop_max_deg: 101\n", ":3: 'valve.stop_max_deg' is given twice"},
+    {"KeyTwiceInTwoForms", "valve.stop_max_deg: 100\nvalve: {stop_max_deg: 101}\n", ":2: 'valve.stop_max_deg' is given twice"},
+    {"SecondDocument", "valve: {stop_max_deg: 100}\n---\nvalve: {stop_max_deg: 101}\n", ":3: a second document begins here"},
     {"TextForNumber", "time_limit_s: soon\n", ":1: 'time_limit_s' takes a number, not 'soon'"},
     {"QuotedNumber", "time_limit_s: \"100\"\n", ":1: 'time_limit_s' takes a number, not '100'"},
     {"NumberWithUnit", "laser:\n  power_w: 0.1 W\n", ":2: 'laser.power_w' takes a number, not '0.1 W'"},
