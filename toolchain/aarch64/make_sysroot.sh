@@ -49,6 +49,8 @@ for folder in lib bin sbin; do ln -s usr/$folder "$root/$folder"; done
 for package in "$work"/cache/archives/*.deb "$work"/deb/*.deb; do
   dpkg-deb --fsys-tarfile "$package" | tar -x -C "$root" --keep-directory-symlink --no-same-owner --exclude='./usr/share/doc' --exclude='./usr/share/man' \
     --exclude='./usr/share/locale'
+  # Which package a program needs for which library: make_packages.sh reads it.
+  dpkg-deb --ctrl-tarfile "$package" | tar -xO ./shlibs >>"$root/shlibs" 2>/dev/null || true
 done
 
 libraries=$root/usr/lib/aarch64-linux-gnu
