@@ -143,7 +143,8 @@ void Gripper::rest(Time t, double jaw_rad, const TorqueEstimate& torque) {
 // Opening is positive, so that a closing torque is negative.
 void Gripper::stalled(double jaw_rad, const TorqueEstimate& torque) {
   if (state_ == GripperState::opening) {
-    // A jaw at rest below its stiction is no jam: it gets until the time-out. One that presses on something is, whichever way it was told to go.
+    // A jaw that stands without pressing may be held by its stiction: it has until the time-out. One that presses on something is jammed, whichever way
+    // it was told to go.
     const double pressing_nm = goal_rad_ > jaw_rad ? torque.low_nm : -torque.high_nm;
     if (pressing_nm < config_.grip_torque_nm) return;
     state_ = GripperState::jammed;

@@ -60,7 +60,7 @@ class Motion {
   double elapsed_s() const { return t_s_; }
   double duration_s() const { return duration_s_; }
   std::uint32_t begun() const { return begun_; }                // motions, planning of them included
-  double handle_rad() const { return turn_.handle_rad(t_s_); }  // where the turn under way, or just over, has the bar by now
+  double handle_rad() const { return turn_.handle_rad(t_s_); }  // the bar's angle now, in the turn under way or just over
   const scan::SweepPlan& sweep_plan() const { return sweep_planner_.plan(); }
   // The sweep is between its run-up and its run-out.
   bool cruising() const { return kind_ == Kind::sweep && t_s_ >= sweep_.cruise_start_s() && t_s_ <= sweep_.cruise_end_s(); }

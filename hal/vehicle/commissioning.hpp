@@ -1,7 +1,7 @@
 // Commissioning: what each drive's absolute encoder counts where the arm's own count is 0, and how its motor and gear rub.
 //
 // One joint after the other is powered, moved slowly against a stop with a third of its rated torque (a screw: two thirds), eased off until it only touches, read there, moved
-// both ways at two speeds over a stretch that it has just passed, from which friction_fit.hpp has its friction, moved back to where it was, and released: the stop's angle is known from the arm's description. What presses is wound up: read under that torque the slew would be 0.4 deg off.
+// both ways at two speeds over a stretch that it has just passed, from which friction_fit.hpp has its friction, moved back to where it was, and released: the stop's angle is known from the arm's description. A joint that presses has wound up its gear: read under that torque the slew would be 0.4 deg off.
 // The drives' own references are not touched. A plain object like the core, run by the control thread in the core's place: frames and the time in, frames
 // out, no heap. It stands on the core's own network and axes.
 //

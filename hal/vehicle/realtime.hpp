@@ -13,7 +13,7 @@ struct RealtimeConfig {
 };
 
 // Of the process, before it starts threads: locks its memory, keeps freed memory, and lets threads have stacks of 2 MB, since what is locked is all
-// there. Each returns what it was refused, in words, with the remedy; nothing refused is nothing returned.
+// there. Each returns a sentence, with the remedy, for everything that the kernel refused it; no sentence where it refused nothing.
 std::vector<std::string> lock_process_memory(const RealtimeConfig& config);
 // Of the calling thread.
 std::vector<std::string> become_realtime(const RealtimeConfig& config);

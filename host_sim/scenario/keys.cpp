@@ -16,8 +16,8 @@ using config::Keys;
 void add_place(Keys& all, Scenario& s) {
   all.push_back(key("docking.x_m", "m", -far_m, far_m, &s.docking.x_m,
                     "how far the docked vehicle's panel stands off its place, away from the robot"));
-  all.push_back(key("docking.y_m", "m", -far_m, far_m, &s.docking.y_m, "the same to the right"));
-  all.push_back(key("docking.z_m", "m", -far_m, far_m, &s.docking.z_m, "the same downward"));
+  all.push_back(key("docking.y_m", "m", -far_m, far_m, &s.docking.y_m, "how far it stands off its place, to the right"));
+  all.push_back(key("docking.z_m", "m", -far_m, far_m, &s.docking.z_m, "how far it stands off its place, downward"));
   all.push_back(
       key("docking.roll_deg", "deg", -far_deg, far_deg, &s.docking.roll_deg, "turn of the panel about the base's x axis, at the valve"));
   all.push_back(key("docking.pitch_deg", "deg", -far_deg, far_deg, &s.docking.pitch_deg, "the same about the base's y axis"));

@@ -37,7 +37,7 @@ TEST(Limits, AnyChangedBitIsNoticed) {
   }
 }
 
-TEST(Limits, ImpossibleOnesAreRefusedEvenWhenSigned) {
+TEST(Limits, ImpossibleOnesAreRefusedWithARightChecksum) {
   Limits limits = good_limits();
   limits.joints[1].min_rad = std::numeric_limits<double>::quiet_NaN();
   limits.checksum = limits_checksum(limits);
