@@ -1,4 +1,6 @@
 // The speed and the following window of each pose, with drives that have one number for all poses.
+#include "firmware/mission/axis_limits.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -6,7 +8,6 @@
 #include <limits>
 #include <string>
 
-#include "firmware/mission/axis_limits.hpp"
 #include "shared/arm/arm_description.hpp"
 #include "tests/unit/canopen/scripted_node.hpp"
 
