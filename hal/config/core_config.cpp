@@ -279,6 +279,7 @@ void check_reach_of_tasks(const Machine& machine) {
 void set_frame_rate(const mission::MissionConfig& mission, ScanConfig& scan) {
   constexpr std::uint32_t full_cloud_syncs = 9;
   constexpr double hand_m_s = 0.040, outline_m = 0.0036;
+  scan.frames_per_background = mission.frames_per_background;
   scan.columns_apart = (full_cloud_syncs + mission.camera_syncs - 1) / mission.camera_syncs;
   const double oldest_background_s = (mission.frames_per_background - 1) * mission.camera_syncs * can_map::sync_period.s();
   scan.silhouette_margin_m = outline_m + hand_m_s * oldest_background_s;
