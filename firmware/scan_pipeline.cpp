@@ -71,8 +71,12 @@ void BasicScanPipeline<capacity>::expect(const ScanCommand& command) {
   any_order_ = true;
   last_order_ = command.exposure_start;
   if (exposures_.full()) forget_exposures(1);
-  (void)exposures_.push_back(
-      {.start = command.exposure_start, .kind = command.exposure_kind, .trigger = command.trigger, .in_sweep = sweeping_});
+  (void)exposures_.push_back({.start = command.exposure_start,
+                              .kind = command.exposure_kind,
+                              .trigger = command.trigger,
+                              .frame = frames_ordered_,
+                              .in_sweep = sweeping_});
+  ++frames_ordered_;
 }
 
 // The image of a dropped exposure may be on its way, or have come already.
@@ -125,12 +129,13 @@ bool BasicScanPipeline<capacity>::match(const Image& image, Exposure& exposure) 
   return false;
 }
 
-// `start` is the instant that was ordered, by which a later `drop_exposure` calls it, not the camera's stamp.
+// Its start is the instant that was ordered, by which a later `drop_exposure` calls it, not the camera's stamp.
 template <ScanCapacity capacity>
-void BasicScanPipeline<capacity>::store(const Image& image, Time start, StoredImage& out) {
+void BasicScanPipeline<capacity>::store(const Image& image, const Exposure& exposure, StoredImage& out) {
   for (std::int32_t v = 0; v < image_height; ++v)
     std::copy_n(image.view.row(v), image_width, out.pixels.data() + static_cast<std::ptrdiff_t>(v) * image_width);
-  out.start = start;
+  out.start = exposure.start;
+  out.frame = exposure.frame;
   out.mid_exposure = image.mid_exposure();
   out.present = true;
 }
@@ -181,17 +186,24 @@ void BasicScanPipeline<capacity>::on_image(std::uint8_t camera, const Image& rec
       measure(image, exposure);
       add_points(false);
       return;
-    case ExposureKind::background: store(image, exposure.start, background_); return;
-    case ExposureKind::still: store(image, exposure.start, still_); return;
+    case ExposureKind::background: store(image, exposure, background_); return;
+    case ExposureKind::still: store(image, exposure, still_); return;
     case ExposureKind::monitor: return;
   }
+}
+
+// The newest image without the laser, or an empty view where it is older than two rounds. The second round bridges a background that was lost. Over more rounds
+// the hand moves too far, and its old outline would be taken for stripes.
+template <ScanCapacity capacity>
+ImageView BasicScanPipeline<capacity>::background_of(const Exposure& exposure) const {
+  const std::uint32_t age_frames = exposure.frame - background_.frame;
+  return background_.present && age_frames < 2 * config_.frames_per_background ? view(background_) : ImageView{};
 }
 
 // The stripe's peaks; those of a sweep wait for their joints.
 template <ScanCapacity capacity>
 void BasicScanPipeline<capacity>::measure(const Image& image, const Exposure& exposure) {
-  const scan::PixelView<std::uint8_t> background = background_.present ? view(background_) : ImageView{};
-  last_peaks_count_ = detector_.detect(image.view, background, last_peaks_);
+  last_peaks_count_ = detector_.detect(image.view, background_of(exposure), last_peaks_);
   last_peaks_time_ = image.mid_exposure();
   const scan::PeakCounters& counters = detector_.counters();
   stats_.peaks = static_cast<std::uint32_t>(counters.found);

@@ -1,8 +1,8 @@
 // The front door of the vision thread: images and orders in, cloud and plane out.
 //
 // It shares no state with the controller; `ScanCommand`s come over a ring. A laser-on image becomes peaks at once, and points as soon as the joint
-// samples around its mid-exposure are there. While the vehicle is docked camera and panel are still: the newest laser-off image serves all
-// stripes that follow it.
+// samples around its mid-exposure are there. While the vehicle is docked camera and panel are still: the newest laser-off image serves the
+// stripes that follow it, until the second one after it is due: one that is lost is bridged. From then on stripes are measured without any.
 #pragma once
 
 #include <algorithm>
@@ -37,7 +37,10 @@ struct ScanConfig {
   // Points are taken of one column in so many, of another one in each stripe: where the camera is triggered more often than at 25 Hz, the same number of points
   // from more stripes.
   std::uint32_t columns_apart = 1;
-  // Around the arm's outline: since the newest background, 0.16 s ago at most, the hand has moved by 6 mm at 40 mm/s; 4 mm more for the outline itself.
+  // One frame in so many is taken without the laser.
+  std::uint32_t frames_per_background = 5;
+  // Around the arm's outline: since the newest background, 0.16 s ago at most, the hand has moved by 6 mm at 40 mm/s; 4 mm more for the outline itself. For
+  // one round after a lost background the outline may lie up to 8 mm farther off.
   double silhouette_margin_m = 0.010;
   // At 0.5 mm rms the marker's plate, 2 mm proud, is outside of the window.
   scan::PlaneFitter::Config plane{.tight_sigmas = 3.0};
@@ -91,6 +94,7 @@ class BasicScanPipeline {
     Time start;
     ExposureKind kind = ExposureKind::laser_on;
     std::uint8_t trigger = 0;
+    std::uint32_t frame = 0;  // counted from construction on
     bool in_sweep = false;
     bool dropped = false;
   };
@@ -98,6 +102,7 @@ class BasicScanPipeline {
     std::array<std::uint8_t, static_cast<std::size_t>(image_width) * image_height> pixels{};
     Time start;
     Time mid_exposure;
+    std::uint32_t frame = 0;
     bool present = false;
   };
   // Peaks whose joint samples are still to come.
@@ -109,7 +114,7 @@ class BasicScanPipeline {
   };
 
   static ImageView view(const StoredImage& image) { return {image.pixels.data(), image_width, image_height, image_width}; }
-  static void store(const Image& image, Time start, StoredImage& out);
+  static void store(const Image& image, const Exposure& exposure, StoredImage& out);
   bool repeats(const Image& image);
 
   void begin_sweep(std::uint32_t sweep);
@@ -118,6 +123,7 @@ class BasicScanPipeline {
   void forget_exposures(std::size_t count);
   bool is_of(const Image& image, const Exposure& exposure) const;
   bool match(const Image& image, Exposure& exposure);
+  ImageView background_of(const Exposure& exposure) const;
   void measure(const Image& image, const Exposure& exposure);
   void add_points(bool final);
   bool add_points(const Stripe& stripe, bool final);
@@ -137,6 +143,7 @@ class BasicScanPipeline {
   StaticVector<Exposure, max_exposures> exposures_;  // oldest first
   StaticVector<Stripe, capacity.stripes> stripes_;   // oldest first
   Time last_order_;
+  std::uint32_t frames_ordered_ = 0;
   bool any_order_ = false;
   std::uint32_t stripes_seen_ = 0;  // of this sweep
   bool sweeping_ = false;

@@ -71,7 +71,7 @@ Axis::Axis(const DriveSetup& setup, const NetworkConfig& config)
     : setup_(setup),
       sync_period_(config.sync_period),
       transition_timeout_(config.transition_timeout + setup.profile.brake_opens + setup.profile.brake_closes),
-      step_income_(static_cast<std::int64_t>(setup.max_speed_counts_s) * config.sync_period.ns()) {}
+      limits_{setup.max_speed_counts_s, setup.following_window_counts} {}
 
 void Axis::request(AxisRequest request) {
   if (!online_) return;
@@ -92,6 +92,11 @@ bool Axis::set_target_counts(std::int32_t counts) {
   }
   wanted_counts_ = counts;
   return true;
+}
+
+void Axis::set_limits_here(const AxisLimits& limits) {
+  limits_.max_speed_counts_s = std::min(limits.max_speed_counts_s, setup_.max_speed_counts_s);
+  limits_.following_window_counts = std::min(limits.following_window_counts, setup_.following_window_counts);
 }
 
 void Axis::set_torque_offset_permille(std::int16_t permille) {
@@ -235,7 +240,7 @@ void Axis::watch_brake(Time now) {
 bool Axis::follows_badly(Time now) {
   const std::int64_t apart = following_counts() < 0 ? -following_counts() : following_counts();
   const bool follows = enabled() && mode_ == OperationMode::cyclic_position;
-  if (!follows || apart <= setup_.following_window_counts) in_step_since_ = now;
+  if (!follows || apart <= limits_.following_window_counts) in_step_since_ = now;
   const Duration timeout = Duration::from_ms(std::max<int>(setup_.following_timeout_ms, least_following_timeout_ms));
   const Duration late = std::min(timeout * 2, Duration::from_ms(latest_following_timeout_ms));
   return now - in_step_since_ > (setup_.profile.master_times_following ? timeout : late);
@@ -391,7 +396,8 @@ void Axis::step_target() {
     torque_offset_permille_ = 0;
     return;
   }
-  step_budget_ = std::min(step_budget_ + step_income_, step_income_ + ns_per_s);
+  const std::int64_t income = static_cast<std::int64_t>(limits_.max_speed_counts_s) * sync_period_.ns();
+  step_budget_ = std::min(step_budget_ + income, income + ns_per_s);
   const std::int64_t furthest = step_budget_ / ns_per_s;
   const std::int64_t wanted_step = static_cast<std::int64_t>(wanted_counts_) - target_counts_;
   const std::int64_t step = std::clamp(wanted_step, -furthest, furthest);

@@ -56,6 +56,13 @@ enum class AxisFault : std::uint8_t {
 };
 const char* name(AxisFault fault);
 
+// What a joint may do at the pose where it is. A screw has fewer counts a radian at its stroke's ends than within it, so the caller works these out again for
+// each pose.
+struct AxisLimits {
+  std::uint32_t max_speed_counts_s = 0;       // of the target's steps
+  std::uint32_t following_window_counts = 0;  // how far the joint may be off its target
+};
+
 class Axis {
  public:
   // Three SYNC cycles: a command acts one SYNC after it is sent and is answered one later.
@@ -81,6 +88,9 @@ class Axis {
   // Next target, in effect while `enabled()`. False, and counted, when outside the limits or not enabled: the last target stays. An axis that was enabled
   // outside its limits may stay there or come closer to them.
   bool set_target_counts(std::int32_t counts);
+  // In effect from the next `step` until they are set again. The set-up's numbers hold at every pose: what is larger than these has no effect.
+  void set_limits_here(const AxisLimits& limits);
+  const AxisLimits& limits_here() const { return limits_; }
   // Torque feed-forward (60B2), limited to the maximum torque; 0 unless set, and 0 again whenever the axis is not enabled.
   void set_torque_offset_permille(std::int16_t permille);
 
@@ -150,8 +160,8 @@ class Axis {
   DriveSetup setup_;
   Duration sync_period_;
   Duration transition_timeout_;
-  std::int64_t step_income_ = 0;  // of a cycle, 1e-9 counts
-  std::int64_t step_budget_ = 0;
+  AxisLimits limits_;
+  std::int64_t step_budget_ = 0;  // 1e-9 counts
   AxisRequest request_ = AxisRequest::disable;
   AxisFault fault_ = AxisFault::none;
   bool online_ = false;

@@ -28,10 +28,10 @@ struct DriveSetup {
   std::int32_t drive_margin_counts =
       0;  // 607D lies so far outside of these: a drive enabled beyond its own limits jumps to them, or refuses
   std::uint16_t max_torque_permille = 1000;   // 6072, of the rated torque 6076
-  std::uint32_t max_speed_counts_s = 0;       // 607F; the axis limits its target's steps to it as well
+  std::uint32_t max_speed_counts_s = 0;       // 607F; the axis never lets its target go faster, see AxisLimits
   std::uint32_t max_motor_speed_rpm = 0;      // 6080, drives that have it; 0 leaves the drive's own
   std::uint32_t quick_stop_counts_s2 = 0;     // 6085; 0 leaves the drive's own
-  std::uint32_t following_window_counts = 0;  // 6065
+  std::uint32_t following_window_counts = 0;  // 6065; the axis never watches a wider one
   std::uint16_t following_timeout_ms = 100;   // 6066
 
   // 605A: 1, 2 stop and lose power; 5, 6 stop and stay powered. 2: on the quick-stop ramp, then off. With 6 the master takes the power (safety/power.hpp),

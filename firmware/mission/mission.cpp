@@ -1,6 +1,7 @@
 #include "firmware/mission/mission.hpp"
 
 #include "firmware/arm/actuator.hpp"
+#include "firmware/mission/axis_limits.hpp"
 
 namespace lf::mission {
 
@@ -15,6 +16,7 @@ void Mission::tick(Time now, canopen::Network& network, ScanOrders& orders, Tele
   faults_recorded_ = 0;
   bench_.mailbox.drop_expired(now);
   observe(tick);
+  limit_axes(network);
   take_reset(tick);
   take_shut_down(tick);
   sources_.collect(tick, vigilance(network));

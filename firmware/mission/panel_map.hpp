@@ -19,6 +19,11 @@ class PanelMap {
       : layout_(layout), marker_(marker), camera_(camera) {}
 
   // Takes an answer of panel vision. On a failure what was known before stays.
+  // Of the answer's confidence only 0 counts: it says that there is no answer. What makes a confidence low has a limit of its own each:
+  //   the plane's inliers: two fifths of the points;
+  //   the marker's margin: the detector finds no marker below MarkerDetectorConfig::min_margin;
+  //   the ambiguity of the marker's pose: ValveFrameConfig bounds its corners on the plane, its distance and its tilt against the plane;
+  //   the points of a cluster: the sigma of the handle's angle.
   // A bar looks the same after half a turn. Its pointer mark tells the two angles apart. Where the mark is missing or was not recognised, the handle's stops do, and
   // after a turn of our own without a mark the way of that turn. Where two angles stay possible, the look fails: nothing is guessed.
   StepFailure update(const PanelResult& result);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "shared/random.hpp"
+
 namespace lf::scan {
 
 // normal . p + offset = 0 about the cloud's centre.
@@ -24,16 +26,12 @@ constexpr float far_away_m = 1e15f;  // no inlier of any plane, and its square i
 constexpr double window_thresholds = 2.0;
 constexpr int max_refits = 20;  // 3 to 6 are usual; the set of inliers may flip between two of equal merit
 
-// Steele, Lea, Flood, OOPSLA 2014.
-std::uint64_t splitmix(std::uint64_t& state) {
-  std::uint64_t z = (state += 0x9E3779B97F4A7C15u);
-  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
-  z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
-  return z ^ (z >> 31);
-}
-
 // Uniform in 0..n-1, n < 2^32; biased by less than n / 2^32.
-std::size_t draw_below(std::uint64_t& state, std::size_t n) { return static_cast<std::size_t>(((splitmix(state) >> 32) * n) >> 32); }
+std::size_t draw_below(std::uint64_t& state, std::size_t n) {
+  const std::uint64_t drawn = splitmix64(state);
+  state += splitmix64_step;
+  return static_cast<std::size_t>(((drawn >> 32) * n) >> 32);
+}
 
 // By the exponent's bits: arithmetic on infinities would raise floating-point exceptions, which the tests trap.
 bool finite(float value) { return (std::bit_cast<std::uint32_t>(value) & 0x7F800000u) != 0x7F800000u; }

@@ -10,6 +10,7 @@
 #include "firmware/arm/actuator.hpp"
 #include "firmware/arm/gripper.hpp"
 #include "firmware/arm/reach.hpp"
+#include "firmware/mission/axis_limits.hpp"
 #include "firmware/scan/camera_model.hpp"
 #include "hal/config/drive_kind.hpp"
 #include "hal/config/homing_file.hpp"
@@ -25,9 +26,6 @@
 namespace lf::config {
 
 namespace {
-
-// A joint that lags this far behind its target is stuck: at full speed the position loop of 20 rad/s lags 0.035 rad, and the gripper leads by 0.05.
-constexpr double following_window_rad = 0.15;
 
 // Of a joint's best acceleration: drives refuse a ramp above what they are able to. As delivered some would take seconds to stop.
 constexpr double quick_stop_share = 0.95;
@@ -46,11 +44,12 @@ canopen::DriveSetup drive_setup(const ArmJoint& joint, Joint which, const safety
   setup.max_counts = arm::counts_from_rad(which, limit.max_rad);
   setup.drive_margin_counts = std::max({0, setup.min_counts - arm::counts_from_rad(which, joint.lower_rad - beyond_stroke_rad),
                                         arm::counts_from_rad(which, joint.upper_rad + beyond_stroke_rad) - setup.max_counts});
-  // Screws have their fewest counts a radian at the ends of the stroke and their most within it; the limits hold everywhere.
+  // A drive has one number for all poses, so it gets that of the pose where a radian has the most counts: elsewhere it allows a screw more. The master
+  // limits each pose by its own (mission/axis_limits.hpp).
   double least = 1e9;
   for (int i = 0; i <= 64; ++i) least = std::min(least, arm::rad_per_count(which, std::lerp(limit.min_rad, limit.max_rad, i / 64.0)));
   setup.max_speed_counts_s = static_cast<std::uint32_t>(joint.velocity_rad_s / least);
-  setup.following_window_counts = static_cast<std::uint32_t>(following_window_rad / least);
+  setup.following_window_counts = static_cast<std::uint32_t>(mission::following_window_rad / least);
   setup.quick_stop_counts_s2 = static_cast<std::uint32_t>(quick_stop_share * joint.acceleration_rad_s2 / least);
   return setup;
 }
@@ -280,6 +279,7 @@ void check_reach_of_tasks(const Machine& machine) {
 void set_frame_rate(const mission::MissionConfig& mission, ScanConfig& scan) {
   constexpr std::uint32_t full_cloud_syncs = 9;
   constexpr double hand_m_s = 0.040, outline_m = 0.0036;
+  scan.frames_per_background = mission.frames_per_background;
   scan.columns_apart = (full_cloud_syncs + mission.camera_syncs - 1) / mission.camera_syncs;
   const double oldest_background_s = (mission.frames_per_background - 1) * mission.camera_syncs * can_map::sync_period.s();
   scan.silhouette_margin_m = outline_m + hand_m_s * oldest_background_s;

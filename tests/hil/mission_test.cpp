@@ -1,6 +1,7 @@
 // Missions from boot to park with everything simulated, held to the truth.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -67,6 +68,21 @@ TEST_P(FrameRate, AtTheEndsOfItsRangeServesAMission) {
 
 INSTANTIATE_TEST_SUITE_P(Ends, FrameRate, testing::Values(Rate{"2", "At125Hz"}, Rate{"20", "At12Hz"}),
                          [](const testing::TestParamInfo<Rate>& test) { return std::string(test.param.name); });
+
+// Five images of the sweep are lost, every sixth one: with a background every fifth frame one of them is a background.
+TEST(LostBackground, IsBridgedByTheOneBeforeIt) {
+  std::string faults;
+  for (const char* after_s : {"8.00", "8.24", "8.48", "8.72", "8.96"})
+    faults += std::string(faults.empty() ? "" : ", ") + "{at_step: scan, after_s: " + after_s + ", kind: image_lost}";
+  const MissionRun run = run_mission("turn_only", 1, {"faults=[" + faults + "]"}, 2);
+  SCOPED_TRACE(describe(run));
+  EXPECT_TRUE(run.outcome.success);
+  EXPECT_NEAR(run.valve_rad, target_rad, rad_from_deg(3));
+  const auto lost = std::count_if(run.events.begin(), run.events.end(), [](const Event& event) {
+    return event.kind == Event::Kind::fault && event.fault == safety::Fault::image_lost;
+  });
+  EXPECT_EQ(lost, 5);
+}
 
 // Boot, deployment and the first pictures of the sweep: everything that could depend on threads is at work by then.
 TEST(Digest, IsTheSameForOneAndTwoRenderThreadsAndForARepetition) {

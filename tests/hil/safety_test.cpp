@@ -42,6 +42,13 @@ bool reach(Rig& rig, const Moment& moment) {
   return rig.step_now() == moment.step;
 }
 
+// Of a screw, whose length closes a triangle with its pivots, or of a gear.
+double rad_per_count(const ArmActuator& actuator, double q_rad) {
+  if (actuator.counts_per_rad > 0) return 1 / actuator.counts_per_rad;
+  const double a = actuator.pivot_a_m, b = actuator.pivot_b_m, angle_rad = q_rad + actuator.offset_rad;
+  return std::sqrt(a * a + b * b - 2 * a * b * std::cos(angle_rad)) / (actuator.counts_per_m * a * b * std::sin(angle_rad));
+}
+
 class EmergencyStop : public testing::TestWithParam<Moment> {};
 
 TEST_P(EmergencyStop, StopsTheDrivesAndHoldsWhatIsHeld) {
@@ -231,6 +238,32 @@ TEST(JammedDrive, InFreeMotionDoesNotFollow) {
 }
 
 // Two SYNC cycles are less than the three after which a position is stale.
+// A drive has one following window and one speed for all poses, in counts. The master keeps the joint's own, in angles, at each.
+TEST(EveryPose, HasTheSpeedAndTheFollowingWindowOfItsJoints) {
+  constexpr double window_rad = 0.15;
+  constexpr double between_syncs = 1.03;  // a joint in motion is read a SYNC ago, and a target sent after the limits were set
+  Rig rig(press_only());
+  rig.start();
+  std::array<double, joint_count> least_rad{};
+  least_rad.fill(window_rad);
+  while (!rig.mission().outcome().ended && rig.now() < Time::from_s(300)) {
+    rig.step();
+    if (!rig.any_power()) continue;
+    for (std::size_t i = 0; i < joint_count; ++i) {
+      const auto joint = static_cast<Joint>(i);
+      const canopen::AxisLimits& here = rig.controller().network().axis(joint).limits_here();
+      const double rad = rad_per_count(rig.arm().joints[i].actuator, rig.world().readings()[i].motor_position_rad);
+      ASSERT_LE(here.following_window_counts * rad, between_syncs * window_rad) << rig.arm().joints[i].name << rig.story();
+      ASSERT_LE(here.max_speed_counts_s * rad, between_syncs * rig.arm().joints[i].velocity_rad_s)
+          << rig.arm().joints[i].name << rig.story();
+      least_rad[i] = std::min(least_rad[i], here.following_window_counts * rad);
+    }
+  }
+  ASSERT_EQ(rig.step_now(), Step::done) << rig.story();
+  for (std::size_t i = 0; i < joint_count; ++i)
+    EXPECT_GT(least_rad[i], 0.8 * window_rad) << rig.arm().joints[i].name << ": needlessly narrow";
+}
+
 TEST(LostFrames, OfTwoCyclesChangeNothing) {
   std::vector<std::string> overrides = press_only();
   overrides.push_back("faults=[{at_s: 2.001, kind: drop_frames, can_id: 386, duration_s: 0.007}]");

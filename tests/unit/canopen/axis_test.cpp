@@ -99,6 +99,35 @@ TEST_F(AxisTest, ACoarseEncodersTargetKeepsTheMaximumSpeedOnAverage) {
   EXPECT_NEAR(a.target_counts() - start, 60, 2);
 }
 
+TEST_F(AxisTest, KeepsTheSpeedOfThePoseWhereItIs) {
+  ASSERT_TRUE(enable(axis()));
+  axis().set_limits_here({.max_speed_counts_s = 2500, .following_window_counts = 500});
+  ASSERT_TRUE(axis().set_target_counts(2000));
+  bus.step(50);
+  EXPECT_NEAR(axis().target_counts(), 1500, 1) << "10 counts a period";
+  axis().set_limits_here({.max_speed_counts_s = 5000, .following_window_counts = 500});
+  bus.step(20);
+  EXPECT_NEAR(axis().target_counts(), 1900, 2) << "20 counts a period";
+}
+
+TEST_F(AxisTest, WatchesTheWindowOfThePoseWhereItIs) {
+  ASSERT_TRUE(enable(axis()));
+  axis().set_limits_here({.max_speed_counts_s = 10'000, .following_window_counts = 100});
+  drive().jammed = true;
+  ASSERT_TRUE(axis().set_target_counts(1100));
+  bus.step(100);
+  EXPECT_EQ(axis().fault(), AxisFault::none);
+  ASSERT_TRUE(axis().set_target_counts(1101));
+  bus.step(40);
+  EXPECT_EQ(axis().fault(), AxisFault::following_error);
+}
+
+TEST_F(AxisTest, APoseAllowsNoMoreThanTheSetUp) {
+  axis().set_limits_here({.max_speed_counts_s = 1'000'000, .following_window_counts = 1'000'000});
+  EXPECT_EQ(axis().limits_here().max_speed_counts_s, 10'000u);
+  EXPECT_EQ(axis().limits_here().following_window_counts, 500u);
+}
+
 TEST_F(AxisTest, TargetsOutsideTheLimitsOrWhileNotEnabledAreRefusedAndCounted) {
   EXPECT_FALSE(axis().set_target_counts(1000));
   ASSERT_TRUE(enable(axis()));

@@ -238,6 +238,20 @@ TEST_F(NetworkTest, ASecondTpdoInACycleIsTakenAndCounted) {
   EXPECT_EQ(bus.network.axis(Joint::slew).actual_counts(), 9);
 }
 
+// The answer to one SYNC arrives after the next SYNC: what it says is newer than what is known, and what follows is newer still.
+TEST_F(NetworkTest, ALateReportIsTakenUntilTheNextOneIsThere) {
+  const Time sync = bus.now;
+  Outbox outbox;
+  bus.network.tick(sync, outbox);
+  bus.network.on_frame(frame_of(0x181, {0x40, 0, 9, 0, 0, 0, 0, 0}), sync + Duration::from_us(200));
+  EXPECT_EQ(bus.network.axis(Joint::slew).actual_counts(), 9);
+  EXPECT_EQ(bus.network.axis(Joint::slew).actual_time(), sync);
+  EXPECT_EQ(bus.network.stats().pdo_repeated, 0u) << "the SYNC before was not answered";
+  bus.network.on_frame(frame_of(0x181, {0x40, 0, 10, 0, 0, 0, 0, 0}), sync + Duration::from_us(600));
+  EXPECT_EQ(bus.network.axis(Joint::slew).actual_counts(), 10);
+  EXPECT_EQ(bus.network.stats().pdo_repeated, 1u);
+}
+
 TEST_F(NetworkTest, TheLoadInOperationStaysUnderTheWorstCaseOfTheBus) {
   const std::uint64_t before = bus.network.stats().bits_on_bus;
   bus.step(250);  // 1 s

@@ -229,6 +229,30 @@ class ScanOrders : public testing::Test {
   int next_ = 0;
 };
 
+// What stands in the scene is on the background, too, and gives no peak as long as it is subtracted.
+TEST_F(ScanOrders, ABackgroundServesForTwoRoundsAndNoLonger) {
+  begin();
+  int sync = 0;
+  const auto peaks_of = [&](ExposureKind kind) {
+    sync += 10;
+    bench_->order(ScanBench::time(sync), kind);
+    bench_->send(ScanBench::time(sync), stripe_);
+    return bench_->pipeline().last_peaks().size();
+  };
+  const auto lose = [&] {
+    sync += 10;
+    bench_->order(ScanBench::time(sync), ExposureKind::background);
+  };
+  for (int sweep = 0; sweep < 2; ++sweep) {
+    (void)peaks_of(ExposureKind::background);
+    for (int frame = 1; frame < 5; ++frame) EXPECT_EQ(peaks_of(ExposureKind::laser_on), 0u) << frame;
+    lose();
+    for (int frame = 6; frame < 10; ++frame) EXPECT_EQ(peaks_of(ExposureKind::laser_on), 0u) << "one lost background is bridged, " << frame;
+    lose();
+    for (int frame = 11; frame < 15; ++frame) EXPECT_GT(peaks_of(ExposureKind::laser_on), 500u) << "it is too old, " << frame;
+  }
+}
+
 TEST_F(ScanOrders, AStripeWaitsForTheJointsAfterIt) {
   begin();
   joints_until(10);
