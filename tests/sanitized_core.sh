@@ -1,20 +1,30 @@
 #!/usr/bin/env bash
-# Builds firmware/, its unit tests and the fuzz targets with AddressSanitizer and UndefinedBehaviorSanitizer, runs the tests, and replays the targets' kept
-# inputs and seeded changes of them: a shard of tests/nightly.sh.
-# The assembled daemon is one of them where it is built (tests/unit/vehicle). `./test.sh asan` and `./test.sh tsan` do the same for everything.
-# Usage: tests/sanitized_core.sh [PROGRAM]...     PROGRAM: of build/core-asan/tests; default: the core's
+# Builds test programs with AddressSanitizer and UndefinedBehaviorSanitizer, and runs them. `./test.sh asan` and `./test.sh tsan` do it for everything.
+# Usage: tests/sanitized_core.sh [--build | --fuzz] [PROGRAM]...
+#   --build  they are built only
+#   PROGRAM  of build/core-asan/tests; default: the core's unit tests and the assembled daemon, as `./test.sh` runs them
+#   --fuzz   the fuzz targets, too: their kept inputs and seeded changes of them are replayed (a shard of tests/nightly.sh)
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-programs=("$@")
-targets=()
-if [ $# -eq 0 ]; then
-  programs=(test_canopen test_safety test_arm test_mission test_scan)
+targets=() only_build=
+[ "${1:-}" != --build ] || { shift; only_build=yes; }
+if [ "${1:-}" = --fuzz ]; then
+  shift
   mapfile -t targets < <(sed -nE 's/^lanternfish_fuzz\(([a-z_]+) .*/fuzz_\1/p' tests/fuzz/CMakeLists.txt)
   targets+=(fuzz_hang)
 fi
+programs=("$@")
+[ $# -gt 0 ] || programs=(test_canopen test_safety test_arm test_mission test_scan test_hil_daemon)
+# Of the daemon's clock: its programs are some three times slower than without.
+export LANTERNFISH_SLOWDOWN=${LANTERNFISH_SLOWDOWN:-12}
 build=build/core-asan
+mkdir -p "$build"
+exec 9>"$build/lock"
+flock 9  # two of them would build the same files
 cmake --preset core-asan >"$build.log" 2>&1 && cmake --build --preset core-asan --target "${programs[@]}" "${targets[@]}" -- --quiet >>"$build.log" 2>&1 ||
   { tail -n 40 "$build.log"; exit 1; }
+exec 9>&-
+[ -z "$only_build" ] || exit 0
 for program in "${programs[@]}"; do
   echo "--- $program"
   # OpenCV's libraries, which some tests link, leave memory behind at the end.
