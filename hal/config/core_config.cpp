@@ -418,6 +418,7 @@ Core assemble(const Machine& machine, const Steps& steps) {
       const bool known = kind != profiles.end();
       drives =
           known && steps.take([&] { set_drive(machine, i, kind->second, description.joints[i], controller.network.drives[i]); }) && drives;
+      if (known) core.error_texts.set(i, controller.network.drives[i].node, kind->second.errors);
     }
     drives_known = drives;
   }

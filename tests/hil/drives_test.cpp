@@ -5,7 +5,9 @@
 #include <string>
 
 #include "hal/config/share.hpp"
+#include "hal/vehicle/status_json.hpp"
 #include "host_sim/devices/drive/drive_dictionary.hpp"
+#include "tests/hil/operator.hpp"
 #include "tests/hil/rig.hpp"
 
 namespace lf::test {
@@ -35,6 +37,42 @@ TEST(MixedDrives, FlyWithNodeNumbersAndPolaritiesOfTheirOwn) {
            "drives.elbow.profile=ipos", "drives.elbow.node=1", "drives.roll.polarity=reversed", "drives.jaw.profile=elmo_gold",
            "drives.jaw.node=40", "outputs.node=90"});
   expect_success(rig);
+}
+
+// The standard has 8A88 as "monitoring" and FF20 as "device specific". The makers' own words say that the power was taken from outside.
+TEST(MixedDrives, TellTheirErrorsInTheirMakersWords) {
+  const std::vector<std::string> makes{"drives.elbow.profile=epos4", "drives.roll.profile=elmo_gold", "drives.roll.node=40"};
+  const scenario::Scenario scenario = scenario::load_scenario("default", makes);
+  const config::ErrorTexts texts = scenario::make_nominal(scenario, false).error_texts;
+  struct Case {
+    std::uint8_t node;
+    std::uint16_t code;
+    const char* event;
+    const char* reason;
+  };
+  for (const Case& c : {Case{3, 0x8A88, "safe torque off", "drive fault: elbow, EMCY 0x8A88 (safe torque off)"},
+                        Case{40, 0xFF20, "safe torque off", "drive fault: roll, EMCY 0xFF20 (safe torque off)"},
+                        Case{2, 0x8A88, "monitoring", "drive fault: shoulder, EMCY 0x8A88 (monitoring)"}}) {
+    SCOPED_TRACE(c.reason);
+    Rig rig(makes);
+    ASSERT_TRUE(home(rig)) << rig.story();
+    CanFrame emcy;
+    emcy.id = 0x080u + c.node;
+    emcy.length = 8;
+    emcy.data[0] = static_cast<std::uint8_t>(c.code & 0xFF);
+    emcy.data[1] = static_cast<std::uint8_t>(c.code >> 8);
+    emcy.data[2] = 0x81;
+    rig.controller().on_can(0, emcy, rig.now());
+    ASSERT_TRUE(rig.run_to_end(10)) << rig.story();
+    std::string told;
+    for (const Event& event : rig.events()) {
+      if (event.kind == Event::Kind::emcy && event.emcy == c.code) told = hal::event_json(event, texts)["text"];
+    }
+    EXPECT_EQ(told, c.event);
+    hal::ControlReport report;
+    report.outcome = rig.outcome();
+    EXPECT_EQ(hal::status_json(report, {}, texts)["failure"]["text"], c.reason);
+  }
 }
 
 // What cannot fly never has power.
