@@ -35,7 +35,9 @@ void Watch::observe(const canopen::Network& network, const std::array<double, jo
   const double dt_s = (newest - joints_.t).s();
   for (std::size_t i = 0; i < joint_count; ++i) {
     const canopen::Axis& axis = network.axis(static_cast<Joint>(i));
-    if (!observing_ || dt_s > 0.1) {
+    // A drive that homes by its own method changes its zero: its reading leaps, and the joint does not.
+    const bool zero_changes = axis.requested() == canopen::AxisRequest::home;
+    if (!observing_ || dt_s > 0.1 || zero_changes) {
       observers_[i].reset(rad[i]);
     } else if (dt_s > 0) {
       observers_[i].update(rad[i], dt_s);

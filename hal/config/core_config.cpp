@@ -383,6 +383,7 @@ void set_zeros(const Machine& machine, const std::filesystem::path& folder, cons
   if (file.empty()) return;
   const std::string found = find_file(file, folder);
   HomingOffsets offsets = read_homing_file(found);
+  const std::array<bool, joint_count> doubtful_in_file = offsets.friction_doubtful;
   if (arm != nullptr) {
     std::array<Motor, joint_count> motors;
     for (std::size_t i = 0; i < joint_count; ++i) motors[i] = motor_of(arm->joints[i], drive_of(machine.drives, i).counts_per_rev);
@@ -390,6 +391,10 @@ void set_zeros(const Machine& machine, const std::filesystem::path& folder, cons
       core.notes.push_back(found + ": " + doubtful + ". Until then this joint takes no power");
   }
   for (std::size_t i = 0; i < joint_count; ++i) {
+    if (doubtful_in_file[i])
+      core.notes.push_back(
+          found + ": the " + joint_name(i) +
+          "'s friction was doubtful when it was last measured. This joint takes no power until a commissioning measures it again");
     network.drives[i].zero_known = offsets.known[i];
     network.drives[i].encoder_zero_counts = offsets.zero_counts[i];
     set_friction(offsets, i, controller.transmissions[i].friction);
@@ -418,6 +423,7 @@ Core assemble(const Machine& machine, const Steps& steps) {
       const bool known = kind != profiles.end();
       drives =
           known && steps.take([&] { set_drive(machine, i, kind->second, description.joints[i], controller.network.drives[i]); }) && drives;
+      if (known) core.error_texts.set(i, controller.network.drives[i].node, kind->second.errors);
     }
     drives_known = drives;
   }

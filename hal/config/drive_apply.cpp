@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "hal/config/drive_kind.hpp"
+#include "shared/can/can_map.hpp"
 #include "shared/input_error.hpp"
 
 namespace lf::config {
@@ -168,6 +169,18 @@ void set_absences(const DriveKind& kind, const std::string& where, canopen::Driv
   }
 }
 
+// The boot maps the controlword, the target and the torque offset into RPDO 1, and what can_map says into TPDO 1.
+void check_mapping(const DriveKind& kind, const canopen::DriveProfile& profile, const std::string& where) {
+  const std::size_t rpdo = can_map::drive_rpdo1::entries.size() - (profile.torque_offset ? 0 : 1),
+                    tpdo = can_map::drive_tpdo1::entries.size();
+  const auto refuse = [&](const char* pdo, std::size_t objects) {
+    throw InputError(where + ": " + kind.title + " maps " + std::to_string(static_cast<int>(kind.most_mapped)) +
+                     " objects into a PDO at most ('mapping.most_objects'), and " + pdo + " takes " + std::to_string(objects));
+  };
+  if (static_cast<double>(tpdo) > kind.most_mapped) refuse("TPDO 1", tpdo);
+  if (static_cast<double>(rpdo) > kind.most_mapped) refuse("RPDO 1", rpdo);
+}
+
 void check_homing(const DriveKind& kind, const canopen::DriveSetup& setup, const std::string& where) {
   if (setup.homing_method == 0 || kind.any_homing) return;
   const auto& methods = kind.homing_methods;
@@ -199,6 +212,7 @@ void apply(const DriveKind& kind, const DriveMotor& motor, const std::string& wh
   profile.scale.sign = motor.reversed ? std::int8_t{-1} : std::int8_t{1};
   set_torque(kind, motor, where, profile);
   set_absences(kind, where, profile);
+  check_mapping(kind, profile, where);
   profile.waits_to_follow = kind.waits_to_follow;
   profile.brake_opens = Duration::from_s(1e-3 * kind.brake_opens_ms);
   profile.brake_closes = Duration::from_s(1e-3 * kind.brake_closes_ms);

@@ -94,6 +94,7 @@ Keys scalar_keys(DriveKind& k, std::string& like, std::string& vendor, std::stri
   all.push_back(key("brake.opens_ms", "ms", 0, 10000, &k.brake_opens_ms, ""));
   all.push_back(key("brake.closes_ms", "ms", 0, 10000, &k.brake_closes_ms, ""));
   all.push_back(key("sync_loss", "", 0, 0, &k.sync_loss, ""));
+  all.push_back(key("mapping.most_objects", "", 1, 64, &k.most_mapped, ""));
   all.push_back(key("homing.methods", "", -128, 127, &k.homing_methods, ""));
   all.push_back(key("unconfirmed", "", 0, 0, &k.unconfirmed, ""));
   return all;

@@ -59,7 +59,8 @@ struct DriveKind {
   double brake_opens_ms = 0, brake_closes_ms = 0;
 
   std::string sync_loss = "unknown";
-  bool any_homing = true;  // no list of methods
+  double most_mapped = 64;  // objects in one PDO; 64, CiA 301's own limit, where the file says nothing
+  bool any_homing = true;   // no list of methods
   std::vector<double> homing_methods;
   std::vector<std::string> unconfirmed;
   std::vector<ProfileObject> objects;

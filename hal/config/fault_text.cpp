@@ -3,7 +3,6 @@
 #include <array>
 #include <cstdio>
 
-#include "firmware/canopen/emcy.hpp"
 #include "firmware/mission/step_failure.hpp"
 #include "shared/messages/joint_io.hpp"
 
@@ -49,13 +48,14 @@ std::string node_text(std::int32_t index) {
   return known ? names[static_cast<std::size_t>(index)] : std::to_string(index);
 }
 
-std::string fault_text(Fault fault, std::int32_t code, std::uint16_t emcy) {
+std::string fault_text(Fault fault, std::int32_t code, std::uint16_t emcy, const ErrorTexts& texts) {
   std::string text = safety::name(fault);
   if (const std::string why = cause(fault, code); !why.empty()) text += ": " + why;
   const bool failed = fault == Fault::step_failed || fault == Fault::vision_poor;
   if (const char* what_to_do = failed ? remedy(static_cast<StepFailure>(code)) : ""; *what_to_do != 0)
     text += std::string(" (") + what_to_do + ")";
-  if (emcy != 0) text += ", EMCY " + hex(emcy) + " (" + canopen::emcy_name(emcy) + ")";
+  // Every fault that an EMCY comes with has its node's index for a code.
+  if (emcy != 0) text += ", EMCY " + hex(emcy) + " (" + texts.of_joint(code, emcy) + ")";
   return text;
 }
 

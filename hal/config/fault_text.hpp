@@ -5,11 +5,13 @@
 #include <string>
 
 #include "firmware/safety/faults.hpp"
+#include "hal/config/error_texts.hpp"
 
 namespace lf::config {
 
-// "drive fault: elbow, EMCY 0x2310 (continuous over-current)". `code` and `emcy` as in an Event or an Outcome.
-std::string fault_text(safety::Fault fault, std::int32_t code, std::uint16_t emcy);
+// "drive fault: elbow, EMCY 0x2310 (continuous over-current)". `code` and `emcy` as in an Event or an Outcome; `texts` says what the
+// code means on that joint's drive.
+std::string fault_text(safety::Fault fault, std::int32_t code, std::uint16_t emcy, const ErrorTexts& texts);
 // "slew" to "jaw", "io" for the output node, else the number.
 std::string node_text(std::int32_t index);
 

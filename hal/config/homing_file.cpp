@@ -37,12 +37,13 @@ HomingOffsets read_homing_file(const std::string& path) {
     table.push_back(key(joint + ".found", "", 0, 0, &offsets.found[i], ""));
     table.push_back(key(joint + ".coulomb_mnm", "mN m", 0, most_mnm, &offsets.friction[i].coulomb_mnm, ""));
     table.push_back(key(joint + ".viscous_mnm_s", "mN m s", 0, most_mnm, &offsets.friction[i].viscous_mnm_s, ""));
+    table.push_back(key(joint + ".friction_doubtful", "", 0, 0, &offsets.friction_doubtful[i], ""));
     table.push_back(key(joint + ".friction_rms_mnm", "mN m", 0, most_mnm, &offsets.friction[i].rms_mnm, ""));
   }
   read_map(root, "", "", table, source);
   for (std::size_t i = 0; i < joint_count; ++i) {
     const YAML::Node joint = root[joint_name(i)];
-    if (!joint) continue;
+    if (!joint || offsets.friction_doubtful[i]) continue;
     if (!joint["zero_counts"])
       source.refuse(joint.Mark(), std::string("'") + joint_name(i) + ".zero_counts' is missing: commission this joint");
     offsets.known[i] = true;
@@ -81,6 +82,7 @@ std::vector<std::string> leave_out_doubtful(HomingOffsets& offsets, const std::a
     if (!problem) continue;
     left_out.push_back(*problem);
     offsets.known[i] = offsets.friction_known[i] = false;
+    offsets.friction_doubtful[i] = true;
   }
   return left_out;
 }
@@ -125,7 +127,8 @@ void write_homing_file(const std::string& path, const HomingOffsets& offsets) {
   out << "# Written by `lanternfishd commission`: what each drive's absolute encoder counts where the arm's own count is 0,\n"
          "# and the friction of its motor and gear, in mN m at the motor's shaft, with what the fit left of it.\n";
   for (std::size_t i = 0; i < joint_count; ++i) {
-    if (!offsets.known[i]) continue;
+    if (offsets.friction_doubtful[i]) out << joint_name(i) << ": {friction_doubtful: true, found: \"" << offsets.found[i] << "\"}\n";
+    if (offsets.friction_doubtful[i] || !offsets.known[i]) continue;
     out << joint_name(i) << ": {zero_counts: " << offsets.zero_counts[i];
     if (offsets.friction_known[i]) {
       const JointFriction& friction = offsets.friction[i];

@@ -26,6 +26,8 @@ struct HomingOffsets {
   std::array<std::int32_t, joint_count> zero_counts{};
   std::array<bool, joint_count> known{};
   std::array<bool, joint_count> friction_known{};
+  // A friction that cannot be was found, and none since: the joint is not known, whatever zero was found.
+  std::array<bool, joint_count> friction_doubtful{};
   std::array<JointFriction, joint_count> friction{};
   std::array<std::string, joint_count> found;  // how and when, a line for people
 };
@@ -38,7 +40,7 @@ void set_friction(const HomingOffsets& offsets, std::size_t joint, arm::Friction
 // against. The bounds are those of a scenario's friction.*, over what the arm's description has.
 std::optional<std::string> friction_problem(std::size_t joint, const JointFriction& found, const Motor& motor);
 
-// Joints with such a friction are no longer known, so that they take no power until they are commissioned again. A sentence for each.
+// Joints with such a friction are no longer known and count as doubtful, so that they take no power until they are commissioned again. A sentence for each.
 std::vector<std::string> leave_out_doubtful(HomingOffsets& offsets, const std::array<Motor, joint_count>& motors);
 
 const char* joint_name(std::size_t joint);  // "slew" ...
@@ -46,7 +48,7 @@ const char* joint_name(std::size_t joint);  // "slew" ...
 // Throws InputError with file and line: unreadable or malformed, an unknown joint, one without its number, a number out of range. An empty file knows no
 // joint.
 HomingOffsets read_homing_file(const std::string& path);
-// Writes the joints that are known. Replaces the file as a whole or not at all, a loss of power included. Throws InputError with the cause.
+// Writes the joints that are known, and those whose friction is doubtful. Replaces the file as a whole or not at all, a loss of power included. Throws InputError with the cause.
 void write_homing_file(const std::string& path, const HomingOffsets& offsets);
 
 }  // namespace lf::config

@@ -10,6 +10,7 @@
 #include "firmware/config.hpp"
 #include "firmware/mission/orders.hpp"
 #include "firmware/scan_pipeline.hpp"
+#include "hal/config/error_texts.hpp"
 #include "hal/config/key.hpp"
 #include "shared/can/can_map.hpp"
 #include "shared/geometry/pose.hpp"
@@ -106,10 +107,11 @@ void add_mission(Keys& all, mission::MissionConfig& mission);
 // The drive of a joint with everything stated: its node, profile's name, and figures.
 JointDriveChoice drive_of(const Drives& drives, std::size_t joint);
 
-// What the core is told: nominal calibrations, the survey of the panel, the job, drives and limits.
+// What the core is told: nominal calibrations, the survey of the panel, the job, drives and limits; and what people are told of it.
 struct Core {
   ControllerConfig controller;
   ScanConfig scan;
+  ErrorTexts error_texts;          // of the joints' drives
   std::vector<std::string> notes;  // what is accepted and yet to be known, a sentence each
 };
 

@@ -219,6 +219,20 @@ std::string draft_profile(const FoundNode& node) {
   return text;
 }
 
+namespace {
+
+// What of the drive nobody reads out of its objects, and who stands beside the arm has to know.
+std::string habits_text(const config::DriveKind& kind) {
+  std::string text =
+      "  when SYNC is lost: " + (kind.sync_loss == "unknown" ? "no document says it, try it on the bench" : kind.sync_loss) + "\n";
+  if (kind.brake_opens_ms <= 0 && kind.brake_closes_ms <= 0) return text + "  its brake: the profile states no times\n";
+  char line[96];
+  std::snprintf(line, sizeof line, "  its brake: opens within %.0f ms, closes within %.0f ms\n", kind.brake_opens_ms, kind.brake_closes_ms);
+  return text + line;
+}
+
+}  // namespace
+
 std::string doctor_text(const std::vector<FoundNode>& nodes, const std::vector<config::DriveKind>& kinds) {
   if (nodes.empty()) return "nobody answers: look at the bus' power, bit rate and termination\n";
   std::string text;
@@ -237,6 +251,7 @@ std::string doctor_text(const std::vector<FoundNode>& nodes, const std::vector<c
     const std::vector<std::string> all = differences(node, *kind);
     text += ", profile " + kind->name + " (" + kind->title + ")" + (all.empty() ? ": as it says\n" : ":\n");
     for (const std::string& one : all) text += "  " + one + "\n";
+    text += habits_text(*kind);
     const ReadObject* error = node.find(0x603F, 0);
     if (error != nullptr && error->there() && error->number() != 0)
       text += "  its last error (603F) is " + hex(error->number()).substr(6) + ": " +

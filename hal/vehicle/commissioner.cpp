@@ -2,12 +2,15 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <ctime>
 #include <filesystem>
 #include <utility>
 
+#include "firmware/arm/actuator.hpp"
 #include "hal/config/share.hpp"
 #include "hal/vehicle/tick_clock.hpp"
 #include "shared/arm/arm_description.hpp"
@@ -52,29 +55,56 @@ Json friction_json(const config::HomingOffsets& offsets) {
   return all;
 }
 
-std::vector<std::string> take_over(const Commissioned& commissioned, const std::array<Motor, joint_count>& motors,
-                                   config::HomingOffsets& offsets) {
-  std::vector<std::string> left_out;
+namespace {
+
+// What a joint at `place_rad` is off by when its zero is `moved_counts` off. At a stop one of the two ways leads out of the stroke: the other one tells.
+double moved_angle_rad(Joint joint, double place_rad, double moved_counts) {
+  const arm_geometry::JointNumbers& stroke = arm::numbers(joint);
+  const double counts = arm::exact_counts_from_rad(joint, place_rad);
+  double most_rad = 0;
+  for (const double way : {-1.0, 1.0}) {
+    const auto there = static_cast<std::int32_t>(std::lround(counts + way * moved_counts));
+    most_rad = std::max(most_rad, std::abs(std::clamp(arm::rad_from_counts(joint, there), stroke.lower_rad, stroke.upper_rad) - place_rad));
+  }
+  return most_rad;
+}
+
+}  // namespace
+
+TakenOver take_over(const Commissioned& commissioned, const std::array<Motor, joint_count>& motors, config::HomingOffsets& offsets) {
+  TakenOver taken;
   for (std::size_t i = 0; i < joint_count; ++i) {
     if (!commissioned.found[i]) continue;
-    const bool rubs = commissioned.friction_found[i];
-    if (const auto doubtful = rubs ? config::friction_problem(i, commissioned.friction[i], motors[i]) : std::nullopt) {
-      left_out.push_back(*doubtful);
+    const bool measured = commissioned.friction_found[i];
+    std::optional<std::string> why;
+    if (measured) {
+      why = config::friction_problem(i, commissioned.friction[i], motors[i]);
+    } else if (offsets.friction_doubtful[i] ||
+               (offsets.friction_known[i] && config::friction_problem(i, offsets.friction[i], motors[i]).has_value())) {
+      why = std::string("the ") + config::joint_name(i) +
+            "'s friction was doubtful before, and no friction was measured now. Commission it away from its stop, without --here";
+    }
+    offsets.friction_doubtful[i] = why.has_value();
+    if (why) {
+      taken.left_out.push_back(*why);
       // What was known of it before may be as wrong.
       offsets.known[i] = offsets.friction_known[i] = false;
+      offsets.found[i] = commissioned.how;
       continue;
+    }
+    if (offsets.known[i]) {
+      const double moved_rad = moved_angle_rad(static_cast<Joint>(i), commissioned.place_rad[i],
+                                               static_cast<double>(commissioned.zero_counts[i]) - offsets.zero_counts[i]);
+      if (moved_rad > told_move_rad) taken.moved_rad[i] = moved_rad;
     }
     offsets.zero_counts[i] = commissioned.zero_counts[i];
     offsets.known[i] = true;
     offsets.found[i] = commissioned.how;
-    if (rubs) {
-      offsets.friction[i] = commissioned.friction[i];
-      offsets.friction_known[i] = true;
-    } else if (offsets.friction_known[i] && config::friction_problem(i, offsets.friction[i], motors[i])) {
-      offsets.friction_known[i] = false;  // an older file's: the description's holds
-    }
+    if (!measured) continue;
+    offsets.friction[i] = commissioned.friction[i];
+    offsets.friction_known[i] = true;
   }
-  return left_out;
+  return taken;
 }
 
 Commissioner::Commissioner(const VehicleConfig& config, LoopRings& rings, Log log)
@@ -188,11 +218,11 @@ void Commissioner::end_with(const Json& outcome) {
   log_(line);
 }
 
-void Commissioner::give(Prepared& prepared, const std::string& problem, const std::vector<std::string>& left_out,
-                        const config::HomingOffsets& offsets, std::unique_ptr<Controller> core) {
+void Commissioner::give(Prepared& prepared, const std::string& problem, const TakenOver& taken, const config::HomingOffsets& offsets,
+                        std::unique_ptr<Controller> core) {
   const std::lock_guard lock(prepared.mutex);
   prepared.problem = problem;
-  prepared.left_out = left_out;
+  prepared.taken = taken;
   prepared.offsets = offsets;
   prepared.core = std::move(core);
   prepared.done = true;
@@ -203,15 +233,15 @@ void Commissioner::store(const Commissioning& ended) {
   stage_ = Stage::storing;
   prepared_ = std::make_shared<Prepared>();
   const std::string how = (order_.here ? "in the jig, " : "at its stop, ") + now_text() + " UTC";
-  const Commissioned commissioned{ended.found(), ended.zero_counts(), ended.friction_found(), ended.friction(), how};
+  const Commissioned commissioned{ended.found(), ended.zero_counts(), ended.friction_found(), ended.friction(), how, ended.places_rad()};
   const bool posted = worker_.post([prepared = prepared_, file = file_, commissioned, core = core_, motors = motors_]() mutable {
     std::string problem;
-    std::vector<std::string> left_out;
+    TakenOver taken;
     config::HomingOffsets offsets;
     std::unique_ptr<Controller> with_zeros;
     try {
       offsets = read_and_check(file);
-      left_out = take_over(commissioned, motors, offsets);
+      taken = take_over(commissioned, motors, offsets);
       try {
         config::write_homing_file(file, offsets);
       } catch (const InputError& error) {
@@ -221,10 +251,10 @@ void Commissioner::store(const Commissioning& ended) {
           core.network.drives[i].zero_known = core.network.drives[i].zero_known && offsets.known[i];
         with_zeros = std::make_unique<Controller>(core);
       }
-      if (!problem.empty()) return give(*prepared, problem, left_out, offsets, std::move(with_zeros));
+      if (!problem.empty()) return give(*prepared, problem, taken, offsets, std::move(with_zeros));
       const std::vector<std::string> older =
           config::leave_out_doubtful(offsets, motors);  // the file's, of joints that were not commissioned now
-      left_out.insert(left_out.end(), older.begin(), older.end());
+      taken.left_out.insert(taken.left_out.end(), older.begin(), older.end());
       for (std::size_t i = 0; i < joint_count; ++i) {
         core.network.drives[i].encoder_zero_counts = offsets.zero_counts[i];
         core.network.drives[i].zero_known = offsets.known[i];
@@ -234,7 +264,7 @@ void Commissioner::store(const Commissioning& ended) {
     } catch (const InputError& error) {
       problem = error.what();
     }
-    give(*prepared, problem, left_out, offsets, std::move(with_zeros));
+    give(*prepared, problem, taken, offsets, std::move(with_zeros));
   });
   if (!posted) end_with({{"state", "failed"}, {"why", "nothing was written: too much is waiting to be done"}, {"without_power", true}});
 }
@@ -248,22 +278,24 @@ void Commissioner::install() {
   const std::lock_guard lock(prepared_->mutex);
   if (!prepared_->done) return;
   std::string why;
-  for (const std::string& sentence : prepared_->left_out) why += (why.empty() ? "these joints take no power: " : "; ") + sentence;
+  for (const std::string& sentence : prepared_->taken.left_out) why += (why.empty() ? "these joints take no power: " : "; ") + sentence;
   if (!prepared_->problem.empty()) {
     for (std::size_t i = 0; i < joint_count && prepared_->core; ++i)
       core_.network.drives[i].zero_known = core_.network.drives[i].zero_known && prepared_->offsets.known[i];
     if (prepared_->core) give_core(std::move(prepared_->core));
     return end_with({{"state", "failed"}, {"why", prepared_->problem + (why.empty() ? "" : "; " + why)}, {"without_power", true}});
   }
-  Json zeros = Json::object();
+  Json zeros = Json::object(), moved = Json::object();
   for (std::size_t i = 0; i < joint_count; ++i) {
     core_.network.drives[i].encoder_zero_counts = prepared_->offsets.zero_counts[i];
     core_.network.drives[i].zero_known = prepared_->offsets.known[i];
     config::set_friction(prepared_->offsets, i, core_.transmissions[i].friction);
     if (prepared_->offsets.known[i]) zeros[config::joint_name(i)] = prepared_->offsets.zero_counts[i];
+    if (prepared_->taken.moved_rad[i] > 0) moved[config::joint_name(i)] = prepared_->taken.moved_rad[i];
   }
   give_core(std::move(prepared_->core));
   Json outcome{{"state", "done"}, {"zeros", zeros}, {"friction", friction_json(prepared_->offsets)}, {"file", file_}};
+  if (!moved.empty()) outcome["moved_rad"] = moved;
   if (!why.empty()) outcome.update({{"state", "failed"}, {"why", why}, {"without_power", true}});
   end_with(outcome);
 }

@@ -10,6 +10,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "hal/vehicle/control_loop.hpp"
 #include "hal/vehicle/parse_order.hpp"
@@ -29,11 +30,21 @@ struct Commissioned {
   std::array<std::int32_t, joint_count> zero_counts{};
   std::array<bool, joint_count> friction_found{};
   std::array<config::JointFriction, joint_count> friction{};
-  std::string how;  // and when
+  std::string how;                            // and when
+  std::array<double, joint_count> place_rad;  // where each zero was found: the joint's stop, or 0 in a jig
 };
-// Takes it over into `offsets`. A joint whose friction cannot be is no longer known there: a sentence for each comes back.
-std::vector<std::string> take_over(const Commissioned& commissioned, const std::array<Motor, joint_count>& motors,
-                                   config::HomingOffsets& offsets);
+
+struct TakenOver {
+  std::vector<std::string> left_out;  // a sentence for each joint that takes no power
+  // By how much each zero has moved against the file's earlier one, as the angle at its place; 0 where there was none, or it moved by less than what is told.
+  std::array<double, joint_count> moved_rad{};
+};
+// A zero that moves by more is told. Two commissionings agree within 0.003 rad; a drive's encoder that was exchanged, or an obstacle that was taken for the
+// stop, is farther off.
+inline constexpr double told_move_rad = 0.03;
+// Takes it over into `offsets`. A joint whose friction cannot be is no longer known there, and stays out until a friction was measured that can be: a zero
+// alone does not show that what rubbed is gone.
+TakenOver take_over(const Commissioned& commissioned, const std::array<Motor, joint_count>& motors, config::HomingOffsets& offsets);
 
 class Commissioner {
  public:
@@ -64,7 +75,7 @@ class Commissioner {
     std::mutex mutex;
     bool done = false;
     std::string problem;
-    std::vector<std::string> left_out;  // a sentence for each joint that takes no power, since its friction cannot be
+    TakenOver taken;
     std::unique_ptr<Commissioning> commissioning;
     std::unique_ptr<Controller> core;
     config::HomingOffsets offsets;
@@ -74,8 +85,8 @@ class Commissioner {
   void lend();
   void take_back(const CommissioningResult& result);
   void store(const Commissioning& ended);
-  static void give(Prepared& prepared, const std::string& problem, const std::vector<std::string>& left_out,
-                   const config::HomingOffsets& offsets, std::unique_ptr<Controller> core);
+  static void give(Prepared& prepared, const std::string& problem, const TakenOver& taken, const config::HomingOffsets& offsets,
+                   std::unique_ptr<Controller> core);
   void install();
   void give_core(std::unique_ptr<Controller> core);
   void end_with(const Json& outcome);

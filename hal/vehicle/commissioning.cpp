@@ -66,6 +66,12 @@ canopen::NetworkConfig gentle(const Commissioning::Config& config) {
 
 Commissioning::Commissioning(const Config& config) : config_(config), network_(gentle(config)) {}
 
+std::array<double, joint_count> Commissioning::places_rad() const {
+  std::array<double, joint_count> places{};
+  for (std::size_t i = 0; i < joint_count && !config_.here; ++i) places[i] = stop_rad(i);
+  return places;
+}
+
 void Commissioning::go(State state, Time now) {
   state_ = state;
   since_ = now;

@@ -71,6 +71,8 @@ class Commissioning {
   std::size_t joint() const { return joint_; }  // under work
   const std::array<std::int32_t, joint_count>& zero_counts() const { return zero_counts_; }
   const std::array<bool, joint_count>& found() const { return found_; }
+  // Where each zero is found: the joint's stop, in a jig 0.
+  std::array<double, joint_count> places_rad() const;
   // Not found for a joint that had too little way to its stop, or whose torques make no sense.
   const std::array<bool, joint_count>& friction_found() const { return friction_found_; }
   const std::array<config::JointFriction, joint_count>& friction() const { return friction_; }

@@ -49,7 +49,7 @@ Daemon::Daemon(const VehicleConfig& config, const Surroundings& surroundings)
       platform_(config, log_rings_, loop_rings_, estop_line_, *surroundings.calls),
       control_(platform_, config.core.controller, loop_rings_),
       vision_(platform_, config.core.scan, loop_rings_),
-      board_(log_rings_, loop_rings_),
+      board_(log_rings_, loop_rings_, config.core.error_texts),
       writer_(log_rings_, log_of(config), *surroundings.calls),
       commissioner_(config, loop_rings_, [this](const Json& line) { writer_.say(line); }),
       desk_(loop_rings_, ways(surroundings)),

@@ -1,6 +1,5 @@
 // The `lanternfishd` program: the daemon itself, and its sub-commands for the operator.
 // Exit status: 0 done, 1 the job failed or an order was refused, 2 bad input, 3 this machine lacks something.
-#include <sys/signalfd.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -18,6 +17,7 @@
 #include "hal/config/share.hpp"
 #include "hal/vehicle/bus_doctor.hpp"
 #include "hal/vehicle/daemon.hpp"
+#include "hal/vehicle/end_signals.hpp"
 #include "hal/vehicle/instance_lock.hpp"
 #include "hal/vehicle/machine_check.hpp"
 #include "hal/vehicle/operator_client.hpp"
@@ -45,17 +45,6 @@ void complain(const std::string& message) {
     std::fprintf(stderr, "lanternfishd: %s\n", message.substr(at, end - at).c_str());
     at = end + 1;
   }
-}
-
-// Signals are taken by the main thread between two looks, never in a handler.
-int take_signals() {
-  sigset_t set;
-  sigemptyset(&set);
-  sigaddset(&set, SIGINT);
-  sigaddset(&set, SIGTERM);
-  sigaddset(&set, SIGHUP);  // the terminal is gone: the arm is not left to itself
-  pthread_sigmask(SIG_BLOCK, &set, nullptr);
-  return signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK);
 }
 
 std::vector<std::string> notes_of(const VehicleConfig& config) {
@@ -98,7 +87,7 @@ int run_daemon(const Options& options) {
   if (options.check) return check(options);
   const VehicleConfig config = load_vehicle_config(options.config);
   (void)notes_of(config);
-  const int signals = take_signals();
+  const int signals = take_end_signals();
   const auto daemon = std::make_unique<Daemon>(config);  // megabytes
   const bool well = daemon->run(signals, options.run_job);
   if (options.json) {

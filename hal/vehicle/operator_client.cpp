@@ -59,6 +59,7 @@ std::string commissioning_text(const Json& done) {
   std::string text;
   const Json friction = done.value("friction", Json::object());
   const Json zeros = done.value("zeros", Json::object());
+  const Json moved = done.value("moved_rad", Json::object());
   for (const auto& [joint, zero] : zeros.items()) {
     char line[192];
     std::snprintf(line, sizeof line, "%-9s zero at %d counts", joint.c_str(), zero.get<int>());
@@ -70,6 +71,13 @@ std::string commissioning_text(const Json& done) {
       text += line;
     } else {
       text += "; friction not measured: as the arm's description has it";
+    }
+    if (moved.contains(joint)) {
+      std::snprintf(
+          line, sizeof line,
+          "; its zero has moved by %.2f rad: if the drive and its encoder are the same as before, an obstacle was taken for the stop",
+          moved[joint].get<double>());
+      text += line;
     }
     text += "\n";
   }

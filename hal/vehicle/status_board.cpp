@@ -10,7 +10,7 @@ constexpr Duration counters_every = Duration::from_ms(500);
 
 void StatusBoard::collect(Time now, const std::function<void(const Json&)>& tell) {
   for (Telemetry telemetry; log_.telemetry.pop(telemetry);) {
-    for (const Event& event : telemetry.events) tell(event_json(event));
+    for (const Event& event : telemetry.events) tell(event_json(event, texts_));
     const std::lock_guard lock(mutex_);
     newest_.telemetry = telemetry;
   }

@@ -19,7 +19,8 @@ class StatusBoard {
     Telemetry telemetry;
   };
 
-  StatusBoard(LogRings& log, LoopRings& loops) : log_(log), loops_(loops) {}
+  // All outlive the board.
+  StatusBoard(LogRings& log, LoopRings& loops, const config::ErrorTexts& texts) : log_(log), loops_(loops), texts_(texts) {}
 
   // Takes what is in the rings; `tell` gets a line for each event and, at most twice a second, one for counters that have changed. One thread.
   void collect(Time now, const std::function<void(const Json&)>& tell);
@@ -31,6 +32,7 @@ class StatusBoard {
 
   LogRings& log_;
   LoopRings& loops_;
+  const config::ErrorTexts& texts_;
   Json counters_;
   Time next_counters_;
   mutable std::mutex mutex_;  // over `newest_`, for as long as a copy takes

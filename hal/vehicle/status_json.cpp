@@ -136,7 +136,7 @@ Json tasks_json(const ControlReport& control) {
 
 }  // namespace
 
-Json event_json(const Event& event) {
+Json event_json(const Event& event, const config::ErrorTexts& texts) {
   Json json;
   json["t_s"] = event.t.s();
   json["kind"] = kind_of(event.kind);
@@ -145,7 +145,7 @@ Json event_json(const Event& event) {
     json["fault"] = safety::name(event.fault);
     json["reaction"] = safety::name(event.reaction);
     json["code"] = event.code;
-    json["text"] = config::fault_text(event.fault, event.code, event.emcy);
+    json["text"] = config::fault_text(event.fault, event.code, event.emcy, texts);
     const bool step_failed = event.fault == safety::Fault::step_failed || event.fault == safety::Fault::vision_poor;
     if (step_failed) {
       json["because"] = lf::name(static_cast<StepFailure>(event.code));
@@ -155,7 +155,7 @@ Json event_json(const Event& event) {
   if (event.kind == Event::Kind::emcy) {
     json["node"] = event.code;
     json["emcy"] = event.emcy;
-    json["text"] = canopen::emcy_name(event.emcy);
+    json["text"] = texts.of_node(event.code, event.emcy);
   }
   if (event.kind == Event::Kind::located) json["handle_deg"] = deg_from_rad(event.value);
   if (event.kind == Event::Kind::task_done || event.kind == Event::Kind::task_failed) {
@@ -193,7 +193,7 @@ Json counters_json(const ControlReport& control, const CameraReport& camera, con
   return json;
 }
 
-Json status_json(const ControlReport& control, const Telemetry& telemetry) {
+Json status_json(const ControlReport& control, const Telemetry& telemetry, const config::ErrorTexts& texts) {
   Json json;
   json["t_s"] = control.t.s();
   json["standing"] = mission::name(control.standing);
@@ -205,7 +205,7 @@ Json status_json(const ControlReport& control, const Telemetry& telemetry) {
       json["failure"] = {{"phase", control.outcome.stage},
                          {"step", mission::row(control.outcome.step).name},
                          {"reason", safety::name(control.outcome.fault)},
-                         {"text", config::fault_text(control.outcome.fault, control.outcome.code, control.outcome.emcy)},
+                         {"text", config::fault_text(control.outcome.fault, control.outcome.code, control.outcome.emcy, texts)},
                          {"code", control.outcome.code}};
     const Json later = faults_json(control.faults_after_end);
     if (!later.empty()) json["faults since the end"] = later;

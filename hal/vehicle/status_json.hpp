@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "firmware/telemetry.hpp"
+#include "hal/config/error_texts.hpp"
 #include "hal/vehicle/control_report.hpp"
 #include "hal/vehicle/latency_histogram.hpp"
 
@@ -13,13 +14,14 @@ using Json = nlohmann::ordered_json;
 
 const char* name(Port port);
 
-Json event_json(const Event& event);
+// `texts`: what the drives' error codes mean.
+Json event_json(const Event& event, const config::ErrorTexts& texts);
 // {"count", "p50", "p99", "p999", "max"} in us.
 Json histogram_json(const LatencyHistogram& histogram);
 // Everything that is counted and is not zero: faults, platform calls that failed, refused frames, CAN errors, camera troubles, missed ticks ... The names are
 // those of docs/operating.md.
 Json counters_json(const ControlReport& control, const CameraReport& camera, const Telemetry& telemetry);
 // Mission, tasks, joints, nodes, inputs and outputs.
-Json status_json(const ControlReport& control, const Telemetry& telemetry);
+Json status_json(const ControlReport& control, const Telemetry& telemetry, const config::ErrorTexts& texts);
 
 }  // namespace lf::hal

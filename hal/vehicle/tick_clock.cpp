@@ -31,17 +31,13 @@ void sleep_until(Time t) {
   }
 }
 
-void TickClock::start() { next_ = monotonic_now() + period_; }
+void TickClock::start() { grid_.start(monotonic_now()); }
 
 Time TickClock::wait() {
-  sleep_until(next_);
+  sleep_until(grid_.next());
   const Time now = monotonic_now();
-  const std::int64_t passed = now < next_ ? 0 : (now - next_).ns() / period_.ns();
-  missed_ += static_cast<std::uint64_t>(passed);
-  lateness_.add(now - next_);
-  const Time tick = next_ + period_ * passed;
-  next_ = tick + period_;
-  return tick;
+  lateness_.add(now - grid_.next());
+  return grid_.wake(now);
 }
 
 }  // namespace lf::hal

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "hal/vehicle/latency_histogram.hpp"
+#include "hal/vehicle/tick_grid.hpp"
 #include "shared/messages/time.hpp"
 
 namespace lf::hal {
@@ -20,22 +21,19 @@ void slow_time_down(int factor);
 
 class TickClock {
  public:
-  explicit TickClock(Duration period) : period_(period) {}
+  explicit TickClock(Duration period) : grid_(period) {}
 
   // The first tick is a period from now.
   void start();
-  // Blocks until the next tick and returns its time on the grid. After a stall the ticks that have passed altogether are left out and counted: what they
-  // would have sent is stale.
+  // Blocks until the next tick and returns its time on the grid. What a late thread leaves out: TickGrid::wake().
   Time wait();
-  Time next() const { return next_; }
+  Time next() const { return grid_.next(); }
 
-  std::uint64_t missed() const { return missed_; }
+  std::uint64_t missed() const { return grid_.left_out(); }
   const LatencyHistogram& lateness() const { return lateness_; }  // of waking up
 
  private:
-  Duration period_;
-  Time next_;
-  std::uint64_t missed_ = 0;
+  TickGrid grid_;
   LatencyHistogram lateness_;
 };
 

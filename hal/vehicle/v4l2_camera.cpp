@@ -18,6 +18,10 @@ namespace {
 constexpr std::int64_t search_ns = 500'000'000;
 constexpr std::array<std::uint32_t, 4> formats{V4L2_PIX_FMT_GREY, V4L2_PIX_FMT_Y10, V4L2_PIX_FMT_Y16, V4L2_PIX_FMT_YUYV};
 
+std::int64_t stamp_ns(const v4l2_buffer& buffer) {
+  return buffer.timestamp.tv_sec * std::int64_t{1'000'000'000} + buffer.timestamp.tv_usec * std::int64_t{1'000};
+}
+
 bool is_gone(int error) { return error == ENODEV || error == ENXIO || error == EIO || error == ENOENT; }
 
 }  // namespace
@@ -61,7 +65,8 @@ struct V4l2Camera::State {
   bool has_lent = false;
   bool any = false;  // an image came since the camera was opened
   std::uint32_t last_sequence = 0;
-  std::uint32_t sequence = 0;  // grows on over a camera that came back
+  std::int64_t last_stamp_ns = 0;  // the last one that was believed
+  std::uint32_t sequence = 0;      // grows on over a camera that came back
   Stats stats;
 };
 
@@ -184,8 +189,10 @@ bool V4l2Camera::State::give_back() {
 // Counts what is missing before this buffer; false for one that cannot be used.
 bool V4l2Camera::State::usable(const v4l2_buffer& buffer) {
   const std::uint32_t step = buffer.sequence - last_sequence;
-  const bool repeated = any && step == 0;
-  if (any && !repeated && step < 0x8000'0000U) {
+  const std::int64_t stamp = stamp_ns(buffer);
+  const bool same_stamp = stamp != 0 && stamp == last_stamp_ns;
+  const bool repeated = (any && step == 0) || same_stamp;
+  if (any && step != 0 && step < 0x8000'0000U) {
     stats.skipped += step - 1;
     sequence += step;
   } else if (!repeated) {
@@ -206,15 +213,16 @@ bool V4l2Camera::State::usable(const v4l2_buffer& buffer) {
 Time V4l2Camera::State::start_of(const v4l2_buffer& buffer) {
   const std::uint32_t clock = buffer.flags & V4L2_BUF_FLAG_TIMESTAMP_MASK;
   const bool monotonic = clock == V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC || clock == V4L2_BUF_FLAG_TIMESTAMP_COPY;
-  const std::int64_t stamp_ns = buffer.timestamp.tv_sec * std::int64_t{1'000'000'000} + buffer.timestamp.tv_usec * std::int64_t{1'000};
+  const std::int64_t stamp = stamp_ns(buffer);
   const std::int64_t now_ns = calls.monotonic_ns();
-  const bool recent = stamp_ns <= now_ns && now_ns - stamp_ns < 1'000'000'000;
+  const bool recent = stamp <= now_ns && now_ns - stamp < 1'000'000'000;
   const bool open_kind = clock == V4L2_BUF_FLAG_TIMESTAMP_UNKNOWN && recent;
-  if (stamp_ns == 0 || !(monotonic || open_kind)) {
+  if (stamp == 0 || !(monotonic || open_kind)) {
     ++stats.stamps_missed;
     return Time::from_ns(now_ns) - config.stamp_delay;
   }
-  return Time::from_ns(stamp_ns) - config.stamp_delay;
+  last_stamp_ns = stamp;
+  return Time::from_ns(stamp) - config.stamp_delay;
 }
 
 ImageView V4l2Camera::State::grey_of(const v4l2_buffer& buffer) {

@@ -11,6 +11,7 @@ constexpr double force_window_s = 0.050;  // over which a contact's force is jud
 Flight::Flight(const scenario::Scenario& scenario, std::uint64_t seed, hal::SimObserver& observer) {
   const scenario::Sample sample = scenario::draw(scenario, seed);
   const scenario::Nominal nominal = scenario::make_nominal(scenario, sample.lamps_lit);
+  error_texts_ = nominal.error_texts;
   hal::SimConfig sim = scenario::make_truth(scenario, sample, nominal, 1);
   sim.given_sight = true;
   sim.world.force_window_s = force_window_s;

@@ -27,6 +27,8 @@ class Flight {
   const mission::Mission& mission() const { return controller_->mission(); }
   mission::Step mission_step() const { return mission().step(); }
   hal::SimPlatform& platform() { return *platform_; }
+  // Of the joints' drives.
+  const config::ErrorTexts& error_texts() const { return error_texts_; }
   // Of the joints, by their drives' best: what a stop may take.
   const std::array<double, joint_count>& deceleration_rad_s2() const { return deceleration_rad_s2_; }
   // Of the joints, by which one may be off its motor: half of its gear's play, and the wind-up under the motor's rated torque.
@@ -34,6 +36,7 @@ class Flight {
 
  private:
   std::array<double, joint_count> deceleration_rad_s2_{}, gear_gives_rad_{};
+  config::ErrorTexts error_texts_;
   std::unique_ptr<hal::SimPlatform> platform_;
   std::unique_ptr<Controller> controller_;
   std::unique_ptr<ScanPipeline> pipeline_;

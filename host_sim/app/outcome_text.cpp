@@ -4,8 +4,8 @@
 
 namespace lf::app {
 
-std::string reason_of(const mission::Outcome& outcome) {
-  return config::fault_text(outcome.fault, outcome.code, outcome.emcy) + ", in step " + mission::row(outcome.step).name;
+std::string reason_of(const mission::Outcome& outcome, const config::ErrorTexts& texts) {
+  return config::fault_text(outcome.fault, outcome.code, outcome.emcy, texts) + ", in step " + mission::row(outcome.step).name;
 }
 
 }  // namespace lf::app

@@ -4,10 +4,11 @@
 #include <string>
 
 #include "firmware/mission/mission.hpp"
+#include "hal/config/error_texts.hpp"
 
 namespace lf::app {
 
 // "drive fault: elbow, EMCY 0x2310 (continuous over-current), in step scan"
-std::string reason_of(const mission::Outcome& outcome);
+std::string reason_of(const mission::Outcome& outcome, const config::ErrorTexts& texts);
 
 }  // namespace lf::app

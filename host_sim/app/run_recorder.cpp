@@ -5,8 +5,13 @@
 
 namespace lf::app {
 
-RunRecorder::RunRecorder(const record::RunFolder* folder, PhaseObserver::Say say)
-    : files_(folder), bus_(files_, digest_), phases_(digest_, std::move(say)), curves_(files_, bus_), panel_(files_), pictures_(files_) {}
+RunRecorder::RunRecorder(const record::RunFolder* folder, const config::ErrorTexts& texts, PhaseObserver::Say say)
+    : files_(folder),
+      bus_(files_, digest_),
+      phases_(digest_, texts, std::move(say)),
+      curves_(files_, bus_),
+      panel_(files_),
+      pictures_(files_) {}
 
 void RunRecorder::after_control(const mission::Mission& mission) {
   pictures_.after_control();

@@ -18,8 +18,8 @@ namespace lf::app {
 
 class RunRecorder {
  public:
-  // `folder` may be null: then nothing is written while it runs. It outlives the recorder, as `say` does what it refers to.
-  RunRecorder(const record::RunFolder* folder, PhaseObserver::Say say);
+  // `folder` may be null: then nothing is written while it runs. It outlives the recorder, as do `texts` and what `say` refers to.
+  RunRecorder(const record::RunFolder* folder, const config::ErrorTexts& texts, PhaseObserver::Say say);
   RunRecorder(const RunRecorder&) = delete;
   RunRecorder& operator=(const RunRecorder&) = delete;
 

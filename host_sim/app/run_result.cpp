@@ -22,12 +22,12 @@ std::string formatted(const char* format, double a, double b = 0, double c = 0) 
 
 }  // namespace
 
-std::optional<record::FailureRecord> failure_of(const Controller& controller, const world::World& world, const RunRecorder& recorder,
-                                                const scenario::Scenario& scenario, bool interrupted) {
+std::optional<record::FailureRecord> failure_of(const Controller& controller, const config::ErrorTexts& texts, const world::World& world,
+                                                const RunRecorder& recorder, const scenario::Scenario& scenario, bool interrupted) {
   const mission::Outcome& outcome = controller.mission().outcome();
   if (outcome.ended && outcome.success) return std::nullopt;
   const std::string boot = outcome.fault == safety::Fault::boot_failed ? config::boot_sentences(controller.network().boot()) : "";
-  if (outcome.ended) return record::FailureRecord{outcome.stage, reason_of(outcome) + boot};
+  if (outcome.ended) return record::FailureRecord{outcome.stage, reason_of(outcome, texts) + boot};
   if (interrupted) return record::FailureRecord{recorder.phases().stage(), "interrupted"};
   return record::FailureRecord{recorder.phases().stage(),
                                formatted("not ended by the time limit of %.0f s, at %.1f s", scenario.time_limit_s, world.time_s())};

@@ -18,8 +18,8 @@
 namespace lf::app {
 
 // Why the mission did not succeed by its own account; nothing when it did.
-std::optional<record::FailureRecord> failure_of(const Controller& controller, const world::World& world, const RunRecorder& recorder,
-                                                const scenario::Scenario& scenario, bool interrupted);
+std::optional<record::FailureRecord> failure_of(const Controller& controller, const config::ErrorTexts& texts, const world::World& world,
+                                                const RunRecorder& recorder, const scenario::Scenario& scenario, bool interrupted);
 // Where the truth contradicts a mission that believes it succeeded.
 std::optional<record::FailureRecord> disagreement(const Controller& controller, const world::World& world, const RunRecorder& recorder);
 

@@ -56,7 +56,7 @@ class Session {
         sample_(scenario::draw(request.scenario, request.seed)),
         nominal_(scenario::make_nominal(request.scenario, sample_.lamps_lit)),
         sim_(truth(request, sample_, nominal_)),
-        recorder_(folder, request.say),
+        recorder_(folder, nominal_.error_texts, request.say),
         platform_(std::make_unique<hal::SimPlatform>(sim_, recorder_.observer())),
         controller_(std::make_unique<Controller>(nominal_.controller)),
         pipeline_(std::make_unique<ScanPipeline>(nominal_.scan)),
@@ -114,7 +114,7 @@ class Session {
   }
 
   void judge(record::RunResult& result) {
-    result.failure = failure_of(*controller_, platform_->world(), recorder_, request_.scenario, interrupted());
+    result.failure = failure_of(*controller_, nominal_.error_texts, platform_->world(), recorder_, request_.scenario, interrupted());
     if (!result.failure) result.failure = disagreement(*controller_, platform_->world(), recorder_);
     const bool held = controller_->mission().step() == mission::Step::held;
     if (!result.failure && !safe() && !held) result.failure = record::FailureRecord{"end", "the end is not safe"};

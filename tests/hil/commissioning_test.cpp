@@ -17,7 +17,9 @@
 #include "firmware/arm/actuator.hpp"
 #include "hal/lockstep.hpp"
 #include "hal/sim/sim_platform.hpp"
+#include "hal/vehicle/commissioner.hpp"
 #include "host_sim/scenario/instance.hpp"
+#include "tests/unit/temporary_folder.hpp"
 
 namespace lf::test {
 namespace {
@@ -285,6 +287,74 @@ TEST(CommissioningWithTheEmergencyStopOpen, EndsAndSaysSo) {
   EXPECT_EQ(commissioning.failure(), "the emergency-stop chain is open");
   EXPECT_TRUE(commissioning.without_power());
   EXPECT_FALSE(bench.any_powered());
+}
+
+// Without the output node nobody reads the emergency-stop chain.
+TEST(CommissioningWithASilentOutputNode, EndsWithoutPower) {
+  devices::DeviceFault silent;
+  silent.kind = devices::DeviceFaultKind::silent;
+  silent.node = can_map::io_node;
+  silent.at_s = 5;
+  Bench bench(somewhere, parked, {silent});
+  Commissioning commissioning(bench.config());
+  bool powered = false;
+  bench.run(commissioning, [&] {
+    powered = powered || bench.any_powered();
+    return false;
+  });
+  EXPECT_TRUE(powered) << "it had not begun";
+  EXPECT_EQ(commissioning.state(), Commissioning::State::failed);
+  EXPECT_EQ(commissioning.failure(), "the emergency-stop chain cannot be read");
+  EXPECT_LT(bench.platform().now().s(), 7.5) << "stopped, without power, and the nodes told";
+  EXPECT_TRUE(commissioning.without_power());
+  EXPECT_FALSE(bench.any_powered());
+}
+
+// The jaw rubs five times as much as its description has it, which cannot be; and what was found cannot be kept. That the joint must not move holds all the same.
+TEST(CommissioningWhoseFileCannotBeWritten, LeavesADoubtfulJointWithoutPower) {
+  Bench bench(somewhere, parked, {}, [](hal::SimConfig& truth) { truth.devices.drives[4].friction.coulomb_nm *= 5; });
+  const TemporaryFolder folder;
+  const std::string file = folder.write(
+      "homing.yaml",
+      "slew: {zero_counts: 0}\nshoulder: {zero_counts: 0}\nelbow: {zero_counts: 0}\nroll: {zero_counts: 0}\njaw: {zero_counts: 0}\n");
+  const hal::VehicleConfig vehicle = hal::load_vehicle_config(
+      folder.write("vehicle.yaml", "can: {interface: can0}\ncamera: {source: none}\nlock_folder: " + folder.path().string() +
+                                       "\nlog: {folder: " + (folder / "log") + "}\nhoming: {file: homing.yaml}\n"));
+  const auto rings = std::make_unique<hal::LoopRings>();
+  hal::Commissioner commissioner(vehicle, *rings, [](const hal::Json&) {});
+  EXPECT_EQ(commissioner.unknown_joints(), "");
+  hal::CommissionOrder order;
+  order.joints = {false, false, false, false, true};
+  ASSERT_EQ(commissioner.begin(order), std::nullopt);
+  const auto wait_for = [&](const std::function<bool()>& done) {
+    for (int ms = 0; ms < 20'000 && !done(); ++ms) {
+      commissioner.step();
+      usleep(1000);
+    }
+    return done();
+  };
+  Commissioning* lent = nullptr;
+  ASSERT_TRUE(wait_for([&] { return lent != nullptr || rings->commissionings.pop(lent); }));
+  bench.run(*lent);
+  ASSERT_EQ(lent->state(), Commissioning::State::done) << lent->failure();
+  ASSERT_TRUE(lent->friction_found()[4]);
+  ASSERT_TRUE(std::filesystem::create_directory(file + ".partial"));  // where the new file is written before it takes the old one's name
+  const std::string before = folder.read("homing.yaml");
+  EXPECT_TRUE(rings->commissioned.push({lent, true}));
+  Controller* core = nullptr;
+  ASSERT_TRUE(wait_for([&] { return core != nullptr || rings->cores.pop(core); }));
+  EXPECT_EQ(folder.read("homing.yaml"), before);
+  EXPECT_EQ(commissioner.unknown_joints(), "jaw");
+  const hal::Json last = commissioner.last();
+  EXPECT_EQ(last["state"], "failed");
+  EXPECT_NE(last["why"].get<std::string>().find("cannot be written"), std::string::npos) << last;
+  EXPECT_NE(last["why"].get<std::string>().find("'jaw.coulomb_mnm' is"), std::string::npos) << last;
+  for (const Command command : {Command::start, Command::home}) EXPECT_FALSE(core->on_command(command, Time::from_s(1)));
+  EXPECT_FALSE(core->network().axis(Joint::jaw).setup().may_have_power());
+  EXPECT_TRUE(core->network().axis(Joint::elbow).setup().may_have_power());
+  rings->old_cores.push(nullptr);  // as the control loop does when it has taken the core over
+  wait_for([&] { return !commissioner.busy(); });
+  delete core;
 }
 
 // A joint that was never commissioned takes no power, whatever is asked of the core.

@@ -9,13 +9,16 @@
 #include <gtest/gtest.h>
 #include <linux/can.h>
 #include <linux/can/error.h>
-#include <sys/signalfd.h>
+#include <pthread.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <csignal>
+#include <cstring>
 #include <fstream>
 #include <functional>
 #include <memory>
@@ -25,6 +28,7 @@
 
 #include "firmware/arm/actuator.hpp"
 #include "hal/config/homing_file.hpp"
+#include "hal/vehicle/end_signals.hpp"
 #include "hal/vehicle/operator_client.hpp"
 #include "host_sim/scenario/instance.hpp"
 #include "host_sim/serve/serve_loop.hpp"
@@ -113,17 +117,19 @@ class AssembledDaemon : public testing::Test {
  protected:
   AssembledDaemon() {
     hal::slow_time_down(slowdown());
+    pthread_sigmask(SIG_SETMASK, nullptr, &signals_before);
+    signals = hal::take_end_signals();
     int ends[2] = {-1, -1};
     EXPECT_EQ(socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, ends), 0);
     sea = std::make_unique<Sea>(ends[0]);
     bus = std::make_unique<PairLinux>(ends[1]);
-    EXPECT_EQ(pipe2(signal_pipe, O_NONBLOCK | O_CLOEXEC), 0);
     folder.write("estop", "1\n");
     folder.write("homing.yaml", config_text("homing/simulator.yaml"));
   }
   ~AssembledDaemon() override {
     end();
-    for (const int fd : signal_pipe) close(fd);
+    close(signals);
+    pthread_sigmask(SIG_SETMASK, &signals_before, nullptr);
     hal::slow_time_down(1);
   }
 
@@ -132,11 +138,11 @@ class AssembledDaemon : public testing::Test {
     return {std::istreambuf_iterator<char>(file), {}};
   }
 
-  void begin(bool one_job = false) {
-    const std::string text =
-        "can: {interface: pair0}\ncamera: {source: none}\nrealtime: {priority: 0, lock_memory: false}\noperator: {socket: " +
-        (folder / "operator.sock") + "}\nlog: {folder: " + (folder / "log") + "}\nlock_folder: " + folder.path().string() +
-        "\nestop: {input: " + (folder / "estop") + "}\nhoming: {file: homing.yaml}\n";
+  void begin(bool one_job = false, const std::string& camera = "{source: none}") {
+    const std::string text = "can: {interface: pair0}\ncamera: " + camera +
+                             "\nrealtime: {priority: 0, lock_memory: false}\noperator: {socket: " + (folder / "operator.sock") +
+                             "}\nlog: {folder: " + (folder / "log") + "}\nlock_folder: " + folder.path().string() +
+                             "\nestop: {input: " + (folder / "estop") + "}\nhoming: {file: homing.yaml}\n";
     config = std::make_unique<hal::VehicleConfig>(hal::load_vehicle_config(folder.write("vehicle.yaml", text)));
     hal::Daemon::Surroundings surroundings;
     surroundings.calls = bus.get();
@@ -145,7 +151,7 @@ class AssembledDaemon : public testing::Test {
       return 0;
     };
     daemon = std::make_unique<hal::Daemon>(*config, surroundings);
-    thread = std::thread([this, one_job] { well = daemon->run(signal_pipe[0], one_job); });
+    thread = std::thread([this, one_job] { well = daemon->run(signals, one_job); });
     wait_until("the operator interface", [this] {
       try {
         return ask("status")["ok"] == true;
@@ -154,11 +160,9 @@ class AssembledDaemon : public testing::Test {
       }
     });
   }
-  // As SIGTERM does.
-  void end() {
+  void end(int signal = SIGTERM) {
     if (!thread.joinable()) return;
-    const signalfd_siginfo signal{};
-    EXPECT_EQ(write(signal_pipe[1], &signal, sizeof signal), static_cast<ssize_t>(sizeof signal));
+    EXPECT_EQ(kill(getpid(), signal), 0);
     thread.join();
   }
 
@@ -199,7 +203,8 @@ class AssembledDaemon : public testing::Test {
   TemporaryFolder folder;
   std::unique_ptr<Sea> sea;
   std::unique_ptr<PairLinux> bus;
-  int signal_pipe[2] = {-1, -1};
+  int signals = -1;
+  sigset_t signals_before{};
   std::unique_ptr<hal::VehicleConfig> config;
   std::unique_ptr<hal::Daemon> daemon;
   std::thread thread;
@@ -282,13 +287,18 @@ TEST_F(AssembledDaemon, ComesBackFromBusOffWhenItIsTold) {
   ASSERT_TRUE(wait_standing("ready"));
 }
 
-TEST_F(AssembledDaemon, TakesThePowerWhenItEndsInMidMotion) {
+// SIGHUP: the terminal that it was started from is gone. The arm is not left to itself.
+class DaemonEndedBy : public AssembledDaemon, public testing::WithParamInterface<int> {};
+INSTANTIATE_TEST_SUITE_P(Signals, DaemonEndedBy, testing::Values(SIGTERM, SIGINT, SIGHUP),
+                         [](const auto& signal) { return std::string(sigabbrev_np(signal.param)); });
+
+TEST_P(DaemonEndedBy, ASignalInMidMotionTakesThePower) {
   begin();
   order("home");
   ASSERT_TRUE(wait_standing("ready"));
   order({{"do", "jog"}, {"joint", "slew"}, {"by_deg", 15}});
   ASSERT_TRUE(wait_standing("jogging"));
-  end();
+  end(GetParam());
   EXPECT_FALSE(sea->any_powered());
 }
 
@@ -298,6 +308,34 @@ TEST_F(AssembledDaemon, AnInterruptedJobHasNotEndedWell) {
   end();
   EXPECT_FALSE(well);
   EXPECT_FALSE(sea->any_powered());
+}
+
+// An arm that is out must be led home and stowed without its camera; only what has to see is refused.
+TEST_F(AssembledDaemon, WithoutItsCameraItHomesAndStowsAndRefusesAJob) {
+  begin(false, "{source: device, device: " + (folder / "video9") + "}");
+  expect_refused("start", "a job needs the camera: " + (folder / "video9") + ": there is no camera");
+  EXPECT_FALSE(sea->any_powered());
+  const double park_rad = config->core.controller.mission.park_rad[0];
+  std::string reason;
+  // A machine that stands still for three SYNCs stops the arm: rightly, and it is asked again.
+  for (int again = 0; again < 3 && reason != "aborted"; ++again) {
+    order("home");
+    ASSERT_TRUE(wait_standing("ready"));
+    EXPECT_TRUE(sea->any_powered());
+    expect_refused("start", "a job needs the camera");
+    const double before_rad = sea->actual_rad(0);
+    order({{"do", "jog"}, {"joint", "slew"}, {"by_deg", 5}});
+    ASSERT_TRUE(wait_standing("jogging"));
+    ASSERT_TRUE(wait_standing("ready"));
+    EXPECT_NEAR(sea->actual_rad(0), before_rad + 5 * pi / 180, 0.02);
+    order("abort");
+    ASSERT_TRUE(wait_standing("ended"));
+    reason = ask("status")["failure"]["reason"];
+    order("reset");
+    ASSERT_TRUE(wait_unpowered(5));
+  }
+  EXPECT_EQ(reason, "aborted");
+  EXPECT_NEAR(sea->actual_rad(0), park_rad, 0.02) << "stowed";
 }
 
 TEST_F(AssembledDaemon, GivesNoPowerToAJointThatWasNeverCommissioned) {
@@ -322,7 +360,11 @@ TEST_F(AssembledDaemon, CommissionsAJointAndUsesItsZero) {
   const auto ended = [&] { return ask("status")["standing"] != "commissioning" && ask("status")["commissioning"]["state"] != "under way"; };
   ASSERT_TRUE(wait_until("the commissioning's end", ended, 120));
   // It takes some ten seconds, in which a machine that stands still for three SYNCs ends it: rightly, and it is asked again.
-  for (int again = 0; again < 3 && ask("status")["commissioning"].value("why", "").find("no process data") != std::string::npos; ++again) {
+  const auto stood_still = [&] {
+    const std::string why = ask("status")["commissioning"].value("why", "");
+    return why.find("no process data") != std::string::npos || why.find("the emergency-stop chain cannot be read") != std::string::npos;
+  };
+  for (int again = 0; again < 3 && stood_still(); ++again) {
     EXPECT_FALSE(sea->any_powered());
     order(commission_jaw);
     ASSERT_TRUE(wait_standing("commissioning", 5));

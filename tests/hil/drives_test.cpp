@@ -4,8 +4,11 @@
 #include <cmath>
 #include <string>
 
+#include "firmware/arm/actuator.hpp"
 #include "hal/config/share.hpp"
+#include "hal/vehicle/status_json.hpp"
 #include "host_sim/devices/drive/drive_dictionary.hpp"
+#include "tests/hil/operator.hpp"
 #include "tests/hil/rig.hpp"
 
 namespace lf::test {
@@ -35,6 +38,76 @@ TEST(MixedDrives, FlyWithNodeNumbersAndPolaritiesOfTheirOwn) {
            "drives.elbow.profile=ipos", "drives.elbow.node=1", "drives.roll.polarity=reversed", "drives.jaw.profile=elmo_gold",
            "drives.jaw.node=40", "outputs.node=90"});
   expect_success(rig);
+}
+
+// A drive without an absolute encoder counts from 0 wherever the joint stands, until it homes. Its homing changes its zero by 1.9 rad; what the mission held
+// before, or aimed at, is of the old one.
+TEST(ADriveThatHomesByItsOwnMethod, MovesNoJointBeyondItsHoming) {
+  const auto start_rad = angles_rad(Rig());
+  const auto here_is_home = [&](ControllerConfig& core) {
+    canopen::DriveSetup& elbow = core.network.drives[2];
+    elbow.homing_method = 35;
+    elbow.home_offset_counts = arm::counts_from_rad(Joint::elbow, start_rad[2]);
+  };
+  const auto forgetful = [](hal::SimConfig& truth) { truth.devices.drives[2].absolute_encoder = false; };
+  {
+    Rig rig({}, 1, here_is_home, forgetful);
+    ASSERT_TRUE(home(rig)) << rig.story();
+    for (int i = 0; i < 250; ++i) {
+      EXPECT_LT(farthest_apart(angles_rad(rig), start_rad), 0.005) << "at " << i;
+      rig.step();
+    }
+  }
+  Rig rig({}, 1, here_is_home, forgetful);
+  rig.start();
+  ASSERT_TRUE(rig.run_to(mission::Step::home)) << rig.story();
+  while (rig.step_now() == mission::Step::home) {
+    ASSERT_LT(farthest_apart(angles_rad(rig), start_rad), 0.005) << rig.story();
+    rig.step();
+  }
+  // A motion begins with a bounded jerk; a leap of the target would take the elbow along at its top speed.
+  rig.run_for(0.1);
+  EXPECT_LT(farthest_apart(angles_rad(rig), start_rad), 0.005) << rig.story();
+  EXPECT_EQ(rig.count(safety::Fault::following_error), 0u) << rig.story();
+  ASSERT_TRUE(rig.run_to_end()) << rig.story();
+  EXPECT_TRUE(rig.outcome().success) << rig.story();
+  EXPECT_NEAR(deg_from_rad(rig.world().valve_angle_rad()), 90, 3);
+}
+
+// The standard has 8A88 as "monitoring" and FF20 as "device specific". The makers' own words say that the power was taken from outside.
+TEST(MixedDrives, TellTheirErrorsInTheirMakersWords) {
+  const std::vector<std::string> makes{"drives.elbow.profile=epos4", "drives.roll.profile=elmo_gold", "drives.roll.node=40"};
+  const scenario::Scenario scenario = scenario::load_scenario("default", makes);
+  const config::ErrorTexts texts = scenario::make_nominal(scenario, false).error_texts;
+  struct Case {
+    std::uint8_t node;
+    std::uint16_t code;
+    const char* event;
+    const char* reason;
+  };
+  for (const Case& c : {Case{3, 0x8A88, "safe torque off", "drive fault: elbow, EMCY 0x8A88 (safe torque off)"},
+                        Case{40, 0xFF20, "safe torque off", "drive fault: roll, EMCY 0xFF20 (safe torque off)"},
+                        Case{2, 0x8A88, "monitoring", "drive fault: shoulder, EMCY 0x8A88 (monitoring)"}}) {
+    SCOPED_TRACE(c.reason);
+    Rig rig(makes);
+    ASSERT_TRUE(home(rig)) << rig.story();
+    CanFrame emcy;
+    emcy.id = 0x080u + c.node;
+    emcy.length = 8;
+    emcy.data[0] = static_cast<std::uint8_t>(c.code & 0xFF);
+    emcy.data[1] = static_cast<std::uint8_t>(c.code >> 8);
+    emcy.data[2] = 0x81;
+    rig.controller().on_can(0, emcy, rig.now());
+    ASSERT_TRUE(rig.run_to_end(10)) << rig.story();
+    std::string told;
+    for (const Event& event : rig.events()) {
+      if (event.kind == Event::Kind::emcy && event.emcy == c.code) told = hal::event_json(event, texts)["text"];
+    }
+    EXPECT_EQ(told, c.event);
+    hal::ControlReport report;
+    report.outcome = rig.outcome();
+    EXPECT_EQ(hal::status_json(report, {}, texts)["failure"]["text"], c.reason);
+  }
 }
 
 // What cannot fly never has power.

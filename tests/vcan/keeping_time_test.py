@@ -123,8 +123,17 @@ class KeepingTime(unittest.TestCase):
             self.assertEqual(len(keeping_time.excuses(status, self.folder)), 1)
         self.assertEqual(keeping_time.excuses(75, self.folder), [])
         keeping_time.crowd = lambda: 0.5
-        for status, own_clock, excuses in ((1, False, 0), (75, False, 1), (75, True, 0), (124, True, 2), (125, False, 2)):
-            self.assertEqual(len(keeping_time.excuses(status, self.folder, own_clock)), excuses, (status, own_clock))
+        for status, excuses in ((1, 0), (75, 0), (124, 2), (125, 2)):
+            self.assertEqual(len(keeping_time.excuses(status, self.folder)), excuses, status)
+
+    def test_a_missed_limit_is_excused_by_the_watcher_alone_and_in_a_crowd_by_all_that_it_saw(self):
+        self.setUp_quiet()
+        (self.folder / "missed_ms").write_text("300\n")
+        for crowd, watched, excuses in ((-1, "60 290", 0), (-1, "60 310", 0), (0.5, "60 290", 0), (0.5, "60 310", 1), (9, "0 0", 0), (-1, "300 300", 1)):
+            keeping_time.crowd = lambda crowd=crowd: crowd
+            (self.folder / "guest_late_ms").write_text(f"{watched}\n")
+            self.assertEqual(len(keeping_time.excuses(75, self.folder)), excuses, (crowd, watched))
+            self.assertEqual(keeping_time.excuses(1, self.folder), [])
 
     def test_a_guest_that_counts_instructions_has_no_late_watcher(self):
         self.assertEqual(self.run_it("exit 75", late_ms="80 300", own_clock=True)[::2], (75, 1))

@@ -2,7 +2,6 @@
 
 #include <cstdio>
 
-#include "firmware/canopen/emcy.hpp"
 #include "hal/config/fault_text.hpp"
 
 namespace lf::app {
@@ -30,12 +29,12 @@ void PhaseObserver::on_event(const Event& event) {
   digest_.decision(event.t, text);
   if (event.kind == Event::Kind::step) enter_step(event);
   if (event.kind == Event::Kind::emcy && event.emcy != 0 && say_) {
-    say_(clock_text(event.t.s()) + "node " + std::to_string(event.code) + ": " + canopen::emcy_name(event.emcy));
+    say_(clock_text(event.t.s()) + "node " + std::to_string(event.code) + ": " + texts_.of_node(event.code, event.emcy));
   }
   if (event.kind != Event::Kind::fault || event.reaction < safety::Reaction::retry) return;
   if (event.reaction == safety::Reaction::retry) retried_ = true;
   if (say_)
-    say_(clock_text(event.t.s()) + step.name + ": " + config::fault_text(event.fault, event.code, event.emcy) +
+    say_(clock_text(event.t.s()) + step.name + ": " + config::fault_text(event.fault, event.code, event.emcy, texts_) +
          ", reaction: " + safety::name(event.reaction));
 }
 

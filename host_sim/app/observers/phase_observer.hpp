@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "hal/config/error_texts.hpp"
 #include "hal/sim/sim_platform.hpp"
 #include "host_sim/record/digest.hpp"
 #include "host_sim/record/result.hpp"
@@ -15,8 +16,9 @@ class PhaseObserver : public hal::SimObserver {
  public:
   using Say = std::function<void(const std::string&)>;  // a line of progress
 
-  // `digest` outlives the observer, as does what `say` refers to. `say` may be empty.
-  PhaseObserver(record::RunDigest& digest, Say say) : digest_(digest), say_(std::move(say)) {}
+  // `digest` and `texts`, of the drives' error codes, outlive the observer, as does what `say` refers to. `say` may be empty.
+  PhaseObserver(record::RunDigest& digest, const config::ErrorTexts& texts, Say say)
+      : digest_(digest), texts_(texts), say_(std::move(say)) {}
 
   void on_telemetry(const Telemetry& telemetry) override;
   void finish(double now_s, const std::string& failure);
@@ -29,6 +31,7 @@ class PhaseObserver : public hal::SimObserver {
   void enter_step(const Event& event);
 
   record::RunDigest& digest_;
+  const config::ErrorTexts& texts_;
   Say say_;
   std::vector<record::PhaseRecord> phases_;
   bool retried_ = false;

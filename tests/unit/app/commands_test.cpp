@@ -52,6 +52,18 @@ TEST_F(Commands, VersionAndScenariosTell) {
   EXPECT_EQ(run("scenarios hard_valve").status, 0);
 }
 
+// 2310 is "continuous over-current" in the standard, and "overcurrent" with EPOS4.
+TEST_F(Commands, RunTellsADrivesErrorInItsMakersWords) {
+  const std::string arguments = "run default --set 'faults=[{at_step: deploy, after_s: 0.1, kind: overcurrent, node: elbow}]' --out ";
+  for (const auto& [make, text] :
+       {std::pair{"lanternfish", "EMCY 0x2310 (continuous over-current)"}, std::pair{"epos4", "EMCY 0x2310 (overcurrent)"}}) {
+    const Said said = run(arguments + make + " --set drives.elbow.profile=" + make);
+    const Json result = Json::parse(text_of(folder() / make / "result.json"));
+    EXPECT_NE(result["failure"]["reason"].get<std::string>().find(text), std::string::npos) << result["failure"];
+    EXPECT_NE((said.out + said.err).find(text), std::string::npos) << said.out << said.err;
+  }
+}
+
 TEST_F(Commands, DoctorFindsThisMachineFit) {
   const Json doctor = json_of("doctor");
   EXPECT_EQ(doctor["good"], true) << doctor.dump(2);

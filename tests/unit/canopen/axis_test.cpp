@@ -362,6 +362,26 @@ TEST_F(AxisTest, RequestsBeforeTheBootAreForgotten) {
   EXPECT_EQ(fresh.network.axis(Joint::slew).state(), AxisState::disabled);
 }
 
+// A drive with a brake leaves Operation enabled only when the brake is closed. 0.4 s are a transition's own time here.
+TEST_F(AxisTest, TheTimeThatTheBrakeTakesToCloseIsWaitedFor) {
+  for (const int closes_ms : {0, 2000}) {
+    SCOPED_TRACE(closes_ms);
+    NetworkConfig with_brake = config();
+    with_brake.drives[0].profile.brake_closes = Duration::from_ms(closes_ms);
+    Bus braked(with_brake);
+    ASSERT_TRUE(braked.boot());
+    Axis& one = braked.network.axis(Joint::slew);
+    one.request(AxisRequest::hold_enabled);
+    ASSERT_TRUE(braked.run_until([&] { return one.enabled(); }, Duration::from_ms(500)));
+    braked.nodes[0].ignores_controlword = true;
+    one.request(AxisRequest::disable);
+    const auto faulted = [&] { return one.fault() != AxisFault::none; };
+    EXPECT_FALSE(braked.run_until(faulted, Duration::from_ms(closes_ms + 390)));
+    EXPECT_TRUE(braked.run_until(faulted, Duration::from_ms(50))) << "for no longer than the brake may take";
+    EXPECT_EQ(one.fault(), AxisFault::transition_timeout);
+  }
+}
+
 TEST_F(AxisTest, TargetsStandStillUntilTheBrakeIsOpen) {
   NetworkConfig braked = config();
   braked.drives[0].profile.brake_opens = Duration::from_ms(200);

@@ -74,6 +74,19 @@ TEST(BusDoctor, NamesWhatDiffersFromTheProfile) {
   EXPECT_NE(all[1].find("6076:00 rated torque is not there"), std::string::npos) << all[1];
 }
 
+TEST(BusDoctor, SaysWhatALostSyncDoesAndTheBrakesTimes) {
+  const auto text = [](const char* make) {
+    DriveBench bench({"", make});
+    const std::vector<hal::FoundNode> nodes = examine(bench);
+    return hal::doctor_text({nodes.at(2)}, all_kinds());
+  };
+  const std::string c5e = text("c5e"), copley = text("copley");
+  EXPECT_NE(c5e.find("  when SYNC is lost: says so in bit 8 of the statusword\n"), std::string::npos) << c5e;
+  EXPECT_NE(c5e.find("  its brake: opens within 1000 ms, closes within 2000 ms\n"), std::string::npos) << c5e;
+  EXPECT_NE(copley.find("  when SYNC is lost: no document says it, try it on the bench\n"), std::string::npos) << copley;
+  EXPECT_NE(copley.find("  its brake: the profile states no times\n"), std::string::npos) << copley;
+}
+
 TEST(BusDoctor, DraftsAProfileThatIsReadOnceItsQuestionsAreAnswered) {
   DriveBench bench({"", "ingenia"});
   const std::vector<hal::FoundNode> nodes = examine(bench);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <map>
 
 #include "hal/config/drive_kind.hpp"
 #include "shared/input_error.hpp"
@@ -135,6 +136,49 @@ TEST(DriveProfileFile, WhatTheMachineDoesNotStateIsAskedFor) {
   EXPECT_THROW(apply(find_drive_kind("eyou", ""), {64, 1, 1, false}, "here", setup), InputError);  // has no homing
   setup.homing_method = 8;
   EXPECT_THROW(apply(find_drive_kind("epos4", ""), {64, 1, 1, false}, "here", setup), InputError);
+}
+
+// Their own EDS, DCF and ESI files, as shared/drives/objects.csv has them: as many sub-indices of 1600 as a PDO maps objects.
+TEST(DriveProfileFile, MapsAsManyObjectsAsTheMakersDictionaryHasEntries) {
+  std::map<std::string, double> entries;
+  std::ifstream csv(LANTERNFISH_SOURCE_DIR "/shared/drives/objects.csv");
+  for (std::string line; std::getline(csv, line);) {
+    const std::size_t at = line.find(",1600,");
+    if (at != std::string::npos && line.compare(at + 6, 2, "00") != 0) ++entries[line.substr(0, at)];
+  }
+  for (const auto& [name, dictionary] :
+       {std::pair{"epos4", "maxon EPOS4 Compact 50/5 CAN"}, std::pair{"epos4_configured", "maxon EPOS4 Module 50/15 (as configured)"},
+        std::pair{"elmo_gold", "Elmo Gold (V005)"}, std::pair{"ipos", "Technosoft iPOS (iPOS.D v1.04 rev 5)"},
+        std::pair{"c5e", "Nanotec C5-E-2-09"}, std::pair{"ingenia", "Ingenia/Novanta EVE-NET-C 1.8.1"},
+        std::pair{"copley", "Copley Accelnet family 2009"}, std::pair{"eyou", "Eyou joint servo V1.4"},
+        std::pair{"lmdrive", "Schneider Lexium MDrive NEMA23"}}) {
+    EXPECT_EQ(find_drive_kind(name, "").most_mapped, entries[dictionary]) << name;
+  }
+}
+
+TEST(DriveProfileFile, ADriveThatMapsTooLittleIsRefusedWithTheNumber) {
+  const auto problem = [](double most, bool feed_forward) -> std::string {
+    DriveKind kind = find_drive_kind("cia402", "");
+    kind.title = "a small drive";
+    kind.rating = "object";
+    kind.most_mapped = most;
+    if (!feed_forward) kind.absences.push_back({0x60B2, 0, canopen::Substitute::no_feed_forward, "", ""});
+    canopen::DriveSetup setup;
+    try {
+      apply(kind, {64, 0.5, 1.3, false}, "drives.elbow", setup);
+    } catch (const InputError& refused) {
+      return refused.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(problem(3, true), "");
+  EXPECT_EQ(problem(3, false), "");
+  // The torque offset is not the only third object: 6041, 6064 and 6077 are what the core looks at.
+  for (const bool feed_forward : {true, false})
+    EXPECT_EQ(problem(2, feed_forward),
+              "drives.elbow: a small drive maps 2 objects into a PDO at most ('mapping.most_objects'), and TPDO 1 takes 3");
+  EXPECT_NE(problems_of(std::string(whole) + "mapping: {most_objects: 65}\n").find("mine.yaml:6: 'mapping.most_objects'"),
+            std::string::npos);
 }
 
 TEST(DriveProfileFile, ErrorTextsAreTheDrivesElseTheStandards) {

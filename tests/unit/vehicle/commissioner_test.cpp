@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "firmware/arm/actuator.hpp"
 #include "hal/vehicle/operator_client.hpp"
+#include "tests/unit/temporary_folder.hpp"
 
 namespace lf::hal {
 namespace {
@@ -33,7 +37,7 @@ TEST(Commissioned, AJointThatSomethingRubsAgainstIsLeftOutAndTheOthersAreTakenOv
   commissioned.friction_found = {true, true, true, false, false};
   commissioned.friction = {{{1, 1e-3, 0.1}, {100, 1e-3, 0.1}, {1, 1e-3, 0.1}, {}, {}}};
   commissioned.how = "in the jig";
-  const std::vector<std::string> left_out = take_over(commissioned, motors, offsets);
+  const std::vector<std::string> left_out = take_over(commissioned, motors, offsets).left_out;
   ASSERT_EQ(left_out.size(), 1U);
   EXPECT_NE(left_out[0].find("'shoulder.coulomb_mnm' is 100"), std::string::npos) << left_out[0];
   EXPECT_EQ(offsets.known, (std::array<bool, joint_count>{true, false, false, true, false})) << "the old zero may be as wrong";
@@ -43,19 +47,84 @@ TEST(Commissioned, AJointThatSomethingRubsAgainstIsLeftOutAndTheOthersAreTakenOv
   EXPECT_EQ(offsets.friction[0].coulomb_mnm, 1);
 }
 
-// In a jig no friction is measured: that of the file is forgotten when it cannot be, and does not take the power again.
-TEST(Commissioned, AZeroOfAJigHealsAJointWhoseFileHasAFrictionThatCannotBe) {
+// A zero alone, of a jig or of a joint that had too little way, does not show that what rubbed is gone. Such a joint moved with the description's friction.
+TEST(Commissioned, AJointLeftOutForItsFrictionStaysOutUntilAFrictionWasMeasured) {
   std::array<Motor, joint_count> motors;
   for (Motor& motor : motors) motor.coulomb_nm = 1e-3, motor.viscous_nm_s = 1e-6;
-  config::HomingOffsets offsets;
-  offsets.known = offsets.friction_known = {true, true, false, false, false};
-  offsets.friction = {{{1, 1e-3, 0.1}, {100, 1e-3, 0.1}, {}, {}, {}}};
-  Commissioned commissioned;
-  commissioned.found = {true, true, false, false, false};
-  EXPECT_TRUE(take_over(commissioned, motors, offsets).empty());
-  EXPECT_EQ(offsets.friction_known, (std::array<bool, joint_count>{true, false, false, false, false}));
-  EXPECT_TRUE(config::leave_out_doubtful(offsets, motors).empty());
-  EXPECT_TRUE(offsets.known[1]);
+  const test::TemporaryFolder folder;
+  const std::string file = folder.write("homing.yaml", "slew: {zero_counts: 3, coulomb_mnm: 1, viscous_mnm_s: 0.001}\n");
+  const auto commission = [&](bool friction_found, double coulomb_mnm) {
+    config::HomingOffsets offsets = config::read_homing_file(file);
+    Commissioned commissioned;
+    commissioned.found[0] = true;
+    commissioned.zero_counts[0] = 5;
+    commissioned.friction_found[0] = friction_found;
+    commissioned.friction[0] = {coulomb_mnm, 1e-3, 0.1};
+    commissioned.how = "at its stop";
+    const std::vector<std::string> left_out = take_over(commissioned, motors, offsets).left_out;
+    config::write_homing_file(file, offsets);
+    return left_out;
+  };
+  const auto known = [&] { return config::read_homing_file(file).known[0]; };
+  EXPECT_TRUE(commission(false, 0).empty());
+  EXPECT_TRUE(known()) << "nothing was doubtful";
+  EXPECT_EQ(commission(true, 100).size(), 1u);
+  EXPECT_FALSE(known());
+  const std::vector<std::string> again = commission(false, 0);
+  ASSERT_EQ(again.size(), 1u);
+  EXPECT_NE(again[0].find("the slew's friction was doubtful before, and no friction was measured now"), std::string::npos) << again[0];
+  EXPECT_FALSE(known());
+  EXPECT_EQ(commission(false, 0).size(), 1u) << "and so it stays";
+  EXPECT_EQ(commission(true, -1).size(), 1u) << "a friction that is no number the file could hold";
+  EXPECT_FALSE(known());
+  EXPECT_TRUE(commission(true, 1).empty());
+  EXPECT_TRUE(known());
+  EXPECT_EQ(config::read_homing_file(file).zero_counts[0], 5);
+  // A figure in the file that cannot be counts as doubtful, too.
+  folder.write("homing.yaml", "slew: {zero_counts: 3, coulomb_mnm: 100, viscous_mnm_s: 0.001}\n");
+  EXPECT_EQ(commission(false, 0).size(), 1u);
+  EXPECT_FALSE(known());
+}
+
+// A screw whose stop was taken to be where an obstacle stood, and back; and the roll's gear, whose counts are the angle everywhere.
+TEST(Commissioned, AZeroThatHasMovedIsTold) {
+  std::array<Motor, joint_count> motors;
+  for (const double off_rad : {0.02, 0.04, -0.04, 0.5}) {
+    SCOPED_TRACE(off_rad);
+    config::HomingOffsets offsets;
+    offsets.known = {true, true, true, true, false};
+    offsets.zero_counts = {0, 7, 7, -70'000, 7};
+    Commissioned commissioned;
+    commissioned.found = {true, true, false, true, true};
+    commissioned.zero_counts = {0, 7, 0, -70'000, 900};
+    commissioned.place_rad = {};
+    const double roll_counts_rad = arm_geometry::joints[3].counts_per_rad;
+    const double stop_rad = arm_geometry::joints[0].lower_rad;
+    commissioned.place_rad[0] = stop_rad;
+    const std::int32_t short_of_it =
+        arm::counts_from_rad(Joint::slew, stop_rad + std::abs(off_rad)) - arm::counts_from_rad(Joint::slew, stop_rad);
+    commissioned.zero_counts[0] = off_rad > 0 ? short_of_it : -short_of_it;
+    commissioned.zero_counts[3] += static_cast<std::int32_t>(std::lround(off_rad * roll_counts_rad));
+    const TakenOver taken = take_over(commissioned, motors, offsets);
+    EXPECT_TRUE(taken.left_out.empty());
+    if (std::abs(off_rad) < 0.03) {
+      EXPECT_EQ(taken.moved_rad, (std::array<double, joint_count>{}));
+      continue;
+    }
+    EXPECT_NEAR(taken.moved_rad[0], std::abs(off_rad), 0.1 * std::abs(off_rad));
+    EXPECT_NEAR(taken.moved_rad[3], std::abs(off_rad), 1e-3);
+    EXPECT_EQ(taken.moved_rad[1], 0);
+    EXPECT_EQ(taken.moved_rad[2], 0) << "not commissioned";
+    EXPECT_EQ(taken.moved_rad[4], 0) << "no earlier zero";
+    EXPECT_EQ(offsets.zero_counts[3], commissioned.zero_counts[3]) << "it is told, not refused";
+  }
+  const Json done{{"state", "done"}, {"zeros", {{"elbow", -37}, {"jaw", 0}}}, {"moved_rad", {{"jaw", 0.123}}}};
+  const std::string text = commissioning_text(done);
+  EXPECT_NE(text.find("description has it; its zero has moved by 0.12 rad: if the drive and its encoder are the same as before, an "
+                      "obstacle was taken for the stop\n"),
+            std::string::npos)
+      << text;
+  EXPECT_EQ(text.find("moved"), text.rfind("moved")) << text;
 }
 
 TEST(HomingFile, JointsWhoseFrictionCannotBeTakeNoPower) {

@@ -8,6 +8,7 @@
 #include "hal/vehicle/control_loop.hpp"
 #include "hal/vehicle/latency_histogram.hpp"
 #include "hal/vehicle/tick_clock.hpp"
+#include "hal/vehicle/tick_grid.hpp"
 #include "hal/vehicle/timing_probe.hpp"
 
 namespace lf::hal {
@@ -56,6 +57,41 @@ TEST(LatencyHistogram, TakesWhatIsTooShortAndTooLong) {
   histogram.add(Duration::from_s(100));
   EXPECT_EQ(histogram.count(), 3u);
   EXPECT_DOUBLE_EQ(histogram.percentile_us(1), 1e8);
+}
+
+// Wakes the grid's thread late by every hundredth of a period up to four, then in time. What is sent follows the waking at once.
+TEST(TickGrid, TicksAreNeverCloserThanHalfAPeriod) {
+  constexpr Duration period = Duration::from_ms(4);
+  for (int late = 0; late <= 400; ++late) {
+    SCOPED_TRACE(late);
+    TickGrid grid(period);
+    const Time origin = Time::from_s(1);
+    grid.start(origin);
+    Time sent = origin;
+    for (int turn = 0; turn < 5; ++turn) {
+      const Time now = grid.next() + (turn == 1 ? period * late / 100 : Duration{});
+      const Time tick = grid.wake(now);
+      EXPECT_EQ((tick - origin).ns() % period.ns(), 0);
+      EXPECT_LE(tick, now);
+      EXPECT_LT(now - tick, period);
+      EXPECT_GE(now - sent, period / 2);
+      sent = now;
+    }
+    // Of the grid's instants from the first to the last, five became ticks.
+    const std::int64_t instants = (grid.next() - origin).ns() / period.ns() - 1;
+    EXPECT_EQ(grid.left_out(), static_cast<std::uint64_t>(instants - 5));
+  }
+}
+
+TEST(TickGrid, ATickThatIsALittleLateIsFollowedByTheNextOne) {
+  TickGrid grid(Duration::from_ms(4));
+  grid.start(Time{});
+  EXPECT_EQ(grid.wake(Time{} + Duration::from_ms(6)), Time{} + Duration::from_ms(4));
+  EXPECT_EQ(grid.next(), Time{} + Duration::from_ms(8));
+  EXPECT_EQ(grid.left_out(), 0u);
+  EXPECT_EQ(grid.wake(Time{} + Duration::from_us(10'001)), Time{} + Duration::from_ms(8));
+  EXPECT_EQ(grid.next(), Time{} + Duration::from_ms(16));
+  EXPECT_EQ(grid.left_out(), 1u);
 }
 
 TEST(TickClock, KeepsItsGridAndCountsWhatItMissed) {

@@ -80,6 +80,48 @@ TEST(V4l2Camera, CountsGapsRepeatsAndBrokenFrames) {
   EXPECT_EQ(camera.stats().images, 3u);
 }
 
+// A driver or a loopback device may send an old image under a new number. The stamp is the image's, so it tells.
+TEST(V4l2Camera, AnImageWithARepeatedTimeStampIsARepeatedOne) {
+  for (const std::uint32_t clock : {V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC, V4L2_BUF_FLAG_TIMESTAMP_COPY, V4L2_BUF_FLAG_TIMESTAMP_UNKNOWN}) {
+    SCOPED_TRACE(clock);
+    FakeLinux linux_;
+    V4l2Camera camera(small(), linux_);
+    ASSERT_EQ(camera.open(), port_ok);
+    const std::int64_t stamp = linux_.monotonic - 5'000'000;
+    Image image;
+    linux_.frames.push_back({.sequence = 0, .stamp_ns = stamp, .flags = clock});
+    ASSERT_EQ(camera.receive(image), port_ok);
+    linux_.frames.push_back({.sequence = 1, .stamp_ns = stamp, .flags = clock});
+    EXPECT_EQ(camera.receive(image), port_empty);
+    linux_.pass(2'000'000'000);  // a stamp of an open kind is too old by now to be believed; it still tells that the image is the same
+    linux_.frames.push_back({.sequence = 2, .stamp_ns = stamp, .flags = clock});
+    EXPECT_EQ(camera.receive(image), port_empty);
+    linux_.frames.push_back({.sequence = 3, .stamp_ns = linux_.monotonic - 1'000'000, .flags = clock});
+    EXPECT_EQ(camera.receive(image), port_ok);
+    EXPECT_EQ(camera.stats().repeated, 2u);
+    EXPECT_EQ(camera.stats().images, 2u);
+    EXPECT_EQ(camera.stats().skipped, 0u);
+    EXPECT_EQ(camera.stats().broken, 0u);
+    EXPECT_EQ(camera.stats().stamps_missed, 0u);
+  }
+}
+
+// Stamps that cannot be believed, of a driver without a clock, tell nothing about repeats.
+TEST(V4l2Camera, ImagesWithoutATimeStampAreNoRepeats) {
+  for (const std::int64_t stamp : {std::int64_t{0}, std::int64_t{1'700'000'000'000'000'000}}) {
+    FakeLinux linux_;
+    V4l2Camera camera(small(), linux_);
+    ASSERT_EQ(camera.open(), port_ok);
+    for (std::uint32_t n = 0; n < 3; ++n) {
+      linux_.frames.push_back({.sequence = n, .stamp_ns = stamp, .flags = V4L2_BUF_FLAG_TIMESTAMP_UNKNOWN});
+      Image image;
+      EXPECT_EQ(camera.receive(image), port_ok);
+    }
+    EXPECT_EQ(camera.stats().repeated, 0u);
+    EXPECT_EQ(camera.stats().stamps_missed, 3u);
+  }
+}
+
 TEST(V4l2Camera, EveryBufferComesBackToTheDriver) {
   FakeLinux linux_;
   V4l2Camera camera(small(), linux_);
