@@ -1,215 +1,21 @@
-// lanternfishd, all of it but main(), on a bus of the test's making: its threads, its socket, its log, and the served drives in real time on the other end.
-// Every order is given over the socket. No kernel's CAN, no rights and no real time are needed, so that it runs under the sanitizers as well.
-//
-// Time passes four times slower than the clock, for a machine that has other work; LANTERNFISH_SLOWDOWN=N has it pass N times slower, for a sanitizer.
-#include "hal/vehicle/daemon.hpp"
-
-#include <fcntl.h>
+// Every order is given to the assembled daemon over its socket.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <linux/can.h>
-#include <linux/can/error.h>
-#include <pthread.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <atomic>
 #include <cmath>
 #include <csignal>
 #include <cstring>
 #include <fstream>
-#include <functional>
-#include <memory>
-#include <mutex>
 #include <string>
-#include <thread>
 
 #include "firmware/arm/actuator.hpp"
 #include "hal/config/homing_file.hpp"
-#include "hal/vehicle/end_signals.hpp"
-#include "hal/vehicle/operator_client.hpp"
-#include "host_sim/scenario/instance.hpp"
-#include "host_sim/serve/serve_loop.hpp"
-#include "tests/hil/pair_linux.hpp"
-#include "tests/unit/temporary_folder.hpp"
+#include "tests/hil/assembled_daemon.hpp"
 
 namespace lf::test {
 namespace {
-
-using hal::Json;
-using testing::HasSubstr;
-
-// The drives' end of the bus.
-class PairLink : public serve::CanLink {
- public:
-  explicit PairLink(hal::LinuxCalls& calls) : can_(hal::SocketCan::Config{}, calls) { (void)can_.open(); }
-  Time now() override { return hal::monotonic_now(); }
-  bool wait(Time until) override { return can_.wait_readable(until); }
-  void sleep(Time until) override { hal::sleep_until(until); }
-  hal::PortStatus receive(hal::ReceivedFrame& received) override {
-    hal::PortStatus status = can_.receive(received);
-    while (master_off_ && status == hal::port_ok) status = can_.receive(received);  // none of its frames reached the bus
-    return status;
-  }
-  hal::PortStatus send(std::span<const CanFrame> frames) override { return master_off_ ? hal::port_ok : can_.send(frames); }
-
-  // As the master's controller reports it: an error frame, and silence until it is back.
-  void set_master_off(bool off) {
-    CanFrame frame;
-    frame.id = CanFrame::error_flag | (off ? CAN_ERR_BUSOFF : CAN_ERR_RESTARTED);
-    frame.length = 8;
-    master_off_ = off;
-    (void)can_.send({&frame, 1});
-  }
-
- private:
-  hal::SocketCan can_;
-  bool master_off_ = false;
-};
-
-hal::SimConfig make_sea() {
-  const scenario::Scenario scenario = scenario::load_scenario("default", {});
-  const scenario::Sample sample = scenario::draw(scenario, 1);
-  const scenario::Nominal nominal = scenario::make_nominal(scenario, sample.lamps_lit);
-  hal::SimConfig sea = scenario::make_truth(scenario, sample, nominal, 1);
-  sea.world.base_from_panel.translation().x() += 2;  // nothing within reach
-  for (std::size_t i = 0; i < joint_count; ++i) sea.devices.drives[i].encoder_offset_rad = 0;
-  return sea;
-}
-
-// World and drives on a thread of their own.
-class Sea {
- public:
-  explicit Sea(int fd) : linux_(fd), link_(linux_), loop_(make_sea(), serve::NodeSet::all(), link_, nullptr, {}) {
-    thread_ = std::thread([this] {
-      while (!stops_) {
-        loop_.turn();
-        const JointDrives& drives = loop_.rack().drives();
-        any_powered_ = std::any_of(drives.begin(), drives.end(), [](const JointDrive& drive) { return !drive.released; });
-        for (std::size_t i = 0; i < joint_count; ++i) actual_rad_[i] = loop_.world().readings()[i].position_rad;
-        if (bus_off_.exchange(false)) link_.set_master_off(true);
-        if (restarted_.exchange(false)) link_.set_master_off(false);
-      }
-    });
-  }
-  ~Sea() {
-    stops_ = true;
-    thread_.join();
-  }
-  // Power as the drives have it, not as the master is told.
-  bool any_powered() const { return any_powered_; }
-  double actual_rad(std::size_t joint) const { return actual_rad_[joint]; }
-  void go_bus_off() { bus_off_ = true; }
-  void come_back() { restarted_ = true; }
-
- private:
-  PairLinux linux_;
-  PairLink link_;
-  serve::ServeLoop loop_;
-  std::atomic<bool> stops_{false}, any_powered_{false}, bus_off_{false}, restarted_{false};
-  std::array<std::atomic<double>, joint_count> actual_rad_{};
-  std::thread thread_;
-};
-
-class AssembledDaemon : public testing::Test {
- protected:
-  AssembledDaemon() {
-    hal::slow_time_down(slowdown());
-    pthread_sigmask(SIG_SETMASK, nullptr, &signals_before);
-    signals = hal::take_end_signals();
-    int ends[2] = {-1, -1};
-    EXPECT_EQ(socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, ends), 0);
-    sea = std::make_unique<Sea>(ends[0]);
-    bus = std::make_unique<PairLinux>(ends[1]);
-    folder.write("estop", "1\n");
-    folder.write("homing.yaml", config_text("homing/simulator.yaml"));
-  }
-  ~AssembledDaemon() override {
-    end();
-    close(signals);
-    pthread_sigmask(SIG_SETMASK, &signals_before, nullptr);
-    hal::slow_time_down(1);
-  }
-
-  static std::string config_text(const std::string& shared) {
-    std::ifstream file(std::string(LANTERNFISH_SOURCE_DIR "/shared/") + shared);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
-
-  void begin(bool one_job = false, const std::string& camera = "{source: none}") {
-    const std::string text = "can: {interface: pair0}\ncamera: " + camera +
-                             "\nrealtime: {priority: 0, lock_memory: false}\noperator: {socket: " + (folder / "operator.sock") +
-                             "}\nlog: {folder: " + (folder / "log") + "}\nlock_folder: " + folder.path().string() +
-                             "\nestop: {input: " + (folder / "estop") + "}\nhoming: {file: homing.yaml}\n";
-    config = std::make_unique<hal::VehicleConfig>(hal::load_vehicle_config(folder.write("vehicle.yaml", text)));
-    hal::Daemon::Surroundings surroundings;
-    surroundings.calls = bus.get();
-    surroundings.restart_can = [this](const std::string&) {
-      sea->come_back();
-      return 0;
-    };
-    daemon = std::make_unique<hal::Daemon>(*config, surroundings);
-    thread = std::thread([this, one_job] { well = daemon->run(signals, one_job); });
-    wait_until("the operator interface", [this] {
-      try {
-        return ask("status")["ok"] == true;
-      } catch (const std::exception&) {
-        return false;
-      }
-    });
-  }
-  void end(int signal = SIGTERM) {
-    if (!thread.joinable()) return;
-    EXPECT_EQ(kill(getpid(), signal), 0);
-    thread.join();
-  }
-
-  Json ask(const Json& request) const { return hal::ask_daemon(folder / "operator.sock", request); }
-  Json ask(const char* request) const { return ask(Json{{"do", request}}); }
-  void order(const Json& request) const {
-    const Json reply = ask(request);
-    EXPECT_EQ(reply["ok"], true) << request << ": " << reply;
-  }
-  void order(const char* request) const { order(Json{{"do", request}}); }
-  void expect_refused(const Json& request, const std::string& why) const {
-    const Json reply = ask(request);
-    EXPECT_EQ(reply["ok"], false) << request;
-    EXPECT_THAT(reply.value("why", ""), HasSubstr(why)) << request;
-  }
-  void expect_refused(const char* request, const std::string& why) const { expect_refused(Json{{"do", request}}, why); }
-  bool wait_until(const std::string& what, const std::function<bool()>& condition, double limit_s = 60) const {
-    const Time limit = hal::monotonic_now() + Duration::from_s(limit_s);
-    while (!condition()) {
-      if (hal::monotonic_now() > limit) {
-        ADD_FAILURE() << what << ": not within " << limit_s << " s; " << ask("status").dump();
-        return false;
-      }
-      hal::sleep_until(hal::monotonic_now() + Duration::from_ms(10));
-    }
-    return true;
-  }
-  bool wait_standing(const std::string& standing, double limit_s = 60) const {
-    return wait_until(
-        standing, [&] { return ask("status")["standing"] == standing; }, limit_s);
-  }
-  bool wait_unpowered(double limit_s) const {
-    return wait_until(
-        "no power", [&] { return !sea->any_powered(); }, limit_s);
-  }
-  std::string events() const { return folder.read("log/log.jsonl"); }
-
-  TemporaryFolder folder;
-  std::unique_ptr<Sea> sea;
-  std::unique_ptr<PairLinux> bus;
-  int signals = -1;
-  sigset_t signals_before{};
-  std::unique_ptr<hal::VehicleConfig> config;
-  std::unique_ptr<hal::Daemon> daemon;
-  std::thread thread;
-  std::atomic<bool> well{false};
-};
 
 const Json turn_to_45 = Json::parse(R"({"do":"task","tasks":[{"turn_valve":{"to_deg":45}}]})");
 const Json turn_without_angle = Json::parse(R"({"do":"task","tasks":[{"turn_valve":90}]})");
