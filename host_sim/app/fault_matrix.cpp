@@ -27,9 +27,9 @@ constexpr double longest_s = 300;    // of a mission, after its fault
 constexpr double by_hand_s = 6;      // of an arm that waits for orders
 constexpr double over_s = 3;         // of a mission that had ended before
 
-// A pair is taken in one step of each phase.
-constexpr std::array<Step, 8> pair_steps{Step::enable, Step::deploy, Step::scan, Step::advance,
-                                         Step::turn,   Step::press,  Step::stow, Step::stopped};
+// A pair is taken in one step of each phase; of those that are long, in several.
+constexpr std::array<Step, 9> pair_steps{Step::boot, Step::enable, Step::deploy, Step::scan,   Step::advance,
+                                         Step::turn, Step::press,  Step::stow,   Step::stopped};
 
 bool chosen(const std::vector<std::string>& names, const std::string& name) {
   return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
