@@ -17,8 +17,8 @@ struct CampaignOptions {
   int jobs = 0;
   bool json = false;
   bool faults = false;
-  std::vector<std::string> kinds, steps;
-  bool pairs = false;
+  std::vector<std::string> kinds, steps, rows;
+  bool pairs = false, rendered = false;
   std::size_t one_in = 1;
   bool ranges = false;
   std::size_t draws = 5, many = 300;

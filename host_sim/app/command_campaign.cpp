@@ -248,6 +248,11 @@ void add_campaign(CLI::App& app, Action& action) {
   command->add_option("--many", options->many, "--ranges: runs with eight keys at once")->check(CLI::Range(0, 100000))->needs(ranges);
   command->add_option("--kinds", options->kinds, "--faults: these kinds only; --ranges: these keys only")->delimiter(',');
   command->add_option("--steps", options->steps, "--faults: these steps only")->delimiter(';')->needs(faults);
+  command->add_option("--rows", options->rows, "--faults: these rows only, by name, as 'turn: overcurrent elbow'")
+      ->delimiter(';')
+      ->needs(faults);
+  command->add_flag("--rendered", options->rendered, "--faults: camera and vision see what is drawn, instead of being given the true pose")
+      ->needs(faults);
   command->add_flag("--pairs", options->pairs, "--faults: pairs of faults within 0.5 s, in a step of each phase")->needs(faults);
   command->add_option("--one-in", options->one_in, "--faults: a sample, one row in so many")->check(CLI::Range(1, 100000))->needs(faults);
   command->add_option("--shard", options->shard, "K/N: the K-th of N parts");

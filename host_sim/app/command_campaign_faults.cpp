@@ -17,6 +17,8 @@ std::string command_of(const CampaignOptions& options) {
   if (options.pairs) command += " --pairs";
   for (const std::string& kind : options.kinds) command += " --kinds " + kind;
   for (const std::string& step : options.steps) command += " --steps '" + step + "'";
+  for (const std::string& row : options.rows) command += " --rows '" + row + "'";
+  if (options.rendered) command += " --rendered";
   if (options.one_in > 1) command += " --one-in " + std::to_string(options.one_in);
   if (options.shard != "1/1") command += " --shard " + options.shard;
   return command;
@@ -32,9 +34,9 @@ void say(const RowResult& row) {
 int fault_campaign(const CampaignOptions& options) {
   const Shard shard = parse_shard(options.shard);
   const scenario::Scenario base = scenario::load_scenario(options.scenario, options.set);
-  const CampaignFolder folder(options, base, options.pairs ? "fault-pairs" : "faults");
+  const CampaignFolder folder(options, base, std::string(options.pairs ? "fault-pairs" : "faults") + (options.rendered ? "-rendered" : ""));
   catch_interrupts();
-  MatrixChoice choice{options.kinds, options.steps, options.pairs, shard.index, shard.count, options.one_in};
+  const MatrixChoice choice{options.kinds, options.steps, options.rows, options.pairs, shard.index, shard.count, options.one_in};
   const std::vector<MatrixRow> all = matrix_rows(survey_moments(base), choice);
 
   // Rows of this choice that are there are kept.
@@ -51,7 +53,7 @@ int fault_campaign(const CampaignOptions& options) {
     if (wanted.contains(row.name())) missing.push_back(row);
   }
   if (kept > 0) std::fprintf(stderr, "%zu rows are kept, %zu are missing\n", kept, missing.size());
-  fly_matrix(base, missing, jobs_of(options), file, [&](const RowResult& row) {
+  fly_matrix(base, missing, options.rendered ? Sight::rendered : Sight::given, jobs_of(options), file, [&](const RowResult& row) {
     say(row);
     results.push_back(row);
   });

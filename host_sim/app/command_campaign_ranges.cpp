@@ -12,15 +12,17 @@
 #include "host_sim/app/interrupt.hpp"
 #include "host_sim/app/range_draws.hpp"
 #include "host_sim/app/run_session.hpp"
+#include "host_sim/judge/range_rules.hpp"
 #include "host_sim/judge/truth.hpp"
 #include "host_sim/record/run_folder.hpp"
+#include "host_sim/scenario/duration.hpp"
 #include "shared/input_error.hpp"
 
 namespace lf::app {
 
 namespace {
 
-// What a drawn value came to. "unnamed": it ended safely, but nobody can say why.
+// What a drawn value came to. "unnamed": it ended safely, but its reason names none of the drawn keys (judge/range_rules.hpp).
 constexpr std::array verdicts{"success", "safe", "refused", "unnamed", "unsafe"};
 
 struct RangeResult {
@@ -39,7 +41,14 @@ std::optional<RangeResult> parse(const std::string& line) {
                      json.value("reason", "")};
 }
 
-void judge(const record::RunResult& run, RangeResult& result) {
+// The keys of "path=value", as --set takes them.
+std::vector<std::string> keys_of(const RangeRow& row) {
+  std::vector<std::string> keys;
+  for (const std::string& set : row.set) keys.push_back(set.substr(0, set.find('=')));
+  return keys;
+}
+
+void judge(const record::RunResult& run, const RangeRow& row, RangeResult& result) {
   if (run.success) {
     result.verdict = "success";
     return;
@@ -47,7 +56,7 @@ void judge(const record::RunResult& run, RangeResult& result) {
   result.reason = run.failure->phase + ": " + run.failure->reason;
   const bool forced = run.contact.peak_force_n > judge::contact_limit_n || run.contact.unintended_contacts > 0;
   const bool unsafe = run.false_success || forced || run.failure->reason.find("moves or has power") != std::string::npos;
-  const bool named = run.failure->reason.find("not ended by the time limit") == std::string::npos;
+  const bool named = judge::names_a_key(keys_of(row), run.failure->reason);
   result.verdict = unsafe ? "unsafe" : named ? "safe" : "unnamed";
   if (forced && !run.false_success) {
     result.reason += " (" + std::to_string(run.contact.unintended_contacts) + " unintended contacts, up to " +
@@ -63,10 +72,12 @@ RangeResult fly_once(const CampaignOptions& options, const RangeRow& row) {
   try {
     RunRequest request;
     request.scenario = scenario::load_scenario(options.scenario, set);
+    // Slow speeds are no failure: a run has the time that they need.
+    request.scenario.time_limit_s = std::max(request.scenario.time_limit_s, scenario::longest_mission_s(request.scenario));
     request.seed = row.seed;
     request.outside = false;
     request.given_sight = !row.sees;
-    judge(run_mission(request).result, result);
+    judge(run_mission(request).result, row, result);
   } catch (const InputError& error) {
     result.verdict = "refused";
     result.reason = error.what();

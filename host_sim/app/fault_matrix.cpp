@@ -27,9 +27,9 @@ constexpr double longest_s = 300;    // of a mission, after its fault
 constexpr double by_hand_s = 6;      // of an arm that waits for orders
 constexpr double over_s = 3;         // of a mission that had ended before
 
-// A pair is taken in one step of each phase.
-constexpr std::array<Step, 8> pair_steps{Step::enable, Step::deploy, Step::scan, Step::advance,
-                                         Step::turn,   Step::press,  Step::stow, Step::stopped};
+// A pair is taken in one step of each phase; of those that are long, in several.
+constexpr std::array<Step, 9> pair_steps{Step::boot, Step::enable, Step::deploy, Step::scan,   Step::advance,
+                                         Step::turn, Step::press,  Step::stow,   Step::stopped};
 
 bool chosen(const std::vector<std::string>& names, const std::string& name) {
   return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
@@ -127,8 +127,9 @@ RowResult fly_row(const config::Drives& drives, Flight& flight, Watched& watched
   situation.gear_gives_rad = flight.gear_gives_rad();
   situation.powering_up = mission::row(row.moment.step).phase == safety::Phase::boot;
   situation.over = flight.mission().outcome().ended;
-  situation.fails_anyway = row.moment.walk != "mission" && !walk.by_hand();
+  situation.fails_anyway = !walk.succeeds() && !walk.by_hand();
   const Time begin = flight.now();
+  const auto counts_before = flight.fault_counts();
   watched.safety.begin(flight.platform().devices(), begin);
   for (std::size_t i = 0; i < row.causes.size(); ++i) {
     const double later_s = i == 0 ? 0 : row.apart_s;
@@ -164,6 +165,9 @@ RowResult fly_row(const config::Drives& drives, Flight& flight, Watched& watched
   result.went_on = verdict.went_on;
   result.end = ending.ended ? ending.step : "not ended, in " + ending.step;
   result.reason = ending.reason;
+  for (std::size_t i = 0; i < safety::fault_count; ++i) {
+    if (flight.fault_counts()[i] != counts_before[i]) result.reported.emplace_back(safety::name(static_cast<safety::Fault>(i)));
+  }
   result.stop_ms = verdict.stop_ms;
   result.standing_s = verdict.standing_s;
   result.power_off_s = verdict.power_off_s;
@@ -178,7 +182,7 @@ RowResult described(const MatrixRow& row, RowResult result) {
   result.step = row.moment.name;
   result.walk = row.moment.walk;
   // A mission that waits for an operator, or had ended, has no success to come to.
-  result.must_go_on = row.moment.walk == "mission" && !mission::is_end(row.moment.step) &&
+  result.must_go_on = FaultWalk(row.moment.walk).succeeds() && !mission::is_end(row.moment.step) &&
                       std::all_of(row.causes.begin(), row.causes.end(),
                                   [](const judge::Cause& cause) { return cause.rule->demand == judge::Demand::go_on; });
   return result;
@@ -213,6 +217,23 @@ void fly_from_power_on(const scenario::Scenario& base, const MatrixRow& row, Cop
   });
 }
 
+// From power-on, in a process of its own. What is seen takes other times than what is given: the moment counts from when the step begins.
+void fly_rendered(const scenario::Scenario& base, const MatrixRow& row, Copies& copies) {
+  copies.start(row.name(), [&] {
+    FaultWalk walk(row.moment.walk);
+    Watched watched;
+    Flight flight(walk.with_its_faults(base), 1, watched.all, Sight::rendered);
+    double begun_s = -1;
+    while (begun_s < 0 || flight.now().s() < begun_s + row.moment.into_s) {
+      if (flight.now().s() > longest_s) throw InputError("the mission did not come to this step");
+      walk.give_orders(flight);
+      flight.step();
+      if (begun_s < 0 && flight.mission_step() == row.moment.step) begun_s = flight.now().s();
+    }
+    return row_json(described(row, fly_row(base.drives, flight, watched, walk, row)));
+  });
+}
+
 }  // namespace
 
 std::string MatrixRow::name() const {
@@ -226,16 +247,20 @@ std::string MatrixRow::name() const {
 std::vector<MatrixRow> matrix_rows(const std::vector<FaultMoment>& moments, const MatrixChoice& choice) {
   check_choice(moments, choice);
   const std::vector<MatrixRow> all = choice.pairs ? pair_rows(moments, choice) : single_rows(moments, choice);
+  std::vector<std::string> names;
+  for (const MatrixRow& row : all) names.push_back(row.name());
+  check_names(choice.rows, names, "--rows");
   std::vector<MatrixRow> mine;
   // A sample is drawn by the rows' names: a stride would meet the same kinds at every moment.
   for (std::size_t i = choice.shard - 1; i < all.size(); i += choice.shards) {
-    if (choice.one_in <= 1 || scenario::bits(sample_seed, all[i].name()) % choice.one_in == 0) mine.push_back(all[i]);
+    const bool drawn = choice.one_in <= 1 || scenario::bits(sample_seed, all[i].name()) % choice.one_in == 0;
+    if (drawn && chosen(choice.rows, all[i].name())) mine.push_back(all[i]);
   }
   return mine;
 }
 
-void fly_matrix(const scenario::Scenario& base, const std::vector<MatrixRow>& rows, int jobs, const std::filesystem::path& file,
-                const std::function<void(const RowResult&)>& told) {
+void fly_matrix(const scenario::Scenario& base, const std::vector<MatrixRow>& rows, Sight sight, int jobs,
+                const std::filesystem::path& file, const std::function<void(const RowResult&)>& told) {
   LineFile lines(file);
   std::map<std::string, const MatrixRow*> by_name;
   for (const MatrixRow& row : rows) by_name[row.name()] = &row;
@@ -257,6 +282,8 @@ void fly_matrix(const scenario::Scenario& base, const std::vector<MatrixRow>& ro
           std::any_of(row.causes.begin(), row.causes.end(), [](const judge::Cause& cause) { return cause.rule->kind == "limits_refused"; });
       if (is_told) {
         fly_from_power_on(base, row, copies);
+      } else if (sight == Sight::rendered) {
+        if (!interrupted()) fly_rendered(base, row, copies);
       } else {
         on_the_way.push_back(&row);
       }

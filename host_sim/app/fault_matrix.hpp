@@ -26,12 +26,13 @@ struct MatrixRow {
 struct MatrixChoice {
   std::vector<std::string> kinds;  // empty: all
   std::vector<std::string> steps;  // empty: all
+  std::vector<std::string> rows;   // by MatrixRow::name(); empty: all
   bool pairs = false;
   std::size_t shard = 1, shards = 1;  // row i belongs to shard 1 + i mod shards
   std::size_t one_in = 1;             // a sample: of each shard's rows
 };
 
-// Throws InputError for a kind or step that there is not.
+// Throws InputError for a kind, step or row that there is not.
 std::vector<MatrixRow> matrix_rows(const std::vector<FaultMoment>& moments, const MatrixChoice& choice);
 
 struct RowResult {
@@ -39,6 +40,7 @@ struct RowResult {
   std::vector<std::string> wrong, unclear;
   bool false_success = false, must_go_on = false, went_on = false;
   std::string end, reason;
+  std::vector<std::string> reported;  // the core's faults that it reported since the first was made, by safety::name()
   std::optional<double> stop_ms, standing_s, power_off_s, stop_to_off_s;
   double force_n = 0;
 
@@ -50,7 +52,8 @@ std::optional<RowResult> parse_row(const std::string& line);          // nothing
 std::vector<RowResult> read_rows(const std::filesystem::path& file);  // those that are whole; none without the file
 
 // Flies the rows, `jobs` at a time, and appends each to `file` as it ends; `told` is called for each. An interrupt ends it early.
-void fly_matrix(const scenario::Scenario& base, const std::vector<MatrixRow>& rows, int jobs, const std::filesystem::path& file,
-                const std::function<void(const RowResult&)>& told);
+// A row that is rendered is flown whole: a copy of a process has none of its threads, and pictures are drawn by one.
+void fly_matrix(const scenario::Scenario& base, const std::vector<MatrixRow>& rows, Sight sight, int jobs,
+                const std::filesystem::path& file, const std::function<void(const RowResult&)>& told);
 
 }  // namespace lf::app

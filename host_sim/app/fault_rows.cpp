@@ -31,6 +31,7 @@ std::string row_json(const RowResult& row) {
                       {"went_on", row.went_on},
                       {"end", row.end},
                       {"reason", row.reason},
+                      {"reported", row.reported},
                       {"stop_ms", number(row.stop_ms)},
                       {"standing_s", number(row.standing_s)},
                       {"power_off_s", number(row.power_off_s)},
@@ -55,6 +56,7 @@ std::optional<RowResult> parse_row(const std::string& line) {
     object.at("went_on").get_to(row.went_on);
     object.at("end").get_to(row.end);
     object.at("reason").get_to(row.reason);
+    object.at("reported").get_to(row.reported);
     object.at("force_n").get_to(row.force_n);
   } catch (const Object::exception&) {
     return std::nullopt;

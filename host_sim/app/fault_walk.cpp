@@ -12,6 +12,8 @@ constexpr double into_step = 0.4;   // of its duration: whatever it does is unde
 constexpr double into_end_s = 0.2;  // of a step that lasts for good: what stopped the arm is done
 constexpr double longest_s = 300;   // of a walk
 constexpr double after_end_s = 1.0;
+// Of the operator. The first tick in `ready` is the homing's last; a stop takes 0.5 s until the power is off.
+constexpr double wait_s = 1.0;
 constexpr double power_on_s = 0.004;  // the first tick
 
 config::Fault at_step(const char* kind, const char* node, const char* step, double after_s, double duration_s) {
@@ -41,7 +43,8 @@ std::vector<Stay> stays_of(FaultWalk walk, const scenario::Scenario& base) {
     if (stays.empty() || stays.back().step != flight.mission_step()) stays.push_back({flight.mission_step(), now_s, now_s});
     stays.back().end_s = now_s;
     const bool back_from_jog = walk.by_hand() && stays.size() > 2 && stays[stays.size() - 2].step == Step::jog;
-    if (ended_s < 0 && (flight.mission().outcome().ended || back_from_jog)) ended_s = now_s;
+    const bool ended = flight.mission().outcome().ended && !walk.goes_on_after(flight);
+    if (ended_s < 0 && (ended || back_from_jog)) ended_s = now_s;
   }
   return stays;
 }
@@ -51,7 +54,7 @@ std::vector<Stay> stays_of(FaultWalk walk, const scenario::Scenario& base) {
 FaultWalk::FaultWalk(std::string name) : name_(std::move(name)) {}
 
 const std::vector<std::string>& FaultWalk::names() {
-  static const std::vector<std::string> all{"mission", "by hand", "aborted", "stopped", "held", "shut down"};
+  static const std::vector<std::string> all{"mission", "by hand", "aborted", "stopped", "held", "shut down", "started anew"};
   return all;
 }
 
@@ -59,6 +62,7 @@ scenario::Scenario FaultWalk::with_its_faults(const scenario::Scenario& base) co
   scenario::Scenario walked = base;
   if (name_ == "aborted") walked.faults.push_back(at_step("abort_ordered", "", "turn", 1, 0));
   if (name_ == "stopped") walked.faults.push_back(at_step("estop_ordered", "", "deploy", 1, 0));
+  if (stops_and_starts_anew()) walked.faults.push_back(at_step("estop_ordered", "", "turn", 1, 0));
   if (name_ == "held") walked.faults.push_back(at_step("torque_high", "shoulder", "deploy", 1, 0.1));
   if (name_ == "shut down") walked.faults.push_back(at_step("shut_down_ordered", "", "deploy", 1, 0));
   return walked;
@@ -67,25 +71,35 @@ scenario::Scenario FaultWalk::with_its_faults(const scenario::Scenario& base) co
 void FaultWalk::give_orders(Flight& flight) {
   if (!begun_) flight.order(by_hand() ? Command::home : Command::start);
   begun_ = true;
-  if (!by_hand() || jogged_ || flight.mission_step() != Step::ready) return;
+  if (stops_and_starts_anew() && !started_anew_) start_anew(flight);
+  if (by_hand() && !jogged_ && flight.mission_step() == Step::ready) jog(flight);
+}
+
+void FaultWalk::start_anew(Flight& flight) {
+  if (goes_on_after(flight) && waiting_s_ < 0) waiting_s_ = flight.now().s();
+  if (waiting_s_ < 0) return;
+  const double waited_s = flight.now().s() - waiting_s_;
+  if (!reset_ && waited_s > wait_s) reset_ = flight.order(Command::reset);
+  if (reset_ && waited_s > 2 * wait_s) started_anew_ = flight.order(Command::start);
+}
+
+void FaultWalk::jog(Flight& flight) {
   mission::Order jog;
   jog.command = Command::jog;
   jog.joint = Joint::slew;
   jog.by_rad = -0.2;
-  // The first tick in the step is the homing's last: one later an order is taken.
-  static constexpr double wait_s = 1.0;
-  if (ready_s_ < 0) ready_s_ = flight.now().s();
-  if (flight.now().s() > ready_s_ + wait_s) jogged_ = flight.order(jog);
+  if (waiting_s_ < 0) waiting_s_ = flight.now().s();
+  if (flight.now().s() > waiting_s_ + wait_s) jogged_ = flight.order(jog);
 }
 
 std::vector<FaultMoment> survey_moments(const scenario::Scenario& base) {
-  std::vector<FaultMoment> moments{{"mission", Step::idle, "power-on", power_on_s}};
+  std::vector<FaultMoment> moments{{"mission", Step::idle, "power-on", power_on_s, power_on_s}};
   std::set<Step> known{Step::idle};
   for (const std::string& name : FaultWalk::names()) {
     for (const Stay& stay : stays_of(FaultWalk(name), base)) {
       if (!known.insert(stay.step).second) continue;
       const double in_s = mission::is_end(stay.step) ? into_end_s : into_step * (stay.end_s - stay.begin_s);
-      moments.push_back({name, stay.step, mission::row(stay.step).name, stay.begin_s + in_s});
+      moments.push_back({name, stay.step, mission::row(stay.step).name, stay.begin_s + in_s, in_s});
     }
   }
   return moments;

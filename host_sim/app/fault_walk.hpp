@@ -15,18 +15,28 @@ class FaultWalk {
 
   const std::string& name() const { return name_; }
   bool by_hand() const { return name_ == "by hand"; }
+  // Whether the mission succeeds at the end of this walk, unless a fault is made on it.
+  bool succeeds() const { return name_ == "mission" || stops_and_starts_anew(); }
+  // The mission stands where the walk itself stopped it: it goes on from there.
+  bool goes_on_after(const Flight& flight) const {
+    return stops_and_starts_anew() && !reset_ && flight.mission_step() == mission::Step::stopped;
+  }
   // The scenario with the faults that lead this way.
   scenario::Scenario with_its_faults(const scenario::Scenario& base) const;
   // Before each control period: gives the orders that are due.
   void give_orders(Flight& flight);
 
-  // "mission", "by hand", "aborted", "stopped", "held", "shut down"
+  // "mission", "by hand", "aborted", "stopped", "held", "shut down", "started anew"
   static const std::vector<std::string>& names();
 
  private:
+  bool stops_and_starts_anew() const { return name_ == "started anew"; }
+  void start_anew(Flight& flight);
+  void jog(Flight& flight);
+
   std::string name_;
-  bool begun_ = false, jogged_ = false;
-  double ready_s_ = -1;  // since when it waits for orders
+  bool begun_ = false, jogged_ = false, reset_ = false, started_anew_ = false;
+  double waiting_s_ = -1;  // since when the mission waits for orders
 };
 
 // When a step of a walk has a fault made in it.
@@ -35,6 +45,7 @@ struct FaultMoment {
   mission::Step step = mission::Step::idle;
   std::string name;  // of the step, or "power-on"
   double at_s = 0;
+  double into_s = 0;  // since the step began
 };
 
 // One moment for each step of the table that can be reached, in the order of the walks and of time: 0.4 of the step's duration in.

@@ -1,4 +1,4 @@
-// A mission on given sight, in simulated time and on one thread: platform and core taking turns. What campaigns run whose matter is not seeing.
+// A mission, on given sight if nothing else is asked for, in simulated time and on one thread: platform and core taking turns. What campaigns run whose matter is not seeing.
 #pragma once
 
 #include <array>
@@ -13,12 +13,17 @@
 
 namespace lf::app {
 
+enum class Sight : std::uint8_t {
+  given,     // vision answers with the true pose
+  rendered,  // camera and vision see what is drawn
+};
+
 class Flight {
  public:
   // Nothing is ordered yet. `observer` outlives the flight. Throws InputError for a scenario that cannot be run.
-  Flight(const scenario::Scenario& scenario, std::uint64_t seed, hal::SimObserver& observer);
+  Flight(const scenario::Scenario& scenario, std::uint64_t seed, hal::SimObserver& observer, Sight sight = Sight::given);
 
-  void order(Command command) { controller_->on_command(command, now_); }
+  bool order(Command command) { return controller_->on_command(command, now_); }
   bool order(const mission::Order& order) { return controller_->on_order(order, now_); }
   // One control period.
   void step();
@@ -26,6 +31,8 @@ class Flight {
   Time now() const { return now_; }
   const mission::Mission& mission() const { return controller_->mission(); }
   mission::Step mission_step() const { return mission().step(); }
+  // Of each fault, how often the core has reported it since power-on.
+  const std::array<std::uint32_t, safety::fault_count>& fault_counts() const { return out_.telemetry.faults; }
   hal::SimPlatform& platform() { return *platform_; }
   // Of the joints' drives.
   const config::ErrorTexts& error_texts() const { return error_texts_; }

@@ -5,8 +5,9 @@
 #include <cmath>
 #include <concepts>
 #include <limits>
-#include <optional>
+#include <set>
 
+#include "hal/config/drive_kind.hpp"
 #include "hal/config/share.hpp"
 #include "host_sim/scenario/bounds.hpp"
 #include "host_sim/scenario/draw.hpp"
@@ -24,6 +25,11 @@ constexpr double logarithmic_from = 100;  // a range's end over its beginning
 std::string text_of(double value) {
   char text[32];
   return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
+
+// What a text may be; empty: anything.
+std::vector<std::string> words_of(const Key& key) {
+  return key.path.starts_with("drives.") && key.path.ends_with("profile") ? config::shipped_drive_kinds() : key.words;
 }
 
 // Each draw has a generator of its own, made of the key's name.
@@ -55,8 +61,17 @@ class Draw {
   std::string operator()(PanelLayout::Pointer*) {
     return key_.words[static_cast<std::size_t>(share() * static_cast<double>(key_.words.size()))];
   }
-  std::string operator()(std::string*) { return ""; }
-  std::string operator()(std::vector<std::string>*) { return ""; }
+  std::string operator()(std::string*) {
+    const std::vector<std::string> words = words_of(key_);
+    return words[static_cast<std::size_t>(share() * static_cast<double>(words.size()))];
+  }
+  std::string operator()(std::vector<std::string>*) {
+    std::string text;
+    for (const std::string& word : key_.words) {
+      if (share() < 0.5) text += (text.empty() ? "" : ", ") + word;
+    }
+    return "[" + text + "]";
+  }
   std::string operator()(std::vector<config::Fault>*) { return ""; }
 
  private:
@@ -102,8 +117,14 @@ const ArmDescription& arm_of(const scenario::Scenario& scenario) {
   return arm;
 }
 
-// What names a run, or says how long it may last.
-bool is_about_the_run(const std::string& path) { return path == "time_limit_s"; }
+// What names a run, says how long it may last, or how it is to end.
+bool is_about_the_run(const std::string& path) { return path == "time_limit_s" || path == "expect.failure"; }
+
+// A text or a list of texts that may be anything.
+bool is_free_text(const Key& key) {
+  const bool text = std::holds_alternative<std::string*>(key.value) || std::holds_alternative<std::vector<std::string>*>(key.value);
+  return text && words_of(key).empty();
+}
 
 // What these say is seen, or where it is looked from.
 bool is_seen(const std::string& key) {
@@ -121,8 +142,8 @@ std::vector<std::string> drawn_keys() {
   scenario::Scenario scenario;
   std::vector<std::string> paths;
   for (const Key& key : scenario::keys(scenario)) {
-    const bool text = std::holds_alternative<std::string*>(key.value) || std::holds_alternative<std::vector<std::string>*>(key.value);
-    if (!text && !is_about_the_run(key.path) && !std::holds_alternative<std::vector<config::Fault>*>(key.value)) paths.push_back(key.path);
+    if (!is_free_text(key) && !is_about_the_run(key.path) && !std::holds_alternative<std::vector<config::Fault>*>(key.value))
+      paths.push_back(key.path);
   }
   return paths;
 }
@@ -139,8 +160,10 @@ RangeRow many_row(std::uint64_t index, std::uint64_t combination) {
   const std::vector<std::string> paths = drawn_keys();
   RangeRow row{"many " + std::to_string(index), "many", {}, index, true};
   const std::uint64_t seed = (combinations * 1000 + 1) * combination + index;
-  for (std::size_t k = 0; k < keys_at_once; ++k) {
+  std::set<std::string> taken;
+  for (std::size_t k = 0; taken.size() < keys_at_once; ++k) {
     const std::string& path = paths[scenario::bits(seed, "many " + std::to_string(k)) % paths.size()];
+    if (!taken.insert(path).second) continue;
     row.set.push_back(path + "=" + drawn_value(path, 1000 + seed));
   }
   return row;

@@ -20,7 +20,7 @@ struct RangeRow {
 // Of several keys at once most combinations are refused. One that is, is drawn again, up to so many times.
 inline constexpr std::uint64_t combinations = 40;
 
-// The keys that have something to draw, by path. Not: texts, files, the faults, and what only names or limits a run.
+// The keys that have something to draw, by path. Not: free texts, files, the faults, and what only names, limits or expects a run.
 std::vector<std::string> drawn_keys();
 
 // Draw number `draw` (from 1) of a key as YAML. Even over the range, as far as the default scenario's other keys let it reach (scenario/bounds.hpp); where it

@@ -3,6 +3,7 @@
 #include "hal/config/drive_kind.hpp"
 #include "hal/config/share.hpp"
 #include "host_sim/scenario/describe.hpp"
+#include "host_sim/scenario/instance.hpp"
 
 namespace lf::app {
 
@@ -13,6 +14,9 @@ record::Experiment experiment_of(const scenario::Scenario& scenario) {
   record::Experiment experiment{{"scenario", scenario::scenario_yaml(scenario)}, {"program", record::file_hash("/proc/self/exe")}};
   for (const std::string& file : {scenario.arm.urdf, scenario.safety.limits})
     experiment["file " + file] = record::file_hash(config::find_file(file, folder));
+  experiment[std::string("file ") + scenario::homing_file] = record::file_hash(config::find_file(scenario::homing_file, folder));
+  experiment[std::string("file ") + scenario::drive_objects_file] =
+      record::file_hash(config::share_folder() / scenario::drive_objects_file);
   for (std::size_t joint = 0; joint < joint_count; ++joint) {
     const config::DriveKind kind = config::find_drive_kind(config::drive_of(scenario.drives, joint).profile, folder);
     experiment["file " + kind.name + ".yaml"] = record::file_hash(kind.file);

@@ -12,7 +12,9 @@ namespace lf::judge {
 namespace {
 
 constexpr std::array<const char*, joint_count + 1> node_names{"slew", "shoulder", "elbow", "roll", "jaw", "io"};
-constexpr std::uint32_t first_tpdo = 0x180, first_rpdo = 0x200, sdo_request = 0x600;
+constexpr std::uint32_t first_rpdo = 0x200, sdo_request = 0x600;
+constexpr std::array<std::pair<const char*, std::uint32_t>, 4> frame_sorts{
+    {{"tpdo ", 0x180}, {"rpdo ", first_rpdo}, {"heartbeat ", 0x700}, {"emcy ", 0x080}}};
 
 const std::vector<FaultRule>& rules() {
   using enum Demand;
@@ -30,6 +32,7 @@ const std::vector<FaultRule>& rules() {
   static const std::vector<std::string> bus_off_of_the_master{"CAN bus off"};
   static const std::vector<std::string> sight{"image", "camera", "panel vision", "platform call", "no panel seen", "too few points"};
   static const std::vector<std::string> other_master{"another master"};
+  static const std::vector<std::string> process_data{"tpdo", "rpdo"};
   static const std::vector<FaultRule> all{
       {"overcurrent", stop, Report::frame, 0, {"drive fault"}, {}},
       {"hot", stop, Report::frame, 0, {"drive fault"}, {}},
@@ -48,8 +51,10 @@ const std::vector<FaultRule>& rules() {
        Report::none,
        0,
        {"stale position", "following error", "drive fault", "boot failed", "output node lost"},
-       {}},
-      {"drop_frames", go_on, Report::none, 0.004, {}, {}, "one frame"},
+       {},
+       "",
+       process_data},
+      {"drop_frames", go_on, Report::none, 0.004, {}, {}, "one frame", process_data},
       {"estop", stop, Report::frame, 0, {"emergency stop"}, {}},
       {"interlock_open", safe_end, Report::none, 0, {"interlock"}, {}},
       {"error_frames", go_on, Report::none, 0, {}, {}},
@@ -81,6 +86,10 @@ const std::vector<FaultRule>& rules() {
       {"estop_ordered", stop, Report::at_once, 0, {"emergency stop"}, {}},
       {"shut_down_ordered", stop, Report::halt, 0, {"shut down"}, {}},
       {"limits_refused", safe_end, Report::none, 0, {"limits refused"}, {}},
+      // Since pairs were first flown; a rule's place in this table says what is drawn for its pairs.
+      {"drop_frames", safe_end, Report::none, 0, {"node lost", "boot failed"}, {}, "", {"heartbeat"}},
+      {"drop_frames", go_on, Report::none, 0.1, {}, {}, "one frame", {"heartbeat"}},
+      {"drop_frames", go_on, Report::none, 0, {}, {}, "", {"emcy"}},
   };
   return all;
 }
@@ -90,7 +99,9 @@ std::int64_t frame_of(const std::string& node) {
   for (std::size_t i = 0; i < node_names.size(); ++i) {
     if (!node.ends_with(std::string(" ") + node_names[i])) continue;
     const std::uint32_t id = i < joint_count ? can_map::drive_nodes[i] : can_map::io_node;
-    return (node.starts_with("tpdo") ? first_tpdo : first_rpdo) + id;
+    for (const auto& [sort, function] : frame_sorts) {
+      if (node.starts_with(sort)) return function + id;
+    }
   }
   return 0;
 }
@@ -158,7 +169,7 @@ std::vector<Cause> all_causes() {
       continue;
     }
     for (const char* node : node_names) {
-      for (const char* pdo : {"tpdo ", "rpdo "}) causes.push_back({&rule, std::string(pdo) + node});
+      for (const std::string& sort : rule.frames) causes.push_back({&rule, sort + " " + node});
     }
   }
   return causes;

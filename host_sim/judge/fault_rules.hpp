@@ -37,7 +37,8 @@ struct FaultRule {
   std::vector<std::string> named_by;
   // Those that name it without its node, because the core cannot know the node.
   std::vector<std::string> named_without_node;
-  const char* variant = "";  // tells rules of the same kind apart
+  const char* variant = "";           // tells rules of the same kind apart
+  std::vector<std::string> frames{};  // of which sort, where frames are lost: tpdo, rpdo, heartbeat, emcy
 };
 
 std::span<const FaultRule> fault_rules();
@@ -45,7 +46,7 @@ std::span<const FaultRule> fault_rules();
 // One fault as a row of the matrix has it.
 struct Cause {
   const FaultRule* rule = nullptr;
-  std::string node;  // or "tpdo slew", "rpdo io" for lost frames
+  std::string node;  // or "tpdo slew", "heartbeat io" for lost frames
 
   std::string name() const;  // "overcurrent elbow"
   // Whether the reason says what happened, and at which node.

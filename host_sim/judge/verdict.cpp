@@ -29,10 +29,6 @@ double last_s(const std::vector<Moment>& moments, double from_s, Is is) {
   return from_s;
 }
 
-bool moves(const Moment& moment, double standing_rad_s) {
-  return std::any_of(moment.speed_rad_s.begin(), moment.speed_rad_s.end(), [&](float speed) { return speed >= standing_rad_s; });
-}
-
 std::size_t node_index(const std::string& node) {
   constexpr std::array<const char*, joint_count + 1> names{"slew", "shoulder", "elbow", "roll", "jaw", "io"};
   return static_cast<std::size_t>(std::find(names.begin(), names.end(), node) - names.begin());
@@ -45,6 +41,8 @@ bool cut_off(const Cause& cause) { return cause.rule->kind == "silent" || cause.
 bool loses_process_data(const Cause& cause) {
   return cause.rule->kind == "drop_frames" && cause.rule->duration_s == 0 && cause.node.starts_with("rpdo ");
 }
+
+bool is_a_drives_fault(const Cause& cause) { return cause.rule->kind == "overcurrent" || cause.rule->kind == "hot"; }
 
 // Until an order acts: up to a SYNC period until the SYNC, one that is interpolated, and the arm's own compliance.
 constexpr std::size_t takes_effect_ms = 20;
@@ -101,8 +99,10 @@ class Judge {
 
   Verdict verdict() {
     forces();
-    if (const auto deadline = strictest(); deadline && !situation_.powering_up && !taken_over()) stop(*deadline);
-    if (situation_.powering_up) nothing_moves();
+    if (const auto deadline = strictest(); deadline && !taken_over()) {
+      // What is reported before any drive runs is no stop: powering up has to end.
+      situation_.powering_up && !runs_at(deadline->at_s) ? nothing_moves() : stop(*deadline);
+    }
     the_end();
     the_account();
     return verdict_;
@@ -284,13 +284,28 @@ class Judge {
       wrong(formatted("power is off %.2f s after the stop", *verdict_.stop_to_off_s));
   }
 
+  bool runs_at(double t_s) const {
+    const auto index = static_cast<std::size_t>(t_s / ms);
+    return index < moments_.size() && moments_[index].told_to_run != 0;
+  }
+
   void nothing_moves() {
-    const auto ends_it = [](const Cause& cause) { return demands_stop(cause) && cause.rule->kind != "reboot"; };
     // What has rebooted is booted again.
-    if (std::none_of(situation_.causes.begin(), situation_.causes.end(), ends_it)) return;
-    // Without power the joints settle in their gears.
-    const double moved_s = last_s(moments_, 0, [&](const Moment& m) { return m.power != 0 && moves(m, figures_.standing_rad_s); });
-    if (moved_s > 0) wrong(formatted("the arm moves at %.2f s although powering up had to end", moved_s));
+    const auto ends_it = [](const Cause& cause) { return demands_stop(cause) && cause.rule->kind != "reboot"; };
+    if (!has(ends_it)) return;
+    // While a drive's fault is reset the others are enabled. One of them that runs off is a fault of its own: it loses its power in the time of a stop.
+    const bool others_are_enabled = !has([&](const Cause& cause) { return ends_it(cause) && !is_a_drives_fault(cause); });
+    const std::uint8_t runs_off =
+        others_are_enabled ? joints_that([](const Cause& cause) { return cause.rule->kind == "runaway"; }) : std::uint8_t{0};
+    for (std::size_t joint = 0; joint < joint_count; ++joint) {
+      // Without power the joints settle in their gears.
+      const auto moves = [&](const Moment& m) { return m.power != 0 && joint_moves(m, joint, 0); };
+      const double moved_s = last_s(moments_, 0, moves);
+      if (moved_s == 0) continue;
+      const double since_s = time_s(*std::find_if(moments_.begin(), moments_.end(), moves));
+      if ((runs_off >> joint & 1u) != 0 && moved_s - since_s <= figures_.off_after_stop_s) continue;
+      wrong(std::string(joint_names[joint]) + formatted(" moves from %.2f to %.2f s although powering up had to end", since_s, moved_s));
+    }
   }
 
   // However it ended, the arm stands and has no power, unless the core says that it holds the arm.

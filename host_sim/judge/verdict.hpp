@@ -43,7 +43,7 @@ struct Ending {
 struct Situation {
   std::vector<Cause> causes;
   std::vector<double> begins_s;  // of each, since watching began
-  bool powering_up = false;      // boot or enable: nothing moves, and powering up may be tried again
+  bool powering_up = false;      // the first fault came in the boot phase, before any drive has power
   bool over = false;             // the mission had ended before
   bool fails_anyway = false;     // it was on its way to a failure of another cause, which is what its reason names
   std::array<double, joint_count> deceleration_rad_s2{};

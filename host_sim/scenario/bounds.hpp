@@ -7,6 +7,9 @@
 
 namespace lf::scenario {
 
+// By which a stated rating of a motor may be off what its drive says: the boot refuses more (firmware/canopen/boot_sequence.cpp).
+inline constexpr double rating_apart_share = 0.1;
+
 struct Bounds {
   double min = 0, max = 0;
 };

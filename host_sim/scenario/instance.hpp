@@ -10,6 +10,11 @@
 
 namespace lf::scenario {
 
+// Shipped files that a run reads besides those that its keys name: what the core knows of the simulated joints' zeros, found as arm.urdf is, and the objects of
+// the simulated makes of drive.
+inline constexpr const char* homing_file = "homing/simulator.yaml";
+inline constexpr const char* drive_objects_file = "drives/objects.csv";
+
 // What the core is told: nominal calibrations, the survey of the panel, the job, drives and limits.
 using Nominal = config::Core;
 

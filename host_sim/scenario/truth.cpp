@@ -1,10 +1,13 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdio>
 
 #include "hal/config/drive_kind.hpp"
 #include "hal/config/homing_file.hpp"
 #include "hal/config/share.hpp"
 #include "host_sim/devices/drive/drive_dictionary.hpp"
+#include "host_sim/scenario/bounds.hpp"
 #include "host_sim/scenario/instance.hpp"
 #include "shared/arm/arm_description.hpp"
 #include "shared/input_error.hpp"
@@ -187,19 +190,33 @@ std::vector<std::string> makes_of(const std::string& profile, const std::filesys
   return makes;
 }
 
+// A simulated motor is the one of the arm's description, and a drive that says its rating says that motor's. The boot refuses a drive that says another
+// rating than the stated one.
+void check_rating(const config::JointDriveChoice& choice, const config::DriveKind& kind, std::size_t joint,
+                  const devices::DriveConfig& drive) {
+  const double stated_nm = choice.rated_torque_nm, said_nm = drive.rated_torque_nm;
+  if (stated_nm == 0 || kind.rating != "object" || std::abs(said_nm - stated_nm) <= rating_apart_share * stated_nm) return;
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "'drives.%s.rated_torque_nm' is %.4g: the simulated drive says %.4g N m, the arm's description's, and would not be booted",
+                config::joint_name(joint), stated_nm, said_nm);
+  throw InputError(text);
+}
+
 // A simulated drive of the make that the machine's file names. `folder`: of that file.
 void set_make(const config::Drives& drives, std::size_t joint, const std::filesystem::path& folder, const ArmJoint& arm_joint,
               devices::DriveConfig& drive) {
   const config::JointDriveChoice choice = config::drive_of(drives, joint);
   drive.node = static_cast<std::uint8_t>(choice.node);
   devices::set_motor(arm_joint, choice.counts_per_rev, drive);
+  check_rating(choice, config::find_drive_kind(choice.profile, folder), joint, drive);
   drive.rated_current_a = choice.rated_current_a;
   drive.reversed = choice.polarity == "reversed";
   // The profile's own make, or the nearest of those that it is like.
   for (const std::string& make : makes_of(choice.profile, folder)) {
     drive.habit = devices::find_habit(make);
     if (drive.habit != nullptr) {
-      drive.dictionary = devices::read_dictionary(config::share_folder() / "drives" / "objects.csv", drive.habit->dictionary);
+      drive.dictionary = devices::read_dictionary(config::share_folder() / drive_objects_file, drive.habit->dictionary);
       return;
     }
     if (make == "lanternfish" || make.starts_with("cia402")) return;

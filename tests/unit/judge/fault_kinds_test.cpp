@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "hal/sim/sim_faults.hpp"
@@ -43,7 +44,23 @@ TEST(FaultKinds, CausesAreAllDifferentAndLostFramesHaveAnIdentifier) {
   }
   EXPECT_GT(names.size(), 100u);
   EXPECT_TRUE(names.contains("drop_frames tpdo io"));
+  EXPECT_TRUE(names.contains("drop_frames heartbeat slew"));
+  EXPECT_TRUE(names.contains("drop_frames emcy jaw"));
   EXPECT_TRUE(names.contains("bus_off master"));
+}
+
+// CiA 301's pre-defined connection set; slew is node 1, the output node 6.
+TEST(FaultKinds, LostFramesHaveTheIdentifiersOfTheirNodes) {
+  const std::map<std::string, std::int64_t> ids{{"tpdo slew", 0x181},    {"rpdo io", 0x206},   {"heartbeat slew", 0x701},
+                                                {"heartbeat io", 0x706}, {"emcy slew", 0x081}, {"emcy io", 0x086}};
+  std::set<std::string> found;
+  for (const Cause& cause : all_causes()) {
+    const auto id = ids.find(cause.node);
+    if (id == ids.end()) continue;
+    EXPECT_EQ(cause.fault().can_id, id->second) << cause.name();
+    found.insert(cause.node);
+  }
+  EXPECT_EQ(found.size(), ids.size());
 }
 
 hal::SimFault at(double s) {

@@ -314,6 +314,43 @@ TEST(Verdict, ADriveThatLosesItsProcessDataIsToldByNmt) {
   EXPECT_THAT(wrong(32, "drop_frames (one frame) rpdo elbow"), ElementsAre("still told to run 32 ms after the report"));
 }
 
+// The drives are enabled at 1 s, `moving_ms` before they lose their power; the jaw runs off meanwhile. The fault is reported at 0.1 s, or at 1.1 s.
+std::vector<std::string> powering_up(const std::string& cause, int moving_ms, double begins_s = 0.09) {
+  Seen seen;
+  for (int t = 0; t < 4000; ++t) {
+    Moment moment;
+    const int moved_ms = std::clamp(t - 1000, 0, moving_ms);
+    if (t >= 1000 && t < 1000 + moving_ms) {
+      moment.power = moment.told_to_run = all_joints;
+      moment.speed_rad_s[4] = 1;
+    }
+    moment.angle_rad[4] = moment.motor_rad[4] = 0.001f * static_cast<float>(moved_ms);
+    seen.moments.push_back(moment);
+  }
+  seen.fault_reported_s = seen.chain_open_s = begins_s + 0.01;
+  Situation situation = situation_of(cause_of(cause));
+  situation.causes.push_back(cause_of("runaway jaw"));
+  situation.begins_s = {begins_s, 0.5};
+  situation.powering_up = true;
+  return judge(seen, situation, failed("drive fault: elbow")).wrong;
+}
+
+TEST(Verdict, PoweringUpThatHadToEndMovesNothing) {
+  EXPECT_THAT(powering_up("estop", 0), IsEmpty());
+  EXPECT_THAT(powering_up("estop", 200), ElementsAre("jaw moves from 1.00 to 1.20 s although powering up had to end"));
+}
+
+// The others are enabled while a drive's fault is reset.
+TEST(Verdict, ADriveThatRunsOffBesideOneInFaultHasTheTimeOfAStop) {
+  EXPECT_THAT(powering_up("overcurrent elbow", 1100), IsEmpty());
+  EXPECT_THAT(powering_up("overcurrent elbow", 1300), ElementsAre("jaw moves from 1.00 to 2.30 s although powering up had to end"));
+}
+
+TEST(Verdict, AFaultThatComesWhenTheDrivesRunAlreadyStopsThem) {
+  EXPECT_THAT(powering_up("estop", 112, 1.09), IsEmpty());
+  EXPECT_THAT(powering_up("estop", 150, 1.09), ElementsAre("still told to run 50 ms after the report"));
+}
+
 // Its motor stands.
 TEST(Verdict, WhoIsPushedWindsUpItsGear) {
   const auto wrong = [](const std::string& other, double begins_s, float force_n, bool motor_turns) {

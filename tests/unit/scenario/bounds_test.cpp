@@ -54,7 +54,7 @@ INSTANTIATE_TEST_SUITE_P(Keys, BoundsTest,
                                          Case{"buttons.spring_n_m", false, true}, Case{"buttons.click_depth_m", true, true},
                                          Case{"buttons.release_depth_m", false, true}, Case{"buttons.click_drop_n", false, true},
                                          Case{"panel.marker_size_m", false, true}, Case{"panel.marker_plate_m", true, false},
-                                         Case{"panel.handle_thickness_m", true, true}, Case{"panel.pointer_length_m", false, true},
+                                         Case{"panel.handle_thickness_m", true, false}, Case{"panel.pointer_length_m", false, true},
                                          Case{"panel.button_stroke_m", true, true}, Case{"mission.press_torque_nm", true, false}),
                          [](const auto& each) {
                            std::string name = each.param.path;

@@ -44,6 +44,29 @@ TEST(Truth, AProfileOfTheUsersOwnIsSimulatedAsTheOneItIsLike) {
   }
 }
 
+// A drive whose rating is configured says nothing against it.
+TEST(Truth, ARatingThatTheSimulatedDriveDoesNotSayIsRefusedByName) {
+  const double said_nm =
+      make_truth(load_scenario("default"), draw(load_scenario("default"), 1), make_nominal(load_scenario("default"), true), 1)
+          .devices.drives[2]
+          .rated_torque_nm;
+  const auto refused = [&](double share, const std::string& profile) -> std::string {
+    const std::vector<std::string> set{"drives.elbow.rated_torque_nm=" + std::to_string(share * said_nm),
+                                       "drives.elbow.profile=" + profile};
+    try {
+      check_runnable(load_scenario("default", set));
+      return "";
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  };
+  EXPECT_EQ(refused(1.09, "lanternfish"), "");
+  EXPECT_EQ(refused(0.92, "lanternfish"), "");
+  for (const double share : {0.9, 1.12, 2.0})
+    EXPECT_THAT(refused(share, "lanternfish"), testing::HasSubstr("'drives.elbow.rated_torque_nm'"));
+  EXPECT_EQ(refused(2, "cia402_rated"), "");
+}
+
 TEST(Nominal, EveryShippedScenarioCanBeRun) {
   for (const ShippedScenario& shipped : shipped_scenarios()) EXPECT_EQ(refusal(load_scenario(shipped.name)), "") << shipped.name;
 }

@@ -1,0 +1,15 @@
+// Which words in the reason of a mission's end name a key of the scenario as its cause: for runs whose keys were drawn over their ranges.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace lf::judge {
+
+// Parts of a reason that name this key; any one will do. What concerns one drive has to be named with its joint. Empty for a key that no end should come of.
+std::vector<std::string> words_for(const std::string& key);
+
+// Whether a reason, without its advice in brackets, names one of these keys.
+bool names_a_key(const std::vector<std::string>& keys, const std::string& reason);
+
+}  // namespace lf::judge
