@@ -108,9 +108,12 @@ void Watch::raise(bool present, std::size_t index, const FaultReport& report, Fa
 
 void Watch::check(const canopen::Network& network, const Vec3& tool_m, Vigilance vigilance, Time now, FaultArbiter& began) {
   check_bus(network, now, began);
-  if (vigilance == Vigilance::bus) return;
+  if (vigilance == Vigilance::bus) return stood_.fill(false);
   check_nodes(network, vigilance, now, began);
-  if (vigilance == Vigilance::nodes) return;
+  if (vigilance == Vigilance::nodes) {
+    for (std::size_t i = 0; i < joint_count; ++i) check_standing(network, i, began);
+    return;
+  }
   for (std::size_t i = 0; i < joint_count; ++i) {
     check_drive(network, i, began);
     if (joints_.valid) check_joint(i, began);
@@ -165,12 +168,29 @@ void Watch::check_drive(const canopen::Network& network, std::size_t joint, Faul
   raise((fault != AxisFault::none && !others) || complains, joint, {Fault::drive_fault, code, link.emcy_code}, began);
 }
 
+// Others are still being enabled, or homed. An error that was latched before this one took power is being reset.
+void Watch::check_standing(const canopen::Network& network, std::size_t joint, FaultArbiter& began) {
+  const canopen::Axis& axis = network.axis(static_cast<Joint>(joint));
+  const bool stands = axis.requested() == canopen::AxisRequest::hold_enabled;
+  stood_[joint] = stands && (stood_[joint] || axis.enabled());
+  if (!stood_[joint]) return;
+  const auto code = static_cast<std::int32_t>(joint);
+  const bool left = axis.fault() == canopen::AxisFault::following_error;
+  raise(left, joint, {Fault::following_error, code, network.fault(joint).emcy_code}, began);
+  if (joints_.valid) check_speed(joint, began);
+}
+
+void Watch::check_speed(std::size_t joint, FaultArbiter& began) {
+  const bool too_fast = std::abs(joints_.velocity_rad_s[joint]) > limits_.joints[joint].max_speed_rad_s * speed_tolerance;
+  raise(too_fast, joint, {Fault::overspeed, static_cast<std::int32_t>(joint)}, began);
+}
+
 void Watch::check_joint(std::size_t joint, FaultArbiter& began) {
   const auto code = static_cast<std::int32_t>(joint);
   const JointLimit& limit = limits_.joints[joint];
   tolerated_rad_[joint] = std::min(tolerated_rad_[joint], excursion_rad(joint));
   raise(excursion_rad(joint) > tolerated_rad_[joint] + position_tolerance_rad, joint, {Fault::joint_limit, code}, began);
-  raise(std::abs(joints_.velocity_rad_s[joint]) > limit.max_speed_rad_s * speed_tolerance, joint, {Fault::overspeed, code}, began);
+  check_speed(joint, began);
   const double at_least_nm =
       arm::TorqueEstimate{joints_.torque_nm[joint], joints_.torque_low_nm[joint], joints_.torque_high_nm[joint]}.at_least_nm();
   overload_ticks_[joint] = at_least_nm > limit.max_torque_nm ? overload_ticks_[joint] + 1 : 0;

@@ -31,7 +31,7 @@ struct JointStates {
 // How much there is to watch.
 enum class Vigilance : std::uint8_t {
   bus,     // the bus and, where it is heard, the emergency-stop chain: the boot watches the nodes itself
-  nodes,   // and every node: drives are being enabled and homed, and have power
+  nodes,   // and every node: drives are being enabled and homed, and those that have power have to stand
   joints,  // and what the joints do
 };
 
@@ -65,6 +65,8 @@ class Watch {
   void check_bus(const canopen::Network& network, Time now, FaultArbiter& began);
   void check_nodes(const canopen::Network& network, Vigilance vigilance, Time now, FaultArbiter& began);
   void check_drive(const canopen::Network& network, std::size_t joint, FaultArbiter& began);
+  void check_standing(const canopen::Network& network, std::size_t joint, FaultArbiter& began);
+  void check_speed(std::size_t joint, FaultArbiter& began);
   void check_joint(std::size_t joint, FaultArbiter& began);
   void check_workspace(const Vec3& tool_m, FaultArbiter& began);
   // `index` tells reports of one fault apart: joint, node, or 0.
@@ -79,6 +81,7 @@ class Watch {
   std::array<StuckEncoder, static_cast<std::size_t>(Joint::roll)>
       encoders_;  // the roll's turn and the jaw's gripper have rules of their own
   std::array<bool, joint_count> stuck_{};
+  std::array<bool, joint_count> stood_{};  // under power, while others were still being enabled
   std::array<int, joint_count> overload_ticks_{};
   bool tolerating_ = false;
   double tolerated_m_ = 0;  // of the tool, outside of its workspace

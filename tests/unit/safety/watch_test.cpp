@@ -99,13 +99,14 @@ class EachLimit : public testing::Test {
       rad += speed_rad_s * 0.004;
       watch.observe(bus.network, {0, 0, rad, 0, 0}, bus.now);
       FaultArbiter reports;
-      watch.check(bus.network, tool_m, Vigilance::joints, bus.now, reports);
+      watch.check(bus.network, tool_m, vigilance, bus.now, reports);
       for (const FaultReport& report : reports.reports()) began += report.fault == fault;
     }
     return began;
   }
 
   Watch::Transmissions transmissions;
+  Vigilance vigilance = Vigilance::joints;
   canopen::test::Bus bus{canopen::test::plain_config()};
 };
 
@@ -114,6 +115,28 @@ TEST_F(EachLimit, OfSpeed) {
   EXPECT_EQ(begins(limits, Fault::overspeed, 0.5), 0);
   limits.joints[2].max_speed_rad_s = 0.35;
   EXPECT_EQ(begins(limits, Fault::overspeed, 0.5), 1);
+}
+
+// A drive that waits for the others under power ran away unseen: powering up waited for one in fault.
+TEST_F(EachLimit, OfSpeedHoldsWhileOtherDrivesAreStillBeingEnabled) {
+  vigilance = Vigilance::nodes;
+  Limits limits = loose();
+  limits.joints[2].max_speed_rad_s = 0.35;
+  EXPECT_EQ(begins(limits, Fault::overspeed, 0.5), 0) << "it has no power: somebody moves it";
+  bus.network.axis(Joint::elbow).request(canopen::AxisRequest::hold_enabled);
+  for (int i = 0; i < 50; ++i) bus.step();
+  ASSERT_TRUE(bus.network.axis(Joint::elbow).enabled());
+  EXPECT_EQ(begins(limits, Fault::overspeed, 0.5), 1);
+  EXPECT_EQ(begins(limits, Fault::following_error), 0);
+}
+
+TEST_F(EachLimit, OfTheFollowingWindowHoldsWhileOtherDrivesAreStillBeingEnabled) {
+  vigilance = Vigilance::nodes;
+  bus.network.axis(Joint::elbow).request(canopen::AxisRequest::hold_enabled);
+  for (int i = 0; i < 50; ++i) bus.step();
+  bus.nodes[2].jammed = true;
+  bus.nodes[2].actual_counts += 100'000;
+  EXPECT_EQ(begins(loose(), Fault::following_error), 1);
 }
 
 TEST_F(EachLimit, OfTorque) {
