@@ -167,6 +167,8 @@ void World::push_obstacle() {
   if (!impl_->obstacle) impl_->obstacle = std::make_unique<Obstacle>(impl_->bullet.get(), wrist_m, int(BodyId::panel));
 }
 
+void World::block_jaw(double lower_rad, double upper_rad) { impl_->arm.limit(Joint::jaw, lower_rad, upper_rad); }
+
 double World::time_s() const { return double(impl_->steps) * impl_->config.step_s; }
 JointReadings World::readings() const { return impl_->arm.readings(); }
 Pose World::base_from_tool() const { return impl_->arm.base_from_tool(); }

@@ -108,6 +108,9 @@ class World {
   void break_handle();
   // From the next step on a box floats up from the wrist's left and pushes against it with 80 N. In contact reports it counts as the panel.
   void push_obstacle();
+  // From the next step on something rigid keeps the jaw's angle at or above `lower_rad` and at or below `upper_rad`. The jaw stands between the two when
+  // this is called.
+  void block_jaw(double lower_rad, double upper_rad);
 
   double time_s() const;
   // After construction and after each step. motor_position_rad: see drive_rows.hpp for the model of the play.

@@ -40,6 +40,8 @@ class Rig {
   const mission::Outcome& outcome() { return mission().outcome(); }
   Platform& ports() { return *failing_; }
   KnownSight& sight() { return *sight_; }
+  // From now on the jaw moves between these angles only, and stands between them: something is between the fingers, or behind them.
+  void block_jaw(double lower_rad, double upper_rad) { platform_->block_jaw(lower_rad, upper_rad); }
   devices::Devices& devices() { return platform_->devices(); }
   const world::World& world() const { return platform_->world(); }
   const ScanPipeline& pipeline() const { return lockstep_->pipeline(); }
