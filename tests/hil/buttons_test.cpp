@@ -48,6 +48,24 @@ TEST(AClick, ThatIsFeltIsOne) {
   EXPECT_EQ(clicks_felt("0", 3), 0);
 }
 
+// A long spring pushes the finger on most of its way back. That was taken for a contact: the arm stopped, swayed in by a millimetre, and the button
+// clicked again.
+TEST(AButtonOfALongStroke, ClicksOnceAndIsNoContactOnTheWayBack) {
+  for (const std::uint64_t seed : {170, 171, 172}) {
+    std::vector<std::string> scenario = press("left");
+    for (const char* set : {"mission.press_speed_m_s=0.04146", "physics.drag_coefficient=1.88", "mounting.joints_deg=-0.1497",
+                            "mounting.marker_m=-0.001846", "mission.docking_rad=0.02264", "panel.button_stroke_m=0.01245"}) {
+      scenario.emplace_back(set);
+    }
+    Rig rig(scenario, seed);
+    rig.start();
+    ASSERT_TRUE(rig.run_to_end()) << rig.story();
+    EXPECT_TRUE(rig.outcome().success) << rig.story();
+    EXPECT_EQ(rig.world().button(0).presses, 1u) << "seed " << seed << ": " << rig.story();
+    EXPECT_EQ(rig.count(safety::Fault::step_failed), 0u) << "seed " << seed << ": " << rig.story();
+  }
+}
+
 // After a valve the jaw closes for the second look. Something gets between the fingers there: as thick as the bar it looks held, thicker it jams them.
 TEST(APress, IsNotBegunWithSomethingBetweenTheFingers) {
   const double widest_rad = arm_geometry::joints[4].upper_rad;
