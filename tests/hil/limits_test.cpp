@@ -29,7 +29,8 @@ TEST_P(ALimitOfJoint, OfAngleActsAtEitherEnd) {
       const ArmJoint& of = truth.world.arm.joints[joint];
       const scenario::Scenario scenario = scenario::load_scenario("default", {});
       const safety::JointLimit limit = scenario::make_nominal(scenario, true).controller.limits.joints[joint];
-      const double inside_rad = upper ? std::min(limit.max_rad, of.upper_rad) - beyond_rad : std::max(limit.min_rad, of.lower_rad) + beyond_rad;
+      const double inside_rad =
+          upper ? std::min(limit.max_rad, of.upper_rad) - beyond_rad : std::max(limit.min_rad, of.lower_rad) + beyond_rad;
       truth.world.start_rad[joint] = inside_rad;
       truth.devices.drives[joint].encoder_offset_rad = (upper ? limit.max_rad + beyond_rad : limit.min_rad - beyond_rad) - inside_rad;
     });
