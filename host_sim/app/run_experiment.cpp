@@ -13,6 +13,8 @@ record::Experiment experiment_of(const scenario::Scenario& scenario) {
   record::Experiment experiment{{"scenario", scenario::scenario_yaml(scenario)}, {"program", record::file_hash("/proc/self/exe")}};
   for (const std::string& file : {scenario.arm.urdf, scenario.safety.limits})
     experiment["file " + file] = record::file_hash(config::find_file(file, folder));
+  const std::string& tighter = scenario.safety.mission_limits;
+  if (!tighter.empty()) experiment["file " + tighter] = record::file_hash(config::find_file(tighter, folder));
   for (std::size_t joint = 0; joint < joint_count; ++joint) {
     const config::DriveKind kind = config::find_drive_kind(config::drive_of(scenario.drives, joint).profile, folder);
     experiment["file " + kind.name + ".yaml"] = record::file_hash(kind.file);
