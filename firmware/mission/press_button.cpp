@@ -67,11 +67,16 @@ Progress PressButton::begin_reach(Workbench& bench) {
   return Progress::running();
 }
 
+// The press reckons with the tip of closed fingers. Fingers that hold something end elsewhere, and what they hold would press the button.
 Progress PressButton::run_reach(const StepTick& tick) {
   const Progress motion = tick.bench.follow_way();
-  if (!motion.is_done()) return motion;
-  const arm::GripperState jaw = tick.bench.gripper.state();
-  return Progress::done_if(jaw != arm::GripperState::closing && jaw != arm::GripperState::opening);
+  if (motion.kind == Progress::Kind::failed || tick.bench.motion.planning()) return motion;
+  switch (tick.bench.gripper.state()) {
+    case arm::GripperState::empty: return motion;
+    case arm::GripperState::closing:
+    case arm::GripperState::lost: return Progress::running();  // a drive that is lost has a fault of its own
+    default: return Progress::failed(StepFailure::jaw_not_closed);
+  }
 }
 
 Progress PressButton::begin_press(Workbench& bench) {

@@ -36,6 +36,8 @@ Words words(StepFailure failure) {
       return {"too few points of the panel",
               "The laser's line is too weak or the sweep too fast: check mission.sweep_speed_rad_s and the water."};
     case StepFailure::jaw_stuck: return {"the jaw does not open", "Look at what it holds; free it by hand without power."};
+    case StepFailure::jaw_not_closed:
+      return {"the jaw does not close", "Look at what is between the fingers; free it by hand without power."};
     case StepFailure::touched_on_the_way_back:
       return {"touched something on the way back", "Look at what the arm touches before it is moved again."};
     case StepFailure::stalled: return {"the turn stalled", "The valve takes more torque than the wrist has, or something blocks it."};

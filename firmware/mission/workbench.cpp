@@ -16,8 +16,8 @@ constexpr double load_share = 0.7;
 // that is pushed from behind may be named for it: it is stopped in either case.
 constexpr double slow_lag_rad = 0.006;
 
-// Of the way back from a press: twice what the arm gives way by at 60 N.
-constexpr double unwinding_m = 0.006;
+// Of the way back from a press: twice what the arm gives way by at 60 N. Behind it the button's spring pushes for the whole stroke.
+constexpr double gives_way_m = 0.006;
 
 // While the load of a press is let off its change is no contact. Nor is the load: a press may leave 28 N m in the shoulder's gear, which holds it by itself.
 arm::GuardConfig unwinding_guard() {
@@ -191,6 +191,7 @@ void Workbench::begin_back_off() {
 }
 
 Progress Workbench::follow_back_off(const StepTick& tick) {
+  const double unwinding_m = gives_way_m + config.mission.layout.button_stroke_m;
   if (wound_up && (arm::base_from_tool(motion.target()).translation() - back_from_m_).norm() >= unwinding_m) {
     wound_up = false;
     back_guard = arm::GuardedMotion(free_motion_guard(config.mission_limits));

@@ -401,6 +401,16 @@ void set_zeros(const Machine& machine, const std::filesystem::path& folder, cons
   }
 }
 
+// A mission's own limits, none of them wider than the machine's.
+void tighten(const Machine& machine, const std::filesystem::path& folder, ControllerConfig& controller) {
+  if (machine.mission_limits.empty()) return;
+  const std::string found = find_file(machine.mission_limits, folder);
+  const safety::Limits tighter = read_limits(found);
+  if (!safety::is_tighter(tighter, controller.limits))
+    throw InputError(found + ": 'safety.mission_limits' tightens limits, and one of these is wider than in 'safety.limits'");
+  controller.mission_limits = tighter;
+}
+
 Core assemble(const Machine& machine, const Steps& steps) {
   const std::filesystem::path folder = std::filesystem::path(machine.file).parent_path();
   Core core;
@@ -409,6 +419,7 @@ Core assemble(const Machine& machine, const Steps& steps) {
   const bool arm = steps.take([&] { description = load_arm_urdf(find_file(machine.arm_urdf, folder)); });
   const bool limits = steps.take([&] { controller.limits = read_limits(find_file(machine.safety_limits, folder)); });
   controller.mission_limits = controller.limits;
+  if (limits) steps.take([&] { tighten(machine, folder, controller); });
   bool drives_known = false;
   if (arm && limits) {
     controller.network = network_config(description, controller.limits);

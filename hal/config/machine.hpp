@@ -87,7 +87,8 @@ struct Machine {
   Vehicle vehicle;
   std::string arm_urdf = "arm/arm5e.urdf";
   std::string safety_limits = "safety/limits.yaml";
-  std::string homing_file;  // of the joints' zeros; empty: none is known, and no joint takes power
+  std::string mission_limits;  // a file of the same form, none of whose limits is wider; empty: `safety_limits` again
+  std::string homing_file;     // of the joints' zeros; empty: none is known, and no joint takes power
   Drives drives;
   mission::MissionConfig mission;  // its speeds, distances and tries; layout, lamps and tasks are filled from the rest
   std::vector<Task> tasks{Task{}, Task{Task::Kind::press_buttons}};

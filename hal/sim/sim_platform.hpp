@@ -63,6 +63,9 @@ class SimPlatform : public Unattended {
   // Another fault, besides the configured ones. Throws InputError for one of the devices that cannot be.
   void add_fault(const SimFault& fault) { faults_.add(fault); }
 
+  // Something gets between the fingers, or behind them; see World::block_jaw.
+  void block_jaw(double lower_rad, double upper_rad) { world_.block_jaw(lower_rad, upper_rad); }
+
   Time now() const { return now_; }
   const world::World& world() const { return world_; }  // ground truth: for scoring only
   devices::Devices& devices() { return devices_; }

@@ -55,6 +55,8 @@ void add_machine(Keys& all, VehicleConfig& c) {
   all.push_back(key("lamps.lit", "", 0, 0, &c.machine.lamps_lit, "stills are taken with the lamps on"));
   all.push_back(key("arm.urdf", "", 0, 0, &c.machine.arm_urdf, "the arm; relative to this file's folder, then to the shipped files"));
   all.push_back(key("safety.limits", "", 0, 0, &c.machine.safety_limits, "the checksummed file of limits; found as arm.urdf is"));
+  all.push_back(key("safety.mission_limits", "", 0, 0, &c.machine.mission_limits,
+                    "a file of the same form with limits of this mission, none wider; empty: the same"));
   config::add_drives(all, c.machine.drives);
   config::add_mission(all, c.machine.mission);
 }

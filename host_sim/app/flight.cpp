@@ -2,19 +2,12 @@
 
 namespace lf::app {
 
-namespace {
-
-constexpr double force_window_s = 0.050;  // over which a contact's force is judged
-
-}  // namespace
-
 Flight::Flight(const scenario::Scenario& scenario, std::uint64_t seed, hal::SimObserver& observer, Sight sight) {
   const scenario::Sample sample = scenario::draw(scenario, seed);
   const scenario::Nominal nominal = scenario::make_nominal(scenario, sample.lamps_lit);
   error_texts_ = nominal.error_texts;
   hal::SimConfig sim = scenario::make_truth(scenario, sample, nominal, 1);
   sim.given_sight = sight == Sight::given;
-  sim.world.force_window_s = force_window_s;
   for (std::size_t i = 0; i < joint_count; ++i) {
     deceleration_rad_s2_[i] = sim.devices.drives[i].max_acceleration_rad_s2;
     const ArmJoint& joint = sim.world.arm.joints[i];

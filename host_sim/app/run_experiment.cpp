@@ -17,6 +17,8 @@ record::Experiment experiment_of(const scenario::Scenario& scenario) {
   experiment[std::string("file ") + scenario::homing_file] = record::file_hash(config::find_file(scenario::homing_file, folder));
   experiment[std::string("file ") + scenario::drive_objects_file] =
       record::file_hash(config::share_folder() / scenario::drive_objects_file);
+  const std::string& tighter = scenario.safety.mission_limits;
+  if (!tighter.empty()) experiment["file " + tighter] = record::file_hash(config::find_file(tighter, folder));
   for (std::size_t joint = 0; joint < joint_count; ++joint) {
     const config::DriveKind kind = config::find_drive_kind(config::drive_of(scenario.drives, joint).profile, folder);
     experiment["file " + kind.name + ".yaml"] = record::file_hash(kind.file);

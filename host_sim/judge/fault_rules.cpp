@@ -20,8 +20,8 @@ const std::vector<FaultRule>& rules() {
   using enum Demand;
   // What a drive does that gets wrong readings or does not obey.
   static const std::vector<std::string> misbehaves{
-      "drive fault", "following error",    "stale position",        "joint limit",          "overspeed",
-      "overload",    "unexpected contact", "the jaw does not open", "the jaw holds nothing"};
+      "drive fault",        "following error",       "stale position",         "joint limit",          "overspeed", "overload",
+      "unexpected contact", "the jaw does not open", "the jaw does not close", "the jaw holds nothing"};
   // A false position moves the computed place of the tool, which all joints make. An arm that stands elsewhere than it believes touches what lies there, and grips beside the bar:
   // the joint that feels it most is not the one that reads wrongly.
   static const std::vector<std::string> led_astray{"tool outside its workspace", "unexpected contact", "touched something",

@@ -99,6 +99,8 @@ void add_machine(Keys& all, Scenario& s) {
                     "from the question until the core has the panel vision's answer"));
   all.push_back(key("sensors.seed", "", 0, huge, &s.sensors.seed, "of camera and drive noise; 0: from the run's seed"));
   all.push_back(key("safety.limits", "", 0, 0, &s.safety.limits, "the checksummed file of limits; found as arm.urdf is"));
+  all.push_back(key("safety.mission_limits", "", 0, 0, &s.safety.mission_limits,
+                    "a file of the same form with limits of this mission, none wider; empty: the same"));
 }
 
 }  // namespace

@@ -15,6 +15,7 @@ config::Machine machine_of(const Scenario& scenario, bool lamps_lit) {
   machine.vehicle = scenario.vehicle;
   machine.arm_urdf = scenario.arm.urdf;
   machine.safety_limits = scenario.safety.limits;
+  machine.mission_limits = scenario.safety.mission_limits;
   machine.homing_file = homing_file;
   machine.drives = scenario.drives;
   machine.mission = scenario.mission;

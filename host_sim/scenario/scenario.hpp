@@ -126,6 +126,7 @@ struct Sensors {
 
 struct Safety {
   std::string limits = "safety/limits.yaml";
+  std::string mission_limits;  // of the same form, none wider
 };
 
 // How the mission is to end, where that is not success: a scenario that makes a fault passes when the mission fails safely because of it.

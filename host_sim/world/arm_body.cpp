@@ -82,6 +82,12 @@ void ArmBody::start_at(const std::array<double, joint_count>& start_rad) {
   }
 }
 
+void ArmBody::limit(Joint joint, double lower_rad, double upper_rad) {
+  DrivenJoint& driven = joints_[static_cast<std::size_t>(joint)];
+  driven.lower_rad = lower_rad;
+  driven.upper_rad = upper_rad;
+}
+
 double ArmBody::position_rad(std::size_t joint) const {
   const double position = part_.body().getJointPos(int(joint));
   return joint == jaw ? 0.5 * (position + part_.body().getJointPos(finger_b_link)) : position;

@@ -24,6 +24,8 @@ class ArmBody {
   ArmBody(const ArmDescription& arm, const scene::Scene& scene, const Config& config);
 
   void set_drives(const JointDrives& drives) { drives_ = drives; }
+  // New stops of a joint, which stands between them.
+  void limit(Joint joint, double lower_rad, double upper_rad);
   // Forces and constraints of the coming step.
   void before_step();
   // Takes what the step did.

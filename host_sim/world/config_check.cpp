@@ -75,6 +75,7 @@ void check(const WorldConfig& config) {
   expect(config.restitution >= 0 && config.restitution <= 1, "restitution", "must lie in 0..1");
   expect(config.step_s > 0 && config.step_s <= 0.01, "step_s", "must lie in 0..0.01");
   expect(config.force_window_s >= config.step_s && config.force_window_s <= 10, "force_window_s", "must lie in step_s..10");
+  expect(config.judged_window_s >= config.step_s && config.judged_window_s <= 10, "judged_window_s", "must lie in step_s..10");
   expect(config.solver_iterations >= 1 && config.solver_iterations <= 1000, "solver_iterations", "must lie in 1..1000");
 }
 

@@ -50,15 +50,15 @@ bool contact_is_intended(BodyId a, BodyId b) {
   return (is_finger(a) && (is_finger(b) || is_handled(b))) || (is_finger(b) && is_handled(a));
 }
 
-ContactSensor::ContactSensor(double window_s, double step_s, const Vec3& vehicle_com_m)
-    : window_s_(window_s),
+ContactSensor::ContactSensor(double window_s, double judged_window_s, double step_s, const Vec3& vehicle_com_m)
+    : judged_window_s_(judged_window_s),
       step_s_(step_s),
       vehicle_com_m_(vehicle_com_m),
       tool_(window_s, step_s),
       base_(window_s, step_s),
       handle_(window_s, step_s),
       grip_{ForceWindow(window_s, step_s), ForceWindow(window_s, step_s)},
-      on_body_(scene::body_count, ForceWindow(window_s, step_s)) {}
+      on_body_(scene::body_count, ForceWindow(judged_window_s, step_s)) {}
 
 void ContactSensor::take(const std::vector<ContactImpulse>& impulses, const Pose& base_from_tool, double time_s) {
   Wrench tool, base, handle;
@@ -108,7 +108,7 @@ void ContactSensor::add_to_unintended(const ContactImpulse& contact, double time
   auto found = std::find_if(unintended_.begin(), unintended_.end(),
                             [&](const Unintended& pair) { return pair.contact.a == first && pair.contact.b == second; });
   if (found == unintended_.end()) {
-    unintended_.push_back({{first, second, time_s, 0}, ForceWindow(window_s_, step_s_), {}});
+    unintended_.push_back({{first, second, time_s, 0}, ForceWindow(judged_window_s_, step_s_), {}});
     found = unintended_.end() - 1;
   }
   const Vec3 on_first = contact.a == first ? contact.impulse_n_s : Vec3(-contact.impulse_n_s);

@@ -27,7 +27,8 @@ bool contact_is_intended(scene::BodyId a, scene::BodyId b);
 
 class ContactSensor {
  public:
-  ContactSensor(double window_s, double step_s, const Vec3& vehicle_com_m);
+  // Wrenches are averaged over `window_s`, largest and peak forces over `judged_window_s`.
+  ContactSensor(double window_s, double judged_window_s, double step_s, const Vec3& vehicle_com_m);
 
   // Takes the last step's impulses. `base_from_tool` is the tool as the step began.
   void take(const std::vector<ContactImpulse>& impulses, const Pose& base_from_tool, double time_s);
@@ -43,7 +44,7 @@ class ContactSensor {
   void add_to_unintended(const ContactImpulse& contact, double time_s);
   double largest_force_n() const;
 
-  double window_s_, step_s_;
+  double judged_window_s_, step_s_;
   Vec3 vehicle_com_m_;
   ForceWindow tool_, base_, handle_;
   std::array<ForceWindow, 2> grip_;

@@ -86,7 +86,7 @@ struct World::Impl {
         panel_shape(make_collision_shape(config.scene[std::size_t(BodyId::panel)], Pose::Identity())),
         valve(config.valve, config.base_from_panel, config.scene[std::size_t(BodyId::handle)], config.restitution, config.step_s),
         buttons{make_button(0), make_button(1), make_button(2)},
-        sensor(config.force_window_s, config.step_s, config.vehicle_com_m) {
+        sensor(config.force_window_s, config.judged_window_s, config.step_s, config.vehicle_com_m) {
     arm.part().enter(bullet.get());
     panel = std::make_unique<btRigidBody>(0, nullptr, panel_shape.compound.get());
     panel->setWorldTransform(to_bullet(config.base_from_panel));
@@ -166,6 +166,8 @@ void World::push_obstacle() {
   const Vec3 wrist_m = impl_->arm.base_from_link(std::size_t(BodyId::wrist)).translation();
   if (!impl_->obstacle) impl_->obstacle = std::make_unique<Obstacle>(impl_->bullet.get(), wrist_m, int(BodyId::panel));
 }
+
+void World::block_jaw(double lower_rad, double upper_rad) { impl_->arm.limit(Joint::jaw, lower_rad, upper_rad); }
 
 double World::time_s() const { return double(impl_->steps) * impl_->config.step_s; }
 JointReadings World::readings() const { return impl_->arm.readings(); }

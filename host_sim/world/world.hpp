@@ -62,7 +62,8 @@ struct WorldConfig {
   double joint_drag_nm_s = 0.5;  // viscous, each arm joint in water, per rad/s; the jaw's fingers a tenth of it
   double restitution = 0;        // of every contact
   double step_s = 0.001;
-  double force_window_s = 0.020;  // contact forces are impulses over this window
+  double force_window_s = 0.020;   // over which a sensor would average a contact's wrench
+  double judged_window_s = 0.050;  // over which a contact's force is judged: what panel and arm bear
   int solver_iterations = 30;
 };
 
@@ -76,10 +77,11 @@ struct ButtonState {
 struct UnintendedContact {
   scene::BodyId a{}, b{};
   double first_s = 0;       // since the world began
-  double peak_force_n = 0;  // over the force window
+  double peak_force_n = 0;  // over `judged_window_s`
 };
 
-// Forces from contacts alone (no weight, no inertia), averaged over `force_window_s`, acting on the robot.
+// Forces from contacts alone (no weight, no inertia), acting on the robot. Wrenches, handle and grip are averaged over `force_window_s`, the largest and the
+// peak forces over `judged_window_s`.
 struct ContactReport {
   Wrench tool_wrench;                  // on wrist and fingers, in the tool frame, about its origin
   Wrench base_wrench;                  // on arm and vehicle, in B, about `vehicle_com_m`
@@ -108,6 +110,9 @@ class World {
   void break_handle();
   // From the next step on a box floats up from the wrist's left and pushes against it with 80 N. In contact reports it counts as the panel.
   void push_obstacle();
+  // From the next step on something rigid keeps the jaw's angle at or above `lower_rad` and at or below `upper_rad`. The jaw stands between the two when
+  // this is called.
+  void block_jaw(double lower_rad, double upper_rad);
 
   double time_s() const;
   // After construction and after each step. motor_position_rad: see drive_rows.hpp for the model of the play.

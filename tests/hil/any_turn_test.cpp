@@ -125,6 +125,21 @@ TEST_P(TurnAt, RadiansPerSecondEndsWhereItShould) {
 
 INSTANTIATE_TEST_SUITE_P(Speed, TurnAt, testing::Values(0.03, 0.6));
 
+// The step's time-out begins after its planned duration: a quarter turn at the slowest speed takes 52 s.
+TEST(TurnAtTheSlowestSpeed, OfAQuarterEndsWhereItShould) {
+  std::vector<std::string> overrides = turn(0, 90);
+  overrides.emplace_back("mission.turn_speed_rad_s=0.03");
+  Rig rig(overrides, 2);
+  rig.start();
+  ASSERT_TRUE(rig.run_to(Step::turn)) << rig.story();
+  const double began_s = rig.now().s();
+  ASSERT_TRUE(rig.run_to(Step::let_go)) << rig.story();
+  EXPECT_GT(rig.now().s() - began_s, pi / 2 / 0.03);
+  ASSERT_TRUE(rig.run_to_end()) << rig.story();
+  EXPECT_TRUE(rig.outcome().success) << rig.story();
+  EXPECT_NEAR(deg_from_rad(rig.world().valve_angle_rad()), 90, 3) << rig.story();
+}
+
 TEST(ATurnFasterThanTheWrist, IsRefusedBeforeTheStart) {
   const scenario::Scenario fast = scenario::load_scenario("turn_only", {"mission.turn_speed_rad_s=1"});
   EXPECT_THROW(scenario::make_nominal(fast, true), InputError);

@@ -48,6 +48,56 @@ TEST(AClick, ThatIsFeltIsOne) {
   EXPECT_EQ(clicks_felt("0", 3), 0);
 }
 
+// A long spring pushes the finger on most of its way back. That was taken for a contact: the arm stopped, swayed in by a millimetre, and the button
+// clicked again.
+TEST(AButtonOfALongStroke, ClicksOnceAndIsNoContactOnTheWayBack) {
+  for (const std::uint64_t seed : {170, 171, 172}) {
+    std::vector<std::string> scenario = press("left");
+    for (const char* set : {"mission.press_speed_m_s=0.04146", "physics.drag_coefficient=1.88", "mounting.joints_deg=-0.1497",
+                            "mounting.marker_m=-0.001846", "mission.docking_rad=0.02264", "panel.button_stroke_m=0.01245"}) {
+      scenario.emplace_back(set);
+    }
+    Rig rig(scenario, seed);
+    rig.start();
+    ASSERT_TRUE(rig.run_to_end()) << rig.story();
+    EXPECT_TRUE(rig.outcome().success) << rig.story();
+    EXPECT_EQ(rig.world().button(0).presses, 1u) << "seed " << seed << ": " << rig.story();
+    EXPECT_EQ(rig.count(safety::Fault::step_failed), 0u) << "seed " << seed << ": " << rig.story();
+  }
+}
+
+// After a valve the jaw closes for the second look. Something gets between the fingers there: as thick as the bar it looks held, thicker it jams them.
+TEST(APress, IsNotBegunWithSomethingBetweenTheFingers) {
+  const double widest_rad = arm_geometry::joints[4].upper_rad;
+  for (const double thick_m : {PanelLayout{}.handle_thickness_m, 0.025}) {
+    Rig rig({"tasks=[{turn_valve: {to_deg: 90}}, {press_buttons: {order: [left]}}]"});
+    rig.start();
+    ASSERT_TRUE(rig.run_to(Step::back_off)) << rig.story();
+    rig.block_jaw(arm::jaw_from_gap(thick_m), widest_rad);
+    ASSERT_TRUE(rig.run_to_end()) << rig.story();
+    EXPECT_FALSE(rig.outcome().success) << rig.story();
+    EXPECT_EQ(rig.outcome().step, Step::reach_button) << rig.story();
+    EXPECT_EQ(rig.outcome().code, static_cast<std::int32_t>(StepFailure::jaw_not_closed)) << thick_m << " m: " << rig.story();
+    EXPECT_EQ(rig.world().button(0).presses, 0u);
+    EXPECT_EQ(rig.world().button(0).depth_m, 0) << "it was touched";
+    EXPECT_TRUE(rig.world().contacts().unintended.empty());
+  }
+}
+
+// The jaw's motor stands still before the second look: the fingers stay open.
+TEST(APress, IsNotBegunWithAJammedJaw) {
+  Rig rig({"tasks=[{turn_valve: {to_deg: 90}}, {press_buttons: {order: [left]}}]"});
+  rig.start();
+  ASSERT_TRUE(rig.run_to(Step::back_off)) << rig.story();
+  rig.devices().add_fault({0, devices::DeviceFaultKind::following, 5}, rig.now());
+  ASSERT_TRUE(rig.run_to_end()) << rig.story();
+  EXPECT_FALSE(rig.outcome().success) << rig.story();
+  EXPECT_EQ(rig.outcome().code, static_cast<std::int32_t>(StepFailure::jaw_not_closed)) << rig.story();
+  EXPECT_GT(arm::gap_from_jaw(angle_rad(rig, Joint::jaw)), 0.02) << "the jaw is not jammed";
+  EXPECT_EQ(rig.world().button(0).presses, 0u);
+  EXPECT_EQ(rig.world().button(0).depth_m, 0) << "it was touched";
+}
+
 // It was pressed as hard as one that works, three times; the arm is home again, and touched nothing else.
 TEST_P(AButton, ThatIsStuckIsNotPressedAndSaidToBeStuck) {
   std::vector<std::string> scenario = press(GetParam());

@@ -199,6 +199,64 @@ TEST(AJobAfterJogs, IsDone) {
   EXPECT_EQ(rig.step_now(), Step::done) << rig.story();
 }
 
+// ---- the tool's workspace ----
+
+// A mission that keeps the tool from where the slew can take it.
+constexpr double left_face_m = -0.30;
+void narrow(ControllerConfig& told) { told.mission_limits.workspace_min_m[1] = left_face_m; }
+
+double out_to_the_left_m(const Rig& rig) { return left_face_m - rig.world().base_from_tool().translation().y(); }
+
+// The tool is 0.45 m from the slew's axis, and a negative slew turns it to the left.
+Rig::Make stretched_at(double slew_rad) {
+  return [slew_rad](hal::SimConfig& truth) { truth.world.start_rad = {slew_rad, 1.5, 1.35, 0, 0.3}; };
+}
+
+TEST(AJogOutOfTheWorkspace, IsRefusedAndMovesNothing) {
+  Rig rig(press_only(), 1, narrow, stretched_at(-0.5));
+  ASSERT_TRUE(home(rig)) << rig.story();
+  std::uint32_t jogs = 0;
+  while (jog(rig, Joint::slew, -0.05)) {
+    ASSERT_TRUE(finish_jog(rig)) << rig.story();
+    ASSERT_LT(++jogs, 30u) << "it was never refused";
+  }
+  EXPECT_GT(jogs, 0u);
+  const double left_m = out_to_the_left_m(rig);
+  EXPECT_LT(left_m, 0.002) << "it is outside";
+  EXPECT_GT(left_m, -0.06) << "the next jog would have kept inside";
+  EXPECT_GT(angle_rad(rig, Joint::slew) - 0.05, -1.5508) << "the joint's own limit refused it";
+  const auto stood = angles_rad(rig);
+  rig.run_for(1);
+  EXPECT_LT(farthest_apart(angles_rad(rig), stood), 0.002);
+  EXPECT_EQ(rig.count(Fault::workspace), 0u) << rig.story();
+}
+
+TEST(AnArmOutsideItsWorkspace, IsStoppedAndJoggedBack) {
+  Rig rig(press_only(), 1, narrow, stretched_at(-1.3));
+  ASSERT_GT(out_to_the_left_m(rig), 0.02);
+  rig.start();
+  ASSERT_TRUE(rig.run_to_end(60)) << rig.story();
+  EXPECT_EQ(rig.outcome().fault, Fault::workspace) << rig.story();
+  rig.run_for(1.5);
+  ASSERT_TRUE(give(rig, Command::reset));
+  ASSERT_TRUE(run_until(rig, Standing::idle, 2)) << rig.story();
+  ASSERT_TRUE(home(rig)) << rig.story();
+  rig.run_for(0.1);
+  EXPECT_FALSE(give(rig, Command::start)) << "a job out of there";
+  EXPECT_FALSE(jog(rig, Joint::slew, -0.05)) << "farther out";
+  for (int i = 0; i < 4 && out_to_the_left_m(rig) > 0; ++i) {
+    const double before_m = out_to_the_left_m(rig);
+    ASSERT_TRUE(jog(rig, Joint::slew, 0.3)) << i;
+    ASSERT_TRUE(finish_jog(rig)) << rig.story();
+    EXPECT_LT(out_to_the_left_m(rig), before_m);
+  }
+  EXPECT_LT(out_to_the_left_m(rig), 0) << "it is still outside";
+  EXPECT_EQ(rig.mission().standing(), Standing::ready) << rig.story();
+  EXPECT_TRUE(give(rig, Command::abort));
+  ASSERT_TRUE(rig.run_to_end(60)) << rig.story();
+  EXPECT_EQ(rig.step_now(), Step::failed) << "stowed: " << rig.story();
+}
+
 // ---- an arm found outside its limits ----
 
 constexpr double slew_soft_limit_rad = -1.5508;  // shared/safety/limits.yaml

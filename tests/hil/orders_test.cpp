@@ -292,6 +292,8 @@ TEST_P(Standings, AreLeftByAShutDownWithoutPowerAndWithTheNodesStopped) {
   ASSERT_TRUE(give(rig, Command::shut_down));
   rig.run_for(3);
   EXPECT_TRUE(rig.mission().over()) << rig.story();
+  EXPECT_FALSE(rig.any_power()) << "from the drives' side";
+  for (std::size_t i = 0; i < joint_count; ++i) EXPECT_EQ(rig.devices().power(i), devices::DrivePower::off) << "joint " << i;
   EXPECT_LT(rig.fastest_joint_rad_s(), standing_rad_s);
   const std::uint64_t heard = rig.controller().network().stats().frames_in;
   const auto stood = angles_rad(rig);

@@ -40,6 +40,15 @@ class Rig {
   const mission::Outcome& outcome() { return mission().outcome(); }
   Platform& ports() { return *failing_; }
   KnownSight& sight() { return *sight_; }
+  // From now on the jaw moves between these angles only, and stands between them: something is between the fingers, or behind them.
+  void block_jaw(double lower_rad, double upper_rad) { platform_->block_jaw(lower_rad, upper_rad); }
+  // From now on something floats up from the wrist's left and pushes against it; see World::push_obstacle.
+  void push_obstacle() {
+    hal::SimFault fault;
+    fault.kind = hal::SimFaultKind::obstacle;
+    fault.at_s = now().s();
+    platform_->add_fault(fault);
+  }
   devices::Devices& devices() { return platform_->devices(); }
   const world::World& world() const { return platform_->world(); }
   const ScanPipeline& pipeline() const { return lockstep_->pipeline(); }

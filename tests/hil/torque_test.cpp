@@ -2,89 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
-#include <memory>
 
-#include "firmware/arm/actuator.hpp"
-#include "firmware/canopen/network.hpp"
-#include "firmware/safety/watch.hpp"
-#include "hal/sim/sim_platform.hpp"
-#include "host_sim/scenario/instance.hpp"
+#include "tests/hil/joint_bench.hpp"
 
 namespace lf::test {
 namespace {
-
-using Angles = std::array<double, joint_count>;
-
-constexpr Angles parked{0, 0.60, 1.90, 0, 0.3};
-
-// Network and watch over the simulated arm, nothing within its reach. One joint is moved at a steady speed.
-class Bench {
- public:
-  explicit Bench(std::uint64_t seed, const std::function<void(hal::SimConfig&)>& change = {}) {
-    const scenario::Scenario scenario = scenario::load_scenario("default", {});
-    const scenario::Sample sample = scenario::draw(scenario, seed);
-    nominal = scenario::make_nominal(scenario, sample.lamps_lit);
-    hal::SimConfig truth = scenario::make_truth(scenario, sample, nominal, 1);
-    truth.world.base_from_panel.translation().x() += 2;
-    truth.world.start_rad = parked;
-    if (change) change(truth);
-    platform = std::make_unique<hal::SimPlatform>(truth, nobody_);
-    network = std::make_unique<canopen::Network>(nominal.controller.network);
-    watch = std::make_unique<safety::Watch>(nominal.controller.limits, nominal.controller.transmissions);
-  }
-
-  // False when the joint does not come into power.
-  bool enable(Joint joint) {
-    network->start_boot(now);
-    for (int i = 0; i < 2000 && network->boot().state == canopen::BootState::running; ++i) tick();
-    for (int i = 0; i < 500 && !network->axis(joint).enabled(); ++i) {
-      network->axis(joint).request(canopen::AxisRequest::hold_enabled);
-      tick();
-    }
-    target_ = network->axis(joint).actual_counts();
-    return network->axis(joint).enabled();
-  }
-
-  void move(Joint joint, double speed_rad_s) {
-    const double per_count = arm::rad_per_count(joint, watch->joints().position_rad[std::size_t(joint)]);
-    target_ += speed_rad_s * 0.004 / per_count;
-    const double lead = 0.05 / per_count, actual = network->axis(joint).actual_counts();
-    target_ = std::clamp(target_, actual - lead, actual + lead);
-    network->axis(joint).set_target_counts(static_cast<std::int32_t>(std::lround(target_)));
-    tick();
-  }
-
-  void tick() {
-    (void)platform->wait_for_tick(now);
-    for (hal::ReceivedFrame received; platform->receive_can(0, received) == hal::port_ok;) network->on_frame(received.frame, received.t);
-    Angles rad{};
-    for (std::size_t i = 0; i < joint_count; ++i)
-      rad[i] = arm::rad_from_counts(static_cast<Joint>(i), network->axis(static_cast<Joint>(i)).actual_counts());
-    watch->observe(*network, rad, now);
-    safety::FaultArbiter began;
-    watch->check(*network, Vec3(0.2, 0, 0.5), safety::Vigilance::joints, now, began);
-    for (const safety::FaultReport& report : began.reports()) {
-      if (report.fault == safety::Fault::overload) overloaded = static_cast<std::size_t>(report.code);
-    }
-    canopen::Outbox outbox;
-    network->tick(now, outbox);
-    (void)platform->send_can(0, {outbox.data(), outbox.size()});
-  }
-
-  scenario::Nominal nominal;
-  std::unique_ptr<hal::SimPlatform> platform;
-  std::unique_ptr<canopen::Network> network;
-  std::unique_ptr<safety::Watch> watch;
-  Time now;
-  std::size_t overloaded = joint_count;
-
- private:
-  hal::SimObserver nobody_;
-  double target_ = 0;
-};
 
 struct Way {
   Joint joint;
@@ -99,7 +23,7 @@ TEST_P(TorqueOf, AMovingJointIsWithinItsBounds) {
   const Way& way = GetParam();
   const auto index = std::size_t(way.joint);
   for (const std::uint64_t seed : {1u, 2u, 3u}) {
-    Bench bench(seed);
+    JointBench bench(seed);
     ASSERT_TRUE(bench.enable(way.joint));
     int within = 0, all = 0;
     double true_nm = 0, widest = 0;
@@ -118,13 +42,13 @@ TEST_P(TorqueOf, AMovingJointIsWithinItsBounds) {
 }
 
 // What blocks a joint is pressed on until the watch calls it an overload; with every friction that the simulator draws. The roll's limit lies above its drive's
-// torque: a handle that is stuck is a turn that stalls, which lets go and looks again.
+// torque: a handle that is stuck is a turn that stalls, which lets go and looks again. Its overload is CappedTorqueOf's.
 TEST_P(TorqueOf, ABlockedJointIsOverloaded) {
   const Way& way = GetParam();
   const auto index = std::size_t(way.joint);
   if (way.joint == Joint::roll) return;
   for (const std::uint64_t seed : {1u, 2u, 3u, 4u}) {
-    Bench bench(seed, [&](hal::SimConfig& truth) {
+    JointBench bench(seed, [&](hal::SimConfig& truth) {
       ArmJoint& joint = truth.world.arm.joints[index];
       (way.speed_rad_s > 0 ? joint.upper_rad : joint.lower_rad) = way.blocked_at_rad;
     });
@@ -140,17 +64,23 @@ INSTANTIATE_TEST_SUITE_P(Each, TorqueOf,
                                          Way{Joint::roll, 0.3, 1.0}),
                          [](const testing::TestParamInfo<Way>& test) { return "Joint" + std::to_string(std::size_t(test.param.joint)); });
 
-// The jaw grips with all that its drive may give: only a reading beyond that, of a drive that does not keep its limit, is an overload.
-TEST(TorqueOfTheJaw, IsAnOverloadWhenItsDriveDoesNotKeepItsLimit) {
+class CappedTorqueOf : public testing::TestWithParam<Joint> {};
+
+// The limits of roll and jaw lie above what their drives may give: only a reading beyond that, of a drive that does not keep its limit, is an overload.
+TEST_P(CappedTorqueOf, IsAnOverloadWhenItsDriveDoesNotKeepItsLimit) {
+  const auto index = std::size_t(GetParam());
   for (const bool broken : {false, true}) {
-    Bench bench(1, [&](hal::SimConfig& truth) {
-      if (broken) truth.devices.faults.push_back({8.0, devices::DeviceFaultKind::torque_high, 5, 0.5, 0});
+    JointBench bench(1, [&](hal::SimConfig& truth) {
+      if (broken) truth.devices.faults.push_back({8.0, devices::DeviceFaultKind::torque_high, std::uint8_t(index + 1), 0.5, 0});
     });
-    ASSERT_TRUE(bench.enable(Joint::jaw));
-    for (int i = 0; i < 2500; ++i) bench.move(Joint::jaw, 0.2);
-    EXPECT_EQ(bench.overloaded, broken ? std::size_t(Joint::jaw) : joint_count);
+    ASSERT_TRUE(bench.enable(GetParam()));
+    for (int i = 0; i < 2500; ++i) bench.move(GetParam(), 0.2);
+    EXPECT_EQ(bench.overloaded, broken ? index : joint_count);
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(OfRollAndJaw, CappedTorqueOf, testing::Values(Joint::roll, Joint::jaw),
+                         [](const auto& test) { return test.param == Joint::roll ? "Roll" : "Jaw"; });
 
 }  // namespace
 }  // namespace lf::test

@@ -33,6 +33,7 @@ void PhaseObserver::on_event(const Event& event) {
   }
   if (event.kind != Event::Kind::fault || event.reaction < safety::Reaction::retry) return;
   if (event.reaction == safety::Reaction::retry) retried_ = true;
+  if (event.reaction > safety::Reaction::retry) given_up_ = event.fault == safety::Fault::aborted ? "aborted" : "failed";
   if (say_)
     say_(clock_text(event.t.s()) + step.name + ": " + config::fault_text(event.fault, event.code, event.emcy, texts_) +
          ", reaction: " + safety::name(event.reaction));
@@ -44,17 +45,20 @@ void PhaseObserver::enter_step(const Event& event) {
   if (!phases_.empty() && phases_.back().name == step.stage) return;
   if (!phases_.empty()) {
     phases_.back().end_s = event.t.s();
-    phases_.back().outcome = retried_ ? "retried" : "done";
+    phases_.back().outcome = outcome();
     if (say_) say_(clock_text(phases_.back().end_s) + phases_.back().name + ": " + phases_.back().outcome);
   }
   phases_.push_back({step.stage, event.t.s(), record::unknown, ""});
   retried_ = false;
+  given_up_.clear();
 }
+
+std::string PhaseObserver::outcome() const { return !given_up_.empty() ? given_up_ : retried_ ? "retried" : "done"; }
 
 void PhaseObserver::finish(double now_s, const std::string& failure) {
   if (phases_.empty()) return;
   phases_.back().end_s = now_s;
-  phases_.back().outcome = failure.empty() ? (retried_ ? "retried" : "done") : "failed";
+  phases_.back().outcome = failure.empty() ? outcome() : "failed";
 }
 
 }  // namespace lf::app

@@ -29,12 +29,14 @@ class PhaseObserver : public hal::SimObserver {
  private:
   void on_event(const Event& event);
   void enter_step(const Event& event);
+  std::string outcome() const;  // of the phase under way
 
   record::RunDigest& digest_;
   const config::ErrorTexts& texts_;
   Say say_;
   std::vector<record::PhaseRecord> phases_;
   bool retried_ = false;
+  std::string given_up_;  // how, where a fault ended the phase
 };
 
 }  // namespace lf::app

@@ -261,9 +261,9 @@ TEST_F(BadInput, LimitsThatAreNotThoseOfTheirChecksumAreNamedWithTheRightOne) {
   std::filesystem::copy(LANTERNFISH_SOURCE_DIR "/shared", folder() / "share", std::filesystem::copy_options::recursive);
   const std::filesystem::path limits = folder() / "share" / "safety" / "limits.yaml";
   std::string text = text_of(limits);
-  const std::size_t at = text.find("max_contact_torque_nm: 25");
+  const std::size_t at = text.find("max_contact_torque_nm: 13");
   ASSERT_NE(at, std::string::npos);
-  file("share/safety/limits.yaml", text.replace(at, 25, "max_contact_torque_nm: 24"));
+  file("share/safety/limits.yaml", text.replace(at, 25, "max_contact_torque_nm: 12"));
   const std::string share = "LANTERNFISH_SHARE='" + (folder() / "share").string() + "'";
   const Said doctor = run("doctor", share);
   EXPECT_EQ(doctor.status, 3);

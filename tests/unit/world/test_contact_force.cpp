@@ -162,11 +162,25 @@ TEST(FrictionCone, holdsBelowItsAngleAndSlidesWithTheRestAboveIt) {
   }
 }
 
+// A blow of 5 N s within 20 ms: a sensor of 20 ms shows 250 N, over the 50 ms that are judged it is 100.
+TEST(ContactSensor, averagesWrenchesAndJudgedForcesOverTheirOwnWindows) {
+  using scene::BodyId;
+  ContactSensor sensor(0.02, 0.05, 0.001, Vec3::Zero());
+  for (int i = 0; i < 20; ++i) sensor.take({{BodyId::wrist, BodyId::panel, Vec3::Zero(), Vec3(0.25, 0, 0)}}, Pose::Identity(), i * 0.001);
+  EXPECT_NEAR(sensor.report().base_wrench.force_n.norm(), 250, 1e-9);
+  EXPECT_NEAR(sensor.report().largest_force_n, 100, 1e-9);
+  EXPECT_NEAR(sensor.report().peak_force_n, 100, 1e-9);
+  EXPECT_NEAR(sensor.report().unintended.front().peak_force_n, 100, 1e-9);
+  for (int i = 20; i < 40; ++i) sensor.take({}, Pose::Identity(), i * 0.001);
+  EXPECT_EQ(sensor.report().base_wrench.force_n.norm(), 0);
+  EXPECT_NEAR(sensor.report().largest_force_n, 100, 1e-9) << "40 ms after the first of it";
+}
+
 // What presses from two sides presses, though nothing is left of it at the base; a squeezed bar is carried by the fingers.
 TEST(ContactSensor, opposedForcesDoNotCancelAndASqueezeDoes) {
   using scene::BodyId;
   const auto seen = [](std::vector<ContactImpulse> impulses) {
-    ContactSensor sensor(0.05, 0.001, Vec3::Zero());
+    ContactSensor sensor(0.05, 0.05, 0.001, Vec3::Zero());
     for (int i = 0; i < 50; ++i) sensor.take(impulses, Pose::Identity(), i * 0.001);
     return sensor.report();
   };

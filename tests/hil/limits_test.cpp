@@ -1,0 +1,110 @@
+// Each limit of shared/safety/limits.yaml can act on the simulated arm: none lies beyond what the arm and its drives can come to.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "firmware/arm/kinematics.hpp"
+#include "firmware/mission/workbench.hpp"
+#include "tests/hil/joint_bench.hpp"
+
+namespace lf::test {
+namespace {
+
+using safety::Fault;
+
+bool was_found(const JointBench& bench, Fault fault, std::size_t code) {
+  return std::find(bench.found.begin(), bench.found.end(), std::pair{fault, static_cast<std::int32_t>(code)}) != bench.found.end();
+}
+
+class ALimitOfJoint : public testing::TestWithParam<std::size_t> {};
+
+constexpr double beyond_rad = 0.03;
+
+// The joint stands inside its limits, and its encoder says that it is outside: the jaw's limits lie outside its stops.
+TEST_P(ALimitOfJoint, OfAngleActsAtEitherEnd) {
+  const std::size_t joint = GetParam();
+  for (const bool upper : {false, true}) {
+    JointBench bench(1, [&](hal::SimConfig& truth) {
+      const ArmJoint& of = truth.world.arm.joints[joint];
+      const scenario::Scenario scenario = scenario::load_scenario("default", {});
+      const safety::JointLimit limit = scenario::make_nominal(scenario, true).controller.limits.joints[joint];
+      const double inside_rad =
+          upper ? std::min(limit.max_rad, of.upper_rad) - beyond_rad : std::max(limit.min_rad, of.lower_rad) + beyond_rad;
+      truth.world.start_rad[joint] = inside_rad;
+      truth.devices.drives[joint].encoder_offset_rad = (upper ? limit.max_rad + beyond_rad : limit.min_rad - beyond_rad) - inside_rad;
+    });
+    ASSERT_TRUE(bench.enable(static_cast<Joint>(joint)));
+    for (int i = 0; i < 50; ++i) bench.tick();
+    EXPECT_TRUE(was_found(bench, Fault::joint_limit, joint)) << (upper ? "upper" : "lower");
+  }
+}
+
+TEST_P(ALimitOfJoint, OfSpeedActsOnAReadingThatJumps) {
+  const std::size_t joint = GetParam();
+  JointBench bench(1, [&](hal::SimConfig& truth) {
+    truth.devices.faults.push_back({8.0, devices::DeviceFaultKind::encoder_jump, static_cast<std::uint8_t>(joint + 1), 0, 0});
+  });
+  ASSERT_TRUE(bench.enable(static_cast<Joint>(joint)));
+  while (bench.now.s() < 9) bench.tick();
+  EXPECT_TRUE(was_found(bench, Fault::overspeed, joint));
+}
+
+TEST_P(ALimitOfJoint, OfAgeActsOnADriveThatIsSilent) {
+  const std::size_t joint = GetParam();
+  JointBench bench(1, [&](hal::SimConfig& truth) {
+    truth.devices.faults.push_back({8.0, devices::DeviceFaultKind::silent, static_cast<std::uint8_t>(joint + 1), 0, 0});
+  });
+  ASSERT_TRUE(bench.enable(static_cast<Joint>(joint)));
+  const double limit_s = bench.nominal.controller.limits.stale_position_s;
+  while (bench.now.s() < 8.0) bench.tick();
+  EXPECT_FALSE(was_found(bench, Fault::stale_position, joint));
+  while (bench.now.s() < 8.0 + limit_s + 0.012) bench.tick();
+  EXPECT_TRUE(was_found(bench, Fault::stale_position, joint));
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, ALimitOfJoint, testing::Range(std::size_t{0}, joint_count));
+
+// Angles drawn within the joints' own limits take the tool past every face of its workspace.
+TEST(ALimit, OfTheWorkspaceCanBePassedAtEveryFace) {
+  const scenario::Scenario scenario = scenario::load_scenario("default", {});
+  const safety::Limits limits = scenario::make_nominal(scenario, true).controller.limits;
+  std::mt19937 random(1);
+  std::array<bool, 3> below{}, above{};
+  for (int i = 0; i < 1'000'000; ++i) {
+    arm::JointVector q;
+    for (std::size_t j = 0; j < arm_joint_count; ++j) {
+      q[static_cast<Eigen::Index>(j)] = std::uniform_real_distribution(limits.joints[j].min_rad, limits.joints[j].max_rad)(random);
+    }
+    // The watch tolerates 2 mm.
+    const Vec3 tool_m = arm::base_from_tool(q).translation();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      below[axis] = below[axis] || tool_m[static_cast<Eigen::Index>(axis)] < limits.workspace_min_m[axis] - 0.002;
+      above[axis] = above[axis] || tool_m[static_cast<Eigen::Index>(axis)] > limits.workspace_max_m[axis] + 0.002;
+    }
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    EXPECT_TRUE(below[axis]) << "lower face of axis " << axis;
+    EXPECT_TRUE(above[axis]) << "upper face of axis " << axis;
+  }
+}
+
+// The guard takes the smaller of this limit and half of the joint's own: at 25 N m it never was this one.
+TEST(ALimit, OfContactIsTheOneThatActs) {
+  const scenario::Scenario scenario = scenario::load_scenario("default", {});
+  const safety::Limits limits = scenario::make_nominal(scenario, true).controller.limits;
+  safety::Limits tighter = limits;
+  tighter.max_contact_torque_nm *= 0.9;
+  for (Eigen::Index joint = 0; joint < 3; ++joint) {
+    EXPECT_EQ(mission::free_motion_guard(limits).contact_torque_nm[joint], limits.max_contact_torque_nm);
+    EXPECT_EQ(mission::free_motion_guard(tighter).contact_torque_nm[joint], tighter.max_contact_torque_nm);
+  }
+  safety::Limits wider = limits;
+  wider.max_contact_torque_nm *= 1.1;
+  for (Eigen::Index joint = 0; joint < 3; ++joint) {
+    EXPECT_EQ(mission::free_motion_guard(wider).contact_torque_nm[joint], limits.max_contact_torque_nm) << "half of the joint's own";
+  }
+}
+
+}  // namespace
+}  // namespace lf::test

@@ -1,0 +1,89 @@
+// A jaw that cannot let go, and a contact on the way back: the arm stops, and pulls at nothing.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "tests/hil/operator.hpp"
+
+namespace lf::test {
+namespace {
+
+using mission::Step;
+using safety::Fault;
+
+bool failed_by(const Rig& rig, StepFailure failure) {
+  return std::any_of(rig.events().begin(), rig.events().end(), [failure](const Event& event) {
+    return event.kind == Event::Kind::fault && event.fault == Fault::step_failed && event.code == static_cast<std::int32_t>(failure);
+  });
+}
+
+// The fingers stay where they are, but for what their pads give way by.
+void jam(Rig& rig) {
+  const double jaw_rad = angle_rad(rig, Joint::jaw);
+  rig.block_jaw(jaw_rad - 0.001, jaw_rad + 0.001);
+}
+
+enum class When { turning, letting_go, leaving };
+void PrintTo(When when, std::ostream* out) { *out << (when == When::turning ? "turning" : when == When::letting_go ? "letting go" : "leaving"); }
+
+void bring_to(Rig& rig, When when) {
+  ASSERT_TRUE(rig.run_to(Step::turn)) << rig.story();
+  rig.run_for(1);
+  if (when == When::turning) return jam(rig);
+  if (when == When::letting_go) {
+    ASSERT_TRUE(rig.run_to(Step::let_go)) << rig.story();
+    return jam(rig);
+  }
+  ASSERT_TRUE(give(rig, Command::abort));
+  ASSERT_TRUE(rig.run_to(Step::abandon)) << rig.story();
+  jam(rig);
+}
+
+class AJawThatDoesNotOpen : public testing::TestWithParam<When> {};
+
+TEST_P(AJawThatDoesNotOpen, EndsTheWayHomeWithAStopAndNoPullOnTheHandle) {
+  Rig rig(turn_only());
+  rig.start();
+  bring_to(rig, GetParam());
+  const Vec3 tool_m = rig.world().base_from_tool().translation();
+  const double pulled_before_n = rig.world().contacts().handle_force_n.norm();
+  if (GetParam() == When::turning) {
+    ASSERT_TRUE(give(rig, Command::abort));
+  }
+  double pulled_n = 0, moved_m = 0;
+  for (int i = 0; i < 250 * 90 && !rig.outcome().ended; ++i) {
+    rig.step();
+    pulled_n = std::max(pulled_n, rig.world().contacts().handle_force_n.norm());
+    moved_m = std::max(moved_m, (rig.world().base_from_tool().translation() - tool_m).norm());
+  }
+  rig.run_for(1);
+  EXPECT_TRUE(rig.step_now() == Step::held || rig.step_now() == Step::stopped) << rig.story();
+  EXPECT_FALSE(rig.outcome().success);
+  EXPECT_TRUE(failed_by(rig, StepFailure::jaw_stuck)) << rig.story();
+  EXPECT_LT(moved_m, 0.005) << "it went back with the handle in the jaw";
+  EXPECT_LT(pulled_n, pulled_before_n + 20) << rig.story();
+  EXPECT_LT(rig.fastest_joint_rad_s(), standing_rad_s);
+  EXPECT_LT(arm::gap_from_jaw(angle_rad(rig, Joint::jaw)), PanelLayout{}.handle_thickness_m + 0.002) << "it is not jammed on the handle";
+}
+
+INSTANTIATE_TEST_SUITE_P(WhereItJams, AJawThatDoesNotOpen, testing::Values(When::turning, When::letting_go, When::leaving));
+
+// It comes from the wrist's left, 0.6 s after it is sent: on the first 11 mm the load of the press is let off, and nothing is told from that.
+TEST(AContactOnTheWayBackFromAPress, StopsTheArmAndIsNamed) {
+  Rig rig(press_only());
+  rig.start();
+  ASSERT_TRUE(rig.run_to(Step::button_back)) << rig.story();
+  rig.run_for(0.6);
+  rig.push_obstacle();
+  ASSERT_TRUE(rig.run_to_end()) << rig.story();
+  rig.run_for(1);
+  EXPECT_FALSE(rig.outcome().success) << rig.story();
+  EXPECT_TRUE(failed_by(rig, StepFailure::touched_on_the_way_back)) << rig.story();
+  EXPECT_FALSE(rig.world().contacts().unintended.empty()) << "nothing was touched";
+  EXPECT_LT(rig.world().contacts().peak_force_n, 150) << rig.story();
+  EXPECT_EQ(rig.world().button(1).presses, 1u);
+}
+
+}  // namespace
+}  // namespace lf::test
