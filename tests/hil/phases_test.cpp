@@ -14,7 +14,8 @@ using mission::Step;
 
 std::map<std::string, std::string> told_of(const Rig& rig) {
   record::RunDigest digest;
-  app::PhaseObserver observer(digest, {});
+  const config::ErrorTexts texts;
+  app::PhaseObserver observer(digest, texts, {});
   for (const Event& event : rig.events()) {
     Telemetry telemetry;
     telemetry.t = event.t;

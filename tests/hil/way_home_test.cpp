@@ -25,7 +25,9 @@ void jam(Rig& rig) {
 }
 
 enum class When { turning, letting_go, leaving };
-void PrintTo(When when, std::ostream* out) { *out << (when == When::turning ? "turning" : when == When::letting_go ? "letting go" : "leaving"); }
+void PrintTo(When when, std::ostream* out) {
+  *out << (when == When::turning ? "turning" : when == When::letting_go ? "letting go" : "leaving");
+}
 
 void bring_to(Rig& rig, When when) {
   ASSERT_TRUE(rig.run_to(Step::turn)) << rig.story();

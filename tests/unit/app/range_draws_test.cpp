@@ -21,9 +21,11 @@ TEST(RangeDraws, NoRowHasAKeyTwice) {
 TEST(RangeDraws, WordsAreDrawnAndFreeTextsAreNot) {
   const std::vector<std::string> keys = drawn_keys();
   const auto drawn = [&](const char* key) { return std::find(keys.begin(), keys.end(), key) != keys.end(); };
-  for (const char* key : {"drives.slew.polarity", "drives.profile", "drives.jaw.profile", "buttons.stuck", "buttons.missing", "panel.pointer"})
+  for (const char* key :
+       {"drives.slew.polarity", "drives.profile", "drives.jaw.profile", "buttons.stuck", "buttons.missing", "panel.pointer"})
     EXPECT_TRUE(drawn(key)) << key;
-  for (const char* key : {"description", "arm.urdf", "safety.limits", "faults", "time_limit_s", "expect.failure"}) EXPECT_FALSE(drawn(key)) << key;
+  for (const char* key : {"description", "arm.urdf", "safety.limits", "faults", "time_limit_s", "expect.failure"})
+    EXPECT_FALSE(drawn(key)) << key;
 }
 
 TEST(RangeDraws, EveryWordComesUp) {

@@ -99,14 +99,14 @@ class EachLimit : public testing::Test {
       rad += speed_rad_s * 0.004;
       watch.observe(bus.network, {0, 0, rad, 0, 0}, bus.now);
       FaultArbiter reports;
-      watch.check(bus.network, tool_m, vigilance, bus.now, reports);
+      watch.check(bus.network, tool_m, watched, bus.now, reports);
       for (const FaultReport& report : reports.reports()) began += report.fault == fault;
     }
     return began;
   }
 
   Watch::Transmissions transmissions;
-  Vigilance vigilance = Vigilance::joints;
+  Vigilance watched = Vigilance::joints;
   canopen::test::Bus bus{canopen::test::plain_config()};
 };
 
@@ -119,7 +119,7 @@ TEST_F(EachLimit, OfSpeed) {
 
 // A drive that waits for the others under power ran away unseen: powering up waited for one in fault.
 TEST_F(EachLimit, OfSpeedHoldsWhileOtherDrivesAreStillBeingEnabled) {
-  vigilance = Vigilance::nodes;
+  watched = Vigilance::nodes;
   Limits limits = loose();
   limits.joints[2].max_speed_rad_s = 0.35;
   EXPECT_EQ(begins(limits, Fault::overspeed, 0.5), 0) << "it has no power: somebody moves it";
@@ -131,7 +131,7 @@ TEST_F(EachLimit, OfSpeedHoldsWhileOtherDrivesAreStillBeingEnabled) {
 }
 
 TEST_F(EachLimit, OfTheFollowingWindowHoldsWhileOtherDrivesAreStillBeingEnabled) {
-  vigilance = Vigilance::nodes;
+  watched = Vigilance::nodes;
   bus.network.axis(Joint::elbow).request(canopen::AxisRequest::hold_enabled);
   for (int i = 0; i < 50; ++i) bus.step();
   bus.nodes[2].jammed = true;
