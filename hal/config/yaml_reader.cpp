@@ -1,10 +1,13 @@
 #include "hal/config/yaml_reader.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <concepts>
+#include <optional>
 #include <set>
+#include <sstream>
 
 #include "hal/config/nearest.hpp"
 #include "shared/input_error.hpp"
@@ -210,12 +213,42 @@ void Source::refuse(const YAML::Mark& mark, const std::string& message) const {
   throw InputError(name_, has_lines_ && mark.line >= 0 ? mark.line + 1 : 0, message);
 }
 
+namespace {
+
+// What of `line`, from `begin` on, is more than blanks and a comment.
+bool says_something(const std::string& line, std::size_t begin) {
+  const std::size_t first = line.find_first_not_of(" \t\r", begin);
+  return first != std::string::npos && line[first] != '#';
+}
+
+// Where it begins. '---' and '...' at a line's start are markers everywhere, in texts as well (YAML 1.2, 9.1.2). The library's own LoadAll does not end on
+// some damaged files.
+std::optional<YAML::Mark> second_document(const std::string& text) {
+  YAML::Mark mark;
+  bool begun = false, ended = false;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line); ++mark.line) {
+    const bool alone = line.size() == 3 || (line.size() > 3 && std::isspace(static_cast<unsigned char>(line[3])) != 0);
+    if (alone && line.starts_with("...")) {
+      ended = begun;
+    } else if (alone && line.starts_with("---")) {
+      if (begun) return mark;
+      begun = says_something(line, 3);
+    } else if (says_something(line, 0) && line[0] != '%') {
+      if (ended) return mark;
+      begun = true;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
 YAML::Node parse_yaml(const std::string& text, const Source& source) {
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    if (documents.size() > 1)
-      source.refuse(documents[1].Mark(), "a second document begins here, and one is read: put all keys into the first");
-    return documents.empty() ? YAML::Node() : documents.front();
+    if (const std::optional<YAML::Mark> second = second_document(text))
+      source.refuse(*second, "a second document begins here, and one is read: put all keys into the first");
+    return YAML::Load(text);
   } catch (const YAML::Exception& error) {
     source.refuse(error.mark, "not YAML: " + error.msg);
   }

@@ -20,6 +20,14 @@ TEST(Load, AnEmptyFileIsTheDefaults) {
   EXPECT_EQ(loaded.tasks[1].order, (std::vector<std::string>{"left", "centre", "right"}));
 }
 
+TEST(Load, ADocumentMayHaveItsMarkers) {
+  EXPECT_EQ(complaint("%YAML 1.2\n---\nvalve: {start_deg: 3}\n...\n# that was it\n"), "");
+  EXPECT_EQ(complaint("--- {valve: {start_deg: 3}}\n"), "");
+}
+
+// The library's LoadAll never ended on this one: found by the fuzz target.
+TEST(Load, ADirectiveInTheMiddleIsRefusedAtOnce) { EXPECT_NE(complaint("a: b\n%YAML:1.0\n---\nc: d\n"), ""); }
+
 TEST(Load, ReadsNumbersSpreadsListsAndTasks) {
   const ScenarioFile file(R"(
 description: a test
@@ -70,7 +78,9 @@ const BadText bad_texts[] = {
     {"ForeignKey", "hydraulics: 3\n", ":1: unknown key 'hydraulics'"},
     {"KeyTwice", "valve:\n  stop_max_deg: 100\n  stop_max_deg: 101\n", ":3: 'valve.stop_max_deg' is given twice"},
     {"KeyTwiceInTwoForms", "valve.stop_max_deg: 100\nvalve: {stop_max_deg: 101}\n", ":2: 'valve.stop_max_deg' is given twice"},
-    {"SecondDocument", "valve: {stop_max_deg: 100}\n---\nvalve: {stop_max_deg: 101}\n", ":3: a second document begins here"},
+    {"SecondDocument", "valve: {stop_max_deg: 100}\n---\nvalve: {stop_max_deg: 101}\n", ":2: a second document begins here"},
+    {"SecondDocumentAfterAnEnd", "%YAML 1.2\n--- # first\nvalve: {stop_max_deg: 100}\n...\n# more\nvalve: {}\n",
+     ":6: a second document begins here"},
     {"TextForNumber", "time_limit_s: soon\n", ":1: 'time_limit_s' takes a number, not 'soon'"},
     {"QuotedNumber", "time_limit_s: \"100\"\n", ":1: 'time_limit_s' takes a number, not '100'"},
     {"NumberWithUnit", "laser:\n  power_w: 0.1 W\n", ":2: 'laser.power_w' takes a number, not '0.1 W'"},
