@@ -79,11 +79,9 @@ PortStatus V4l2Camera::State::choose_format() {
     wanted.fmt.pix.pixelformat = candidate;
     wanted.fmt.pix.field = V4L2_FIELD_NONE;
     // EINVAL is a format that the camera has not; anything else is no answer about formats.
-    if (const int error = calls.ioctl(fd, VIDIOC_S_FMT, &wanted); error == -EINVAL) {
-      continue;
-    } else if (error < 0) {
-      return -error;
-    }
+    const int error = calls.ioctl(fd, VIDIOC_S_FMT, &wanted);
+    if (error == -EINVAL) continue;
+    if (error < 0) return -error;
     const v4l2_pix_format& got = wanted.fmt.pix;
     if (got.pixelformat != candidate || got.width != static_cast<std::uint32_t>(config.width) ||
         got.height != static_cast<std::uint32_t>(config.height))

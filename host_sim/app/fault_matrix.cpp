@@ -248,6 +248,7 @@ std::vector<MatrixRow> matrix_rows(const std::vector<FaultMoment>& moments, cons
   check_choice(moments, choice);
   const std::vector<MatrixRow> all = choice.pairs ? pair_rows(moments, choice) : single_rows(moments, choice);
   std::vector<std::string> names;
+  names.reserve(all.size());
   for (const MatrixRow& row : all) names.push_back(row.name());
   check_names(choice.rows, names, "--rows");
   std::vector<MatrixRow> mine;

@@ -35,7 +35,7 @@ record::Experiment experiment_of(const scenario::Scenario& scenario, std::uint64
 
 fs::path default_folder(const std::string& base, bool has_overrides, const record::Experiment& experiment) {
   constexpr std::size_t hash_digits = 8;
-  const fs::path plain = fs::path("runs") / base;
+  fs::path plain = fs::path("runs") / base;
   std::error_code ignored;
   const bool free = !fs::exists(plain, ignored) || fs::is_empty(plain, ignored);
   const std::optional<record::Experiment> there = free ? experiment : record::read_experiment(plain);
