@@ -221,8 +221,8 @@ bool says_something(const std::string& line, std::size_t begin) {
   return first != std::string::npos && line[first] != '#';
 }
 
-// Where it begins. '---' and '...' at a line's start are markers everywhere, in texts as well (YAML 1.2, 9.1.2). The library's own LoadAll does not end on
-// some damaged files.
+// Where a second document begins, if one does. '---' and '...' at a line's start are markers everywhere, in texts as well (YAML 1.2, 9.1.2). The
+// library's own LoadAll does not end on some damaged files.
 std::optional<YAML::Mark> second_document(const std::string& text) {
   YAML::Mark mark;
   bool begun = false, ended = false;
