@@ -7,7 +7,7 @@ using safety::Fault;
 namespace {
 
 // One late tick is jitter; three are the time after which a position is stale.
-constexpr std::uint32_t clock_lost_ticks = 3;
+constexpr std::uint32_t lost_ticks = 3;
 
 }  // namespace
 
@@ -53,12 +53,17 @@ void FaultSources::collect_orders(const StepTick& tick) {
   if (mailbox.take(Command::abort) && tick.bench.course != Course::giving_up) tick.faults.report(Fault::aborted);
 }
 
-// Before the start nothing is lost by a failed call.
+// Before the start nothing is lost with the bus.
 void FaultSources::collect_ports(const StepTick& tick) {
-  clockless_ticks_ = ports_failed_[static_cast<std::size_t>(Port::clock)] ? clockless_ticks_ + 1 : 0;
-  if (clockless_ticks_ == clock_lost_ticks) tick.faults.report(Fault::clock_lost, static_cast<std::int32_t>(clockless_ticks_));
   for (std::size_t port = 0; port < port_count; ++port) {
+    const auto which = static_cast<Port>(port);
+    const bool matters = which == Port::clock || tick.step != Step::idle;
+    std::uint32_t& ticks = ticks_failed_[port];
+    ticks = ports_failed_[port] && matters ? ticks + 1 : 0;
     if (ports_failed_[port]) tick.faults.report(Fault::port_error, static_cast<std::int32_t>(port));
+    if (ticks != lost_ticks) continue;
+    if (which == Port::clock) tick.faults.report(Fault::clock_lost, static_cast<std::int32_t>(ticks));
+    if (which == Port::can_receive || which == Port::can_send) tick.faults.report(Fault::bus_off, static_cast<std::int32_t>(port));
   }
   ports_failed_ = {};
 }
@@ -82,7 +87,8 @@ void FaultSources::collect_contact(const StepTick& tick) {
   if (!joints.valid) return;
   free_guard_.update(joints.t, bench.motion.target(), bench.measured_rad(), bench.measured_nm());
   if (!free_guard_.touched()) return;
-  const Fault fault = does_not_follow(free_guard_) ? Fault::following_error : Fault::unexpected_contact;
+  const bool unseen = does_not_follow(free_guard_) || bench.watch.shows_nothing(free_guard_.joint());
+  const Fault fault = unseen ? Fault::following_error : Fault::unexpected_contact;
   tick.faults.report(fault, static_cast<std::int32_t>(free_guard_.joint()));
 }
 

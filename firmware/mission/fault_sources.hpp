@@ -30,10 +30,10 @@ class FaultSources {
   static void collect_jaw(const StepTick& tick);
   static void collect_timeout(const StepTick& tick);
 
-  arm::GuardedMotion free_guard_;                // of all motion in which nothing may be touched
-  std::array<bool, port_count> ports_failed_{};  // since the last tick
-  std::uint32_t clockless_ticks_ = 0;            // in a row
-  std::uint32_t images_lost_ = 0;                // known of
+  arm::GuardedMotion free_guard_;                         // of all motion in which nothing may be touched
+  std::array<bool, port_count> ports_failed_{};           // since the last tick
+  std::array<std::uint32_t, port_count> ticks_failed_{};  // in a row
+  std::uint32_t images_lost_ = 0;                         // known of
 };
 
 }  // namespace lf::mission

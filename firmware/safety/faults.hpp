@@ -35,9 +35,9 @@ enum class Fault : std::uint8_t {
   step_failed,         // a step ended without its aim: no contact, no click, unreachable
   aborted,             // the operator ended the mission
   port_error,          // a call of the platform failed
-  bus_off,             // the CAN controller went off the bus: nothing that is sent arrives
-  second_master,       // somebody else sends what only the master may: set points, SYNC, NMT, SDO requests, or its heartbeat
-  clock_lost,          // three ticks in a row without the platform's clock: nothing is known to be fresh
+  bus_off,  // the CAN controller went off the bus, or cannot be read or written for three ticks: nothing that is sent arrives, or nothing is heard
+  second_master,  // somebody else sends what only the master may: set points, SYNC, NMT, SDO requests, or its heartbeat
+  clock_lost,     // three ticks in a row without the platform's clock: nothing is known to be fresh
   count
 };
 inline constexpr std::size_t fault_count = static_cast<std::size_t>(Fault::count);

@@ -17,6 +17,8 @@ class StuckEncoder {
   static constexpr double least_rad = 0.003;  // of the set-point, since the position last changed
   static constexpr Duration least_time = Duration::from_ms(300);
   static constexpr double load_nm = 4;  // a joint whose torque has changed by this since then is held by something
+  static constexpr Duration blind_time =
+      Duration::from_ms(100);  // without a count, though the set-point goes on: no torque proves a contact then
 
   struct Sample {
     Time t;
@@ -30,16 +32,22 @@ class StuckEncoder {
   bool update(const Sample& now) {
     if (!now.follows || !began_.follows || now.actual_counts != began_.actual_counts) {
       began_ = now;
+      shows_nothing_ = false;
       return false;
     }
     const std::int64_t gone = std::abs(std::int64_t{now.target_counts} - began_.target_counts);
     const bool held = std::abs(now.torque_nm - began_.torque_nm) >= load_nm;
-    return !held && gone >= least_counts && static_cast<double>(gone) * std::abs(now.rad_per_count) >= least_rad &&
-           now.t - began_.t >= least_time;
+    const bool left_behind = gone >= least_counts && static_cast<double>(gone) * std::abs(now.rad_per_count) >= least_rad;
+    shows_nothing_ = left_behind && now.t - began_.t >= blind_time;
+    return left_behind && !held && now.t - began_.t >= least_time;
   }
+
+  // Its torque may be that of a joint which runs off unseen. An arm that meets something goes on showing counts until it is stopped.
+  bool shows_nothing() const { return shows_nothing_; }
 
  private:
   Sample began_;
+  bool shows_nothing_ = false;
 };
 
 }  // namespace lf::safety

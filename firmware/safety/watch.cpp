@@ -44,7 +44,7 @@ void Watch::observe(const canopen::Network& network, const std::array<double, jo
     }
     joints_.velocity_rad_s[i] = observers_[i].velocity_rad_s();
     observe_torque(axis, i);
-    if (i < encoders_.size()) observe_encoder(axis, i, now);
+    observe_encoder(axis, i, now);
   }
   joints_.t = newest;
   observing_ = true;
@@ -71,8 +71,11 @@ void Watch::observe_encoder(const canopen::Axis& axis, std::size_t joint, Time n
   sample.rad_per_count = arm::rad_per_count(static_cast<Joint>(joint), joints_.position_rad[joint]);
   sample.torque_nm = joints_.torque_nm[joint];
   sample.follows = axis.enabled() && std::abs(sample.torque_nm) < free_share * limits_.joints[joint].max_torque_nm;
-  stuck_[joint] = encoders_[joint].update(sample);
+  const bool stuck = encoders_[joint].update(sample);
+  stuck_[joint] = stuck && joint < static_cast<std::size_t>(Joint::roll);
 }
+
+bool Watch::shows_nothing(Joint joint) const { return encoders_[static_cast<std::size_t>(joint)].shows_nothing(); }
 
 // Half a SYNC period more than the limit, for the loop's jitter.
 bool Watch::is_fresh(const canopen::Axis& axis, Time now) const {

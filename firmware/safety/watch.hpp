@@ -49,6 +49,8 @@ class Watch {
   // Faults that began in this tick: each is reported once, and again only after it went away. `tool_m`: the tool point in the base frame.
   void check(const canopen::Network& network, const Vec3& tool_m, Vigilance vigilance, Time now, FaultArbiter& began);
 
+  // Its position stands still while its set-point goes on.
+  bool shows_nothing(Joint joint) const;
   // Beyond its limits by more than noise.
   bool outside(std::size_t joint) const;
   bool any_outside() const;
@@ -78,9 +80,8 @@ class Watch {
   std::array<arm::TorqueObserver, joint_count> torque_observers_;
   bool observing_ = false;
   JointStates joints_;
-  std::array<StuckEncoder, static_cast<std::size_t>(Joint::roll)>
-      encoders_;  // the roll's turn and the jaw's gripper have rules of their own
-  std::array<bool, joint_count> stuck_{};
+  std::array<StuckEncoder, joint_count> encoders_;
+  std::array<bool, joint_count> stuck_{};  // the roll's turn and the jaw's gripper have rules of their own
   std::array<bool, joint_count> stood_{};  // under power, while others were still being enabled
   std::array<int, joint_count> overload_ticks_{};
   bool tolerating_ = false;

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "firmware/mission/step_failure.hpp"
+#include "firmware/telemetry.hpp"
 #include "shared/messages/joint_io.hpp"
 
 namespace lf::config {
@@ -16,6 +17,15 @@ std::string hex(unsigned value) {
   char text[16];
   std::snprintf(text, sizeof text, "0x%04X", value);
   return text;
+}
+
+// `code`: the port whose calls fail; 0: the controller itself says so.
+std::string bus_text(std::int32_t code) {
+  switch (static_cast<Port>(code)) {
+    case Port::can_receive: return "receiving fails";
+    case Port::can_send: return "sending fails";
+    default: return "";
+  }
 }
 
 std::string cause(Fault fault, std::int32_t code) {
@@ -35,6 +45,7 @@ std::string cause(Fault fault, std::int32_t code) {
     case Fault::second_master: return "identifier " + hex(static_cast<unsigned>(code));
     case Fault::estop: return code == 0 ? "the chain is open" : "by order";
     case Fault::aborted: return code == 0 ? "" : "shut down by order";
+    case Fault::bus_off: return bus_text(code);
     case Fault::io_lost: return "";
     default: return code == 0 ? "" : std::to_string(code);
   }

@@ -104,8 +104,9 @@ judge::Ending ending_of(const Flight& flight, const Watched& watched, const Matr
   ending.step = mission::row(flight.mission_step()).name;
   if (ending.ended && !ending.success) ending.reason = config::fault_text(outcome.fault, outcome.code, outcome.emcy, flight.error_texts());
   ending.holds = flight.mission_step() == Step::held;
-  const bool must_stop = std::any_of(row.causes.begin(), row.causes.end(),
-                                     [](const judge::Cause& cause) { return cause.rule->demand == judge::Demand::stop; });
+  const bool must_stop = std::any_of(row.causes.begin(), row.causes.end(), [](const judge::Cause& cause) {
+    return cause.rule->demand == judge::Demand::stop || cause.rule->kind == "runaway";
+  });
   ending.expected_to_end = row.moment.walk != "by hand" || must_stop;
   if (!ending.success) return ending;
   const auto& results = flight.mission().tasks();

@@ -53,7 +53,7 @@ const std::vector<FaultRule>& rules() {
        {"stale position", "following error", "drive fault", "boot failed", "output node lost"},
        {},
        "",
-       process_data},
+       {"rpdo"}},
       {"drop_frames", go_on, Report::none, 0.004, {}, {}, "one frame", process_data},
       {"estop", stop, Report::frame, 0, {"emergency stop"}, {}},
       {"interlock_open", safe_end, Report::none, 0, {"interlock"}, {}},
@@ -65,8 +65,8 @@ const std::vector<FaultRule>& rules() {
       {"foreign_heartbeat", stop, Report::second_master, 0, other_master, {}},
       {"foreign_master", stop, Report::second_master, 0, other_master, {}},
       {"clock_lost", stop, Report::at_once, 0, {"clock lost"}, {}},
-      {"can_receive_fails", stop, Report::silence, 0, {"platform call", "stale position", "node lost", "boot failed"}, {}},
-      {"can_send_fails", stop, Report::unheard, 0, {"platform call", "stale position", "node lost", "drive fault", "boot failed"}, {}},
+      {"can_receive_fails", stop, Report::silence, 0, {"CAN bus off: receiving fails", "boot failed"}, {}},
+      {"can_send_fails", stop, Report::unheard, 0, {"CAN bus off: sending fails", "boot failed"}, {}},
       {"camera_fails", safe_end, Report::none, 0, sight, {}},
       {"panel_submit_fails", safe_end, Report::none, 0, sight, {}},
       {"panel_receive_fails", safe_end, Report::none, 0, sight, {}},
@@ -90,6 +90,8 @@ const std::vector<FaultRule>& rules() {
       {"drop_frames", safe_end, Report::none, 0, {"node lost", "boot failed"}, {}, "", {"heartbeat"}},
       {"drop_frames", go_on, Report::none, 0.1, {}, {}, "one frame", {"heartbeat"}},
       {"drop_frames", go_on, Report::none, 0, {}, {}, "", {"emcy"}},
+      // What a node sends is all that is known of it: without its process data it is silent.
+      {"drop_frames", stop, Report::silence, 0, {"stale position", "boot failed", "output node lost"}, {}, "", {"tpdo"}},
   };
   return all;
 }

@@ -29,7 +29,7 @@ const Words& place() {
 
 // What a motor has to overcome shows as torque, or as a joint that does not follow.
 const Words& load() {
-  static const Words words{"overload", "following error", "overspeed", "unexpected contact", "touched",    "stalled", "button",
+  static const Words words{"overload", "following error", "overspeed", "unexpected contact", "touched",    "stalled",
                            "slipped",  "grip lost",       "the jaw",   "drive fault",        "wrong angle"};
   return words;
 }
@@ -100,7 +100,8 @@ std::vector<std::string> words_for(const std::string& key) {
 }
 
 bool names_a_key(const std::vector<std::string>& keys, const std::string& told) {
-  const std::string reason = told.substr(0, told.find(" ("));
+  // Without the advice, and without the step in which it came: a step's name is no cause.
+  const std::string reason = told.substr(0, std::min(told.find(" ("), told.find(", in step ")));
   return std::any_of(keys.begin(), keys.end(), [&](const std::string& key) {
     const Words words = words_for(key);
     return std::any_of(words.begin(), words.end(), [&](const std::string& word) { return reason.find(word) != std::string::npos; });

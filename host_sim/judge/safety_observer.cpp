@@ -50,6 +50,7 @@ void SafetyObserver::judge_report(const CanFrame& frame, double t_s) {
   const bool rebooted = function == heartbeat && frame.data[0] == boot_up;
   const bool chain_open = function == first_tpdo && node == can_map::io_node && (frame.data[0] & can_map::input_estop_closed) == 0;
   if ((fault || emcy || rebooted || chain_open) && !seen_.fault_reported_s) seen_.fault_reported_s = t_s;
+  if (fault && !seen_.drive_fault_s) seen_.drive_fault_s = t_s;
   if (chain_open && !seen_.chain_open_s) seen_.chain_open_s = t_s;
 }
 

@@ -26,6 +26,7 @@ struct Seen {
   std::vector<Moment> moments;  // one a millisecond
   // The first frame that says a drive is in fault, a node has an emergency or has rebooted, or the emergency-stop chain is open.
   std::optional<double> fault_reported_s;
+  std::optional<double> drive_fault_s;    // the first statusword in which a drive says that it is in fault
   std::optional<double> chain_open_s;     // the first that says the chain is open
   std::optional<double> second_master_s;  // the first frame of a second master
   // The newest process data that arrived from each node, by its number less 1; 0 when none did.

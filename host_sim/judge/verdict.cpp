@@ -42,6 +42,17 @@ bool loses_process_data(const Cause& cause) {
   return cause.rule->kind == "drop_frames" && cause.rule->duration_s == 0 && cause.node.starts_with("rpdo ");
 }
 
+// Without a node's process data its times are judged like a silent node's: what is lost is counted from the last that could arrive.
+bool is_unheard(const Cause& cause) {
+  return cause.rule->kind == "drop_frames" && cause.rule->duration_s == 0 && cause.node.starts_with("tpdo ");
+}
+
+// Its drive's reading, or its motion, is not what the core takes it for.
+bool misleads(const Cause& cause) {
+  const std::string& kind = cause.rule->kind;
+  return kind == "stuck_encoder" || kind == "encoder_jump" || kind == "runaway" || kind == "following";
+}
+
 bool is_a_drives_fault(const Cause& cause) { return cause.rule->kind == "overcurrent" || cause.rule->kind == "hot"; }
 
 // Until an order acts: up to a SYNC period until the SYNC, one that is interpolated, and the arm's own compliance.
@@ -78,8 +89,9 @@ Deadline report_of(const Seen& seen, const Cause& cause, double begins_s, const 
     case Report::frame:
     case Report::second_master: return {&cause, told_by_a_frame_s(seen, cause, begins_s).value_or(begins_s), stop_s};
     case Report::silence: {
-      const std::size_t node = node_index(cause.node);
-      const double heard_s = cut_off(cause) && node < seen.last_heard_s.size() ? seen.last_heard_s[node] : begins_s;
+      const std::size_t node = node_index(cause.node.substr(cause.node.find_last_of(' ') + 1));
+      const bool known = (cut_off(cause) || is_unheard(cause)) && node < seen.last_heard_s.size();
+      const double heard_s = known ? seen.last_heard_s[node] : begins_s;
       return {&cause, std::max(heard_s, begins_s - sync_s), cuts_off_the_master(cause) ? self_stop_s : unread_s};
     }
     case Report::unheard: return {&cause, begins_s, self_stop_s};
@@ -101,7 +113,9 @@ class Judge {
     forces();
     if (const auto deadline = strictest(); deadline && !taken_over()) {
       // What is reported before any drive runs is no stop: powering up has to end.
-      situation_.powering_up && !runs_at(deadline->at_s) ? nothing_moves() : stop(*deadline);
+      situation_.powering_up && !runs_at(deadline->at_s) ? nothing_moves(*deadline) : stop(*deadline);
+    } else if (!deadline) {
+      stopped_by_the_watch();
     }
     the_end();
     the_account();
@@ -203,13 +217,23 @@ class Judge {
     const double on_bus_s = told_to_run_s(static_cast<std::uint8_t>(~(cut | untold)));
     verdict_.stop_ms = (on_bus_s - deadline.at_s) / ms;
     if (on_bus_s > deadline.end_s() + ms) wrong(formatted("still told to run %.0f ms after the report", *verdict_.stop_ms));
-    const bool halts = deadline.cause->rule->report == Report::halt;
+    const bool halts = deadline.cause != nullptr && deadline.cause->rule->report == Report::halt;
     const double by_nmt_s = told_to_run_s(untold), late_s = halts ? figures_.unheeded_lowering_s : figures_.unheeded_stop_s;
     if (by_nmt_s > deadline.end_s() + late_s + ms)
       wrong(formatted("still runs without process data %.0f ms after the report", (by_nmt_s - deadline.at_s) / ms));
     const double from_s = std::min(on_bus_s, deadline.end_s());
     stands(from_s);
     loses_power(from_s, halts);
+  }
+
+  // No cause asks for a stop at a time of its own. A drive that says it is in fault does; and whatever ended the mission takes the power as a stop does.
+  void stopped_by_the_watch() {
+    if (!situation_.powering_up && seen_.drive_fault_s && runs_at(*seen_.drive_fault_s))
+      return stop({nullptr, *seen_.drive_fault_s, figures_.stop_ms * ms});
+    const double ran_s = last_s(moments_, 0, [](const Moment& m) { return m.told_to_run != 0; });
+    if (!ending_.ended || ending_.holds || ran_s == 0) return;
+    stands(ran_s);
+    loses_power(ran_s, false);
   }
 
   double begins_s(const Cause& cause) const { return situation_.begins_s[static_cast<std::size_t>(&cause - situation_.causes.data())]; }
@@ -289,12 +313,17 @@ class Judge {
     return index < moments_.size() && moments_[index].told_to_run != 0;
   }
 
-  void nothing_moves() {
+  void nothing_moves(const Deadline& deadline) {
     // What has rebooted is booted again.
     const auto ends_it = [](const Cause& cause) { return demands_stop(cause) && cause.rule->kind != "reboot"; };
     if (!has(ends_it)) return;
     // While a drive's fault is reset the others are enabled. One of them that runs off is a fault of its own: it loses its power in the time of a stop.
     const bool others_are_enabled = !has([&](const Cause& cause) { return ends_it(cause) && !is_a_drives_fault(cause); });
+    if (!others_are_enabled && !master_is_cut_off()) {
+      const double powered_s = last_s(moments_, deadline.end_s(), [](const Moment& m) { return m.power != 0; });
+      if (powered_s > deadline.end_s() + figures_.off_after_standing_s)
+        wrong(formatted("power is on %.2f s after powering up had to end", powered_s - deadline.end_s()));
+    }
     const std::uint8_t runs_off =
         others_are_enabled ? joints_that([](const Cause& cause) { return cause.rule->kind == "runaway"; }) : std::uint8_t{0};
     for (std::size_t joint = 0; joint < joint_count; ++joint) {
@@ -313,12 +342,21 @@ class Judge {
     if (moments_.empty()) return wrong("nothing was seen");
     const bool must_end = ending_.expected_to_end;
     if (!ending_.ended && must_end) wrong("it did not end");
-    if (!ending_.ended) return;
     constexpr std::size_t tail = 200;  // ms
     const std::size_t from = moments_.size() > tail ? moments_.size() - tail : 0;
+    // What waits for orders has done the last one.
+    if (!ending_.ended && !must_end && travels(from)) wrong("the arm moves and no order moves it");
+    if (!ending_.ended) return;
     const bool powered = std::any_of(moments_.begin() + std::ptrdiff_t(from), moments_.end(), [](const Moment& m) { return m.power != 0; });
     if (travels(from) && !taken_over()) wrong("the arm moves after the end");
     if (powered && !ending_.holds && !taken_over()) wrong("power is on after the end");
+    if (ending_.holds && !situation_.over && touches_nothing())
+      wrong("held under power for a contact that is none, with a drive that misleads");
+  }
+
+  // A contact was told, or holds the arm, and only drives that mislead can have made one: the arm has touched nothing.
+  bool touches_nothing() const {
+    return verdict_.force_n == 0 && std::all_of(situation_.causes.begin(), situation_.causes.end(), misleads);
   }
 
   // From a moment to the last one, by more than a joint that stands: bodies that press on each other quiver where they are.
@@ -341,7 +379,11 @@ class Judge {
         std::all_of(situation_.causes.begin(), situation_.causes.end(), [](const Cause& c) { return c.rule->demand == Demand::go_on; });
     if (all_go_on && !ending_.success) verdict_.unclear.push_back("it should have gone on: " + ending_.reason);
     if (ending_.success || all_go_on) return;
-    if (std::any_of(situation_.causes.begin(), situation_.causes.end(), [&](const Cause& c) { return c.named_in(ending_.reason); })) return;
+    const bool told_of_contact =
+        ending_.reason.starts_with("unexpected contact") || ending_.reason.find("touched something") != std::string::npos;
+    const bool named =
+        std::any_of(situation_.causes.begin(), situation_.causes.end(), [&](const Cause& c) { return c.named_in(ending_.reason); });
+    if (named && !(told_of_contact && touches_nothing())) return;
     verdict_.unclear.push_back("the reason does not name the cause: " + (ending_.reason.empty() ? "none is given" : ending_.reason));
   }
 
