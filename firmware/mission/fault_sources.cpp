@@ -1,5 +1,7 @@
 #include "firmware/mission/fault_sources.hpp"
 
+#include <cmath>
+
 namespace lf::mission {
 
 using safety::Fault;
@@ -16,10 +18,11 @@ FaultSources::FaultSources(const safety::Limits& limits) : free_guard_(free_moti
 void FaultSources::on_port_error(Port port) { ports_failed_[static_cast<std::size_t>(port)] = true; }
 
 void FaultSources::collect(const StepTick& tick, safety::Vigilance vigilance) {
+  // Ports before nodes: of what comes up in one tick, a bus that cannot be read explains nodes that are not heard.
+  collect_ports(tick);
   collect_drives(tick, vigilance);
   collect_complaints(tick);
   collect_orders(tick);
-  collect_ports(tick);
   collect_images(tick);
   collect_contact(tick);
   collect_jaw(tick);
@@ -86,10 +89,25 @@ void FaultSources::collect_contact(const StepTick& tick) {
   const safety::JointStates& joints = bench.watch.joints();
   if (!joints.valid) return;
   free_guard_.update(joints.t, bench.motion.target(), bench.measured_rad(), bench.measured_nm());
+  const bool by_itself = drives_itself_off(bench);
+  last_target_rad_ = bench.motion.target();
+  last_ = joints.t;
   if (!free_guard_.touched()) return;
-  const bool unseen = does_not_follow(free_guard_) || bench.watch.shows_nothing(free_guard_.joint());
+  const bool unseen = does_not_follow(free_guard_) || by_itself || bench.watch.shows_nothing(free_guard_.joint());
   const Fault fault = unseen ? Fault::following_error : Fault::unexpected_contact;
   tick.faults.report(fault, static_cast<std::int32_t>(free_guard_.joint()));
+}
+
+// Its motor's torque is what moves a joint away from its set-point's way: what is touched pushes against the motor.
+bool FaultSources::drives_itself_off(const Workbench& bench) const {
+  constexpr double least_rad_s = 0.02;
+  const auto joint = static_cast<Eigen::Index>(free_guard_.joint());
+  const safety::JointStates& joints = bench.watch.joints();
+  const double dt_s = (joints.t - last_).s();
+  if (!free_guard_.touched() || dt_s <= 0) return false;
+  const double asked_rad_s = (bench.motion.target()[joint] - last_target_rad_[joint]) / dt_s;
+  const double off_rad_s = joints.velocity_rad_s[static_cast<std::size_t>(joint)] - asked_rad_s;
+  return off_rad_s * free_guard_.excess_torque_nm()[joint] > 0 && std::abs(off_rad_s) > least_rad_s;
 }
 
 void FaultSources::collect_jaw(const StepTick& tick) {

@@ -48,7 +48,7 @@ struct Situation {
   bool fails_anyway = false;     // it was on its way to a failure of another cause, which is what its reason names
   std::array<double, joint_count> deceleration_rad_s2{};
   std::array<double, joint_count>
-      gear_gives_rad{};  // by which a joint may be off its motor: half of its gear's play, and the wind-up under its motor's rated torque
+      gear_gives_rad{};  // by which a joint may be off its motor: half of its gear's play, and the wind-up under half more than its motor's rated torque
 };
 
 struct Verdict {

@@ -4,7 +4,7 @@
     any_turn.py build/release/bin/lanternfish --draws 50 [--seed N] [--out FILE.csv] [--set key=value ...]
 
 Draw number I of seed N gives the same start, target and scenario seed wherever it runs. With --out, draws that the file already holds are kept, so that a
-run that was stopped goes on where it was. Exit status 1 when a run was a false success: the core claimed an angle at which the valve does not stand.
+run that was stopped goes on where it was. Exit status 1 when a run was a false success, in which the core claimed an angle at which the valve does not stand, or when fewer than --at-least are right.
 """
 import argparse
 import collections
@@ -58,6 +58,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program")
     parser.add_argument("--draws", type=int, default=50)
+    parser.add_argument("--at-least", type=int, default=0, help="that have to be right")
     parser.add_argument("--first", type=int, default=1)
     parser.add_argument("--seed", type=int, default=9)
     parser.add_argument("--stops", type=float, nargs=2, default=(-105, 105))
@@ -79,7 +80,7 @@ def main():
                 writer.writerows(rows[i] for i in sorted(rows))
     counts = collections.Counter(row["verdict"] for row in rows.values())
     print(f"seed {arguments.seed}: " + ", ".join(f"{count} {verdict}" for verdict, count in counts.most_common()))
-    return 1 if counts["FALSE SUCCESS"] else 0
+    return 1 if counts["FALSE SUCCESS"] or counts["right"] < arguments.at_least else 0
 
 
 if __name__ == "__main__":

@@ -54,7 +54,7 @@ def short_troubles(programs):
     for times, trouble in enumerate(("freeze", "drop"), 1):
         since = time.monotonic()
         bench.sea.order(f"camera {trouble} {SHORT_S}")
-        rig.wait_for(f"camera {trouble}: silence", lambda: silences(daemon.status()) >= times, 5)  # pylint: disable=cell-var-from-loop
+        rig.wait_for(f"camera {trouble}: silence", lambda: silences(daemon.status()) >= times, 5, daemon=daemon)  # pylint: disable=cell-var-from-loop
         noticed_s = time.monotonic() - since
         status = daemon.wait_step("scan", 20)
         bench.watch.poll()
@@ -75,7 +75,7 @@ def gone(programs):
     time.sleep(0.1)  # it maps the ring's file and must not write any more
     size = os.path.getsize(bench.camera)
     os.truncate(bench.camera, 0)
-    status = rig.wait_for("the mission's end", lambda: (lambda s: s if "success" in s else None)(daemon.status()), 60, 0.1)
+    status = rig.wait_for("the mission's end", lambda: (lambda s: s if "success" in s else None)(daemon.status()), 60, 0.1, daemon)
     expect(not status["success"] and status["failure"]["reason"] == "camera silent", f"a camera that is gone: {status.get('failure')}")
     expect(silences(status) == 3, f"tried {silences(status)} times, not three")
     os.truncate(bench.camera, size)

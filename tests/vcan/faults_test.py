@@ -36,7 +36,7 @@ class Trial:
         self.daemon = self.bench.daemon()
         self.daemon.wait_ready()
         self.daemon.order("start")
-        rig.wait_for("a moving arm", self.moving, 10)
+        rig.wait_for("a moving arm", self.moving, 10, daemon=self.daemon)
         self.bench.settle(0.3)
         self.goes_on("before the fault")
         expect(self.moving(), "the arm does not move")
@@ -82,7 +82,7 @@ class Trial:
         """After the fault is gone the same daemon takes the arm up again."""
         self.daemon.order("reset")
         self.daemon.order("home")
-        rig.wait_for(f"{name}: ready again", lambda: self.daemon.status()["standing"] == "ready", 15, 0.1)
+        rig.wait_for(f"{name}: ready again", lambda: self.daemon.status()["standing"] == "ready", 15, 0.1, self.daemon)
 
     def end(self):
         expect(self.daemon.process.poll() is None, f"the daemon ended by itself:\n{self.daemon.text()}")
@@ -108,7 +108,7 @@ def killed(programs):
     again = trial.bench.daemon()
     again.wait_ready()
     again.order("home")
-    rig.wait_for("a new daemon takes the arm up", lambda: again.status()["standing"] == "ready", 15, 0.1)
+    rig.wait_for("a new daemon takes the arm up", lambda: again.status()["standing"] == "ready", 15, 0.1, again)
     expect(again.stop() == 0, again.text())
     trial.bench.sea.stop()
 
@@ -275,7 +275,7 @@ def started(programs):
     ready_s = daemon.wait_ready()
     since = time.time()
     daemon.order("home")
-    rig.wait_for("ready", lambda: (bench.watch.poll(), daemon.status()["standing"] == "ready")[1], 15, 0.02)
+    rig.wait_for("ready", lambda: (bench.watch.poll(), daemon.status()["standing"] == "ready")[1], 15, 0.02, daemon)
     bench.watch.poll()
     homed_s = time.time() - since
     enabled = [bench.watch.first(node, lambda s: s.state == bus_watch.OPERATION_ENABLED, since) for node in bus_watch.DRIVES]

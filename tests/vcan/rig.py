@@ -55,17 +55,22 @@ def expect_in_time(what, took_s, limit_s):
         LATE.append((f"{what} after {1e3 * took_s:.0f} ms, {1e3 * limit_s:.0f} ms are allowed", 1e3 * (took_s - limit_s)))
 
 
-def wait_for(what, condition, limit_s, poll_s=0.02):
-    """The first true value of condition(); TooLate after limit_s. A machine that stands still for two SYNC periods explains the lack of it: the core then stops the
-    arm for a stale position, and what is waited for never comes."""
+def wait_for(what, condition, limit_s, poll_s=0.02, daemon=None):
+    """The first true value of condition(); after limit_s it is a failure. Where the daemon says that it stopped for what a machine makes by standing still,
+    what is waited for never comes, and it is TooLate."""
     end = time.monotonic() + limit_s
     while True:
         value = condition()
         if value:
             return value
         if time.monotonic() >= end:
-            raise TooLate(f"{what}: not within {limit_s:g} s", STALLS_MS["stale position"])
+            break
         time.sleep(poll_s)
+    reason = daemon.status().get("failure", {}).get("reason") if daemon else None
+    message = f"{what}: not within {limit_s:g} s" + (f" ({reason})" if reason else "")
+    if reason in STALLS_MS:
+        raise TooLate(message, STALLS_MS[reason])
+    raise Failed(message)
 
 
 def expect_not_stopped(status, gap_s, message):
@@ -163,7 +168,7 @@ class Daemon:
 
     def wait_step(self, steps, limit_s=60):
         steps = (steps,) if isinstance(steps, str) else steps
-        return wait_for(f"step {' or '.join(steps)}", lambda: (lambda s: s if s["step"] in steps else None)(self.status()), limit_s, 0.05)
+        return wait_for(f"step {' or '.join(steps)}", lambda: (lambda s: s if s["step"] in steps else None)(self.status()), limit_s, 0.05, self)
 
     def stop(self, limit_s=12):
         self.process.send_signal(signal.SIGTERM)

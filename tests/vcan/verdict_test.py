@@ -116,9 +116,19 @@ class Verdict(unittest.TestCase):
         self.assertEqual((status, len(messages)), (rig.TOO_LATE, 2))
         self.assertAlmostEqual(missed, 200)
 
-    def test_what_does_not_come_asks_for_a_machine_that_stood_still_for_two_sync_periods(self):
-        status, _, missed = rig.verdict(lambda: rig.wait_for("never", lambda: False, 0.05, 0.01))
-        self.assertEqual((status, missed), (rig.TOO_LATE, 8))
+    def test_what_does_not_come_is_a_failure_but_after_a_stop_that_a_machine_makes_by_standing_still(self):
+        class Stopped:
+            def __init__(self, reason):
+                self.reason = reason
+
+            def status(self):
+                return {"failure": {"reason": self.reason}} if self.reason else {}
+
+        for reason, wanted in ((None, (rig.FAILED, 0)), ("drive fault", (rig.FAILED, 0)), ("stale position", (rig.TOO_LATE, 8)),
+                               ("camera silent", (rig.TOO_LATE, 120))):
+            status, _, missed = rig.verdict(lambda: rig.wait_for("never", lambda: False, 0.05, 0.01, Stopped(reason)))  # pylint: disable=cell-var-from-loop
+            self.assertEqual((status, missed), wanted)
+        self.assertEqual(rig.verdict(lambda: rig.wait_for("never", lambda: False, 0.05, 0.01))[0], rig.FAILED)
 
     def test_a_program_that_died_or_broke_off_is_a_failure(self):
         for error in (ConnectionResetError("gone"), KeyError("standing"), TimeoutError("no answer")):

@@ -22,6 +22,11 @@ TEST(RangeRules, AReasonThatNamesAnotherCauseDoesNot) {
   EXPECT_FALSE(names_a_key({"drives.elbow.rated_torque_nm"}, "boot failed: slew, in step boot; slew"));
   EXPECT_FALSE(names_a_key({"mission.approach_speed_m_s"}, "not ended by the time limit of 400 s, at 400.0 s"));
   EXPECT_FALSE(names_a_key({"friction.coulomb"}, "panel vision unsure: no panel seen"));
+  // The name of the step is no cause.
+  EXPECT_FALSE(names_a_key({"valve.friction_nm"}, "overload: slew, in step turn"));
+  EXPECT_FALSE(names_a_key({"valve.friction_nm"}, "drive fault: jaw, in step reach valve"));
+  EXPECT_FALSE(names_a_key({"buttons.spring_n_m"}, "following error: slew, in step press"));
+  EXPECT_FALSE(names_a_key({"friction.coulomb"}, "camera silent, in step reach button"));
   EXPECT_FALSE(names_a_key({"camera.noise_grey"}, "overload: elbow (Look at the camera.)")) << "advice names nothing";
 }
 

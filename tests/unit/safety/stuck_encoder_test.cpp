@@ -46,5 +46,23 @@ TEST(StuckEncoder, IsNoJointThatFollowsOrStandsOrIsHeld) {
   EXPECT_NEAR(coarse.run(10, 0), 0.8, 0.02) << "one count of a coarse encoder is more than the way";
 }
 
+// A load that rises faster than any contact's threshold is no proof of one while the position shows nothing.
+TEST(StuckEncoder, ShowsNothingATenthOfASecondAfterItsLastCount) {
+  const auto shows_nothing = [](double share, double s) {
+    Joint joint;
+    while (joint.now.t < Time() + Duration::from_s(s)) {
+      joint.now.t = joint.now.t + Duration::from_ms(4);
+      joint.now.target_counts = static_cast<std::int32_t>(1000 * joint.now.t.s());
+      joint.now.actual_counts = static_cast<std::int32_t>(share * 1000 * joint.now.t.s());
+      joint.now.torque_nm = 100 * joint.now.t.s();
+      EXPECT_FALSE(joint.encoder.update(joint.now)) << "its load rises";
+    }
+    return joint.encoder.shows_nothing();
+  };
+  EXPECT_FALSE(shows_nothing(0, 0.096));
+  EXPECT_TRUE(shows_nothing(0, 0.112));
+  EXPECT_FALSE(shows_nothing(0.1, 0.112)) << "pressed against something it creeps";
+}
+
 }  // namespace
 }  // namespace lf::safety
