@@ -246,7 +246,7 @@ class Judge {
       // A drive brakes from the SYNC on that follows the order: until then it does what it was told before.
       double speed = 0;
       for (std::size_t i = at; i < std::min(at + takes_effect_ms, moments_.size()); ++i)
-        speed = std::max<double>(speed, moments_[i].speed_rad_s[joint]);
+        speed = std::max({speed, double(moments_[i].speed_rad_s[joint]), motor_speed_rad_s(i, joint)});
       // A drive that cannot be reached stops when it misses the master; one that loses its process data when NMT tells it.
       const double late_s = (cut & bit) != 0 ? figures_.self_stop_s : (untold & bit) != 0 ? figures_.unheeded_stop_s : 0;
       const double allowed_s = speed / situation_.deceleration_rad_s2[joint] + figures_.settling_s + late_s;
@@ -265,7 +265,10 @@ class Judge {
     if (motor_moves(moment, joint)) return true;
     if (moment.speed_rad_s[joint] < figures_.standing_rad_s || pushed_at(moment)) return false;
     if (std::abs(moment.angle_rad[joint] - moment.motor_rad[joint]) > situation_.gear_gives_rad[joint]) return true;
-    return time_s(moment) > unwound_s && travels_in_a_moment(moment, &Moment::angle_rad, joint);
+    if (time_s(moment) <= unwound_s || !travels_in_a_moment(moment, &Moment::angle_rad, joint)) return false;
+    // Bodies that press on each other quiver where they are.
+    const double stood_rad = moments_[std::min(static_cast<std::size_t>(unwound_s / ms), moments_.size() - 1)].angle_rad[joint];
+    return std::abs(moment.angle_rad[joint] - stood_rad) > figures_.quivers_rad;
   }
 
   double time_s(const Moment& moment) const { return static_cast<double>(&moment - moments_.data()) * ms; }
@@ -278,6 +281,13 @@ class Judge {
     const auto [low, high] = std::minmax_element(moments_.begin() + std::max<std::ptrdiff_t>(0, index - around_ms),
                                                  moments_.begin() + std::min(size, index + around_ms + 1), by_angle);
     return ((*high).*rad)[joint] - ((*low).*rad)[joint] >= figures_.standing_rad_s * 2 * static_cast<double>(around_ms) * ms;
+  }
+
+  // A motor that runs through its gear's play is faster than its joint, and it is what brakes.
+  double motor_speed_rad_s(std::size_t index, std::size_t joint) const {
+    constexpr std::size_t over_ms = 10;
+    if (index < over_ms) return 0;
+    return std::abs(double(moments_[index].motor_rad[joint]) - double(moments_[index - over_ms].motor_rad[joint])) / (over_ms * ms);
   }
 
   bool motor_moves(const Moment& moment, std::size_t joint) const { return travels_in_a_moment(moment, &Moment::motor_rad, joint); }

@@ -26,6 +26,7 @@ struct SafetyFigures {
   // which brakes may close.
   double unheeded_stop_s = 0.020, unheeded_lowering_s = 0.7;
   double unheeded_off_s = 0.120;  // until it is restarted, from when its power had to be off
+  double quivers_rad = 0.001;     // by which a joint whose motor stands may quiver under a load: half a millimetre at the tool
   double unwinding_s = 0.5;       // in which a joint whose motor stands may still unwind its gear
 };
 
@@ -48,7 +49,7 @@ struct Situation {
   bool fails_anyway = false;     // it was on its way to a failure of another cause, which is what its reason names
   std::array<double, joint_count> deceleration_rad_s2{};
   std::array<double, joint_count>
-      gear_gives_rad{};  // by which a joint may be off its motor: half of its gear's play, and the wind-up under half more than its motor's rated torque
+      gear_gives_rad{};  // by which a joint may be off its motor: half of its gear's play, and the wind-up under its motor's rated torque
 };
 
 struct Verdict {

@@ -284,10 +284,13 @@ TEST(Verdict, AMasterThatHearsNothingIsNotBlamedForAReportItMissed) {
 TEST(Verdict, AnOrderTakesEffectWithinTwentyMilliseconds) {
   const auto wrong = [](int peak_ms) {
     Seen seen = Stopping{.stop_ms = 8}.seen();
+    // It crept before, too: 0.03 rad/s.
+    for (int t = 0; t < 108; ++t) seen.moments[static_cast<std::size_t>(t)].motor_rad[2] = 0.00003f * static_cast<float>(t);
+    const float stood_rad = seen.moments[107].motor_rad[2];
     for (int t = 108; t < 3000; ++t) {
       Moment& moment = seen.moments[static_cast<std::size_t>(t)];
       moment.speed_rad_s[2] = t < 108 + 250 ? 0.03f : 0;
-      moment.angle_rad[2] = moment.motor_rad[2] = 0.00003f * static_cast<float>(std::min(t, 108 + 250));
+      moment.angle_rad[2] = moment.motor_rad[2] = stood_rad + 0.00003f * static_cast<float>(std::min(t - 107, 251));
     }
     // The elbow creeps for 250 ms, which only a peak of at least 0.2 rad/s allows.
     seen.moments[static_cast<std::size_t>(108 + peak_ms)].speed_rad_s[2] = 0.3f;
