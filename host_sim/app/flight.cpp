@@ -2,13 +2,6 @@
 
 namespace lf::app {
 
-namespace {
-
-constexpr double wound_by =
-    1.5;  // times the rated torque: a self-locking gear holds more than its motor gives, up to where the core stops an overload
-
-}  // namespace
-
 Flight::Flight(const scenario::Scenario& scenario, std::uint64_t seed, hal::SimObserver& observer, Sight sight) {
   const scenario::Sample sample = scenario::draw(scenario, seed);
   const scenario::Nominal nominal = scenario::make_nominal(scenario, sample.lamps_lit);
