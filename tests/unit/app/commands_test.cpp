@@ -207,6 +207,15 @@ TEST_F(Commands, AnExpectedSafeFailureIsSuccessAndEndsWithoutPower) {
   EXPECT_NE(std::string(other["failure"]["reason"]).find("expected was 'drive fault'"), std::string::npos);
 }
 
+// A step of the mission is not a stage of the report: the step `turn` is a part of the stage `turn_valve`.
+TEST_F(Commands, AFaultThatEndedTheMissionHappened) {
+  const Json result = json_of(
+      "run turn_only --no-outside --out r --set expect.failure='emergency stop' "
+      "--set 'faults=[{at_step: turn, after_s: 0.5, kind: estop}, {at_step: home, kind: image_lost}, {at_step: press, kind: estop}]'");
+  EXPECT_EQ(result["success"], true) << result.dump(2);
+  EXPECT_EQ(result["faults_not_made"], Json::parse(R"(["estop, at step press"])"));
+}
+
 // A share of the whole matrix, which `lanternfish campaign default --faults` flies.
 TEST_F(Commands, AShareOfTheFaultMatrixIsSafe) {
   const Said said = run("campaign default --faults --one-in 60 --out m --json");
