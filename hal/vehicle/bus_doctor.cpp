@@ -65,6 +65,7 @@ const char* likely_substitute(std::uint16_t index) {
     case 0x6072: return "vendor_limit";
     case 0x607F: return "master_limits_speed";
     case 0x60B2: return "no_feed_forward";
+    case 0x607C: return "other_object, use: STATE";
     default: return "fixed_by_maker";
   }
 }
