@@ -134,6 +134,24 @@ void set_drive(const Machine& machine, std::size_t joint, const DriveKind& kind,
         where, setup);
 }
 
+// Of the joints whose drives do not say their motors' rating, and nobody else does.
+void note_assumed_ratings(const Machine& machine, const std::map<std::string, DriveKind>& profiles, const ArmDescription& description,
+                          Core& core) {
+  std::string assumed;
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    const JointDriveChoice choice = drive_of(machine.drives, i);
+    const auto kind = profiles.find(choice.profile);
+    if (kind == profiles.end() || kind->second.rating != "configured" || choice.rated_torque_nm > 0) continue;
+    char text[64];
+    std::snprintf(text, sizeof text, "%s%s %.3g N m", assumed.empty() ? "" : ", ", joint_name(i),
+                  motor_of(description.joints[i], choice.counts_per_rev).rated_torque_nm);
+    assumed += text;
+  }
+  if (assumed.empty()) return;
+  core.notes.push_back(machine.file + ": the rated torque of these motors is assumed from the arm's description: " + assumed +
+                       ". Their drives do not say it, and all torques are shares of it: state 'drives.<joint>.rated_torque_nm'");
+}
+
 // Friction as the arm's description has it, with the doubts of figures that nobody has measured on this machine.
 arm::TransmissionSetup transmission_of(const ArmJoint& joint, double counts_per_rev) {
   const Motor motor = motor_of(joint, counts_per_rev);
@@ -437,6 +455,7 @@ Core assemble(const Machine& machine, const Steps& steps) {
       if (known) core.error_texts.set(i, controller.network.drives[i].node, kind->second.errors);
     }
     drives_known = drives;
+    note_assumed_ratings(machine, profiles, description, core);
   }
   steps.take([&] { set_zeros(machine, folder, arm ? &description : nullptr, core); });
   if (drives_known) steps.take([&] { check_network(machine, controller.network); });
