@@ -202,8 +202,15 @@ int commission(const Options& options, const CommissionOptions& wanted) {
 
 // On its own interface, or the configuration's. Refused while another program is master of the bus.
 int examine_bus(const Options& options, std::string interface) {
-  if (interface.empty() && !options.config.empty()) interface = load_vehicle_config(options.config).interface;
+  std::string lock_folder = VehicleConfig().lock_folder;
+  if (!options.config.empty()) {
+    const VehicleConfig vehicle = load_vehicle_config(options.config);
+    lock_folder = vehicle.lock_folder;
+    if (interface.empty()) interface = vehicle.interface;
+  }
   if (interface.empty()) throw InputError("doctor needs --interface, or --config with 'can.interface'");
+  // A daemon that waits for its first order sends nothing that could be heard.
+  if (const auto held = locked_by_another(lock_folder, interface)) throw EnvironmentLacks(*held + "; stop it first");
   SocketCan::Config config;
   config.interface = interface;
   config.filters = core_filters();
