@@ -151,7 +151,9 @@ void Daemon::start_threads() {
                {"kind", "begin"},
                {"config", config_.machine.file},
                {"interface", config_.interface},
-               {"camera", camera_lacks_.empty() ? "there" : camera_lacks_},
+               {"camera", config_.camera_source == "none" ? "none"
+                          : camera_lacks_.empty()         ? "there"
+                                                          : camera_lacks_},
                {"lost", lost_}});
   operator_thread_ = std::thread([this] { run_operator(); });
 }
@@ -161,9 +163,9 @@ bool Daemon::run(int signals, bool one_job) {
   if (!camera_lacks_.empty()) std::fprintf(stderr, "lanternfishd: %s; without it there is no `start`\n", camera_lacks_.c_str());
   for (const std::string& loss : lost_) std::fprintf(stderr, "lanternfishd: %s\n", loss.c_str());
   notify_service_manager("READY=1\nSTATUS=waiting for orders");
-  if (one_job) give_own(Command::start);
+  bool job_ended = false, refused = one_job && !camera_lacks_.empty();
+  if (one_job && !refused) give_own(Command::start);
 
-  bool job_ended = false, refused = false;
   while (control_runs_ && !job_ended && !refused) {
     wait_for_signals(signals);
     look_after();

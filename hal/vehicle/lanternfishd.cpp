@@ -51,6 +51,7 @@ std::vector<std::string> notes_of(const VehicleConfig& config) {
   const std::string urdf = config::find_file(config.machine.arm_urdf, std::filesystem::path(config.machine.file).parent_path());
   std::vector<std::string> notes = config::arm_notes(urdf);
   notes.insert(notes.end(), config.core.notes.begin(), config.core.notes.end());
+  if (config.camera_source == "none") notes.emplace_back("camera.source is none: `start` is refused, `home`, `jog` and stowing need none");
   for (const std::string& note : notes) std::fprintf(stderr, "lanternfishd: note: %s\n", note.c_str());
   return notes;
 }
