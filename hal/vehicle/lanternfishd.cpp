@@ -1,5 +1,5 @@
 // The `lanternfishd` program: the daemon itself, and its sub-commands for the operator.
-// Exit status: 0 done, 1 the job failed or an order was refused, 2 bad input, 3 this machine lacks something.
+// Exit status: 0 done (of an order: it was taken), 1 the job failed or an order was refused, 2 bad input, 3 this machine lacks something.
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
