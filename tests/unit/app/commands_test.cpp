@@ -285,6 +285,13 @@ TEST_F(Commands, EachFaultOfTheCoreIsReportedInARow) {
   }
 }
 
+// It flew none of no rows, and that was a success.
+TEST_F(Commands, AKeyThatThereIsNotIsRefusedByARangeCampaign) {
+  const Said said = run("campaign default --ranges --draws 1 --many 0 --kinds valve.friction --out m");
+  EXPECT_EQ(said.status, 2);
+  EXPECT_NE(said.err.find("--kinds: there is no 'valve.friction'; did you mean 'valve.friction_nm'?"), std::string::npos) << said.err;
+}
+
 TEST_F(Commands, ARowThatThereIsNotIsRefused) { EXPECT_EQ(run("campaign default --faults --rows 'deploy: estpo' --out m").status, 2); }
 
 TEST_F(Commands, AFaultCampaignGoesOnWhereItStopped) {
@@ -292,7 +299,9 @@ TEST_F(Commands, AFaultCampaignGoesOnWhereItStopped) {
   EXPECT_EQ(Json::parse(run(arguments).out)["rows"], 2);
   const Said again = run(arguments);
   EXPECT_NE(again.err.find("2 rows are kept, 0 are missing"), std::string::npos) << again.err;
-  EXPECT_EQ(run("campaign default --faults --kinds estpo").status, 2);
+  const Said misspelt = run("campaign default --faults --kinds estpo");
+  EXPECT_EQ(misspelt.status, 2);
+  EXPECT_NE(misspelt.err.find("--kinds: there is no 'estpo'; did you mean 'estop'?"), std::string::npos) << misspelt.err;
   EXPECT_EQ(run("campaign default --faults --shard 3/2").status, 2);
 }
 
