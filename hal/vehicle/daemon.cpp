@@ -81,6 +81,7 @@ OrderDesk::Ways Daemon::ways(const Surroundings& surroundings) {
     };
   }
   ways.interface = config_.interface;
+  ways.panel = config_.core.controller.mission.layout;
   ways.no_sight = [this]() -> std::string { return board_.newest().camera.images > 0 ? "" : camera_lacks_; };
   ways.commissioner = &commissioner_;
   return ways;

@@ -36,6 +36,7 @@ class OrderDesk {
     std::function<User(unsigned)> look_up;  // may block: called on a thread of its own
     std::string interface;                  // for messages
     std::function<std::string()> no_sight;  // why there is no camera, in words; empty: there is one
+    PanelLayout panel;                      // whose handle a task turns
     Commissioner* commissioner = nullptr;   // of the same thread; outlives the desk
   };
 
