@@ -190,7 +190,17 @@ TEST(VehicleConfig, AHomingFilesFrictionIsHeldAgainstTheArms) {
 TEST(VehicleConfig, AFileThatIsNowhereIsMissedBesideTheConfiguration) {
   const TemporaryFolder folder;
   EXPECT_THAT(problems_of(folder.write("v.yaml", "safety: {limits: mylimits.yaml}\n")),
-              ElementsAre(HasSubstr((folder.path() / "mylimits.yaml").string() + ": No such file")));
+              ElementsAre(testing::AllOf(HasSubstr("v.yaml: 'safety.limits': there is no mylimits.yaml in " + folder.path().string()),
+                                         HasSubstr(" nor in "))));
+}
+
+// Limits that were missing hid what was wrong with the profiles, and a profile's problem was told once a joint.
+TEST(VehicleConfig, OneProblemHidesNoOtherAndIsToldOnce) {
+  const TemporaryFolder folder;
+  folder.write("mine.yaml", "title: mine\nlike: cia402\nabsent: [{object: \"1018:01\", by: vendor_limit}]\n");
+  EXPECT_THAT(problems_of(folder.write("v.yaml", "drives: {profile: mine.yaml}\n")), ElementsAre(HasSubstr("'absent' names 1018:01")));
+  EXPECT_THAT(problems_of(folder.write("w.yaml", "safety: {limits: gone.yaml}\ndrives: {jaw: {profile: epos5}}\n")),
+              ElementsAre(HasSubstr("there is no gone.yaml"), HasSubstr("did you mean 'epos4'")));
 }
 
 TEST(VehicleConfig, LimitsWithAnotherChecksumAreRefused) {
