@@ -56,17 +56,20 @@ std::vector<std::string> notes_of(const VehicleConfig& config) {
   return notes;
 }
 
-// The file, then what this machine has of it.
+// The file and what this machine has of it, whatever is wrong with either.
 int check(const Options& options) {
   Json report{{"config", options.config}, {"problems", Json::array()}};
   int status = done;
   try {
-    const VehicleConfig config = load_vehicle_config(options.config);
-    report["notes"] = notes_of(config);
+    std::vector<std::string> problems;
+    const VehicleConfig config = load_vehicle_config(options.config, problems);
+    for (const std::string& problem : problems) report["problems"].push_back({{"problem", problem}});
+    if (problems.empty()) report["notes"] = notes_of(config);
     for (const Finding& finding : check_machine(config)) {
       report["problems"].push_back({{"key", finding.key}, {"problem", finding.problem}, {"remedy", finding.remedy}});
       status = environment;
     }
+    if (!problems.empty()) status = bad_input;
   } catch (const InputError& error) {
     if (!options.json) throw;
     report["problems"].push_back({{"problem", error.what()}});
@@ -77,8 +80,12 @@ int check(const Options& options) {
     std::printf("%s\n", report.dump(1, ' ', false, Json::error_handler_t::replace).c_str());
     return status;
   }
-  for (const Json& one : report["problems"])
-    complain("'" + one["key"].get<std::string>() + "': " + one["problem"].get<std::string>() + ": " + one["remedy"].get<std::string>());
+  for (const Json& one : report["problems"]) {
+    const auto problem = one["problem"].get<std::string>();
+    complain(one.contains("key") ? "'" + one["key"].get<std::string>() + "': " + problem + ": " + one["remedy"].get<std::string>()
+                                 : problem);
+  }
+  if (status == bad_input) return status;
   std::printf("%s is valid%s\n", options.config.c_str(), status == done ? "" : ", but this machine lacks something");
   return status;
 }
