@@ -65,7 +65,8 @@ class Steps {
       return true;
     } catch (const InputError& problem) {
       if (problems_ == nullptr) throw;
-      problems_->emplace_back(problem.what());
+      const bool told = std::find(problems_->begin(), problems_->end(), problem.what()) != problems_->end();
+      if (!told) problems_->emplace_back(problem.what());
       return false;
     }
   }
@@ -73,6 +74,19 @@ class Steps {
  private:
   std::vector<std::string>* problems_;
 };
+
+// The file that a key of the machine's file names.
+std::filesystem::path named_file(const Machine& machine, const char* key, const std::string& name) {
+  const std::filesystem::path folder = std::filesystem::path(machine.file).parent_path();
+  const std::filesystem::path found = find_file(name, folder);
+  std::error_code ignored;
+  if (std::filesystem::exists(found, ignored)) return found;
+  const std::string places =
+      std::filesystem::path(name).is_absolute()
+          ? ""
+          : " in " + std::filesystem::absolute(folder).lexically_normal().string() + " nor in " + share_folder().string();
+  throw InputError(machine.file + ": '" + key + "': there is no " + name + places);
+}
 
 // The profiles of the joints' drives by their names in the machine's file. What is wrong with one is told once, by the first key that names it.
 std::map<std::string, DriveKind> read_profiles(const Machine& machine, const Steps& steps) {
@@ -132,6 +146,24 @@ void set_drive(const Machine& machine, std::size_t joint, const DriveKind& kind,
         {choice.counts_per_rev, described ? motor.rated_torque_nm : choice.rated_torque_nm, choice.rated_current_a,
          choice.polarity == "reversed"},
         where, setup);
+}
+
+// Of the joints whose drives do not say their motors' rating, and nobody else does.
+void note_assumed_ratings(const Machine& machine, const std::map<std::string, DriveKind>& profiles, const ArmDescription& description,
+                          Core& core) {
+  std::string assumed;
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    const JointDriveChoice choice = drive_of(machine.drives, i);
+    const auto kind = profiles.find(choice.profile);
+    if (kind == profiles.end() || kind->second.rating != "configured" || choice.rated_torque_nm > 0) continue;
+    char text[64];
+    std::snprintf(text, sizeof text, "%s%s %.3g N m", assumed.empty() ? "" : ", ", joint_name(i),
+                  motor_of(description.joints[i], choice.counts_per_rev).rated_torque_nm);
+    assumed += text;
+  }
+  if (assumed.empty()) return;
+  core.notes.push_back(machine.file + ": the rated torque of these motors is assumed from the arm's description: " + assumed +
+                       ". Their drives do not say it, and all torques are shares of it: state 'drives.<joint>.rated_torque_nm'");
 }
 
 // Friction as the arm's description has it, with the doubts of figures that nobody has measured on this machine.
@@ -402,9 +434,9 @@ void set_zeros(const Machine& machine, const std::filesystem::path& folder, cons
 }
 
 // A mission's own limits, none of them wider than the machine's.
-void tighten(const Machine& machine, const std::filesystem::path& folder, ControllerConfig& controller) {
+void tighten(const Machine& machine, ControllerConfig& controller) {
   if (machine.mission_limits.empty()) return;
-  const std::string found = find_file(machine.mission_limits, folder);
+  const std::string found = named_file(machine, "safety.mission_limits", machine.mission_limits);
   const safety::Limits tighter = read_limits(found);
   if (!safety::is_tighter(tighter, controller.limits))
     throw InputError(found + ": 'safety.mission_limits' tightens limits, and one of these is wider than in 'safety.limits'");
@@ -416,15 +448,15 @@ Core assemble(const Machine& machine, const Steps& steps) {
   Core core;
   ControllerConfig& controller = core.controller;
   ArmDescription description;
-  const bool arm = steps.take([&] { description = load_arm_urdf(find_file(machine.arm_urdf, folder)); });
-  const bool limits = steps.take([&] { controller.limits = read_limits(find_file(machine.safety_limits, folder)); });
+  const bool arm = steps.take([&] { description = load_arm_urdf(named_file(machine, "arm.urdf", machine.arm_urdf)); });
+  const bool limits = steps.take([&] { controller.limits = read_limits(named_file(machine, "safety.limits", machine.safety_limits)); });
   controller.mission_limits = controller.limits;
-  if (limits) steps.take([&] { tighten(machine, folder, controller); });
+  if (limits) steps.take([&] { tighten(machine, controller); });
   bool drives_known = false;
+  const std::map<std::string, DriveKind> profiles = read_profiles(machine, steps);
   if (arm && limits) {
     controller.network = network_config(description, controller.limits);
     controller.network.io.node = static_cast<std::uint8_t>(machine.drives.output_node);
-    const std::map<std::string, DriveKind> profiles = read_profiles(machine, steps);
     bool drives = true;
     for (std::size_t i = 0; i < joint_count; ++i) {
       controller.transmissions[i] = transmission_of(description.joints[i], drive_of(machine.drives, i).counts_per_rev);
@@ -437,13 +469,14 @@ Core assemble(const Machine& machine, const Steps& steps) {
       if (known) core.error_texts.set(i, controller.network.drives[i].node, kind->second.errors);
     }
     drives_known = drives;
+    note_assumed_ratings(machine, profiles, description, core);
   }
   steps.take([&] { set_zeros(machine, folder, arm ? &description : nullptr, core); });
   if (drives_known) steps.take([&] { check_network(machine, controller.network); });
   controller.camera = camera_calibration(machine.camera);
   const bool camera = steps.take([&] {
     if (machine.camera_calibration.empty()) return;
-    read_intrinsics(find_file(machine.camera_calibration, folder), controller.camera.intrinsics);
+    read_intrinsics(named_file(machine, "camera.calibration", machine.camera_calibration), controller.camera.intrinsics);
   });
   controller.laser = laser_calibration(machine.laser);
   controller.marker = {machine.panel.marker_id, machine.panel.marker_size_m, machine.panel.panel_from_tag()};

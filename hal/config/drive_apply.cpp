@@ -72,31 +72,37 @@ struct Row {
   std::uint16_t index;
   std::uint8_t sub;
   BootValue value;
+  Substitutes by;  // what does its work where the drive lacks it
 };
 constexpr std::array<Row, 22> rows{{
-    {0x6076, 0, BootValue::rated_torque},
-    {0x1016, 1, BootValue::master_heartbeat},
-    {0x60C2, 1, BootValue::interpolation_value},
-    {0x60C2, 2, BootValue::interpolation_exponent},
-    {0x6007, 0, BootValue::abort_option},
-    {0x605A, 0, BootValue::quick_stop_option},
-    {0x6085, 0, BootValue::quick_stop_deceleration},
-    {0x6065, 0, BootValue::following_window},
-    {0x6066, 0, BootValue::following_timeout},
-    {0x607D, 1, BootValue::min_position},
-    {0x607D, 2, BootValue::max_position},
-    {0x6072, 0, BootValue::max_torque},
-    {0x607F, 0, BootValue::max_speed},
-    {0x6080, 0, BootValue::max_motor_speed},
-    {0x6098, 0, BootValue::homing_method},
-    {0x6099, 1, BootValue::homing_speed},
-    {0x6099, 2, BootValue::homing_creep_speed},
-    {0x609A, 0, BootValue::homing_acceleration},
-    {0x607C, 0, BootValue::home_offset},
-    {0x60B2, 0, BootValue::rpdo1_torque_offset},
-    {0x1017, 0, BootValue::node_heartbeat},
-    {0x1006, 0, BootValue::sync_period_us},
+    {0x6076, 0, BootValue::rated_torque, {Substitute::configured_rating, Substitute::other_object}},
+    {0x1016, 1, BootValue::master_heartbeat, {Substitute::node_guarding}},
+    {0x60C2, 1, BootValue::interpolation_value, {Substitute::fixed_by_maker}},
+    {0x60C2, 2, BootValue::interpolation_exponent, {Substitute::fixed_by_maker}},
+    {0x6007, 0, BootValue::abort_option, {Substitute::fixed_by_maker, Substitute::other_object}},
+    {0x605A, 0, BootValue::quick_stop_option, {Substitute::fixed_by_maker, Substitute::other_object}},
+    {0x6085, 0, BootValue::quick_stop_deceleration, {Substitute::fixed_by_maker, Substitute::other_object}},
+    {0x6065, 0, BootValue::following_window, {Substitute::vendor_limit, Substitute::other_object}},
+    {0x6066, 0, BootValue::following_timeout, {Substitute::master_times_following, Substitute::other_object}},
+    {0x607D, 1, BootValue::min_position, {Substitute::master_limits_position, Substitute::vendor_limit, Substitute::other_object}},
+    {0x607D, 2, BootValue::max_position, {Substitute::master_limits_position, Substitute::vendor_limit, Substitute::other_object}},
+    {0x6072, 0, BootValue::max_torque, {Substitute::vendor_limit, Substitute::other_object}},
+    {0x607F, 0, BootValue::max_speed, {Substitute::master_limits_speed, Substitute::vendor_limit, Substitute::other_object}},
+    {0x6080, 0, BootValue::max_motor_speed, {Substitute::master_limits_speed, Substitute::vendor_limit, Substitute::other_object}},
+    {0x6098, 0, BootValue::homing_method, {Substitute::fixed_by_maker, Substitute::other_object}},
+    {0x6099, 1, BootValue::homing_speed, {Substitute::fixed_by_maker, Substitute::other_object}},
+    {0x6099, 2, BootValue::homing_creep_speed, {Substitute::fixed_by_maker, Substitute::other_object}},
+    {0x609A, 0, BootValue::homing_acceleration, {Substitute::fixed_by_maker, Substitute::other_object}},
+    {0x607C, 0, BootValue::home_offset, {Substitute::other_object}},
+    {0x60B2, 0, BootValue::rpdo1_torque_offset, {Substitute::no_feed_forward}},
+    {0x1017, 0, BootValue::node_heartbeat, {Substitute::fixed_by_maker}},
+    {0x1006, 0, BootValue::sync_period_us, {Substitute::fixed_by_maker}},
 }};
+
+const Row* row_of(std::uint16_t index, std::uint8_t sub) {
+  const auto row = std::find_if(rows.begin(), rows.end(), [&](const Row& r) { return r.index == index && r.sub == sub; });
+  return row == rows.end() ? nullptr : &*row;
+}
 
 // units / base as whole numbers, both given to a millionth.
 canopen::Ratio ratio(double units, double base, const std::string& where) {
@@ -153,8 +159,8 @@ void set_torque(const DriveKind& kind, const DriveMotor& motor, const std::strin
 
 void set_absences(const DriveKind& kind, const std::string& where, canopen::DriveProfile& profile) {
   for (const ProfileAbsence& absence : kind.absences) {
-    const auto row = std::find_if(rows.begin(), rows.end(), [&](const Row& r) { return r.index == absence.index && r.sub == absence.sub; });
-    if (row == rows.end())
+    const Row* row = row_of(absence.index, absence.sub);
+    if (row == nullptr)
       throw InputError(kind.file + ": 'absent' names " + object_text(absence.index, absence.sub) +
                        ", which the boot does not write and cannot do without");
     canopen::Absence core{row->value, absence.by, 0, 0};
@@ -202,6 +208,11 @@ std::string object_text(std::uint16_t index, std::uint8_t sub) {
 const char* object_name(std::uint16_t index) {
   const auto found = std::find_if(object_names.begin(), object_names.end(), [index](const NamedObject& o) { return o.index == index; });
   return found == object_names.end() ? "" : found->name;
+}
+
+Substitutes substitutes_of(std::uint16_t index, std::uint8_t sub) {
+  const Row* row = row_of(index, sub);
+  return row != nullptr ? row->by : Substitutes{};
 }
 
 void apply(const DriveKind& kind, const DriveMotor& motor, const std::string& where, canopen::DriveSetup& setup) {

@@ -160,6 +160,11 @@ class Reader {
     attempt([&] {
       if (kind.title.empty()) source_.refuse(root.Mark(), "'title' is missing");
     });
+    attempt([&] {
+      const ProfileAbsence* rating = kind.absence(0x6076);
+      if (kind.rating == "object" && rating != nullptr && rating->by == Substitute::configured_rating)
+        source_.refuse(root.Mark(), "'absent' has 6076:00 by configured_rating, and 'torque.rating' is object: make it configured");
+    });
     // Those of `options` are written, too: 605B, 605C and 605E.
     attempt([&] {
       if (kind.objects.size() + 3 > canopen::DriveProfile::max_objects)
@@ -244,6 +249,7 @@ class Reader {
       if (by == word) absence.by = substitute;
     }
     if (absence.by == Substitute::none) source_.refuse(item.Mark(), "object " + number + ": 'by' names no substitute");
+    check_substitute(item, number, absence);
     std::uint16_t index = 0;
     std::uint8_t sub = 0;
     const bool redirects = absence.by == Substitute::other_object;
@@ -251,6 +257,19 @@ class Reader {
       source_.refuse(item.Mark(), "object " + number + ": 'use' names the other object, as \"30B0:00\"");
     if (!redirects && !absence.use.empty()) source_.refuse(item.Mark(), "object " + number + ": 'use' goes with other_object only");
     kind.absences.push_back(absence);
+  }
+
+  // A word that does nothing in this object's place would leave its work undone: a drive without 1016 and without guarding runs on when its master dies.
+  void check_substitute(const YAML::Node& item, const std::string& number, const ProfileAbsence& absence) const {
+    const Substitutes allowed = substitutes_of(absence.index, absence.sub);
+    if (allowed.front() == Substitute::none) return;  // apply() refuses the object itself
+    if (std::find(allowed.begin(), allowed.end(), absence.by) != allowed.end()) return;
+    std::string list;
+    for (const auto& [word, substitute] : substitute_words) {
+      const bool fits = std::find(allowed.begin(), allowed.end(), substitute) != allowed.end();
+      if (fits) list += (list.empty() ? "" : " or ") + std::string(word);
+    }
+    source_.refuse(item.Mark(), "object " + number + ": 'by' takes " + list);
   }
 
   void read_errors(const YAML::Node& map, DriveKind& kind) const {

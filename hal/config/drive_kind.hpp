@@ -2,6 +2,7 @@
 // what is checked and written before it has power, its option codes, brake, and the texts of its errors.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -90,6 +91,10 @@ struct DriveMotor {
 // Fills profile, identity and option codes of `setup`. Throws InputError, beginning with `where`, for what the two do not allow: a scale that is no fraction of
 // whole numbers, a rating that is asked for and not stated, a homing method that the drive does not have.
 void apply(const DriveKind& kind, const DriveMotor& motor, const std::string& where, canopen::DriveSetup& setup);
+
+// What may take an object's place, Substitute::none where there is none; all none for an object that the boot does not write or cannot do without.
+using Substitutes = std::array<canopen::Substitute, 3>;
+Substitutes substitutes_of(std::uint16_t index, std::uint8_t sub);
 
 // "6099:02" and its name in the standard; the name is empty for objects that the boot does not know.
 std::string object_text(std::uint16_t index, std::uint8_t sub);

@@ -74,7 +74,7 @@ void add_drives(Keys& all, Drives& d) {
     all.push_back(key(joint + "rated_torque_nm", "N m", 0, most_nm, &one.rated_torque_nm,
                       "the motor's rated torque, not the joint's, for drives that do not say it, and to check those that do; within a "
                       "factor of 3 of what the "
-                      "arm's description gives; 0: not stated"));
+                      "arm's description gives; 0: not stated, and a drive that does not say it has the description's"));
     all.push_back(key(joint + "rated_current_a", "A", 0, most_a, &one.rated_current_a, "0: drives.rated_current_a"));
   }
   all.push_back(key("outputs.node", "", 1, 126, &d.output_node, "node number of the output node"));

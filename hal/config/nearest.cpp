@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "shared/input_error.hpp"
+
 namespace lf::config {
 
 namespace {
@@ -40,6 +42,13 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& kn
   }
   if (nearest == nullptr || fewest > std::max(2, static_cast<int>(nearest->size()) / 3)) return "";
   return "; did you mean '" + *nearest + "'?";
+}
+
+void check_names(const std::vector<std::string>& given, const std::vector<std::string>& known, const std::string& option) {
+  for (const std::string& name : given) {
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw InputError(option + ": there is no '" + name + "'" + suggestion(name, known));
+  }
 }
 
 }  // namespace lf::config

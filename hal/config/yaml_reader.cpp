@@ -9,6 +9,7 @@
 #include <set>
 #include <sstream>
 
+#include "hal/config/fault_kinds.hpp"
 #include "hal/config/nearest.hpp"
 #include "shared/input_error.hpp"
 
@@ -187,10 +188,31 @@ void ValueReader::operator()(std::vector<Task>* value) const {
     Task task;
     read_map(item, "", shown + ".", keys(task), source_);
     task.kind = item["turn_valve"] ? Task::Kind::turn_valve : Task::Kind::press_buttons;
+    if (task.kind == Task::Kind::turn_valve && !item["turn_valve"]["to_deg"])
+      source_.refuse(item.Mark(), "'" + shown + ".turn_valve.to_deg' is missing: to which angle?");
     if (task.kind == Task::Kind::press_buttons && task.order.empty())
       source_.refuse(item.Mark(), "'" + shown + ".press_buttons.order' names no button");
     value->push_back(task);
   }
+}
+
+// What is wrong between the keys of a fault: at which of them, and what. Nothing when it can happen.
+std::optional<std::pair<const char*, std::string>> problem_of(const Fault& fault, bool timed) {
+  const FaultPlace place = find_fault_kind(fault.kind)->place;
+  const std::vector<std::string> nodes = fault_nodes(place);
+  const bool right_node = std::find(nodes.begin(), nodes.end(), fault.node) != nodes.end();
+  if (fault.node.empty() && !right_node) return {{"node", fault.kind + " needs a node"}};
+  if (!right_node) return {{"node", fault.kind + (nodes.size() == 1 ? " takes no node" : " does not happen to " + fault.node)}};
+  const bool frames = place == FaultPlace::frames;
+  if (frames && fault.can_id == 0) return {{"can_id", fault.kind + " needs a can_id"}};
+  if (!frames && fault.can_id != 0) return {{"can_id", fault.kind + " takes no can_id"}};
+  if (!fault.at_step.empty() && fault.at_s != 0) return {{"at_s", fault.kind + " has both at_s and at_step"}};
+  if (fault.at_step.empty() && fault.after_s != 0) return {{"after_s", fault.kind + " has after_s without at_step"}};
+  const bool told = place == FaultPlace::told;
+  if (told && (fault.at_s > 0 || !fault.at_step.empty())) return {{"kind", fault.kind + " is there from power-on or not at all"}};
+  if (told && fault.duration_s > 0) return {{"duration_s", fault.kind + " takes no duration_s"}};
+  if (!told && !timed) return {{"at_s", fault.kind + " needs a time: at_s, or at_step"}};
+  return std::nullopt;
 }
 
 void ValueReader::operator()(std::vector<Fault>* value) const {
@@ -201,8 +223,12 @@ void ValueReader::operator()(std::vector<Fault>* value) const {
     const std::string shown = path_ + "[" + std::to_string(i) + "]";
     if (!item.IsMap()) source_.refuse(item.Mark(), "'" + shown + "' takes a group of keys, not " + shape_of(item));
     Fault fault;
+    const std::size_t told = source_.problems() != nullptr ? source_.problems()->size() : 0;
     read_map(item, "", shown + ".", keys(fault), source_);
+    const bool read = source_.problems() == nullptr || source_.problems()->size() == told;
     if (!item["kind"]) source_.refuse(item.Mark(), "'" + shown + "' has no kind");
+    if (const auto problem = problem_of(fault, item["at_s"] || item["at_step"]); read && problem)
+      source_.refuse(item.Mark(), "'" + shown + "." + problem->first + "': " + problem->second);
     value->push_back(fault);
   }
 }

@@ -32,6 +32,11 @@ void FaultSchedule::in_step(mission::Step step, Time now) {
   }
 }
 
+std::optional<Time> FaultSchedule::entered(mission::Step step) const {
+  const auto index = static_cast<std::size_t>(step);
+  return index < seen_.size() && seen_[index] ? std::optional(entered_[index]) : std::nullopt;
+}
+
 const SimFault* FaultSchedule::next(Time now) {
   for (Entry& entry : entries_) {
     if (entry.begun && !entry.over && entry.fault.duration_s > 0 && now >= entry.end) {

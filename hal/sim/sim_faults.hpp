@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "firmware/mission/steps.hpp"
@@ -58,6 +59,8 @@ class FaultSchedule {
   void in_step(mission::Step step, Time now);
   // The next fault that begins by `now`, each once; nullptr when there is none. Faults whose duration is over end.
   const SimFault* next(Time now);
+  // When this step began for the first time; nothing when it has not.
+  std::optional<Time> entered(mission::Step step) const;
   bool on(SimFaultKind kind) const { return on_[static_cast<std::size_t>(kind)] > 0; }
 
  private:

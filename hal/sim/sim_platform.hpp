@@ -62,6 +62,8 @@ class SimPlatform : public Unattended {
   bool vision_runs() const { return !faults_.on(SimFaultKind::vision_stalled); }
   // Another fault, besides the configured ones. Throws InputError for one of the devices that cannot be.
   void add_fault(const SimFault& fault) { faults_.add(fault); }
+  // When the mission came to this step, by which faults at a step are timed.
+  std::optional<Time> entered(mission::Step step) const { return faults_.entered(step); }
 
   // Something gets between the fingers, or behind them; see World::block_jaw.
   void block_jaw(double lower_rad, double upper_rad) { world_.block_jaw(lower_rad, upper_rad); }

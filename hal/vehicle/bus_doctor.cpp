@@ -65,6 +65,7 @@ const char* likely_substitute(std::uint16_t index) {
     case 0x6072: return "vendor_limit";
     case 0x607F: return "master_limits_speed";
     case 0x60B2: return "no_feed_forward";
+    case 0x607C: return "other_object, use: STATE";
     default: return "fixed_by_maker";
   }
 }
@@ -240,7 +241,8 @@ std::string doctor_text(const std::vector<FoundNode>& nodes, const std::vector<c
     const std::string name = node.name().empty() ? "without a name" : "'" + node.name() + "'";
     text += "node " + std::to_string(node.node) + ": " + name;
     if (!node.drive()) {
-      text += ", no servo drive (1000 is " + number_text(node, 0x1000, 0) + ")\n";
+      const ReadObject* type = node.find(0x1000, 0);
+      text += ", no servo drive (1000 is " + (type != nullptr && type->there() ? hex(type->number()) : "?") + ")\n";
       continue;
     }
     const config::DriveKind* kind = known_kind(node, kinds);
@@ -249,7 +251,7 @@ std::string doctor_text(const std::vector<FoundNode>& nodes, const std::vector<c
       continue;
     }
     const std::vector<std::string> all = differences(node, *kind);
-    text += ", profile " + kind->name + " (" + kind->title + ")" + (all.empty() ? ": as it says\n" : ":\n");
+    text += ", profile " + kind->name + " (" + kind->title + ")" + (all.empty() ? ": agrees with its profile\n" : ":\n");
     for (const std::string& one : all) text += "  " + one + "\n";
     text += habits_text(*kind);
     const ReadObject* error = node.find(0x603F, 0);

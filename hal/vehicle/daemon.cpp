@@ -81,6 +81,7 @@ OrderDesk::Ways Daemon::ways(const Surroundings& surroundings) {
     };
   }
   ways.interface = config_.interface;
+  ways.panel = config_.core.controller.mission.layout;
   ways.no_sight = [this]() -> std::string { return board_.newest().camera.images > 0 ? "" : camera_lacks_; };
   ways.commissioner = &commissioner_;
   return ways;
@@ -151,7 +152,9 @@ void Daemon::start_threads() {
                {"kind", "begin"},
                {"config", config_.machine.file},
                {"interface", config_.interface},
-               {"camera", camera_lacks_.empty() ? "there" : camera_lacks_},
+               {"camera", config_.camera_source == "none" ? "none"
+                          : camera_lacks_.empty()         ? "there"
+                                                          : camera_lacks_},
                {"lost", lost_}});
   operator_thread_ = std::thread([this] { run_operator(); });
 }
@@ -161,9 +164,9 @@ bool Daemon::run(int signals, bool one_job) {
   if (!camera_lacks_.empty()) std::fprintf(stderr, "lanternfishd: %s; without it there is no `start`\n", camera_lacks_.c_str());
   for (const std::string& loss : lost_) std::fprintf(stderr, "lanternfishd: %s\n", loss.c_str());
   notify_service_manager("READY=1\nSTATUS=waiting for orders");
-  if (one_job) give_own(Command::start);
+  bool job_ended = false, refused = one_job && !camera_lacks_.empty();
+  if (one_job && !refused) give_own(Command::start);
 
-  bool job_ended = false, refused = false;
   while (control_runs_ && !job_ended && !refused) {
     wait_for_signals(signals);
     look_after();

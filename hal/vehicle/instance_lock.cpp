@@ -33,6 +33,14 @@ std::string owner_of(int fd) {
   return owner.empty() ? "" : " (process " + owner + ")";
 }
 
+std::string path_of(const std::string& folder, const std::string& interface) {
+  return folder + "/lanternfishd-" + interface + "-" + namespace_number() + ".lock";
+}
+
+std::string held_by(int fd, const std::string& path, const std::string& interface) {
+  return "another lanternfishd" + owner_of(fd) + " is the master of " + interface + ", says " + path;
+}
+
 }  // namespace
 
 InstanceLock::~InstanceLock() {
@@ -40,21 +48,31 @@ InstanceLock::~InstanceLock() {
 }
 
 std::string InstanceLock::take(const std::string& folder, const std::string& interface) {
-  path_ = folder + "/lanternfishd-" + interface + "-" + namespace_number() + ".lock";
+  path_ = path_of(folder, interface);
   fd_ = open(path_.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW);
   if (fd_ < 0 && errno == ENOENT) fd_ = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
   if (fd_ < 0) return path_ + ": " + std::strerror(errno) + "; `lock_folder` names where lock files may be";
   if (flock(fd_, LOCK_EX | LOCK_NB) != 0) {
-    const std::string owner = owner_of(fd_);
+    const std::string held = held_by(fd_, path_, interface);
     close(fd_);
     fd_ = -1;
-    return "another lanternfishd" + owner + " is the master of " + interface + ", says " + path_;
+    return held;
   }
   const std::string own = std::to_string(getpid()) + "\n";
   // One that root has made, by hand, must not keep the service out afterwards.
   if (struct stat owner{}; geteuid() == 0 && stat(folder.c_str(), &owner) == 0) (void)!fchown(fd_, owner.st_uid, owner.st_gid);
   if (ftruncate(fd_, 0) != 0 || pwrite(fd_, own.data(), own.size(), 0) < 0) return path_ + ": " + std::strerror(errno);
   return "";
+}
+
+std::optional<std::string> locked_by_another(const std::string& folder, const std::string& interface) {
+  const std::string path = path_of(folder, interface);
+  const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+  if (fd < 0) return std::nullopt;
+  std::optional<std::string> held;
+  if (flock(fd, LOCK_SH | LOCK_NB) != 0) held = held_by(fd, path, interface);
+  close(fd);
+  return held;
 }
 
 std::optional<std::string> hear_another_master(SocketCan& can, Duration how_long) {

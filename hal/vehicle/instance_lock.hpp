@@ -27,6 +27,10 @@ class InstanceLock {
   std::string path_;
 };
 
+// Who holds the lock that InstanceLock::take() would take, in its words. Nothing where nobody does, or where no lock file can be read: whoever is the
+// master of the bus then has its lock in another folder.
+std::optional<std::string> locked_by_another(const std::string& folder, const std::string& interface);
+
 // Three heartbeats of a master, and many of its SYNCs.
 inline constexpr Duration listen_for_a_master = Duration::from_ms(350);
 

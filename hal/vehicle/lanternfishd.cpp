@@ -1,5 +1,5 @@
 // The `lanternfishd` program: the daemon itself, and its sub-commands for the operator.
-// Exit status: 0 done, 1 the job failed or an order was refused, 2 bad input, 3 this machine lacks something.
+// Exit status: 0 done (of an order: it was taken), 1 the job failed or an order was refused, 2 bad input, 3 this machine lacks something.
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -51,21 +51,25 @@ std::vector<std::string> notes_of(const VehicleConfig& config) {
   const std::string urdf = config::find_file(config.machine.arm_urdf, std::filesystem::path(config.machine.file).parent_path());
   std::vector<std::string> notes = config::arm_notes(urdf);
   notes.insert(notes.end(), config.core.notes.begin(), config.core.notes.end());
+  if (config.camera_source == "none") notes.emplace_back("camera.source is none: `start` is refused, `home`, `jog` and stowing need none");
   for (const std::string& note : notes) std::fprintf(stderr, "lanternfishd: note: %s\n", note.c_str());
   return notes;
 }
 
-// The file, then what this machine has of it.
+// The file and what this machine has of it, whatever is wrong with either.
 int check(const Options& options) {
   Json report{{"config", options.config}, {"problems", Json::array()}};
   int status = done;
   try {
-    const VehicleConfig config = load_vehicle_config(options.config);
-    report["notes"] = notes_of(config);
+    std::vector<std::string> problems;
+    const VehicleConfig config = load_vehicle_config(options.config, problems);
+    for (const std::string& problem : problems) report["problems"].push_back({{"problem", problem}});
+    if (problems.empty()) report["notes"] = notes_of(config);
     for (const Finding& finding : check_machine(config)) {
       report["problems"].push_back({{"key", finding.key}, {"problem", finding.problem}, {"remedy", finding.remedy}});
       status = environment;
     }
+    if (!problems.empty()) status = bad_input;
   } catch (const InputError& error) {
     if (!options.json) throw;
     report["problems"].push_back({{"problem", error.what()}});
@@ -76,8 +80,12 @@ int check(const Options& options) {
     std::printf("%s\n", report.dump(1, ' ', false, Json::error_handler_t::replace).c_str());
     return status;
   }
-  for (const Json& one : report["problems"])
-    complain("'" + one["key"].get<std::string>() + "': " + one["problem"].get<std::string>() + ": " + one["remedy"].get<std::string>());
+  for (const Json& one : report["problems"]) {
+    const auto problem = one["problem"].get<std::string>();
+    complain(one.contains("key") ? "'" + one["key"].get<std::string>() + "': " + problem + ": " + one["remedy"].get<std::string>()
+                                 : problem);
+  }
+  if (status == bad_input) return status;
   std::printf("%s is valid%s\n", options.config.c_str(), status == done ? "" : ", but this machine lacks something");
   return status;
 }
@@ -202,8 +210,15 @@ int commission(const Options& options, const CommissionOptions& wanted) {
 
 // On its own interface, or the configuration's. Refused while another program is master of the bus.
 int examine_bus(const Options& options, std::string interface) {
-  if (interface.empty() && !options.config.empty()) interface = load_vehicle_config(options.config).interface;
+  std::string lock_folder = VehicleConfig().lock_folder;
+  if (!options.config.empty()) {
+    const VehicleConfig vehicle = load_vehicle_config(options.config);
+    lock_folder = vehicle.lock_folder;
+    if (interface.empty()) interface = vehicle.interface;
+  }
   if (interface.empty()) throw InputError("doctor needs --interface, or --config with 'can.interface'");
+  // A daemon that waits for its first order sends nothing that could be heard.
+  if (const auto held = locked_by_another(lock_folder, interface)) throw EnvironmentLacks(*held + "; stop it first");
   SocketCan::Config config;
   config.interface = interface;
   config.filters = core_filters();

@@ -104,8 +104,7 @@ std::string status_text(const Json& status) {
     text += std::string(line) + (joint.contains("fault") ? "  " + joint["fault"].get<std::string>() : "") + "\n";
   }
   for (const Json& node : status["nodes"]) {
-    if (node.contains("failure"))
-      text += "  node " + std::to_string(node["node"].get<int>()) + ": " + node["failure"].get<std::string>() + "\n";
+    if (node.contains("why")) text += "  " + node["why"].get<std::string>() + "\n";
   }
   text += "  wake-up " + histogram_text(status["latency"]["wake_up_us"]) + "; tick " + histogram_text(status["latency"]["tick_us"]) + "\n";
   for (const Json& loss : status["lost"]) text += "  " + loss.get<std::string>() + "\n";

@@ -1,6 +1,7 @@
 #include "hal/vehicle/order_desk.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <cstring>
 
 #include "hal/vehicle/tick_clock.hpp"
@@ -22,12 +23,45 @@ constexpr std::size_t most_waiting = 48;
 Json refused(const std::string& why) { return {{"ok", false}, {"why", why}}; }
 
 // Of an order that the mission's standing allows, and that was refused all the same.
-const char* why_not(Command command) {
+std::string why_not(Command command) {
   switch (command) {
     case Command::start: return "a joint stands outside its limits: jog it back first";
     case Command::jog: return "it leads out of the joint's limits, or another order is being taken";
-    default: return "its numbers are out of bounds";
+    default: return "it came too late, or another order is being taken";
   }
+}
+
+// What brings the mission to where it takes the order; empty where nothing has to, or where another order is meant.
+const char* remedy(Command command, mission::Standing standing) {
+  using enum mission::Standing;
+  const bool for_idle = command == Command::start || command == Command::home || command == Command::set_tasks;
+  switch (standing) {
+    case idle: return command == Command::jog ? "`home` first" : "";
+    case starting: return for_idle || command == Command::jog ? "wait until it is ready" : "";
+    case ready: return command == Command::home ? "the arm is homed" : "";
+    case jogging: return for_idle || command == Command::jog ? "wait until the jog is done" : "";
+    case working:
+    case leaving: return for_idle || command == Command::jog ? "wait until it has ended, or `abort` first" : "";
+    case on_hold: return for_idle || command == Command::jog || command == Command::hold ? "`resume` or `abort` first" : "";
+    case held:
+    case ended:
+      if (command == Command::jog) return "`reset` first, then `home`";
+      return for_idle ? "`reset` first" : "";
+    default: return "";
+  }
+}
+
+// The angles of a turn are refused here with their bounds; the core keeps them, too.
+std::string turn_problem(const mission::Tasks& tasks, const PanelLayout& panel) {
+  for (const mission::Task& task : tasks) {
+    if (task.kind != mission::Task::Kind::turn_valve) continue;
+    if (task.to_rad >= panel.handle_min_rad && task.to_rad <= panel.handle_max_rad) continue;
+    char text[128];
+    std::snprintf(text, sizeof text, "the valve cannot be turned to %.4g deg: its handle goes from %.4g to %.4g deg",
+                  deg_from_rad(task.to_rad), deg_from_rad(panel.handle_min_rad), deg_from_rad(panel.handle_max_rad));
+    return text;
+  }
+  return "";
 }
 
 Json answer_of(const OrderAnswer& answer, Command command) {
@@ -39,7 +73,12 @@ Json answer_of(const OrderAnswer& answer, Command command) {
     return reply;
   }
   const bool possible = mission::may(command, answer.standing);
-  reply["why"] = possible ? why_not(command) : std::string("not while the mission is ") + mission::name(answer.standing);
+  if (possible) {
+    reply["why"] = why_not(command);
+    return reply;
+  }
+  const std::string first = remedy(command, answer.standing);
+  reply["why"] = std::string("not while the mission is ") + mission::name(answer.standing) + (first.empty() ? "" : ": " + first);
   return reply;
 }
 
@@ -120,6 +159,8 @@ std::optional<Json> OrderDesk::give(Waiting& one) {
     return refused("not while the arm is being commissioned: `abort` calls it off");
   if (const std::string blind = command == Command::start && ways_.no_sight ? ways_.no_sight() : ""; !blind.empty())
     return refused("a job needs the camera: " + blind);
+  const std::string beyond = command == Command::set_tasks ? turn_problem(one.request.order.tasks, ways_.panel) : "";
+  if (!beyond.empty()) return refused(beyond);
   const bool stop = command == Command::emergency_stop;
   if (!stop && waiting_.size() >= most_waiting) return refused("too many orders at once");
   if (!stop) one.request.order.expires = monotonic_now() + take_within;  // the core refuses what it meets later

@@ -35,7 +35,8 @@ class OrderDesk {
     std::function<void(const Json&)> log;   // a line of log.jsonl
     std::function<User(unsigned)> look_up;  // may block: called on a thread of its own
     std::string interface;                  // for messages
-    std::function<std::string()> no_sight;  // why there is no camera, in words; empty: there is one, or none is wanted
+    std::function<std::string()> no_sight;  // why there is no camera, in words; empty: there is one
+    PanelLayout panel;                      // whose handle a task turns
     Commissioner* commissioner = nullptr;   // of the same thread; outlives the desk
   };
 

@@ -167,9 +167,15 @@ Keys keys(VehicleConfig& config) {
 }
 
 VehicleConfig load_vehicle_config(const std::string& path) {
+  std::vector<std::string> problems;
+  VehicleConfig config = load_vehicle_config(path, problems);
+  if (!problems.empty()) throw InputError(joined(problems));
+  return config;
+}
+
+VehicleConfig load_vehicle_config(const std::string& path, std::vector<std::string>& problems) {
   VehicleConfig config;
   config.machine.file = path;
-  std::vector<std::string> problems;
   const config::Source source = config::Source::of_file(path, problems);
   const YAML::Node root = config::parse_yaml(config::read_text_file(path), source);
   if (!root.IsNull() && !root.IsMap()) source.refuse(root.Mark(), "a vehicle's configuration is a group of keys");
@@ -177,7 +183,6 @@ VehicleConfig load_vehicle_config(const std::string& path) {
   check_together(config, path, problems);
   find_homing(config.machine, problems);
   config.core = config::make_core(config.machine, problems);
-  if (!problems.empty()) throw InputError(joined(problems));
   config.core.scan.match_window = Duration::from_us(config.match_window_us);
   config.core.controller.mission.image_due = Duration::from_ms(config.image_due_ms);
   return config;

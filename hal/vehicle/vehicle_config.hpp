@@ -56,5 +56,7 @@ config::Keys keys(VehicleConfig& config);
 
 // Throws InputError whose text has every problem on a line of its own, each with file and line where it has one.
 VehicleConfig load_vehicle_config(const std::string& path);
+// The same, but adds what is wrong to `problems`, as long as the file is YAML; what comes back is then good for looking at this machine alone.
+VehicleConfig load_vehicle_config(const std::string& path, std::vector<std::string>& problems);
 
 }  // namespace lf::hal

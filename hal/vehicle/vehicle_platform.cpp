@@ -42,7 +42,10 @@ PortStatus VehiclePlatform::open_camera(std::string& why) {
     camera_ = std::move(camera);
     return status;
   }
-  if (config_.camera_source != "ring") return port_ok;
+  if (config_.camera_source == "none") {
+    why = "camera.source is none";
+    return port_ok;
+  }
   auto camera = std::make_unique<RingCamera>(config_.ring_camera());
   const PortStatus status = camera->open();
   if (status != port_ok) why = config_.ring + ": no frame ring can be had here: " + std::strerror(status);

@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 
+#include "hal/config/nearest.hpp"
 #include "host_sim/app/campaign_options.hpp"
 #include "host_sim/app/command.hpp"
 #include "host_sim/app/copies.hpp"
@@ -120,6 +121,9 @@ std::string markdown_of(const std::vector<RangeResult>& results) {
 
 int range_campaign(const CampaignOptions& options) {
   const Shard shard = parse_shard(options.shard);
+  std::vector<std::string> known = drawn_keys();
+  known.emplace_back("many");
+  config::check_names(options.kinds, known, "--kinds");
   const scenario::Scenario base = scenario::load_scenario(options.scenario, options.set);
   const CampaignFolder folder(options, base, "ranges");
   catch_interrupts();

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "hal/config/fault_text.hpp"
+#include "hal/config/nearest.hpp"
 #include "hal/sim/observers.hpp"
 #include "host_sim/app/copies.hpp"
 #include "host_sim/app/interrupt.hpp"
@@ -33,12 +34,6 @@ constexpr std::array<Step, 9> pair_steps{Step::boot, Step::enable, Step::deploy,
 
 bool chosen(const std::vector<std::string>& names, const std::string& name) {
   return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
-}
-
-void check_names(const std::vector<std::string>& given, const std::vector<std::string>& known, const char* option) {
-  for (const std::string& name : given) {
-    if (std::find(known.begin(), known.end(), name) == known.end()) throw InputError(std::string(option) + ": there is no '" + name + "'");
-  }
 }
 
 // What is true from power-on or not at all happens there only.
@@ -86,8 +81,8 @@ void check_choice(const std::vector<FaultMoment>& moments, const MatrixChoice& c
   std::vector<std::string> kinds, steps;
   for (const judge::FaultRule& rule : judge::fault_rules()) kinds.push_back(rule.kind);
   for (const FaultMoment& moment : moments) steps.push_back(moment.name);
-  check_names(choice.kinds, kinds, "--kinds");
-  check_names(choice.steps, steps, "--steps");
+  config::check_names(choice.kinds, kinds, "--kinds");
+  config::check_names(choice.steps, steps, "--steps");
 }
 
 struct Watched {
@@ -251,7 +246,7 @@ std::vector<MatrixRow> matrix_rows(const std::vector<FaultMoment>& moments, cons
   std::vector<std::string> names;
   names.reserve(all.size());
   for (const MatrixRow& row : all) names.push_back(row.name());
-  check_names(choice.rows, names, "--rows");
+  config::check_names(choice.rows, names, "--rows");
   std::vector<MatrixRow> mine;
   // A sample is drawn by the rows' names: a stride would meet the same kinds at every moment.
   for (std::size_t i = choice.shard - 1; i < all.size(); i += choice.shards) {

@@ -1,12 +1,12 @@
 #include "host_sim/app/run_result.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 #include "hal/config/boot_sentence.hpp"
 #include "host_sim/app/outcome_text.hpp"
 #include "host_sim/judge/truth.hpp"
+#include "host_sim/scenario/instance.hpp"
 
 namespace lf::app {
 
@@ -68,17 +68,15 @@ std::vector<record::TaskRecord> task_records(const Controller& controller, const
   return records;
 }
 
-std::vector<std::string> faults_not_made(const std::vector<config::Fault>& faults, const std::vector<record::PhaseRecord>& phases,
-                                         double end_s) {
+std::vector<std::string> faults_not_made(const scenario::Scenario& scenario, const hal::SimPlatform& platform) {
   std::vector<std::string> missed;
-  for (const config::Fault& fault : faults) {
+  for (const config::Fault& fault : scenario.faults) {
     double begins_s = fault.at_s;
     if (!fault.at_step.empty()) {
-      const auto step =
-          std::find_if(phases.begin(), phases.end(), [&](const record::PhaseRecord& phase) { return phase.name == fault.at_step; });
-      begins_s = step == phases.end() ? HUGE_VAL : step->start_s + fault.after_s;
+      const std::optional<Time> step = platform.entered(scenario::sim_fault(fault, scenario.drives).at_step);
+      begins_s = step ? step->s() + fault.after_s : HUGE_VAL;
     }
-    if (begins_s <= end_s) continue;
+    if (begins_s <= platform.now().s()) continue;
     char when[48];
     std::snprintf(when, sizeof when, ", at %g s", fault.at_s);
     missed.push_back(fault.kind + (fault.node.empty() ? "" : " " + fault.node) +

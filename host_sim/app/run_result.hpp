@@ -11,6 +11,7 @@
 #include "firmware/scan_pipeline.hpp"
 #include "hal/core_loop.hpp"
 #include "hal/sim/sim_config.hpp"
+#include "hal/sim/sim_platform.hpp"
 #include "host_sim/app/run_recorder.hpp"
 #include "host_sim/record/result.hpp"
 #include "host_sim/scenario/draw.hpp"
@@ -26,9 +27,8 @@ std::optional<record::FailureRecord> disagreement(const Controller& controller, 
 // Done when the core says so and the truth agrees (judge::truly_done).
 std::vector<record::TaskRecord> task_records(const Controller& controller, const world::World& world, const RunRecorder& recorder);
 
-// Those that the run ended before, or whose step it never came to: "overcurrent elbow, at step free jaw".
-std::vector<std::string> faults_not_made(const std::vector<config::Fault>& faults, const std::vector<record::PhaseRecord>& phases,
-                                         double end_s);
+// Those that the run ended before, or whose step it never came to: "overcurrent elbow, at step free jaw". The platform has flown the run.
+std::vector<std::string> faults_not_made(const scenario::Scenario& scenario, const hal::SimPlatform& platform);
 
 record::ErrorRecord score(const RunRecorder& recorder, const hal::SimConfig& truth);
 

@@ -137,7 +137,7 @@ class Session {
     judge(result);
     recorder_.finish(platform_->world(), result.failure ? result.failure->reason : "");
     result.phases = recorder_.phases().phases();
-    result.faults_not_made = faults_not_made(request_.scenario.faults, result.phases, platform_->now().s());
+    result.faults_not_made = faults_not_made(request_.scenario, *platform_);
     result.tasks = task_records(*controller_, platform_->world(), recorder_);
     result.errors = score(recorder_, sim_);
     const world::ContactReport contacts = platform_->world().contacts();

@@ -105,20 +105,6 @@ void check_together(const Scenario& s, const std::string& where, std::vector<std
     refuse("'tasks' has " + std::to_string(tasks) + " turns and presses; the core holds " +
            std::to_string(mission::MissionConfig::max_tasks));
   }
-  for (const Fault& fault : s.faults) {
-    const config::FaultPlace place = config::find_fault_kind(fault.kind)->place;
-    const std::vector<std::string> nodes = config::fault_nodes(place);
-    const bool right_node = std::find(nodes.begin(), nodes.end(), fault.node) != nodes.end();
-    if (fault.node.empty() && !right_node)
-      refuse("'faults': " + fault.kind + " needs a node");
-    else if (!right_node)
-      refuse("'faults': " + fault.kind + (nodes.size() == 1 ? " takes no node" : " does not happen to " + fault.node));
-    if (place == config::FaultPlace::frames && fault.can_id == 0) refuse("'faults': drop_frames needs a can_id");
-    if (!fault.at_step.empty() && fault.at_s != 0) refuse("'faults': " + fault.kind + " has both at_s and at_step");
-    if (fault.at_step.empty() && fault.after_s != 0) refuse("'faults': " + fault.kind + " has after_s without at_step");
-    const bool later = fault.at_s > 0 || !fault.at_step.empty();
-    if (place == config::FaultPlace::told && later) refuse("'faults': " + fault.kind + " is there from power-on or not at all");
-  }
 }
 
 }  // namespace

@@ -221,10 +221,14 @@ void set_make(const config::Drives& drives, std::size_t joint, const std::filesy
     }
     if (make == "lanternfish" || make.starts_with("cia402")) return;
   }
+  // A dictionary of which no profile is shipped can be named by nobody.
   std::string list;
-  for (const devices::DriveHabit& habit : devices::drive_habits()) list += ", " + std::string(habit.name);
+  for (const std::string& kind : config::shipped_drive_kinds()) {
+    const bool simulated = kind == "lanternfish" || kind.starts_with("cia402") || devices::find_habit(kind) != nullptr;
+    if (simulated) list += (list.empty() ? "" : ", ") + kind;
+  }
   throw InputError(std::string("drives.") + config::joint_name(joint) + ": there is no simulated drive '" + choice.profile +
-                   "'; there are lanternfish" + list + "; a profile of your own is simulated as the one that it is 'like'");
+                   "': a profile of your own is simulated as the one that it is 'like', and that takes " + list);
 }
 
 devices::DevicesConfig device_config(const Scenario& scenario, const Sample& sample, const ArmDescription& arm) {

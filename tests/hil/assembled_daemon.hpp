@@ -16,6 +16,7 @@
 #include <array>
 #include <atomic>
 #include <csignal>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <memory>
@@ -132,7 +133,26 @@ class AssembledDaemon : public testing::Test {
     return {std::istreambuf_iterator<char>(file), {}};
   }
 
-  void begin(bool one_job = false, const std::string& camera = "{source: none}") {
+  // A ring that nobody writes into: the camera is there, and no image comes.
+  std::string silent_camera() const {
+    const std::string ring = folder.write("ring", "");
+    std::filesystem::resize_file(ring, static_cast<std::uintmax_t>(hal::VehicleConfig().ring_bytes));
+    return "{source: ring, ring: " + ring + "}";
+  }
+
+  void begin(bool one_job = false) { begin(one_job, silent_camera()); }
+  void begin(bool one_job, const std::string& camera) {
+    assemble(camera);
+    thread = std::thread([this, one_job] { well = daemon->run(signals, one_job); });
+    wait_until("the operator interface", [this] {
+      try {
+        return ask("status")["ok"] == true;
+      } catch (const std::exception&) {
+        return false;
+      }
+    });
+  }
+  void assemble(const std::string& camera) {
     const std::string text = "can: {interface: pair0}\ncamera: " + camera +
                              "\nrealtime: {priority: 0, lock_memory: false}\noperator: {socket: " + (folder / "operator.sock") +
                              "}\nlog: {folder: " + (folder / "log") + "}\nlock_folder: " + folder.path().string() +
@@ -145,14 +165,6 @@ class AssembledDaemon : public testing::Test {
       return 0;
     };
     daemon = std::make_unique<hal::Daemon>(*config, surroundings);
-    thread = std::thread([this, one_job] { well = daemon->run(signals, one_job); });
-    wait_until("the operator interface", [this] {
-      try {
-        return ask("status")["ok"] == true;
-      } catch (const std::exception&) {
-        return false;
-      }
-    });
   }
   void end(int signal = SIGTERM) {
     if (!thread.joinable()) return;

@@ -144,6 +144,22 @@ TEST_F(AssembledDaemon, WithoutItsCameraItHomesAndStowsAndRefusesAJob) {
   EXPECT_NEAR(sea->actual_rad(0), park_rad, 0.02) << "stowed";
 }
 
+// Such a job set the arm moving, and ended at the first look.
+TEST_F(AssembledDaemon, ThatIsToldThatThereIsNoCameraRefusesAJobToo) {
+  begin(false, "{source: none}");
+  expect_refused("start", "a job needs the camera: camera.source is none");
+  wait_until(
+      "the log", [&] { return events().find("\"camera\":\"none\"") != std::string::npos; }, 5);
+  order("home");
+  ASSERT_TRUE(wait_standing("ready"));
+}
+
+TEST_F(AssembledDaemon, OneJobWithoutACameraIsNotBegun) {
+  assemble("{source: none}");
+  EXPECT_FALSE(daemon->run(signals, true));
+  EXPECT_FALSE(sea->any_powered());
+}
+
 TEST_F(AssembledDaemon, GivesNoPowerToAJointThatWasNeverCommissioned) {
   folder.write("homing.yaml", "slew: {zero_counts: 0}\n");
   begin();

@@ -207,6 +207,15 @@ TEST_F(Commands, AnExpectedSafeFailureIsSuccessAndEndsWithoutPower) {
   EXPECT_NE(std::string(other["failure"]["reason"]).find("expected was 'drive fault'"), std::string::npos);
 }
 
+// A step of the mission is not a stage of the report: the step `turn` is a part of the stage `turn_valve`.
+TEST_F(Commands, AFaultThatEndedTheMissionHappened) {
+  const Json result = json_of(
+      "run turn_only --no-outside --out r --set expect.failure='emergency stop' "
+      "--set 'faults=[{at_step: turn, after_s: 0.5, kind: estop}, {at_step: home, kind: image_lost}, {at_step: press, kind: estop}]'");
+  EXPECT_EQ(result["success"], true) << result.dump(2);
+  EXPECT_EQ(result["faults_not_made"], Json::parse(R"(["estop, at step press"])"));
+}
+
 // A share of the whole matrix, which `lanternfish campaign default --faults` flies.
 TEST_F(Commands, AShareOfTheFaultMatrixIsSafe) {
   const Said said = run("campaign default --faults --one-in 60 --out m --json");
@@ -276,6 +285,13 @@ TEST_F(Commands, EachFaultOfTheCoreIsReportedInARow) {
   }
 }
 
+// It flew none of no rows, and that was a success.
+TEST_F(Commands, AKeyThatThereIsNotIsRefusedByARangeCampaign) {
+  const Said said = run("campaign default --ranges --draws 1 --many 0 --kinds valve.friction --out m");
+  EXPECT_EQ(said.status, 2);
+  EXPECT_NE(said.err.find("--kinds: there is no 'valve.friction'; did you mean 'valve.friction_nm'?"), std::string::npos) << said.err;
+}
+
 TEST_F(Commands, ARowThatThereIsNotIsRefused) { EXPECT_EQ(run("campaign default --faults --rows 'deploy: estpo' --out m").status, 2); }
 
 TEST_F(Commands, AFaultCampaignGoesOnWhereItStopped) {
@@ -283,7 +299,9 @@ TEST_F(Commands, AFaultCampaignGoesOnWhereItStopped) {
   EXPECT_EQ(Json::parse(run(arguments).out)["rows"], 2);
   const Said again = run(arguments);
   EXPECT_NE(again.err.find("2 rows are kept, 0 are missing"), std::string::npos) << again.err;
-  EXPECT_EQ(run("campaign default --faults --kinds estpo").status, 2);
+  const Said misspelt = run("campaign default --faults --kinds estpo");
+  EXPECT_EQ(misspelt.status, 2);
+  EXPECT_NE(misspelt.err.find("--kinds: there is no 'estpo'; did you mean 'estop'?"), std::string::npos) << misspelt.err;
   EXPECT_EQ(run("campaign default --faults --shard 3/2").status, 2);
 }
 

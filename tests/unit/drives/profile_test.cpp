@@ -3,6 +3,7 @@
 
 #include <fstream>
 #include <map>
+#include <set>
 
 #include "hal/config/drive_kind.hpp"
 #include "shared/input_error.hpp"
@@ -61,6 +62,45 @@ errors: {"86": short}
         "an error code is 4 hex digits"}) {
     EXPECT_NE(problems.find(part), std::string::npos) << part << "\nin\n" << problems;
   }
+}
+
+// Every pair of an object and a `by` is held against the users' page: a drive without 1016 and with another word than node_guarding would run on when its
+// master dies.
+TEST(DriveProfileFile, AnObjectsPlaceIsTakenOnlyByWhatThePageSays) {
+  std::ifstream page(std::string(LANTERNFISH_SOURCE_DIR) + "/docs/canopen.md");
+  std::map<std::string, std::string> allowed;  // by word: a list of objects
+  bool in_table = false;
+  for (std::string line; std::getline(page, line);) {
+    if (line.starts_with("| `by` |")) in_table = true;
+    if (in_table && line.empty()) break;
+    if (!in_table || !line.starts_with("| `") || line.starts_with("| `by`")) continue;
+    const std::size_t end = line.find("` | ");
+    allowed[line.substr(3, end - 3)] = line.substr(end + 4, line.find(" |", end + 4) - end - 4);
+  }
+  ASSERT_EQ(allowed.size(), 9u);
+  std::set<std::string> objects;
+  for (const auto& [by, list] : allowed) {
+    for (std::size_t at = 0; at < list.size(); at += 9) objects.insert(list.substr(at, 7));
+  }
+  EXPECT_EQ(objects.size(), 22u);
+  for (const auto& [by, list] : allowed) {
+    for (const std::string& object : objects) {
+      const std::string use = by == "other_object" ? ", use: \"30B0:00\"" : "";
+      const std::string rated = by == "configured_rating" ? ", rating: configured" : "";
+      std::string text = std::string(whole) + "absent: [{object: \"" + object + "\", by: " + by + use + "}]\n";
+      text.insert(text.find("basis: torque") + 13, rated);
+      const std::string problems = problems_of(text);
+      if (list.find(object) != std::string::npos) {
+        EXPECT_EQ(problems, "") << object << " " << by;
+      } else {
+        EXPECT_NE(problems.find("mine.yaml:6: object " + object + ": 'by' takes "), std::string::npos) << object << " " << by << problems;
+      }
+    }
+  }
+  EXPECT_NE(problems_of(std::string(whole) + "absent: [{object: \"1016:01\", by: vendor_limit}]\n").find("'by' takes node_guarding"),
+            std::string::npos);
+  EXPECT_NE(problems_of(std::string(whole) + "absent: [{object: \"6076:00\", by: configured_rating}]\n").find("'torque.rating' is object"),
+            std::string::npos);
 }
 
 // A group's name with a plain value ended the program: the YAML library throws an error of its own for a member of what is no group.

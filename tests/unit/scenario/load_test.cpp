@@ -114,7 +114,7 @@ const BadText bad_texts[] = {
     {"TargetBeyondTheStop", "tasks: [turn_valve: {to_deg: 150}]\n",
      ": 'turn_valve.to_deg' is 150, beyond the valve's stops at -105 and 105"},
     {"UnknownFault", "faults:\n  - {at_s: 1, kind: silnet, node: jaw}\n", ":2: 'faults[0].kind' has no 'silnet'; did you mean 'silent'?"},
-    {"FaultWithoutNode", "faults: [{at_s: 1, kind: silent}]\n", ": 'faults': silent needs a node"},
+    {"FaultWithoutNode", "faults: [{at_s: 1, kind: silent}]\n", ":1: 'faults[0].node': silent needs a node"},
     {"FaultWithoutKind", "faults: [{at_s: 1}]\n", ":1: 'faults[0]' has no kind"},
     {"NotYaml", "valve: {start_deg: 3\n", ":2: not YAML"},
     {"TabIndented", "valve:\n\tstart_deg: 3\n", ":2: not YAML"},
@@ -175,8 +175,19 @@ TEST(Load, AFaultHappensAtATimeOrAtAStep) {
   EXPECT_THAT(complaint("faults: [{after_s: 3, kind: estop}]\n"), HasSubstr("estop has after_s without at_step"));
 }
 
+// It meant 90 degrees in silence.
+TEST(Load, ATurnSaysToWhichAngle) {
+  EXPECT_THAT(complaint("tasks: [turn_valve: {}]\n"), HasSubstr(":1: 'tasks[0].turn_valve.to_deg' is missing"));
+}
+
 TEST(Load, AFaultHappensToWhatItCanHappenTo) {
+  EXPECT_THAT(complaint("faults:\n  - {at_s: 1, kind: estop}\n  - {at_s: 2, kind: silent}\n"),
+              HasSubstr(":3: 'faults[1].node': silent needs a node"));
   EXPECT_THAT(complaint("faults: [{kind: silent}]\n"), HasSubstr("silent needs a node"));
+  EXPECT_THAT(complaint("faults: [{at_s: 1, kind: bus_off, node: master, can_id: 5}]\n"),
+              HasSubstr("'faults[0].can_id': bus_off takes no can_id"));
+  EXPECT_THAT(complaint("faults: [{kind: estop}]\n"), HasSubstr("'faults[0].at_s': estop needs a time: at_s, or at_step"));
+  EXPECT_EQ(complaint("faults: [{at_s: 0, kind: estop}, {kind: limits_refused}]\n"), "");
   EXPECT_THAT(complaint("faults: [{kind: overcurrent, node: io}]\n"), HasSubstr("overcurrent does not happen to io"));
   EXPECT_THAT(complaint("faults: [{kind: estop, node: jaw}]\n"), HasSubstr("estop takes no node"));
   EXPECT_THAT(complaint("faults: [{kind: drop_frames}]\n"), HasSubstr("drop_frames needs a can_id"));

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "firmware/arm/actuator.hpp"
+#include "firmware/canopen/sdo_abort.hpp"
 #include "hal/vehicle/operator_client.hpp"
 #include "tests/unit/temporary_folder.hpp"
 
@@ -23,6 +24,26 @@ TEST(Commissioned, TheFrictionOfEachJointIsToldWithItsResidual) {
   EXPECT_EQ(commissioning_text(done),
             "elbow     zero at -37 counts; friction 2.5 mN m and 0.0125 mN m per rad/s at the motor, residual 0.25 mN m\n"
             "jaw       zero at 0 counts; friction not measured: as the arm's description has it\n");
+}
+
+// `why` was in the document alone.
+TEST(StatusText, SaysWhatToDoWhenABootFailed) {
+  ControlReport control;
+  canopen::NodeBoot& elbow = control.boot.nodes[2];
+  elbow.node = 3;
+  elbow.failure = canopen::BootFailure::sdo_aborted;
+  elbow.index = 0x1016;
+  elbow.sub = 1;
+  elbow.abort_code = canopen::sdo_abort::no_object;
+  Json status = status_json(control, {}, {});
+  const Json none{{"p50", 0}, {"p999", 0}, {"max", 0}};
+  status["latency"] = {{"wake_up_us", none}, {"tick_us", none}};
+  status["lost"] = Json::array();
+  status["counters"] = Json::object();
+  EXPECT_NE(
+      status_text(status).find("elbow (node 3): 1016:01 consumer heartbeat time does not exist (06020000). Without it the drive runs on"),
+      std::string::npos)
+      << status_text(status);
 }
 
 TEST(Commissioned, AJointThatSomethingRubsAgainstIsLeftOutAndTheOthersAreTakenOver) {

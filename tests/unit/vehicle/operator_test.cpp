@@ -1,5 +1,6 @@
 // The operator's interface: who may do what (and the page that says so), the socket, the lock, and the service manager.
 // To bring the page up to date: LANTERNFISH_UPDATE_DOCS=1 build/release/tests/test_vehicle --gtest_filter='Page.*'
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -25,6 +26,7 @@ namespace lf::hal {
 namespace {
 
 using test::TemporaryFolder;
+using testing::HasSubstr;
 
 std::string rights_table() {
   std::ostringstream out;
@@ -95,6 +97,22 @@ TEST(InstanceLock, OneMasterABus) {
   EXPECT_EQ(after.take(folder.path(), "can2"), "");
   InstanceLock nowhere;
   EXPECT_NE(nowhere.take("/no/such/folder", "can0").find("lock_folder"), std::string::npos);
+}
+
+TEST(InstanceLock, TellsWhoHoldsItAndTakesNothing) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(locked_by_another(folder.path(), "can0"), std::nullopt);
+  EXPECT_EQ(locked_by_another("/no/such/folder", "can0"), std::nullopt);
+  {
+    InstanceLock daemon;
+    EXPECT_EQ(daemon.take(folder.path(), "can0"), "");
+    EXPECT_THAT(locked_by_another(folder.path(), "can0").value_or(""),
+                HasSubstr("(process " + std::to_string(getpid()) + ") is the master of can0"));
+    EXPECT_EQ(locked_by_another(folder.path(), "can1"), std::nullopt);
+  }
+  EXPECT_EQ(locked_by_another(folder.path(), "can0"), std::nullopt);
+  InstanceLock after;
+  EXPECT_EQ(after.take(folder.path(), "can0"), "");
 }
 
 TEST(EstopInput, OnlyAOneIsClosed) {

@@ -61,7 +61,11 @@ class Desk : public testing::Test {
         if (!rings->gate.take(order.number)) continue;
       }
       done.push_back(order.order.command);
-      (void)rings->answers.push({.number = order.number, .taken = true});
+      OrderAnswer answer;
+      answer.number = order.number;
+      answer.taken = mission::may(order.order.command, standing);
+      answer.standing = standing;
+      (void)rings->answers.push(answer);
     }
   }
 
@@ -69,6 +73,7 @@ class Desk : public testing::Test {
   OrderDesk::Ways ways;
   std::vector<Json> log;
   std::vector<Command> done;
+  mission::Standing standing = mission::Standing::idle;
   std::shared_ptr<std::atomic<bool>> bus_blocked = std::make_shared<std::atomic<bool>>(false);
   std::shared_ptr<std::atomic<bool>> directory_blocked = std::make_shared<std::atomic<bool>>(false);
   std::shared_ptr<std::atomic<int>> bus_error = std::make_shared<std::atomic<int>>(0);
@@ -91,6 +96,35 @@ TEST_F(Desk, RefusesWhatAUserMayNot) {
   EXPECT_THAT(answer["why"].get<std::string>(), HasSubstr("watcher may not 'start': it takes operator"));
   EXPECT_TRUE(done.empty());
   EXPECT_EQ(ask(R"({"do":"estop"})", bob)["ok"], true);
+}
+
+TEST_F(Desk, SaysWhatToDoBeforeAnOrderThatIsNotAllowedNow) {
+  const auto why = [&](const char* line, mission::Standing now) {
+    standing = now;
+    return ask(line, alice)["why"].get<std::string>();
+  };
+  constexpr const char *jog = R"({"do":"jog","joint":"elbow","by_deg":-5})", *start = R"({"do":"start"})", *hold = R"({"do":"hold"})";
+  using enum mission::Standing;
+  EXPECT_EQ(why(jog, idle), "not while the mission is idle: `home` first");
+  EXPECT_EQ(why(jog, ended), "not while the mission is ended: `reset` first, then `home`");
+  EXPECT_EQ(why(start, ended), "not while the mission is ended: `reset` first");
+  EXPECT_EQ(why(start, held), "not while the mission is held: `reset` first");
+  EXPECT_EQ(why(start, on_hold), "not while the mission is on hold: `resume` or `abort` first");
+  EXPECT_EQ(why(hold, idle), "not while the mission is idle");
+}
+
+// It was "its numbers are out of bounds".
+TEST_F(Desk, NamesTheAngleThatTheHandleCannotHaveAndItsBounds) {
+  ways.panel.handle_min_rad = rad_from_deg(-10);
+  ways.panel.handle_max_rad = rad_from_deg(105);
+  desk = std::make_unique<OrderDesk>(*rings, ways);
+  const auto turn = [&](const char* to) {
+    return ask(std::string(R"({"do":"task","tasks":[{"turn_valve":{"to_deg":)") + to + "}}]}", alice);
+  };
+  EXPECT_EQ(turn("106")["why"], "the valve cannot be turned to 106 deg: its handle goes from -10 to 105 deg");
+  EXPECT_EQ(turn("-11")["ok"], false);
+  EXPECT_EQ(turn("104.9")["ok"], true);
+  EXPECT_EQ(ask(R"({"do":"task","tasks":[{"press_buttons":{"order":["left"]}}]})", alice)["ok"], true);
 }
 
 TEST_F(Desk, AnswersALineThatIsNoRequestAndLogsIt) {

@@ -123,6 +123,21 @@ TEST(VehicleConfig, ARatingThatIsTheJointsAndNotTheMotorsIsRefusedWithBothNumber
 }
 
 // An encoder's resolution in place of the arm's counts: the motor would turn slower than its joint.
+// It was taken from the arm's description in silence.
+TEST(VehicleConfig, ARatingThatNobodyStatesIsNoted) {
+  const TemporaryFolder folder;
+  const auto notes = [&](const std::string& drives) {
+    return load_vehicle_config(folder.write("v.yaml", "drives: {" + drives + "}\n")).core.notes;
+  };
+  EXPECT_THAT(notes("profile: epos4"), IsEmpty());
+  const Motor elbow = motor_of(load_arm_urdf(LANTERNFISH_SOURCE_DIR "/shared/arm/arm5e.urdf").joints[2], 64);
+  EXPECT_THAT(notes("elbow: {profile: lmdrive, rated_torque_nm: " + std::to_string(elbow.rated_torque_nm) + "}"), IsEmpty());
+  char assumed[64];
+  std::snprintf(assumed, sizeof assumed, "description: elbow %.3g N m. ", elbow.rated_torque_nm);
+  for (const char* profile : {"lmdrive", "eyou", "c5e", "ingenia", "cia402_rated"})
+    EXPECT_THAT(notes(std::string("elbow: {profile: ") + profile + "}"), ElementsAre(HasSubstr(assumed))) << profile;
+}
+
 TEST(VehicleConfig, CountsThatLeaveNoGearAreRefusedWithTheReason) {
   const TemporaryFolder folder;
   EXPECT_THAT(problems_of(folder.write("v.yaml", "drives: {elbow: {counts_per_rev: 1000000}}\n")),
@@ -175,7 +190,17 @@ TEST(VehicleConfig, AHomingFilesFrictionIsHeldAgainstTheArms) {
 TEST(VehicleConfig, AFileThatIsNowhereIsMissedBesideTheConfiguration) {
   const TemporaryFolder folder;
   EXPECT_THAT(problems_of(folder.write("v.yaml", "safety: {limits: mylimits.yaml}\n")),
-              ElementsAre(HasSubstr((folder.path() / "mylimits.yaml").string() + ": No such file")));
+              ElementsAre(testing::AllOf(HasSubstr("v.yaml: 'safety.limits': there is no mylimits.yaml in " + folder.path().string()),
+                                         HasSubstr(" nor in "))));
+}
+
+// Limits that were missing hid what was wrong with the profiles, and a profile's problem was told once a joint.
+TEST(VehicleConfig, OneProblemHidesNoOtherAndIsToldOnce) {
+  const TemporaryFolder folder;
+  folder.write("mine.yaml", "title: mine\nlike: cia402\nabsent: [{object: \"1018:01\", by: vendor_limit}]\n");
+  EXPECT_THAT(problems_of(folder.write("v.yaml", "drives: {profile: mine.yaml}\n")), ElementsAre(HasSubstr("'absent' names 1018:01")));
+  EXPECT_THAT(problems_of(folder.write("w.yaml", "safety: {limits: gone.yaml}\ndrives: {jaw: {profile: epos5}}\n")),
+              ElementsAre(HasSubstr("there is no gone.yaml"), HasSubstr("did you mean 'epos4'")));
 }
 
 TEST(VehicleConfig, LimitsWithAnotherChecksumAreRefused) {
