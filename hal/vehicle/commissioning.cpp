@@ -81,6 +81,11 @@ void Commissioning::stop(const char* why) {
   if (stop_reason_ == nullptr) stop_reason_ = why;
 }
 
+void Commissioning::emergency_stop(const char* why) {
+  emergency_stopped_ = true;
+  stop(why);
+}
+
 void Commissioning::fail(const char* why, Time now) {
   std::snprintf(failure_.data(), failure_.size(), "%s", why);
   network_.quick_stop_all();
@@ -122,7 +127,10 @@ void Commissioning::watch(Time now) {
   if (!network_.operational()) return fail("a node was lost", now);
   const canopen::IoModule& io = network_.io();
   if (!io.seen() || !io.fresh(now)) return fail("the emergency-stop chain cannot be read", now);
-  if (!io.estop_closed()) return fail("the emergency-stop chain is open", now);
+  if (!io.estop_closed()) {
+    emergency_stopped_ = true;
+    return fail("the emergency-stop chain is open", now);
+  }
   if (network_.foreign_frames() != foreign_frames_) return fail("another master is on the bus", now);
   for (std::size_t i = 0; i < joint_count; ++i) {
     const canopen::Axis& one = network_.axis(static_cast<Joint>(i));

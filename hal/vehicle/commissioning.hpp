@@ -62,6 +62,9 @@ class Commissioning {
   void tick(Time now, canopen::Outbox& outbox);
   // Stops what moves, takes the power, and ends as failed for this reason. The first reason holds.
   void stop(const char* why);
+  void emergency_stop(const char* why);
+  // By an order, the input, or the chain, at any time before the end: a reset has to come before anything else.
+  bool emergency_stopped() const { return emergency_stopped_; }
 
   State state() const { return state_; }
   bool ended() const { return state_ == State::done || state_ == State::failed; }
@@ -101,6 +104,7 @@ class Commissioning {
   State state_ = State::booting;
   bool booted_ = false;
   const char* stop_reason_ = nullptr;
+  bool emergency_stopped_ = false;
   std::array<bool, joint_count> powered_{};  // asked to take power, and not heard to be without it since
   std::array<char, 160> failure_{};
   std::size_t joint_ = 0;
