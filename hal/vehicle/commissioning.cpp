@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "firmware/arm/actuator.hpp"
 #include "shared/arm/arm_geometry.hpp"
@@ -17,12 +18,6 @@ namespace {
 constexpr std::int32_t any_count = std::numeric_limits<std::int32_t>::max() / 2;
 // After the last order: quick stop, NMT stop.
 constexpr Duration stop_time = Duration::from_ms(300);
-// The fastest joint stops within 0.3 s; after this the power goes whether it stands or not.
-// A joint that has moved by no more than a count for so long stands.
-constexpr Duration still_time = Duration::from_ms(50);
-constexpr Duration halt_time = Duration::from_ms(600);
-// Drives leave power within a second, brakes included, and a fault's reset may take three edges of 0.1 s before.
-constexpr Duration power_off_time = Duration::from_ms(1500);
 // Of the following-error window, 0.15 rad where a joint has the most counts: off the stop, and how near is there.
 constexpr double back_off_windows = 1, arrived_windows = 0.03;
 // Of the torque that is allowed: what stands still with less does not press, its encoder or its drive is at fault. Free motion takes about half of it.
@@ -46,6 +41,28 @@ double stop_rad(std::size_t joint) {
 
 std::uint16_t pressing_permille(const Commissioning::Config& config, std::size_t joint) {
   return arm_geometry::joints[joint].counts_per_rad > 0 ? config.gear_permille : config.screw_permille;
+}
+
+// The sum over all senders of what another master has sent as RPDOs.
+std::uint32_t foreign_set_points(const canopen::Network& network) {
+  std::uint32_t frames = 0;
+  for (std::size_t slot = 0; slot < canopen::ForeignFrames::slots; ++slot) {
+    const canopen::ForeignFrames::Sender& sender = network.foreign()[slot];
+    if (canopen::is_rpdo(sender.id)) frames += sender.frames;
+  }
+  return frames;
+}
+
+// Whether a joint stands is all that they tell here: where its zero is nobody knows, and a screw's counts are taken for those in the middle of its stroke.
+safety::JointStates joint_states(const canopen::Network& network, Time now) {
+  safety::JointStates joints;
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    const auto joint = static_cast<Joint>(i);
+    const arm_geometry::JointNumbers& stroke = arm_geometry::joints[i];
+    joints.fresh[i] = network.axis(joint).fresh(now);
+    joints.position_rad[i] = network.axis(joint).actual_counts() * arm::rad_per_count(joint, 0.5 * (stroke.lower_rad + stroke.upper_rad));
+  }
+  return joints;
 }
 
 canopen::NetworkConfig gentle(const Commissioning::Config& config) {
@@ -88,7 +105,7 @@ void Commissioning::emergency_stop(const char* why) {
 
 void Commissioning::fail(const char* why, Time now) {
   std::snprintf(failure_.data(), failure_.size(), "%s", why);
-  network_.quick_stop_all();
+  power_.stop(now, network_);
   network_.io().set_outputs(0);
   go(State::halting, now);
 }
@@ -108,15 +125,34 @@ void Commissioning::tick(Time now, canopen::Outbox& outbox) {
     network_.start_boot(now);
     since_ = now;
   }
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    if (network_.axis(static_cast<Joint>(i)).state() == canopen::AxisState::disabled) powered_[i] = false;
-  }
+  note_power(now);
   watch(now);
   step(now);
+  power_.tick(joint_states(network_, now), now, network_);
   network_.tick(now, outbox);
 }
 
+// A drive that was just told to take power has not heard it yet.
+void Commissioning::note_power(Time now) {
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    const canopen::Axis& one = network_.axis(static_cast<Joint>(i));
+    const bool off = one.confirmed_unpowered(now) && one.requested() != canopen::AxisRequest::hold_enabled;
+    if (one.fresh(now) && one.powered()) powered_[i] = true;
+    if (off || network_.fault(i).rebooted) powered_[i] = false;
+  }
+}
+
+// Set points of another master came since the last look: they take back a quick stop, and no stop but that of the power holds against them.
+bool Commissioning::hear_set_points() {
+  const std::uint32_t before = std::exchange(set_points_, foreign_set_points(network_));
+  return state_ != State::booting && state_ != State::stopping && !ended() && set_points_ != before;
+}
+
 void Commissioning::watch(Time now) {
+  if (hear_set_points()) {
+    if (state_ != State::halting && state_ != State::powering_off) fail("another master is on the bus", now);
+    return power_.remove(now, network_);
+  }
   const bool ends = state_ == State::halting || state_ == State::powering_off || state_ == State::stopping || ended();
   if (ends) return;
   if (stop_reason_ != nullptr) return fail(stop_reason_, now);
@@ -157,6 +193,8 @@ void Commissioning::step(Time now) {
       joint_ = 0;
       return next_joint(now);
     case State::enabling:
+      power_.switch_on();
+      if (power_.state() != safety::Power::State::on) return;  // a drive that had power before is being told off
       if (axis().requested() != canopen::AxisRequest::hold_enabled) axis().request(canopen::AxisRequest::hold_enabled);
       powered_[joint_] = true;
       if (!axis().enabled()) return;
@@ -171,25 +209,11 @@ void Commissioning::step(Time now) {
       if (axis().state() != canopen::AxisState::disabled) return;
       ++joint_;
       return next_joint(now);
-    case State::halting: {
-      // Category 1: the power is taken when the joint stands, not when its drive begins to brake.
-      const std::int32_t counts = network_.axis(static_cast<Joint>(std::min(joint_, joint_count - 1))).actual_counts();
-      if (std::abs(counts - rest_counts_) > 1) {
-        rest_counts_ = counts;
-        rest_since_ = now;
-      }
-      const bool stands = now - std::max(since_, rest_since_) >= still_time;
-      if (!stands && now - since_ < halt_time) return;
-      network_.disable_all();
-      return go(State::powering_off, now);
-    }
+    case State::halting:
+      if (power_.state() != safety::Power::State::stopping) go(State::powering_off, now);
+      return;
     case State::powering_off:
-      // An axis with a latched fault stays in its quick stop, under power, until the fault is reset.
-      for (std::size_t i = 0; i < joint_count; ++i) {
-        canopen::Axis& one = network_.axis(static_cast<Joint>(i));
-        if (one.state() == canopen::AxisState::fault) one.request(canopen::AxisRequest::reset_fault);
-      }
-      if (!without_power() && now - since_ < power_off_time) return;
+      if (!power_.off()) return;
       network_.shut_down();
       return go(State::stopping, now);
     case State::stopping:

@@ -5,7 +5,7 @@
 // The drives' own references are not touched. A plain object like the core, run by the control thread in the core's place: frames and the time in, frames
 // out, no heap. It stands on the core's own network and axes.
 //
-// Whatever ends it early is an emergency stop of category 1: quick stop, then the power is taken, also when the stop itself was not answered.
+// Whatever ends it early is an emergency stop of category 1 (firmware/safety/power.hpp), and of category 0 where another master sends set points.
 #pragma once
 
 #include <array>
@@ -15,6 +15,7 @@
 
 #include "firmware/arm/transmission.hpp"
 #include "firmware/canopen/network.hpp"
+#include "firmware/safety/power.hpp"
 #include "hal/config/homing_file.hpp"
 #include "hal/vehicle/friction_fit.hpp"
 #include "shared/messages/joint_io.hpp"
@@ -50,7 +51,7 @@ class Commissioning {
     backing_off,  // to where the joint was
     releasing,    // the joint loses power
     halting,      // ended early: quick stop
-    powering_off,
+    powering_off, // and without power, as soon as it stands
     stopping,  // the nodes are told to stop
     done,
     failed
@@ -85,7 +86,10 @@ class Commissioning {
   void go(State state, Time now);
   void fail(const char* why, Time now);
   void fail_joint(const char* why, Time now);
+  void note_power(Time now);
   void watch(Time now);
+  bool hear_set_points();
+  bool presses_too_hard();
   void step(Time now);
   void next_joint(Time now);
   void take_here(Time now);
@@ -101,6 +105,7 @@ class Commissioning {
 
   Config config_;
   canopen::Network network_;
+  safety::Power power_;
   State state_ = State::booting;
   bool booted_ = false;
   const char* stop_reason_ = nullptr;
@@ -116,9 +121,8 @@ class Commissioning {
   Time joint_since_;  // with this joint
   Time moved_;        // when it last counted
   std::int32_t last_counts_ = 0;
-  std::int32_t rest_counts_ = 0;  // while halting: where it stood, and since when
-  Time rest_since_;
   std::uint32_t foreign_frames_ = 0;  // of another master, before the boot was done
+  std::uint32_t set_points_ = 0;      // RPDOs among them, so far
   double target_ = 0;                 // counts
   std::int32_t started_counts_ = 0;   // where it was powered
   double pressed_permille_ = 0;       // torque when it stood at the stop
