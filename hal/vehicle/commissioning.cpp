@@ -14,14 +14,21 @@ namespace lf::hal {
 
 namespace {
 
-// Half of the range of counts: the zero is what is not known yet.
-constexpr std::int32_t any_count = std::numeric_limits<std::int32_t>::max() / 2;
+// Half of the range of counts, since the zero is what is not known yet, or what 32 bits hold in the drive's units. Two units are lost in rounding.
+std::int32_t any_count(const canopen::DriveSetup& drive) {
+  constexpr std::int32_t half = std::numeric_limits<std::int32_t>::max() / 2;
+  const std::int64_t held = drive.profile.scale.position.over(std::numeric_limits<std::int32_t>::max()) - 2 - drive.drive_margin_counts;
+  return static_cast<std::int32_t>(std::min<std::int64_t>(half, held));
+}
 // After the last order: quick stop, NMT stop.
 constexpr Duration stop_time = Duration::from_ms(300);
 // Of the following-error window, 0.15 rad where a joint has the most counts: off the stop, and how near is there.
 constexpr double back_off_windows = 1, arrived_windows = 0.03;
 // Of the torque that is allowed: what stands still with less does not press, its encoder or its drive is at fault. Free motion takes about half of it.
 constexpr double least_pressing = 0.7;
+// Drives without 6072 press with what their maker's tool allows. So far above what is meant, for longer than a breakaway lasts, a joint is stopped.
+constexpr double too_hard = 1.3;
+constexpr int too_hard_ticks = 25;
 // Of the load on the stop. A spring's torque falls in proportion: from two places the place of none is known, well above the weight of the arm. The second
 // load is at most so much of the first.
 constexpr double begins_to_fall = 0.9, has_fallen = 0.5, still_falls = 0.7;
@@ -71,8 +78,8 @@ canopen::NetworkConfig gentle(const Commissioning::Config& config) {
     canopen::DriveSetup& drive = network.drives[i];
     drive.encoder_zero_counts = 0;
     drive.zero_known = true;  // what is looked for: all counts here are the encoder's own, and wide open
-    drive.min_counts = -any_count;
-    drive.max_counts = any_count;
+    drive.min_counts = -any_count(drive);
+    drive.max_counts = any_count(drive);
     drive.max_torque_permille = std::min(drive.max_torque_permille, pressing_permille(config, i));
     drive.homing_method = 0;
   }
@@ -200,6 +207,7 @@ void Commissioning::step(Time now) {
       if (!axis().enabled()) return;
       target_ = last_counts_ = started_counts_ = axis().actual_counts();
       moved_ = now;
+      too_hard_ticks_ = 0;
       return go(State::seeking, now);
     case State::seeking: return seek(now);
     case State::easing: return ease(now);
@@ -242,6 +250,12 @@ void Commissioning::take_here(Time now) {
   next_joint(now);
 }
 
+bool Commissioning::presses_too_hard() {
+  const bool now = std::abs(axis().torque_permille()) > too_hard * pressing_permille(config_, joint_);
+  too_hard_ticks_ = now ? too_hard_ticks_ + 1 : 0;
+  return too_hard_ticks_ > too_hard_ticks;
+}
+
 // The target creeps on, a lead ahead of the joint at most: at the stop the lead is what presses.
 void Commissioning::seek(Time now) {
   const canopen::DriveSetup& drive = config_.network.drives[joint_];
@@ -251,6 +265,12 @@ void Commissioning::seek(Time now) {
   if (std::abs(actual - last_counts_) > 1) {
     last_counts_ = actual;
     moved_ = now;
+  }
+  if (presses_too_hard()) {
+    std::array<char, 120> why{};
+    std::snprintf(why.data(), why.size(), "it presses with %ld %% of its rated torque: limit it to %ld %% with its maker's tool",
+                  std::lround(std::abs(axis().torque_permille()) / 10.0), std::lround(pressing_permille(config_, joint_) / 10.0));
+    return fail_joint(why.data(), now);
   }
   target_ += way * config_.speed_fraction * drive.max_speed_counts_s * network_.config().sync_period.s();
   target_ = std::clamp(target_, actual - lead, actual + lead);

@@ -45,14 +45,14 @@ class Commissioning {
   enum class State : std::uint8_t {
     booting,
     enabling,
-    seeking,      // toward the stop
-    easing,       // off it, until it only touches
-    rubbing,      // both ways over a stretch, twice
-    backing_off,  // to where the joint was
-    releasing,    // the joint loses power
-    halting,      // ended early: quick stop
-    powering_off, // and without power, as soon as it stands
-    stopping,  // the nodes are told to stop
+    seeking,       // toward the stop
+    easing,        // off it, until it only touches
+    rubbing,       // both ways over a stretch, twice
+    backing_off,   // to where the joint was
+    releasing,     // the joint loses power
+    halting,       // ended early: quick stop
+    powering_off,  // and without power, as soon as it stands
+    stopping,      // the nodes are told to stop
     done,
     failed
   };
@@ -127,6 +127,7 @@ class Commissioning {
   std::int32_t started_counts_ = 0;   // where it was powered
   double pressed_permille_ = 0;       // torque when it stood at the stop
   std::int32_t pressed_counts_ = 0;
+  int too_hard_ticks_ = 0;                     // in a row
   double pressed_load_ = 0;                    // what of it the stop felt
   std::optional<std::int32_t> easing_counts_;  // where the load began to fall
   double easing_load_ = 0;                     // and the load there
