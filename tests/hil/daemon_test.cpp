@@ -216,7 +216,7 @@ TEST_F(AssembledDaemon, AnEmergencyStopEndsACommissioningWithoutPower) {
   EXPECT_EQ(folder.read("homing.yaml"), before);
 
   // It is latched: nothing begins before a reset.
-  expect_refused("home", "reset");
+  expect_refused("home", "the mission is ended");
   expect_refused(commission_elbow, "reset");
   order("reset");
 
