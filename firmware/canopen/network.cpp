@@ -105,6 +105,11 @@ void Network::remove_power() {
   for (Axis& axis : axes_) axis.request(AxisRequest::remove_power);
 }
 
+void Network::reset_node(std::size_t node) {
+  nmt_due_[node] = NmtCommand::reset_node;
+  nodes_[node].expect_restart();
+}
+
 void Network::shut_down() {
   if (!running_ || shut_down_syncs_ > 0) return;
   remove_power();
@@ -170,6 +175,7 @@ void Network::dispatch(const CanFrame& frame, Time now) {
 
 void Network::refuse_foreign_master(std::uint32_t id) {
   foreign_.add(id);
+  for (Node& node : nodes_) node.doubt_restart();
   refuse(Refusal::foreign_master);
 }
 
@@ -214,7 +220,7 @@ void Network::on_sdo(std::size_t node, const CanFrame& frame, Time now) {
 // ---- a SYNC cycle ----
 
 void Network::tick(Time now, Outbox& outbox) {
-  if (!running_) return;
+  if (!running_) return send_nmt(outbox);
   if (now < last_sync_) {
     ++stats_.time_backwards;
     return;

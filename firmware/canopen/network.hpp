@@ -103,8 +103,12 @@ class Network {
   void remove_power();    // disable voltage for every axis, at once
   // NMT stop of one node with the next tick, for a drive that does not heed its process data: 6007 makes it a quick stop. Only `start_boot` leads back.
   void stop_node(std::size_t node) { nmt_due_[node] = NmtCommand::stop; }
-  // NMT reset node: whatever its make, a drive restarts without power.
-  void reset_node(std::size_t node) { nmt_due_[node] = NmtCommand::reset_node; }
+  // NMT reset node, also before the first boot: whatever its make, a drive restarts without power.
+  void reset_node(std::size_t node);
+  // It said so since `reset_node`, and neither this master nor another one has started it after that.
+  bool restarted_as_told(std::size_t node) const { return nodes_[node].restarted_as_told(); }
+  // Another master was heard, and this one never took the bus.
+  bool bus_is_anothers() const { return !running_ && foreign_frames() > 0; }
   // Power and outputs off, and NMT stop of every node four SYNC periods later, when the drives have heard of it. Only `start_boot` leads back.
   void shut_down();
 

@@ -14,6 +14,8 @@ void Node::start_boot(Time now, const BootContext& context) {
   nmt_ = NmtState::unknown;
   guarded_ = context.drive != nullptr && context.drive->profile.guarded;
   guarding_ = false;
+  restart_expected_ = false;
+  restarted_as_told_ = false;
   sdo_.reset();
   boot_.begin(context, now);
 }
@@ -31,7 +33,10 @@ bool Node::on_heartbeat(std::uint8_t state, Time now) {
       fault_.rebooted = true;
       sdo_.reset();
     }
-    if (!boot_.on_boot_up(now, sdo_)) restarted_ = true;
+    if (!boot_.on_boot_up(now, sdo_)) {
+      restarted_ = true;
+      restarted_as_told_ = restarted_as_told_ || std::exchange(restart_expected_, false);
+    }
   }
   if (nmt == NmtState::operational) boot_.on_operational(now);
   if (boot_.done() && (nmt == NmtState::stopped || nmt == NmtState::pre_operational)) fault_.left_operational = true;
@@ -63,6 +68,11 @@ bool Node::take_guard_request(Time now, CanFrame& frame) {
   frame = empty_frame(cob_id::heartbeat + id_, 1);
   frame.id |= CanFrame::remote_flag;
   return true;
+}
+
+void Node::expect_restart() {
+  restart_expected_ = true;
+  restarted_as_told_ = false;
 }
 
 bool Node::take_restart() { return std::exchange(restarted_, false); }

@@ -45,6 +45,12 @@ class Node {
   bool take_guard_request(Time now, CanFrame& frame);
   // The node restarted, or may have: what it keeps without power is not known. True once.
   bool take_restart();
+  // NMT reset node is on its way to it: the next boot-up that no reset of the boot has caused is the answer.
+  void expect_restart();
+  // It has answered `expect_restart`, and nobody has started it since: it has no power.
+  bool restarted_as_told() const { return restarted_as_told_; }
+  // Another master spoke, and may have started it.
+  void doubt_restart() { restarted_as_told_ = false; }
   // A heartbeat, or a guarded node's answer, whose bit 7 alternates. False when `state` is not one of CiA 301's.
   bool on_heartbeat(std::uint8_t state, Time now);
   void on_emcy(const Emcy& emcy);
@@ -58,6 +64,8 @@ class Node {
   bool guarded_ = false;
   bool guarding_ = false;  // from its start on
   bool restarted_ = false;
+  bool restart_expected_ = false;
+  bool restarted_as_told_ = false;
   Time next_guard_;
   Time last_heartbeat_;
   NodeFault fault_;

@@ -40,12 +40,12 @@ Progress WayHome::run_abandon(const Workbench& bench) {
   return Progress::done_if(jaw == arm::GripperState::open && bench.motion.done());
 }
 
-// The arm stands, unless a joint was just being homed.
+// The arm stands, unless a joint was just being homed. Drives that another master leads are its own; only an emergency stop takes their power, too.
 void WayHome::begin_shut_down(const StepTick& tick) {
   Workbench& bench = tick.bench;
   if (bench.powered) {
     bench.power.lower(tick.now, tick.network);
-  } else {
+  } else if (!tick.network.bus_is_anothers()) {
     bench.power.stop(tick.now, tick.network);
   }
   bench.motion.freeze();

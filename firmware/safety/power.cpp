@@ -5,9 +5,19 @@
 
 namespace lf::safety {
 
+namespace {
+
+// Since it was last booted, or ever. One that was lost or taken out of operation was heard before.
+bool never_heard(const canopen::Network& network, std::size_t joint) {
+  return network.axis(static_cast<Joint>(joint)).state() == canopen::AxisState::offline && !network.fault(joint).link();
+}
+
+}  // namespace
+
 void Power::stop(Time now, canopen::Network& network) {
   if (state_ == State::stopping || state_ == State::removing) return;
   network.quick_stop_all();
+  restart_unheard(network);
   state_ = State::stopping;
   told_by_nmt_.fill(false);
   insist_at_ = now + heed_time;
@@ -19,6 +29,7 @@ void Power::stop(Time now, canopen::Network& network) {
 void Power::remove(Time now, canopen::Network& network) {
   network.remove_power();
   if (state_ == State::removing) return;
+  restart_unheard(network);
   if (state_ != State::stopping) told_by_nmt_.fill(false);
   state_ = State::removing;
   since_ = now;
@@ -37,14 +48,22 @@ void Power::lower(Time now, canopen::Network& network) {
 void Power::insist(Time now, canopen::Network& network) {
   if (now < insist_at_) return;
   insist_at_ = now + insist_period;
+  restart_unheard(network);
   for (std::size_t i = 0; i < joint_count; ++i) {
-    if (heeds(i, now, network)) continue;
+    if (never_heard(network, i) || heeds(i, now, network)) continue;
     if (state_ == State::stopping) {
       network.stop_node(i);
       told_by_nmt_[i] = true;
     } else if (!network.fault(i).rebooted) {
       network.reset_node(i);
     }
+  }
+}
+
+// One that has restarted already stays so: nothing but a boot or another master gives it power.
+void Power::restart_unheard(canopen::Network& network) {
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    if (never_heard(network, i) && !network.restarted_as_told(i)) network.reset_node(i);
   }
 }
 
@@ -111,11 +130,9 @@ bool Power::confirmed(Time now, const canopen::Network& network) const {
   if (now - since_ < network.config().sync_period * (canopen::Axis::handshake_syncs + 1)) return false;
   for (std::size_t i = 0; i < joint_count; ++i) {
     const canopen::Axis& axis = network.axis(static_cast<Joint>(i));
-    // A node that was not started, or that has restarted, has no power; one that was lost or taken out of operation may have it still.
-    const canopen::NodeFault& link = network.fault(i);
-    const bool lost = link.heartbeat_lost || link.left_operational;
-    const bool never_on = axis.state() == canopen::AxisState::offline && !lost;
-    if (link.rebooted || never_on || axis.confirmed_unpowered(now)) continue;
+    // A node that has restarted has no power; one that was never heard, was lost, or was taken out of operation may have it.
+    const bool restarted = network.fault(i).rebooted || (never_heard(network, i) && network.restarted_as_told(i));
+    if (restarted || axis.confirmed_unpowered(now)) continue;
     const bool given_time = state_ == State::removing && now - since_ >= blind_time;
     if (axis.fresh(now) || !given_time) return false;
   }

@@ -6,6 +6,9 @@
 //
 // Both are one way: a stop is never taken back, and a milder one that comes later changes nothing. The self-locking gears hold the arm without power.
 // Power is off when every drive says so. A drive that is not heard is told to go down for `blind_time` and then taken for down: nothing more can be done.
+//
+// A drive that was never heard may have power all the same: a program that died before this one enabled it, and its make stays powered after its quick stop.
+// It takes no process data before it is configured, so it is restarted by NMT, and says that it has booted up.
 #pragma once
 
 #include <array>
@@ -69,6 +72,7 @@ class Power {
   bool confirmed(Time now, const canopen::Network& network) const;
   // Stops or restarts by NMT what does not heed its process data.
   void insist(Time now, canopen::Network& network);
+  static void restart_unheard(canopen::Network& network);
   bool heeds(std::size_t joint, Time now, const canopen::Network& network) const;
   static bool hears_none(Time now, const canopen::Network& network);
 

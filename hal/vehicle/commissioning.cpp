@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "firmware/arm/actuator.hpp"
 #include "shared/arm/arm_geometry.hpp"
@@ -13,20 +14,21 @@ namespace lf::hal {
 
 namespace {
 
-// Half of the range of counts: the zero is what is not known yet.
-constexpr std::int32_t any_count = std::numeric_limits<std::int32_t>::max() / 2;
+// Half of the range of counts, since the zero is what is not known yet, or what 32 bits hold in the drive's units. Two units are lost in rounding.
+std::int32_t any_count(const canopen::DriveSetup& drive) {
+  constexpr std::int32_t half = std::numeric_limits<std::int32_t>::max() / 2;
+  const std::int64_t held = drive.profile.scale.position.over(std::numeric_limits<std::int32_t>::max()) - 2 - drive.drive_margin_counts;
+  return static_cast<std::int32_t>(std::min<std::int64_t>(half, held));
+}
 // After the last order: quick stop, NMT stop.
 constexpr Duration stop_time = Duration::from_ms(300);
-// The fastest joint stops within 0.3 s; after this the power goes whether it stands or not.
-// A joint that has moved by no more than a count for so long stands.
-constexpr Duration still_time = Duration::from_ms(50);
-constexpr Duration halt_time = Duration::from_ms(600);
-// Drives leave power within a second, brakes included, and a fault's reset may take three edges of 0.1 s before.
-constexpr Duration power_off_time = Duration::from_ms(1500);
 // Of the following-error window, 0.15 rad where a joint has the most counts: off the stop, and how near is there.
 constexpr double back_off_windows = 1, arrived_windows = 0.03;
 // Of the torque that is allowed: what stands still with less does not press, its encoder or its drive is at fault. Free motion takes about half of it.
 constexpr double least_pressing = 0.7;
+// Drives without 6072 press with what their maker's tool allows. So far above what is meant, for longer than a breakaway lasts, a joint is stopped.
+constexpr double too_hard = 1.3;
+constexpr int too_hard_ticks = 25;
 // Of the load on the stop. A spring's torque falls in proportion: from two places the place of none is known, well above the weight of the arm. The second
 // load is at most so much of the first.
 constexpr double begins_to_fall = 0.9, has_fallen = 0.5, still_falls = 0.7;
@@ -48,14 +50,36 @@ std::uint16_t pressing_permille(const Commissioning::Config& config, std::size_t
   return arm_geometry::joints[joint].counts_per_rad > 0 ? config.gear_permille : config.screw_permille;
 }
 
+// The sum over all senders of what another master has sent as RPDOs.
+std::uint32_t foreign_set_points(const canopen::Network& network) {
+  std::uint32_t frames = 0;
+  for (std::size_t slot = 0; slot < canopen::ForeignFrames::slots; ++slot) {
+    const canopen::ForeignFrames::Sender& sender = network.foreign()[slot];
+    if (canopen::is_rpdo(sender.id)) frames += sender.frames;
+  }
+  return frames;
+}
+
+// Whether a joint stands is all that they tell here: where its zero is nobody knows, and a screw's counts are taken for those in the middle of its stroke.
+safety::JointStates joint_states(const canopen::Network& network, Time now) {
+  safety::JointStates joints;
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    const auto joint = static_cast<Joint>(i);
+    const arm_geometry::JointNumbers& stroke = arm_geometry::joints[i];
+    joints.fresh[i] = network.axis(joint).fresh(now);
+    joints.position_rad[i] = network.axis(joint).actual_counts() * arm::rad_per_count(joint, 0.5 * (stroke.lower_rad + stroke.upper_rad));
+  }
+  return joints;
+}
+
 canopen::NetworkConfig gentle(const Commissioning::Config& config) {
   canopen::NetworkConfig network = config.network;
   for (std::size_t i = 0; i < joint_count; ++i) {
     canopen::DriveSetup& drive = network.drives[i];
     drive.encoder_zero_counts = 0;
     drive.zero_known = true;  // what is looked for: all counts here are the encoder's own, and wide open
-    drive.min_counts = -any_count;
-    drive.max_counts = any_count;
+    drive.min_counts = -any_count(drive);
+    drive.max_counts = any_count(drive);
     drive.max_torque_permille = std::min(drive.max_torque_permille, pressing_permille(config, i));
     drive.homing_method = 0;
   }
@@ -81,9 +105,14 @@ void Commissioning::stop(const char* why) {
   if (stop_reason_ == nullptr) stop_reason_ = why;
 }
 
+void Commissioning::emergency_stop(const char* why) {
+  emergency_stopped_ = true;
+  stop(why);
+}
+
 void Commissioning::fail(const char* why, Time now) {
   std::snprintf(failure_.data(), failure_.size(), "%s", why);
-  network_.quick_stop_all();
+  power_.stop(now, network_);
   network_.io().set_outputs(0);
   go(State::halting, now);
 }
@@ -103,15 +132,34 @@ void Commissioning::tick(Time now, canopen::Outbox& outbox) {
     network_.start_boot(now);
     since_ = now;
   }
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    if (network_.axis(static_cast<Joint>(i)).state() == canopen::AxisState::disabled) powered_[i] = false;
-  }
+  note_power(now);
   watch(now);
   step(now);
+  power_.tick(joint_states(network_, now), now, network_);
   network_.tick(now, outbox);
 }
 
+// A drive that was just told to take power has not heard it yet.
+void Commissioning::note_power(Time now) {
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    const canopen::Axis& one = network_.axis(static_cast<Joint>(i));
+    const bool off = one.confirmed_unpowered(now) && one.requested() != canopen::AxisRequest::hold_enabled;
+    if (one.fresh(now) && one.powered()) powered_[i] = true;
+    if (off || network_.fault(i).rebooted) powered_[i] = false;
+  }
+}
+
+// Set points of another master came since the last look: they take back a quick stop, and no stop but that of the power holds against them.
+bool Commissioning::hear_set_points() {
+  const std::uint32_t before = std::exchange(set_points_, foreign_set_points(network_));
+  return state_ != State::booting && state_ != State::stopping && !ended() && set_points_ != before;
+}
+
 void Commissioning::watch(Time now) {
+  if (hear_set_points()) {
+    if (state_ != State::halting && state_ != State::powering_off) fail("another master is on the bus", now);
+    return power_.remove(now, network_);
+  }
   const bool ends = state_ == State::halting || state_ == State::powering_off || state_ == State::stopping || ended();
   if (ends) return;
   if (stop_reason_ != nullptr) return fail(stop_reason_, now);
@@ -122,7 +170,10 @@ void Commissioning::watch(Time now) {
   if (!network_.operational()) return fail("a node was lost", now);
   const canopen::IoModule& io = network_.io();
   if (!io.seen() || !io.fresh(now)) return fail("the emergency-stop chain cannot be read", now);
-  if (!io.estop_closed()) return fail("the emergency-stop chain is open", now);
+  if (!io.estop_closed()) {
+    emergency_stopped_ = true;
+    return fail("the emergency-stop chain is open", now);
+  }
   if (network_.foreign_frames() != foreign_frames_) return fail("another master is on the bus", now);
   for (std::size_t i = 0; i < joint_count; ++i) {
     const canopen::Axis& one = network_.axis(static_cast<Joint>(i));
@@ -149,11 +200,14 @@ void Commissioning::step(Time now) {
       joint_ = 0;
       return next_joint(now);
     case State::enabling:
+      power_.switch_on();
+      if (power_.state() != safety::Power::State::on) return;  // a drive that had power before is being told off
       if (axis().requested() != canopen::AxisRequest::hold_enabled) axis().request(canopen::AxisRequest::hold_enabled);
       powered_[joint_] = true;
       if (!axis().enabled()) return;
       target_ = last_counts_ = started_counts_ = axis().actual_counts();
       moved_ = now;
+      too_hard_ticks_ = 0;
       return go(State::seeking, now);
     case State::seeking: return seek(now);
     case State::easing: return ease(now);
@@ -163,25 +217,11 @@ void Commissioning::step(Time now) {
       if (axis().state() != canopen::AxisState::disabled) return;
       ++joint_;
       return next_joint(now);
-    case State::halting: {
-      // Category 1: the power is taken when the joint stands, not when its drive begins to brake.
-      const std::int32_t counts = network_.axis(static_cast<Joint>(std::min(joint_, joint_count - 1))).actual_counts();
-      if (std::abs(counts - rest_counts_) > 1) {
-        rest_counts_ = counts;
-        rest_since_ = now;
-      }
-      const bool stands = now - std::max(since_, rest_since_) >= still_time;
-      if (!stands && now - since_ < halt_time) return;
-      network_.disable_all();
-      return go(State::powering_off, now);
-    }
+    case State::halting:
+      if (power_.state() != safety::Power::State::stopping) go(State::powering_off, now);
+      return;
     case State::powering_off:
-      // An axis with a latched fault stays in its quick stop, under power, until the fault is reset.
-      for (std::size_t i = 0; i < joint_count; ++i) {
-        canopen::Axis& one = network_.axis(static_cast<Joint>(i));
-        if (one.state() == canopen::AxisState::fault) one.request(canopen::AxisRequest::reset_fault);
-      }
-      if (!without_power() && now - since_ < power_off_time) return;
+      if (!power_.off()) return;
       network_.shut_down();
       return go(State::stopping, now);
     case State::stopping:
@@ -210,6 +250,12 @@ void Commissioning::take_here(Time now) {
   next_joint(now);
 }
 
+bool Commissioning::presses_too_hard() {
+  const bool now = std::abs(axis().torque_permille()) > too_hard * pressing_permille(config_, joint_);
+  too_hard_ticks_ = now ? too_hard_ticks_ + 1 : 0;
+  return too_hard_ticks_ > too_hard_ticks;
+}
+
 // The target creeps on, a lead ahead of the joint at most: at the stop the lead is what presses.
 void Commissioning::seek(Time now) {
   const canopen::DriveSetup& drive = config_.network.drives[joint_];
@@ -219,6 +265,12 @@ void Commissioning::seek(Time now) {
   if (std::abs(actual - last_counts_) > 1) {
     last_counts_ = actual;
     moved_ = now;
+  }
+  if (presses_too_hard()) {
+    std::array<char, 120> why{};
+    std::snprintf(why.data(), why.size(), "it presses with %ld %% of its rated torque: limit it to %ld %% with its maker's tool",
+                  std::lround(std::abs(axis().torque_permille()) / 10.0), std::lround(pressing_permille(config_, joint_) / 10.0));
+    return fail_joint(why.data(), now);
   }
   target_ += way * config_.speed_fraction * drive.max_speed_counts_s * network_.config().sync_period.s();
   target_ = std::clamp(target_, actual - lead, actual + lead);

@@ -5,7 +5,7 @@
 // The drives' own references are not touched. A plain object like the core, run by the control thread in the core's place: frames and the time in, frames
 // out, no heap. It stands on the core's own network and axes.
 //
-// Whatever ends it early is an emergency stop of category 1: quick stop, then the power is taken, also when the stop itself was not answered.
+// Whatever ends it early is an emergency stop of category 1 (firmware/safety/power.hpp), and of category 0 where another master sends set points.
 #pragma once
 
 #include <array>
@@ -15,6 +15,7 @@
 
 #include "firmware/arm/transmission.hpp"
 #include "firmware/canopen/network.hpp"
+#include "firmware/safety/power.hpp"
 #include "hal/config/homing_file.hpp"
 #include "hal/vehicle/friction_fit.hpp"
 #include "shared/messages/joint_io.hpp"
@@ -44,14 +45,14 @@ class Commissioning {
   enum class State : std::uint8_t {
     booting,
     enabling,
-    seeking,      // toward the stop
-    easing,       // off it, until it only touches
-    rubbing,      // both ways over a stretch, twice
-    backing_off,  // to where the joint was
-    releasing,    // the joint loses power
-    halting,      // ended early: quick stop
-    powering_off,
-    stopping,  // the nodes are told to stop
+    seeking,       // toward the stop
+    easing,        // off it, until it only touches
+    rubbing,       // both ways over a stretch, twice
+    backing_off,   // to where the joint was
+    releasing,     // the joint loses power
+    halting,       // ended early: quick stop
+    powering_off,  // and without power, as soon as it stands
+    stopping,      // the nodes are told to stop
     done,
     failed
   };
@@ -62,6 +63,9 @@ class Commissioning {
   void tick(Time now, canopen::Outbox& outbox);
   // Stops what moves, takes the power, and ends as failed for this reason. The first reason holds.
   void stop(const char* why);
+  void emergency_stop(const char* why);
+  // By an order, the input, or the chain, at any time before the end: a reset has to come before anything else.
+  bool emergency_stopped() const { return emergency_stopped_; }
 
   State state() const { return state_; }
   bool ended() const { return state_ == State::done || state_ == State::failed; }
@@ -82,7 +86,10 @@ class Commissioning {
   void go(State state, Time now);
   void fail(const char* why, Time now);
   void fail_joint(const char* why, Time now);
+  void note_power(Time now);
   void watch(Time now);
+  bool hear_set_points();
+  bool presses_too_hard();
   void step(Time now);
   void next_joint(Time now);
   void take_here(Time now);
@@ -98,9 +105,11 @@ class Commissioning {
 
   Config config_;
   canopen::Network network_;
+  safety::Power power_;
   State state_ = State::booting;
   bool booted_ = false;
   const char* stop_reason_ = nullptr;
+  bool emergency_stopped_ = false;
   std::array<bool, joint_count> powered_{};  // asked to take power, and not heard to be without it since
   std::array<char, 160> failure_{};
   std::size_t joint_ = 0;
@@ -112,13 +121,13 @@ class Commissioning {
   Time joint_since_;  // with this joint
   Time moved_;        // when it last counted
   std::int32_t last_counts_ = 0;
-  std::int32_t rest_counts_ = 0;  // while halting: where it stood, and since when
-  Time rest_since_;
   std::uint32_t foreign_frames_ = 0;  // of another master, before the boot was done
+  std::uint32_t set_points_ = 0;      // RPDOs among them, so far
   double target_ = 0;                 // counts
   std::int32_t started_counts_ = 0;   // where it was powered
   double pressed_permille_ = 0;       // torque when it stood at the stop
   std::int32_t pressed_counts_ = 0;
+  int too_hard_ticks_ = 0;                     // in a row
   double pressed_load_ = 0;                    // what of it the stop felt
   std::optional<std::int32_t> easing_counts_;  // where the load began to fall
   double easing_load_ = 0;                     // and the load there

@@ -93,6 +93,7 @@ class ControlLoop {
   bool at_rest() const {
     const mission::Standing standing = controller_->mission().standing();
     if (stopping_ || (standing != mission::Standing::idle && standing != mission::Standing::ended)) return false;
+    if (!controller_->mission().power().off()) return false;
     for (std::size_t i = 0; i < joint_count; ++i) {
       // What its drive said last: after a mission the nodes are stopped, and say no more.
       if (controller_->network().axis(static_cast<Joint>(i)).powered()) return false;
@@ -100,20 +101,27 @@ class ControlLoop {
     return true;
   }
 
+  // After a stop or a fault the operator resets first.
+  bool has_to_be_reset() const {
+    const mission::Mission& mission = controller_->mission();
+    const bool stopped_since = mission.faults_after_end()[static_cast<std::size_t>(safety::Fault::estop)] > 0;
+    return mission.outcome().ended && (!mission.outcome().success || stopped_since);
+  }
+
+  // The core first: a commissioning that is lent while another one's zeros wait would find the old ones.
   void take_loans() {
+    if (commissioning_ == nullptr && at_rest() && !has_to_be_reset()) {
+      if (Controller* next = nullptr; rings_.cores.pop(next)) {
+        (void)rings_.old_cores.push(controller_.release());
+        controller_.reset(next);
+      }
+    }
     for (Commissioning* next = nullptr; rings_.commissionings.pop(next);) {
-      // After a stop or a fault the operator resets first.
-      const mission::Outcome& outcome = controller_->mission().outcome();
-      if (commissioning_ == nullptr && at_rest() && (!outcome.ended || outcome.success)) {
+      if (commissioning_ == nullptr && at_rest() && !has_to_be_reset()) {
         commissioning_ = next;
       } else {
         (void)rings_.commissioned.push({next, false});
       }
-    }
-    if (commissioning_ != nullptr || !at_rest()) return;
-    if (Controller* next = nullptr; rings_.cores.pop(next)) {
-      (void)rings_.old_cores.push(controller_.release());
-      controller_.reset(next);
     }
   }
 
@@ -125,7 +133,7 @@ class ControlLoop {
     if (!clock) commissioning_->stop("the clock failed");
     probe_.begin();
     bool closed = false;
-    if (platform_.read_estop(closed) != port_ok || !closed) commissioning_->stop("the emergency-stop input is open");
+    if (platform_.read_estop(closed) != port_ok || !closed) commissioning_->emergency_stop("the emergency-stop input is open");
     const bool shut_down = take_orders_meanwhile();
     stopping_ = stopping_ || shut_down;
     hear_bus();
@@ -134,6 +142,8 @@ class ControlLoop {
     probe_.end();
     if (platform_.send_can(0, {outbox.data(), outbox.size()}) != port_ok) commissioning_->stop("the bus does not take frames");
     if (commissioning_->ended()) {
+      // The core latches it, and wants its reset.
+      if (commissioning_->emergency_stopped()) (void)controller_->on_command(Command::emergency_stop, now_);
       (void)rings_.commissioned.push({std::exchange(commissioning_, nullptr), true});
       if (stopping_) (void)controller_->on_command(Command::shut_down, now_);
     }
@@ -145,7 +155,7 @@ class ControlLoop {
     bool shut_down = false;
     for (NumberedOrder order; platform_.receive_order(order) == port_ok;) {
       const Command command = order.order.command;
-      if (command == Command::emergency_stop) commissioning_->stop("an emergency stop was ordered");
+      if (command == Command::emergency_stop) commissioning_->emergency_stop("an emergency stop was ordered");
       if (command == Command::abort) commissioning_->stop("it was called off");
       if (command == Command::shut_down) commissioning_->stop("the program ends");
       shut_down = shut_down || command == Command::shut_down;

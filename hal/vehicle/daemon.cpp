@@ -217,14 +217,9 @@ void Daemon::stop_threads() {
 }
 
 // What the core did not bring about in time is told to the drives directly: the nodes' start, since a stopped node takes no process data; an order without
-// power; two SYNCs, with which it acts; and the nodes' stop.
+// power; two SYNCs, with which it acts; each drive's restart, for those that take no process data; and the nodes' stop.
 void Daemon::take_power() {
-  board_.collect(monotonic_now(), [this](const Json& line) { writer_.say(line); });
-  const std::array<canopen::AxisState, joint_count> axes = board_.newest().control.axes;
-  const bool off = std::all_of(axes.begin(), axes.end(), [](canopen::AxisState state) {
-    return state == canopen::AxisState::disabled || state == canopen::AxisState::offline;
-  });
-  if (off) return;
+  if (control_.stopped()) return;  // only once the mission is over, and its power off
   CanFrame nmt;
   nmt.id = canopen::cob_id::nmt;
   nmt.length = 2;
@@ -243,8 +238,14 @@ void Daemon::take_power() {
     (void)platform_.send_can(0, frames);
     sleep_until(monotonic_now() + config_.core.controller.network.sync_period);
   }
-  nmt.data[0] = 2;
-  (void)platform_.send_can(0, {&nmt, 1});
+  frames.clear();
+  for (const canopen::DriveSetup& drive : config_.core.controller.network.drives) {
+    nmt.data = {0x81, drive.node};
+    frames.push_back(nmt);
+  }
+  nmt.data = {2, 0};
+  frames.push_back(nmt);
+  (void)platform_.send_can(0, frames);
   writer_.say({{"t_s", monotonic_now().s()}, {"kind", "power taken"}, {"why", "the core did not end in time without power"}});
 }
 

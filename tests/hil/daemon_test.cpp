@@ -224,12 +224,17 @@ TEST_F(AssembledDaemon, AnEmergencyStopEndsACommissioningWithoutPower) {
   hal::sleep_until(hal::monotonic_now() + Duration::from_ms(500));
   order("estop");
   ASSERT_TRUE(wait_unpowered(2));
-  ASSERT_TRUE(wait_standing("idle", 5));
+  ASSERT_TRUE(wait_standing("ended", 5));
   const Json last = ask("status")["commissioning"];
   EXPECT_EQ(last["state"], "failed");
   EXPECT_EQ(last["without_power"], true);
   EXPECT_THAT(last["why"].get<std::string>(), HasSubstr("emergency stop"));
   EXPECT_EQ(folder.read("homing.yaml"), before);
+
+  // It is latched: nothing begins before a reset.
+  expect_refused("home", "the mission is ended");
+  expect_refused(commission_elbow, "reset");
+  order("reset");
 
   // The vehicle's own input ends it as well.
   ASSERT_TRUE(wait_until("its begin", begun, 5));

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 
 #include "tests/unit/canopen/scripted_node.hpp"
@@ -165,6 +166,92 @@ TEST_F(PowerTest, OffIsSaidAgainToADriveThatComesOnByItself) {
   bus.network.axis(Joint::elbow).request(canopen::AxisRequest::hold_enabled);
   EXPECT_LT(until([this] { return !power.off(); }), 0.2);
   EXPECT_LT(until([this] { return power.off(); }), 0.1);
+  EXPECT_TRUE(all_in(unpowered));
+}
+
+// The program before this one died: its drives made their quick stop (6007 = 3), and stay powered at its end (605A = 6). This one has sent nothing yet.
+class PowerFromBefore : public PowerTest {
+ protected:
+  void SetUp() override {
+    PowerTest::SetUp();
+    for (std::size_t i = 0; i < joint_count; ++i) {
+      bus.nodes[i].set_object(0x605A, 0, 6, 2);
+      bus.network.axis(static_cast<Joint>(i)).request(canopen::AxisRequest::quick_stop);
+    }
+    ASSERT_TRUE(bus.run_until([this] { return all_in(holding); }, Duration::from_ms(100)));
+    bus.network = canopen::Network(canopen::test::plain_config());
+    power = Power();
+    bus.log.clear();
+    step();
+    ASSERT_TRUE(all_in(holding));
+    ASSERT_TRUE(bus.log.empty());
+  }
+
+  // NMT reset node to this drive and to no other node.
+  int resets(std::size_t joint) const {
+    return static_cast<int>(std::count_if(bus.log.begin(), bus.log.end(), [&](const CanFrame& frame) {
+      return frame.id == 0 && frame.length == 2 && frame.data[0] == 0x81 && frame.data[1] == joint + 1;
+    }));
+  }
+  bool only_resets() const {
+    return std::all_of(bus.log.begin(), bus.log.end(), [](const CanFrame& frame) { return frame.id == 0 && frame.data[0] == 0x81; });
+  }
+};
+
+TEST_F(PowerFromBefore, IsTakenByARestartWhenItIsOrderedOffBeforeAnyBoot) {
+  power.remove(bus.now, bus.network);
+  EXPECT_LT(until([this] { return power.off(); }), 0.1);
+  EXPECT_TRUE(all_in(unpowered));
+  for (std::size_t i = 0; i < joint_count; ++i) EXPECT_GE(resets(i), 1) << i;
+  EXPECT_TRUE(only_resets()) << "the bus is not run: no SYNC, no heartbeat";
+}
+
+TEST_F(PowerFromBefore, IsTakenByAStop) {
+  power.stop(bus.now, bus.network);
+  EXPECT_LT(until([this] { return power.off(); }), 0.1);
+  EXPECT_TRUE(all_in(unpowered));
+}
+
+TEST_F(PowerFromBefore, IsOffOnlyWhenTheDriveHasBootedUp) {
+  bus.nodes[2].boot_ups_to_lose = 3;
+  power.remove(bus.now, bus.network);
+  EXPECT_GT(until([this] { return power.off(); }), 0.1);
+  EXPECT_EQ(resets(2), 4);
+  EXPECT_EQ(resets(0), 1) << "who has booted up is left alone";
+}
+
+TEST_F(PowerFromBefore, ADriveThatNeverAnswersIsToldForASecond) {
+  bus.nodes[2].dead = true;
+  power.remove(bus.now, bus.network);
+  const double off_s = until([this] { return power.off(); });
+  EXPECT_GE(off_s, 1.0);
+  EXPECT_LT(off_s, 1.1);
+  EXPECT_GE(resets(2), 10);
+}
+
+TEST_F(PowerFromBefore, AStopThatGoesOnRestartsNoDriveTwiceUnlessAnotherMasterSpoke) {
+  power.remove(bus.now, bus.network);
+  ASSERT_LT(until([this] { return power.off(); }), 0.1);
+  power.remove(bus.now, bus.network);
+  ASSERT_LT(until([this] { return power.off(); }), 0.1);
+  EXPECT_EQ(resets(0), 1);
+  CanFrame start;
+  start.length = 2;
+  start.data = {1, 1};
+  bus.network.on_frame(start, bus.now);
+  power.remove(bus.now, bus.network);
+  ASSERT_LT(until([this] { return power.off(); }), 0.1);
+  EXPECT_EQ(resets(0), 2);
+}
+
+// Reset communication, with which a boot begins, takes no drive's power.
+TEST_F(PowerFromBefore, IsTakenInTheMiddleOfABoot) {
+  bus.network.start_boot(bus.now);
+  for (int i = 0; i < 10; ++i) step();
+  ASSERT_EQ(bus.network.boot().state, canopen::BootState::running);
+  ASSERT_TRUE(all_in(holding));
+  power.remove(bus.now, bus.network);
+  EXPECT_LT(until([this] { return power.off(); }), 0.2);
   EXPECT_TRUE(all_in(unpowered));
 }
 

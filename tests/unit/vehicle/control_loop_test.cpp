@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "hal/config/limits_file.hpp"
 #include "hal/mock/failing_platform.hpp"
 #include "hal/mock/scripted_platform.hpp"
@@ -51,6 +53,22 @@ class Loop : public testing::Test {
     return loop->controller().mission().over();
   }
 
+  // The nodes that were told NMT reset node.
+  std::set<int> restarted() const {
+    std::set<int> nodes;
+    for (const ReceivedFrame& sent : platform.sent()) {
+      if (sent.frame.id == 0 && sent.frame.data[0] == 0x81) nodes.insert(sent.frame.data[1]);
+    }
+    return nodes;
+  }
+  void hear_sync() {
+    CanFrame sync;
+    sync.id = 0x80;
+    platform.script_frame(sync, Time{});
+    turn();
+  }
+  const std::set<int> all_drives{can_map::drive_nodes.begin(), can_map::drive_nodes.end()};
+
   ControllerConfig config;
   ScriptedPlatform platform;
   FailingPlatform<ScriptedPlatform> failing{platform};
@@ -77,7 +95,7 @@ TEST_F(Loop, EndsByShutDownAndNotBefore) {
     turn();
     ++turns;
   }
-  EXPECT_LT(turns, 50);
+  EXPECT_LT(turns, stop_turns + 50) << "drives that answer nothing are told to restart for as long as a stop takes";
   EXPECT_EQ(loop->controller().mission().step(), mission::Step::off);
 }
 
@@ -162,6 +180,40 @@ TEST_F(Loop, AnEmergencyStopInputThatCannotBeReadIsOpen) {
   EXPECT_TRUE(ends_within(stop_turns));
 }
 
+// The daemon may have been started anew beside drives that the one before left under power (6007 = 3 and 605A = 6).
+TEST_F(Loop, AnEmergencyStopBeforeAnyBootRestartsEveryDrive) {
+  EXPECT_TRUE(give(Command::emergency_stop).taken);
+  EXPECT_TRUE(ends_within(stop_turns));
+  EXPECT_EQ(restarted(), all_drives);
+}
+
+TEST_F(Loop, AnOpenEmergencyStopInputBeforeAnyBootRestartsEveryDrive) {
+  platform.script_estop(false);
+  EXPECT_TRUE(ends_within(stop_turns));
+  EXPECT_EQ(restarted(), all_drives);
+}
+
+TEST_F(Loop, AShutDownBeforeAnyBootRestartsEveryDrive) {
+  EXPECT_TRUE(give(Command::shut_down).taken);
+  EXPECT_TRUE(ends_within(2 * stop_turns));
+  EXPECT_EQ(restarted(), all_drives);
+}
+
+TEST_F(Loop, AShutDownLeavesTheDrivesOfAnotherMasterAlone) {
+  hear_sync();
+  EXPECT_TRUE(give(Command::shut_down).taken);
+  EXPECT_TRUE(ends_within(2 * stop_turns));
+  EXPECT_TRUE(platform.sent().empty());
+}
+
+// Whoever presses it wants the arm without power, whoever leads it.
+TEST_F(Loop, AnEmergencyStopRestartsTheDrivesOfAnotherMasterToo) {
+  hear_sync();
+  EXPECT_TRUE(give(Command::emergency_stop).taken);
+  EXPECT_TRUE(ends_within(stop_turns));
+  EXPECT_EQ(restarted(), all_drives);
+}
+
 TEST_F(Loop, AnEmergencyStopIsTakenAnywhere) {
   EXPECT_TRUE(give(Command::emergency_stop).taken);
   turn();
@@ -171,6 +223,24 @@ TEST_F(Loop, AnEmergencyStopIsTakenAnywhere) {
   turn();
   EXPECT_EQ(loop->controller().mission().standing(), mission::Standing::idle);
   EXPECT_TRUE(give(Command::start).taken);
+}
+
+// New zeros bring a new core. It must not take the place of one that an emergency stop has ended, and with it the stop.
+TEST_F(Loop, ACoreThatWasStoppedIsExchangedOnlyAfterItsReset) {
+  EXPECT_TRUE(give(Command::emergency_stop).taken);
+  EXPECT_TRUE(ends_within(stop_turns));
+  rings->cores.push(new Controller(config));
+  for (int i = 0; i < 10; ++i) turn();
+  Controller* old = nullptr;
+  EXPECT_FALSE(rings->old_cores.pop(old));
+  EXPECT_EQ(loop->controller().mission().standing(), mission::Standing::ended);
+  EXPECT_FALSE(give(Command::home).taken);
+  EXPECT_TRUE(give(Command::reset).taken);
+  turn();
+  turn();
+  EXPECT_TRUE(rings->old_cores.pop(old));
+  delete old;
+  EXPECT_TRUE(give(Command::home).taken);
 }
 
 }  // namespace
