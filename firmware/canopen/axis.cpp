@@ -100,7 +100,7 @@ void Axis::set_limits_here(const AxisLimits& limits) {
 }
 
 void Axis::set_torque_offset_permille(std::int16_t permille) {
-  const auto limit = static_cast<std::int16_t>(std::min<std::uint16_t>(setup_.max_torque_permille, 0x7FFF));
+  const auto limit = static_cast<std::int16_t>(std::min<std::uint16_t>(setup_.max_torque_of(rated_torque_unm_), 0x7FFF));
   torque_offset_permille_ = enabled() ? std::clamp(permille, static_cast<std::int16_t>(-limit), limit) : std::int16_t{0};
 }
 

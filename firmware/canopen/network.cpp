@@ -36,7 +36,7 @@ Network::Network(const NetworkConfig& config) : config_(config), io_(config) {
 }
 
 BootContext Network::context(std::size_t node) const {
-  return {&config_, node < joint_count ? &config_.drives[node] : nullptr, nodes_[node].id()};
+  return {&config_, node < joint_count ? &config_.drives[node] : nullptr, nodes_[node].id(), 0};
 }
 
 void Network::start_boot(Time now) {

@@ -143,6 +143,8 @@ std::optional<std::string> Commissioner::begin(const CommissionOrder& order) {
   prepared_ = std::make_shared<Prepared>();
   Commissioning::Config setup;
   setup.network = core_.network;
+  // It presses with thousandths of each drive's own rating, and reads them back as such.
+  for (canopen::DriveSetup& drive : setup.network.drives) drive.described_torque_unm = 0;
   setup.transmissions = core_.transmissions;
   setup.joints = order.joints;
   setup.backlash_rad = backlash_rad_;

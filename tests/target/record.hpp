@@ -113,12 +113,12 @@ void pass(S& s, canopen::DriveProfile& v) {
 }
 template <class S>
 void pass(S& s, canopen::DriveSetup& v) {
-  auto& [node, identity, profile, min_counts, max_counts, drive_margin, max_torque, max_speed, motor_speed, quick_stop, window, timeout,
-         quick_stop_option, abort_option, encoder_zero, zero_known, homing_method, home_offset, homing_speed, homing_accel,
+  auto& [node, identity, profile, min_counts, max_counts, drive_margin, max_torque, described, max_speed, motor_speed, quick_stop, window,
+         timeout, quick_stop_option, abort_option, encoder_zero, zero_known, homing_method, home_offset, homing_speed, homing_accel,
          homing_timeout] = v;
-  pass_all(s, node, identity, profile, min_counts, max_counts, drive_margin, max_torque, max_speed, motor_speed, quick_stop, window,
-           timeout, quick_stop_option, abort_option, encoder_zero, zero_known, homing_method, home_offset, homing_speed, homing_accel,
-           homing_timeout);
+  pass_all(s, node, identity, profile, min_counts, max_counts, drive_margin, max_torque, described, max_speed, motor_speed, quick_stop,
+           window, timeout, quick_stop_option, abort_option, encoder_zero, zero_known, homing_method, home_offset, homing_speed,
+           homing_accel, homing_timeout);
 }
 template <class S>
 void pass(S& s, canopen::IoSetup& v) {
