@@ -78,7 +78,7 @@ bool Network::operational() const {
 }
 
 bool Network::may_have_power() const {
-  return std::all_of(axes_.begin(), axes_.end(), [](const Axis& axis) { return axis.setup().may_have_power(); });
+  return std::all_of(axes_.begin(), axes_.end(), [](const Axis& axis) { return axis.may_have_power(); });
 }
 
 bool Network::any_fault() const {
@@ -192,6 +192,7 @@ void Network::on_emcy(std::size_t node, const CanFrame& frame, Time now) {
   if (frame.length != 8) return refuse(Refusal::bad_length);
   const Emcy emcy = decode_emcy(frame, now);
   nodes_[node].on_emcy(emcy);
+  if (node < joint_count) axes_[node].on_emcy(emcy.code);
   ++stats_.emcys;
   if (emcy_count_ == emcy_history) {
     ++stats_.emcys_forgotten;

@@ -107,9 +107,9 @@ void pass(S& s, canopen::Absence& v) {
 template <class S>
 void pass(S& s, canopen::DriveProfile& v) {
   auto& [scale, rated_unit, rated, guarded, torque_offset, waits, times_following, brake_opens, brake_closes, quick_stop_fallback,
-         abort_fallback, objects, absences] = v;
+         abort_fallback, objects, absences, position_lost] = v;
   pass_all(s, scale, rated_unit, rated, guarded, torque_offset, waits, times_following, brake_opens, brake_closes, quick_stop_fallback,
-           abort_fallback, objects, absences);
+           abort_fallback, objects, absences, position_lost);
 }
 template <class S>
 void pass(S& s, canopen::DriveSetup& v) {

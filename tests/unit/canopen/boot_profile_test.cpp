@@ -91,6 +91,33 @@ TEST(Boot, ARatingThatIsNotTheStatedOneEndsTheBoot) {
   }
 }
 
+// The slew has an absolute encoder, and its drive says 7320: home again. Resets and boots do not bring the zero back.
+TEST(LostPosition, TakesThePowerUntilTheJointIsCommissionedAgain) {
+  for (const std::uint16_t code : {std::uint16_t{0x7320}, std::uint16_t{0x8611}}) {
+    SCOPED_TRACE(code);
+    const bool lost = code == 0x7320;
+    NetworkConfig config = full_config();
+    ASSERT_TRUE(config.drives[0].profile.position_lost.push_back(0x7320));
+    Bus bus(config);
+    ASSERT_TRUE(bus.boot());
+    Axis& slew = bus.network.axis(Joint::slew);
+    slew.request(AxisRequest::hold_enabled);
+    ASSERT_TRUE(bus.run_until([&] { return slew.enabled(); }, Duration::from_ms(500)));
+    bus.nodes[0].send_emcy(code, 0x20);
+    bus.step(20);
+    EXPECT_EQ(slew.fault() == AxisFault::drive_fault, lost);
+    EXPECT_EQ(slew.zero_lost(), lost);
+    slew.request(AxisRequest::reset_fault);
+    bus.step(50);
+    ASSERT_TRUE(bus.boot());
+    EXPECT_EQ(slew.homed(), !lost);
+    EXPECT_EQ(bus.network.may_have_power(), !lost);
+    slew.request(AxisRequest::hold_enabled);
+    bus.step(50);
+    EXPECT_EQ(slew.powered(), !lost);
+  }
+}
+
 // The scripted drive is rated at 12 N m, by its 6076 or because the machine's file says so.
 TEST(Boot, TheTorqueCapIsTheSameTorqueWhateverTheDrivesOwnRatingIs) {
   struct Case {
