@@ -76,7 +76,7 @@ Axis::Axis(const DriveSetup& setup, const NetworkConfig& config)
 void Axis::request(AxisRequest request) {
   if (!online_) return;
   const bool leads_to_power = request == AxisRequest::hold_enabled || request == AxisRequest::home;
-  if (leads_to_power && !setup_.may_have_power()) {
+  if (leads_to_power && !may_have_power()) {
     ++stats_.power_refused;
     return;
   }
@@ -100,7 +100,7 @@ void Axis::set_limits_here(const AxisLimits& limits) {
 }
 
 void Axis::set_torque_offset_permille(std::int16_t permille) {
-  const auto limit = static_cast<std::int16_t>(std::min<std::uint16_t>(setup_.max_torque_permille, 0x7FFF));
+  const auto limit = static_cast<std::int16_t>(std::min<std::uint16_t>(setup_.max_torque_of(rated_torque_unm_), 0x7FFF));
   torque_offset_permille_ = enabled() ? std::clamp(permille, static_cast<std::int16_t>(-limit), limit) : std::int16_t{0};
 }
 
@@ -165,7 +165,7 @@ void Axis::go_online(const NodeBoot& boot, Time now) {
   rated_torque_unm_ = boot.rated_torque_unm;
   setup_.quick_stop_option = boot.quick_stop_option;
   waiting_since_ = now;
-  if (setup_.homing_method == 0) homed_ = setup_.zero_known;
+  if (setup_.homing_method == 0) homed_ = setup_.zero_known && !zero_lost_;
 }
 
 void Axis::go_offline() {
@@ -177,7 +177,14 @@ void Axis::lose_node() {
   if (online_) latch(AxisFault::node_lost);
 }
 
-void Axis::forget_home() { homed_ = setup_.homing_method == 0 && setup_.zero_known; }
+void Axis::forget_home() { homed_ = setup_.homing_method == 0 && setup_.zero_known && !zero_lost_; }
+
+void Axis::on_emcy(std::uint16_t code) {
+  if (!setup_.profile.loses_position(code)) return;
+  zero_lost_ = true;
+  homed_ = false;
+  if (online_ && seen_) latch(AxisFault::drive_fault);
+}
 
 void Axis::on_tpdo(const CanFrame& frame, Time sync) {
   statusword_ = get<std::uint16_t>(frame, can_map::drive_tpdo1::statusword);
@@ -372,6 +379,7 @@ void Axis::step_homing(Time now) {
       if (!mode_settled()) return;
       homing_ = HomingPhase::idle;
       homed_ = true;
+      zero_lost_ = false;
       request_ = AxisRequest::disable;
       return;
     case HomingPhase::idle: return;

@@ -103,6 +103,9 @@ class Axis {
   // The drive says, and no longer ago than three SYNC cycles, that there is no current in the motor.
   bool confirmed_unpowered(Time now) const { return fresh(now) && !powered(); }
   bool homed() const { return homed_; }  // true from boot for absolute encoders
+  // The drive has said that its position is lost. Outlives faults, resets and boots: it ends with a homing, or with the axis.
+  bool zero_lost() const { return zero_lost_; }
+  bool may_have_power() const { return setup_.may_have_power() && !(zero_lost_ && setup_.homing_method == 0); }
   AxisFault fault() const { return fault_; }
   // The latest values, those of the SYNC at `actual_time()`.
   std::int32_t actual_counts() const { return actual_counts_; }
@@ -128,6 +131,7 @@ class Axis {
   void go_offline();                               // being booted
   void lose_node();                                // latches node_lost
   void forget_home();                              // the node lost its memory
+  void on_emcy(std::uint16_t code);                // a lost position stops the drive, and its zero is not known any more
   void on_tpdo(const CanFrame& frame, Time sync);  // `frame` has the right identifier and length
   void step(Time now, SdoClient& sdo);             // once a SYNC
   // False before the first TPDO: a target that was never seeded is never sent.
@@ -167,6 +171,7 @@ class Axis {
   bool online_ = false;
   bool seen_ = false;
   bool homed_ = false;
+  bool zero_lost_ = false;
   bool was_enabled_ = false;
   bool brake_open_ = false;  // and the drive follows: targets may move
   Time operating_since_;

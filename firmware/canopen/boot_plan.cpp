@@ -206,7 +206,7 @@ std::uint32_t limit(const DriveSetup& drive, bool upper) {
   return position(drive, (arms_upper ? drive.max_counts : drive.min_counts) + margin + drive.encoder_zero_counts);
 }
 
-Number drive_value(V value, const DriveSetup& drive) {
+Number drive_value(V value, const DriveSetup& drive, std::uint32_t rated_torque_unm) {
   const bool homes = drive.homing_method != 0;
   const bool moves = homes && moves_to_home(drive);
   const DriveScale& scale = drive.profile.scale;
@@ -222,7 +222,7 @@ Number drive_value(V value, const DriveSetup& drive) {
     case V::following_timeout: return drive.following_timeout_ms;
     case V::min_position: return limit(drive, false);
     case V::max_position: return limit(drive, true);
-    case V::max_torque: return drive.max_torque_permille;
+    case V::max_torque: return drive.max_torque_of(rated_torque_unm);
     case V::max_speed: return at_least_one(scale.speed.times(drive.max_speed_counts_s));
     case V::max_motor_speed: return unless_zero(drive.max_motor_speed_rpm);
     case V::homing_method: return homes ? Number{static_cast<std::uint8_t>(drive.homing_method)} : Number{};
@@ -260,7 +260,7 @@ BootStep boot_step(std::size_t i, const BootContext& context) {
 std::optional<std::uint32_t> boot_value(const BootStep& step, const BootContext& context) {
   if (step.value == BootValue::literal || step.value == BootValue::nothing) return step.literal;
   if (const Number bus = bus_value(step.value, context)) return bus;
-  return context.drive != nullptr ? drive_value(step.value, *context.drive) : Number{};
+  return context.drive != nullptr ? drive_value(step.value, *context.drive, context.rated_torque_unm) : Number{};
 }
 
 }  // namespace lf::canopen

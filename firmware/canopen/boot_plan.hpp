@@ -15,6 +15,7 @@ struct BootContext {
   const NetworkConfig* config = nullptr;
   const DriveSetup* drive = nullptr;
   std::uint8_t node = 0;
+  std::uint32_t rated_torque_unm = 0;  // of the drive, once it is known
 };
 
 // The rows for this node, one after the other. A drive's profile adds its own behind the identity, and may send a number to another object.

@@ -13,6 +13,7 @@ const char* name(BootFailure failure) {
     case BootFailure::wrong_setting: return "object does not hold what the drive's profile says";
     case BootFailure::no_rating: return "rated torque 6076 is 0";
     case BootFailure::wrong_rating: return "rated torque 6076 is not the stated one";
+    case BootFailure::other_motor: return "rated torque 6076 is of another motor than the arm's description has";
     case BootFailure::read_only: return "object holds another value and cannot be written";
     case BootFailure::wrong_readback: return "object does not hold what was written";
     case BootFailure::wrong_length: return "object has another length than the standard's";

@@ -22,6 +22,7 @@ enum class BootFailure : std::uint8_t {
   wrong_setting,    // an object that the profile checks holds another value: the drive is not set up as the profile says
   no_rating,        // 6076 is 0, and nothing else states the rated torque
   wrong_rating,     // 6076 and the stated rated torque differ by more than a tenth
+  other_motor,      // 6076 and the rated torque of the arm's description differ by more than `same_motor_factor`
   read_only,        // the object holds another value than it must, and cannot be written
   wrong_readback,   // the object holds another value than was written
   wrong_length,     // the object's value has another length than the standard's
@@ -48,7 +49,7 @@ struct NodeBoot {
   std::uint16_t step = 0;    // of the node's boot table
   std::uint16_t steps = 0;
   std::uint32_t abort_code = 0;  // of `failure`, see sdo_abort::name
-  std::uint32_t expected = 0;    // for wrong_identity, wrong_setting, wrong_rating, read_only and wrong_readback
+  std::uint32_t expected = 0;    // for wrong_identity, wrong_setting, wrong_rating, other_motor, read_only and wrong_readback
   std::uint32_t read = 0;
   std::uint32_t device_type = 0;       // 1000
   std::uint32_t vendor = 0;            // 1018:01

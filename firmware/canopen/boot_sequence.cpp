@@ -133,7 +133,9 @@ void BootSequence::step(Time now, SdoClient& sdo, const BootContext& context) {
   if (phase_ == Phase::configure && exchange_ == Exchange::next) start_step(sdo, context);
 }
 
-void BootSequence::start_step(SdoClient& sdo, const BootContext& context) {
+void BootSequence::start_step(SdoClient& sdo, const BootContext& of_node) {
+  BootContext context = of_node;
+  context.rated_torque_unm = report_.rated_torque_unm;
   while (report_.step < report_.steps && !boot_value(boot_step(report_.step, context), context)) ++report_.step;
   if (report_.step >= report_.steps) {
     phase_ = Phase::configured;
@@ -259,6 +261,10 @@ void BootSequence::record_rating(std::uint32_t number, const BootContext& contex
     return fail(BootFailure::wrong_rating);
   }
   report_.rated_torque_unm = static_cast<std::uint32_t>(rated_unm);
+  if (context.drive->is_other_motor(report_.rated_torque_unm)) {
+    report_.expected = context.drive->described_torque_unm / profile.rated_torque_unit_unm;
+    return fail(BootFailure::other_motor);
+  }
   next_step();
 }
 

@@ -100,6 +100,17 @@ struct DriveProfile {
   static constexpr std::size_t max_absences = 16;  // the longest shipped profile has 9
   StaticVector<Absence, max_absences> absences;
 
+  // EMCY codes with which the drive says that its encoder's position is lost: the joint's zero is no longer where it was found.
+  static constexpr std::size_t max_position_lost = 16;  // the longest shipped profile has 2
+  StaticVector<std::uint16_t, max_position_lost> position_lost;
+
+  bool loses_position(std::uint16_t emcy) const {
+    for (const std::uint16_t code : position_lost) {
+      if (code == emcy) return true;
+    }
+    return false;
+  }
+
   const Absence* absence(BootValue what) const {
     for (const Absence& one : absences) {
       if (one.what == what) return &one;

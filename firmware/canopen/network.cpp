@@ -36,7 +36,7 @@ Network::Network(const NetworkConfig& config) : config_(config), io_(config) {
 }
 
 BootContext Network::context(std::size_t node) const {
-  return {&config_, node < joint_count ? &config_.drives[node] : nullptr, nodes_[node].id()};
+  return {&config_, node < joint_count ? &config_.drives[node] : nullptr, nodes_[node].id(), 0};
 }
 
 void Network::start_boot(Time now) {
@@ -78,7 +78,7 @@ bool Network::operational() const {
 }
 
 bool Network::may_have_power() const {
-  return std::all_of(axes_.begin(), axes_.end(), [](const Axis& axis) { return axis.setup().may_have_power(); });
+  return std::all_of(axes_.begin(), axes_.end(), [](const Axis& axis) { return axis.may_have_power(); });
 }
 
 bool Network::any_fault() const {
@@ -198,6 +198,7 @@ void Network::on_emcy(std::size_t node, const CanFrame& frame, Time now) {
   if (frame.length != 8) return refuse(Refusal::bad_length);
   const Emcy emcy = decode_emcy(frame, now);
   nodes_[node].on_emcy(emcy);
+  if (node < joint_count) axes_[node].on_emcy(emcy.code);
   ++stats_.emcys;
   if (emcy_count_ == emcy_history) {
     ++stats_.emcys_forgotten;

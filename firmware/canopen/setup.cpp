@@ -82,6 +82,18 @@ std::uint8_t node_of(const NetworkConfig& config, std::size_t i) { return i < jo
 
 }  // namespace
 
+std::uint16_t DriveSetup::max_torque_of(std::uint32_t rated_torque_unm) const {
+  if (described_torque_unm == 0 || rated_torque_unm == 0) return max_torque_permille;
+  const std::uint64_t scaled = (std::uint64_t{max_torque_permille} * described_torque_unm + rated_torque_unm / 2) / rated_torque_unm;
+  const std::uint64_t most = std::max<std::uint64_t>(1000, max_torque_permille);
+  return static_cast<std::uint16_t>(std::clamp<std::uint64_t>(scaled, 1, most));
+}
+
+bool DriveSetup::is_other_motor(std::uint32_t rated_torque_unm) const {
+  const std::uint64_t described = described_torque_unm, rated = rated_torque_unm;
+  return described != 0 && (rated > same_motor_factor * described || described > same_motor_factor * rated);
+}
+
 ConfigError check(const NetworkConfig& config, std::size_t& offender) {
   std::uint8_t value = 0;
   std::int8_t exponent = 0;

@@ -17,6 +17,9 @@ struct Identity {
   std::uint32_t product = 0;
 };
 
+// A motor that is larger or smaller by more than this factor is not the one that the arm was described with.
+inline constexpr std::uint32_t same_motor_factor = 3;
+
 // One CiA 402 drive. Every number is written at boot, in the drive's units, and read back; the object is named beside it.
 struct DriveSetup {
   std::uint8_t node = 0;  // 1..126
@@ -27,7 +30,10 @@ struct DriveSetup {
   std::int32_t max_counts = 0;  //
   std::int32_t drive_margin_counts =
       0;  // 607D lies so far outside of these: a drive enabled beyond its own limits jumps to them, or refuses
-  std::uint16_t max_torque_permille = 1000;   // 6072, of the rated torque 6076
+  std::uint16_t max_torque_permille = 1000;  // 6072, of `described_torque_unm`
+  // The motor's rated torque by the arm's description. A drive whose own rating is another gets 6072 for the same torque, and one whose 6076 is more than
+  // `same_motor_factor` times larger or smaller is not booted. 0: nothing is described, and 6072 is of the drive's own rating.
+  std::uint32_t described_torque_unm = 0;
   std::uint32_t max_speed_counts_s = 0;       // 607F; the axis never lets its target go faster, see AxisLimits
   std::uint32_t max_motor_speed_rpm = 0;      // 6080, drives that have it; 0 leaves the drive's own
   std::uint32_t quick_stop_counts_s2 = 0;     // 6085; 0 leaves the drive's own
@@ -53,6 +59,9 @@ struct DriveSetup {
   Duration homing_timeout = Duration::from_ms(60'000);
 
   bool may_have_power() const { return zero_known || homing_method != 0; }
+  // 6072 of a drive of this rated torque. Above its rating only where the set-up asks for it: not every drive has a reserve.
+  std::uint16_t max_torque_of(std::uint32_t rated_torque_unm) const;
+  bool is_other_motor(std::uint32_t rated_torque_unm) const;
 };
 
 // The CiA 401 output node.

@@ -203,7 +203,10 @@ void Mission::enter(const StepTick& tick, Step next) {
 // ---- the step under way ----
 
 Progress Mission::work(const StepTick& tick) {
-  if (on_hold()) return Progress::running();
+  if (on_hold()) {
+    watch_contact_on_hold(tick);
+    return Progress::running();
+  }
   if (stage_ == Stage::coming_to_rest) {
     if (bench_.powered && !bench_.motion.done()) return Progress::running();
     stage_ = Stage::under_way;
@@ -219,6 +222,20 @@ Progress Mission::work(const StepTick& tick) {
   const Progress progress = run(tick);
   expect_duration();
   return progress;
+}
+
+// The steps that go into a contact, and out of one, watch it with guards of their own. The arm still moves for half a second on hold.
+void Mission::watch_contact_on_hold(const StepTick& tick) {
+  if (stage_ != Stage::under_way || bench_.motion.planning() || !joints().valid) return;
+  switch (step_) {
+    case Step::advance: return turn_valve_.watch_on_hold(tick);
+    case Step::press: return press_button_.watch_on_hold(tick);
+    case Step::back_out:
+    case Step::back_off:
+    case Step::button_back:
+    case Step::abandon_back: return bench_.watch_back_off_on_hold(tick);
+    default: return;
+  }
 }
 
 bool Mission::yielding() const {

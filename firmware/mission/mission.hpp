@@ -92,6 +92,7 @@ class Mission {
   void enter(const StepTick& tick, Step next);
 
   Progress work(const StepTick& tick);
+  void watch_contact_on_hold(const StepTick& tick);
   Progress begin(const StepTick& tick);
   Progress run(const StepTick& tick);
   void report_failure(const StepTick& tick, const Progress& progress);

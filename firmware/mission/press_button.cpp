@@ -99,9 +99,7 @@ Progress PressButton::run_press(const StepTick& tick) {
   Workbench& bench = tick.bench;
   if (pressed_) return Progress::done_if(tick.settled(bench.motion.done(), press_time));
   if (bench.motion.planning()) return Progress::running();
-  learn_under_way(bench);
-  guard_.update(tick.now, bench.motion.target(), bench.measured_rad(), bench.measured_nm());
-  feel(tick);
+  if (!guard_.touched()) sense(tick);
   if (does_not_follow(guard_)) {
     tick.faults.report(safety::Fault::following_error, static_cast<std::int32_t>(guard_.joint()));
     return Progress::running();
@@ -121,6 +119,23 @@ Progress PressButton::run_press(const StepTick& tick) {
   pressed_ = true;
   ++result.presses;
   return Progress::running();
+}
+
+void PressButton::sense(const StepTick& tick) {
+  const Workbench& bench = tick.bench;
+  learn_under_way(bench);
+  guard_.update(tick.now, bench.motion.target(), bench.measured_rad(), bench.measured_nm());
+  // An arm that stands says nothing of a button's way.
+  if (!bench.motion.paused()) feel(tick);
+}
+
+// What stops a finger before it has felt the button is not the button.
+void PressButton::watch_on_hold(const StepTick& tick) {
+  if (pressed_ || guard_.touched()) return;
+  sense(tick);
+  const bool meant = feel_.touched() && !does_not_follow(guard_);
+  if (!meant) return report_touch(guard_, tick.faults);
+  if (guard_.touched()) tick.bench.stay_where_measured();
 }
 
 // At rest a screw says little of its load. What free motion takes is learned anew once the press has come to its speed.

@@ -12,6 +12,8 @@ class PressButton {
  public:
   Progress begin(const StepTick& tick);
   Progress run(const StepTick& tick);
+  // Of `press`: a press that bottoms while it is on hold stays there without pushing, and is judged when it is resumed.
+  void watch_on_hold(const StepTick& tick);
 
  private:
   Progress begin_reach(Workbench& bench);
@@ -19,6 +21,7 @@ class PressButton {
   Progress begin_press(Workbench& bench);
   Progress run_press(const StepTick& tick);
   Progress run_back(const StepTick& tick);
+  void sense(const StepTick& tick);
   void learn_under_way(const Workbench& bench);
   void feel(const StepTick& tick);
   // What stopped the finger, or what it is that nothing did.

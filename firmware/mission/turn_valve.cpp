@@ -119,6 +119,12 @@ Progress TurnValve::run_advance(const StepTick& tick) {
   return Progress::done();
 }
 
+void TurnValve::watch_on_hold(const StepTick& tick) {
+  const Workbench& bench = tick.bench;
+  guard_.update(tick.now, bench.motion.target(), bench.measured_rad(), bench.measured_nm());
+  report_touch(guard_, tick.faults);
+}
+
 Progress TurnValve::run_grip(const StepTick& tick) {
   switch (tick.bench.gripper.state()) {
     case arm::GripperState::held: return Progress::done_if(tick.bench.motion.done());

@@ -10,6 +10,8 @@ class TurnValve {
  public:
   Progress begin(const StepTick& tick);
   Progress run(const StepTick& tick);
+  // Of `advance`: reports what the arm touches while it is on hold.
+  void watch_on_hold(const StepTick& tick);
 
  private:
   Progress begin_reach(Workbench& bench);

@@ -45,6 +45,7 @@ void WayHome::begin_shut_down(const StepTick& tick) {
   Workbench& bench = tick.bench;
   if (bench.powered) {
     bench.power.lower(tick.now, tick.network);
+    tick.clock.expect(safety::Power::longest_lowering(tick.network.config()));
   } else if (!tick.network.bus_is_anothers()) {
     bench.power.stop(tick.now, tick.network);
   }

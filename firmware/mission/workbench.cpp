@@ -75,6 +75,12 @@ bool runs_off(const arm::GuardedMotion& guard) {
 
 bool does_not_follow(const arm::GuardedMotion& guard) { return lags_without_load(guard) || runs_off(guard); }
 
+void report_touch(const arm::GuardedMotion& guard, safety::FaultArbiter& faults) {
+  if (!guard.touched()) return;
+  const safety::Fault fault = does_not_follow(guard) ? safety::Fault::following_error : safety::Fault::unexpected_contact;
+  faults.report(fault, static_cast<std::int32_t>(guard.joint()));
+}
+
 Workbench::Workbench(const ControllerConfig& told)
     : config(told),
       watch(told.mission_limits, told.transmissions),
@@ -190,13 +196,22 @@ void Workbench::begin_back_off() {
   go_straight(standoff_m, motion.target()[3], config.mission.approach_speed_m_s, meant_parts());
 }
 
-Progress Workbench::follow_back_off(const StepTick& tick) {
+void Workbench::guard_back_off(Time now) {
   const double unwinding_m = gives_way_m + config.mission.layout.button_stroke_m;
   if (wound_up && (arm::base_from_tool(motion.target()).translation() - back_from_m_).norm() >= unwinding_m) {
     wound_up = false;
     back_guard = arm::GuardedMotion(free_motion_guard(config.mission_limits));
   }
-  if (!motion.planning() && watch.joints().valid) back_guard.update(tick.now, pushed_target(), measured_rad(), measured_nm());
+  if (!motion.planning() && watch.joints().valid) back_guard.update(now, pushed_target(), measured_rad(), measured_nm());
+}
+
+void Workbench::watch_back_off_on_hold(const StepTick& tick) {
+  guard_back_off(tick.now);
+  report_touch(back_guard, tick.faults);
+}
+
+Progress Workbench::follow_back_off(const StepTick& tick) {
+  guard_back_off(tick.now);
   if (!back_guard.touched()) return follow_motion();
   if (does_not_follow(back_guard)) {
     tick.faults.report(safety::Fault::following_error, static_cast<std::int32_t>(back_guard.joint()));

@@ -39,6 +39,9 @@ bool runs_off(const arm::GuardedMotion& guard);
 // Either: what was felt is the drive's own doing, and no contact.
 bool does_not_follow(const arm::GuardedMotion& guard);
 
+// Reports what the guard has felt: a contact that is not meant, or a joint that does not follow.
+void report_touch(const arm::GuardedMotion& guard, safety::FaultArbiter& faults);
+
 struct StepTick;
 
 struct Workbench {
@@ -96,10 +99,12 @@ struct Workbench {
   // lets off on its first millimetres is no contact. A joint that does not follow is one, or a fault where no load holds it.
   void begin_back_off();
   Progress follow_back_off(const StepTick& tick);
+  void watch_back_off_on_hold(const StepTick& tick);
   bool wound_up = false;  // against a button
 
  private:
   Room room_on_the_way(double jaw_opening_m);
+  void guard_back_off(Time now);
   Vec3 back_from_m_ = Vec3::Zero();
   std::optional<double> jaw_order_m_;  // what the jaw does once the way is clear
 };

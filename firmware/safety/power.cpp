@@ -36,6 +36,12 @@ void Power::remove(Time now, canopen::Network& network) {
   insist_at_ = now + heed_time;
 }
 
+Duration Power::longest_lowering(const canopen::NetworkConfig& config) {
+  Duration longest = usual_lowering;
+  for (const canopen::DriveSetup& drive : config.drives) longest = std::max(longest, drive.profile.brake_closes + lowering_beside_brake);
+  return longest;
+}
+
 void Power::lower(Time now, canopen::Network& network) {
   if (state_ == State::stopping || state_ == State::removing) return;
   network.disable_all();
@@ -91,7 +97,7 @@ void Power::tick(const JointStates& joints, Time now, canopen::Network& network)
     if (confirmed(now, network) || standing(joints, now, network) || now - since_ >= longest_stop) remove(now, network);
   } else if (state_ == State::lowering) {
     if (confirmed(now, network)) state_ = State::off;
-    if (state_ != State::off && now - since_ >= longest_lowering) remove(now, network);
+    if (state_ != State::off && now - since_ >= longest_lowering(network.config())) remove(now, network);
   } else if (state_ == State::removing) {
     network.remove_power();
     if (confirmed(now, network)) state_ = State::off;

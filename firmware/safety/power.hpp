@@ -49,8 +49,11 @@ class Power {
   static constexpr Duration silent_ramp = Duration::from_ms(250);
   // The longest that a drive may take to hear of it: 250 SYNC periods.
   static constexpr Duration blind_time = Duration::from_ms(1000);
-  // Four handshakes of three SYNC periods are 48 ms; brakes take up to half a second to close.
-  static constexpr Duration longest_lowering = Duration::from_ms(700);
+  // Four handshakes of three SYNC periods are 48 ms; most brakes take up to half a second to close. A drive keeps its torque for as long as its own takes,
+  // by its profile.
+  static constexpr Duration usual_lowering = Duration::from_ms(700);
+  static constexpr Duration lowering_beside_brake = Duration::from_ms(200);
+  static Duration longest_lowering(const canopen::NetworkConfig& config);
 
   void switch_on() { state_ = state_ == State::off ? State::on : state_; }
   // Category 1.

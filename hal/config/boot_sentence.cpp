@@ -77,6 +77,9 @@ std::string what_happened(const canopen::NodeBoot& boot, const std::string& obje
              (boot.expected != 0 ? numbers : "");
     case BootFailure::read_only: return object + " cannot be written" + numbers;
     case BootFailure::no_rating: return object + " is 0";
+    case BootFailure::other_motor:
+      return object + " is " + std::to_string(boot.read) + ", and " + std::to_string(boot.expected) +
+             " by the arm's description: another motor, or another unit";
     case BootFailure::wrong_identity:
     case BootFailure::wrong_setting:
     case BootFailure::wrong_rating:

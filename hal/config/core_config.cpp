@@ -123,7 +123,9 @@ void check_motor(const JointDriveChoice& choice, std::size_t joint, const ArmJoi
   }
   if (choice.rated_torque_nm == 0) return;
   const double expected_nm = motor_of(description, choice.counts_per_rev).rated_torque_nm;
-  if (choice.rated_torque_nm <= other_motor * expected_nm && choice.rated_torque_nm >= expected_nm / other_motor) return;
+  if (choice.rated_torque_nm <= canopen::same_motor_factor * expected_nm &&
+      choice.rated_torque_nm >= expected_nm / canopen::same_motor_factor)
+    return;
   std::snprintf(
       text, sizeof text,
       "'rated_torque_nm' is %.4g N m: the arm's description rates the joint at %.4g N m, which is %.4g N m at the motor, through a ratio "
@@ -142,6 +144,7 @@ void set_drive(const Machine& machine, std::size_t joint, const DriveKind& kind,
   // A drive that says its rated torque is only checked against a stated one; one that does not, has the arm's description's.
   const bool described = choice.rated_torque_nm == 0 && kind.rating == "configured";
   const Motor motor = motor_of(description, choice.counts_per_rev);
+  setup.described_torque_unm = static_cast<std::uint32_t>(std::llround(1e6 * motor.rated_torque_nm));
   apply(kind,
         {choice.counts_per_rev, described ? motor.rated_torque_nm : choice.rated_torque_nm, choice.rated_current_a,
          choice.polarity == "reversed"},
@@ -174,7 +177,7 @@ arm::TransmissionSetup transmission_of(const ArmJoint& joint, double counts_per_
       {motor.coulomb_nm, motor.viscous_nm_s, joint.friction.efficiency, joint.friction.back_efficiency, friction_doubt, efficiency_doubt}};
 }
 
-// A motor's torque is capped a little above what an overload of the joint takes where the gear has the most lever, so that the overload can be seen; never
+// In thousandths of the description's rating. A motor's torque is capped a little above what an overload of the joint takes where the gear has the most lever, so that the overload can be seen; never
 // above its rating, which can be held for ever, and which drives without a reserve take. With the peak torque a grip off the bar's middle pushes three times as hard, and trips the drives' over-current guard.
 std::uint16_t torque_cap_permille(const ArmJoint& joint, const safety::JointLimit& limit, const arm::TransmissionSetup& transmission) {
   const Motor motor = motor_of(joint, transmission.counts_per_rev);

@@ -227,6 +227,10 @@ void apply(const DriveKind& kind, const DriveMotor& motor, const std::string& wh
   profile.waits_to_follow = kind.waits_to_follow;
   profile.brake_opens = Duration::from_s(1e-3 * kind.brake_opens_ms);
   profile.brake_closes = Duration::from_s(1e-3 * kind.brake_closes_ms);
+  for (const std::string& code : kind.position_lost) {
+    if (!profile.position_lost.push_back(static_cast<std::uint16_t>(std::stoul(code, nullptr, 16))))
+      throw InputError(where + ": the profile has more codes of a lost position than the core holds");
+  }
   profile.quick_stop_fallback = static_cast<std::int16_t>(kind.quick_stop_fallback);
   profile.abort_fallback = static_cast<std::int16_t>(kind.abort_fallback);
   for (const ProfileObject& object : kind.objects) {

@@ -96,6 +96,7 @@ Keys scalar_keys(DriveKind& k, std::string& like, std::string& vendor, std::stri
   all.push_back(key("sync_loss", "", 0, 0, &k.sync_loss, ""));
   all.push_back(key("mapping.most_objects", "", 1, 64, &k.most_mapped, ""));
   all.push_back(key("homing.methods", "", -128, 127, &k.homing_methods, ""));
+  all.push_back(key("position_lost", "", 0, 0, &k.position_lost, ""));
   all.push_back(key("unconfirmed", "", 0, 0, &k.unconfirmed, ""));
   return all;
 }
@@ -170,6 +171,19 @@ class Reader {
       if (kind.objects.size() + 3 > canopen::DriveProfile::max_objects)
         source_.refuse(root.Mark(), "'check' and 'write' have more objects than the core holds, " +
                                         std::to_string(canopen::DriveProfile::max_objects - 3));
+    });
+    for (const std::string& text : kind.position_lost) {
+      attempt([&] {
+        std::uint16_t code = 0;
+        std::uint8_t none = 0;
+        if (text.size() != 4 || !object_number(text, code, none) || code == 0)
+          source_.refuse(root.Mark(), "'position_lost' takes EMCY codes of 4 hex digits in quotes, not '" + text + "'");
+      });
+    }
+    attempt([&] {
+      if (kind.position_lost.size() > canopen::DriveProfile::max_position_lost)
+        source_.refuse(root.Mark(),
+                       "'position_lost' has more codes than the core holds, " + std::to_string(canopen::DriveProfile::max_position_lost));
     });
     attempt([&] {
       if (kind.absences.size() > canopen::DriveProfile::max_absences)

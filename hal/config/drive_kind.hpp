@@ -67,6 +67,7 @@ struct DriveKind {
   std::vector<ProfileObject> objects;
   std::vector<ProfileAbsence> absences;
   std::map<std::uint16_t, std::string> errors;  // of EMCY and 603F
+  std::vector<std::string> position_lost;       // EMCY codes, 4 hex digits each
 
   const ProfileAbsence* absence(std::uint16_t index) const;
   // What a code of EMCY or 603F means on this drive, else in the standard.

@@ -50,9 +50,6 @@ struct Vehicle {
                                                 {0.02, 0.45, 0.02, 0.02, 0.45, 0.02, 0.06}};
 };
 
-// A motor that is larger or smaller by more than this factor is not the one that the arm was described with.
-inline constexpr double other_motor = 3;
-
 // The drive of one joint. What is 0 or empty is as for all, see Drives.
 struct JointDriveChoice {
   std::int64_t node = 0;

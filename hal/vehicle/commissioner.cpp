@@ -127,10 +127,15 @@ Commissioner::~Commissioner() {
   }
 }
 
+void Commissioner::lose_zeros(const std::array<bool, joint_count>& lost) {
+  if (!busy()) zero_lost_ = lost;
+}
+
 std::string Commissioner::unknown_joints() const {
   std::string names;
   for (std::size_t i = 0; i < joint_count; ++i) {
-    if (!core_.network.drives[i].may_have_power()) names += (names.empty() ? "" : ", ") + std::string(config::joint_name(i));
+    if (zero_lost_[i] || !core_.network.drives[i].may_have_power())
+      names += (names.empty() ? "" : ", ") + std::string(config::joint_name(i));
   }
   return names;
 }
@@ -143,6 +148,8 @@ std::optional<std::string> Commissioner::begin(const CommissionOrder& order) {
   prepared_ = std::make_shared<Prepared>();
   Commissioning::Config setup;
   setup.network = core_.network;
+  // It presses with thousandths of each drive's own rating, and reads them back as such.
+  for (canopen::DriveSetup& drive : setup.network.drives) drive.described_torque_unm = 0;
   setup.transmissions = core_.transmissions;
   setup.joints = order.joints;
   setup.backlash_rad = backlash_rad_;
@@ -234,7 +241,9 @@ void Commissioner::store(const Commissioning& ended) {
   prepared_ = std::make_shared<Prepared>();
   const std::string how = (order_.here ? "in the jig, " : "at its stop, ") + now_text() + " UTC";
   const Commissioned commissioned{ended.found(), ended.zero_counts(), ended.friction_found(), ended.friction(), how, ended.places_rad()};
-  const bool posted = worker_.post([prepared = prepared_, file = file_, commissioned, core = core_, motors = motors_]() mutable {
+  for (std::size_t i = 0; i < joint_count; ++i) still_lost_[i] = zero_lost_[i] && !commissioned.found[i];
+  const bool posted = worker_.post([prepared = prepared_, file = file_, commissioned, core = core_, motors = motors_, lost = zero_lost_,
+                                    still_lost = still_lost_]() mutable {
     std::string problem;
     TakenOver taken;
     config::HomingOffsets offsets;
@@ -248,7 +257,7 @@ void Commissioner::store(const Commissioning& ended) {
         // What was found is lost; that a joint must not have power is not.
         problem = error.what();
         for (std::size_t i = 0; i < joint_count; ++i)
-          core.network.drives[i].zero_known = core.network.drives[i].zero_known && offsets.known[i];
+          core.network.drives[i].zero_known = core.network.drives[i].zero_known && offsets.known[i] && !lost[i];
         with_zeros = std::make_unique<Controller>(core);
       }
       if (!problem.empty()) return give(*prepared, problem, taken, offsets, std::move(with_zeros));
@@ -257,7 +266,7 @@ void Commissioner::store(const Commissioning& ended) {
       taken.left_out.insert(taken.left_out.end(), older.begin(), older.end());
       for (std::size_t i = 0; i < joint_count; ++i) {
         core.network.drives[i].encoder_zero_counts = offsets.zero_counts[i];
-        core.network.drives[i].zero_known = offsets.known[i];
+        core.network.drives[i].zero_known = offsets.known[i] && !still_lost[i];
         config::set_friction(offsets, i, core.transmissions[i].friction);
       }
       with_zeros = std::make_unique<Controller>(core);
@@ -281,14 +290,14 @@ void Commissioner::install() {
   for (const std::string& sentence : prepared_->taken.left_out) why += (why.empty() ? "these joints take no power: " : "; ") + sentence;
   if (!prepared_->problem.empty()) {
     for (std::size_t i = 0; i < joint_count && prepared_->core; ++i)
-      core_.network.drives[i].zero_known = core_.network.drives[i].zero_known && prepared_->offsets.known[i];
+      core_.network.drives[i].zero_known = core_.network.drives[i].zero_known && prepared_->offsets.known[i] && !zero_lost_[i];
     if (prepared_->core) give_core(std::move(prepared_->core));
     return end_with({{"state", "failed"}, {"why", prepared_->problem + (why.empty() ? "" : "; " + why)}, {"without_power", true}});
   }
   Json zeros = Json::object(), moved = Json::object();
   for (std::size_t i = 0; i < joint_count; ++i) {
     core_.network.drives[i].encoder_zero_counts = prepared_->offsets.zero_counts[i];
-    core_.network.drives[i].zero_known = prepared_->offsets.known[i];
+    core_.network.drives[i].zero_known = prepared_->offsets.known[i] && !still_lost_[i];
     config::set_friction(prepared_->offsets, i, core_.transmissions[i].friction);
     if (prepared_->offsets.known[i]) zeros[config::joint_name(i)] = prepared_->offsets.zero_counts[i];
     if (prepared_->taken.moved_rad[i] > 0) moved[config::joint_name(i)] = prepared_->taken.moved_rad[i];

@@ -64,6 +64,8 @@ class Commissioner {
   // One look at what has come back.
   void step();
 
+  // What the control loop says of the core at work: joints whose drive has lost its position. They need a zero until they are commissioned.
+  void lose_zeros(const std::array<bool, joint_count>& lost);
   // Joints that take no power since their zero is not known: "slew, elbow"; empty when there is none.
   std::string unknown_joints() const;
   // How the last one ended; null before the first.
@@ -92,6 +94,8 @@ class Commissioner {
   void end_with(const Json& outcome);
 
   ControllerConfig core_;
+  std::array<bool, joint_count> zero_lost_{};   // of the core at work
+  std::array<bool, joint_count> still_lost_{};  // those of them that the commissioning under way has not found
   std::string file_;
   std::array<double, joint_count> backlash_rad_{};
   std::array<Motor, joint_count> motors_;

@@ -199,6 +199,7 @@ class ControlLoop {
     const canopen::Network& network = controller_->network();
     for (std::size_t i = 0; i < joint_count; ++i) {
       report_.axes[i] = network.axis(static_cast<Joint>(i)).state();
+      report_.zeros_lost[i] = network.axis(static_cast<Joint>(i)).zero_lost() && !network.axis(static_cast<Joint>(i)).may_have_power();
       report_.axis_faults[i] = network.axis(static_cast<Joint>(i)).fault();
     }
     report_.inputs = network.io().inputs();

@@ -78,6 +78,54 @@ INSTANTIATE_TEST_SUITE_P(InEveryPhase, Hold,
                                          Moment{Step::stow, 0.5, "Stowing"}),
                          [](const testing::TestParamInfo<Moment>& test) { return std::string(test.param.name); });
 
+// ---- what an arm on hold touches ----
+
+class ContactOnHold : public testing::TestWithParam<Moment> {};
+
+// It reaches the wrist within the half second that the arm takes to halt.
+TEST_P(ContactOnHold, EndsHeldOnTheWayToAContactAndBackToo) {
+  const Moment& moment = GetParam();
+  Rig rig(moment.step == Step::advance ? turn_only() : press_only());
+  ASSERT_TRUE(reach(rig, moment)) << rig.story();
+  rig.push_obstacle();
+  rig.run_for(0.45);
+  ASSERT_TRUE(rig.world().contacts().unintended.empty()) << "too late for a hold";
+  ASSERT_TRUE(give(rig, Command::hold)) << rig.story();
+  ASSERT_TRUE(run_until(rig, Standing::held, 1)) << rig.story();
+  EXPECT_EQ(rig.outcome().fault, Fault::unexpected_contact) << rig.story();
+  rig.run_for(1);
+  EXPECT_FALSE(rig.world().contacts().unintended.empty()) << "nothing was touched";
+  EXPECT_LT(rig.world().contacts().peak_force_n, 150) << rig.story();
+  EXPECT_LT(rig.fastest_joint_rad_s(), standing_rad_s);
+}
+
+INSTANTIATE_TEST_SUITE_P(WhereTheStepsHaveTheirOwnGuards, ContactOnHold,
+                         testing::Values(Moment{Step::advance, 0.4, "Advancing"}, Moment{Step::press, 0.4, "Pressing"},
+                                         Moment{Step::button_back, 0.6, "LeavingTheButton"}),
+                         [](const testing::TestParamInfo<Moment>& test) { return std::string(test.param.name); });
+
+// In the half second of the halt the finger goes on by up to 6 mm: it bottoms on hold.
+class HoldInAPress : public testing::TestWithParam<int> {};
+
+TEST_P(HoldInAPress, DoesNotGoOnPushingAndIsResumedToSuccess) {
+  Rig rig(press_only());
+  rig.start();
+  ASSERT_TRUE(rig.run_to(Step::press)) << rig.story();
+  const double depth_m = 0.001 * GetParam();
+  while (rig.world().button(1).depth_m <= depth_m && rig.step_now() == Step::press) rig.step();
+  ASSERT_TRUE(give(rig, Command::hold)) << rig.story();
+  rig.run_for(3);
+  EXPECT_EQ(rig.mission().standing(), Standing::on_hold) << rig.story();
+  EXPECT_EQ(rig.count(Fault::unexpected_contact), 0U);
+  EXPECT_LT(rig.world().contacts().tool_wrench.force_n.norm(), 50);
+  ASSERT_TRUE(give(rig, Command::resume));
+  ASSERT_TRUE(rig.run_to_end()) << rig.story();
+  EXPECT_EQ(rig.step_now(), Step::done) << rig.story();
+  EXPECT_EQ(rig.world().button(1).presses, 1U);
+}
+
+INSTANTIATE_TEST_SUITE_P(MillimetresIn, HoldInAPress, testing::Values(0, 1, 2, 3, 4));
+
 TEST(HoldAgainAndAgain, ChangesOnlyTheTimeItTakes) {
   Rig rig(turn_only());
   rig.start();

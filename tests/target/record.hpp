@@ -107,18 +107,18 @@ void pass(S& s, canopen::Absence& v) {
 template <class S>
 void pass(S& s, canopen::DriveProfile& v) {
   auto& [scale, rated_unit, rated, guarded, torque_offset, waits, times_following, brake_opens, brake_closes, quick_stop_fallback,
-         abort_fallback, objects, absences] = v;
+         abort_fallback, objects, absences, position_lost] = v;
   pass_all(s, scale, rated_unit, rated, guarded, torque_offset, waits, times_following, brake_opens, brake_closes, quick_stop_fallback,
-           abort_fallback, objects, absences);
+           abort_fallback, objects, absences, position_lost);
 }
 template <class S>
 void pass(S& s, canopen::DriveSetup& v) {
-  auto& [node, identity, profile, min_counts, max_counts, drive_margin, max_torque, max_speed, motor_speed, quick_stop, window, timeout,
-         quick_stop_option, abort_option, encoder_zero, zero_known, homing_method, home_offset, homing_speed, homing_accel,
+  auto& [node, identity, profile, min_counts, max_counts, drive_margin, max_torque, described, max_speed, motor_speed, quick_stop, window,
+         timeout, quick_stop_option, abort_option, encoder_zero, zero_known, homing_method, home_offset, homing_speed, homing_accel,
          homing_timeout] = v;
-  pass_all(s, node, identity, profile, min_counts, max_counts, drive_margin, max_torque, max_speed, motor_speed, quick_stop, window,
-           timeout, quick_stop_option, abort_option, encoder_zero, zero_known, homing_method, home_offset, homing_speed, homing_accel,
-           homing_timeout);
+  pass_all(s, node, identity, profile, min_counts, max_counts, drive_margin, max_torque, described, max_speed, motor_speed, quick_stop,
+           window, timeout, quick_stop_option, abort_option, encoder_zero, zero_known, homing_method, home_offset, homing_speed,
+           homing_accel, homing_timeout);
 }
 template <class S>
 void pass(S& s, canopen::IoSetup& v) {

@@ -91,6 +91,68 @@ TEST(Boot, ARatingThatIsNotTheStatedOneEndsTheBoot) {
   }
 }
 
+// The slew has an absolute encoder, and its drive says 7320: home again. Resets and boots do not bring the zero back.
+TEST(LostPosition, TakesThePowerUntilTheJointIsCommissionedAgain) {
+  for (const std::uint16_t code : {std::uint16_t{0x7320}, std::uint16_t{0x8611}}) {
+    SCOPED_TRACE(code);
+    const bool lost = code == 0x7320;
+    NetworkConfig config = full_config();
+    ASSERT_TRUE(config.drives[0].profile.position_lost.push_back(0x7320));
+    Bus bus(config);
+    ASSERT_TRUE(bus.boot());
+    Axis& slew = bus.network.axis(Joint::slew);
+    slew.request(AxisRequest::hold_enabled);
+    ASSERT_TRUE(bus.run_until([&] { return slew.enabled(); }, Duration::from_ms(500)));
+    bus.nodes[0].send_emcy(code, 0x20);
+    bus.step(20);
+    EXPECT_EQ(slew.fault() == AxisFault::drive_fault, lost);
+    EXPECT_EQ(slew.zero_lost(), lost);
+    slew.request(AxisRequest::reset_fault);
+    bus.step(50);
+    ASSERT_TRUE(bus.boot());
+    EXPECT_EQ(slew.homed(), !lost);
+    EXPECT_EQ(bus.network.may_have_power(), !lost);
+    slew.request(AxisRequest::hold_enabled);
+    bus.step(50);
+    EXPECT_EQ(slew.powered(), !lost);
+  }
+}
+
+// The scripted drive is rated at 12 N m, by its 6076 or because the machine's file says so.
+TEST(Boot, TheTorqueCapIsTheSameTorqueWhateverTheDrivesOwnRatingIs) {
+  struct Case {
+    std::uint32_t described_unm;
+    std::uint32_t cap_permille;  // of 12 N m, where 600 thousandths of the description are asked for
+  };
+  for (const bool stated : {false, true}) {
+    for (const Case& c : {Case{12'000'000, 600}, Case{6'000'000, 300}, Case{18'000'000, 900}, Case{36'000'000, 1000}, Case{0, 600}}) {
+      NetworkConfig config = full_config();
+      DriveSetup& drive = config.drives[elbow];
+      drive.max_torque_permille = 600;
+      drive.described_torque_unm = c.described_unm;
+      drive.profile.rated_torque_unm = stated ? 12'000'000 : 0;
+      drive.profile.rated_torque_unit_unm = stated ? 0 : 1000;
+      Bus bus(config);
+      ASSERT_TRUE(bus.boot()) << c.described_unm;
+      EXPECT_EQ(bus.nodes[elbow].object(0x6072, 0), c.cap_permille) << c.described_unm;
+    }
+  }
+}
+
+TEST(Boot, ARatingFarFromTheDescriptionsIsAnotherMotor) {
+  for (const auto& [described_unm, boots] :
+       {std::pair{4'000'000U, true}, std::pair{36'000'000U, true}, std::pair{3'900'000U, false}, std::pair{37'000'000U, false}}) {
+    NetworkConfig config = full_config();
+    config.drives[elbow].described_torque_unm = described_unm;
+    Bus bus(config);
+    ASSERT_EQ(bus.boot(), boots) << described_unm;
+    if (boots) continue;
+    EXPECT_EQ(bus.network.boot().failed()->failure, BootFailure::other_motor);
+    EXPECT_EQ(bus.network.boot().failed()->expected, described_unm / 1000);
+    EXPECT_EQ(bus.network.boot().failed()->read, 12'000U);
+  }
+}
+
 TEST(Boot, AJointWithoutAZeroTakesNoPower) {
   NetworkConfig config = full_config();
   config.drives[0].zero_known = false;

@@ -90,10 +90,11 @@ TEST(DriveBoot, WithoutAProfileTheDeliveredDrivesAreRefused) {
     const char* reason;
   };
   for (const Case& c :
-       {Case{"epos4", "605A:00 quick stop option: invalid value"}, Case{"elmo_gold", "6076:00 rated torque is 0"},
+       {Case{"epos4", "6076:00 rated torque is 41000, and 41 by the arm's description"}, Case{"elmo_gold", "6076:00 rated torque is 0"},
         Case{"ipos", "6076:00 rated torque does not exist"}, Case{"c5e", "6076:00 rated torque does not exist"},
-        Case{"ingenia", "1016:01 consumer heartbeat time does not exist"}, Case{"lmdrive", "6076:00 rated torque does not exist"},
-        Case{"eyou", "6076:00 rated torque does not exist"}, Case{"copley", "1016:01 consumer heartbeat time does not exist"}}) {
+        Case{"ingenia", "6076:00 rated torque is 1000, and 41 by the arm's description"},
+        Case{"lmdrive", "6076:00 rated torque does not exist"}, Case{"eyou", "6076:00 rated torque does not exist"},
+        Case{"copley", "1016:01 consumer heartbeat time does not exist"}}) {
     DriveBench bench({"cia402", c.make});
     EXPECT_FALSE(bench.boot()) << c.make;
     EXPECT_NE(bench.sentence().find(c.reason), std::string::npos) << c.make << ": " << bench.sentence();
@@ -121,6 +122,32 @@ TEST(DriveBoot, ARatedTorqueInTheWrongUnitIsFoundByTheStatedOne) {
   });
   EXPECT_FALSE(bench.boot());
   EXPECT_EQ(bench.network.boot().nodes[2].failure, BootFailure::wrong_rating);
+}
+
+// The motor of another rating, said by the drive: it pushes the joint no harder.
+TEST(DriveBoot, ADriveOfTwiceTheRatingPushesAsHardAsTheDescribedOne) {
+  const auto limit_nm = [](double rating) {
+    DriveBench bench({}, [&](canopen::NetworkConfig&, devices::DevicesConfig& devices) {
+      devices.drives[2].rated_torque_nm *= rating;
+      devices.drives[2].peak_torque_nm *= rating;
+    });
+    EXPECT_TRUE(bench.boot()) << bench.sentence();
+    return bench.devices.drives()[2].torque_limit_nm;
+  };
+  const double described_nm = limit_nm(1);
+  EXPECT_GT(described_nm, 0);
+  EXPECT_NEAR(limit_nm(2), described_nm, 0.003 * described_nm) << "a thousandth of the rating";
+}
+
+TEST(DriveBoot, ADriveOfFourTimesTheRatingIsAnotherMotor) {
+  DriveBench bench({"", "epos4"}, [](canopen::NetworkConfig&, devices::DevicesConfig& devices) {
+    devices.drives[2].rated_torque_nm *= 4;
+    devices.drives[2].peak_torque_nm *= 4;
+  });
+  EXPECT_FALSE(bench.boot());
+  EXPECT_EQ(bench.network.boot().nodes[2].failure, BootFailure::other_motor);
+  EXPECT_NE(bench.sentence().find("by the arm's description: another motor, or another unit. State"), std::string::npos)
+      << bench.sentence();
 }
 
 TEST(DriveBoot, AFactorGroupThatIsNotTheProfilesIsRefused) {

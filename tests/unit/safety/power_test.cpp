@@ -150,6 +150,34 @@ TEST_F(PowerTest, TheOrderlyWayDownGoesThroughEveryState) {
   EXPECT_EQ(bus.nodes[0].controlwords, (std::vector<std::uint16_t>{0x07, 0x06, 0x00}));
 }
 
+// The elbow's drive keeps its torque while its brake closes, and does not go down meanwhile.
+TEST(PowerWithBrakes, TheOrderlyWayDownWaitsForTheSlowestBrake) {
+  struct Case {
+    int closes_ms;
+    double removed_s;  // when the orderly way is given up
+  };
+  for (const Case& c : {Case{0, 0.7}, Case{500, 0.7}, Case{2000, 2.2}, Case{10'000, 10.2}}) {
+    SCOPED_TRACE(c.closes_ms);
+    canopen::NetworkConfig config = canopen::test::plain_config();
+    config.drives[2].profile.brake_closes = Duration::from_ms(c.closes_ms);
+    canopen::test::Bus bus(config);
+    ASSERT_TRUE(bus.boot());
+    canopen::Axis& elbow = bus.network.axis(Joint::elbow);
+    elbow.request(canopen::AxisRequest::hold_enabled);
+    ASSERT_TRUE(bus.run_until([&] { return elbow.enabled(); }, Duration::from_ms(500)));
+    Power power;
+    power.switch_on();
+    bus.nodes[2].ignores_controlword = true;
+    const Time began = bus.now;
+    power.lower(began, bus.network);
+    while (power.state() == Power::State::lowering && bus.now - began < Duration::from_s(20)) {
+      power.tick({}, bus.now, bus.network);
+      bus.step();
+    }
+    EXPECT_NEAR((bus.now - began).s(), c.removed_s, 0.01);
+  }
+}
+
 TEST_F(PowerTest, AStopOnTheOrderlyWayDownIsObeyed) {
   bus.nodes[1].ignores_controlword = true;  // its brake takes its time
   power.lower(bus.now, bus.network);
