@@ -1,5 +1,6 @@
 #include "firmware/canopen/setup.hpp"
 
+#include <algorithm>
 #include <cstdint>
 
 namespace lf::canopen {

@@ -187,8 +187,9 @@ void ValueReader::operator()(std::vector<Task>* value) const {
       source_.refuse(item.Mark(), "'" + shown + "' takes one task, turn_valve or press_buttons, not " + shape_of(item));
     Task task;
     read_map(item, "", shown + ".", keys(task), source_);
-    task.kind = item["turn_valve"] ? Task::Kind::turn_valve : Task::Kind::press_buttons;
-    if (task.kind == Task::Kind::turn_valve && !item["turn_valve"]["to_deg"])
+    const YAML::Node turn = item["turn_valve"];
+    task.kind = turn ? Task::Kind::turn_valve : Task::Kind::press_buttons;
+    if (turn && !(turn.IsMap() && turn["to_deg"]))
       source_.refuse(item.Mark(), "'" + shown + ".turn_valve.to_deg' is missing: to which angle?");
     if (task.kind == Task::Kind::press_buttons && task.order.empty())
       source_.refuse(item.Mark(), "'" + shown + ".press_buttons.order' names no button");

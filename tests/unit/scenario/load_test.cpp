@@ -178,6 +178,10 @@ TEST(Load, AFaultHappensAtATimeOrAtAStep) {
 // It meant 90 degrees in silence.
 TEST(Load, ATurnSaysToWhichAngle) {
   EXPECT_THAT(complaint("tasks: [turn_valve: {}]\n"), HasSubstr(":1: 'tasks[0].turn_valve.to_deg' is missing"));
+  for (const char* other : {"90", "", "[90]"}) {
+    SCOPED_TRACE(other);
+    EXPECT_THAT(complaint("tasks: [turn_valve: " + std::string(other) + "]\n"), HasSubstr("tasks[0].turn_valve"));
+  }
 }
 
 TEST(Load, AFaultHappensToWhatItCanHappenTo) {
