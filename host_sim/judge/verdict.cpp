@@ -113,7 +113,7 @@ class Judge {
     forces();
     if (const auto deadline = strictest(); deadline && !taken_over()) {
       // What is reported before any drive runs is no stop: powering up has to end.
-      situation_.powering_up && !runs_at(deadline->at_s) ? nothing_moves(*deadline) : stop(*deadline);
+      situation_.powering_up && !runs_at(deadline->at_s) ? nothing_moves() : stop(*deadline);
     } else if (!deadline) {
       stopped_by_the_watch();
     }
@@ -323,16 +323,30 @@ class Judge {
     return index < moments_.size() && moments_[index].told_to_run != 0;
   }
 
-  void nothing_moves(const Deadline& deadline) {
+  // By the first cause that is no drive's own fault; nothing when there is none.
+  template <class Is>
+  std::optional<double> powering_up_ends_s(Is ends_it) const {
+    std::optional<double> first_s;
+    for (std::size_t i = 0; i < situation_.causes.size(); ++i) {
+      const Cause& cause = situation_.causes[i];
+      if (!ends_it(cause) || is_a_drives_fault(cause)) continue;
+      const double end_s = report_of(seen_, cause, situation_.begins_s[i], figures_).end_s();
+      first_s = std::min(first_s.value_or(end_s), end_s);
+    }
+    return first_s;
+  }
+
+  void nothing_moves() {
     // What has rebooted is booted again.
     const auto ends_it = [](const Cause& cause) { return demands_stop(cause) && cause.rule->kind != "reboot"; };
     if (!has(ends_it)) return;
     // While a drive's fault is reset the others are enabled. One of them that runs off is a fault of its own: it loses its power in the time of a stop.
-    const bool others_are_enabled = !has([&](const Cause& cause) { return ends_it(cause) && !is_a_drives_fault(cause); });
-    if (!others_are_enabled && !master_is_cut_off()) {
-      const double powered_s = last_s(moments_, deadline.end_s(), [](const Moment& m) { return m.power != 0; });
-      if (powered_s > deadline.end_s() + figures_.off_after_standing_s)
-        wrong(formatted("power is on %.2f s after powering up had to end", powered_s - deadline.end_s()));
+    const std::optional<double> ends_s = powering_up_ends_s(ends_it);
+    const bool others_are_enabled = !ends_s;
+    if (ends_s && !master_is_cut_off()) {
+      const double powered_s = last_s(moments_, *ends_s, [](const Moment& m) { return m.power != 0; });
+      if (powered_s > *ends_s + figures_.off_after_standing_s)
+        wrong(formatted("power is on %.2f s after powering up had to end", powered_s - *ends_s));
     }
     const std::uint8_t runs_off =
         others_are_enabled ? joints_that([](const Cause& cause) { return cause.rule->kind == "runaway"; }) : std::uint8_t{0};

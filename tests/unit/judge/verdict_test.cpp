@@ -486,6 +486,25 @@ TEST(Verdict, AChainThatOpensBeforePowerLeavesEveryDriveWithoutIt) {
   EXPECT_THAT(wrong("overcurrent elbow", true), IsEmpty()) << "the others are enabled while a drive's fault is reset";
 }
 
+// From the first to the second cause the others are enabled.
+TEST(Verdict, PowerWhileADrivesFaultIsResetEndsWithAnotherMaster) {
+  const auto wrong = [](int until_ms) {
+    Seen seen;
+    for (int t = 0; t < 4000; ++t) {
+      seen.moments.emplace_back();
+      if (t >= 300 && t < until_ms) seen.moments.back().power = all_joints;
+    }
+    seen.fault_reported_s = 0.1;
+    seen.second_master_s = 0.6;
+    Situation situation = situation_of(cause_of("overcurrent elbow"), cause_of("foreign_nmt"));
+    situation.begins_s[1] = 0.59;
+    situation.powering_up = true;
+    return judge(seen, situation, failed("another master on the bus")).wrong;
+  };
+  EXPECT_THAT(wrong(700), IsEmpty());
+  EXPECT_THAT(wrong(730), ElementsAre("power is on 0.12 s after powering up had to end"));
+}
+
 TEST(Verdict, WhatWaitsForOrdersMovesByNoneOfItsOwn) {
   Seen seen = Stopping().seen();
   for (std::size_t t = 2500; t < seen.moments.size(); ++t) seen.moments[t].angle_rad[4] = 0.0001f * float(t - 2500);
