@@ -78,7 +78,7 @@ class Steps {
 // The file that a key of the machine's file names.
 std::filesystem::path named_file(const Machine& machine, const char* key, const std::string& name) {
   const std::filesystem::path folder = std::filesystem::path(machine.file).parent_path();
-  const std::filesystem::path found = find_file(name, folder);
+  std::filesystem::path found = find_file(name, folder);
   std::error_code ignored;
   if (std::filesystem::exists(found, ignored)) return found;
   const std::string places =

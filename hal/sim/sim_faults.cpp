@@ -2,7 +2,7 @@
 
 namespace lf::hal {
 
-FaultSchedule::FaultSchedule(std::vector<SimFault> faults) {
+FaultSchedule::FaultSchedule(const std::vector<SimFault>& faults) {
   for (const SimFault& fault : faults) add(fault);
 }
 

@@ -52,7 +52,7 @@ struct SimFault {
 // Keeps the faults' times. Those of the devices end by themselves; of the others it knows which are on.
 class FaultSchedule {
  public:
-  explicit FaultSchedule(std::vector<SimFault> faults);
+  explicit FaultSchedule(const std::vector<SimFault>& faults);
 
   void add(const SimFault& fault);
   // The mission is in this step now.

@@ -53,7 +53,7 @@ std::string InstanceLock::take(const std::string& folder, const std::string& int
   if (fd_ < 0 && errno == ENOENT) fd_ = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
   if (fd_ < 0) return path_ + ": " + std::strerror(errno) + "; `lock_folder` names where lock files may be";
   if (flock(fd_, LOCK_EX | LOCK_NB) != 0) {
-    const std::string held = held_by(fd_, path_, interface);
+    std::string held = held_by(fd_, path_, interface);
     close(fd_);
     fd_ = -1;
     return held;

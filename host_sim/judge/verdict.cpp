@@ -299,7 +299,9 @@ class Judge {
   }
 
   void loses_power(double from_s, bool halts) {
-    const double standing_s = from_s + verdict_.standing_s.value_or(0);
+    // A drive holds a joint that swings in its gear until its ramp has ended.
+    const double swung_s = last_s(moments_, from_s, [this](const Moment& m) { return m.power != 0 && swings(m); });
+    const double standing_s = std::max(from_s + verdict_.standing_s.value_or(0), swung_s);
     const std::uint8_t untold = joints_that(loses_process_data);
     const auto reachable = static_cast<std::uint8_t>(master_is_cut_off() ? 0 : ~(joints_that(cut_off) | untold));
     const auto powered_s = [&](std::uint8_t joints) {
@@ -316,6 +318,10 @@ class Judge {
       wrong(formatted("power is off %.2f s after standing", *verdict_.power_off_s));
     if (*verdict_.stop_to_off_s > figures_.off_after_stop_s + ms)
       wrong(formatted("power is off %.2f s after the stop", *verdict_.stop_to_off_s));
+  }
+
+  bool swings(const Moment& moment) const {
+    return std::any_of(moment.speed_rad_s.begin(), moment.speed_rad_s.end(), [this](float v) { return v >= figures_.standing_rad_s; });
   }
 
   bool runs_at(double t_s) const {

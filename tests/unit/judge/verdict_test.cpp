@@ -96,6 +96,17 @@ TEST(Verdict, PowerGoesOffAHundredMillisecondsAfterStanding) {
   EXPECT_EQ(judged({.off_ms = 5000}).wrong.size(), 3u) << "after standing, after the stop, and at the end";
 }
 
+// Its motor stands, and the joint swings in the gear's play at 0.03 rad/s and less than 4 mrad, for 60 ms, while its drive has power.
+TEST(Verdict, PowerIsCountedFromTheLastSwingUnderPower) {
+  Stopping run{.off_ms = 150};
+  Seen seen = run.seen();
+  for (std::size_t t = 260; t < 320; ++t) seen.moments[t].speed_rad_s[2] = 0.03f;
+  const auto wrong = [&] { return judge(seen, situation_of(cause_of("overcurrent elbow")), failed("drive fault: elbow")).wrong; };
+  EXPECT_THAT(wrong(), IsEmpty()) << "78 ms after the swing";
+  for (std::size_t t = 260; t < 320; ++t) seen.moments[t].speed_rad_s[2] = 0.01f;
+  EXPECT_THAT(wrong(), ElementsAre("power is off 0.15 s after standing"));
+}
+
 TEST(Verdict, AJointThatCreepsOnIsNotStopped) {
   const std::vector<std::string> wrong = judged({.stands_at_rad_s = 0.03}).wrong;
   ASSERT_FALSE(wrong.empty());
