@@ -208,9 +208,9 @@ class Judge {
 
   void stop(const Deadline& deadline) {
     const std::uint8_t cut = joints_that(cut_off);
-    // Whose process data are lost later has to hear of it.
-    const std::uint8_t untold =
-        joints_that([&](const Cause& cause) { return loses_process_data(cause) && begins_s(cause) < deadline.end_s(); });
+    // Whose process data are lost later has to hear of it; who is cut off hears no NMT either.
+    const auto untold = static_cast<std::uint8_t>(
+        joints_that([&](const Cause& cause) { return loses_process_data(cause) && begins_s(cause) < deadline.end_s(); }) & ~cut);
     const auto told_to_run_s = [&](std::uint8_t joints) {
       return last_s(moments_, deadline.at_s, [&](const Moment& m) { return (m.told_to_run & joints) != 0; });
     };
@@ -302,7 +302,7 @@ class Judge {
     // A drive holds a joint that swings in its gear until its ramp has ended.
     const double swung_s = last_s(moments_, from_s, [this](const Moment& m) { return m.power != 0 && swings(m); });
     const double standing_s = std::max(from_s + verdict_.standing_s.value_or(0), swung_s);
-    const std::uint8_t untold = joints_that(loses_process_data);
+    const auto untold = static_cast<std::uint8_t>(joints_that(loses_process_data) & ~joints_that(cut_off));
     const auto reachable = static_cast<std::uint8_t>(master_is_cut_off() ? 0 : ~(joints_that(cut_off) | untold));
     const auto powered_s = [&](std::uint8_t joints) {
       return last_s(moments_, from_s, [&](const Moment& m) { return (m.power & joints) != 0; });

@@ -330,6 +330,22 @@ TEST(Verdict, ADriveThatLosesItsProcessDataIsToldByNmt) {
   EXPECT_THAT(wrong(32, "drop_frames (one frame) rpdo elbow"), ElementsAre("still told to run 32 ms after the report"));
 }
 
+// It hears neither process data nor NMT: it stops when it misses the master's heartbeat.
+TEST(Verdict, ADriveThatLosesItsProcessDataAndIsCutOffStopsByItself) {
+  const auto wrong = [](int elbow_ms) {
+    Seen seen = Stopping().seen();
+    for (int t = 108; t < 100 + elbow_ms; ++t) {
+      seen.moments[static_cast<std::size_t>(t)].told_to_run = 0x04;
+      seen.moments[static_cast<std::size_t>(t)].power = 0x04;
+    }
+    Situation situation = situation_of(cause_of("drop_frames rpdo elbow"), cause_of("silent elbow"));
+    situation.begins_s = {0.05, 0.095};
+    seen.last_heard_s[2] = 0.095;
+    return judge(seen, situation, failed("stale position: elbow")).wrong;
+  };
+  EXPECT_THAT(wrong(245), IsEmpty());
+}
+
 // The drives are enabled at 1 s, `moving_ms` before they lose their power; the jaw runs off meanwhile. The fault is reported at 0.1 s, or at 1.1 s.
 std::vector<std::string> powering_up(const std::string& cause, int moving_ms, double begins_s = 0.09) {
   Seen seen;
