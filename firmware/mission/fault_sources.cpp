@@ -101,7 +101,8 @@ void FaultSources::collect_contact(const StepTick& tick) {
 // Its motor's torque is what moves a joint away from its set-point's way: what is touched pushes against the motor. And no contact drives a joint away from
 // its set-point at speed: it stops it.
 bool FaultSources::drives_itself_off(const Workbench& bench) const {
-  constexpr double least_rad_s = 0.02, pushed_rad_s = 0.1;
+  constexpr double least_rad_s = 0.02;  // above the observer's noise of a joint that stands; a runaway passes it within two ticks
+  constexpr double pushed_rad_s = 0.1;  // over half of the slowest joint's top speed: a screw does not give way to a push so fast
   const auto joint = static_cast<Eigen::Index>(free_guard_.joint());
   const safety::JointStates& joints = bench.watch.joints();
   const double dt_s = (joints.t - last_).s();

@@ -31,21 +31,22 @@ double last_s(const std::vector<Moment>& moments, double from_s, Is is) {
 
 std::size_t node_index(const std::string& node) {
   constexpr std::array<const char*, joint_count + 1> names{"slew", "shoulder", "elbow", "roll", "jaw", "io"};
-  return static_cast<std::size_t>(std::find(names.begin(), names.end(), node) - names.begin());
+  const std::string name = node.substr(node.find_last_of(' ') + 1);  // "slew" of "tpdo slew"
+  return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
 // A drive that hears nothing of the master any more.
 bool cut_off(const Cause& cause) { return cause.rule->kind == "silent" || cause.rule->kind == "bus_off"; }
 
-// A drive that hears NMT commands, and no process data.
-bool loses_process_data(const Cause& cause) {
-  return cause.rule->kind == "drop_frames" && cause.rule->duration_s == 0 && cause.node.starts_with("rpdo ");
+bool loses_for_good(const Cause& cause, const char* frames) {
+  return cause.rule->kind == "drop_frames" && cause.rule->duration_s == 0 && cause.node.starts_with(frames);
 }
 
-// Without a node's process data its times are judged like a silent node's: what is lost is counted from the last that could arrive.
-bool is_unheard(const Cause& cause) {
-  return cause.rule->kind == "drop_frames" && cause.rule->duration_s == 0 && cause.node.starts_with("tpdo ");
-}
+// A drive that hears NMT commands, and no process data.
+bool loses_process_data(const Cause& cause) { return loses_for_good(cause, "rpdo "); }
+
+// A node whose process data the master does not hear: its times count from the last that arrived, like a silent node's.
+bool is_unheard(const Cause& cause) { return loses_for_good(cause, "tpdo "); }
 
 // Its drive's reading, or its motion, is not what the core takes it for.
 bool misleads(const Cause& cause) {
@@ -89,7 +90,7 @@ Deadline report_of(const Seen& seen, const Cause& cause, double begins_s, const 
     case Report::frame:
     case Report::second_master: return {&cause, told_by_a_frame_s(seen, cause, begins_s).value_or(begins_s), stop_s};
     case Report::silence: {
-      const std::size_t node = node_index(cause.node.substr(cause.node.find_last_of(' ') + 1));
+      const std::size_t node = node_index(cause.node);
       const bool known = (cut_off(cause) || is_unheard(cause)) && node < seen.last_heard_s.size();
       const double heard_s = known ? seen.last_heard_s[node] : begins_s;
       return {&cause, std::max(heard_s, begins_s - sync_s), cuts_off_the_master(cause) ? self_stop_s : unread_s};
@@ -193,7 +194,7 @@ class Judge {
   std::uint8_t joints_that(Is is) const {
     std::uint8_t bits = 0;
     for (const Cause& cause : situation_.causes) {
-      const std::size_t joint = node_index(cause.node.substr(cause.node.find_last_of(' ') + 1));
+      const std::size_t joint = node_index(cause.node);
       if (is(cause) && joint < joint_count) bits |= static_cast<std::uint8_t>(1u << joint);
     }
     return bits;
