@@ -1,0 +1,46 @@
+// Whether a reason names its cause, and the node of it.
+#include "host_sim/judge/fault_rules.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/unit/judge/stopping.hpp"
+
+namespace lf::judge {
+namespace {
+
+TEST(FaultRules, TheAdviceOfAReasonNamesNothing) {
+  EXPECT_TRUE(cause_of("torque_frozen elbow").named_in("step failed: no button there (Or something.)"));
+  EXPECT_FALSE(cause_of("torque_high elbow").named_in("step failed: the jaw does not open (The overload: elbow.)"));
+  EXPECT_FALSE(cause_of("runaway slew").named_in("unexpected contact: roll"));
+  EXPECT_TRUE(cause_of("runaway slew").named_in("following error: slew, in step grip"));
+  EXPECT_FALSE(cause_of("silent io").named_in("camera silent"));
+}
+
+TEST(FaultRules, AReasonNamesTheCauseAndItsNode) {
+  const auto named = [](const char* cause, const char* reason) { return cause_of(cause).named_in(reason); };
+  EXPECT_TRUE(named("overcurrent elbow", "drive fault: elbow, EMCY 0x2310 (continuous over-current)"));
+  EXPECT_FALSE(named("overcurrent elbow", "drive fault: slew, EMCY 0x2310 (continuous over-current)")) << "another node";
+  EXPECT_FALSE(named("overcurrent elbow", "step timed out"));
+  EXPECT_FALSE(named("stuck_encoder roll", "step failed: the turn stalled")) << "a step that fails says nothing of the encoder";
+  EXPECT_TRUE(named("silent io", "output node lost"));
+  EXPECT_FALSE(named("silent io", "stale position: slew"));
+  EXPECT_TRUE(named("reboot io", "node rebooted: io"));
+  EXPECT_TRUE(named("drop_frames tpdo slew", "stale position: slew"));
+  EXPECT_FALSE(named("drop_frames tpdo slew", "stale position: shoulder"));
+  EXPECT_TRUE(named("foreign_rpdo io", "another master on the bus: identifier 0x0206"));
+  EXPECT_FALSE(named("foreign_rpdo io", "another master on the bus: identifier 0x0201"));
+  EXPECT_TRUE(named("foreign_sdo jaw", "another master on the bus: identifier 0x0605"));
+  EXPECT_TRUE(named("foreign_sync", "another master on the bus: identifier 0x0080"));
+  EXPECT_TRUE(named("stuck_encoder jaw", "step failed: the jaw does not open (Look at what it holds; free it by hand without power.)"));
+  EXPECT_FALSE(named("stuck_encoder roll", "step failed: the jaw does not open (Look at what it holds; free it by hand without power.)"));
+  EXPECT_TRUE(named("bus_off master", "CAN bus off"));
+  EXPECT_TRUE(named("can_send_fails", "CAN bus off: sending fails"));
+  EXPECT_FALSE(named("can_send_fails", "output node lost")) << "the node is well";
+  EXPECT_TRUE(named("encoder_jump elbow", "tool outside its workspace")) << "all joints make the tool's place";
+}
+
+}  // namespace
+}  // namespace lf::judge
