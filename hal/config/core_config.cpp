@@ -75,19 +75,6 @@ class Steps {
   std::vector<std::string>* problems_;
 };
 
-// The file that a key of the machine's file names.
-std::filesystem::path named_file(const Machine& machine, const char* key, const std::string& name) {
-  const std::filesystem::path folder = std::filesystem::path(machine.file).parent_path();
-  std::filesystem::path found = find_file(name, folder);
-  std::error_code ignored;
-  if (std::filesystem::exists(found, ignored)) return found;
-  const std::string places =
-      std::filesystem::path(name).is_absolute()
-          ? ""
-          : " in " + std::filesystem::absolute(folder).lexically_normal().string() + " nor in " + share_folder().string();
-  throw InputError(machine.file + ": '" + key + "': there is no " + name + places);
-}
-
 // The profiles of the joints' drives by their names in the machine's file. What is wrong with one is told once, by the first key that names it.
 std::map<std::string, DriveKind> read_profiles(const Machine& machine, const Steps& steps) {
   std::map<std::string, DriveKind> profiles;
@@ -177,8 +164,9 @@ arm::TransmissionSetup transmission_of(const ArmJoint& joint, double counts_per_
       {motor.coulomb_nm, motor.viscous_nm_s, joint.friction.efficiency, joint.friction.back_efficiency, friction_doubt, efficiency_doubt}};
 }
 
-// In thousandths of the description's rating. A motor's torque is capped a little above what an overload of the joint takes where the gear has the most lever, so that the overload can be seen; never
-// above its rating, which can be held for ever, and which drives without a reserve take. With the peak torque a grip off the bar's middle pushes three times as hard, and trips the drives' over-current guard.
+// In thousandths of the description's rating. A motor's torque is capped a little above what an overload of the joint takes where the gear has the most lever:
+// the overload can then be seen. It is never above the rating, which can be held for ever, and which drives without a reserve take. With the peak torque a
+// grip off the bar's middle pushes three times as hard, and trips the drives' over-current guard.
 std::uint16_t torque_cap_permille(const ArmJoint& joint, const safety::JointLimit& limit, const arm::TransmissionSetup& transmission) {
   const Motor motor = motor_of(joint, transmission.counts_per_rev);
   const arm::Friction& friction = transmission.friction;
@@ -439,7 +427,7 @@ void set_zeros(const Machine& machine, const std::filesystem::path& folder, cons
 // A mission's own limits, none of them wider than the machine's.
 void tighten(const Machine& machine, ControllerConfig& controller) {
   if (machine.mission_limits.empty()) return;
-  const std::string found = named_file(machine, "safety.mission_limits", machine.mission_limits);
+  const std::string found = named_file(machine.file, "safety.mission_limits", machine.mission_limits);
   const safety::Limits tighter = read_limits(found);
   if (!safety::is_tighter(tighter, controller.limits))
     throw InputError(found + ": 'safety.mission_limits' tightens limits, and one of these is wider than in 'safety.limits'");
@@ -451,8 +439,9 @@ Core assemble(const Machine& machine, const Steps& steps) {
   Core core;
   ControllerConfig& controller = core.controller;
   ArmDescription description;
-  const bool arm = steps.take([&] { description = load_arm_urdf(named_file(machine, "arm.urdf", machine.arm_urdf)); });
-  const bool limits = steps.take([&] { controller.limits = read_limits(named_file(machine, "safety.limits", machine.safety_limits)); });
+  const bool arm = steps.take([&] { description = load_arm_urdf(named_file(machine.file, "arm.urdf", machine.arm_urdf)); });
+  const bool limits =
+      steps.take([&] { controller.limits = read_limits(named_file(machine.file, "safety.limits", machine.safety_limits)); });
   controller.mission_limits = controller.limits;
   if (limits) steps.take([&] { tighten(machine, controller); });
   bool drives_known = false;
@@ -479,7 +468,7 @@ Core assemble(const Machine& machine, const Steps& steps) {
   controller.camera = camera_calibration(machine.camera);
   const bool camera = steps.take([&] {
     if (machine.camera_calibration.empty()) return;
-    read_intrinsics(named_file(machine, "camera.calibration", machine.camera_calibration), controller.camera.intrinsics);
+    read_intrinsics(named_file(machine.file, "camera.calibration", machine.camera_calibration), controller.camera.intrinsics);
   });
   controller.laser = laser_calibration(machine.laser);
   controller.marker = {machine.panel.marker_id, machine.panel.marker_size_m, machine.panel.panel_from_tag()};

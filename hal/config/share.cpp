@@ -44,4 +44,15 @@ fs::path find_file(const std::string& name, const fs::path& folder) {
   return fs::exists(shipped, ignored) ? shipped : folder / path;  // what is nowhere is missed where its user put it
 }
 
+fs::path named_file(const std::string& told_in, const char* key, const std::string& name) {
+  const fs::path folder = fs::path(told_in).parent_path();
+  fs::path found = find_file(name, folder);
+  std::error_code ignored;
+  if (fs::exists(found, ignored)) return found;
+  std::string places;
+  if (!fs::path(name).is_absolute())
+    places = " in " + fs::absolute(folder).lexically_normal().string() + " nor in " + share_folder().string();
+  throw InputError(told_in + ": '" + key + "': there is no " + name + places);
+}
+
 }  // namespace lf::config

@@ -1,11 +1,10 @@
 // The judge against runs made by hand: causes that come before any drive runs.
-#include "host_sim/judge/verdict.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
+#include "host_sim/judge/verdict.hpp"
 #include "tests/unit/judge/stopping.hpp"
 
 namespace lf::judge {
