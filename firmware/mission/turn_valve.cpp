@@ -12,8 +12,6 @@ namespace {
 constexpr double limit_margin_rad = 0.01;
 // After a turn the drives settle within their position loop's time constant of 50 ms.
 constexpr Duration settle = Duration::from_ms(300);
-// The bar is between the pads when this much of the way is done; touching before is running into something.
-constexpr double contact_expected = 0.8;
 // A free roll stands 0.018 rad behind its target, and the drive gives up at 0.15: what stays further behind for so long is held by something.
 constexpr double stalled_rad = 0.08;
 constexpr Duration stalled_for = Duration::from_ms(50);
@@ -115,8 +113,7 @@ Progress TurnValve::run_advance(const StepTick& tick) {
     return Progress::running();
   }
   bench.motion.stop();
-  if (bench.motion.elapsed_s() < contact_expected * bench.motion.duration_s()) return Progress::failed(StepFailure::early_contact);
-  return Progress::done();
+  return Progress::failed(StepFailure::early_contact);
 }
 
 void TurnValve::watch_on_hold(const StepTick& tick) {

@@ -86,6 +86,7 @@ class Sea {
         for (std::size_t i = 0; i < joint_count; ++i) actual_rad_[i] = loop_.world().readings()[i].position_rad;
         if (bus_off_.exchange(false)) link_.set_master_off(true);
         if (restarted_.exchange(false)) link_.set_master_off(false);
+        if (const std::uint32_t told = emcy_.exchange(0); told != 0) send_emcy(static_cast<std::uint8_t>(told >> 16), told & 0xFFFF);
       }
     });
   }
@@ -98,12 +99,23 @@ class Sea {
   double actual_rad(std::size_t joint) const { return actual_rad_[joint]; }
   void go_bus_off() { bus_off_ = true; }
   void come_back() { restarted_ = true; }
+  // The drive reports an error (CiA 301, EMCY), and does nothing else.
+  void report_error(std::size_t joint, std::uint16_t code) { emcy_ = std::uint32_t{can_map::drive_nodes[joint]} << 16 | code; }
 
  private:
+  void send_emcy(std::uint8_t node, std::uint32_t code) {
+    CanFrame frame;
+    frame.id = 0x80u + node;
+    frame.length = 8;
+    frame.data = {static_cast<std::uint8_t>(code), static_cast<std::uint8_t>(code >> 8), 1};
+    (void)link_.send({&frame, 1});
+  }
+
   PairLinux linux_;
   PairLink link_;
   serve::ServeLoop loop_;
   std::atomic<bool> stops_{false}, any_powered_{false}, bus_off_{false}, restarted_{false};
+  std::atomic<std::uint32_t> emcy_{0};  // node and code; 0: none
   std::array<std::atomic<double>, joint_count> actual_rad_{};
   std::thread thread_;
 };
@@ -141,8 +153,8 @@ class AssembledDaemon : public testing::Test {
   }
 
   void begin(bool one_job = false) { begin(one_job, silent_camera()); }
-  void begin(bool one_job, const std::string& camera) {
-    assemble(camera);
+  void begin(bool one_job, const std::string& camera, const std::string& more = "") {
+    assemble(camera, more);
     thread = std::thread([this, one_job] { well = daemon->run(signals, one_job); });
     wait_until("the operator interface", [this] {
       try {
@@ -152,11 +164,12 @@ class AssembledDaemon : public testing::Test {
       }
     });
   }
-  void assemble(const std::string& camera) {
+  // `more` are further sections of its configuration.
+  void assemble(const std::string& camera, const std::string& more = "") {
     const std::string text = "can: {interface: pair0}\ncamera: " + camera +
                              "\nrealtime: {priority: 0, lock_memory: false}\noperator: {socket: " + (folder / "operator.sock") +
                              "}\nlog: {folder: " + (folder / "log") + "}\nlock_folder: " + folder.path().string() +
-                             "\nestop: {input: " + (folder / "estop") + "}\nhoming: {file: homing.yaml}\n";
+                             "\nestop: {input: " + (folder / "estop") + "}\nhoming: {file: homing.yaml}\n" + more;
     config = std::make_unique<hal::VehicleConfig>(hal::load_vehicle_config(folder.write("vehicle.yaml", text)));
     hal::Daemon::Surroundings surroundings;
     surroundings.calls = bus.get();

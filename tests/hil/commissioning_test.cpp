@@ -341,31 +341,44 @@ TEST(CommissioningCalledOff, StopsAndEndsWithoutPower) {
   EXPECT_NEAR(bench.angles()[2], stood, 0.002);
 }
 
+// What befalls the elbow while it seeks its stop.
+struct Incident {
+  Time at, unpowered;
+  double until_unpowered_s() const { return (unpowered - at).s(); }
+};
+Incident interrupt(Bench& bench, Commissioning& commissioning, bool call_off, const std::function<void(Time)>& happen) {
+  Incident incident;
+  int ticks = 0;
+  bench.run(commissioning, [&] {
+    const Time now = bench.platform().now();
+    const bool happened = incident.at != Time{};
+    if (happened && incident.unpowered == Time{} && !bench.any_powered()) incident.unpowered = now;
+    if (!happened && commissioning.state() == Commissioning::State::seeking && ++ticks > 250) {
+      incident.at = now;
+      happen(now);
+    }
+    return call_off && incident.at != Time{};
+  });
+  return incident;
+}
+
 // Somebody takes the elbow out of operation by NMT while it moves: it hears no process data, and goes on pressing. NMT stops it, as in a mission.
 TEST(CommissioningCalledOff, StopsADriveThatHearsNoProcessData) {
   Bench bench(somewhere);
   Commissioning::Config config = bench.config();
   config.joints = {false, false, true, false, false};
   Commissioning commissioning(config);
-  Time called, unpowered;
-  int ticks = 0;
-  bench.run(commissioning, [&] {
-    const Time now = bench.platform().now();
-    if (called != Time{} && unpowered == Time{} && !bench.any_powered()) unpowered = now;
-    if (called == Time{} && commissioning.state() == Commissioning::State::seeking && ++ticks > 250) {
-      called = now;
-      CanFrame pre_operational;
-      pre_operational.length = 2;
-      pre_operational.data = {0x80, can_map::drive_nodes[2]};
-      bench.platform().devices().master_sends(pre_operational, now);
-    }
-    return called != Time{};
+  const Incident incident = interrupt(bench, commissioning, true, [&](Time now) {
+    CanFrame pre_operational;
+    pre_operational.length = 2;
+    pre_operational.data = {0x80, can_map::drive_nodes[2]};
+    bench.platform().devices().master_sends(pre_operational, now);
   });
   EXPECT_EQ(commissioning.failure(), "it was called off");
   EXPECT_FALSE(bench.any_powered());
   EXPECT_TRUE(commissioning.without_power());
-  EXPECT_GT((unpowered - called).s(), 0.01) << "it was not under power";
-  EXPECT_LT((unpowered - called).s(), 0.8) << "a heartbeat of 0.1 s, its ramp, and its restart";
+  EXPECT_GT(incident.until_unpowered_s(), 0.01) << "it was not under power";
+  EXPECT_LT(incident.until_unpowered_s(), 0.8) << "a heartbeat of 0.1 s, its ramp, and its restart";
 }
 
 // Another master's set points compete with a quick stop: the power goes at once.
@@ -374,23 +387,15 @@ TEST(CommissioningBesideAnotherMaster, LosesItsPowerAtOnce) {
   Commissioning::Config config = bench.config();
   config.joints = {false, false, true, false, false};
   Commissioning commissioning(config);
-  Time spoke, unpowered;
-  int ticks = 0;
-  bench.run(commissioning, [&] {
-    const Time now = bench.platform().now();
-    if (spoke != Time{} && unpowered == Time{} && !bench.any_powered()) unpowered = now;
-    if (spoke == Time{} && commissioning.state() == Commissioning::State::seeking && ++ticks > 250) {
-      spoke = now;
-      CanFrame rpdo;
-      rpdo.id = 0x200u + can_map::drive_nodes[0];
-      rpdo.length = 8;
-      commissioning.on_frame(rpdo, now);
-    }
-    return false;
+  const Incident incident = interrupt(bench, commissioning, false, [&](Time now) {
+    CanFrame rpdo;
+    rpdo.id = 0x200u + can_map::drive_nodes[0];
+    rpdo.length = 8;
+    commissioning.on_frame(rpdo, now);
   });
   EXPECT_EQ(commissioning.failure(), "another master is on the bus");
   EXPECT_TRUE(commissioning.without_power());
-  EXPECT_LT((unpowered - spoke).s(), 0.03) << "disable voltage acts two SYNC periods later; a ramp takes longer";
+  EXPECT_LT(incident.until_unpowered_s(), 0.03) << "disable voltage acts two SYNC periods later; a ramp takes longer";
 }
 
 TEST(CommissioningWithTheEmergencyStopOpen, EndsAndSaysSo) {

@@ -168,6 +168,24 @@ TEST_F(AssembledDaemon, GivesNoPowerToAJointThatWasNeverCommissioned) {
   EXPECT_EQ(ask("status")["without a zero"], "shoulder, elbow, roll, jaw");
 }
 
+// Its drive says that it has lost its position. It needs a zero again, and neither a reset nor a new job does without one.
+TEST_F(AssembledDaemon, TakesTheZeroOfADriveThatLostItsPosition) {
+  folder.write("mine.yaml", "title: mine\nlike: lanternfish\nposition_lost: [\"7320\"]\n");
+  begin(false, silent_camera(), "drives: {jaw: {profile: " + (folder / "mine.yaml") + "}}\n");
+  order("home");
+  ASSERT_TRUE(wait_standing("ready"));
+  EXPECT_FALSE(ask("status").contains("without a zero"));
+  sea->report_error(4, 0x7320);
+  ASSERT_TRUE(wait_standing("ended", 10));
+  ASSERT_TRUE(wait_unpowered(5));
+  order("reset");
+  ASSERT_TRUE(wait_standing("idle", 10));
+  wait_until(
+      "the lost zero", [&] { return ask("status").value("without a zero", "") == "jaw"; }, 5);
+  for (const char* request : {"start", "home"}) expect_refused(request, "jaw");
+  EXPECT_FALSE(sea->any_powered());
+}
+
 TEST_F(AssembledDaemon, CommissionsAJointAndUsesItsZero) {
   config::HomingOffsets offsets = config::read_homing_file(folder / "homing.yaml");
   offsets.known[4] = false;

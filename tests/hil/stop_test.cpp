@@ -175,6 +175,7 @@ INSTANTIATE_TEST_SUITE_P(InAnyOrder, StopAndShutDown,
 
 struct Loss {
   const char* name;
+  Moment when;
   const char* fault;  // as a scenario has it, without its time
   Fault seen;         // as the core names it
   std::int32_t code;  // the joint
@@ -184,17 +185,17 @@ void PrintTo(const Loss& loss, std::ostream* out) { *out << loss.name; }
 class LostDrive : public testing::TestWithParam<Loss> {};
 
 TEST_P(LostDrive, EndsWithoutPower) {
-  const Moment deploying{Step::deploy, 1.0, "deploying"};
+  const Moment& when = GetParam().when;
   double at_s = 0;
   {
     Rig rehearsal(turn_only());
-    ASSERT_TRUE(reach(rehearsal, deploying)) << rehearsal.story();
+    ASSERT_TRUE(reach(rehearsal, when)) << rehearsal.story();
     at_s = rehearsal.now().s();
   }
   std::vector<std::string> overrides = turn_only();
   overrides.push_back("faults=[{at_s: " + std::to_string(at_s) + ", " + GetParam().fault + "}]");
   Rig rig(overrides);
-  (void)reach(rig, deploying);  // the last tick of it may already see the loss
+  (void)reach(rig, when);  // the last tick of it may already see the loss
   const Times times = watch_stop(rig);
   ASSERT_GE(times.power_off_s, 0) << "a drive has power " << rig.story();
   EXPECT_LE(times.power_off_s, after_stop_s + 0.4);  // the master's heartbeat may have to be missed first
@@ -206,14 +207,23 @@ TEST_P(LostDrive, EndsWithoutPower) {
   RecordProperty("power_off_ms", static_cast<int>(times.power_off_s * 1e3));
 }
 
-INSTANTIATE_TEST_SUITE_P(WhileDeploying, LostDrive,
-                         testing::Values(Loss{"Faulted", "kind: overcurrent, node: elbow", Fault::drive_fault, 2},
-                                         Loss{"Silent", "kind: silent, node: shoulder", Fault::stale_position, 1},
-                                         Loss{"Rebooted", "kind: reboot, node: shoulder", Fault::stale_position, 1},
-                                         Loss{"HeartbeatLost", "kind: drop_frames, can_id: 1794", Fault::node_lost, 1},
-                                         Loss{"EncoderStuck", "kind: stuck_encoder, node: elbow", Fault::following_error, 2},
-                                         Loss{"PositionsLost", "kind: drop_frames, can_id: 386", Fault::stale_position, 1},
-                                         Loss{"MasterOffTheBus", "kind: bus_off, node: master", Fault::bus_off, 0}),
+constexpr Moment deploying{Step::deploy, 1.0, "Deploying"};
+constexpr Moment perceiving{Step::perceive, 0.02, "Perceiving"};  // the arm is to stand still
+constexpr Moment scanning{Step::scan, 1.5, "Scanning"};
+constexpr Moment advancing{Step::advance, 1.0, "Advancing"};  // a contact is told by its name here, and this is none
+INSTANTIATE_TEST_SUITE_P(AtOnce, LostDrive,
+                         testing::Values(Loss{"Faulted", deploying, "kind: overcurrent, node: elbow", Fault::drive_fault, 2},
+                                         Loss{"Silent", deploying, "kind: silent, node: shoulder", Fault::stale_position, 1},
+                                         Loss{"Rebooted", deploying, "kind: reboot, node: shoulder", Fault::stale_position, 1},
+                                         Loss{"HeartbeatLost", deploying, "kind: drop_frames, can_id: 1794", Fault::node_lost, 1},
+                                         Loss{"EncoderStuck", deploying, "kind: stuck_encoder, node: elbow", Fault::following_error, 2},
+                                         Loss{"EncoderStuckInTheSweep", scanning, "kind: stuck_encoder, node: elbow",
+                                              Fault::following_error, 2},
+                                         Loss{"RunawayAtRest", perceiving, "kind: runaway, node: shoulder", Fault::following_error, 1},
+                                         Loss{"RunawaySlewAtRest", perceiving, "kind: runaway, node: slew", Fault::following_error, 0},
+                                         Loss{"RunawayInTheAdvance", advancing, "kind: runaway, node: shoulder", Fault::following_error, 1},
+                                         Loss{"PositionsLost", deploying, "kind: drop_frames, can_id: 386", Fault::stale_position, 1},
+                                         Loss{"MasterOffTheBus", deploying, "kind: bus_off, node: master", Fault::bus_off, 0}),
                          [](const testing::TestParamInfo<Loss>& test) { return std::string(test.param.name); });
 
 TEST(StopAfterTheEnd, IsObeyedAndChangesNoOutcome) {

@@ -221,6 +221,20 @@ TEST(DriveProfileFile, ADriveThatMapsTooLittleIsRefusedWithTheNumber) {
             std::string::npos);
 }
 
+TEST(DriveProfileFile, CodesOfALostPositionAreEmcyCodes) {
+  EXPECT_EQ(problems_of(std::string(whole) + "position_lost: [\"7320\", \"FF02\"]\n"), "");
+  for (const char* wrong : {"\"732\"", "\"73200\"", "\"732G\"", "\"0000\""}) {
+    SCOPED_TRACE(wrong);
+    EXPECT_NE(problems_of(std::string(whole) + "position_lost: [" + wrong + "]\n").find("takes EMCY codes of 4 hex digits in quotes"),
+              std::string::npos);
+  }
+  std::string codes = "\"7320\"";
+  for (std::size_t i = 1; i < canopen::DriveProfile::max_position_lost; ++i) codes += ", \"7320\"";
+  EXPECT_EQ(problems_of(std::string(whole) + "position_lost: [" + codes + "]\n"), "");
+  EXPECT_NE(problems_of(std::string(whole) + "position_lost: [" + codes + ", \"7320\"]\n").find("more codes than the core holds, 16"),
+            std::string::npos);
+}
+
 TEST(DriveProfileFile, ErrorTextsAreTheDrivesElseTheStandards) {
   const DriveKind kind = find_drive_kind("epos4", "");
   EXPECT_EQ(kind.error_text(0x8A82), "software position limit");
