@@ -89,7 +89,7 @@ double Gripper::update(Time t, double jaw_rad, const TorqueEstimate& torque) {
   started_ = true;
   if (order_ != Order::none) begin(t, jaw_rad);
   if (state_ == GripperState::opening || state_ == GripperState::closing) move(t, jaw_rad, torque, dt_s);
-  if (state_ == GripperState::held) hold(jaw_rad, torque);
+  if (state_ == GripperState::held) hold(jaw_rad, torque, dt_s);
   if (state_ == GripperState::open) rest(t, jaw_rad, torque);
   return target_rad_;
 }
@@ -153,7 +153,7 @@ void Gripper::stalled(double jaw_rad, const TorqueEstimate& torque) {
   }
   if (-torque.high_nm < config_.grip_torque_nm) return;
   const double gap = gap_from_jaw(jaw_rad);
-  grip_rad_ = jaw_rad;
+  grip_rad_ = crept_rad_ = jaw_rad;
   grip_gap_m_ = gap;
   if (gap > config_.bar_m + config_.bar_tolerance_m) {
     state_ = GripperState::jammed;
@@ -167,9 +167,14 @@ void Gripper::stalled(double jaw_rad, const TorqueEstimate& torque) {
   }
 }
 
-void Gripper::hold(double jaw_rad, const TorqueEstimate& torque) {
+// Pads creep over a bar that turns between them, and snap shut when it has gone. A jaw that goes on closing then wedges the bar away, and the arm with it.
+void Gripper::hold(double jaw_rad, const TorqueEstimate& torque, double dt_s) {
   low_torque_run_ = -torque.low_nm < config_.hold_torque_nm ? low_torque_run_ + 1 : 0;
-  if (jaw_rad < grip_rad_ - config_.slip_rad || low_torque_run_ >= config_.low_torque_samples) state_ = GripperState::dropped;
+  crept_rad_ += (jaw_rad - crept_rad_) * (dt_s / (dt_s + config_.creep_s));
+  const bool slipped = jaw_rad < grip_rad_ - config_.slip_rad || jaw_rad < crept_rad_ - config_.snap_rad;
+  if (!slipped && low_torque_run_ < config_.low_torque_samples) return;
+  state_ = GripperState::dropped;
+  target_rad_ = jaw_rad;
 }
 
 }  // namespace lf::arm

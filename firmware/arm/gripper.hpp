@@ -42,6 +42,8 @@ struct GripperConfig {
   Duration lost_time = Duration::from_ms(300);      // so long without an answer; the jaw may have gone 0.15 rad meanwhile
   double wrong_way_rad = 0.05;                      // farther from the goal than it was by this: the drive goes its own way
   double slip_rad = 0.03;                           // closing further than this from the grip while holding: it slipped out
+  double snap_rad = 0.01;                           // the same, within `creep_s` or so
+  double creep_s = 0.3;                             // in which the pads' creep is followed
   Duration move_timeout = Duration::from_ms(8000);  // the full stroke takes 5.6 s at the closing speed
 };
 
@@ -89,7 +91,7 @@ class Gripper {
   void begin(Time t, double jaw_rad);
   void move(Time t, double jaw_rad, const TorqueEstimate& torque, double dt_s);
   void stalled(double jaw_rad, const TorqueEstimate& torque);
-  void hold(double jaw_rad, const TorqueEstimate& torque);
+  void hold(double jaw_rad, const TorqueEstimate& torque, double dt_s);
   void rest(Time t, double jaw_rad, const TorqueEstimate& torque);
 
   GripperConfig config_;
@@ -98,6 +100,7 @@ class Gripper {
   double goal_rad_ = 0;
   double target_rad_ = 0;
   double grip_rad_ = 0;
+  double crept_rad_ = 0;  // where the jaw holds, less what is fast
   double grip_gap_m_ = 0;
   double nearest_rad_ = 0;                      // to the goal, since the order
   double still_rad_ = 0;                        // where the jaw was when it last moved

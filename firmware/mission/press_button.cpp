@@ -107,7 +107,8 @@ Progress PressButton::run_press(const StepTick& tick) {
   const Progress motion = bench.follow_motion();
   bench.wound_up = bench.wound_up || guard_.touched() || feel_.touched();
   if (!guard_.touched() && !motion.is_done()) return motion;
-  if (guard_.touched()) bench.motion.stop();
+  // At once: a stop along its ramp goes on for millimetres, and the bottom gives way by none.
+  if (guard_.touched()) bench.stay_where_measured();
   TaskResult& result = bench.job.result();
   result.travel_m = feel_.travel_m();
   result.click_felt = feel_.clicked();

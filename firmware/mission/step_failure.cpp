@@ -12,7 +12,9 @@ struct Words {
 Words words(StepFailure failure) {
   switch (failure) {
     case StepFailure::none: return {"none", ""};
-    case StepFailure::unreachable: return {"unreachable", "Dock nearer to the nominal place: `reach` shows what the arm reaches."};
+    case StepFailure::unreachable:
+      return {"out of reach",
+              "Dock nearer to the nominal place, or start nearer: mission.approach_distance_m. `reach` shows what the arm reaches."};
     case StepFailure::no_motion: return {"no way there", "Something stands in every way that was tried: check the panel's layout."};
     case StepFailure::early_contact: return {"touched something before the aim", "Check the panel's layout and what hangs before it."};
     case StepFailure::no_contact: return {"nothing to touch where the aim should be", "Check the panel's layout."};

@@ -108,6 +108,14 @@ void check_motor(const JointDriveChoice& choice, std::size_t joint, const ArmJoi
         choice.counts_per_rev, ratio, ratio * choice.counts_per_rev / (2 * pi), joint_name(joint));
     throw InputError(where + ": " + text);
   }
+  if (choice.counts_per_rev < fewest_counts_per_rev) {
+    std::snprintf(
+        text, sizeof text,
+        "'counts_per_rev' is %.6g: the motor would turn %.3g times for a turn of the joint. At least %g counts are needed: with a "
+        "higher gear free motions are taken for contacts",
+        choice.counts_per_rev, ratio, fewest_counts_per_rev);
+    throw InputError(where + ": " + text);
+  }
   if (choice.rated_torque_nm == 0) return;
   const double expected_nm = motor_of(description, choice.counts_per_rev).rated_torque_nm;
   if (choice.rated_torque_nm <= canopen::same_motor_factor * expected_nm &&

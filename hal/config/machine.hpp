@@ -50,6 +50,9 @@ struct Vehicle {
                                                 {0.02, 0.45, 0.02, 0.02, 0.45, 0.02, 0.06}};
 };
 
+// In simulation, free motions were taken for contacts at 1.1.
+inline constexpr double fewest_counts_per_rev = 3;
+
 // The drive of one joint. What is 0 or empty is as for all, see Drives.
 struct JointDriveChoice {
   std::int64_t node = 0;

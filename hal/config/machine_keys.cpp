@@ -59,7 +59,7 @@ void add_vehicle(Keys& all, Vehicle& v) {
 void add_drives(Keys& all, Drives& d) {
   constexpr double most_counts = 1e6, most_nm = 1000, most_a = 1000;
   all.push_back(key("drives.profile", "", 0, 0, &d.profile, "make of the joints' drives: a shipped profile's name, or a file"));
-  all.push_back(key("drives.counts_per_rev", "counts", 1, most_counts, &d.counts_per_rev,
+  all.push_back(key("drives.counts_per_rev", "counts", fewest_counts_per_rev, most_counts, &d.counts_per_rev,
                     "the arm's counts in a revolution of a motor: fewer than in a turn of the joint"));
   all.push_back(key("drives.rated_current_a", "A", 0, most_a, &d.rated_current_a,
                     "a motor's current at its rated torque, for drives that count in it; 0: not stated"));

@@ -66,6 +66,21 @@ TEST(AButtonOfALongStroke, ClicksOnceAndIsNoContactOnTheWayBack) {
   }
 }
 
+// A stop along its ramp wound the arm up against the bottom: 155 N, and an overload where the torque that says bottom was set high.
+TEST(APress, StopsWhereItFindsTheBottom) {
+  for (const char* torque_nm : {"4", "7", "14.94", "20"}) {
+    SCOPED_TRACE(torque_nm);
+    std::vector<std::string> scenario = press("centre");
+    scenario.push_back(std::string("mission.press_torque_nm=") + torque_nm);
+    Rig rig(scenario, 57);
+    rig.start();
+    ASSERT_TRUE(rig.run_to_end()) << rig.story();
+    EXPECT_TRUE(rig.outcome().success) << rig.story();
+    EXPECT_EQ(rig.world().button(1).presses, 1u) << rig.story();
+    EXPECT_LT(rig.world().contacts().peak_force_n, 140);
+  }
+}
+
 // After a valve the jaw closes for the second look. Something gets between the fingers there: as thick as the bar it looks held, thicker it jams them.
 TEST(APress, IsNotBegunWithSomethingBetweenTheFingers) {
   const double widest_rad = arm_geometry::joints[4].upper_rad;

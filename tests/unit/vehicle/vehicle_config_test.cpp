@@ -143,6 +143,8 @@ TEST(VehicleConfig, CountsThatLeaveNoGearAreRefusedWithTheReason) {
   EXPECT_THAT(problems_of(folder.write("v.yaml", "drives: {elbow: {counts_per_rev: 1000000}}\n")),
               ElementsAre(HasSubstr("drives.elbow: 'counts_per_rev' is 1e+06: the motor would turn 0.0")));
   EXPECT_THAT(problems_of(folder.write("v.yaml", "drives: {elbow: {counts_per_rev: 128}}\n")), IsEmpty());
+  EXPECT_THAT(problems_of(folder.write("v.yaml", "drives: {elbow: {counts_per_rev: 1.5}}\n")),
+              ElementsAre(HasSubstr("At least 3 counts are needed")));
 }
 
 // 32 bits hold no such positions; without the refusal they would be held at their end, and the joint would stop short.
