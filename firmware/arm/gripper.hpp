@@ -42,8 +42,8 @@ struct GripperConfig {
   Duration lost_time = Duration::from_ms(300);      // so long without an answer; the jaw may have gone 0.15 rad meanwhile
   double wrong_way_rad = 0.05;                      // farther from the goal than it was by this: the drive goes its own way
   double slip_rad = 0.03;                           // closing further than this from the grip while holding: it slipped out
-  double snap_rad = 0.01;                           // the same, within `creep_s` or so
-  double creep_s = 0.3;                             // in which the pads' creep is followed
+  double snap_rad = 0.01;                           // the same, at once: faster than pads creep
+  double creep_s = 0.3;                             // pads that creep by less than snap_rad in this time hold: 0.033 rad/s; 0.013 was seen
   Duration move_timeout = Duration::from_ms(8000);  // the full stroke takes 5.6 s at the closing speed
 };
 

@@ -174,7 +174,7 @@ arm::JointVector Workbench::pushed_target() const {
 }
 
 void Workbench::stay_where_measured() {
-  if (!watch.joints().valid) return;
+  if (!watch.joints().valid) return motion.stop();
   motion.start_at(measured_rad());
   compliance.reset();
 }

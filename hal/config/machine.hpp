@@ -50,7 +50,7 @@ struct Vehicle {
                                                 {0.02, 0.45, 0.02, 0.02, 0.45, 0.02, 0.06}};
 };
 
-// In simulation, free motions were taken for contacts at 1.1.
+// In simulation free motions were taken for contacts at 1.1, and at 3 they were not.
 inline constexpr double fewest_counts_per_rev = 3;
 
 // The drive of one joint. What is 0 or empty is as for all, see Drives.
