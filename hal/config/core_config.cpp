@@ -16,6 +16,7 @@
 #include "hal/config/homing_file.hpp"
 #include "hal/config/limits_file.hpp"
 #include "hal/config/machine.hpp"
+#include "hal/config/motor_check.hpp"
 #include "hal/config/share.hpp"
 #include "hal/config/sweep_check.hpp"
 #include "hal/vision/calibration_file.hpp"
@@ -93,41 +94,6 @@ std::map<std::string, DriveKind> read_profiles(const Machine& machine, const Ste
     });
   }
   return profiles;
-}
-
-// Figures of a motor that its joint cannot have. A gear that is wrong shows in the ratio, a torque that is the joint's and not the motor's in the rating.
-void check_motor(const JointDriveChoice& choice, std::size_t joint, const ArmJoint& description, const std::string& where) {
-  constexpr double direct_drive = 0.999;  // a ratio of 1, computed
-  char text[320];
-  const double ratio = best_motor_ratio(description, choice.counts_per_rev);
-  if (ratio < direct_drive) {
-    std::snprintf(
-        text, sizeof text,
-        "'counts_per_rev' is %.6g: the motor would turn %.3g times for a turn of the joint, and a gear slows down. It is how many of the "
-        "arm's counts (%.4g to a radian of the %s at most) go to a revolution of the motor, not the encoder's resolution",
-        choice.counts_per_rev, ratio, ratio * choice.counts_per_rev / (2 * pi), joint_name(joint));
-    throw InputError(where + ": " + text);
-  }
-  if (choice.counts_per_rev < fewest_counts_per_rev) {
-    std::snprintf(
-        text, sizeof text,
-        "'counts_per_rev' is %.6g: the motor would turn %.3g times for a turn of the joint. At least %g counts are needed: with a "
-        "higher gear free motions are taken for contacts",
-        choice.counts_per_rev, ratio, fewest_counts_per_rev);
-    throw InputError(where + ": " + text);
-  }
-  if (choice.rated_torque_nm == 0) return;
-  const double expected_nm = motor_of(description, choice.counts_per_rev).rated_torque_nm;
-  if (choice.rated_torque_nm <= canopen::same_motor_factor * expected_nm &&
-      choice.rated_torque_nm >= expected_nm / canopen::same_motor_factor)
-    return;
-  std::snprintf(
-      text, sizeof text,
-      "'rated_torque_nm' is %.4g N m: the arm's description rates the joint at %.4g N m, which is %.4g N m at the motor, through a ratio "
-      "of %.4g. "
-      "State the motor's own rated torque, without its gear; if this motor is right, correct the rated torque of the arm's description",
-      choice.rated_torque_nm, description.rated_torque_nm, expected_nm, ratio);
-  throw InputError(where + ": " + text);
 }
 
 // The profile's units, objects and option codes, and the machine's node numbers.
