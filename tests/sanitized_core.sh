@@ -16,7 +16,7 @@ fi
 programs=("$@")
 [ $# -gt 0 ] || programs=(test_canopen test_safety test_arm test_mission test_scan test_hil_daemon)
 # Of the daemon's clock: its programs are some three times slower than without.
-export LANTERNFISH_SLOWDOWN=${LANTERNFISH_SLOWDOWN:-12}
+export LANTERNFISH_SLOWDOWN=${LANTERNFISH_SLOWDOWN:-8}
 build=build/core-asan
 mkdir -p "$build"
 exec 9>"$build/lock"
