@@ -129,7 +129,8 @@ class Judge {
   // Of all causes that have to stop the arm, the one by which it has to be stopped first.
   std::optional<Deadline> strictest() const {
     std::optional<Deadline> strictest;
-    const std::size_t stops = static_cast<std::size_t>(std::count_if(situation_.causes.begin(), situation_.causes.end(), demands_stop));
+    const std::size_t stops = static_cast<std::size_t>(
+        std::count_if(situation_.causes.begin(), situation_.causes.end(), [this](const Cause& c) { return demands_stop(c); }));
     for (std::size_t i = 0; i < situation_.causes.size(); ++i) {
       const Cause& cause = situation_.causes[i];
       if (!demands_stop(cause) || (stops > 1 && never_heard(i))) continue;
@@ -147,7 +148,14 @@ class Judge {
     return strictest;
   }
 
-  static bool demands_stop(const Cause& cause) { return cause.rule->demand == Demand::stop; }
+  bool demands_stop(const Cause& cause) const { return cause.rule->demand == Demand::stop && !lost_on_its_way(cause); }
+
+  // Another master's process data for a node whose process data are lost already: nobody hears them.
+  bool lost_on_its_way(const Cause& cause) const {
+    return cause.rule->kind == "foreign_rpdo" && has([&](const Cause& other) {
+             return loses_process_data(other) && node_index(other.node) == node_index(cause.node) && begins_s(other) <= begins_s(cause);
+           });
+  }
 
   // The frame that tells of this cause was never sent, or came when the master heard nothing any more. Another cause has stopped the arm, or has to.
   bool never_heard(std::size_t index) const {
@@ -200,6 +208,11 @@ class Judge {
     return bits;
   }
 
+  // Their process data are lost both ways, and nothing else.
+  std::uint8_t joints_unreached() const {
+    return static_cast<std::uint8_t>(joints_that(loses_process_data) & joints_that(is_unheard) & ~joints_that(cut_off));
+  }
+
   bool master_is_cut_off() const { return has(cuts_off_the_master); }
 
   void forces() {
@@ -219,7 +232,12 @@ class Judge {
     verdict_.stop_ms = (on_bus_s - deadline.at_s) / ms;
     if (on_bus_s > deadline.end_s() + ms) wrong(formatted("still told to run %.0f ms after the report", *verdict_.stop_ms));
     const bool halts = deadline.cause != nullptr && deadline.cause->rule->report == Report::halt;
-    const double by_nmt_s = told_to_run_s(untold), late_s = halts ? figures_.unheeded_lowering_s : figures_.unheeded_stop_s;
+    const std::uint8_t unreached = joints_unreached();
+    const double by_restart_s = told_to_run_s(unreached);
+    if (by_restart_s > deadline.end_s() + figures_.unreached_off_s + ms)
+      wrong(formatted("still runs unreached %.0f ms after the report", (by_restart_s - deadline.at_s) / ms));
+    const double by_nmt_s = told_to_run_s(untold & static_cast<std::uint8_t>(~unreached));
+    const double late_s = halts ? figures_.unheeded_lowering_s : figures_.unheeded_stop_s;
     if (by_nmt_s > deadline.end_s() + late_s + ms)
       wrong(formatted("still runs without process data %.0f ms after the report", (by_nmt_s - deadline.at_s) / ms));
     const double from_s = std::min(on_bus_s, deadline.end_s());
@@ -303,12 +321,16 @@ class Judge {
     // A drive holds a joint that swings in its gear until its ramp has ended.
     const double swung_s = last_s(moments_, from_s, [this](const Moment& m) { return m.power != 0 && swings(m); });
     const double standing_s = std::max(from_s + verdict_.standing_s.value_or(0), swung_s);
-    const auto untold = static_cast<std::uint8_t>(joints_that(loses_process_data) & ~joints_that(cut_off));
+    auto untold = static_cast<std::uint8_t>(joints_that(loses_process_data) & ~joints_that(cut_off));
     const auto reachable = static_cast<std::uint8_t>(master_is_cut_off() ? 0 : ~(joints_that(cut_off) | untold));
     const auto powered_s = [&](std::uint8_t joints) {
       return last_s(moments_, from_s, [&](const Moment& m) { return (m.power & joints) != 0; });
     };
     const double reached_off_s = powered_s(reachable);
+    const std::uint8_t unreached = joints_unreached();
+    if (!master_is_cut_off() && powered_s(unreached) - from_s > figures_.unreached_off_s + ms)
+      wrong(formatted("power is off %.2f s after the stop of a drive that nothing reaches", powered_s(unreached) - from_s));
+    untold &= static_cast<std::uint8_t>(~unreached);
     const double late_s = halts ? figures_.unheeded_lowering_s : figures_.unheeded_off_s;
     if (!master_is_cut_off() && powered_s(untold) - standing_s > figures_.off_after_standing_s + late_s + ms)
       wrong(formatted("power is off %.2f s after standing without process data", powered_s(untold) - standing_s));
@@ -345,7 +367,7 @@ class Judge {
 
   void nothing_moves() {
     // What has rebooted is booted again.
-    const auto ends_it = [](const Cause& cause) { return demands_stop(cause) && cause.rule->kind != "reboot"; };
+    const auto ends_it = [this](const Cause& cause) { return demands_stop(cause) && cause.rule->kind != "reboot"; };
     if (!has(ends_it)) return;
     // While a drive's fault is reset the others are enabled. One of them that runs off is a fault of its own: it loses its power in the time of a stop.
     const std::optional<double> ends_s = powering_up_ends_s(ends_it);

@@ -195,5 +195,33 @@ TEST(VerdictOfSeveral, OnlyTheChainStopsWhatAnotherMasterHasTakenOver) {
   EXPECT_FALSE(wrong("hot slew", 0.05, "foreign_master").empty());
 }
 
+// Nobody hears the other master, ours included: there is no stop to judge.
+TEST(VerdictOfSeveral, AnotherMastersFrameThatIsLostOnItsWayStopsNobody) {
+  const auto wrong = [](const char* lost) {
+    Seen seen = Stopping{.stop_ms = 900}.seen();
+    seen.fault_reported_s.reset();
+    return judge(seen, situation_of(cause_of(lost), cause_of("foreign_rpdo elbow")), failed("step failed")).wrong;
+  };
+  EXPECT_THAT(wrong("drop_frames rpdo elbow"), IsEmpty());
+  EXPECT_THAT(wrong("drop_frames rpdo slew"), testing::Not(IsEmpty())) << "another node's";
+  EXPECT_THAT(wrong("drop_frames (one frame) rpdo elbow"), testing::Not(IsEmpty())) << "those that follow arrive";
+}
+
+TEST(VerdictOfSeveral, ADriveWhoseProcessDataAreLostBothWaysIsRestartedInItsTime) {
+  const auto wrong = [](int off_ms) {
+    const Situation situation = situation_of(cause_of("drop_frames rpdo elbow"), cause_of("drop_frames tpdo elbow"));
+    Stopping stopping{.stop_ms = 32};
+    Seen seen = stopping.seen();
+    const auto elbow = static_cast<std::uint8_t>(1u << 2);
+    for (std::size_t i = 0; i < seen.moments.size(); ++i) {
+      const bool before = static_cast<int>(i) < off_ms;
+      seen.moments[i].power = static_cast<std::uint8_t>(before ? seen.moments[i].power | elbow : seen.moments[i].power & ~elbow);
+    }
+    return judge(seen, situation, failed("stale position: elbow")).wrong;
+  };
+  EXPECT_THAT(wrong(700), IsEmpty());
+  EXPECT_THAT(wrong(900), testing::Contains(testing::EndsWith("s after the stop of a drive that nothing reaches")));
+}
+
 }  // namespace
 }  // namespace lf::judge
