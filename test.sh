@@ -1,12 +1,14 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds everything and runs the tests. At the end it lists the tests that were skipped, with their reasons.
 # Usage: ./test.sh [PRESET [ctest arguments]]    PRESET: release, debug, asan, tsan; aarch64: the vehicle's side for 64-bit ARM, its unit tests under qemu-user
-# Without a preset: release, less the tests in real time, which take a machine to themselves for eleven minutes. `./test.sh release` has those, too.
+# Without a preset: release, less the tests in real time, which take a machine to themselves for eleven minutes, and those of the packages. `./test.sh release`
+# has those, too.
 # Environment: LANTERNFISH_SKIPS_ALLOWED=N, more than N skipped tests are a failure (default: any number may be).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
-in_real_time='vcan|qemu|realtime'
-[ $# -gt 0 ] || set -- release -LE "$in_real_time"
+others='vcan|qemu|realtime|package'
+# One of them sleeps more than it works.
+[ $# -gt 0 ] || set -- release -LE "$others" -j3
 preset=$1
 shift
 if [ "$preset" = aarch64 ]; then
@@ -19,7 +21,7 @@ cmake --preset "$preset"
 cmake --build --preset "$preset" -- --quiet
 report=$PWD/build/$preset/tests.xml
 rm -f "$report"
-[ "$*" != "-LE $in_real_time" ] || echo "test: without the tests in real time; ./test.sh release -L '$in_real_time' runs them"
+[[ "$*" != *"$others"* ]] || echo "test: without the tests in real time and of the packages; ./test.sh release -L '$others' runs them"
 status=0
 ctest --preset "$preset" --output-junit "$report" "$@" || status=$?
 [ ! -e "$report" ] || tests/count_skips.py "$report" ${LANTERNFISH_SKIPS_ALLOWED:+--at-most "$LANTERNFISH_SKIPS_ALLOWED"} || status=1
