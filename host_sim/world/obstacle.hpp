@@ -1,5 +1,5 @@
 // A box that something pushes against the arm: a cable, kelp with a stone in it. It floats: pushed to the right, it gives way to all sides and slides off what
-// is oblique, so that it presses on nothing with more than the push and its own momentum. It does not turn. Internal to this folder.
+// is oblique, so that it presses on what stands with no more than the push and its own momentum; what moves against it feels the water's drag, too. It does not turn. Internal to this folder.
 #pragma once
 
 #include "host_sim/world/multibody_part.hpp"

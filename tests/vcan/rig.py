@@ -75,8 +75,8 @@ def wait_for(what, condition, limit_s, poll_s=0.02, daemon=None):
 
 
 def expect_not_stopped(status, gap_s, message):
-    """The mission was not ended or held by a fault; one that has nothing more to do parks its arm. Where its fault is one that a machine makes by standing still, and the listener on the bus (`gap_s`, its
-    longest silence) saw that, too, it is TooLate."""
+    """The mission was not ended or held by a fault; one that has nothing more to do parks its arm. Where its fault is one that a machine makes by standing
+    still, and the listener on the bus (`gap_s`, its longest silence) saw that, too, it is TooLate."""
     if status["standing"] in ("working", "ready") or status.get("success"):
         return
     if status["standing"] == "leaving" and not status.get("failure"):
