@@ -218,7 +218,8 @@ Progress Workbench::follow_back_off(const StepTick& tick) {
     return Progress::running();
   }
   motion.stop();
-  return Progress::failed(StepFailure::touched_on_the_way_back);
+  // Not gone back again: what floats gives way, and a mission that touched something would end in success.
+  return Progress::failed_for_good(StepFailure::touched_on_the_way_back);
 }
 
 void StepTick::event(Event::Kind kind, double value) const {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware/arm/actuator.hpp"
+
 namespace lf::safety {
 
 namespace {
@@ -110,11 +112,19 @@ void Power::tick(const JointStates& joints, Time now, canopen::Network& network)
   }
 }
 
+// Of the quick stop, 6085.
+Duration Power::ramp(const JointStates& joints, std::size_t joint, const canopen::Network& network) {
+  const std::uint32_t counts_s2 = network.config().drives[joint].quick_stop_counts_s2;
+  if (counts_s2 == 0) return unknown_ramp;
+  const double counts_per_rad = 1 / std::abs(arm::rad_per_count(static_cast<Joint>(joint), joints.position_rad[joint]));
+  return Duration::from_s(std::abs(joints.velocity_rad_s[joint]) * counts_per_rad / counts_s2);
+}
+
 bool Power::standing(const JointStates& joints, Time now, const canopen::Network& network) {
   bool all = true;
   for (std::size_t i = 0; i < joint_count; ++i) {
     if (!joints.fresh[i]) {
-      all = all && now - since_ >= silent_ramp;
+      all = all && now - since_ >= ramp(joints, i, network) + silent_margin;
       continue;
     }
     const double rad = joints.position_rad[i];

@@ -45,8 +45,10 @@ class Power {
   // A joint stands when it has moved by no more than `still_rad`, or by one count of its encoder, for so long: 0.02 rad/s.
   static constexpr Duration still_time = Duration::from_ms(50);
   static constexpr double still_rad = 0.001;
-  // A joint whose drive is silent is taken for standing when its ramp is over: the longest of the default machine, the roll's from 0.7 rad/s, takes 0.2 s.
-  static constexpr Duration silent_ramp = Duration::from_ms(250);
+  // A joint whose drive is silent is taken for standing when the ramp from its last known speed is over, and this: the order's way, and `still_time`.
+  static constexpr Duration silent_margin = heed_time + still_time;
+  // Its ramp where the drive's own deceleration is not known.
+  static constexpr Duration unknown_ramp = Duration::from_ms(250);
   // The longest that a drive may take to hear of it: 250 SYNC periods.
   static constexpr Duration blind_time = Duration::from_ms(1000);
   // Four handshakes of three SYNC periods are 48 ms; most brakes take up to half a second to close. A drive keeps its torque for as long as its own takes,
@@ -72,6 +74,7 @@ class Power {
 
  private:
   bool standing(const JointStates& joints, Time now, const canopen::Network& network);
+  static Duration ramp(const JointStates& joints, std::size_t joint, const canopen::Network& network);
   bool confirmed(Time now, const canopen::Network& network) const;
   // Stops or restarts by NMT what does not heed its process data.
   void insist(Time now, canopen::Network& network);

@@ -281,7 +281,7 @@ class Judge {
   // A joint whose motor stands may be pulled through its gear's play, or unwind it, as by a bar in the jaw: for a time, and by what the gear gives. Who is
   // pushed winds it up by as much as the push.
   bool joint_moves(const Moment& moment, std::size_t joint, double unwound_s) const {
-    if (motor_moves(moment, joint)) return true;
+    if (motor_moves(moment, joint) && !settles_without_power(moment, joint)) return true;
     if (moment.speed_rad_s[joint] < figures_.standing_rad_s || pushed_at(moment)) return false;
     if (std::abs(moment.angle_rad[joint] - moment.motor_rad[joint]) > situation_.gear_gives_rad[joint]) return true;
     if (time_s(moment) <= unwound_s || !travels_in_a_moment(moment, &Moment::angle_rad, joint)) return false;
@@ -300,6 +300,19 @@ class Judge {
     const auto [low, high] = std::minmax_element(moments_.begin() + std::max<std::ptrdiff_t>(0, index - around_ms),
                                                  moments_.begin() + std::min(size, index + around_ms + 1), by_angle);
     return ((*high).*rad)[joint] - ((*low).*rad)[joint] >= figures_.standing_rad_s * 2 * static_cast<double>(around_ms) * ms;
+  }
+
+  // A screw under a load settles when its drive lets go of it: at that moment, and by no more than its gear gives.
+  bool settles_without_power(const Moment& moment, std::size_t joint) const {
+    constexpr std::ptrdiff_t settling_ms = 50, seen_before_ms = 10;
+    const std::ptrdiff_t index = &moment - moments_.data(), size = std::ssize(moments_);
+    const std::size_t bit = std::size_t{1} << joint;
+    for (auto t = std::max<std::ptrdiff_t>(1, index - settling_ms); t < std::min(size, index + seen_before_ms + 1); ++t) {
+      const Moment &before = moments_[t - 1], &after = moments_[t];
+      if ((before.power & bit) == 0 || (after.power & bit) != 0) continue;
+      return std::abs(moment.motor_rad[joint] - before.motor_rad[joint]) <= situation_.gear_gives_rad[joint];
+    }
+    return false;
   }
 
   // A motor that runs through its gear's play is faster than its joint, and it is what brakes.

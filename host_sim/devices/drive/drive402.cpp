@@ -247,8 +247,10 @@ void Drive402::begin_ramp() {
   const bool jumped = std::abs(velocity - ramp_counts_s_) > jump_of_top * top_speed();
   const bool follows = !jumped && std::abs(demand - actual) <= loop_.lag_counts(velocity);
   if (follows || config_.switches.ramps_from_demand) return profile_.move(demand, velocity);
-  profile_.move(actual, std::clamp(ramp_counts_s_, -top_speed(), top_speed()));
-  loop_.take_up(ramp_counts_s_ * rad_per_count_);
+  const double top_counts_s = std::min(top_speed(), config_.max_velocity_rad_s / std::abs(rad_per_count_));
+  const double from_counts_s = std::clamp(ramp_counts_s_, -top_counts_s, top_counts_s);
+  profile_.move(actual, from_counts_s);
+  loop_.take_up(from_counts_s * rad_per_count_);
 }
 
 void Drive402::enter(DriveState state) {
@@ -275,11 +277,12 @@ void Drive402::enter(DriveState state) {
   }
 }
 
-void Drive402::fault(std::uint16_t code, Time now) {
+void Drive402::fault(std::uint16_t code, std::int64_t option, Time now) {
   if (state_ == DriveState::fault_reaction_active || state_ == DriveState::fault) return;
   o_.error_code.value = code;
-  const bool reaction = powered() && o_.fault_option.value != 0;
-  brake_ = o_.fault_option.value != 0;
+  reaction_option_ = option;
+  const bool reaction = powered() && option != 0;
+  brake_ = option != 0;
   ramping_ = false;
   enter(reaction ? DriveState::fault_reaction_active : DriveState::fault);
   node_.raise(code, now);
@@ -289,8 +292,10 @@ void Drive402::connection_lost(std::uint16_t code, Time now) {
   if (config_.switches.ignores_lost_master && code == emcy::heartbeat) return;
   const bool by_master = code == emcy::stopped_by_master;
   if (by_master && state_ != DriveState::operation_enabled) return;
+  const bool faults = config_.habit != nullptr && config_.habit->lost_master_faults && !config_.switches.holds_without_master && !by_master;
+  if (faults) return fault(code, o_.abort_option.value == 3 ? quick_stop_ramp : 0, now);
   switch (o_.abort_option.value) {
-    case 1: return fault(code, now);
+    case 1: return fault(code, o_.fault_option.value, now);
     case 2:
     case 3: {
       const Command command = o_.abort_option.value == 2 ? Command::disable_voltage : Command::quick_stop;
@@ -303,15 +308,16 @@ void Drive402::connection_lost(std::uint16_t code, Time now) {
 }
 
 void Drive402::watch(Time now) {
-  if (faults_.overcurrent || winding_.overloaded()) fault(emcy::overcurrent, now);
-  if (faults_.hot || winding_.celsius() > config_.trip_celsius) fault(emcy::hot, now);
-  if (config_.habit != nullptr && config_.habit->limits_fault && limited_) fault(emcy::software_limit, now);
+  const std::int64_t option = o_.fault_option.value;
+  if (faults_.overcurrent || winding_.overloaded()) fault(emcy::overcurrent, option, now);
+  if (faults_.hot || winding_.celsius() > config_.trip_celsius) fault(emcy::hot, option, now);
+  if (config_.habit != nullptr && config_.habit->limits_fault && limited_) fault(emcy::software_limit, option, now);
   if (without_sync(now)) {
     node_.raise(emcy::pdo_timeout, now);
     connection_lost(emcy::pdo_timeout, now);
   }
   following_ms_ = follows_badly() ? following_ms_ + 1 : 0;
-  if (following_ms_ > o_.following_time_ms.value) fault(emcy::following, now);
+  if (following_ms_ > o_.following_time_ms.value) fault(emcy::following, option, now);
 }
 
 // An interpolating drive that gets no target for some of its periods, 60C2.

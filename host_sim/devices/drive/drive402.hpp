@@ -70,7 +70,8 @@ class Drive402 : private Application {
   void reset_fault(Time now);
   void begin_ramp();
   void enter(DriveState state);
-  void fault(std::uint16_t code, Time now);
+  // `option`: how it stops, as 605E numbers it.
+  void fault(std::uint16_t code, std::int64_t option, Time now);
   void watch(Time now);
   bool follows_badly() const;
   void change_mode();
@@ -81,6 +82,8 @@ class Drive402 : private Application {
   JointDrive actuate();
   void publish();
   std::int64_t mode_bits() const;
+
+  static constexpr std::int64_t quick_stop_ramp = 2;  // 605E
 
   bool ramp_wanted(DriveState next) const;
   bool powered() const;
@@ -106,6 +109,7 @@ class Drive402 : private Application {
   DriveState state_ = DriveState::not_ready;
   bool ramping_ = false;  // slowing down in a state that is already without operation
   bool brake_ = false;
+  std::int64_t reaction_option_ = 0;  // of the fault under way
   std::int64_t mode_ = 0;
   std::uint16_t last_controlword_ = 0;
   Time last_sync_;

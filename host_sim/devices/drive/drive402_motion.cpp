@@ -48,7 +48,7 @@ void Drive402::generate(Time now) {
   const auto deceleration = static_cast<double>(o_.profile_deceleration.value);
   const auto quick = static_cast<double>(o_.quick_stop_deceleration.value);
   if (state_ == DriveState::quick_stop_active) return profile_.stop(o_.quick_stop_option.value % 4 == 2 ? quick : deceleration, step_s);
-  if (state_ == DriveState::fault_reaction_active) return profile_.stop(o_.fault_option.value == 2 ? quick : deceleration, step_s);
+  if (state_ == DriveState::fault_reaction_active) return profile_.stop(reaction_option_ == quick_stop_ramp ? quick : deceleration, step_s);
   if (ramping_) return profile_.stop(deceleration, step_s);
   if (state_ != DriveState::operation_enabled) return profile_.hold(static_cast<double>(o_.position_actual.value));
   if (mode_ == mode_cyclic_position) return profile_.move(cyclic_.position(now), cyclic_.velocity(now));

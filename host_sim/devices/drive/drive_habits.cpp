@@ -20,6 +20,7 @@ constexpr DriveHabit epos4(const char* name, const char* dictionary) {
   h.abort_values = only(2) | only(3);
   h.brake_opens_ms = 10;
   h.limits_fault = true;
+  h.lost_master_faults = true;
   return h;
 }
 

@@ -44,6 +44,8 @@ struct DriveHabit {
   int brake_opens_ms = 0;
   bool cyclic_position = true;  // it has mode 8
   bool limits_fault = false;    // a target outside of 607D is a fault 8A82, not a clamped target
+  // What it loses its master by (8130, 8250, 81FD) is a fault with 6007's reaction: it ends without power, whatever 605A says.
+  bool lost_master_faults = false;
 };
 
 // What a maker's documents leave open. Each is one way by default, and tests try the other.
@@ -53,6 +55,7 @@ struct DriveSwitches {
   bool faults_without_sync = false;   // iPOS, Ingenia, LMDrive
   bool speeds_in_rpm = false;         // LMDrive
   bool ignores_lost_master = false;   // Eyou, which has no 6007
+  bool holds_without_master = false;  // EPOS4: no fault, and power after its quick stop
   bool ramps_from_demand = false;     // of every make: its stop makes up for the following error
 };
 

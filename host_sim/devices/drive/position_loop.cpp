@@ -8,6 +8,7 @@ namespace {
 
 constexpr double over_stiction = 1.05;   // a pulse must move the joint for certain
 constexpr double still = 0.02;           // of the stiction speed: a filtered feed-forward below it is none
+constexpr double ramp_reserve = 1.25;    // a drive's torque beyond what its own ramp takes: it catches up with it
 constexpr double braking_reserve = 0.7;  // of the acceleration is planned with, the rest is the loop's
 
 }  // namespace
@@ -30,16 +31,16 @@ double PositionLoop::step(double demand, double demand_velocity, double actual, 
     saturated_ = false;
     return 0;
   }
-  return pulse(wanted(error_counts * rad_per_count, error_counts, dt_s), dt_s);
+  return pulse(wanted(error_counts * rad_per_count, error_counts, (smooth ? ramp_reserve : 1) * config_.max_acceleration_rad_s2 * dt_s),
+               dt_s);
 }
 
 // Proportional near the target; far from it no faster than the acceleration can brake.
-double PositionLoop::wanted(double error_rad, double error_counts, double dt_s) {
+double PositionLoop::wanted(double error_rad, double error_counts, double step) {
   const double braking = std::sqrt(2 * braking_reserve * config_.max_acceleration_rad_s2 * std::abs(error_rad));
   const double correction = std::copysign(std::min(config_.gain_per_s * std::abs(error_rad), braking), error_rad);
   const double asked = feed_forward_rad_s_ + (error_counts == 0 ? 0 : correction);
   const double limited = std::clamp(asked, -config_.max_velocity_rad_s, config_.max_velocity_rad_s);
-  const double step = config_.max_acceleration_rad_s2 * dt_s;
   velocity_rad_s_ = std::clamp(limited, velocity_rad_s_ - step, velocity_rad_s_ + step);
   saturated_ = velocity_rad_s_ != asked;
   return velocity_rad_s_;

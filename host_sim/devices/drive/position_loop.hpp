@@ -39,7 +39,8 @@ class PositionLoop {
   bool saturated() const { return saturated_; }  // the last step asked for more than the top speed or acceleration
 
  private:
-  double wanted(double error_rad, double error_counts, double dt_s);
+  // `step`: by which the speed may change.
+  double wanted(double error_rad, double error_counts, double step);
   double pulse(double wanted_rad_s, double dt_s);
 
   Config config_;

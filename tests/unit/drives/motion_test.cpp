@@ -222,6 +222,26 @@ TEST(UnconfirmedDrive, AnEyouThatIgnoresALostMasterStandsAtItsLastTarget) {
   EXPECT_FALSE(bench.devices.drives()[2].released);
 }
 
+// EPOS4's 8130 is a fault with 6007's reaction. Where it were none, the drive would stand, and keep its power.
+TEST(UnconfirmedDrive, AnEpos4ThatHoldsWithoutItsMasterStandsUnderPower) {
+  for (const bool holds : {false, true}) {
+    Make make{"", "epos4"};
+    make.switches.holds_without_master = holds;
+    DriveBench bench(make);
+    ASSERT_TRUE(bench.boot()) << bench.sentence();
+    ASSERT_TRUE(enable(bench));
+    (void)set_off(bench);
+    const double before = bench.joint_counts();
+    bench.master_alive = false;
+    bench.run(Duration::from_ms(1200));
+    const double stopped = bench.joint_counts();
+    EXPECT_GT(std::abs(stopped - before), 50) << "a ramp, not a halt";
+    bench.run(Duration::from_ms(500));
+    EXPECT_NEAR(bench.joint_counts(), stopped, 0.5);
+    EXPECT_EQ(bench.devices.power(2) != devices::DrivePower::off, holds);
+  }
+}
+
 // Methods by the makers' numbers: a hard stop found by current, and "here is home".
 TEST(DriveHoming, EachDriveFindsItsZeroInItsOwnUnits) {
   struct Case {

@@ -66,6 +66,22 @@ TEST(Verdict, AJointWhoseMotorStandsMayBePulledThroughItsPlayForATimeAndNoFarthe
               ElementsAre(testing::HasSubstr("elbow moves 1.04 s after the stop")));
 }
 
+// The shoulder's motor stood from the beginning. At 298 ms the power goes; the gear gives 4 mrad.
+TEST(Verdict, AScrewUnderALoadMaySettleWhenItsPowerGoesAndAtNoOtherTime) {
+  const auto wrong = [](std::size_t moves_at_ms, float by_rad) {
+    Seen seen = Stopping().seen();
+    for (std::size_t t = moves_at_ms; t < seen.moments.size(); ++t) {
+      seen.moments[t].motor_rad[1] = seen.moments[t].angle_rad[1] = std::min(by_rad, by_rad * float(t - moves_at_ms) / 4);
+      seen.moments[t].speed_rad_s[1] = t < moves_at_ms + 4 ? by_rad / 0.004f : 0;
+    }
+    return judge(seen, situation_of(cause_of("overcurrent elbow")), failed("drive fault: elbow")).wrong;
+  };
+  EXPECT_THAT(wrong(298, 0.0038f), IsEmpty());
+  EXPECT_THAT(wrong(298, 0.0045f), testing::Contains(testing::HasSubstr("shoulder moves")));
+  EXPECT_THAT(wrong(270, 0.0038f), testing::Contains(testing::HasSubstr("shoulder moves"))) << "under power";
+  EXPECT_THAT(wrong(400, 0.0038f), testing::Contains(testing::HasSubstr("shoulder moves"))) << "long after";
+}
+
 // At the end: 0.02 rad/s for 0.2 s.
 TEST(Verdict, AtTheEndAJointThatTravelsMovesAndOneThatQuiversStands) {
   Seen seen = Stopping().seen();

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
+#include "firmware/arm/actuator.hpp"
 #include "tests/unit/canopen/scripted_node.hpp"
 
 namespace lf::safety {
@@ -34,6 +36,7 @@ class PowerTest : public testing::Test {
     for (std::size_t i = 0; i < joint_count; ++i) {
       joints.fresh[i] = bus.network.axis(static_cast<Joint>(i)).fresh(bus.now);
       joints.position_rad[i] += speed_rad_s[i] * 0.004;
+      if (joints.fresh[i]) joints.velocity_rad_s[i] = speed_rad_s[i];
       bus.nodes[i].actual_counts += static_cast<std::int32_t>(speed_rad_s[i] * 0.004 * 1e5);
     }
     power.tick(joints, bus.now, bus.network);
@@ -53,7 +56,17 @@ class PowerTest : public testing::Test {
     return limits;
   }
 
-  canopen::test::Bus bus{canopen::test::plain_config()};
+  static canopen::NetworkConfig config() {
+    canopen::NetworkConfig config = canopen::test::plain_config();
+    for (std::size_t i = 0; i < joint_count; ++i) {
+      config.drives[i].quick_stop_counts_s2 =
+          static_cast<std::uint32_t>(deceleration_rad_s2 / std::abs(arm::rad_per_count(static_cast<Joint>(i), 0)));
+    }
+    return config;
+  }
+
+  static constexpr double deceleration_rad_s2 = 0.5;
+  canopen::test::Bus bus{config()};
   Power power;
   JointStates joints;
   std::array<double, joint_count> speed_rad_s{};
@@ -87,9 +100,23 @@ TEST_F(PowerTest, AStopReachesADriveThatIsSilentAndTheOthersDoNotWaitForIt) {
   bus.nodes[2].mute_tpdo = true;
   for (int i = 0; i < 6; ++i) step();
   power.stop(bus.now, bus.network);
-  EXPECT_LT(until([this] { return all_in(unpowered); }), 0.35);
+  EXPECT_LT(until([this] { return all_in(unpowered); }), 0.1) << "it stood when it was heard last";
   EXPECT_FALSE(power.off()) << "one drive has not said so";
   EXPECT_LT(until([this] { return power.off(); }), 1.1);
+}
+
+// Its speed over its deceleration, from where it was heard last. The others have stood for long.
+TEST_F(PowerTest, ADriveThatWasSilencedUnderWayKeepsItsPowerUntilItsRampIsOver) {
+  const double ramp_s = 0.3;
+  speed_rad_s[2] = ramp_s * deceleration_rad_s2;
+  for (int i = 0; i < 6; ++i) step();
+  bus.nodes[2].mute_tpdo = true;
+  for (int i = 0; i < 6; ++i) step();
+  speed_rad_s[2] = 0;
+  power.stop(bus.now, bus.network);
+  const double lost_s = until([this] { return all_in(unpowered); });
+  EXPECT_GT(lost_s, ramp_s - 0.01);
+  EXPECT_LT(lost_s, ramp_s + 0.1);
 }
 
 // It does not hear its process data, or somebody took it out of operation: 6007 makes NMT stop a quick stop, and a restart takes any make's power.

@@ -289,6 +289,30 @@ TEST(DriveMotion, a_quick_stop_from_above_the_top_speed_ends_as_one_from_it) {
   EXPECT_LT(1e-3 * powered_ms, config.max_velocity_rad_s / config.max_acceleration_rad_s2 + 0.15);
 }
 
+// 605A = 6: it stays where its ramp ends, and does not come back to it.
+TEST(DriveMotion, a_quick_stop_under_power_does_not_overshoot) {
+  for (const double share_of_top : {0.5, 1.0, 1.5}) {
+    SCOPED_TRACE(share_of_top);
+    DriveConfig config = elbow();
+    DriveRig rig(config, 0.8);
+    rig.client.write(0x605A, 0, 6, 2);
+    rig.client.write(0x6065, 0, 0xFFFFFFFF, 4);
+    rig.enable();
+    rig.joint.runs_off_rad_s = share_of_top * config.max_velocity_rad_s;
+    rig.run_ms(300);
+    rig.controlword = 0x02;
+    while (rig.drive.state() == DriveState::operation_enabled) rig.step();
+    rig.joint.runs_off_rad_s = 0;
+    double farthest_rad = rig.joint.q_rad;
+    for (int i = 0; i < 1500; ++i) {
+      rig.step();
+      farthest_rad = std::max(farthest_rad, rig.joint.q_rad);
+    }
+    EXPECT_EQ(rig.drive.state(), DriveState::quick_stop_active);
+    EXPECT_LT(farthest_rad - rig.joint.q_rad, 0.004);
+  }
+}
+
 // The encoder is off by a tenth of a radian from one millisecond to the next, as by a slipped coupling: that is no speed to brake from.
 TEST(DriveMotion, a_quick_stop_takes_no_jump_of_the_encoder_for_a_speed) {
   DriveRig rig(elbow(), 1.0);
