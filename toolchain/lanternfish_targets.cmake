@@ -19,6 +19,7 @@ find_package(Eigen3 REQUIRED NO_MODULE)
 
 set(LANTERNFISH_MARCH x86-64-v3 CACHE STRING "Instruction set (-march) on x86-64; empty for the compiler's default")
 set(LANTERNFISH_SANITIZE "" CACHE STRING "Sanitizers, for instance address,undefined or thread")
+set(LANTERNFISH_SANITIZE_NOT "" CACHE STRING "Of these, the checks that are left out")
 option(LANTERNFISH_COVERAGE "Count what the tests execute: tests/coverage.sh" OFF)
 option(LANTERNFISH_FUZZ "Build the fuzz targets alone, with libFuzzer: tests/fuzz.sh; needs Clang" OFF)
 
@@ -39,6 +40,9 @@ if(LANTERNFISH_SANITIZE)
   target_compile_options(lanternfish_flags INTERFACE
     -fsanitize=${LANTERNFISH_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(lanternfish_flags INTERFACE -fsanitize=${LANTERNFISH_SANITIZE})
+  if(LANTERNFISH_SANITIZE_NOT)
+    target_compile_options(lanternfish_flags INTERFACE -fno-sanitize=${LANTERNFISH_SANITIZE_NOT})
+  endif()
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_compile_options(lanternfish_flags INTERFACE -Wno-maybe-uninitialized)  # GCC warns of its own instrumentation
   endif()

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "host_sim/app/fault_walk.hpp"
 #include "host_sim/scenario/scenario.hpp"
 
 namespace lf::app {
@@ -20,6 +21,7 @@ struct CampaignOptions {
   std::vector<std::string> kinds, steps, rows;
   bool pairs = false, rendered = false;
   std::size_t one_in = 1;
+  double into = usual_share_of_step;
   bool ranges = false;
   std::size_t draws = 5, many = 300;
   std::string shard = "1/1";

@@ -255,6 +255,10 @@ void add_campaign(CLI::App& app, Action& action) {
       ->needs(faults);
   command->add_flag("--pairs", options->pairs, "--faults: pairs of faults within 0.5 s, in a step of each phase")->needs(faults);
   command->add_option("--one-in", options->one_in, "--faults: a sample, one row in so many")->check(CLI::Range(1, 100000))->needs(faults);
+  command->add_option("--into", options->into, "--faults: how far into each step it is made, as a share of the step")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str()
+      ->needs(faults);
   command->add_option("--shard", options->shard, "K/N: the K-th of N parts");
   command->add_option("--jobs", options->jobs, "Runs at a time (default: the number of processors)")->check(CLI::Range(1, 1024));
   command->add_option("--set", options->set, "path.to.key=value, as for run")->allow_extra_args(false);

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <set>
 
+#include "hal/config/key_text.hpp"
 #include "host_sim/app/campaign_options.hpp"
 #include "host_sim/app/fault_table.hpp"
 #include "host_sim/app/interrupt.hpp"
@@ -20,6 +21,7 @@ std::string command_of(const CampaignOptions& options) {
   for (const std::string& row : options.rows) command += " --rows '" + row + "'";
   if (options.rendered) command += " --rendered";
   if (options.one_in > 1) command += " --one-in " + std::to_string(options.one_in);
+  if (options.into != usual_share_of_step) command += " --into " + config::number_text(options.into);
   if (options.shard != "1/1") command += " --shard " + options.shard;
   return command;
 }
@@ -34,10 +36,13 @@ void say(const RowResult& row) {
 int fault_campaign(const CampaignOptions& options) {
   const Shard shard = parse_shard(options.shard);
   const scenario::Scenario base = scenario::load_scenario(options.scenario, options.set);
-  const CampaignFolder folder(options, base, std::string(options.pairs ? "fault-pairs" : "faults") + (options.rendered ? "-rendered" : ""));
+  std::string kind = options.pairs ? "fault-pairs" : "faults";
+  if (options.rendered) kind += "-rendered";
+  if (options.into != usual_share_of_step) kind += "-into-" + config::number_text(options.into);
+  const CampaignFolder folder(options, base, kind);
   catch_interrupts();
   const MatrixChoice choice{options.kinds, options.steps, options.rows, options.pairs, shard.index, shard.count, options.one_in};
-  const std::vector<MatrixRow> all = matrix_rows(survey_moments(base), choice);
+  const std::vector<MatrixRow> all = matrix_rows(survey_moments(base, options.into), choice);
 
   // Rows of this choice that are there are kept.
   const std::filesystem::path file = folder.path() / "rows.jsonl";

@@ -8,7 +8,6 @@ namespace {
 
 using mission::Step;
 
-constexpr double into_step = 0.4;   // of its duration: whatever it does is under way
 constexpr double into_end_s = 0.2;  // of a step that lasts for good: what stopped the arm is done
 constexpr double longest_s = 300;   // of a walk
 constexpr double after_end_s = 1.0;
@@ -92,13 +91,13 @@ void FaultWalk::jog(Flight& flight) {
   if (flight.now().s() > waiting_s_ + wait_s) jogged_ = flight.order(jog);
 }
 
-std::vector<FaultMoment> survey_moments(const scenario::Scenario& base) {
+std::vector<FaultMoment> survey_moments(const scenario::Scenario& base, double share_of_step) {
   std::vector<FaultMoment> moments{{"mission", Step::idle, "power-on", power_on_s, power_on_s}};
   std::set<Step> known{Step::idle};
   for (const std::string& name : FaultWalk::names()) {
     for (const Stay& stay : stays_of(FaultWalk(name), base)) {
       if (!known.insert(stay.step).second) continue;
-      const double in_s = mission::is_end(stay.step) ? into_end_s : into_step * (stay.end_s - stay.begin_s);
+      const double in_s = mission::is_end(stay.step) ? into_end_s : share_of_step * (stay.end_s - stay.begin_s);
       moments.push_back({name, stay.step, mission::row(stay.step).name, stay.begin_s + in_s, in_s});
     }
   }

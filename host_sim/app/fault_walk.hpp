@@ -48,7 +48,10 @@ struct FaultMoment {
   double into_s = 0;  // since the step began
 };
 
-// One moment for each step of the table that can be reached, in the order of the walks and of time: 0.4 of the step's duration in.
-std::vector<FaultMoment> survey_moments(const scenario::Scenario& base);
+// Of a step's duration: whatever it does is under way.
+inline constexpr double usual_share_of_step = 0.4;
+
+// One moment for each step of the table that can be reached, in the order of the walks and of time: this share of the step's duration in.
+std::vector<FaultMoment> survey_moments(const scenario::Scenario& base, double share_of_step = usual_share_of_step);
 
 }  // namespace lf::app

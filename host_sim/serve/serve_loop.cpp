@@ -4,7 +4,7 @@
 
 namespace lf::serve {
 
-ServeLoop::ServeLoop(const hal::SimConfig& config, const NodeSet& served, CanLink& link, ServedCamera* camera, Say say,
+ServeLoop::ServeLoop(const hal::SimConfig& config, const NodeSet& served, CanLink& link, LoopCamera* camera, Say say,
                      const std::array<std::int32_t, joint_count>& real_zero_counts)
     : world_(config.world),
       rack_(config.devices, Time{}),

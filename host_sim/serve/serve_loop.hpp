@@ -13,10 +13,10 @@
 
 #include "hal/sim/sim_config.hpp"
 #include "host_sim/serve/can_link.hpp"
+#include "host_sim/serve/loop_camera.hpp"
 #include "host_sim/serve/node_set.hpp"
 #include "host_sim/serve/pace.hpp"
 #include "host_sim/serve/served_bus.hpp"
-#include "host_sim/serve/served_camera.hpp"
 #include "host_sim/world/world.hpp"
 
 namespace lf::serve {
@@ -27,7 +27,7 @@ class ServeLoop {
 
   // `camera` may be null: then exposures are taken and nothing is seen. Power comes on at the first turn. `link`, `camera` and `say` outlive the loop.
   // `real_zero_counts` are those of the drives that are not served.
-  ServeLoop(const hal::SimConfig& config, const NodeSet& served, CanLink& link, ServedCamera* camera, Say say,
+  ServeLoop(const hal::SimConfig& config, const NodeSet& served, CanLink& link, LoopCamera* camera, Say say,
             const std::array<std::int32_t, joint_count>& real_zero_counts = {});
 
   // One millisecond: returns when it is done.
@@ -39,7 +39,7 @@ class ServeLoop {
   const ServedBus& bus() const { return bus_; }
   devices::NodeRack& rack() { return rack_; }
   const world::World& world() const { return world_; }
-  ServedCamera* camera() { return camera_; }
+  LoopCamera* camera() { return camera_; }
 
  private:
   void say_link_changes();
@@ -48,7 +48,7 @@ class ServeLoop {
   devices::NodeRack rack_;
   CanLink& link_;
   ServedBus bus_;
-  ServedCamera* camera_;
+  LoopCamera* camera_;
   Say say_;
   Pace pace_;
   int said_error_ = 0;

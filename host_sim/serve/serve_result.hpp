@@ -9,6 +9,7 @@
 #include "host_sim/record/result.hpp"
 #include "host_sim/scenario/instance.hpp"
 #include "host_sim/serve/serve_loop.hpp"
+#include "host_sim/serve/served_camera.hpp"
 
 namespace lf::serve {
 

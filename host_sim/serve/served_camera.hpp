@@ -12,19 +12,12 @@
 #include "host_sim/devices/exposure.hpp"
 #include "host_sim/serve/frame_renderer.hpp"
 #include "host_sim/serve/frame_target.hpp"
+#include "host_sim/serve/loop_camera.hpp"
 #include "host_sim/serve/pace.hpp"
 
 namespace lf::serve {
 
-enum class CameraTrouble : std::uint8_t {
-  none,
-  freeze,  // the picture stands still, while time stamps and counter go on
-  drop,    // exposures are counted, frames do not come
-  repeat,  // each frame comes twice
-  away,    // unplugged
-};
-
-class ServedCamera {
+class ServedCamera : public LoopCamera {
  public:
   struct Stats {
     std::uint64_t exposures = 0, frames = 0;
@@ -38,11 +31,9 @@ class ServedCamera {
   // Renderer and target outlive the camera.
   ServedCamera(FrameRenderer& renderer, FrameTarget& target, Duration latency) : renderer_(renderer), target_(target), latency_(latency) {}
 
-  void expose(const devices::Exposure& exposure);
-  // Once a step, at simulated time `t`, with the bodies as they are then.
-  void step(Time t, const scene::BodyPoses& poses, const Pace& pace);
-  // Until simulated time `until`.
-  void set_trouble(CameraTrouble trouble, Time until);
+  void expose(const devices::Exposure& exposure) override;
+  void step(Time t, const scene::BodyPoses& poses, const Pace& pace) override;
+  void set_trouble(CameraTrouble trouble, Time until) override;
 
   const Stats& stats() const { return stats_; }
 
