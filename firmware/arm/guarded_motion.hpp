@@ -47,6 +47,7 @@ class GuardedMotion {
   Joint joint() const { return joint_; }  // that showed it first
   bool touched() const { return state_ == GuardState::contact || state_ == GuardState::overload; }
   const JointVector& excess_torque_nm() const { return excess_nm_; }  // filtered torque less baseline
+  const JointVector& baseline_nm() const { return baseline_nm_; }     // of free motion, as far as it is learned
   const JointVector& error_rad() const { return error_rad_; }         // command less position
   std::uint32_t refused() const { return refused_; }
 

@@ -45,8 +45,8 @@ void Look::begin(const StepTick& tick) {
 
 Progress Look::run(const StepTick& tick) {
   switch (tick.step) {
-    case Step::deploy:
-    case Step::verify_reach: return tick.bench.follow_way();
+    case Step::deploy: return tick.bench.follow_way();
+    case Step::verify_reach: return run_verify_reach(tick.bench);
     case Step::scan:
     case Step::verify_scan: return run_scan(tick);
     case Step::look:
@@ -74,6 +74,19 @@ void Look::begin_verify_reach(const StepTick& tick) {
   request.docking_turn_rad = bench.map.doubt().turn_rad;
   request.slowest_rad_s = bench.mission().sweep_speed_rad_s;
   bench.go_to_sweep(request);
+}
+
+// The jaw closes on the way: what it has closed on is looked at before anything else.
+Progress Look::run_verify_reach(Workbench& bench) {
+  const Progress motion = bench.follow_way();
+  if (!motion.is_done()) return motion;
+  switch (bench.gripper.state()) {
+    case arm::GripperState::empty: return Progress::done();
+    case arm::GripperState::held:
+    case arm::GripperState::dropped:
+    case arm::GripperState::jammed: return Progress::failed_for_good(StepFailure::jaw_not_closed);
+    default: return Progress::running();
+  }
 }
 
 void Look::begin_scan(const StepTick& tick) {

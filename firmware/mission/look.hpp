@@ -21,6 +21,7 @@ class Look {
   void begin_verify_reach(const StepTick& tick);
   void begin_scan(const StepTick& tick);
   Progress run_scan(const StepTick& tick);
+  static Progress run_verify_reach(Workbench& bench);
   void begin_question(const StepTick& tick);
   // True when the answer is there; reports vision that is late.
   bool answered(const StepTick& tick) const;

@@ -290,6 +290,7 @@ void Mission::report_failure(const StepTick& tick, const Progress& progress) {
   report.code = static_cast<std::int32_t>(progress.failure);
   if (report.fault == Fault::boot_failed) report.code = tick.network.boot().first_failed();
   report.out_of_tries = progress.out_of_tries;
+  report.touched = progress.touched;
   tick.faults.report(report);
 }
 

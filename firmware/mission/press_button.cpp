@@ -1,5 +1,7 @@
 #include "firmware/mission/press_button.hpp"
 
+#include <cmath>
+
 namespace lf::mission {
 
 namespace {
@@ -15,6 +17,8 @@ constexpr double stuck_share = 0.1;
 constexpr double to_speed_m = 0.012;
 // A press that works shows nearly its whole stroke, a stuck cap a tenth of a default one: what is felt late, and what the arm gives way by.
 constexpr double least_travel = 0.5;
+// By which a joint in free motion may take more than at rest: its friction. Twice what default machines show.
+constexpr double friction_nm = 8;
 // A press lasts as long as a person's.
 constexpr Duration press_time = Duration::from_ms(250);
 
@@ -75,16 +79,17 @@ Progress PressButton::run_reach(const StepTick& tick) {
     case arm::GripperState::empty: return motion;
     case arm::GripperState::closing:
     case arm::GripperState::lost: return Progress::running();  // a drive that is lost has a fault of its own
-    default: return Progress::failed(StepFailure::jaw_not_closed);
+    default: return Progress::failed_for_good(StepFailure::jaw_not_closed);
   }
 }
 
 Progress PressButton::begin_press(Workbench& bench) {
+  // Until the press has come to its speed: a gear's break-away may pass the press's torque for some milliseconds (8 N m were seen).
   arm::GuardConfig config;
-  config.contact_torque_nm.setConstant(bench.mission().press_torque_nm);
+  config.contact_torque_nm = free_motion_guard(bench.config.mission_limits).contact_torque_nm.cwiseMax(bench.mission().press_torque_nm);
   guard_ = arm::GuardedMotion(config);
   feel_ = ButtonFeel();
-  learned_under_way_ = false;
+  learned_under_way_ = pushed_under_way_ = false;
   bottom_m_ = 0;
   bench.job.result().failure = StepFailure::none;
   const double depth = bench.mission().layout.button_stroke_m + bench.mission().press_overtravel_m;
@@ -99,24 +104,23 @@ Progress PressButton::run_press(const StepTick& tick) {
   Workbench& bench = tick.bench;
   if (pressed_) return Progress::done_if(tick.settled(bench.motion.done(), press_time));
   if (bench.motion.planning()) return Progress::running();
-  if (!guard_.touched()) sense(tick);
+  if (!met_something()) sense(tick);
   if (does_not_follow(guard_)) {
     tick.faults.report(safety::Fault::following_error, static_cast<std::int32_t>(guard_.joint()));
     return Progress::running();
   }
   const Progress motion = bench.follow_motion();
-  bench.wound_up = bench.wound_up || guard_.touched() || feel_.touched();
-  if (!guard_.touched() && !motion.is_done()) return motion;
+  bench.wound_up = bench.wound_up || met_something() || feel_.touched();
+  if (!met_something() && !motion.is_done()) return motion;
   // At once: a stop along its ramp goes on for millimetres, and the bottom gives way by none.
-  if (guard_.touched()) bench.stay_where_measured();
+  if (met_something()) bench.stay_where_measured();
   TaskResult& result = bench.job.result();
   result.travel_m = feel_.travel_m();
   result.click_felt = feel_.clicked();
   result.failure = judge(bench);
-  // What may have gone in unfelt is not pressed again, and what is in the way is not run into again.
-  const bool ran_into_something = result.failure == StepFailure::early_contact && learned_under_way_;
-  if (result.failure == StepFailure::button_stuck || ran_into_something) return Progress::failed_for_good(result.failure);
-  if (result.failure != StepFailure::none) return Progress::failed(result.failure);
+  if (result.failure == StepFailure::early_contact) return Progress::failed_by_touch(result.failure);
+  // What may have gone in unfelt is not pressed again: nobody asked for two clicks.
+  if (result.failure != StepFailure::none) return Progress::failed_for_good(result.failure);
   pressed_ = true;
   ++result.presses;
   return Progress::running();
@@ -126,13 +130,14 @@ void PressButton::sense(const StepTick& tick) {
   const Workbench& bench = tick.bench;
   learn_under_way(bench);
   guard_.update(tick.now, bench.motion.target(), bench.measured_rad(), bench.measured_nm());
+  compare_with_rest();
   // An arm that stands says nothing of a button's way.
   if (!bench.motion.paused()) feel(tick);
 }
 
 // What stops a finger before it has felt the button is not the button.
 void PressButton::watch_on_hold(const StepTick& tick) {
-  if (pressed_ || guard_.touched()) return;
+  if (pressed_ || met_something()) return;
   sense(tick);
   const bool meant = feel_.touched() && !does_not_follow(guard_);
   if (!meant) return report_touch(guard_, tick.faults);
@@ -143,8 +148,18 @@ void PressButton::watch_on_hold(const StepTick& tick) {
 void PressButton::learn_under_way(const Workbench& bench) {
   const double gone_m = (arm::base_from_tool(bench.motion.target()).translation() - bench.standoff_m).norm();
   if (learned_under_way_ || gone_m < to_speed_m) return;
-  guard_.reset();
+  rest_nm_ = guard_.baseline_nm();
+  arm::GuardConfig config;
+  config.contact_torque_nm.setConstant(bench.mission().press_torque_nm);
+  guard_ = arm::GuardedMotion(config);
   learned_under_way_ = true;
+}
+
+// What presses on the arm by now would be learned for free motion, and pressed against.
+void PressButton::compare_with_rest() {
+  if (!learned_under_way_ || guard_.state() != arm::GuardState::free || !rest_nm_.allFinite()) return;
+  pushed_under_way_ = pushed_under_way_ || ((guard_.baseline_nm() - rest_nm_).cwiseAbs().array() > friction_nm).any();
+  rest_nm_.setConstant(HUGE_VAL);  // once
 }
 
 // The drives' force along the press is the least-squares one for the torques of slew, shoulder and elbow: the roll has no part in it.
@@ -165,6 +180,7 @@ void PressButton::feel(const StepTick& tick) {
 }
 
 StepFailure PressButton::judge(const Workbench& bench) const {
+  if (pushed_under_way_) return StepFailure::early_contact;
   const double stroke_m = bench.mission().layout.button_stroke_m;
   if (!feel_.touched()) return guard_.touched() ? StepFailure::early_contact : StepFailure::button_missing;
   if (feel_.touch_depth_m() < -face_m) return StepFailure::early_contact;

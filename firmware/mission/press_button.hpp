@@ -23,6 +23,8 @@ class PressButton {
   Progress run_back(const StepTick& tick);
   void sense(const StepTick& tick);
   void learn_under_way(const Workbench& bench);
+  void compare_with_rest();
+  bool met_something() const { return guard_.touched() || pushed_under_way_; }
   void feel(const StepTick& tick);
   // What stopped the finger, or what it is that nothing did.
   StepFailure judge(const Workbench& bench) const;
@@ -31,6 +33,8 @@ class PressButton {
   ButtonFeel feel_;
   bool pressed_ = false;
   bool learned_under_way_ = false;
+  bool pushed_under_way_ = false;  // what was learned there is no friction
+  arm::JointVector rest_nm_ = arm::JointVector::Zero();
   double bottom_m_ = 0;  // the tip's depth below the face where it is believed to be, at the press's end
 };
 

@@ -19,6 +19,7 @@ struct Progress {
   Kind kind = Kind::running;
   StepFailure failure = StepFailure::none;
   bool out_of_tries = false;  // failed for good: the step counted its tries itself
+  bool touched = false;       // for good, and the arm stays where it is
 
   static constexpr Progress running() { return {}; }
   static constexpr Progress done() { return {Kind::done}; }
@@ -26,6 +27,7 @@ struct Progress {
   static constexpr Progress nothing_left() { return {Kind::nothing_left}; }
   static constexpr Progress failed(StepFailure failure) { return {Kind::failed, failure}; }
   static constexpr Progress failed_for_good(StepFailure failure) { return {Kind::failed, failure, true}; }
+  static constexpr Progress failed_by_touch(StepFailure failure) { return {Kind::failed, failure, true, true}; }
   static constexpr Progress done_if(bool condition) { return condition ? done() : running(); }
 
   bool is_running() const { return kind == Kind::running; }

@@ -71,7 +71,8 @@ Words words(StepFailure failure) {
       return {"the vehicle is in the way", "Check vehicle.boxes_m and vehicle.capsules_m; else dock nearer to the nominal place."};
     case StepFailure::button_stuck:
       return {"the button is stuck",
-              "It was touched and did not go in by half its stroke: free it; check panel.button_stroke_m and mission.press_torque_nm."};
+              "It was touched and did not go in by half its stroke: free it, or take away what stands before it; check "
+              "panel.button_stroke_m and mission.press_torque_nm."};
     case StepFailure::button_missing:
       return {"no button there",
               "Nothing was touched down to its bottom: look whether it broke off; check panel.buttons_m and panel.button_height_m. If it "

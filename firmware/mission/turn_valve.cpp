@@ -91,7 +91,7 @@ Progress TurnValve::run_reach(const StepTick& tick) {
   const Progress motion = tick.bench.follow_way();
   if (motion.kind == Progress::Kind::failed || tick.bench.motion.planning()) return motion;
   const arm::GripperState jaw = tick.bench.gripper.state();
-  if (jaw == arm::GripperState::jammed) return Progress::failed(StepFailure::not_gripped);
+  if (jaw == arm::GripperState::jammed) return Progress::failed_for_good(StepFailure::jaw_stuck);
   return motion.is_done() ? Progress::done_if(jaw == arm::GripperState::open) : motion;
 }
 
@@ -113,7 +113,7 @@ Progress TurnValve::run_advance(const StepTick& tick) {
     return Progress::running();
   }
   bench.motion.stop();
-  return Progress::failed(StepFailure::early_contact);
+  return Progress::failed_by_touch(StepFailure::early_contact);
 }
 
 void TurnValve::watch_on_hold(const StepTick& tick) {
@@ -126,8 +126,9 @@ Progress TurnValve::run_grip(const StepTick& tick) {
   switch (tick.bench.gripper.state()) {
     case arm::GripperState::held: return Progress::done_if(tick.bench.motion.done());
     case arm::GripperState::empty:
-    case arm::GripperState::dropped:
-    case arm::GripperState::jammed: return Progress::failed(StepFailure::not_gripped);
+    case arm::GripperState::dropped: return Progress::failed(StepFailure::not_gripped);
+    // Thicker than the bar, or out of its place: it is not pinched again.
+    case arm::GripperState::jammed: return Progress::failed_for_good(StepFailure::not_gripped);
     default: return Progress::running();
   }
 }

@@ -9,7 +9,7 @@ void WayHome::begin(const StepTick& tick) {
       bench.let_off_roll();
       return bench.gripper.open_to(bench.mission().jaw_open_m);
     case Step::abandon_back: return bench.begin_back_off();
-    case Step::stow: return bench.go_clear(bench.mission().park_rad, 0);
+    case Step::stow: freed_ = false; return bench.go_clear(bench.mission().park_rad, 0);
     case Step::shut_down: return begin_shut_down(tick);
     default: return;
   }
@@ -23,11 +23,7 @@ Progress WayHome::run(const StepTick& tick) {
       if (!motion.is_done()) return motion;
       return tick.bench.course == Course::retrying ? Progress::other_way() : Progress::done();
     }
-    case Step::stow: {
-      const Progress motion = tick.bench.follow_way();
-      if (!motion.is_done()) return motion;
-      return tick.bench.course == Course::giving_up ? Progress::other_way() : Progress::done();
-    }
+    case Step::stow: return run_stow(tick.bench);
     case Step::shut_down: return Progress::done_if(tick.bench.power.off());
     default: return Progress::running();
   }
@@ -38,6 +34,26 @@ Progress WayHome::run_abandon(const Workbench& bench) {
   const arm::GripperState jaw = bench.gripper.state();
   if (jaw == arm::GripperState::jammed) return Progress::failed(StepFailure::jaw_stuck);
   return Progress::done_if(jaw == arm::GripperState::open && bench.motion.done());
+}
+
+// The jaw closes on the way. What it has closed on is let go of: without power its screw would go on squeezing.
+Progress WayHome::run_stow(Workbench& bench) {
+  const Progress motion = bench.follow_way();
+  if (motion.kind == Progress::Kind::failed || bench.motion.planning()) return motion;
+  switch (bench.gripper.state()) {
+    case arm::GripperState::empty:
+      if (!motion.is_done()) return motion;
+      return bench.course == Course::giving_up ? Progress::other_way() : Progress::done();
+    case arm::GripperState::open: return freed_ && motion.is_done() ? Progress::failed(StepFailure::jaw_not_closed) : Progress::running();
+    case arm::GripperState::held:
+    case arm::GripperState::dropped:
+    case arm::GripperState::jammed:
+      if (freed_) return Progress::failed(StepFailure::jaw_stuck);
+      freed_ = true;
+      bench.gripper.open_to(bench.mission().jaw_open_m);
+      return Progress::running();
+    default: return Progress::running();
+  }
 }
 
 // The arm stands, unless a joint was just being homed. Drives that another master leads are its own; only an emergency stop takes their power, too.

@@ -12,7 +12,10 @@ class WayHome {
 
  private:
   static Progress run_abandon(const Workbench& bench);
+  Progress run_stow(Workbench& bench);
   static void begin_shut_down(const StepTick& tick);
+
+  bool freed_ = false;  // the jaw lets go of what it has closed on
 };
 
 }  // namespace lf::mission

@@ -218,8 +218,7 @@ Progress Workbench::follow_back_off(const StepTick& tick) {
     return Progress::running();
   }
   motion.stop();
-  // Not gone back again: what floats gives way, and a mission that touched something would end in success.
-  return Progress::failed_for_good(StepFailure::touched_on_the_way_back);
+  return Progress::failed_by_touch(StepFailure::touched_on_the_way_back);
 }
 
 void StepTick::event(Event::Kind kind, double value) const {

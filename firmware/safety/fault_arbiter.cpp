@@ -17,6 +17,7 @@ Reaction reaction_in(const FaultReport& report, const Circumstances& circumstanc
     wanted = circumstances.phase == Phase::boot ? Reaction::power_off : Reaction::quick_stop;
   }
   const bool sets_out = wanted == Reaction::retry || wanted == Reaction::retreat;
+  if (sets_out && report.touched) wanted = Reaction::hold;
   if (circumstances.on_hold && sets_out && report.fault != Fault::aborted) wanted = Reaction::hold;
   return wanted;
 }

@@ -15,6 +15,7 @@ struct FaultReport {
   std::int32_t code = 0;      // joint or node index, COB-ID of a second master, or what the fault's source says of it
   std::uint16_t emcy = 0;     // the EMCY code with which the node reported it; 0: none yet
   bool out_of_tries = false;  // a retry is of no use any more
+  bool touched = false;       // the arm has met what it must not: it stays where it is, since nobody knows which way is free
   bool only_counted = false;  // the mission knows of it and goes on
 };
 

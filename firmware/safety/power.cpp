@@ -112,12 +112,18 @@ void Power::tick(const JointStates& joints, Time now, canopen::Network& network)
   }
 }
 
-// Of the quick stop, 6085.
+// Of the quick stop, 6085. Options 1 and 5 of 605A brake by another object, and a drive without 6085 by its maker's number.
 Duration Power::ramp(const JointStates& joints, std::size_t joint, const canopen::Network& network) {
-  const std::uint32_t counts_s2 = network.config().drives[joint].quick_stop_counts_s2;
-  if (counts_s2 == 0) return unknown_ramp;
-  const double counts_per_rad = 1 / std::abs(arm::rad_per_count(static_cast<Joint>(joint), joints.position_rad[joint]));
-  return Duration::from_s(std::abs(joints.velocity_rad_s[joint]) * counts_per_rad / counts_s2);
+  const auto which = static_cast<Joint>(joint);
+  const canopen::DriveSetup& setup = network.axis(which).setup();
+  const bool by_6085 = (setup.quick_stop_option == 2 || setup.quick_stop_option == 6) && setup.quick_stop_counts_s2 != 0 &&
+                       setup.profile.absence(canopen::BootValue::quick_stop_deceleration) == nullptr;
+  Duration ramp;
+  if (joints.speed_known[joint] && setup.quick_stop_counts_s2 != 0) {
+    const double counts_per_rad = 1 / std::abs(arm::rad_per_count(which, joints.position_rad[joint]));
+    ramp = Duration::from_s(std::abs(joints.velocity_rad_s[joint]) * counts_per_rad / setup.quick_stop_counts_s2);
+  }
+  return by_6085 && joints.speed_known[joint] ? ramp : std::max(ramp, unknown_ramp);
 }
 
 bool Power::standing(const JointStates& joints, Time now, const canopen::Network& network) {

@@ -47,7 +47,7 @@ class Power {
   static constexpr double still_rad = 0.001;
   // A joint whose drive is silent is taken for standing when the ramp from its last known speed is over, and this: the order's way, and `still_time`.
   static constexpr Duration silent_margin = heed_time + still_time;
-  // Its ramp where the drive's own deceleration is not known.
+  // Its ramp where its speed or the drive's own deceleration is not known, at least.
   static constexpr Duration unknown_ramp = Duration::from_ms(250);
   // The longest that a drive may take to hear of it: 250 SYNC periods.
   static constexpr Duration blind_time = Duration::from_ms(1000);

@@ -43,6 +43,7 @@ void Watch::observe(const canopen::Network& network, const std::array<double, jo
       observers_[i].update(rad[i], dt_s);
     }
     joints_.velocity_rad_s[i] = observers_[i].velocity_rad_s();
+    joints_.speed_known[i] = !zero_changes;
     observe_torque(axis, i);
     observe_encoder(axis, i, now);
   }

@@ -20,6 +20,7 @@ namespace lf::safety {
 struct JointStates {
   std::array<double, joint_count> position_rad{};
   std::array<double, joint_count> velocity_rad_s{};  // observed
+  std::array<bool, joint_count> speed_known{};       // not so while a drive homes by its own method, and changes its zero
   std::array<double, joint_count> torque_nm{};       // that the drives give the joints, estimated from their motors'
   std::array<double, joint_count> torque_low_nm{};   // and its bounds
   std::array<double, joint_count> torque_high_nm{};  //

@@ -22,6 +22,8 @@ struct Remedy {
 constexpr const char* no_cyclic_mode =
     "The master commands a position at each SYNC: use a drive that has cyclic synchronous position (mode 8)";
 
+constexpr std::uint32_t first_value_abort = 0x06090030, last_value_abort = 0x06090032;  // CiA 301: out of range, too high, too low
+
 constexpr std::array<Remedy, 20> remedies{{
     {0x1000, "Look whether the node number is right: the device there is no servo drive (CiA 402), or no output node (CiA 401)"},
     {0x1018, "Look whether the node number is right, and name this drive's profile in 'drives.<joint>.profile'"},
@@ -48,7 +50,17 @@ constexpr std::array<Remedy, 20> remedies{{
     {0x60B2, "Its profile may name no_feed_forward"},
 }};
 
-std::string remedy(std::uint16_t index) {
+// A drive that has the object, and not this value of it.
+constexpr std::array<Remedy, 2> value_remedies{{
+    {0x6007, "State in the profile which value the drive takes: 'options.abort', or 'options.abort_fallback'"},
+    {0x605A, "State in the profile which value the drive takes: 'options.quick_stop', or 'options.quick_stop_fallback'"},
+}};
+
+std::string remedy(std::uint16_t index, std::uint32_t abort_code = 0) {
+  if (abort_code >= first_value_abort && abort_code <= last_value_abort) {
+    const auto value = std::find_if(value_remedies.begin(), value_remedies.end(), [index](const Remedy& r) { return r.index == index; });
+    if (value != value_remedies.end()) return value->text;
+  }
   const auto found = std::find_if(remedies.begin(), remedies.end(), [index](const Remedy& r) { return r.index == index; });
   if (found != remedies.end()) return found->text;
   return "Set it with the maker's tool, or state what the drive has in a profile of its own";
@@ -100,7 +112,7 @@ std::string boot_sentence(const canopen::NodeBoot& boot, const std::string& who)
   if (boot.index == 0) return head + canopen::name(boot.failure) + ". Look at its power, its cable and its node number";
   const std::string where = mapping ? " in " + named(boot.index, boot.sub) : "";
   if (mapping) return head + named(index, sub) + " cannot be mapped" + where + " (" + hex(boot.abort_code) + "). " + remedy(index);
-  return head + what_happened(boot, named(index, sub)) + ". " + remedy(index);
+  return head + what_happened(boot, named(index, sub)) + ". " + remedy(index, boot.abort_code);
 }
 
 std::string boot_sentences(const canopen::BootReport& report) {

@@ -53,6 +53,20 @@ bool whole_number(const std::string& text, std::int64_t& value) {
   return error == std::errc() && end == digits.data() + digits.size() && value >= INT32_MIN && value <= UINT32_MAX;
 }
 
+bool fits(std::int64_t value, const std::string& type) {
+  const int bits = std::stoi(type.substr(1));
+  const std::int64_t span = std::int64_t{1} << bits;
+  return type.front() == 'i' ? value >= -span / 2 && value < span / 2 : value >= 0 && value < span;
+}
+
+// What the boot and the axis write themselves. A profile that wrote the controlword would give a drive power before the emergency-stop chain was heard.
+bool is_the_masters(std::uint16_t index) {
+  constexpr std::array<std::uint16_t, 12> single{0x6007, 0x6040, 0x605A, 0x605B, 0x605C, 0x605D,
+                                                 0x605E, 0x6060, 0x6071, 0x607A, 0x60B2, 0x60FF};
+  const bool communication = index >= 0x1005 && index <= 0x1029, process_data = index >= 0x1400 && index <= 0x1BFF;
+  return communication || process_data || std::find(single.begin(), single.end(), index) != single.end();
+}
+
 // "607D:01", or "607D" for its sub-index 0.
 bool object_number(const std::string& text, std::uint16_t& index, std::uint8_t& sub) {
   const std::size_t colon = text.find(':');
@@ -238,9 +252,15 @@ class Reader {
          key("optional", "", 0, 0, &object.optional, ""), key("why", "", 0, 0, &object.why, "")},
         strict);
     number_of(item, number, object.index, object.sub);
+    if (writes && is_the_masters(object.index))
+      source_.refuse(item.Mark(),
+                     "object " + number + " is the master's to write: it powers the drive, stops it, or carries its process data");
     if (object.type.empty()) source_.refuse(item.Mark(), "object " + number + " has no type");
     std::int64_t value = 0;
-    if (!whole_number(object.value, value) && std::find(figures.begin(), figures.end(), object.value) == figures.end()) {
+    const bool number_given = whole_number(object.value, value);
+    if (number_given && !fits(value, object.type))
+      source_.refuse(item.Mark(), "object " + number + ": " + object.value + " does not fit " + object.type);
+    if (!number_given && std::find(figures.begin(), figures.end(), object.value) == figures.end()) {
       const std::string nearest = suggestion(object.value, figures);
       source_.refuse(item.Mark(),
                      "object " + number + " takes a whole number or a figure of the motor, not '" + object.value + "'" +

@@ -51,7 +51,8 @@ fs::path named_file(const std::string& told_in, const char* key, const std::stri
   if (fs::exists(found, ignored)) return found;
   std::string places;
   if (!fs::path(name).is_absolute())
-    places = " in " + fs::absolute(folder).lexically_normal().string() + " nor in " + share_folder().string();
+    places =
+        " in " + fs::absolute(folder.empty() ? fs::path(".") : folder).lexically_normal().string() + " nor in " + share_folder().string();
   throw InputError(told_in + ": '" + key + "': there is no " + name + places);
 }
 

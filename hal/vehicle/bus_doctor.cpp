@@ -198,8 +198,8 @@ std::string draft_profile(const FoundNode& node) {
   const bool rated = rating != nullptr && rating->there() && rating->number() > 0;
   text += std::string("torque: {basis: STATE, rating: ") +
           (rated ? "object, rating_unit_unm: STATE}  # 6076 holds " + number_text(node, 0x6076, 0) : "configured}") + "\n";
-  text +=
-      "options: {quick_stop: 6, abort: 3}  # 605A holds " + number_text(node, 0x605A, 0) + ", 6007 " + number_text(node, 0x6007, 0) + "\n";
+  text += "options: {quick_stop: 2, quick_stop_fallback: 6, abort: 3}  # 605A holds " + number_text(node, 0x605A, 0) + ", 6007 " +
+          number_text(node, 0x6007, 0) + "\n";
   text += "sync_loss: unknown\n";
   std::string checks, absences;
   for (const Place& place : places) {

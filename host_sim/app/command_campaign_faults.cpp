@@ -8,6 +8,7 @@
 #include "host_sim/app/fault_table.hpp"
 #include "host_sim/app/interrupt.hpp"
 #include "host_sim/record/run_folder.hpp"
+#include "shared/input_error.hpp"
 
 namespace lf::app {
 
@@ -22,6 +23,7 @@ std::string command_of(const CampaignOptions& options) {
   if (options.rendered) command += " --rendered";
   if (options.one_in > 1) command += " --one-in " + std::to_string(options.one_in);
   if (options.into != usual_share_of_step) command += " --into " + config::number_text(options.into);
+  for (const std::string& set : options.set) command += " --set '" + set + "'";
   if (options.shard != "1/1") command += " --shard " + options.shard;
   return command;
 }
@@ -43,6 +45,8 @@ int fault_campaign(const CampaignOptions& options) {
   catch_interrupts();
   const MatrixChoice choice{options.kinds, options.steps, options.rows, options.pairs, shard.index, shard.count, options.one_in};
   const std::vector<MatrixRow> all = matrix_rows(survey_moments(base, options.into), choice);
+
+  if (all.empty() && shard.count == 1) throw InputError("no row of the matrix is of this choice");
 
   // Rows of this choice that are there are kept.
   const std::filesystem::path file = folder.path() / "rows.jsonl";

@@ -91,7 +91,8 @@ struct Watched {
   hal::SimObservers all{&safety, &truth};
 };
 
-judge::Ending ending_of(const Flight& flight, const Watched& watched, const MatrixRow& row, const world::World& world) {
+judge::Ending ending_of(const Flight& flight, const Watched& watched, const MatrixRow& row, const world::World& world, Time begin,
+                        bool over) {
   const mission::Outcome& outcome = flight.mission().outcome();
   judge::Ending ending;
   ending.ended = outcome.ended;
@@ -105,14 +106,28 @@ judge::Ending ending_of(const Flight& flight, const Watched& watched, const Matr
   ending.expected_to_end = row.moment.walk != "by hand" || must_stop;
   if (!ending.success) return ending;
   const auto& results = flight.mission().tasks();
+  const auto wrong = [&](const world::ContactReport& contacts) {
+    return judge::contradiction({results.data(), results.size()}, watched.truth.tasks(), judge::task_truth(world), contacts);
+  };
   world::ContactReport contacts = world.contacts();
-  // What was pushed against the arm has touched it, whatever the mission did.
+  if (over) std::erase_if(contacts.unintended, [&](const world::UnintendedContact& touch) { return touch.first_s >= begin.s(); });
+  if (const auto contradiction = wrong(contacts)) ending.contradicted = contradiction->reason;
+  return ending;
+}
+
+// An arm may be pushed where none of its drives can feel it. That it calls a success then is no lie, but the row says so.
+bool unfelt_push(const Flight& flight, const Watched& watched, const MatrixRow& row, const world::World& world) {
+  constexpr double doubt = 1.3;  // of a torque that is told by current and friction
   const bool pushed =
       std::any_of(row.causes.begin(), row.causes.end(), [](const judge::Cause& cause) { return cause.rule->kind == "obstacle"; });
-  if (pushed) contacts.unintended.clear();
-  const auto wrong = judge::contradiction({results.data(), results.size()}, watched.truth.tasks(), judge::task_truth(world), contacts);
-  if (wrong) ending.contradicted = wrong->reason;
-  return ending;
+  if (!pushed) return false;
+  const auto& results = flight.mission().tasks();
+  world::ContactReport contacts = world.contacts();
+  contacts.unintended.clear();
+  if (judge::contradiction({results.data(), results.size()}, watched.truth.tasks(), judge::task_truth(world), contacts)) return false;
+  std::array<double, arm_joint_count> push_nm = flight.contact_torque_nm();
+  for (double& nm : push_nm) nm *= doubt;
+  return !judge::felt_a_push(watched.safety.seen(), push_nm);
 }
 
 // Makes the row's faults and flies on to the end.
@@ -152,11 +167,14 @@ RowResult fly_row(const config::Drives& drives, Flight& flight, Watched& watched
     walk.give_orders(flight);
     flight.step();
   }
-  const judge::Ending ending = ending_of(flight, watched, row, flight.platform().world());
+  judge::Ending ending = ending_of(flight, watched, row, flight.platform().world(), begin, situation.over);
+  const bool unfelt = !ending.contradicted.empty() && unfelt_push(flight, watched, row, flight.platform().world());
+  if (unfelt) ending.contradicted.clear();
   const judge::Verdict verdict = judge::judge(watched.safety.seen(), situation, ending);
   RowResult result;
   result.wrong = verdict.wrong;
   result.unclear = verdict.unclear;
+  result.unfelt = unfelt;
   result.false_success = verdict.false_success;
   result.went_on = verdict.went_on;
   result.end = ending.ended ? ending.step : "not ended, in " + ending.step;

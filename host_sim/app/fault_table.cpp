@@ -57,6 +57,7 @@ FaultTable tabulate_faults(const std::vector<RowResult>& rows) {
     line.unsafe += row.safe() ? 0 : 1;
     line.unclear += lf::app::unclear(row) ? 1 : 0;
     line.false_success += row.false_success ? 1 : 0;
+    line.unfelt += row.unfelt ? 1 : 0;
     line.must_go_on += row.must_go_on ? 1 : 0;
     line.went_on += row.must_go_on && row.went_on ? 1 : 0;
     worsen(line.stop_ms, row.stop_ms);
@@ -73,6 +74,7 @@ FaultTable tabulate_faults(const std::vector<RowResult>& rows) {
     table.unsafe += line.unsafe;
     table.unclear += line.unclear;
     table.false_success += line.false_success;
+    table.unfelt += line.unfelt;
     table.must_go_on += line.must_go_on;
     table.went_on += line.went_on;
     table.kinds.push_back(line);
@@ -90,6 +92,7 @@ void tell(const FaultTable& table) {
           line.force_n);
   }
   for (const RowResult& row : table.bad) print("%s: %s\n    %s\n", row.safe() ? "unclear" : "UNSAFE", row.row.c_str(), why(row).c_str());
+  if (table.unfelt > 0) print("%zu succeeded that were pushed, and had no drive that could feel it\n", table.unfelt);
   print("%zu rows: %zu unsafe, %zu unclear, %zu false successes; %zu of %zu went on that must\n", table.rows, table.unsafe, table.unclear,
         table.false_success, table.went_on, table.must_go_on);
 }
@@ -103,6 +106,7 @@ Json json_of(const FaultTable& table) {
                      {"unsafe", line.unsafe},
                      {"unclear", line.unclear},
                      {"false_successes", line.false_success},
+                     {"unfelt", line.unfelt},
                      {"must_go_on", line.must_go_on},
                      {"went_on", line.went_on},
                      {"stop_ms", number_or_null(line.stop_ms)},
@@ -117,6 +121,7 @@ Json json_of(const FaultTable& table) {
           {"unsafe", table.unsafe},
           {"unclear", table.unclear},
           {"false_successes", table.false_success},
+          {"unfelt", table.unfelt},
           {"must_go_on", table.must_go_on},
           {"went_on", table.went_on},
           {"kinds", kinds},
@@ -137,6 +142,7 @@ std::string markdown_of(const FaultTable& table, const std::string& command) {
   }
   text += "| all | " + std::to_string(table.rows) + " | " + std::to_string(table.unsafe) + " | " + std::to_string(table.unclear) + " | " +
           std::to_string(table.went_on) + " of " + std::to_string(table.must_go_on) + " | | | | | |\n";
+  if (table.unfelt > 0) text += "\n" + std::to_string(table.unfelt) + " succeeded that were pushed, and had no drive that could feel it.\n";
   if (table.bad.empty()) return text;
   text += "\n| row | what was wrong |\n|---|---|\n";
   for (const RowResult& row : table.bad) text += "| " + markdown_cell(row.row) + " | " + markdown_cell(why(row)) + " |\n";
@@ -145,10 +151,11 @@ std::string markdown_of(const FaultTable& table, const std::string& command) {
 
 std::string csv_of(const std::vector<RowResult>& rows) {
   std::string text =
-      "row,kind,step,walk,safe,false_success,must_go_on,went_on,end,reason,why,stop_ms,standing_s,power_off_s,stop_to_off_s,force_n\n";
+      "row,kind,step,walk,safe,false_success,unfelt,must_go_on,went_on,end,reason,why,stop_ms,standing_s,power_off_s,stop_to_off_s,force_"
+      "n\n";
   for (const RowResult& row : rows) {
     for (const std::string* cell : {&row.row, &row.kind, &row.step, &row.walk}) text += csv_cell(*cell) + ",";
-    for (const bool flag : {row.safe(), row.false_success, row.must_go_on, row.went_on}) text += flag ? "1," : "0,";
+    for (const bool flag : {row.safe(), row.false_success, row.unfelt, row.must_go_on, row.went_on}) text += flag ? "1," : "0,";
     text += csv_cell(row.end) + "," + csv_cell(row.reason) + "," + csv_cell(why(row)) + "," + number(row.stop_ms, "%.2f") + "," +
             number(row.standing_s, "%.3f") + "," + number(row.power_off_s, "%.3f") + "," + number(row.stop_to_off_s, "%.3f") + "," +
             number(row.force_n, "%.1f") + "\n";

@@ -26,6 +26,9 @@ const std::vector<FaultRule>& rules() {
   // the joint that feels it most is not the one that reads wrongly.
   static const std::vector<std::string> led_astray{"tool outside its workspace", "unexpected contact", "touched something",
                                                    "the jaw holds nothing"};
+  // Close to a button's face what stands there is not told from a button that does not go in.
+  static const std::vector<std::string> stands_before{"tool outside its workspace", "unexpected contact", "touched something",
+                                                      "the jaw holds nothing", "the button is stuck"};
   // A torque that stands still is felt nowhere, one that is too high everywhere: the core sees a press that meets nothing, or something too early.
   static const std::vector<std::string> feels_nothing{"no button there", "touched something"}, feels_much{"touched something"};
   static const std::vector<std::string> link{"node lost", "node rebooted", "stale position", "drive fault", "boot failed"};
@@ -81,7 +84,7 @@ const std::vector<FaultRule>& rules() {
       {"vision_silent", safe_end, Report::none, 0, sight, {}},
       {"vision_poor", safe_end, Report::none, 0, sight, {}},
       {"handle_breaks", safe_end, Report::none, 0, {"grip lost", "holds nothing", "nothing to touch", "contact", "handle"}, {}},
-      {"obstacle", safe_end, Report::none, 0, misbehaves, led_astray},
+      {"obstacle", safe_end, Report::none, 0, misbehaves, stands_before},
       {"abort_ordered", safe_end, Report::none, 0, {"aborted"}, {}},
       {"estop_ordered", stop, Report::at_once, 0, {"emergency stop"}, {}},
       {"shut_down_ordered", stop, Report::halt, 0, {"shut down"}, {}},

@@ -12,6 +12,7 @@ namespace {
 constexpr std::uint32_t emergency = 0x080, first_tpdo = 0x180, first_rpdo = 0x200, heartbeat = 0x700, function_mask = 0x780,
                         node_mask = 0x7F;
 constexpr std::uint8_t boot_up = 0;
+constexpr float moves_rad_s = 0.02f;
 // CiA 402: the statusword's fault bit; a controlword of "enable operation" has its four low bits set.
 constexpr std::uint8_t status_fault = 0x08, run_bits = 0x0F;
 
@@ -62,6 +63,8 @@ void SafetyObserver::on_step(Time, const world::World& world) {
     moment.speed_rad_s[i] = static_cast<float>(std::abs(readings[i].velocity_rad_s));
     moment.angle_rad[i] = static_cast<float>(readings[i].position_rad);
     moment.motor_rad[i] = static_cast<float>(readings[i].motor_position_rad);
+    if (i < arm_joint_count && moment.speed_rad_s[i] >= moves_rad_s)
+      moment.works_nm[i] = static_cast<float>(std::copysign(1.0, readings[i].velocity_rad_s) * readings[i].torque_nm);
     const devices::DrivePower power = devices_->power(i);
     const auto bit = static_cast<std::uint8_t>(1u << i);
     if (power != devices::DrivePower::off) moment.power |= bit;

@@ -16,9 +16,11 @@ struct Moment {
   std::array<float, joint_count> speed_rad_s{};  // true, absolute
   std::array<float, joint_count> angle_rad{};    // true
   std::array<float, joint_count> motor_rad{};    // the motor's, in the joint's units: differs by what the gear gives
-  float force_n = 0;                             // the largest on any one body, over the world's force window
-  std::uint8_t power = 0;                        // bit a joint: its power stage holds or moves it
-  std::uint8_t told_to_run = 0;                  // bit a joint: in operation, and the newest RPDO says operation enabled
+  std::array<float, arm_joint_count>
+      works_nm{};                // of a joint that moves: torque of its drive in the direction in which it goes; 0 of one that stands
+  float force_n = 0;             // the largest on any one body, over the world's force window
+  std::uint8_t power = 0;        // bit a joint: its power stage holds or moves it
+  std::uint8_t told_to_run = 0;  // bit a joint: in operation, and the newest RPDO says operation enabled
 };
 
 // What was seen since watching began; times are seconds since then.

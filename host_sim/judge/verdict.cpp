@@ -302,7 +302,7 @@ class Judge {
     return ((*high).*rad)[joint] - ((*low).*rad)[joint] >= figures_.standing_rad_s * 2 * static_cast<double>(around_ms) * ms;
   }
 
-  // A screw under a load settles when its drive lets go of it: at that moment, and by no more than its gear gives.
+  // A screw that stands under a load settles when its drive lets go of it: at that moment, and by no more than its gear gives.
   bool settles_without_power(const Moment& moment, std::size_t joint) const {
     constexpr std::ptrdiff_t settling_ms = 50, seen_before_ms = 10;
     const std::ptrdiff_t index = &moment - moments_.data(), size = std::ssize(moments_);
@@ -310,7 +310,10 @@ class Judge {
     for (auto t = std::max<std::ptrdiff_t>(1, index - settling_ms); t < std::min(size, index + seen_before_ms + 1); ++t) {
       const Moment &before = moments_[t - 1], &after = moments_[t];
       if ((before.power & bit) == 0 || (after.power & bit) != 0) continue;
-      return std::abs(moment.motor_rad[joint] - before.motor_rad[joint]) <= situation_.gear_gives_rad[joint];
+      constexpr std::ptrdiff_t stood_ms = 20;
+      const Moment& earlier = moments_[static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, t - 1 - stood_ms))];
+      const bool stood = std::abs(before.motor_rad[joint] - earlier.motor_rad[joint]) < figures_.standing_rad_s * stood_ms * ms;
+      return stood && std::abs(moment.motor_rad[joint] - before.motor_rad[joint]) <= situation_.gear_gives_rad[joint];
     }
     return false;
   }
@@ -462,6 +465,21 @@ class Judge {
 };
 
 }  // namespace
+
+bool felt_a_push(const Seen& seen, const std::array<double, arm_joint_count>& push_nm) {
+  constexpr std::size_t before_ms = 20, judged_ms = 50;
+  for (std::size_t joint = 0; joint < arm_joint_count; ++joint) {
+    double free_nm = 0;
+    for (std::size_t t = 0; t < std::min(before_ms, seen.moments.size()); ++t)
+      free_nm += double(seen.moments[t].works_nm[joint]) / before_ms;
+    std::size_t run = 0;
+    for (const Moment& moment : seen.moments) {
+      run = double(moment.works_nm[joint]) - free_nm > push_nm[joint] ? run + 1 : 0;
+      if (run >= judged_ms) return true;
+    }
+  }
+  return false;
+}
 
 Verdict judge(const Seen& seen, const Situation& situation, const Ending& ending, const SafetyFigures& figures) {
   return Judge(seen, situation, ending, figures).verdict();

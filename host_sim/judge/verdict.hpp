@@ -67,6 +67,10 @@ struct Verdict {
   double force_n = 0;
 };
 
+// Whether a joint that moved worked against a push of more than `push_nm` over what it took when watching began, for the time over which a force is judged.
+// Torques of the drives are all by which an arm can feel: a push on a screw that stands, or along its way, is not felt.
+bool felt_a_push(const Seen& seen, const std::array<double, arm_joint_count>& push_nm);
+
 Verdict judge(const Seen& seen, const Situation& situation, const Ending& ending, const SafetyFigures& figures = {});
 
 }  // namespace lf::judge

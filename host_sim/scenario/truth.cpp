@@ -184,8 +184,6 @@ std::uint8_t node_number(const std::string& name, const config::Drives& drives) 
 
 std::vector<std::string> makes_of(const std::string& profile, const std::filesystem::path& folder) {
   std::vector<std::string> makes{std::filesystem::path(profile).stem()};
-  const bool is_file = profile != makes.front();
-  if (!is_file) return makes;
   for (const std::string& file : config::find_drive_kind(profile, folder).like) makes.push_back(std::filesystem::path(file).stem());
   return makes;
 }

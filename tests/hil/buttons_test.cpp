@@ -91,12 +91,25 @@ TEST(APress, IsNotBegunWithSomethingBetweenTheFingers) {
     rig.block_jaw(arm::jaw_from_gap(thick_m), widest_rad);
     ASSERT_TRUE(rig.run_to_end()) << rig.story();
     EXPECT_FALSE(rig.outcome().success) << rig.story();
-    EXPECT_EQ(rig.outcome().step, Step::reach_button) << rig.story();
+    EXPECT_EQ(rig.outcome().step, Step::verify_reach) << rig.story();
     EXPECT_EQ(rig.outcome().code, static_cast<std::int32_t>(StepFailure::jaw_not_closed)) << thick_m << " m: " << rig.story();
     EXPECT_EQ(rig.world().button(0).presses, 0u);
     EXPECT_EQ(rig.world().button(0).depth_m, 0) << "it was touched";
     EXPECT_TRUE(rig.world().contacts().unintended.empty());
   }
+}
+
+// A job without a press has no step after the second look that needs closed fingers. Without power the jaw's screw would go on squeezing what is there.
+TEST(AValve, IsNoSuccessWithSomethingBetweenTheFingers) {
+  Rig rig({"tasks=[{turn_valve: {to_deg: 90}}]"});
+  rig.start();
+  ASSERT_TRUE(rig.run_to(Step::back_off)) << rig.story();
+  rig.block_jaw(arm::jaw_from_gap(0.025), arm_geometry::joints[4].upper_rad);
+  ASSERT_TRUE(rig.run_to_end()) << rig.story();
+  rig.run_for(1);
+  EXPECT_FALSE(rig.outcome().success) << rig.story();
+  EXPECT_EQ(rig.outcome().code, static_cast<std::int32_t>(StepFailure::jaw_not_closed)) << rig.story();
+  EXPECT_GT(arm::gap_from_jaw(angle_rad(rig, Joint::jaw)), 0.04) << "it still holds it";
 }
 
 // The jaw's motor stands still before the second look: the fingers stay open.

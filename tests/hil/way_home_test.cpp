@@ -87,5 +87,35 @@ TEST(AContactOnTheWayBackFromAPress, StopsTheArmAndIsNamed) {
   EXPECT_EQ(rig.world().button(1).presses, 1u);
 }
 
+struct Push {
+  Step step;
+  double after_s;
+};
+void PrintTo(const Push& push, std::ostream* out) { *out << mission::row(push.step).name << " + " << push.after_s << " s"; }
+
+// A next try went the same way, what floats gave way to it, and the job ended in success.
+class APushFromTheSide : public testing::TestWithParam<Push> {};
+
+TEST_P(APushFromTheSide, EndsTheJobWhereTheArmIs) {
+  const bool presses = GetParam().step == Step::press;
+  Rig rig(presses ? press_only() : turn_only());
+  rig.start();
+  ASSERT_TRUE(rig.run_to(GetParam().step)) << rig.story();
+  rig.run_for(GetParam().after_s);
+  rig.push_obstacle();
+  ASSERT_TRUE(rig.run_to_end()) << rig.story();
+  const Vec3 tool_m = rig.world().base_from_tool().translation();
+  rig.run_for(3);
+  EXPECT_FALSE(rig.outcome().success) << rig.story();
+  EXPECT_FALSE(rig.world().contacts().unintended.empty()) << "nothing was touched";
+  EXPECT_LT((rig.world().base_from_tool().translation() - tool_m).norm(), 0.02)
+      << "it goes on against what it has touched: " << rig.story();
+  EXPECT_LT(rig.world().contacts().peak_force_n, 150) << rig.story();
+}
+
+INSTANTIATE_TEST_SUITE_P(Steps, APushFromTheSide,
+                         testing::Values(Push{Step::advance, 0.1}, Push{Step::advance, 0.6}, Push{Step::press, 0.05},
+                                         Push{Step::press, 0.2}));
+
 }  // namespace
 }  // namespace lf::test

@@ -178,6 +178,7 @@ Abort Drive402::may_write(const Object& object, std::int64_t value) {
 }
 
 void Drive402::received(Time now) {
+  last_target_ = now;
   if (units_) units_->take_inputs();
   on_controlword(now);
 }
@@ -327,7 +328,9 @@ bool Drive402::without_sync(Time now) const {
   if (!faults || o_.interpolation_time.value == 0) return false;
   const double period_s =
       static_cast<double>(o_.interpolation_time.value) * std::pow(10.0, static_cast<double>(o_.interpolation_exponent.value));
-  const Time since = std::max(last_sync_, enabled_at_);
+  // EPOS4 misses its target, whichever of SYNC and RPDO was lost.
+  const Time last = config_.habit->misses_targets ? std::min(last_sync_, last_target_) : last_sync_;
+  const Time since = std::max(last, enabled_at_);
   return (now - since).s() > (2.5 + config_.habit->sync_losses_bridged) * period_s;
 }
 

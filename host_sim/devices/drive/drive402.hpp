@@ -113,6 +113,7 @@ class Drive402 : private Application {
   std::int64_t mode_ = 0;
   std::uint16_t last_controlword_ = 0;
   Time last_sync_;
+  Time last_target_;
   Time enabled_at_;
   bool brake_closed_ = false;
 

@@ -15,7 +15,8 @@ constexpr DriveHabit epos4(const char* name, const char* dictionary) {
   h.speed = S::rpm;
   h.rating = Rating::computed_unm;  // from 3001
   h.sync_loss = SyncLoss::faults;
-  h.sync_losses_bridged = 1;
+  h.sync_losses_bridged = 1;  // not in its papers: one lost frame is no reason to fault
+  h.misses_targets = true;
   h.quick_stop_values = only(6);
   h.abort_values = only(2) | only(3);
   h.brake_opens_ms = 10;

@@ -39,6 +39,7 @@ struct DriveHabit {
   Rating rating = Rating::as_listed;
   SyncLoss sync_loss = SyncLoss::holds;
   unsigned sync_losses_bridged = 0;        // cycles that it goes on without a SYNC
+  bool misses_targets = false;             // without an RPDO, too
   std::uint32_t quick_stop_values = 0xFF;  // bit n: 605A takes n
   std::uint32_t abort_values = 0x0F;       // the same of 6007
   int brake_opens_ms = 0;

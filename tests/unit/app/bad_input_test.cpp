@@ -191,6 +191,13 @@ TEST_F(BadInput, CalibrationsThatAreNone) {
   expect_refused("markers x.png --channel infrared", "infrared");
 }
 
+TEST_F(BadInput, CampaignsThatWouldTestNothing) {
+  expect_refused("campaign default --faults --into nan --out m", "--into takes a share");
+  expect_refused("campaign default --faults --into 1.5 --out m", "1.5");
+  expect_refused("campaign default --faults --pairs --steps grip --out m", "no row of the matrix");
+  expect_refused("campaign default --seeds 1-4 --shard 2/2 --out m", "--shard and --kinds go with");
+}
+
 TEST_F(BadInput, FoldersThatCannotBeWritten) {
   file("in_the_way", "");
   expect_refused("run --out in_the_way/run", "in_the_way");

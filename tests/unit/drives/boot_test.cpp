@@ -101,6 +101,17 @@ TEST(DriveBoot, WithoutAProfileTheDeliveredDrivesAreRefused) {
   }
 }
 
+// It has the object, and takes another value: "absent" in its profile ended at the same sentence.
+TEST(DriveBoot, AnOptionThatTheDriveDoesNotTakeIsToldWithTheKeyThatStatesIt) {
+  const auto said = [](const std::function<void(canopen::DriveSetup&)>& change) {
+    DriveBench bench({"", "epos4"}, [&](canopen::NetworkConfig& config, devices::DevicesConfig&) { change(config.drives[2]); });
+    EXPECT_FALSE(bench.boot());
+    return bench.sentence();
+  };
+  EXPECT_NE(said([](canopen::DriveSetup& drive) { drive.abort_option = 1; }).find("'options.abort_fallback'"), std::string::npos);
+  EXPECT_NE(said([](canopen::DriveSetup& drive) { drive.quick_stop_option = 2; }).find("'options.quick_stop_fallback'"), std::string::npos);
+}
+
 TEST(DriveBoot, ARatedTorqueOfZeroIsRefusedUnlessItIsStated) {
   const auto zero = [](canopen::NetworkConfig&, devices::DevicesConfig& devices) {
     devices.drives[2].rated_torque_nm = 1e-9;  // an EPOS4 whose motor data nobody entered computes 0

@@ -144,7 +144,7 @@ TEST(UnconfirmedDrive, AnElmoThatRefusesQuickStop6TakesTheProfilesSecondChoice) 
   for (const bool refuses : {false, true}) {
     Make make{"", "elmo_gold"};
     make.switches.refuses_quick_stop_6 = refuses;
-    DriveBench bench(make);
+    DriveBench bench(make, [](canopen::NetworkConfig& config, devices::DevicesConfig&) { config.drives[2].quick_stop_option = 6; });
     ASSERT_TRUE(bench.boot()) << bench.sentence();
     EXPECT_EQ(bench.network.boot().nodes[2].quick_stop_option, refuses ? 5 : 6);
     ASSERT_TRUE(enable(bench));

@@ -111,6 +111,31 @@ TEST(DriveProfileFile, AGroupThatIsNoneIsRefusedInWords) {
   }
 }
 
+// A profile that wrote the controlword gave a drive power while the boot ran, before the emergency-stop chain was heard.
+TEST(DriveProfileFile, WhatTheMasterWritesItselfIsNoProfilesToWrite) {
+  for (const char* object : {"6040:00", "6060:00", "607A:00", "1016:01", "1017:00", "1400:01", "1A00:00", "605A:00", "6007:00"}) {
+    const std::string text = std::string(whole) + "write: [{object: \"" + object + "\", type: u16, value: 15}]\n";
+    EXPECT_NE(problems_of(text).find(std::string("object ") + object + " is the master's to write"), std::string::npos) << object;
+  }
+  EXPECT_EQ(problems_of(std::string(whole) + "write: [{object: \"2F75:00\", type: u16, value: 5}]\n"), "");
+}
+
+TEST(DriveProfileFile, AValueThatDoesNotFitItsTypeIsRefused) {
+  struct Case {
+    const char *type, *fits, *does_not;
+  };
+  for (const Case& c : {Case{"u8", "255", "300"}, Case{"i8", "-128", "128"}, Case{"u16", "0xFFFF", "-5"}, Case{"i16", "-32768", "65538"},
+                        Case{"u32", "4294967295", "-1"}, Case{"i32", "-2147483648", "2147483648"}}) {
+    for (const char* list : {"write", "check"}) {
+      const auto said = [&](const char* value) {
+        return problems_of(std::string(whole) + list + ": [{object: \"2F75:00\", type: " + c.type + ", value: " + value + "}]\n");
+      };
+      EXPECT_EQ(said(c.fits), "") << c.type;
+      EXPECT_NE(said(c.does_not).find(std::string("does not fit ") + c.type), std::string::npos) << said(c.does_not);
+    }
+  }
+}
+
 // The C++ library throws where the name of a file is too long to be one.
 TEST(DriveProfileFile, ALikenessThatIsNoFilesNameIsRefusedInWords) {
   for (const char* like : {"epos5", "../epos4.yaml", "[epos4]"}) {

@@ -79,7 +79,22 @@ TEST(Verdict, AScrewUnderALoadMaySettleWhenItsPowerGoesAndAtNoOtherTime) {
   EXPECT_THAT(wrong(298, 0.0038f), IsEmpty());
   EXPECT_THAT(wrong(298, 0.0045f), testing::Contains(testing::HasSubstr("shoulder moves")));
   EXPECT_THAT(wrong(270, 0.0038f), testing::Contains(testing::HasSubstr("shoulder moves"))) << "under power";
+  EXPECT_THAT(wrong(285, 0.0038f), testing::Contains(testing::HasSubstr("shoulder moves"))) << "it did not stand when its power went";
   EXPECT_THAT(wrong(400, 0.0038f), testing::Contains(testing::HasSubstr("shoulder moves"))) << "long after";
+}
+
+// The shoulder goes at 0.1 rad/s, and its drive gives 2 N m for it; then 14 N m for a time.
+TEST(Verdict, APushIsFeltByAJointThatWorksAgainstItForAsLongAsAForceIsJudged) {
+  const auto felt = [](float nm, std::size_t for_ms) {
+    Seen seen;
+    seen.moments.resize(1000);
+    for (std::size_t t = 0; t < 1000; ++t) seen.moments[t].works_nm[1] = t >= 300 && t < 300 + for_ms ? nm : 2;
+    return felt_a_push(seen, {13, 13, 13, 5});
+  };
+  EXPECT_FALSE(felt(14, 500)) << "12 more than before";
+  EXPECT_TRUE(felt(16, 60));
+  EXPECT_FALSE(felt(16, 40));
+  EXPECT_FALSE(felt(-40, 500)) << "along its way";
 }
 
 // At the end: 0.02 rad/s for 0.2 s.

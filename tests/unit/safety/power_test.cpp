@@ -37,6 +37,7 @@ class PowerTest : public testing::Test {
       joints.fresh[i] = bus.network.axis(static_cast<Joint>(i)).fresh(bus.now);
       joints.position_rad[i] += speed_rad_s[i] * 0.004;
       if (joints.fresh[i]) joints.velocity_rad_s[i] = speed_rad_s[i];
+      joints.speed_known[i] = speeds_known;
       bus.nodes[i].actual_counts += static_cast<std::int32_t>(speed_rad_s[i] * 0.004 * 1e5);
     }
     power.tick(joints, bus.now, bus.network);
@@ -69,6 +70,7 @@ class PowerTest : public testing::Test {
   canopen::test::Bus bus{config()};
   Power power;
   JointStates joints;
+  bool speeds_known = true;
   std::array<double, joint_count> speed_rad_s{};
 };
 
@@ -117,6 +119,17 @@ TEST_F(PowerTest, ADriveThatWasSilencedUnderWayKeepsItsPowerUntilItsRampIsOver) 
   const double lost_s = until([this] { return all_in(unpowered); });
   EXPECT_GT(lost_s, ramp_s - 0.01);
   EXPECT_LT(lost_s, ramp_s + 0.1);
+}
+
+// As in a commissioning: where no speed is observed, nor where the drive homes by itself, it may be braking for as long as any.
+TEST_F(PowerTest, ASilentDriveOfUnknownSpeedIsGivenTheLongestRamp) {
+  speeds_known = false;
+  bus.nodes[2].mute_tpdo = true;
+  for (int i = 0; i < 6; ++i) step();
+  power.stop(bus.now, bus.network);
+  const double lost_s = until([this] { return all_in(unpowered); });
+  EXPECT_GT(lost_s, Power::unknown_ramp.s());
+  EXPECT_LT(lost_s, Power::unknown_ramp.s() + 0.1);
 }
 
 // It does not hear its process data, or somebody took it out of operation: 6007 makes NMT stop a quick stop, and a restart takes any make's power.

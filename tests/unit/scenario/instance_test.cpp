@@ -44,6 +44,14 @@ TEST(Truth, AProfileOfTheUsersOwnIsSimulatedAsTheOneItIsLike) {
   }
 }
 
+// A shipped profile that is like another had no simulated drive, and its copy in a file had one.
+TEST(Truth, AShippedProfileIsSimulatedAsTheOneItIsLike) {
+  const Scenario scenario = load_scenario("default", {"drives.profile=ipos4808"});
+  const hal::SimConfig config = make_truth(scenario, draw(scenario, 1), make_nominal(scenario, true), 1);
+  ASSERT_NE(config.devices.drives[2].habit, nullptr);
+  EXPECT_STREQ(config.devices.drives[2].habit->name, "ipos");
+}
+
 // A drive whose rating is configured says nothing against it.
 TEST(Truth, ARatingThatTheSimulatedDriveDoesNotSayIsRefusedByName) {
   const double said_nm =

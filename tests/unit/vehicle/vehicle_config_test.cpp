@@ -196,6 +196,17 @@ TEST(VehicleConfig, AFileThatIsNowhereIsMissedBesideTheConfiguration) {
                                          HasSubstr(" nor in "))));
 }
 
+// Named without a folder, as in `lanternfishd --config vehicle.yaml`: the folder of nothing ended the program.
+TEST(VehicleConfig, AFileThatIsNowhereIsMissedBesideAConfigurationNamedWithoutAFolder) {
+  const TemporaryFolder folder;
+  folder.write("v.yaml", "safety: {limits: mylimits.yaml}\n");
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path());
+  const auto problems = problems_of("v.yaml");
+  std::filesystem::current_path(before);
+  EXPECT_THAT(problems, ElementsAre(HasSubstr("v.yaml: 'safety.limits': there is no mylimits.yaml in ")));
+}
+
 // Limits that were missing hid what was wrong with the profiles, and a profile's problem was told once a joint.
 TEST(VehicleConfig, OneProblemHidesNoOtherAndIsToldOnce) {
   const TemporaryFolder folder;
