@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Builds test programs with AddressSanitizer and UndefinedBehaviorSanitizer, and runs them. `./test.sh asan` and `./test.sh tsan` do it for everything.
-# The checks of null, alignment and object size are left to `asan`: they take a third of the compiler's time, and AddressSanitizer sees the first and the last.
+# The checks of null, alignment and object size are left to `asan`, shards of tests/nightly.sh: they take a third of the compiler's time.
 # Usage: tests/sanitized_core.sh [--build | --fuzz] [PROGRAM]...
 #   --build  they are built only
 #   PROGRAM  of build/core-asan/tests; default: the core's unit tests and the assembled daemon, as `./test.sh` runs them

@@ -105,7 +105,17 @@ std::string FoundNode::name() const {
   return text;
 }
 
-BusDoctor::BusDoctor(std::uint8_t first, std::uint8_t last) : node_(first), last_(last), sdo_(first, answer_time) { reading_.node = first; }
+BusDoctor::BusDoctor(std::uint8_t first, std::uint8_t last, const std::vector<config::DriveKind>& kinds)
+    : node_(first), last_(last), sdo_(first, answer_time) {
+  for (const Place& place : places) wanted_.push_back(key(place.index, place.sub));
+  for (const config::DriveKind& kind : kinds) {
+    for (const config::ProfileObject& object : kind.objects) {
+      const std::uint32_t place = key(object.index, object.sub);
+      if (!object.writes && std::find(wanted_.begin(), wanted_.end(), place) == wanted_.end()) wanted_.push_back(place);
+    }
+  }
+  reading_.node = first;
+}
 
 void BusDoctor::on_frame(const CanFrame& frame, Time now) {
   if (!done() && frame.id == canopen::cob_id::sdo_answer + node_ && frame.length == 8) (void)sdo_.on_frame(frame, now);
@@ -130,8 +140,8 @@ void BusDoctor::take() {
   } else {
     read.abort_code = sdo_.abort_code();
   }
-  reading_.objects[key(places[object_].index, places[object_].sub)] = read;
-  if (++object_ == places.size()) next_node();
+  reading_.objects[wanted_[object_]] = read;
+  if (++object_ == wanted_.size()) next_node();
 }
 
 void BusDoctor::step(Time now, std::vector<CanFrame>& out) {
@@ -140,34 +150,57 @@ void BusDoctor::step(Time now, std::vector<CanFrame>& out) {
   if (done() || sdo_.busy()) return;
   if (sdo_.state() != canopen::SdoClient::State::idle) take();
   if (done()) return;
-  sdo_.upload(places[object_].index, places[object_].sub);
+  sdo_.upload(static_cast<std::uint16_t>(wanted_[object_] >> 8), static_cast<std::uint8_t>(wanted_[object_]));
   while (sdo_.poll(now, frame)) out.push_back(frame);
 }
 
-const config::DriveKind* known_kind(const FoundNode& node, const std::vector<config::DriveKind>& kinds) {
+std::vector<const config::DriveKind*> kinds_of(const FoundNode& node, const std::vector<config::DriveKind>& kinds) {
   const ReadObject* vendor = node.find(0x1018, 1);
   const ReadObject* product = node.find(0x1018, 2);
-  if (vendor == nullptr || !vendor->there()) return nullptr;
-  const config::DriveKind* best = nullptr;
+  std::vector<const config::DriveKind*> fit;
+  if (vendor == nullptr || !vendor->there()) return fit;
   for (const config::DriveKind& kind : kinds) {
     if (kind.identity.vendor == 0 && kind.identity.product == 0) continue;
     if (kind.identity.vendor != 0 && kind.identity.vendor != vendor->number()) continue;
     const bool same = product != nullptr && product->there() && kind.identity.product == product->number();
-    if (kind.identity.product != 0 && !same) continue;
-    if (best == nullptr || (best->identity.product == 0 && kind.identity.product != 0)) best = &kind;
+    if (kind.identity.product == 0 || same) fit.push_back(&kind);
   }
-  return best;
+  std::stable_partition(fit.begin(), fit.end(), [](const config::DriveKind* kind) { return kind->identity.product != 0; });
+  return fit;
 }
+
+const config::DriveKind* known_kind(const FoundNode& node, const std::vector<config::DriveKind>& kinds) {
+  const auto fit = kinds_of(node, kinds);
+  return fit.empty() ? nullptr : fit.front();
+}
+
+namespace {
+
+// 1018, which the boot holds against the profile before anything else.
+void compare_identity(const FoundNode& node, const config::DriveKind& kind, std::vector<std::string>& all) {
+  const std::array<std::pair<std::uint8_t, std::uint32_t>, 2> wanted{{{1, kind.identity.vendor}, {2, kind.identity.product}}};
+  for (const auto& [sub, number] : wanted) {
+    const ReadObject* read = node.find(0x1018, sub);
+    if (number == 0 || (read != nullptr && read->there() && read->number() == number)) continue;
+    const std::string holds = read != nullptr && read->there() ? "holds " + hex(read->number()) : "is not there";
+    all.push_back(named(0x1018, sub) + " " + holds + ", the profile says " + hex(number) + ": another make");
+  }
+}
+
+}  // namespace
 
 std::vector<std::string> differences(const FoundNode& node, const config::DriveKind& kind) {
   std::vector<std::string> all;
+  compare_identity(node, kind, all);
   for (const config::ProfileObject& object : kind.objects) {
     const ReadObject* read = node.find(object.index, object.sub);
     if (object.writes || read == nullptr) continue;
     const std::string why = object.why.empty() ? "" : " (" + object.why + ")";
     if (!read->there() && !object.optional) all.push_back(named(object.index, object.sub) + " is not there" + why);
     if (!read->there()) continue;
-    const auto wanted = static_cast<std::uint32_t>(std::stoll(object.value, nullptr, 0));
+    if (object.value.find_first_not_of("+-0123456789abcdefABCDEFxX") != std::string::npos) continue;  // a figure of the machine's motor
+    const std::uint32_t mask = read->bytes.size() >= 4 ? UINT32_MAX : (1u << (8 * read->bytes.size())) - 1;
+    const std::uint32_t wanted = static_cast<std::uint32_t>(std::stoll(object.value, nullptr, 0)) & mask;
     if (read->number() != wanted)
       all.push_back(named(object.index, object.sub) + " holds " + hex(read->number()) + ", the profile says " + hex(wanted) + why);
   }
@@ -222,6 +255,16 @@ std::string draft_profile(const FoundNode& node) {
 
 namespace {
 
+// Vendors give one number to several makes of drive.
+std::string others_text(const config::DriveKind& taken, const std::vector<const config::DriveKind*>& fit, bool configured) {
+  std::string names;
+  for (const config::DriveKind* kind : fit) {
+    if (kind->name != taken.name) names += (names.empty() ? "" : ", ") + kind->name;
+  }
+  if (names.empty()) return "";
+  return "  by its vendor and product it may " + std::string(configured ? "" : "as well ") + "be: " + names + "\n";
+}
+
 // What of the drive nobody reads out of its objects, and who stands beside the arm has to know.
 std::string habits_text(const config::DriveKind& kind) {
   std::string text =
@@ -234,7 +277,8 @@ std::string habits_text(const config::DriveKind& kind) {
 
 }  // namespace
 
-std::string doctor_text(const std::vector<FoundNode>& nodes, const std::vector<config::DriveKind>& kinds) {
+std::string doctor_text(const std::vector<FoundNode>& nodes, const std::vector<config::DriveKind>& kinds,
+                        const ConfiguredDrives& configured) {
   if (nodes.empty()) return "nobody answers: look at the bus' power, bit rate and termination\n";
   std::string text;
   for (const FoundNode& node : nodes) {
@@ -245,20 +289,28 @@ std::string doctor_text(const std::vector<FoundNode>& nodes, const std::vector<c
       text += ", no servo drive (1000 is " + (type != nullptr && type->there() ? hex(type->number()) : "?") + ")\n";
       continue;
     }
-    const config::DriveKind* kind = known_kind(node, kinds);
+    const auto told = configured.find(node.node);
+    const auto fit = kinds_of(node, kinds);
+    const config::DriveKind* kind = told != configured.end() ? &told->second.kind : fit.empty() ? nullptr : fit.front();
     if (kind == nullptr) {
       text += ", not known. A draft of its profile:\n\n" + draft_profile(node) + "\n";
       continue;
     }
     const std::vector<std::string> all = differences(node, *kind);
-    text += ", profile " + kind->name + " (" + kind->title + ")" + (all.empty() ? ": agrees with its profile\n" : ":\n");
+    const std::string whose = told != configured.end() ? ", " + told->second.joint + ", configured as " : ", profile ";
+    text += whose + kind->name + " (" + kind->title + ")" + (all.empty() ? ": agrees with its profile\n" : ":\n");
     for (const std::string& one : all) text += "  " + one + "\n";
+    text += others_text(*kind, fit, told != configured.end());
     text += habits_text(*kind);
     const ReadObject* error = node.find(0x603F, 0);
     if (error != nullptr && error->there() && error->number() != 0)
       text += "  its last error (603F) is " + hex(error->number()).substr(6) + ": " +
               kind->error_text(static_cast<std::uint16_t>(error->number())) + "\n";
     for (const std::string& open : kind->unconfirmed) text += "  unconfirmed, try it on the bench: " + open + "\n";
+  }
+  for (const auto& [node, drive] : configured) {
+    const bool answers = std::any_of(nodes.begin(), nodes.end(), [&](const FoundNode& found) { return found.node == node; });
+    if (!answers) text += "node " + std::to_string(node) + ": nobody answers, and the " + drive.joint + " is configured there\n";
   }
   return text;
 }

@@ -34,8 +34,9 @@ struct FoundNode {
 
 class BusDoctor {
  public:
-  // Asks nodes `first` to `last`, one after the other. A node that does not answer within 30 ms is not there.
-  explicit BusDoctor(std::uint8_t first = 1, std::uint8_t last = 126);
+  // Asks nodes `first` to `last`, one after the other. A node that does not answer within 30 ms is not there. It reads what the boot needs, and what `kinds`
+  // want checked.
+  explicit BusDoctor(std::uint8_t first = 1, std::uint8_t last = 126, const std::vector<config::DriveKind>& kinds = {});
 
   void on_frame(const CanFrame& frame, Time now);
   // Appends the frames that are due. Call it every millisecond.
@@ -48,6 +49,7 @@ class BusDoctor {
   void next_object();
   void take();
 
+  std::vector<std::uint32_t> wanted_;  // index << 8 | sub
   std::uint8_t node_;
   std::uint8_t last_;
   std::size_t object_ = 0;
@@ -59,13 +61,24 @@ class BusDoctor {
 // The profile of the drive, by vendor and product; nullptr when none says them. A profile that states the product goes before one that does not.
 const config::DriveKind* known_kind(const FoundNode& node, const std::vector<config::DriveKind>& kinds);
 
+// All of `kinds` that the drive's vendor and product allow.
+std::vector<const config::DriveKind*> kinds_of(const FoundNode& node, const std::vector<config::DriveKind>& kinds);
+
+// A profile that the machine's file names for the drive of a joint.
+struct ConfiguredDrive {
+  std::string joint;
+  config::DriveKind kind;
+};
+using ConfiguredDrives = std::map<std::uint8_t, ConfiguredDrive>;  // by node
+
 // What the drive holds or lacks otherwise than its profile says, a sentence each.
 std::vector<std::string> differences(const FoundNode& node, const config::DriveKind& kind);
 
 // A profile in YAML, filled with what was read; what a reader has to state stands there as a question.
 std::string draft_profile(const FoundNode& node);
 
-// All of it, for people.
-std::string doctor_text(const std::vector<FoundNode>& nodes, const std::vector<config::DriveKind>& kinds);
+// All of it, for people. A node that is `configured` is held against that profile, whatever it says it is.
+std::string doctor_text(const std::vector<FoundNode>& nodes, const std::vector<config::DriveKind>& kinds,
+                        const ConfiguredDrives& configured = {});
 
 }  // namespace lf::hal

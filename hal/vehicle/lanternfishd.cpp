@@ -14,6 +14,7 @@
 
 #include "hal/config/arm_notes.hpp"
 #include "hal/config/drive_kind.hpp"
+#include "hal/config/nearest.hpp"
 #include "hal/config/share.hpp"
 #include "hal/vehicle/bus_doctor.hpp"
 #include "hal/vehicle/daemon.hpp"
@@ -211,9 +212,15 @@ int commission(const Options& options, const CommissionOptions& wanted) {
 // On its own interface, or the configuration's. Refused while another program is master of the bus.
 int examine_bus(const Options& options, std::string interface) {
   std::string lock_folder = VehicleConfig().lock_folder;
+  ConfiguredDrives configured;
   if (!options.config.empty()) {
     const VehicleConfig vehicle = load_vehicle_config(options.config);
     lock_folder = vehicle.lock_folder;
+    for (std::size_t i = 0; i < joint_count; ++i) {
+      const config::JointDriveChoice drive = config::drive_of(vehicle.machine.drives, i);
+      configured[static_cast<std::uint8_t>(drive.node)] = {
+          config::joint_name(i), config::find_drive_kind(drive.profile, std::filesystem::path(vehicle.machine.file).parent_path())};
+    }
     if (interface.empty()) interface = vehicle.interface;
   }
   if (interface.empty()) throw InputError("doctor needs --interface, or --config with 'can.interface'");
@@ -229,7 +236,11 @@ int examine_bus(const Options& options, std::string interface) {
   if (const auto master = hear_another_master(can, listen_for_a_master)) throw EnvironmentLacks(interface + ": " + *master);
   TickClock clock(Duration::from_ms(1));
   clock.start();
-  BusDoctor doctor;
+  std::vector<config::DriveKind> kinds, checked;
+  for (const std::string& name : config::shipped_drive_kinds()) kinds.push_back(config::find_drive_kind(name, ""));
+  checked = kinds;
+  for (const auto& [node, drive] : configured) checked.push_back(drive.kind);
+  BusDoctor doctor(1, 126, checked);
   std::vector<CanFrame> out;
   while (!doctor.done()) {
     const Time now = clock.wait();
@@ -238,9 +249,7 @@ int examine_bus(const Options& options, std::string interface) {
     doctor.step(now, out);
     (void)can.send(out);
   }
-  std::vector<config::DriveKind> kinds;
-  for (const std::string& name : config::shipped_drive_kinds()) kinds.push_back(config::find_drive_kind(name, ""));
-  std::fputs(doctor_text(doctor.nodes(), kinds).c_str(), stdout);
+  std::fputs(doctor_text(doctor.nodes(), kinds, configured).c_str(), stdout);
   return doctor.nodes().empty() ? failed : done;
 }
 
@@ -281,6 +290,12 @@ int run(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {
     return app.exit(help);
+  } catch (const CLI::ExtrasError& error) {
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) names.push_back(command->get_name());
+    const std::vector<std::string> extras = app.remaining(true);
+    complain(error.what() + (extras.empty() ? std::string() : config::suggestion(extras.front(), names)));
+    return bad_input;
   } catch (const CLI::ParseError& error) {
     complain(error.what());
     return bad_input;

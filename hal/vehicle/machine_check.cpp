@@ -14,6 +14,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 
 #include "hal/config/homing_file.hpp"
 
@@ -143,9 +144,18 @@ void check_zeros(const VehicleConfig& config, Findings& found) {
 }
 
 void check_estop(const VehicleConfig& config, Findings& found) {
-  if (config.estop_input.empty() || access(config.estop_input.c_str(), R_OK) == 0) return;
-  found.push_back(
-      {"estop.input", config.estop_input + ": " + std::strerror(errno), "as long as it cannot be read, the chain counts as open"});
+  if (config.estop_input.empty()) return;
+  const char* remedy = "as long as it cannot be read, the chain counts as open";
+  std::error_code ignored;
+  if (access(config.estop_input.c_str(), R_OK) != 0) {
+    found.push_back({"estop.input", config.estop_input + ": " + std::strerror(errno), remedy});
+  } else if (fs::is_directory(config.estop_input, ignored)) {
+    found.push_back({"estop.input", config.estop_input + " is a folder", remedy});
+  } else {
+    char first = 0;
+    std::ifstream(config.estop_input).get(first);
+    if (first != '0' && first != '1') found.push_back({"estop.input", config.estop_input + " reads neither 0 nor 1", remedy});
+  }
 }
 
 void check_processors(const VehicleConfig& config, Findings& found) {

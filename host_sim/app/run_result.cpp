@@ -30,7 +30,7 @@ std::optional<record::FailureRecord> failure_of(const Controller& controller, co
   if (outcome.ended) return record::FailureRecord{outcome.stage, reason_of(outcome, texts) + boot};
   if (interrupted) return record::FailureRecord{recorder.phases().stage(), "interrupted"};
   return record::FailureRecord{recorder.phases().stage(),
-                               formatted("not ended by the time limit of %.0f s, at %.1f s", scenario.time_limit_s, world.time_s())};
+                               formatted("not ended by the time limit of %g s, at %.1f s", scenario.time_limit_s, world.time_s())};
 }
 
 std::optional<record::FailureRecord> disagreement(const Controller& controller, const world::World& world, const RunRecorder& recorder) {

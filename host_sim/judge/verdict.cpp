@@ -209,6 +209,15 @@ class Judge {
   }
 
   // Their process data are lost both ways, and nothing else.
+  double unreached_off_s(std::uint8_t joints, double from_s) const {
+    double ramp_s = 0;
+    const auto at = static_cast<std::size_t>(from_s / ms);
+    for (std::size_t joint = 0; joint < joint_count && at < moments_.size(); ++joint) {
+      if ((joints >> joint & 1u) != 0) ramp_s = std::max(ramp_s, moments_[at].speed_rad_s[joint] / situation_.deceleration_rad_s2[joint]);
+    }
+    return ramp_s + figures_.unreached_off_s;
+  }
+
   std::uint8_t joints_unreached() const {
     return static_cast<std::uint8_t>(joints_that(loses_process_data) & joints_that(is_unheard) & ~joints_that(cut_off));
   }
@@ -234,7 +243,7 @@ class Judge {
     const bool halts = deadline.cause != nullptr && deadline.cause->rule->report == Report::halt;
     const std::uint8_t unreached = joints_unreached();
     const double by_restart_s = told_to_run_s(unreached);
-    if (by_restart_s > deadline.end_s() + figures_.unreached_off_s + ms)
+    if (by_restart_s > deadline.end_s() + unreached_off_s(unreached, deadline.end_s()) + ms)
       wrong(formatted("still runs unreached %.0f ms after the report", (by_restart_s - deadline.at_s) / ms));
     const double by_nmt_s = told_to_run_s(untold & static_cast<std::uint8_t>(~unreached));
     const double late_s = halts ? figures_.unheeded_lowering_s : figures_.unheeded_stop_s;
@@ -336,7 +345,8 @@ class Judge {
   void loses_power(double from_s, bool halts) {
     // A drive holds a joint that swings in its gear until its ramp has ended.
     const double swung_s = last_s(moments_, from_s, [this](const Moment& m) { return m.power != 0 && swings(m); });
-    const double standing_s = std::max(from_s + verdict_.standing_s.value_or(0), swung_s);
+    const double stood_s = from_s + verdict_.standing_s.value_or(0);
+    const double standing_s = std::clamp(swung_s, stood_s, stood_s + figures_.settling_s);
     auto untold = static_cast<std::uint8_t>(joints_that(loses_process_data) & ~joints_that(cut_off));
     const auto reachable = static_cast<std::uint8_t>(master_is_cut_off() ? 0 : ~(joints_that(cut_off) | untold));
     const auto powered_s = [&](std::uint8_t joints) {
@@ -344,7 +354,7 @@ class Judge {
     };
     const double reached_off_s = powered_s(reachable);
     const std::uint8_t unreached = joints_unreached();
-    if (!master_is_cut_off() && powered_s(unreached) - from_s > figures_.unreached_off_s + ms)
+    if (!master_is_cut_off() && powered_s(unreached) - from_s > unreached_off_s(unreached, from_s) + ms)
       wrong(formatted("power is off %.2f s after the stop of a drive that nothing reaches", powered_s(unreached) - from_s));
     untold &= static_cast<std::uint8_t>(~unreached);
     const double late_s = halts ? figures_.unheeded_lowering_s : figures_.unheeded_off_s;

@@ -27,9 +27,9 @@ struct SafetyFigures {
   double unheeded_stop_s = 0.020, unheeded_lowering_s = 0.7;
   double unheeded_off_s = 0.120;  // until it is restarted, from when its power had to be off
   // A drive that hears no process data and is not heard either looks like one that brakes in good order: it is restarted when a ramp and a brake would be over.
-  double unreached_off_s = 0.6;
-  double quivers_rad = 0.001;  // by which a joint whose motor stands may quiver under a load: half a millimetre at the tool
-  double unwinding_s = 0.5;    // in which a joint whose motor stands may still unwind its gear
+  double unreached_off_s = 0.44;  // over its own ramp
+  double quivers_rad = 0.001;     // by which a joint whose motor stands may quiver under a load: half a millimetre at the tool
+  double unwinding_s = 0.5;       // in which a joint whose motor stands may still unwind its gear
 };
 
 // What the core says, and what is true, at the end.

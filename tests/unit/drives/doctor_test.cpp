@@ -21,7 +21,7 @@ std::vector<config::DriveKind> all_kinds() {
 // Runs the doctor on a bus that nobody is the master of.
 std::vector<hal::FoundNode> examine(DriveBench& bench) {
   bench.run(Duration::from_ms(300));  // power and boot-up
-  hal::BusDoctor doctor(1, 8);
+  hal::BusDoctor doctor(1, 8, all_kinds());
   Time now = bench.now;
   std::vector<CanFrame> sent;
   for (int ms = 0; ms < 20'000 && !doctor.done(); ++ms) {
@@ -111,6 +111,34 @@ TEST(BusDoctor, DraftsAProfileThatIsReadOnceItsQuestionsAreAnswered) {
   answer("rating_unit_unm: STATE", "1000");
   const config::DriveKind kind = config::read_drive_kind(write(draft));
   EXPECT_TRUE(hal::differences(nodes[2], kind).empty());
+}
+
+// It agreed with the profile that fits the drive, and the boot then failed by the one that the machine's file names.
+TEST(BusDoctor, HoldsADriveAgainstTheProfileThatItsJointIsConfiguredWith) {
+  DriveBench bench({"", "lmdrive"});
+  const std::vector<hal::FoundNode> nodes = examine(bench);
+  const auto said = [&](const char* profile, std::uint8_t node) {
+    return hal::doctor_text({nodes.at(2)}, all_kinds(), {{node, {"elbow", config::find_drive_kind(profile, "")}}});
+  };
+  const std::string right = said("lmdrive", 3), wrong = said("epos4", 3), absent = said("lmdrive", 9);
+  EXPECT_NE(right.find("elbow, configured as lmdrive"), std::string::npos) << right;
+  EXPECT_NE(right.find("agrees with its profile"), std::string::npos) << right;
+  EXPECT_NE(wrong.find("1018:01"), std::string::npos) << wrong;
+  EXPECT_NE(wrong.find("holds 0x0800005A, the profile says 0x000000FB"), std::string::npos) << wrong;
+  EXPECT_NE(wrong.find("it may be: lmdrive"), std::string::npos) << wrong;
+  EXPECT_NE(absent.find("node 9: nobody answers, and the elbow is configured there"), std::string::npos) << absent;
+}
+
+// What a profile wants checked was read only where the boot reads it, too; one of the vendor's other drives was taken for the first.
+TEST(BusDoctor, ReadsWhatAProfileWantsCheckedAndNamesAllThatFit) {
+  DriveBench bench({"", "ipos"});
+  const std::vector<hal::FoundNode> nodes = examine(bench);
+  for (const config::ProfileObject& object : config::find_drive_kind("ipos", "").objects) {
+    if (object.writes) continue;
+    EXPECT_NE(nodes.at(2).find(object.index, object.sub), nullptr) << config::object_text(object.index, object.sub);
+  }
+  const std::string text = hal::doctor_text({nodes.at(2)}, all_kinds());
+  EXPECT_NE(text.find("it may as well be: ipos4808"), std::string::npos) << text;
 }
 
 TEST(BusDoctor, AnEmptyBusIsToldAsOne) { EXPECT_NE(hal::doctor_text({}, {}).find("nobody answers"), std::string::npos); }

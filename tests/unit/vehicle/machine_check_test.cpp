@@ -43,6 +43,18 @@ TEST(MachineCheck, NamesWhatIsNotThere) {
   EXPECT_EQ(std::count_if(found.begin(), found.end(), [](const Finding& f) { return f.key == "operator.operators"; }), 2);
 }
 
+// A file that can be read and says nothing of the chain was taken for one that does.
+TEST(MachineCheck, AnEstopInputThatReadsNeitherZeroNorOneIsTold) {
+  const test::TemporaryFolder folder;
+  const auto said = [&](const std::string& input) {
+    return said_of(check_machine(load_vehicle_config(folder.write("v.yaml", "estop: {input: " + input + "}\n"))), "estop.input");
+  };
+  EXPECT_THAT(said(folder.path().string()), HasSubstr("is a folder"));
+  EXPECT_THAT(said(folder.write("name", "lantern\n")), HasSubstr("reads neither 0 nor 1"));
+  EXPECT_THAT(said(folder.write("empty", "")), HasSubstr("reads neither 0 nor 1"));
+  EXPECT_EQ(said(folder.write("value", "1\n")), "nothing");
+}
+
 TEST(MachineCheck, SaysNothingOfWhatIsThere) {
   const test::TemporaryFolder folder;
   const std::string place = folder.path().string();
