@@ -308,8 +308,9 @@ std::string doctor_text(const std::vector<FoundNode>& nodes, const std::vector<c
               kind->error_text(static_cast<std::uint16_t>(error->number())) + "\n";
     for (const std::string& open : kind->unconfirmed) text += "  unconfirmed, try it on the bench: " + open + "\n";
   }
-  for (const auto& [node, drive] : configured) {
-    const bool answers = std::any_of(nodes.begin(), nodes.end(), [&](const FoundNode& found) { return found.node == node; });
+  for (const auto& [number, drive] : configured) {
+    const std::uint8_t node = number;
+    const bool answers = std::any_of(nodes.begin(), nodes.end(), [node](const FoundNode& found) { return found.node == node; });
     if (!answers) text += "node " + std::to_string(node) + ": nobody answers, and the " + drive.joint + " is configured there\n";
   }
   return text;
