@@ -26,8 +26,10 @@ void GuardedMotion::latch(GuardState state, GuardCause cause, std::size_t joint)
   joint_ = static_cast<Joint>(joint);
 }
 
-GuardState GuardedMotion::update(Time t, const JointVector& command_rad, const JointVector& position_rad, const JointTorques& torque) {
-  if (!command_rad.allFinite() || !position_rad.allFinite() || !torque.finite() || (samples_ > 0 && t <= last_)) {
+GuardState GuardedMotion::update(Time t, const JointVector& command_rad, const JointVector& position_rad, const JointVector& velocity_rad_s,
+                                 const JointTorques& torque) {
+  const bool numbers = command_rad.allFinite() && position_rad.allFinite() && velocity_rad_s.allFinite() && torque.finite();
+  if (!numbers || (samples_ > 0 && t <= last_)) {
     ++refused_;
     return state_;
   }
@@ -40,6 +42,9 @@ GuardState GuardedMotion::update(Time t, const JointVector& command_rad, const J
   if (learning) baseline_nm_ += (torque.nm - baseline_nm_) / samples_;
   excess_nm_ = filtered_.nm - baseline_nm_;
   error_rad_ = command_rad - position_rad;
+  if (samples_ > 1) command_rad_s_ = (command_rad - last_command_rad_) / dt_s;
+  last_command_rad_ = command_rad;
+  velocity_rad_s_ = velocity_rad_s;
 
   for (std::size_t i = 0; i < arm_joint_count; ++i) {
     const auto joint = static_cast<Eigen::Index>(i);

@@ -40,7 +40,8 @@ class GuardedMotion {
   void reset();
 
   // One SYNC's measurements. What the torque surely is, given its bounds, is held against the thresholds: what it may be is no contact. A sample with a value that is not a number is refused and counted, and so is one not later than the one before.
-  GuardState update(Time t, const JointVector& command_rad, const JointVector& position_rad, const JointTorques& torque);
+  GuardState update(Time t, const JointVector& command_rad, const JointVector& position_rad, const JointVector& velocity_rad_s,
+                    const JointTorques& torque);
 
   GuardState state() const { return state_; }
   GuardCause cause() const { return cause_; }
@@ -49,6 +50,8 @@ class GuardedMotion {
   const JointVector& excess_torque_nm() const { return excess_nm_; }  // filtered torque less baseline
   const JointVector& baseline_nm() const { return baseline_nm_; }     // of free motion, as far as it is learned
   const JointVector& error_rad() const { return error_rad_; }         // command less position
+  const JointVector& velocity_rad_s() const { return velocity_rad_s_; }
+  const JointVector& command_rad_s() const { return command_rad_s_; }  // since the sample before; 0 with the first one
   std::uint32_t refused() const { return refused_; }
 
  private:
@@ -65,6 +68,9 @@ class GuardedMotion {
   JointVector baseline_nm_ = JointVector::Zero();
   JointVector excess_nm_ = JointVector::Zero();
   JointVector error_rad_ = JointVector::Zero();
+  JointVector last_command_rad_ = JointVector::Zero();
+  JointVector command_rad_s_ = JointVector::Zero();
+  JointVector velocity_rad_s_ = JointVector::Zero();
   std::array<std::uint32_t, arm_joint_count> torque_run_{}, following_run_{}, overload_run_{};
 };
 

@@ -1,7 +1,5 @@
 #include "firmware/mission/fault_sources.hpp"
 
-#include <cmath>
-
 namespace lf::mission {
 
 using safety::Fault;
@@ -88,30 +86,11 @@ void FaultSources::collect_contact(const StepTick& tick) {
   if (!bench.powered || !free) return free_guard_.reset();
   const safety::JointStates& joints = bench.watch.joints();
   if (!joints.valid) return;
-  free_guard_.update(joints.t, bench.motion.target(), bench.measured_rad(), bench.measured_nm());
-  const bool by_itself = drives_itself_off(bench);
-  last_target_rad_ = bench.motion.target();
-  last_ = joints.t;
+  bench.feel(free_guard_, joints.t);
   if (!free_guard_.touched()) return;
-  const bool unseen = does_not_follow(free_guard_) || by_itself || bench.watch.shows_nothing(free_guard_.joint());
+  const bool unseen = does_not_follow(free_guard_) || bench.watch.shows_nothing(free_guard_.joint());
   const Fault fault = unseen ? Fault::following_error : Fault::unexpected_contact;
   tick.faults.report(fault, static_cast<std::int32_t>(free_guard_.joint()));
-}
-
-// Its motor's torque is what moves a joint away from its set-point's way: what is touched pushes against the motor. And no contact drives a joint away from
-// its set-point at speed: it stops it.
-bool FaultSources::drives_itself_off(const Workbench& bench) const {
-  constexpr double least_rad_s = 0.02;  // above the observer's noise of a joint that stands; a runaway passes it within two ticks
-  constexpr double pushed_rad_s = 0.1;  // over half of the slowest joint's top speed: a screw does not give way to a push so fast
-  const auto joint = static_cast<Eigen::Index>(free_guard_.joint());
-  const safety::JointStates& joints = bench.watch.joints();
-  const double dt_s = (joints.t - last_).s();
-  if (!free_guard_.touched() || dt_s <= 0) return false;
-  const double asked_rad_s = (bench.motion.target()[joint] - last_target_rad_[joint]) / dt_s;
-  const double speed_rad_s = joints.velocity_rad_s[static_cast<std::size_t>(joint)], off_rad_s = speed_rad_s - asked_rad_s;
-  const bool by_its_motor = off_rad_s * free_guard_.excess_torque_nm()[joint] > 0 && std::abs(off_rad_s) > least_rad_s;
-  const bool away = speed_rad_s * free_guard_.error_rad()[joint] < 0 && std::abs(speed_rad_s) > pushed_rad_s;
-  return by_its_motor || away;
 }
 
 void FaultSources::collect_jaw(const StepTick& tick) {

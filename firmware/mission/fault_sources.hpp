@@ -27,13 +27,10 @@ class FaultSources {
   void collect_ports(const StepTick& tick);
   void collect_images(const StepTick& tick);
   void collect_contact(const StepTick& tick);
-  bool drives_itself_off(const Workbench& bench) const;
   static void collect_jaw(const StepTick& tick);
   static void collect_timeout(const StepTick& tick);
 
-  arm::GuardedMotion free_guard_;  // of all motion in which nothing may be touched
-  arm::JointVector last_target_rad_ = arm::JointVector::Zero();
-  Time last_;                                             // of that target
+  arm::GuardedMotion free_guard_;                         // of all motion in which nothing may be touched
   std::array<bool, port_count> ports_failed_{};           // since the last tick
   std::array<std::uint32_t, port_count> ticks_failed_{};  // in a row
   std::uint32_t images_lost_ = 0;                         // known of

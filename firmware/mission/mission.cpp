@@ -318,7 +318,7 @@ void Mission::watch_grip(const StepTick& tick) {
   if (!stays || stage_ != Stage::under_way || !bench_.powered || !joints().valid) return;
   const arm::JointVector target_rad = bench_.pushed_target(), measured_rad = bench_.measured_rad();
   if (!grip_lag_rad_) grip_lag_rad_ = target_rad - measured_rad;
-  bench_.grip_guard.update(joints().t, target_rad - *grip_lag_rad_, measured_rad, bench_.measured_nm());
+  bench_.grip_guard.update(joints().t, target_rad - *grip_lag_rad_, measured_rad, bench_.measured_rad_s(), bench_.measured_nm());
   if (bench_.grip_guard.touched()) tick.faults.report(Fault::following_error, static_cast<std::int32_t>(bench_.grip_guard.joint()));
 }
 

@@ -2,6 +2,8 @@
 // stroke; one that is stuck and one that is not there are told apart by what the press felt like.
 #pragma once
 
+#include <optional>
+
 #include "firmware/arm/guarded_motion.hpp"
 #include "firmware/mission/button_feel.hpp"
 #include "firmware/mission/workbench.hpp"
@@ -33,9 +35,9 @@ class PressButton {
   ButtonFeel feel_;
   bool pressed_ = false;
   bool learned_under_way_ = false;
-  bool pushed_under_way_ = false;  // what was learned there is no friction
-  arm::JointVector rest_nm_ = arm::JointVector::Zero();
-  double bottom_m_ = 0;  // the tip's depth below the face where it is believed to be, at the press's end
+  bool pushed_under_way_ = false;            // what was learned there is no friction
+  std::optional<arm::JointVector> rest_nm_;  // what the joints took at rest, until it is compared
+  double bottom_m_ = 0;                      // the tip's depth below the face where it is believed to be, at the press's end
 };
 
 }  // namespace lf::mission

@@ -106,7 +106,7 @@ Progress TurnValve::run_advance(const StepTick& tick) {
   Workbench& bench = tick.bench;
   const Progress motion = bench.follow_motion();
   if (!motion.is_running() || bench.motion.planning()) return motion;
-  guard_.update(tick.now, bench.motion.target(), bench.measured_rad(), bench.measured_nm());
+  bench.feel(guard_, tick.now);
   if (!guard_.touched()) return Progress::running();
   if (does_not_follow(guard_)) {
     tick.faults.report(safety::Fault::following_error, static_cast<std::int32_t>(guard_.joint()));
@@ -118,7 +118,7 @@ Progress TurnValve::run_advance(const StepTick& tick) {
 
 void TurnValve::watch_on_hold(const StepTick& tick) {
   const Workbench& bench = tick.bench;
-  guard_.update(tick.now, bench.motion.target(), bench.measured_rad(), bench.measured_nm());
+  bench.feel(guard_, tick.now);
   report_touch(guard_, tick.faults);
 }
 

@@ -73,7 +73,18 @@ bool runs_off(const arm::GuardedMotion& guard) {
   return guard.touched() && guard.cause() == arm::GuardCause::torque && away && std::abs(error_rad) > slow_lag_rad;
 }
 
-bool does_not_follow(const arm::GuardedMotion& guard) { return lags_without_load(guard) || runs_off(guard); }
+bool drives_itself_off(const arm::GuardedMotion& guard) {
+  constexpr double least_rad_s = 0.02;  // above the observer's noise of a joint that stands; a runaway passes it within two ticks
+  constexpr double pushed_rad_s = 0.1;  // over half of the slowest joint's top speed: a screw does not give way to a push so fast
+  if (!guard.touched()) return false;
+  const auto joint = static_cast<Eigen::Index>(guard.joint());
+  const double speed_rad_s = guard.velocity_rad_s()[joint], off_rad_s = speed_rad_s - guard.command_rad_s()[joint];
+  const bool by_its_motor = off_rad_s * guard.excess_torque_nm()[joint] > 0 && std::abs(off_rad_s) > least_rad_s;
+  const bool away = speed_rad_s * guard.error_rad()[joint] < 0 && std::abs(speed_rad_s) > pushed_rad_s;
+  return by_its_motor || away;
+}
+
+bool does_not_follow(const arm::GuardedMotion& guard) { return lags_without_load(guard) || runs_off(guard) || drives_itself_off(guard); }
 
 void report_touch(const arm::GuardedMotion& guard, safety::FaultArbiter& faults) {
   if (!guard.touched()) return;
@@ -105,6 +116,12 @@ arm::JointVector Workbench::measured_rad() const {
   arm::JointVector q;
   for (std::size_t i = 0; i < arm_joint_count; ++i) q[static_cast<Eigen::Index>(i)] = watch.joints().position_rad[i];
   return q;
+}
+
+arm::JointVector Workbench::measured_rad_s() const {
+  arm::JointVector rad_s;
+  for (std::size_t i = 0; i < arm_joint_count; ++i) rad_s[static_cast<Eigen::Index>(i)] = watch.joints().velocity_rad_s[i];
+  return rad_s;
 }
 
 arm::JointTorques Workbench::measured_nm() const {
@@ -166,6 +183,10 @@ Progress Workbench::follow_motion() const {
   return Progress::done_if(motion.done());
 }
 
+void Workbench::feel(arm::GuardedMotion& guard, Time t) const {
+  guard.update(t, pushed_target(), measured_rad(), measured_rad_s(), measured_nm());
+}
+
 arm::JointVector Workbench::pushed_target() const {
   const arm::JointVector& target = motion.target();
   if (compliance.offset_rad().isZero()) return target;
@@ -202,7 +223,7 @@ void Workbench::guard_back_off(Time now) {
     wound_up = false;
     back_guard = arm::GuardedMotion(free_motion_guard(config.mission_limits));
   }
-  if (!motion.planning() && watch.joints().valid) back_guard.update(now, pushed_target(), measured_rad(), measured_nm());
+  if (!motion.planning() && watch.joints().valid) feel(back_guard, now);
 }
 
 void Workbench::watch_back_off_on_hold(const StepTick& tick) {

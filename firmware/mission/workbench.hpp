@@ -36,7 +36,10 @@ arm::GuardConfig free_motion_guard(const safety::Limits& limits);
 bool lags_without_load(const arm::GuardedMotion& guard);
 // It pushes its joint away from the set-point: a drive that has run off. What is touched makes a drive push towards its set-point.
 bool runs_off(const arm::GuardedMotion& guard);
-// Either: what was felt is the drive's own doing, and no contact.
+// Its motor's torque is what moves it otherwise than its set-point: what is touched pushes against the motor. Or it leaves its set-point at a speed to which
+// no contact drives a joint: a contact stops it.
+bool drives_itself_off(const arm::GuardedMotion& guard);
+// One of them: what was felt is the drive's own doing, and no contact.
 bool does_not_follow(const arm::GuardedMotion& guard);
 
 // Reports what the guard has felt: a contact that is not meant, or a joint that does not follow.
@@ -70,6 +73,7 @@ struct Workbench {
   arm::Gripper new_gripper() const;
   const MissionConfig& mission() const { return config.mission; }
   arm::JointVector measured_rad() const;
+  arm::JointVector measured_rad_s() const;
   arm::JointTorques measured_nm() const;
   double jaw_rad() const { return watch.joints().position_rad[static_cast<std::size_t>(Joint::jaw)]; }
   // What is around the arm, as far as it is known, while the jaw goes from where it is to `jaw_goal_rad`. The fingers may touch the parts `meant`.
@@ -86,6 +90,9 @@ struct Workbench {
   Progress follow_motion() const;
   // The task under way is at its beginning again.
   void take_up_task() { course = course == Course::retrying ? Course::working : course; }
+
+  // The guard learns of the arm on its motion's way.
+  void feel(arm::GuardedMotion& guard, Time t) const;
 
   // The motion's target and what the arm has given way by. Giving way ends at the joints' limits.
   arm::JointVector pushed_target() const;

@@ -42,17 +42,6 @@ std::vector<std::string> words_of_substitutes() {
 const std::vector<std::string> types{"u8", "u16", "u32", "i8", "i16", "i32"};
 const std::vector<std::string> figures{"rated_current_ma", "rated_torque_mnm", "rated_torque_unm", "counts_per_rev"};
 
-bool whole_number(const std::string& text, std::int64_t& value) {
-  const bool negative = text.starts_with('-');
-  std::string_view digits(text);
-  if (negative) digits.remove_prefix(1);
-  const bool hex = digits.starts_with("0x") || digits.starts_with("0X");
-  if (hex) digits.remove_prefix(2);
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value, hex ? 16 : 10);
-  if (negative) value = -value;
-  return error == std::errc() && end == digits.data() + digits.size() && value >= INT32_MIN && value <= UINT32_MAX;
-}
-
 bool fits(std::int64_t value, const std::string& type) {
   const int bits = std::stoi(type.substr(1));
   const std::int64_t span = std::int64_t{1} << bits;
@@ -358,6 +347,17 @@ DriveKind read_with_base(const std::filesystem::path& file, std::vector<std::str
 }
 
 }  // namespace
+
+bool whole_number(const std::string& text, std::int64_t& value) {
+  const bool negative = text.starts_with('-');
+  std::string_view digits(text);
+  if (negative) digits.remove_prefix(1);
+  const bool hex = digits.starts_with("0x") || digits.starts_with("0X");
+  if (hex) digits.remove_prefix(2);
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value, hex ? 16 : 10);
+  if (negative) value = -value;
+  return error == std::errc() && end == digits.data() + digits.size() && value >= INT32_MIN && value <= UINT32_MAX;
+}
 
 const ProfileAbsence* DriveKind::absence(std::uint16_t index) const {
   const auto found = std::find_if(absences.begin(), absences.end(), [index](const ProfileAbsence& a) { return a.index == index; });

@@ -74,6 +74,9 @@ struct DriveKind {
   std::string error_text(std::uint16_t code) const;
 };
 
+// Of a value in a profile, decimal or 0x...: false where it is none, as a figure of the motor, or fits no 32 bits.
+bool whole_number(const std::string& text, std::int64_t& value);
+
 // Reads a file and the one it is `like`. Throws InputError with all that is wrong, a line each, "file:line: ...".
 DriveKind read_drive_kind(const std::filesystem::path& file);
 

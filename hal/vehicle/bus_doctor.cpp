@@ -169,11 +169,6 @@ std::vector<const config::DriveKind*> kinds_of(const FoundNode& node, const std:
   return fit;
 }
 
-const config::DriveKind* known_kind(const FoundNode& node, const std::vector<config::DriveKind>& kinds) {
-  const auto fit = kinds_of(node, kinds);
-  return fit.empty() ? nullptr : fit.front();
-}
-
 namespace {
 
 // 1018, which the boot holds against the profile before anything else.
@@ -198,9 +193,10 @@ std::vector<std::string> differences(const FoundNode& node, const config::DriveK
     const std::string why = object.why.empty() ? "" : " (" + object.why + ")";
     if (!read->there() && !object.optional) all.push_back(named(object.index, object.sub) + " is not there" + why);
     if (!read->there()) continue;
-    if (object.value.find_first_not_of("+-0123456789abcdefABCDEFxX") != std::string::npos) continue;  // a figure of the machine's motor
+    std::int64_t value = 0;
+    if (!config::whole_number(object.value, value)) continue;  // a figure of the machine's motor
     const std::uint32_t mask = read->bytes.size() >= 4 ? UINT32_MAX : (1u << (8 * read->bytes.size())) - 1;
-    const std::uint32_t wanted = static_cast<std::uint32_t>(std::stoll(object.value, nullptr, 0)) & mask;
+    const std::uint32_t wanted = static_cast<std::uint32_t>(value) & mask;
     if (read->number() != wanted)
       all.push_back(named(object.index, object.sub) + " holds " + hex(read->number()) + ", the profile says " + hex(wanted) + why);
   }

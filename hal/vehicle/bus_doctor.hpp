@@ -58,10 +58,7 @@ class BusDoctor {
   std::vector<FoundNode> nodes_;
 };
 
-// The profile of the drive, by vendor and product; nullptr when none says them. A profile that states the product goes before one that does not.
-const config::DriveKind* known_kind(const FoundNode& node, const std::vector<config::DriveKind>& kinds);
-
-// All of `kinds` that the drive's vendor and product allow.
+// All of `kinds` that the drive's vendor and product allow. A profile that states the product goes before one that does not.
 std::vector<const config::DriveKind*> kinds_of(const FoundNode& node, const std::vector<config::DriveKind>& kinds);
 
 // A profile that the machine's file names for the drive of a joint.

@@ -211,7 +211,8 @@ class Campaign {
 };
 
 int campaign(const Options& options) {
-  if (!std::isfinite(options.into)) throw InputError("--into takes a share from 0 to 1");
+  if (!std::isfinite(options.into))  // CLI11's range lets it through
+    throw InputError("--into takes a share from 0 to 1");
   if (!options.seeds.empty() && (options.shard != "1/1" || !options.kinds.empty()))
     throw InputError("--shard and --kinds go with --faults or --ranges; of --seeds, name those that are wanted");
   if (options.faults) return fault_campaign(options);

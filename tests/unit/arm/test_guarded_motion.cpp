@@ -20,7 +20,7 @@ class Motion {
   GuardState feed(int n, const JointVector& torque_nm, const JointVector& behind_rad = JointVector::Zero()) {
     for (int i = 0; i < n; ++i) {
       t_ = t_ + Duration::from_ms(4);
-      state_ = guard_.update(t_, behind_rad, JointVector::Zero(), torque_nm);
+      state_ = guard_.update(t_, behind_rad, JointVector::Zero(), JointVector::Zero(), torque_nm);
     }
     return state_;
   }
@@ -130,8 +130,8 @@ TEST(GuardedMotion, RefusesNonsenseAndStaleSamplesAndCountsThem) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const Time last = motion.now();
   motion.feed(10, {nan, 0, 0, 0});
-  guard.update(last, JointVector::Zero(), JointVector::Zero(), JointVector(JointVector::Constant(100)));
-  guard.update(Time(), JointVector::Zero(), JointVector::Zero(), JointVector(JointVector::Constant(100)));
+  guard.update(last, JointVector::Zero(), JointVector::Zero(), JointVector::Zero(), JointVector(JointVector::Constant(100)));
+  guard.update(Time(), JointVector::Zero(), JointVector::Zero(), JointVector::Zero(), JointVector(JointVector::Constant(100)));
   EXPECT_EQ(guard.state(), GuardState::free);
   EXPECT_EQ(guard.refused(), 12u);
   guard.reset();
@@ -149,7 +149,7 @@ TEST(GuardedMotion, BelievesOnlyWhatTheTorqueSurelyIs) {
         if (i >= 100) torque.nm[1] += sign * rise_nm;
         torque.low_nm = torque.nm.array() - doubt_nm;
         torque.high_nm = torque.nm.array() + doubt_nm;
-        guard.update(t = t + Duration::from_ms(4), JointVector::Zero(), JointVector::Zero(), torque);
+        guard.update(t = t + Duration::from_ms(4), JointVector::Zero(), JointVector::Zero(), JointVector::Zero(), torque);
       }
       return guard.state();
     };
@@ -163,7 +163,8 @@ TEST(GuardedMotion, BelievesOnlyWhatTheTorqueSurelyIs) {
   JointTorques unknown(friction);
   unknown.low_nm.setConstant(-1000);
   unknown.high_nm.setConstant(1000);
-  for (int i = 0; i < 100; ++i) guard.update(Time() + Duration::from_ms(4 * (i + 1)), JointVector::Zero(), JointVector::Zero(), unknown);
+  for (int i = 0; i < 100; ++i)
+    guard.update(Time() + Duration::from_ms(4 * (i + 1)), JointVector::Zero(), JointVector::Zero(), JointVector::Zero(), unknown);
   EXPECT_EQ(guard.state(), GuardState::free);
 }
 

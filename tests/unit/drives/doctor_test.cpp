@@ -54,8 +54,9 @@ TEST(BusDoctor, FindsTheNodesAndTheProfileOfEachKnownDrive) {
     const std::vector<hal::FoundNode> nodes = examine(bench);
     ASSERT_EQ(nodes.size(), 6u);
     EXPECT_FALSE(nodes[5].drive());
-    const config::DriveKind* kind = hal::known_kind(nodes[2], kinds);
-    ASSERT_NE(kind, nullptr);
+    const auto fit = hal::kinds_of(nodes[2], kinds);
+    ASSERT_FALSE(fit.empty());
+    const config::DriveKind* kind = fit.front();
     EXPECT_EQ(kind->name, make);
     const std::vector<std::string> all = hal::differences(nodes[2], *kind);
     EXPECT_TRUE(all.empty()) << all.front();
@@ -90,7 +91,7 @@ TEST(BusDoctor, SaysWhatALostSyncDoesAndTheBrakesTimes) {
 TEST(BusDoctor, DraftsAProfileThatIsReadOnceItsQuestionsAreAnswered) {
   DriveBench bench({"", "ingenia"});
   const std::vector<hal::FoundNode> nodes = examine(bench);
-  ASSERT_EQ(hal::known_kind(nodes.at(2), all_kinds()), nullptr);
+  ASSERT_TRUE(hal::kinds_of(nodes.at(2), all_kinds()).empty());
   std::string draft = hal::draft_profile(nodes[2]);
   EXPECT_NE(draft.find("\"1016:01\", by: node_guarding"), std::string::npos) << draft;
   const TemporaryFolder folder;

@@ -20,7 +20,7 @@ bool touches(arm::GuardedMotion& guard, double& t_s, double& nm, double nm_s, do
     nm += 0.004 * nm_s;
     arm::JointVector torque_nm = arm::JointVector::Zero();
     torque_nm[2] = nm;
-    guard.update(Time::from_s(t_s), arm::JointVector::Zero(), arm::JointVector::Zero(), torque_nm);
+    guard.update(Time::from_s(t_s), arm::JointVector::Zero(), arm::JointVector::Zero(), arm::JointVector::Zero(), torque_nm);
     if (guard.touched()) return true;
   }
   return false;
@@ -60,7 +60,8 @@ arm::GuardedMotion pressed(double error_rad, double nm) {
   arm::JointVector command_rad = arm::JointVector::Zero(), torque_nm = arm::JointVector::Zero();
   command_rad[2] = error_rad;
   torque_nm[2] = nm;
-  for (int i = 0; i < 25; ++i) guard.update(Time::from_s(t_s += 0.004), command_rad, arm::JointVector::Zero(), torque_nm);
+  for (int i = 0; i < 25; ++i)
+    guard.update(Time::from_s(t_s += 0.004), command_rad, arm::JointVector::Zero(), arm::JointVector::Zero(), torque_nm);
   EXPECT_TRUE(guard.touched());
   return guard;
 }
@@ -73,6 +74,48 @@ TEST(RunsOff, IsADriveThatPushesItsJointAwayFromTheSetPoint) {
     EXPECT_FALSE(runs_off(pressed(way * 0.05, way * -10))) << "told by its lag already";
   }
 }
+
+// The elbow on its way at `asked_rad_s`, going `rad_s` itself, its motor pushing with `nm`: what the guard shows once it has taken that for a touch.
+arm::GuardedMotion moving(double asked_rad_s, double rad_s, double nm) {
+  arm::GuardConfig config;
+  config.contact_torque_nm.setConstant(7);
+  arm::GuardedMotion guard(config);
+  arm::JointVector command_rad = arm::JointVector::Zero(), position_rad = command_rad, velocity_rad_s = command_rad,
+                   torque_nm = command_rad;
+  constexpr double period_s = 0.004;
+  double t_s = 0;
+  for (int i = 0; i < 100 && !guard.touched(); ++i) {
+    const bool learned = i >= 50;
+    velocity_rad_s[2] = learned ? rad_s : asked_rad_s;
+    torque_nm[2] = learned ? nm : 0;
+    command_rad[2] += asked_rad_s * period_s;
+    position_rad[2] += velocity_rad_s[2] * period_s;
+    guard.update(Time::from_s(t_s += period_s), command_rad, position_rad, velocity_rad_s, torque_nm);
+  }
+  EXPECT_TRUE(guard.touched());
+  return guard;
+}
+
+TEST(DrivesItselfOff, IsAMotorThatMovesItsJointOtherwiseThanAsked) {
+  for (const double way : {-1.0, 1.0}) {
+    EXPECT_TRUE(drives_itself_off(moving(0, way * 0.05, way * 10))) << "it stands by its set-point";
+    EXPECT_TRUE(drives_itself_off(moving(way * 0.05, way * 0.15, way * 10))) << "faster than asked, by its own torque";
+    EXPECT_TRUE(drives_itself_off(moving(way * 0.05, way * -0.05, way * -10))) << "back, by its own torque";
+    EXPECT_FALSE(drives_itself_off(moving(way * 0.05, 0, way * 10))) << "something holds it, and the motor pushes on";
+    EXPECT_FALSE(drives_itself_off(moving(way * 0.05, way * -0.05, way * 10))) << "something pushes it back";
+    EXPECT_FALSE(drives_itself_off(moving(way * 0.05, way * 0.09, way * -10))) << "something pushes it ahead";
+    EXPECT_FALSE(drives_itself_off(moving(0, way * 0.01, way * 10))) << "no more than the observer's noise";
+  }
+}
+
+TEST(DrivesItselfOff, IsAJointThatLeavesItsSetPointAtASpeedToWhichNothingPushesAScrew) {
+  for (const double way : {-1.0, 1.0}) {
+    EXPECT_TRUE(drives_itself_off(moving(0, way * 0.3, way * -10)));
+    EXPECT_FALSE(drives_itself_off(moving(0, way * 0.08, way * -10)));
+  }
+}
+
+TEST(DrivesItselfOff, IsAskedByEachGuard) { EXPECT_TRUE(does_not_follow(moving(0.05, -0.05, -10))); }
 
 }  // namespace
 }  // namespace lf::mission

@@ -114,6 +114,17 @@ TEST(Reactions, BecomeMilderOnlyWhereTheMissionAlreadyKnows) {
   }
 }
 
+// Nobody knows which way is free. What is more severe than a hold stays so.
+TEST(Reactions, AfterATouchNeitherTryAgainNorGoBack) {
+  for (const Circumstances& c : all_circumstances()) {
+    FaultReport touched{Fault::step_failed, 1};
+    const Reaction without = reaction_in(touched, c);
+    touched.touched = true;
+    const bool sets_out = without == Reaction::retry || without == Reaction::retreat;
+    EXPECT_EQ(reaction_in(touched, c), sets_out ? Reaction::hold : without) << words(c);
+  }
+}
+
 TEST(Reactions, NeverSetOutWithoutThePowerToDoSo) {
   for (const Circumstances& c : all_circumstances()) {
     if (c.powered) continue;
