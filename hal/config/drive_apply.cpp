@@ -146,6 +146,17 @@ void add_option(canopen::DriveProfile& profile, std::uint16_t index, std::int32_
   if (value >= 0) add(profile, {index, 0, 2, BootAction::write, BootValue::literal, static_cast<std::uint32_t>(value)}, where);
 }
 
+// 6077 has 16 bits: a motor of more current than the drive reports would push unseen. One of far less is as good as not seen.
+void check_readable(const DriveKind& kind, double rated_a, const std::string& where) {
+  constexpr double most_units = 32767, least_units = 100;  // the least is 1 % of the rating, as exact as readings are taken to be
+  const double units = kind.units_per_a * rated_a;
+  if (units >= least_units && units <= most_units) return;
+  char text[160];
+  std::snprintf(text, sizeof text, ": 'rated_current_a' is %.4g A, and %s reads torque for motors of %.3g to %.4g A", rated_a,
+                kind.title.c_str(), least_units / kind.units_per_a, most_units / kind.units_per_a);
+  throw InputError(where + text);
+}
+
 void set_torque(const DriveKind& kind, const DriveMotor& motor, const std::string& where, canopen::DriveProfile& profile) {
   profile.rated_torque_unit_unm = kind.rating == "object" ? static_cast<std::uint32_t>(std::llround(kind.rating_unit_unm)) : 0;
   if (motor.rated_torque_nm > 0) profile.rated_torque_unm = static_cast<std::uint32_t>(std::llround(1e6 * motor.rated_torque_nm));
@@ -154,6 +165,7 @@ void set_torque(const DriveKind& kind, const DriveMotor& motor, const std::strin
   if (kind.torque_basis != "raw") return;
   if (!(motor.rated_current_a > 0))
     throw InputError(where + ": " + kind.title + " reports current in its own units: state 'rated_current_a'");
+  check_readable(kind, motor.rated_current_a, where);
   profile.scale.torque = ratio(kind.units_per_a * motor.rated_current_a, 1000, where);
 }
 

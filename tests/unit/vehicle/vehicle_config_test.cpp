@@ -93,6 +93,25 @@ TEST(VehicleConfig, AProfileOfAllJointsThatIsNotThereIsToldOnce) {
 }
 
 // A motor's rated current is written to the drive: nobody's motor is that of a default.
+// A motor of 919 A at a drive whose 16 bits end at 20 A: a grip of 252 N was not felt.
+TEST(VehicleConfig, AMotorWhoseTorqueTheDriveCannotReportIsRefused) {
+  const TemporaryFolder folder;
+  const auto told = [&](const std::string& drives) { return problems_of(folder.write("v.yaml", "drives: {" + drives + "}\n")); };
+  struct Range {
+    std::string make;
+    double least_a, most_a;  // 100 and 32767 over the make's units an ampere
+  };
+  for (const Range& range : {Range{"ipos", 0.1221, 40.0}, Range{"ipos4808", 0.06105, 20.0}}) {
+    const auto with = [&](double rated_a) { return told("profile: " + range.make + ", rated_current_a: " + std::to_string(rated_a)); };
+    for (const double rated_a : {1.01 * range.least_a, 4.2, 0.999 * range.most_a})
+      EXPECT_THAT(with(rated_a), testing::Not(testing::Contains(HasSubstr("rated_current_a")))) << range.make << " " << rated_a;
+    for (const double rated_a : {0.5 * range.least_a, 1.01 * range.most_a, 919.5})
+      EXPECT_THAT(with(rated_a), testing::Contains(HasSubstr("reads torque for motors of"))) << range.make << " " << rated_a;
+  }
+  EXPECT_THAT(told("rated_current_a: 919.5"), testing::Not(testing::Contains(HasSubstr("rated_current_a"))))
+      << "drives that report shares of the rating";
+}
+
 TEST(VehicleConfig, ADriveThatCountsInCurrentAsksForItsMotors) {
   const TemporaryFolder folder;
   for (const std::string make : {"elmo_gold", "ipos"}) {
