@@ -26,6 +26,17 @@ void GuardedMotion::latch(GuardState state, GuardCause cause, std::size_t joint)
   joint_ = static_cast<Joint>(joint);
 }
 
+void GuardedMotion::observe(const JointVector& command_rad, double dt_s) {
+  for (std::size_t i = 0; i < arm_joint_count; ++i) {
+    const auto joint = static_cast<Eigen::Index>(i);
+    if (samples_ == 1)
+      commands_[i].reset(command_rad[joint]);
+    else
+      commands_[i].update(command_rad[joint], dt_s);
+    command_rad_s_[joint] = commands_[i].velocity_rad_s();
+  }
+}
+
 GuardState GuardedMotion::update(Time t, const JointVector& command_rad, const JointVector& position_rad, const JointVector& velocity_rad_s,
                                  const JointTorques& torque) {
   const bool numbers = command_rad.allFinite() && position_rad.allFinite() && velocity_rad_s.allFinite() && torque.finite();
@@ -42,8 +53,7 @@ GuardState GuardedMotion::update(Time t, const JointVector& command_rad, const J
   if (learning) baseline_nm_ += (torque.nm - baseline_nm_) / samples_;
   excess_nm_ = filtered_.nm - baseline_nm_;
   error_rad_ = command_rad - position_rad;
-  if (samples_ > 1) command_rad_s_ = (command_rad - last_command_rad_) / dt_s;
-  last_command_rad_ = command_rad;
+  observe(command_rad, dt_s);
   velocity_rad_s_ = velocity_rad_s;
 
   for (std::size_t i = 0; i < arm_joint_count; ++i) {

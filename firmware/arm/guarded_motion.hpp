@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 
+#include "firmware/arm/joint_observer.hpp"
 #include "firmware/arm/joint_torques.hpp"
 #include "firmware/arm/kinematics.hpp"
 #include "shared/messages/time.hpp"
@@ -51,10 +52,12 @@ class GuardedMotion {
   const JointVector& baseline_nm() const { return baseline_nm_; }     // of free motion, as far as it is learned
   const JointVector& error_rad() const { return error_rad_; }         // command less position
   const JointVector& velocity_rad_s() const { return velocity_rad_s_; }
-  const JointVector& command_rad_s() const { return command_rad_s_; }  // since the sample before; 0 with the first one
+  // Observed as a joint's speed is (joint_observer.hpp), and late by as much: 0 with the first sample.
+  const JointVector& command_rad_s() const { return command_rad_s_; }
   std::uint32_t refused() const { return refused_; }
 
  private:
+  void observe(const JointVector& command_rad, double dt_s);
   void latch(GuardState state, GuardCause cause, std::size_t joint);
 
   GuardConfig config_;
@@ -68,7 +71,7 @@ class GuardedMotion {
   JointVector baseline_nm_ = JointVector::Zero();
   JointVector excess_nm_ = JointVector::Zero();
   JointVector error_rad_ = JointVector::Zero();
-  JointVector last_command_rad_ = JointVector::Zero();
+  std::array<JointObserver, arm_joint_count> commands_{};
   JointVector command_rad_s_ = JointVector::Zero();
   JointVector velocity_rad_s_ = JointVector::Zero();
   std::array<std::uint32_t, arm_joint_count> torque_run_{}, following_run_{}, overload_run_{};

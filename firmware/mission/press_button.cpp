@@ -138,6 +138,11 @@ void PressButton::sense(const StepTick& tick) {
 void PressButton::watch_on_hold(const StepTick& tick) {
   if (pressed_ || met_something()) return;
   sense(tick);
+  if (pushed_under_way_) {
+    tick.bench.stay_where_measured();
+    tick.faults.report(safety::Fault::unexpected_contact, static_cast<std::int32_t>(guard_.joint()));
+    return;
+  }
   const bool meant = feel_.touched() && !does_not_follow(guard_);
   if (!meant) return report_touch(guard_, tick.faults);
   if (guard_.touched()) tick.bench.stay_where_measured();

@@ -112,7 +112,7 @@ Progress TurnValve::run_advance(const StepTick& tick) {
     tick.faults.report(safety::Fault::following_error, static_cast<std::int32_t>(guard_.joint()));
     return Progress::running();
   }
-  bench.motion.stop();
+  bench.stay_where_measured();
   return Progress::failed_by_touch(StepFailure::early_contact);
 }
 

@@ -9,7 +9,7 @@ void WayHome::begin(const StepTick& tick) {
       bench.let_off_roll();
       return bench.gripper.open_to(bench.mission().jaw_open_m);
     case Step::abandon_back: return bench.begin_back_off();
-    case Step::stow: freed_ = false; return bench.go_clear(bench.mission().park_rad, 0);
+    case Step::stow: freed_ = stops_ = leaves_open_ = false; return bench.go_clear(bench.mission().park_rad, 0);
     case Step::shut_down: return begin_shut_down(tick);
     default: return;
   }
@@ -36,7 +36,8 @@ Progress WayHome::run_abandon(const Workbench& bench) {
   return Progress::done_if(jaw == arm::GripperState::open && bench.motion.done());
 }
 
-// The jaw closes on the way. What it has closed on is let go of: without power its screw would go on squeezing.
+// The jaw closes on the way. What it has closed on is let go of, by an arm at rest: without power its screw would go on squeezing. The way is sought anew for
+// a jaw that stays open.
 Progress WayHome::run_stow(Workbench& bench) {
   const Progress motion = bench.follow_way();
   if (motion.kind == Progress::Kind::failed || bench.motion.planning()) return motion;
@@ -44,11 +45,19 @@ Progress WayHome::run_stow(Workbench& bench) {
     case arm::GripperState::empty:
       if (!motion.is_done()) return motion;
       return bench.course == Course::giving_up ? Progress::other_way() : Progress::done();
-    case arm::GripperState::open: return freed_ && motion.is_done() ? Progress::failed(StepFailure::jaw_not_closed) : Progress::running();
+    case arm::GripperState::open:
+      if (!freed_ || !motion.is_done()) return Progress::running();
+      if (leaves_open_) return Progress::failed(StepFailure::jaw_not_closed);
+      leaves_open_ = true;
+      bench.go_clear(bench.mission().park_rad, bench.mission().jaw_open_m);
+      return Progress::running();
     case arm::GripperState::held:
     case arm::GripperState::dropped:
     case arm::GripperState::jammed:
       if (freed_) return Progress::failed(StepFailure::jaw_stuck);
+      if (!stops_) bench.motion.stop();
+      stops_ = true;
+      if (!bench.motion.done()) return Progress::running();
       freed_ = true;
       bench.gripper.open_to(bench.mission().jaw_open_m);
       return Progress::running();

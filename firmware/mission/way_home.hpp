@@ -15,7 +15,9 @@ class WayHome {
   Progress run_stow(Workbench& bench);
   static void begin_shut_down(const StepTick& tick);
 
-  bool freed_ = false;  // the jaw lets go of what it has closed on
+  bool freed_ = false;        // the jaw lets go of what it has closed on
+  bool stops_ = false;        // before that
+  bool leaves_open_ = false;  // on with an open jaw
 };
 
 }  // namespace lf::mission

@@ -75,11 +75,13 @@ bool runs_off(const arm::GuardedMotion& guard) {
 
 bool drives_itself_off(const arm::GuardedMotion& guard) {
   constexpr double least_rad_s = 0.02;  // above the observer's noise of a joint that stands; a runaway passes it within two ticks
+  constexpr double least_nm = 1;        // an overload that a new guard meets is its baseline: its excess has no direction
   constexpr double pushed_rad_s = 0.1;  // over half of the slowest joint's top speed: a screw does not give way to a push so fast
   if (!guard.touched()) return false;
   const auto joint = static_cast<Eigen::Index>(guard.joint());
   const double speed_rad_s = guard.velocity_rad_s()[joint], off_rad_s = speed_rad_s - guard.command_rad_s()[joint];
-  const bool by_its_motor = off_rad_s * guard.excess_torque_nm()[joint] > 0 && std::abs(off_rad_s) > least_rad_s;
+  const double excess_nm = guard.excess_torque_nm()[joint];
+  const bool by_its_motor = off_rad_s * excess_nm > 0 && std::abs(off_rad_s) > least_rad_s && std::abs(excess_nm) > least_nm;
   const bool away = speed_rad_s * guard.error_rad()[joint] < 0 && std::abs(speed_rad_s) > pushed_rad_s;
   return by_its_motor || away;
 }
@@ -238,7 +240,7 @@ Progress Workbench::follow_back_off(const StepTick& tick) {
     tick.faults.report(safety::Fault::following_error, static_cast<std::int32_t>(back_guard.joint()));
     return Progress::running();
   }
-  motion.stop();
+  stay_where_measured();
   return Progress::failed_by_touch(StepFailure::touched_on_the_way_back);
 }
 

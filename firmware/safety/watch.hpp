@@ -4,10 +4,10 @@
 #include <array>
 #include <cstdint>
 
+#include "firmware/arm/joint_observer.hpp"
 #include "firmware/arm/transmission.hpp"
 #include "firmware/canopen/network.hpp"
 #include "firmware/safety/fault_arbiter.hpp"
-#include "firmware/safety/joint_observer.hpp"
 #include "firmware/safety/limits.hpp"
 #include "firmware/safety/stuck_encoder.hpp"
 #include "shared/geometry/pose.hpp"
@@ -77,7 +77,7 @@ class Watch {
 
   Limits limits_;
   Transmissions transmissions_;
-  std::array<JointObserver, joint_count> observers_;
+  std::array<arm::JointObserver, joint_count> observers_;
   std::array<arm::TorqueObserver, joint_count> torque_observers_;
   bool observing_ = false;
   JointStates joints_;

@@ -148,7 +148,8 @@ void add_option(canopen::DriveProfile& profile, std::uint16_t index, std::int32_
 
 // 6077 has 16 bits: a motor of more current than the drive reports would push unseen. One of far less is as good as not seen.
 void check_readable(const DriveKind& kind, double rated_a, const std::string& where) {
-  constexpr double most_units = 32767, least_units = 100;  // the least is 1 % of the rating, as exact as readings are taken to be
+  constexpr double most_units = 32767 / 1.1;  // a motor is capped at its rating at most: what an overload takes is seen, and a tenth above
+  constexpr double least_units = 100;         // 1 % of the rating, as exact as readings are taken to be
   const double units = kind.units_per_a * rated_a;
   if (units >= least_units && units <= most_units) return;
   char text[160];

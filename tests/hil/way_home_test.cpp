@@ -105,6 +105,8 @@ TEST_P(APushFromTheSide, EndsTheJobWhereTheArmIs) {
   rig.push_obstacle();
   ASSERT_TRUE(rig.run_to_end()) << rig.story();
   const Vec3 tool_m = rig.world().base_from_tool().translation();
+  EXPECT_EQ(rig.step_now(), Step::held) << rig.story();
+  EXPECT_EQ(rig.outcome().step, GetParam().step) << "it went on: " << rig.story();
   rig.run_for(3);
   EXPECT_FALSE(rig.outcome().success) << rig.story();
   EXPECT_FALSE(rig.world().contacts().unintended.empty()) << "nothing was touched";

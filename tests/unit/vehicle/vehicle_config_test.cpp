@@ -99,9 +99,9 @@ TEST(VehicleConfig, AMotorWhoseTorqueTheDriveCannotReportIsRefused) {
   const auto told = [&](const std::string& drives) { return problems_of(folder.write("v.yaml", "drives: {" + drives + "}\n")); };
   struct Range {
     std::string make;
-    double least_a, most_a;  // 100 and 32767 over the make's units an ampere
+    double least_a, most_a;  // 100 and 32767 / 1.1 over the make's units an ampere
   };
-  for (const Range& range : {Range{"ipos", 0.1221, 40.0}, Range{"ipos4808", 0.06105, 20.0}}) {
+  for (const Range& range : {Range{"ipos", 0.1221, 36.37}, Range{"ipos4808", 0.06105, 18.18}}) {
     const auto with = [&](double rated_a) { return told("profile: " + range.make + ", rated_current_a: " + std::to_string(rated_a)); };
     for (const double rated_a : {1.01 * range.least_a, 4.2, 0.999 * range.most_a})
       EXPECT_THAT(with(rated_a), testing::Not(testing::Contains(HasSubstr("rated_current_a")))) << range.make << " " << rated_a;

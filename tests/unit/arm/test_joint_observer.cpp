@@ -1,11 +1,11 @@
-#include "firmware/safety/joint_observer.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-namespace lf::safety {
+#include "firmware/arm/joint_observer.hpp"
+
+namespace lf::arm {
 namespace {
 
 constexpr double dt_s = 0.004;
@@ -40,4 +40,4 @@ TEST(JointObserver, MakesLessOfACountThanADifferenceDoes) {
 }
 
 }  // namespace
-}  // namespace lf::safety
+}  // namespace lf::arm

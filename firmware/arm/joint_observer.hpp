@@ -5,7 +5,7 @@
 // beta = (1 - z)^2 (Benedict and Bordner 1962; Kalata 1984).
 #pragma once
 
-namespace lf::safety {
+namespace lf::arm {
 
 class JointObserver {
  public:
@@ -32,4 +32,4 @@ class JointObserver {
   double velocity_rad_s_ = 0;
 };
 
-}  // namespace lf::safety
+}  // namespace lf::arm
