@@ -208,7 +208,7 @@ class Judge {
     return bits;
   }
 
-  // Their process data are lost both ways, and nothing else.
+  // The longest of their ramps, and the time after it.
   double unreached_off_s(std::uint8_t joints, double from_s) const {
     double ramp_s = 0;
     const auto at = static_cast<std::size_t>(from_s / ms);
@@ -218,6 +218,7 @@ class Judge {
     return ramp_s + figures_.unreached_off_s;
   }
 
+  // Their process data are lost both ways, and nothing else.
   std::uint8_t joints_unreached() const {
     return static_cast<std::uint8_t>(joints_that(loses_process_data) & joints_that(is_unheard) & ~joints_that(cut_off));
   }

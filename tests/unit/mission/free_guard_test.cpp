@@ -115,7 +115,7 @@ TEST(DrivesItselfOff, IsAJointThatLeavesItsSetPointAtASpeedToWhichNothingPushesA
   }
 }
 
-TEST(DrivesItselfOff, IsAskedByEachGuard) { EXPECT_TRUE(does_not_follow(moving(0.05, -0.05, -10))); }
+TEST(DrivesItselfOff, CountsAsAJointThatDoesNotFollow) { EXPECT_TRUE(does_not_follow(moving(0.05, -0.05, -10))); }
 
 }  // namespace
 }  // namespace lf::mission
