@@ -77,8 +77,8 @@ double fastest_arm_joint_rad_s(const Rig& rig) {
   return fastest;
 }
 
-// Something gets between the fingers as they close on the way home: as thick as the bar, and thicker. The way was looked at for a closed jaw, and the jaw opened
-// on it.
+// Something gets between the fingers as they close on the way home: as thick as the bar, and thicker. The jaw opened while the arm moved, on a way that had been
+// checked for a closed jaw.
 TEST(WhatTheJawClosesOnOnTheWayHome, IsLetGoOfByAnArmAtRest) {
   const double widest_rad = arm_geometry::joints[4].upper_rad;
   for (const double thick_m : {PanelLayout{}.handle_thickness_m, 0.025}) {
@@ -89,7 +89,8 @@ TEST(WhatTheJawClosesOnOnTheWayHome, IsLetGoOfByAnArmAtRest) {
     ASSERT_TRUE(give(rig, Command::abort));
     ASSERT_TRUE(rig.run_to(Step::stow)) << rig.story();
     rig.block_jaw(arm::jaw_from_gap(thick_m), widest_rad);
-    const double pads_m = 0.003;
+    const double pads_m = 0.003;  // by which the pads may stand apart more than what they hold
+    const double open_m = 0.04;   // well open: the jaw goes on to 0.0606
     double narrowest_m = 1, moved_before_rad_s = 0, opening_rad_s = 0;
     for (int i = 0; i < 250 * 90 && rig.step_now() == Step::stow; ++i) {
       rig.step();
@@ -97,7 +98,7 @@ TEST(WhatTheJawClosesOnOnTheWayHome, IsLetGoOfByAnArmAtRest) {
       narrowest_m = std::min(narrowest_m, gap_m);
       const double speed_rad_s = fastest_arm_joint_rad_s(rig);
       if (narrowest_m > thick_m + pads_m) moved_before_rad_s = std::max(moved_before_rad_s, speed_rad_s);
-      const bool opens = narrowest_m < thick_m + pads_m && gap_m > narrowest_m + 0.002 && gap_m < 0.04;
+      const bool opens = narrowest_m < thick_m + pads_m && gap_m > narrowest_m + 0.002 && gap_m < open_m;
       if (opens) opening_rad_s = std::max(opening_rad_s, speed_rad_s);
     }
     ASSERT_TRUE(rig.run_to_end()) << rig.story();
@@ -106,7 +107,7 @@ TEST(WhatTheJawClosesOnOnTheWayHome, IsLetGoOfByAnArmAtRest) {
     EXPECT_LT(opening_rad_s, standing_rad_s) << "the arm moves while the jaw opens";
     EXPECT_FALSE(rig.outcome().success) << rig.story();
     EXPECT_TRUE(failed_by(rig, StepFailure::jaw_not_closed)) << rig.story();
-    EXPECT_GT(arm::gap_from_jaw(angle_rad(rig, Joint::jaw)), 0.04) << "it still holds it";
+    EXPECT_GT(arm::gap_from_jaw(angle_rad(rig, Joint::jaw)), open_m) << "it still holds it";
     for (std::size_t i = 0; i < arm_joint_count; ++i) {
       EXPECT_NEAR(rig.world().readings()[i].position_rad, mission::MissionConfig{}.park_rad[static_cast<Eigen::Index>(i)], 0.02)
           << "it is not at home: " << rig.story();
@@ -137,8 +138,8 @@ struct Push {
 };
 void PrintTo(const Push& push, std::ostream* out) { *out << mission::row(push.step).name << " + " << push.after_s << " s"; }
 
-// What pushes before the press has come to its speed is found once free motion is learned anew: with a hold meanwhile, too. It was forgotten, and the order to go
-// on pressed against it.
+// The press learns free motion anew when it has come to its speed, after 0.4 s, and finds what pushes by then. Where the operator gave a hold just then, the
+// finding was lost, and the press went on against the push.
 TEST(APushThatAPressFindsOnHold, IsNotForgotten) {
   for (const char* torque_nm : {"8", "20"}) {
     for (const double hold_s : {0.42, 0.46, 0.50}) {
@@ -154,6 +155,7 @@ TEST(APushThatAPressFindsOnHold, IsNotForgotten) {
       ASSERT_TRUE(give(rig, Command::hold));
       rig.run_for(3);
       EXPECT_EQ(rig.count(Fault::unexpected_contact), 1u) << rig.story();
+      EXPECT_FALSE(rig.world().contacts().unintended.empty()) << "nothing was touched";
       if (!rig.outcome().ended) (void)give(rig, Command::resume);
       ASSERT_TRUE(rig.run_to_end()) << rig.story();
       EXPECT_FALSE(rig.outcome().success) << rig.story();
