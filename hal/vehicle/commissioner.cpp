@@ -172,12 +172,22 @@ std::optional<std::string> Commissioner::begin(const CommissionOrder& order) {
   return std::nullopt;
 }
 
+std::optional<std::string> Commissioner::why_no_power() const {
+  if (stage_ == Stage::idle) return std::nullopt;
+  // The core is exchanged at rest only: in the next control period, or after the reset that a stop wants first.
+  if (stage_ == Stage::installing)
+    return "the zeros that were found are not in the core yet: try again, after a `reset` if the mission has ended";
+  return "not while the arm is being commissioned: `abort` calls it off";
+}
+
 std::optional<Json> Commissioner::answer() { return std::exchange(answer_, std::nullopt); }
 
 void Commissioner::step() {
   for (Controller* old = nullptr; rings_.old_cores.pop(old);) {
     delete old;
     (void)core_given_.release();  // in the control loop now
+    last_ = std::exchange(outcome_, nullptr);
+    stage_ = Stage::idle;
   }
   for (CommissioningResult result; rings_.commissioned.pop(result);) take_back(result);
   if (stage_ == Stage::preparing) lend();
@@ -220,6 +230,10 @@ void Commissioner::take_back(const CommissioningResult& result) {
 void Commissioner::end_with(const Json& outcome) {
   last_ = outcome;
   stage_ = Stage::idle;
+  write_down(outcome);
+}
+
+void Commissioner::write_down(const Json& outcome) const {
   Json line{{"t_s", monotonic_now().s()}, {"kind", "commissioning"}};
   line.update(outcome);
   log_(line);
@@ -238,6 +252,7 @@ void Commissioner::give(Prepared& prepared, const std::string& problem, const Ta
 // The file is read again: it keeps what this commissioning has not found.
 void Commissioner::store(const Commissioning& ended) {
   stage_ = Stage::storing;
+  last_ = {{"state", "under way"}};  // also of one that ended before its begin was told
   prepared_ = std::make_shared<Prepared>();
   const std::string how = (order_.here ? "in the jig, " : "at its stop, ") + now_text() + " UTC";
   const Commissioned commissioned{ended.found(), ended.zero_counts(), ended.friction_found(), ended.friction(), how, ended.places_rad()};
@@ -278,7 +293,10 @@ void Commissioner::store(const Commissioning& ended) {
   if (!posted) end_with({{"state", "failed"}, {"why", "nothing was written: too much is waiting to be done"}, {"without_power", true}});
 }
 
-void Commissioner::give_core(std::unique_ptr<Controller> core) {
+void Commissioner::give_core(std::unique_ptr<Controller> core, const Json& outcome) {
+  stage_ = Stage::installing;
+  outcome_ = outcome;
+  write_down(outcome);
   core_given_ = std::move(core);
   (void)rings_.cores.push(core_given_.get());
 }
@@ -291,8 +309,8 @@ void Commissioner::install() {
   if (!prepared_->problem.empty()) {
     for (std::size_t i = 0; i < joint_count && prepared_->core; ++i)
       core_.network.drives[i].zero_known = core_.network.drives[i].zero_known && prepared_->offsets.known[i] && !zero_lost_[i];
-    if (prepared_->core) give_core(std::move(prepared_->core));
-    return end_with({{"state", "failed"}, {"why", prepared_->problem + (why.empty() ? "" : "; " + why)}, {"without_power", true}});
+    const Json failed{{"state", "failed"}, {"why", prepared_->problem + (why.empty() ? "" : "; " + why)}, {"without_power", true}};
+    return prepared_->core ? give_core(std::move(prepared_->core), failed) : end_with(failed);
   }
   Json zeros = Json::object(), moved = Json::object();
   for (std::size_t i = 0; i < joint_count; ++i) {
@@ -302,11 +320,10 @@ void Commissioner::install() {
     if (prepared_->offsets.known[i]) zeros[config::joint_name(i)] = prepared_->offsets.zero_counts[i];
     if (prepared_->taken.moved_rad[i] > 0) moved[config::joint_name(i)] = prepared_->taken.moved_rad[i];
   }
-  give_core(std::move(prepared_->core));
   Json outcome{{"state", "done"}, {"zeros", zeros}, {"friction", friction_json(prepared_->offsets)}, {"file", file_}};
   if (!moved.empty()) outcome["moved_rad"] = moved;
   if (!why.empty()) outcome.update({{"state", "failed"}, {"why", why}, {"without_power", true}});
-  end_with(outcome);
+  give_core(std::move(prepared_->core), outcome);
 }
 
 }  // namespace lf::hal

@@ -60,7 +60,9 @@ class Commissioner {
   // {"ok": ...} once after each begin(), when the control thread has begun it or when it could not.
   std::optional<Json> answer();
   // From begin() until the new zeros are on the disk and in the core.
-  bool busy() const { return stage_ != Stage::idle || core_given_ != nullptr; }
+  bool busy() const { return stage_ != Stage::idle; }
+  // Why an order that asks for power is refused meanwhile, in words; nothing when none is under way.
+  std::optional<std::string> why_no_power() const;
   // One look at what has come back.
   void step();
 
@@ -68,7 +70,7 @@ class Commissioner {
   void lose_zeros(const std::array<bool, joint_count>& lost);
   // Joints that take no power since their zero is not known: "slew, elbow"; empty when there is none.
   std::string unknown_joints() const;
-  // How the last one ended; null before the first.
+  // How the last one ended, once the core has what it found; null before the first.
   Json last() const { return last_; }
 
  private:
@@ -82,7 +84,7 @@ class Commissioner {
     std::unique_ptr<Controller> core;
     config::HomingOffsets offsets;
   };
-  enum class Stage { idle, preparing, lending, running, storing };
+  enum class Stage { idle, preparing, lending, running, storing, installing };
 
   void lend();
   void take_back(const CommissioningResult& result);
@@ -90,8 +92,10 @@ class Commissioner {
   static void give(Prepared& prepared, const std::string& problem, const TakenOver& taken, const config::HomingOffsets& offsets,
                    std::unique_ptr<Controller> core);
   void install();
-  void give_core(std::unique_ptr<Controller> core);
+  // The outcome is logged at once, and is last()'s when the control thread has taken the core over.
+  void give_core(std::unique_ptr<Controller> core, const Json& outcome);
   void end_with(const Json& outcome);
+  void write_down(const Json& outcome) const;  // in the log
 
   ControllerConfig core_;
   std::array<bool, joint_count> zero_lost_{};   // of the core at work
@@ -107,6 +111,7 @@ class Commissioner {
   std::shared_ptr<Prepared> prepared_;
   std::unique_ptr<Commissioning> commissioning_;  // lent while it runs
   std::unique_ptr<Controller> core_given_;        // until the control thread has taken it
+  Json outcome_;                                  // meanwhile
   std::optional<Json> answer_;
   Json last_;
   Worker worker_{"commission"};

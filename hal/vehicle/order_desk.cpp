@@ -155,8 +155,9 @@ std::optional<Json> OrderDesk::give(Waiting& one) {
   const Command command = one.request.order.command;
   const std::string unknown = ways_.commissioner != nullptr ? ways_.commissioner->unknown_joints() : "";
   if (asks_for_power(command) && !unknown.empty()) return refused("no power without a known zero: commission " + unknown + " first");
-  if (asks_for_power(command) && ways_.commissioner != nullptr && ways_.commissioner->busy())
-    return refused("not while the arm is being commissioned: `abort` calls it off");
+  if (asks_for_power(command) && ways_.commissioner != nullptr) {
+    if (const std::optional<std::string> why = ways_.commissioner->why_no_power()) return refused(*why);
+  }
   if (const std::string blind = command == Command::start && ways_.no_sight ? ways_.no_sight() : ""; !blind.empty())
     return refused("a job needs the camera: " + blind);
   const std::string beyond = command == Command::set_tasks ? turn_problem(one.request.order.tasks, ways_.panel) : "";

@@ -467,6 +467,13 @@ TEST(CommissioningWhoseFileCannotBeWritten, LeavesADoubtfulJointWithoutPower) {
   ASSERT_TRUE(wait_for([&] { return core != nullptr || rings->cores.pop(core); }));
   EXPECT_EQ(folder.read("homing.yaml"), before);
   EXPECT_EQ(commissioner.unknown_joints(), "jaw");
+  // An operator who was told how it ended gave the next order, and was refused: the core at work was still the old one.
+  EXPECT_EQ(commissioner.last()["state"], "under way");
+  ASSERT_TRUE(commissioner.why_no_power().has_value());
+  EXPECT_NE(commissioner.why_no_power()->find("not in the core yet"), std::string::npos) << *commissioner.why_no_power();
+  rings->old_cores.push(nullptr);  // as the control loop does when it has taken the core over
+  ASSERT_TRUE(wait_for([&] { return !commissioner.busy(); }));
+  EXPECT_EQ(commissioner.why_no_power(), std::nullopt);
   const hal::Json last = commissioner.last();
   EXPECT_EQ(last["state"], "failed");
   EXPECT_NE(last["why"].get<std::string>().find("cannot be written"), std::string::npos) << last;
@@ -474,8 +481,6 @@ TEST(CommissioningWhoseFileCannotBeWritten, LeavesADoubtfulJointWithoutPower) {
   for (const Command command : {Command::start, Command::home}) EXPECT_FALSE(core->on_command(command, Time::from_s(1)));
   EXPECT_FALSE(core->network().axis(Joint::jaw).setup().may_have_power());
   EXPECT_TRUE(core->network().axis(Joint::elbow).setup().may_have_power());
-  rings->old_cores.push(nullptr);  // as the control loop does when it has taken the core over
-  wait_for([&] { return !commissioner.busy(); });
   delete core;
 }
 
