@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "shared/messages/joint_names.hpp"
+
 namespace lf::config {
 
 namespace {
@@ -88,7 +90,7 @@ std::vector<std::string> fault_kind_names() {
 }
 
 std::vector<std::string> fault_nodes(FaultPlace place) {
-  std::vector<std::string> nodes{"slew", "shoulder", "elbow", "roll", "jaw"};
+  std::vector<std::string> nodes(joint_names.begin(), joint_names.end());
   if (place == node || place == node_or_master) nodes.emplace_back("io");
   if (place == node_or_master) nodes.emplace_back("master");
   if (place != drive && place != node && place != node_or_master) return {""};

@@ -6,6 +6,7 @@
 #include "firmware/mission/step_failure.hpp"
 #include "firmware/telemetry.hpp"
 #include "shared/messages/joint_io.hpp"
+#include "shared/messages/joint_names.hpp"
 
 namespace lf::config {
 
@@ -54,9 +55,8 @@ std::string cause(Fault fault, std::int32_t code) {
 }  // namespace
 
 std::string node_text(std::int32_t index) {
-  constexpr std::array<const char*, joint_count + 1> names{"slew", "shoulder", "elbow", "roll", "jaw", "io"};
-  const bool known = index >= 0 && index < static_cast<std::int32_t>(names.size());
-  return known ? names[static_cast<std::size_t>(index)] : std::to_string(index);
+  const bool known = index >= 0 && index < static_cast<std::int32_t>(node_names.size());
+  return known ? node_names[static_cast<std::size_t>(index)] : std::to_string(index);
 }
 
 std::string fault_text(Fault fault, std::int32_t code, std::uint16_t emcy, const ErrorTexts& texts) {

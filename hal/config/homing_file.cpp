@@ -14,13 +14,11 @@
 #include "hal/config/text_file.hpp"
 #include "hal/config/yaml_reader.hpp"
 #include "shared/input_error.hpp"
+#include "shared/messages/joint_names.hpp"
 
 namespace lf::config {
 
-const char* joint_name(std::size_t joint) {
-  constexpr std::array<const char*, joint_count> names{"slew", "shoulder", "elbow", "roll", "jaw"};
-  return joint < names.size() ? names[joint] : "?";
-}
+const char* joint_name(std::size_t joint) { return joint < joint_names.size() ? joint_names[joint] : "?"; }
 
 HomingOffsets read_homing_file(const std::string& path) {
   const Source source = Source::of_file(path);

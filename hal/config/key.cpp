@@ -59,8 +59,7 @@ Keys keys(Fault& fault) {
           key("at_step", "", 0, 0, &fault.at_step, "in place of at_s: when the mission first enters this step", step_names()),
           key("after_s", "s", 0, 7200, &fault.after_s, "how long after at_step began"),
           key("kind", "", 0, 0, &fault.kind, "what happens: see the table of faults", fault_kind_names()),
-          key("node", "", 0, 0, &fault.node, "to which node, where the kind is a node's",
-              {"slew", "shoulder", "elbow", "roll", "jaw", "io", "master"}),
+          key("node", "", 0, 0, &fault.node, "to which node, where the kind is a node's", fault_nodes(FaultPlace::node_or_master)),
           key("duration_s", "s", 0, 7200, &fault.duration_s, "how long; 0 for the rest of the run"),
           key("can_id", "", 0, 0x7FF, &fault.can_id, "drop_frames: the identifier whose frames are lost")};
 }

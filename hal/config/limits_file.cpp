@@ -5,6 +5,7 @@
 
 #include "hal/config/text_file.hpp"
 #include "hal/config/yaml_reader.hpp"
+#include "shared/messages/joint_names.hpp"
 
 namespace lf::config {
 
@@ -13,10 +14,9 @@ namespace {
 constexpr double any = 1e6;
 
 std::vector<Key> limit_keys(safety::Limits& limits, std::string& checksum) {
-  static constexpr std::array<const char*, joint_count> joints{"slew", "shoulder", "elbow", "roll", "jaw"};
   std::vector<Key> all;
   for (std::size_t i = 0; i < joint_count; ++i) {
-    const std::string joint = std::string("joints.") + joints[i] + ".";
+    const std::string joint = std::string("joints.") + joint_names[i] + ".";
     all.push_back({joint + "min_rad", "", "rad", -any, any, &limits.joints[i].min_rad});
     all.push_back({joint + "max_rad", "", "rad", -any, any, &limits.joints[i].max_rad});
     all.push_back({joint + "max_speed_rad_s", "", "rad/s", 0, any, &limits.joints[i].max_speed_rad_s});

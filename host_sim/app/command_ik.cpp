@@ -5,6 +5,7 @@
 #include "host_sim/app/checks.hpp"
 #include "host_sim/app/command.hpp"
 #include "shared/input_error.hpp"
+#include "shared/messages/joint_names.hpp"
 
 namespace lf::app {
 
@@ -15,8 +16,6 @@ struct Options {
   double margin_rad = arm::default_limit_margin_rad;
   bool json = false;
 };
-
-constexpr std::array<const char*, arm_joint_count> joint_names{"slew", "shoulder", "elbow", "roll"};
 
 bool is_length(arm::IkOutcome outcome) { return outcome == arm::IkOutcome::too_far || outcome == arm::IkOutcome::too_near; }
 

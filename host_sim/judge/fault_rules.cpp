@@ -6,12 +6,12 @@
 
 #include "hal/config/fault_kinds.hpp"
 #include "shared/can/can_map.hpp"
+#include "shared/messages/joint_names.hpp"
 
 namespace lf::judge {
 
 namespace {
 
-constexpr std::array<const char*, joint_count + 1> node_names{"slew", "shoulder", "elbow", "roll", "jaw", "io"};
 constexpr std::uint32_t first_rpdo = 0x200, sdo_request = 0x600;
 constexpr std::array<std::pair<const char*, std::uint32_t>, 4> frame_sorts{
     {{"tpdo ", 0x180}, {"rpdo ", first_rpdo}, {"heartbeat ", 0x700}, {"emcy ", 0x080}}};

@@ -5,12 +5,13 @@
 #include <cmath>
 #include <cstdio>
 
+#include "shared/messages/joint_names.hpp"
+
 namespace lf::judge {
 
 namespace {
 
 constexpr double ms = 1e-3;  // a moment
-constexpr std::array<const char*, joint_count> joint_names{"slew", "shoulder", "elbow", "roll", "jaw"};
 
 std::string formatted(const char* format, double a, double b = 0) {
   char text[160];
@@ -30,9 +31,8 @@ double last_s(const std::vector<Moment>& moments, double from_s, Is is) {
 }
 
 std::size_t node_index(const std::string& node) {
-  constexpr std::array<const char*, joint_count + 1> names{"slew", "shoulder", "elbow", "roll", "jaw", "io"};
   const std::string name = node.substr(node.find_last_of(' ') + 1);  // "slew" of "tpdo slew"
-  return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+  return static_cast<std::size_t>(std::find(node_names.begin(), node_names.end(), name) - node_names.begin());
 }
 
 // A drive that hears nothing of the master any more.

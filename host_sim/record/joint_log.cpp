@@ -4,17 +4,13 @@
 #include <cstdio>
 #include <string>
 
+#include "shared/messages/joint_names.hpp"
+
 namespace lf::record {
-
-namespace {
-
-constexpr std::array<const char*, joint_count> names{"slew", "shoulder", "elbow", "roll", "jaw"};
-
-}  // namespace
 
 JointLog::JointLog(const std::filesystem::path& path) : sink_(path) {
   std::string header = "t_s";
-  for (const char* name : names) {
+  for (const char* name : joint_names) {
     for (const char* what : {"_rad", "_target_rad", "_torque_nm"}) header += std::string(",") + name + what;
   }
   sink_.write(header + "\n");

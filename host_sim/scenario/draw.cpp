@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "shared/messages/joint_names.hpp"
 #include "shared/random.hpp"
 
 namespace lf::scenario {
@@ -55,11 +56,10 @@ Sample draw(const Scenario& s, std::uint64_t seed) {
   sample.camera_turn_rad = draws.degrees_each_axis(s.mounting.camera_deg, "mounting.camera_deg");
   sample.laser_shift_m = draws.each_axis(s.mounting.laser_m, "mounting.laser_m");
   sample.laser_turn_rad = draws.degrees_each_axis(s.mounting.laser_deg, "mounting.laser_deg");
-  static constexpr std::array<const char*, joint_count> joints{"slew", "shoulder", "elbow", "roll", "jaw"};
   for (std::size_t i = 0; i < joint_count; ++i) {
-    sample.joint_offset_rad[i] = draws.degrees(s.mounting.joints_deg, std::string("mounting.joints_deg.") + joints[i]);
+    sample.joint_offset_rad[i] = draws.degrees(s.mounting.joints_deg, std::string("mounting.joints_deg.") + joint_names[i]);
     const auto friction = [&](const Spread& spread, const char* name) {
-      return draws.of(spread, std::string("friction.") + name + "." + joints[i]);
+      return draws.of(spread, std::string("friction.") + name + "." + joint_names[i]);
     };
     sample.coulomb[i] = friction(s.friction.coulomb, "coulomb");
     sample.viscous[i] = friction(s.friction.viscous, "viscous");

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "shared/input_error.hpp"
+#include "shared/messages/joint_names.hpp"
 
 namespace lf {
 namespace {
@@ -17,7 +18,6 @@ using tinyxml2::XMLElement;
 
 constexpr std::array<const char*, ArmDescription::link_count> link_names{"base",  "slew",     "upper_arm", "forearm",
                                                                          "wrist", "finger_a", "finger_b"};
-constexpr std::array<const char*, joint_count> joint_names{"slew", "shoulder", "elbow", "roll", "jaw"};
 
 // Elements and attributes of one URDF, with the place of what is wrong.
 class Urdf {

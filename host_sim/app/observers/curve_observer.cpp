@@ -3,13 +3,13 @@
 #include <string>
 
 #include "shared/can/can_map.hpp"
+#include "shared/messages/joint_names.hpp"
 
 namespace lf::app {
 
 namespace {
 
 constexpr std::uint32_t ticks_a_sample = 10;  // 25 Hz
-constexpr std::array<const char*, joint_count> joint_names{"slew", "shoulder", "elbow", "roll", "jaw"};
 
 }  // namespace
 
