@@ -37,7 +37,8 @@ in_root() { env -i PATH=/usr/sbin:/usr/bin HOME=/root LC_ALL=C.UTF-8 chroot "$ro
 remove() {
   dpkg --root="$root" --purge "$@"
   local left
-  left=$(find "$root/usr" "$root/etc" -path '*lanternfish*' -print)
+  # From within the root: a checkout in a folder named lanternfish is no leftover.
+  left=$(cd "$root" && find usr etc -path '*lanternfish*' -print)
   [ -z "$left" ] || { echo "left behind: $left"; exit 1; }
   umount -l "$root/tmp" "$root/proc" "$root/dev"
   rm -rf "$root"
