@@ -85,6 +85,7 @@ const FaultKind* find_fault_kind(std::string_view name) {
 
 std::vector<std::string> fault_kind_names() {
   std::vector<std::string> names;
+  names.reserve(std::size(kinds));
   for (const FaultKind& kind : kinds) names.emplace_back(kind.name);
   return names;
 }
