@@ -9,8 +9,7 @@ namespace lf::serve {
 
 namespace {
 
-constexpr int most_frames = 128;                 // of a millisecond: a full bus at 1 Mbit/s has 21 of the shortest
-constexpr std::size_t most_answers = 1'000'000;  // over an hour of SYNCs
+constexpr int most_frames = 128;  // of a millisecond: a full bus at 1 Mbit/s has 21 of the shortest
 constexpr std::size_t nobody = devices::NodeRack::slots;
 
 }  // namespace

@@ -55,7 +55,8 @@ Plane blurred(const Plane& in, double sigma) {
   for (int v = 0; v < in.height; ++v) {
     for (int u = 0; u < in.width; ++u) {
       double sum = 0;
-      for (int i = -reach; i <= reach; ++i) sum += taps[static_cast<std::size_t>(i + reach)] * down.at(std::clamp(u + i, 0, in.width - 1), v);
+      for (int i = -reach; i <= reach; ++i)
+        sum += taps[static_cast<std::size_t>(i + reach)] * down.at(std::clamp(u + i, 0, in.width - 1), v);
       out.at(u, v) = sum;
     }
   }

@@ -36,18 +36,20 @@ struct FormedStripe {
   double read_noise_grey = 1.5;
   double electrons_per_grey = 40;
   int bits = 8;
-  bool noise = true;             // false: no speckle, no noise, no rounding, no clipping
+  bool noise = true;  // false: no speckle, no noise, no rounding, no clipping
   Bars bars;
   std::uint64_t seed = 1;
 };
 
 struct FormedImage {
   int width = 0, height = 0;
-  std::vector<double> on, off;      // grey levels
-  std::vector<double> centre_px;    // the stripe's row in each column
-  std::vector<double> to_edge_px;   // rows from there to the nearest edge of the paint; 1e9 where there is none
+  std::vector<double> on, off;     // grey levels
+  std::vector<double> centre_px;   // the stripe's row in each column
+  std::vector<double> to_edge_px;  // rows from there to the nearest edge of the paint; 1e9 where there is none
 
-  double at(const std::vector<double>& plane, int u, int v) const { return plane[static_cast<std::size_t>(v) * static_cast<std::size_t>(width) + static_cast<std::size_t>(u)]; }
+  double at(const std::vector<double>& plane, int u, int v) const {
+    return plane[static_cast<std::size_t>(v) * static_cast<std::size_t>(width) + static_cast<std::size_t>(u)];
+  }
   // The laser's light alone: on less off.
   double stripe(int u, int v) const { return at(on, u, v) - at(off, u, v); }
 };

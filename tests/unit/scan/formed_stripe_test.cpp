@@ -85,7 +85,8 @@ TEST(FormedStripe, HasTheSkirtOfSeaWater) {
     const std::array<int, 4> places{5, 10, 20, 40};
     for (std::size_t i = 0; i < places.size(); ++i) {
       const double skirt = image.stripe(200, 200 + places[i]) / peak;
-      EXPECT_NEAR(skirt, water.skirt[i], 0.25 * water.skirt[i] + 0.001) << places[i] << " px, scattering " << water.scatter_per_m << " per m";
+      EXPECT_NEAR(skirt, water.skirt[i], 0.25 * water.skirt[i] + 0.001)
+          << places[i] << " px, scattering " << water.scatter_per_m << " per m";
     }
   }
 }
@@ -215,7 +216,8 @@ TEST(EstimatorsAtEdges, ErrAsMuchOnThesePicturesAsElsewhere) {
     const std::vector<double> rms_px = rms_at_edges(stripe, {mass, log, product});
     const std::array<double, 3> elsewhere{row.mass_px, row.log_px, row.product_px};
     for (std::size_t i = 0; i < elsewhere.size(); ++i)
-      EXPECT_NEAR(rms_px[i], elsewhere[i], 0.2 * elsewhere[i]) << std::array{"centre of mass", "LoG", "product"}[i] << ", beam " << row.beam_px;
+      EXPECT_NEAR(rms_px[i], elsewhere[i], 0.2 * elsewhere[i])
+          << std::array{"centre of mass", "LoG", "product"}[i] << ", beam " << row.beam_px;
   }
 }
 
