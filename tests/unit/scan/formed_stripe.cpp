@@ -161,11 +161,4 @@ FormedImage form(const FormedStripe& s) {
   return image;
 }
 
-BytePair bytes_of(const FormedImage& image) {
-  BytePair pair{image.width, image.height, {}, {}};
-  for (const double grey : image.on) pair.on.push_back(static_cast<std::uint8_t>(std::clamp(std::round(grey), 0.0, 255.0)));
-  for (const double grey : image.off) pair.off.push_back(static_cast<std::uint8_t>(std::clamp(std::round(grey), 0.0, 255.0)));
-  return pair;
-}
-
 }  // namespace lf::test

@@ -1,15 +1,13 @@
 // Pictures of a laser stripe as water, lens and sensor form them, with the stripe's true centre in each column.
 //
 // stripe_image.hpp multiplies a finished stripe onto a finished picture. A camera does not: it sees paint times light, and blurs the product. Here the
-// order is that of nature. The light on the surface, widened by the water on its way; times the paint; then scattered forward on the way to the camera, blurred
-// by the lens, summed by the pixel, made to grain by speckle, counted in electrons, and rounded. The parts are taken from the publications named beside them,
-// and share no code with the simulator or the detector.
+// order is that of nature. The water widens the laser's light on its way to the paint. What the paint sends back is scattered on the way to the camera, and blurred by the
+// lens. Each pixel adds it up; speckle, the electrons' noise and rounding follow. Each part is written from the publication that is named beside it, and
+// shares no code with the simulator or the detector.
 #pragma once
 
 #include <cstdint>
 #include <vector>
-
-#include "shared/messages/image.hpp"
 
 namespace lf::test {
 
@@ -55,14 +53,5 @@ struct FormedImage {
 };
 
 FormedImage form(const FormedStripe& stripe);
-
-// For detectors of 8-bit pixels.
-struct BytePair {
-  int width = 0, height = 0;
-  std::vector<std::uint8_t> on, off;
-  ImageView on_view() const { return {on.data(), width, height, width}; }
-  ImageView off_view() const { return {off.data(), width, height, width}; }
-};
-BytePair bytes_of(const FormedImage& image);
 
 }  // namespace lf::test
