@@ -48,7 +48,7 @@ if(LANTERNFISH_SANITIZE)
   endif()
 endif()
 if(LANTERNFISH_COVERAGE)
-  target_compile_options(lanternfish_flags INTERFACE --coverage -fno-inline)
+  target_compile_options(lanternfish_flags INTERFACE --coverage)
   target_link_options(lanternfish_flags INTERFACE --coverage)
 endif()
 if(LANTERNFISH_FUZZ)
@@ -109,6 +109,9 @@ endfunction()
 function(lanternfish_core_flags target)
   target_compile_options(${target} PRIVATE -fno-exceptions -fno-rtti -fno-threadsafe-statics -Wconversion -Wno-sign-conversion)
   target_compile_definitions(${target} PRIVATE EIGEN_NO_MALLOC EIGEN_NO_IO)
+  if(LANTERNFISH_COVERAGE)
+    target_compile_options(${target} PRIVATE -Og)  # each line keeps its own count, and a mission takes seconds; at -O0 Eigen makes it minutes
+  endif()
 endfunction()
 
 # lanternfish_library(NAME source... [LINK public...] [PRIVATE_LINK private...]): a folder's static library.
