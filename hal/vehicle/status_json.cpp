@@ -82,6 +82,7 @@ Json scan_counters(const ScanStats& s) {
   Json json = Json::object();
   count(json, "images", s.images);
   count(json, "unexpected", s.images_unexpected);
+  count(json, "repeated", s.images_repeated);
   count(json, "refused", s.images_refused);
   count(json, "missing", s.images_missing);
   count(json, "points", s.points);
