@@ -1,0 +1,36 @@
+// How wide the stripe and the lens' blur are, as the pictures themselves tell: the widths under which the fitted columns are likeliest.
+//
+// Plain columns tell the stripe's width in the picture. Columns at the paint's edges tell how much of it is the lens'. Each picture moves the estimate by a step
+// of Newton's on the deviance of some of its columns, against what the pictures before have told.
+#pragma once
+
+#include "firmware/scan/stripe_fit.hpp"
+
+namespace lf::scan {
+
+class OpticsEstimate {
+ public:
+  explicit OpticsEstimate(const StripeOptics& first);
+
+  const StripeOptics& optics() const { return optics_; }
+
+  // Columns that were fitted with `optics()`. Those that fit badly are left out: another stripe, a silhouette.
+  void add(const StripeWindows& windows, const PixelNoise& noise, const StripeFits& fits);
+
+  // Moves the estimate by what was added since the last call. Returns the larger relative change of both widths; 0 where nothing was added.
+  float update();
+
+ private:
+  // Of one width's logarithm.
+  struct Newton {
+    float slope = 0, curvature = 0;  // of the deviance, of the columns added since the last update
+    float known = 0;                 // curvature that earlier pictures have left
+
+    float step(float longest);
+  };
+
+  StripeOptics optics_;
+  Newton stripe_, lens_;
+};
+
+}  // namespace lf::scan

@@ -1,0 +1,223 @@
+#include "firmware/scan/stripe_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lf::scan {
+namespace {
+
+using Rows = StripeWindows::Rows;
+
+constexpr float pixel_variance = 1.0f / 12;  // of a pixel's aperture
+constexpr float window_widths = 2.5f;        // to either side of the centre, and two rows more
+constexpr float most_shift_px = 2.0f;        // of a pixel's light: more is noise of dark paint
+constexpr float least_spread = 0.1f;         // of the variance of a pixel's light, over the blur's: noise may take it below 0
+constexpr float least_rows = 8;              // that are not clipped
+constexpr float searched = 2.0f;             // stripe widths to either side of a far start
+constexpr float search_step = 0.3f;          // stripe widths
+constexpr int steps = 4;                     // of Gauss and Newton: from 0.3 widths the fourth moves by less than 0.01 px
+constexpr float longest_step = 0.5f;         // stripe widths
+constexpr float farthest = 3.0f;             // stripe widths from the start: beyond it, another stripe
+constexpr float least_determinant = 1e-5f;   // of stripe and offset, relative: below it they cannot be told apart
+constexpr float plain_sigmas = 3.0f;         // by which the squares about a line may exceed the noise's
+constexpr float least_variance = 1e-3f;      // grey levels^2: of a picture without noise
+
+Lanes square(Lanes x) { return x * x; }
+float square(float x) { return x * x; }
+
+// The windows as the model wants them.
+struct Model {
+  Rows paint;             // of plain paint without its noise
+  Rows place;             // mean of where a pixel's light comes from, rows
+  Rows inverse_variance;  // of the stripe as that pixel sees it
+  Rows level;             // of a stripe of height 1 whose centre is there
+  Rows still_variance;    // of the noise that does not depend on the stripe, grey levels^2
+  Rows shared_noise;      // of the picture without the laser, over the paint: what both the difference and the paint have of it
+  Rows paint_variance;    // of the paint, over its square
+  Rows weight;
+};
+
+// A column whose paint lies on a line as far as its noise tells is given the line: the stripe is then not multiplied by that noise.
+LaneMask straighten_plain_paint(const StripeWindows& windows, const PixelNoise& noise, Rows& paint) {
+  const auto rows = static_cast<float>(windows.count);
+  const float middle = 0.5f * (rows - 1);
+  const float squares = rows * (rows * rows - 1) / 12;  // of the distances from the middle
+  Lanes mean{}, slope{};
+  for (std::int32_t i = 0; i < windows.count; ++i) {
+    mean += windows.paint[i] / rows;
+    slope += windows.paint[i] * ((static_cast<float>(i) - middle) / squares);
+  }
+  Lanes left{};
+  for (std::int32_t i = 0; i < windows.count; ++i) {
+    const Lanes line = mean + slope * (static_cast<float>(i) - middle);
+    left += square(windows.paint[i] - line) / (square(noise.read_grey) + windows.ambient[i] / noise.electrons_per_grey);
+    paint[i] = max(line, all_lanes(1));
+  }
+  const LaneMask plain = left < (rows - 2) * (1 + plain_sigmas * std::sqrt(2 / rows));
+  for (std::int32_t i = 0; i < windows.count; ++i) paint[i] = plain ? paint[i] : windows.paint[i];
+  return plain;
+}
+
+// Returns the columns whose paint is plain.
+LaneMask make_model(const StripeWindows& windows, const StripeOptics& optics, const PixelNoise& noise, Model& m) {
+  const float blur = square(optics.lens_px) + pixel_variance, beam = square(optics.beam_px);
+  const std::int32_t last = windows.count - 1;
+  const LaneMask plain = straighten_plain_paint(windows, noise, m.paint);
+  Lanes before = log(m.paint[0]), here = before;
+  for (std::int32_t i = 0; i <= last; ++i) {
+    const Lanes after = i < last ? log(m.paint[i + 1]) : here;
+    const Lanes slope = 0.5f * (after - before), bend = after - 2 * here + before;
+    const Lanes variance = beam + max(blur + square(blur) * bend, all_lanes(least_spread * blur));
+    m.place[i] = static_cast<float>(i) + clamp(blur * slope, -most_shift_px, most_shift_px);
+    m.inverse_variance[i] = 1 / variance;
+    m.level[i] = m.paint[i] * optics.beam_px * sqrt(m.inverse_variance[i]);
+    const Lanes off = square(noise.read_grey) + windows.ambient[i] / noise.electrons_per_grey;
+    const LaneMask differenced = windows.ambient[i] > 0;
+    m.still_variance[i] = differenced ? off + off : off;
+    const Lanes shared = differenced & ~plain ? off / m.paint[i] : Lanes{};
+    m.shared_noise[i] = shared + shared;
+    m.paint_variance[i] = shared / m.paint[i];
+    before = here;
+    here = after;
+  }
+  return plain;
+}
+
+// Of a pixel in which the stripe is expected to be `light`: read and shot noise, speckle, and the noise of the paint that the stripe is a multiple of.
+Lanes weight_of(const StripeWindows& windows, const PixelNoise& noise, const Model& m, std::int32_t row, Lanes light) {
+  const Lanes grey = max(light, Lanes{});
+  const Lanes by_light = 1 / noise.electrons_per_grey + m.shared_noise[row] + grey * (square(noise.speckle) + m.paint_variance[row]);
+  return windows.valid[row] / max(m.still_variance[row] + grey * by_light, all_lanes(least_variance));
+}
+
+Lanes shape_at(const Model& m, std::int32_t row, Lanes centre) {
+  return m.level[row] * exp(-0.5f * square(m.place[row] - centre) * m.inverse_variance[row]);
+}
+
+// The best stripes whose centres are given. `left`: the sum of the weighted squares that it takes away is largest where what stays is least.
+struct Stripes {
+  Lanes height{}, offset{}, explained{};
+};
+
+Stripes best_at(const StripeWindows& windows, const Model& m, Lanes centre) {
+  Lanes ss{}, sp{}, pp{}, sd{}, pd{};  // s: shape, p: paint, d: the picture's stripe
+  for (std::int32_t i = 0; i < windows.count; ++i) {
+    const Lanes shape = shape_at(m, i, centre), paint = m.paint[i], d = windows.stripe[i];
+    const Lanes ws = m.weight[i] * shape, wp = m.weight[i] * paint;
+    ss += ws * shape;
+    sp += ws * paint;
+    pp += wp * paint;
+    sd += ws * d;
+    pd += wp * d;
+  }
+  const Lanes determinant = ss * pp - sp * sp;
+  const LaneMask apart = determinant > least_determinant * ss * pp;
+  const Lanes offset = (ss * pd - sp * sd) / determinant;
+  const LaneMask with_offset = apart & (offset > 0);
+  Stripes best;
+  best.offset = with_offset ? offset : Lanes{};
+  best.height = with_offset ? (sd * pp - pd * sp) / determinant : sd / max(ss, all_lanes(1e-20f));
+  const LaneMask lit = best.height > 0;
+  best.height = lit ? best.height : Lanes{};
+  best.offset = lit ? best.offset : Lanes{};
+  best.explained = best.height * sd + best.offset * pd;
+  return best;
+}
+
+// The centres that explain most, to a part of the stripe's width. `inside` stays where that is not at the border of what was searched.
+Lanes search(const StripeWindows& windows, const Model& m, float width, LaneMask& inside) {
+  const float step = std::max(0.25f, search_step * width);
+  const auto places = static_cast<std::int32_t>(std::ceil(searched * width / step)) + 1;
+  Lanes most = all_lanes(-1), at = Lanes{};
+  for (std::int32_t k = -places; k <= places; ++k) {
+    const Lanes explained = best_at(windows, m, windows.start + static_cast<float>(k) * step).explained;
+    const LaneMask better = explained > most;
+    most = better ? explained : most;
+    at = better ? all_lanes(static_cast<float>(k)) : at;
+  }
+  inside &= abs(at) < static_cast<float>(places);
+  return windows.start + at * step;
+}
+
+// One step of Gauss and Newton over centre, height and offset, with weights of the fitted light, which has no noise of its own.
+LaneMask refine(const StripeWindows& windows, const PixelNoise& noise, float width, Model& m, StripeFits& fits) {
+  const Stripes best = best_at(windows, m, fits.centre);
+  Lanes gg{}, gs{}, gp{}, gr{}, ss{}, sp{}, pp{}, sr{}, pr{},
+      rr{};  // g: slope of the light over the centre, s: shape, p: paint, r: what is left
+  for (std::int32_t i = 0; i < windows.count; ++i) {
+    const Lanes shape = shape_at(m, i, fits.centre), paint = m.paint[i], light = best.height * shape;
+    m.weight[i] = weight_of(windows, noise, m, i, light);
+    const Lanes g = light * (m.place[i] - fits.centre) * m.inverse_variance[i], r = windows.stripe[i] - light - best.offset * paint;
+    const Lanes wg = m.weight[i] * g, ws = m.weight[i] * shape, wp = m.weight[i] * paint;
+    gg += wg * g;
+    gs += wg * shape;
+    gp += wg * paint;
+    gr += wg * r;
+    ss += ws * shape;
+    sp += ws * paint;
+    pp += wp * paint;
+    sr += ws * r;
+    pr += wp * r;
+    rr += m.weight[i] * r * r;
+  }
+  // Height and offset taken out of the normal equations.
+  const Lanes determinant = ss * pp - sp * sp;
+  const LaneMask with_offset = (best.offset > 0) & (determinant > least_determinant * ss * pp);
+  const Lanes on_shape = with_offset ? (gs * pp - gp * sp) / determinant : gs / max(ss, all_lanes(1e-20f));
+  const Lanes on_paint = with_offset ? (gp * ss - gs * sp) / determinant : Lanes{};
+  const Lanes information = gg - on_shape * gs - on_paint * gp;
+  const LaneMask sound = (best.height > 0) & (information > 0);
+  const Lanes move = clamp((gr - on_shape * sr - on_paint * pr) / information, -longest_step * width, longest_step * width);
+  fits.centre = sound ? fits.centre + move : fits.centre;
+  fits.variance_px2 = 1 / information;
+  fits.height = best.height;
+  fits.offset = best.offset;
+  fits.misfit = rr;
+  return sound;
+}
+
+}  // namespace
+
+float width_in_picture_px(const StripeOptics& optics) {
+  return std::sqrt(square(optics.beam_px) + square(optics.lens_px) + pixel_variance);
+}
+
+std::int32_t reach_of_window(const StripeOptics& optics) {
+  const auto rows = static_cast<std::int32_t>(std::ceil(window_widths * width_in_picture_px(optics))) + 2;
+  return std::min(rows, (StripeWindows::most_rows - 1) / 2);
+}
+
+float deviance(const StripeWindows& windows, const StripeOptics& optics, const PixelNoise& noise, const StripeFits& fits, LaneMask among) {
+  Model m;
+  make_model(windows, optics, noise, m);
+  Lanes sum{};
+  for (std::int32_t i = 0; i < windows.count; ++i) {
+    const Lanes light = fits.height * shape_at(m, i, fits.centre), left = windows.stripe[i] - light - fits.offset * m.paint[i];
+    const Lanes weight = weight_of(windows, noise, m, i, light);
+    const LaneMask counted = among & (weight > 0);
+    sum += select(counted, weight * square(left) - log(max(weight, all_lanes(1e-20f))), Lanes{});
+  }
+  float total = 0;
+  for (int lane = 0; lane < lane_count; ++lane) total += sum[lane];
+  return total;
+}
+
+StripeFits fit_stripes(const StripeWindows& windows, const StripeOptics& optics, const PixelNoise& noise, FitStart start) {
+  StripeFits fits;
+  if (windows.count < 3 || windows.count > StripeWindows::most_rows) return fits;
+  Lanes valid{};
+  for (std::int32_t i = 0; i < windows.count; ++i) valid += windows.valid[i];
+
+  const float width = width_in_picture_px(optics);
+  Model m;
+  fits.plain = make_model(windows, optics, noise, m);
+  for (std::int32_t i = 0; i < windows.count; ++i) m.weight[i] = weight_of(windows, noise, m, i, windows.stripe[i]);
+  fits.found = valid >= least_rows;
+  fits.centre = start == FitStart::far ? search(windows, m, width, fits.found) : windows.start;
+  for (int step = 0; step < steps; ++step) fits.found &= refine(windows, noise, width, m, fits);
+  fits.misfit /= max(valid - 3, all_lanes(1));
+  fits.found &= abs(fits.centre - windows.start) < farthest * width;
+  return fits;
+}
+
+}  // namespace lf::scan
