@@ -1,6 +1,6 @@
-// How wide the stripe and the lens' blur are, as the pictures themselves tell: the widths under which the fitted columns are likeliest.
+// How wide the stripe and the lens' blur are and how hazy the water, as the pictures themselves tell: what makes the fitted columns likeliest.
 //
-// Plain columns tell the stripe's width in the picture. Columns at the paint's edges tell how much of it is the lens'. Each picture moves the estimate by a step
+// Plain columns tell the stripe's width in the picture. Columns at the paint's edges tell how much of it is the lens', and how much haze lies on dark paint. Each picture moves the estimate by a step
 // of Newton's on the deviance of some of its columns, against what the pictures before have told.
 #pragma once
 
@@ -17,11 +17,11 @@ class OpticsEstimate {
   // Columns that were fitted with `optics()`. Those that fit badly are left out: another stripe, a silhouette.
   void add(const StripeWindows& windows, const PixelNoise& noise, const StripeFits& fits);
 
-  // Moves the estimate by what was added since the last call. Returns the larger relative change of both widths; 0 where nothing was added.
+  // Moves the estimate by what was added since the last call. Returns the largest change: of the widths relative, of the scatter as it is. 0 where nothing was added.
   float update();
 
  private:
-  // Of one width's logarithm.
+  // Of a width's logarithm, or of the scatter.
   struct Newton {
     float slope = 0, curvature = 0;  // of the deviance, of the columns added since the last update
     float known = 0;                 // curvature that earlier pictures have left
@@ -30,7 +30,7 @@ class OpticsEstimate {
   };
 
   StripeOptics optics_;
-  Newton stripe_, lens_;
+  Newton stripe_, lens_, scatter_;
 };
 
 }  // namespace lf::scan

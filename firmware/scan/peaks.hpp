@@ -17,7 +17,7 @@
 #include <type_traits>
 
 #include "firmware/scan/edge_stripe.hpp"
-#include "shared/messages/image.hpp"
+#include "firmware/scan/pixel_view.hpp"
 #include "shared/messages/static_vector.hpp"
 
 namespace lf::scan {
@@ -36,23 +36,6 @@ struct PeakCounters {
   std::uint64_t weak = 0;
   std::uint64_t saturated = 0;
   std::uint64_t ambiguous = 0;
-};
-
-// Grey pixels, row-major, not owned; `stride` in pixels.
-template <class Pixel>
-struct PixelView {
-  const Pixel* data = nullptr;
-  std::int32_t width = 0;
-  std::int32_t height = 0;
-  std::int32_t stride = 0;
-
-  PixelView() = default;
-  PixelView(const Pixel* first, std::int32_t w, std::int32_t h, std::int32_t pixels_a_row)
-      : data(first), width(w), height(h), stride(pixels_a_row) {}
-  PixelView(const ImageView& image)
-      : data(image.data), width(image.width), height(image.height), stride(image.stride) {}  // NOLINT: same thing
-  bool valid() const { return data != nullptr && width > 0 && height > 0 && stride >= width; }
-  const Pixel* row(std::int32_t v) const { return data + static_cast<std::ptrdiff_t>(v) * stride; }
 };
 
 inline constexpr std::int32_t max_peaks_per_line = 4;

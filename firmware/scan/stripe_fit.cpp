@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware/scan/haze.hpp"
+
 namespace lf::scan {
 namespace {
 
@@ -27,7 +29,9 @@ float square(float x) { return x * x; }
 
 // The windows as the model wants them.
 struct Model {
-  Rows paint;             // of plain paint without its noise
+  Rows data;              // the stripe without its haze
+  Rows hazy_light;        // what was taken out: it has its noise all the same
+  Rows paint;             // the same of the picture without the laser; plain paint without its noise
   Rows place;             // mean of where a pixel's light comes from, rows
   Rows inverse_variance;  // of the stripe as that pixel sees it
   Rows level;             // of a stripe of height 1 whose centre is there
@@ -37,24 +41,41 @@ struct Model {
   Rows weight;
 };
 
+// Of a pixel with the laser off, its haze taken out.
+Lanes variance_of(const PixelNoise& noise, Lanes ambient, float near) {
+  return (square(noise.read_grey) + ambient / noise.electrons_per_grey) / square(near);
+}
+
+// Takes the haze out. The haze of a hazy picture is larger than that of the clear one by as much as the picture is: 1 / clear for a uniform picture.
+void clear_haze(const StripeWindows& windows, float scatter, Model& m) {
+  const float near = 1 + near_share * scatter, share = scatter / (near + haze_share * scatter);
+  for (std::int32_t i = 0; i < windows.count; ++i) {
+    m.hazy_light[i] = max(share * windows.stripe_haze[i] / near, Lanes{});
+    m.data[i] = windows.stripe[i] / near - m.hazy_light[i];
+    m.paint[i] = max((windows.ambient[i] - share * windows.ambient_haze[i]) / near, all_lanes(1));
+  }
+}
+
 // A column whose paint lies on a line as far as its noise tells is given the line: the stripe is then not multiplied by that noise.
-LaneMask straighten_plain_paint(const StripeWindows& windows, const PixelNoise& noise, Rows& paint) {
+LaneMask straighten_plain_paint(const StripeWindows& windows, const PixelNoise& noise, float near, Rows& paint) {
   const auto rows = static_cast<float>(windows.count);
   const float middle = 0.5f * (rows - 1);
   const float squares = rows * (rows * rows - 1) / 12;  // of the distances from the middle
   Lanes mean{}, slope{};
   for (std::int32_t i = 0; i < windows.count; ++i) {
-    mean += windows.paint[i] / rows;
-    slope += windows.paint[i] * ((static_cast<float>(i) - middle) / squares);
+    mean += paint[i] / rows;
+    slope += paint[i] * ((static_cast<float>(i) - middle) / squares);
   }
   Lanes left{};
   for (std::int32_t i = 0; i < windows.count; ++i) {
     const Lanes line = mean + slope * (static_cast<float>(i) - middle);
-    left += square(windows.paint[i] - line) / (square(noise.read_grey) + windows.ambient[i] / noise.electrons_per_grey);
-    paint[i] = max(line, all_lanes(1));
+    left += square(paint[i] - line) / variance_of(noise, windows.ambient[i], near);
   }
   const LaneMask plain = left < (rows - 2) * (1 + plain_sigmas * std::sqrt(2 / rows));
-  for (std::int32_t i = 0; i < windows.count; ++i) paint[i] = plain ? paint[i] : windows.paint[i];
+  for (std::int32_t i = 0; i < windows.count; ++i) {
+    const Lanes line = mean + slope * (static_cast<float>(i) - middle);
+    paint[i] = plain ? max(line, all_lanes(1)) : paint[i];
+  }
   return plain;
 }
 
@@ -62,7 +83,9 @@ LaneMask straighten_plain_paint(const StripeWindows& windows, const PixelNoise& 
 LaneMask make_model(const StripeWindows& windows, const StripeOptics& optics, const PixelNoise& noise, Model& m) {
   const float blur = square(optics.lens_px) + pixel_variance, beam = square(optics.beam_px);
   const std::int32_t last = windows.count - 1;
-  const LaneMask plain = straighten_plain_paint(windows, noise, m.paint);
+  const float near = 1 + near_share * optics.scatter;
+  clear_haze(windows, optics.scatter, m);
+  const LaneMask plain = straighten_plain_paint(windows, noise, near, m.paint);
   Lanes before = log(m.paint[0]), here = before;
   for (std::int32_t i = 0; i <= last; ++i) {
     const Lanes after = i < last ? log(m.paint[i + 1]) : here;
@@ -71,7 +94,7 @@ LaneMask make_model(const StripeWindows& windows, const StripeOptics& optics, co
     m.place[i] = static_cast<float>(i) + clamp(blur * slope, -most_shift_px, most_shift_px);
     m.inverse_variance[i] = 1 / variance;
     m.level[i] = m.paint[i] * optics.beam_px * sqrt(m.inverse_variance[i]);
-    const Lanes off = square(noise.read_grey) + windows.ambient[i] / noise.electrons_per_grey;
+    const Lanes off = variance_of(noise, windows.ambient[i], near);
     const LaneMask differenced = windows.ambient[i] > 0;
     m.still_variance[i] = differenced ? off + off : off;
     const Lanes shared = differenced & ~plain ? off / m.paint[i] : Lanes{};
@@ -85,16 +108,17 @@ LaneMask make_model(const StripeWindows& windows, const StripeOptics& optics, co
 
 // Of a pixel in which the stripe is expected to be `light`: read and shot noise, speckle, and the noise of the paint that the stripe is a multiple of.
 Lanes weight_of(const StripeWindows& windows, const PixelNoise& noise, const Model& m, std::int32_t row, Lanes light) {
-  const Lanes grey = max(light, Lanes{});
-  const Lanes by_light = 1 / noise.electrons_per_grey + m.shared_noise[row] + grey * (square(noise.speckle) + m.paint_variance[row]);
-  return windows.valid[row] / max(m.still_variance[row] + grey * by_light, all_lanes(least_variance));
+  const Lanes grey = max(light, Lanes{}), lit = grey + m.hazy_light[row];
+  const Lanes by_light = lit * (1 / noise.electrons_per_grey + lit * square(noise.speckle));
+  const Lanes by_paint = grey * (m.shared_noise[row] + grey * m.paint_variance[row]);
+  return windows.valid[row] / max(m.still_variance[row] + by_light + by_paint, all_lanes(least_variance));
 }
 
 Lanes shape_at(const Model& m, std::int32_t row, Lanes centre) {
   return m.level[row] * exp(-0.5f * square(m.place[row] - centre) * m.inverse_variance[row]);
 }
 
-// The best stripes whose centres are given. `left`: the sum of the weighted squares that it takes away is largest where what stays is least.
+// The best stripes whose centres are given. `explained`: by how much they lessen the sum of weighted squares.
 struct Stripes {
   Lanes height{}, offset{}, explained{};
 };
@@ -102,7 +126,7 @@ struct Stripes {
 Stripes best_at(const StripeWindows& windows, const Model& m, Lanes centre) {
   Lanes ss{}, sp{}, pp{}, sd{}, pd{};  // s: shape, p: paint, d: the picture's stripe
   for (std::int32_t i = 0; i < windows.count; ++i) {
-    const Lanes shape = shape_at(m, i, centre), paint = m.paint[i], d = windows.stripe[i];
+    const Lanes shape = shape_at(m, i, centre), paint = m.paint[i], d = m.data[i];
     const Lanes ws = m.weight[i] * shape, wp = m.weight[i] * paint;
     ss += ws * shape;
     sp += ws * paint;
@@ -147,7 +171,7 @@ LaneMask refine(const StripeWindows& windows, const PixelNoise& noise, float wid
   for (std::int32_t i = 0; i < windows.count; ++i) {
     const Lanes shape = shape_at(m, i, fits.centre), paint = m.paint[i], light = best.height * shape;
     m.weight[i] = weight_of(windows, noise, m, i, light);
-    const Lanes g = light * (m.place[i] - fits.centre) * m.inverse_variance[i], r = windows.stripe[i] - light - best.offset * paint;
+    const Lanes g = light * (m.place[i] - fits.centre) * m.inverse_variance[i], r = m.data[i] - light - best.offset * paint;
     const Lanes wg = m.weight[i] * g, ws = m.weight[i] * shape, wp = m.weight[i] * paint;
     gg += wg * g;
     gs += wg * shape;
@@ -190,12 +214,14 @@ std::int32_t reach_of_window(const StripeOptics& optics) {
 float deviance(const StripeWindows& windows, const StripeOptics& optics, const PixelNoise& noise, const StripeFits& fits, LaneMask among) {
   Model m;
   make_model(windows, optics, noise, m);
+  const float scale =
+      2 * std::log(1 + near_share * optics.scatter);  // from the clear picture's grey levels to those of the picture that was taken
   Lanes sum{};
   for (std::int32_t i = 0; i < windows.count; ++i) {
-    const Lanes light = fits.height * shape_at(m, i, fits.centre), left = windows.stripe[i] - light - fits.offset * m.paint[i];
+    const Lanes light = fits.height * shape_at(m, i, fits.centre), left = m.data[i] - light - fits.offset * m.paint[i];
     const Lanes weight = weight_of(windows, noise, m, i, light);
     const LaneMask counted = among & (weight > 0);
-    sum += select(counted, weight * square(left) - log(max(weight, all_lanes(1e-20f))), Lanes{});
+    sum += select(counted, weight * square(left) - log(max(weight, all_lanes(1e-20f))) + scale, Lanes{});
   }
   float total = 0;
   for (int lane = 0; lane < lane_count; ++lane) total += sum[lane];
@@ -211,7 +237,7 @@ StripeFits fit_stripes(const StripeWindows& windows, const StripeOptics& optics,
   const float width = width_in_picture_px(optics);
   Model m;
   fits.plain = make_model(windows, optics, noise, m);
-  for (std::int32_t i = 0; i < windows.count; ++i) m.weight[i] = weight_of(windows, noise, m, i, windows.stripe[i]);
+  for (std::int32_t i = 0; i < windows.count; ++i) m.weight[i] = weight_of(windows, noise, m, i, m.data[i]);
   fits.found = valid >= least_rows;
   fits.centre = start == FitStart::far ? search(windows, m, width, fits.found) : windows.start;
   for (int step = 0; step < steps; ++step) fits.found &= refine(windows, noise, width, m, fits);

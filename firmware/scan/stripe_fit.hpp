@@ -20,10 +20,11 @@
 
 namespace lf::scan {
 
-// How wide the light and the picture are. Standard deviations.
+// How wide the light and the picture are, as standard deviations, and how hazy.
 struct StripeOptics {
   float beam_px = 1.2f;  // of the laser's light on the surface, before the lens
   float lens_px = 0.8f;  // of the lens' blur; a pixel's aperture comes on top
+  float scatter = 0.0f;  // exp(b R) - 1 of the water between surface and camera: once-scattered light over direct light
 };
 
 // Of a stripe in the picture.
@@ -44,8 +45,9 @@ struct StripeWindows {
   std::int32_t count = 0;  // of rows that follow
   Lanes start{};           // about where the centre is, rows from the window's first
   Rows stripe{};           // laser on less laser off
-  Rows paint{};            // laser off, less what the water and the sensor add; at least 1. All 1 where no such picture is
-  Rows ambient{};          // laser off as the sensor has it, for its noise; 0 where no such picture is
+  Rows ambient{};          // laser off: the paint, as it is lit. All 0 where no such picture is: the paint is then taken to be plain
+  Rows stripe_haze{};      // what haze.hpp makes of the first
+  Rows ambient_haze{};     // and of the second; 0 in clear water
   Rows valid{};            // 1; 0 where the pixel is clipped
 };
 
