@@ -105,7 +105,7 @@ void BasicHaze<Pixel, MaxWidth, MaxHeight>::Plane<Columns, Rows>::blur(float sig
   std::array<float, static_cast<std::size_t>(Columns) + 2 * most_reach> line;
   for (std::int32_t r = 0; r < rows; ++r) {
     const float* in = row(r);
-    for (std::int32_t i = -reach; i < columns + reach; ++i) line[static_cast<std::size_t>(i + reach)] = in[std::clamp(i, 0, columns - 1)];
+    for (std::int32_t i = 0; i < columns + 2 * reach; ++i) line[static_cast<std::size_t>(i)] = in[std::clamp(i - reach, 0, columns - 1)];
     float* out = scratch.row(r);
     std::fill_n(out, columns, 0.0f);
     for (std::int32_t i = -reach; i <= reach; ++i) {
