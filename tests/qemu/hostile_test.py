@@ -169,9 +169,12 @@ def phase(programs, folder, trouble, seconds):
     with trouble(folder) as begin:
         daemon = rig.Daemon(programs, folder, "can0", None)
         daemon.wait_ready(READING_S)
+        daemon.order("home")
+        rig.wait_for("a homed arm", lambda: daemon.status()["standing"] == "ready", READING_S)
         # The answers' code is read now, not in the measured time.
         for _ in range(3):
             daemon.status()
+        before = daemon.status()
         with begin(daemon):
             time.sleep(0.2 * seconds)
             early = memory_kb(daemon.process.pid)
@@ -179,12 +182,15 @@ def phase(programs, folder, trouble, seconds):
             late = memory_kb(daemon.process.pid)
         status = rig.wait_for("an answer", lambda: answer(daemon), READING_S)
         expect(daemon.process.poll() is None, f"the daemon ended:\n{daemon.text()}")
+        expect(status["standing"] == "ready", f"the arm is no longer held: {status['standing']}, {status.get('failure')}, {status['counters']}")
+        expect(status["frames"]["received"] - before["frames"]["received"] > 4 * (status["ticks"] - before["ticks"]), f"the drives are hardly heard: {status['frames']} in {status['ticks']} ticks")
         stop = daemon.ask("estop")
         expect(stop["ok"], f"an emergency stop was refused: {stop}")
         ended = daemon.stop(READING_S)
         expect(ended in (0, 1), f"the daemon ended with {ended}:\n{daemon.text()}")
     wake_up = status["latency"]["wake_up_us"]
-    return {"ticks": status["ticks"], "missed": status["counters"].get("ticks missed", 0), "heap_calls": status["core"]["heap_calls"],
+    missed = [of["counters"].get("ticks missed", 0) for of in (before, status)]
+    return {"ticks": status["ticks"] - before["ticks"], "missed": missed[1] - missed[0], "missed_before": missed[0], "heap_calls": status["core"]["heap_calls"],
             "page_faults": status["core"]["page_faults"], "p999_us": wake_up["p999"], "max_us": wake_up["max"], "growth_kb": late - early, "log": status.get("log", "")}
 
 

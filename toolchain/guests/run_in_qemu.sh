@@ -49,7 +49,7 @@ cp "$here/qemu_start.sh" "$private/start"
 status=0
 timeout -k 5 "$time_limit" qemu-system-x86_64 -machine q35,accel=tcg -icount shift=1,sleep=off -cpu max -smp 1 -m "$memory" \
   -display none -no-reboot -nodefaults -serial "file:$private/kernel.log" \
-  -kernel "$guest/vmlinuz" -initrd "$guest/initramfs.gz" -append "console=ttyS0 quiet panic=-1 mitigations=off tsc=reliable" \
+  -kernel "$guest/vmlinuz" -initrd "$guest/initramfs.gz" -append "console=ttyS0 quiet panic=-1 mitigations=off tsc=reliable preempt=full" \
   -object can-bus,id=bus -device kvaser_pci,canbus=bus -device kvaser_pci,canbus=bus \
   -fsdev local,id=hostroot,path=/,security_model=none,readonly=on,multidevs=remap -device virtio-9p-pci,fsdev=hostroot,mount_tag=hostroot \
   -fsdev "local,id=private,path=$private,security_model=none" -device virtio-9p-pci,fsdev=private,mount_tag=private \
