@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 namespace lf::scan {
 namespace {
@@ -47,8 +48,8 @@ float gain_between(const PixelView<Pixel>& on, const PixelView<Pixel>& off, std:
   // The commonest ratio: of a window of bins, since one alone is noise.
   std::int32_t best = 0, most = -1;
   for (std::int32_t middle = half_window; middle < bins - half_window; ++middle) {
-    std::int32_t within = 0;
-    for (std::int32_t i = -half_window; i <= half_window; ++i) within += counts[static_cast<std::size_t>(middle + i)];
+    const auto first = counts.begin() + middle - half_window;
+    const std::int32_t within = std::accumulate(first, first + 2 * half_window + 1, 0);
     if (within > most) {
       most = within;
       best = middle;
