@@ -14,7 +14,8 @@ constexpr float scatter_probe = 0.1f;
 constexpr float scatter_stride = 0.2f;
 constexpr float scatter_doubt = 0.2f;  // of what the first one is told to be
 constexpr float most_scatter = 2.0f;   // there the direct light stands on haze of its own height
-constexpr float remembered = 0.9f;     // of the curvature, from picture to picture: the light's width changes as the arm moves
+// Of what is known, from picture to picture: the light's width changes as the arm moves, the lens does not and the water hardly.
+constexpr float width_remembered = 0.9f, lens_remembered = 0.98f;
 constexpr float lens_doubt = 0.3f;  // of what the first one is told to be, its logarithm's standard deviation: +30 to 100 % at the corners
 constexpr float worst_misfit = 3.0f;  // of a column that is believed
 constexpr float least_beam_px = 0.3f, least_lens_px = 0.3f, most_lens_px = 2.5f, most_width_px = 6.0f;
@@ -68,7 +69,7 @@ void OpticsEstimate::add(const StripeWindows& windows, const PixelNoise& noise, 
 }
 
 // Against the slope, no farther than where the deviance's parabola ends. Where that has no end, as far as is allowed.
-float OpticsEstimate::Newton::step(float longest) {
+float OpticsEstimate::Newton::step(float longest, float remembered) {
   const float total = curvature + known;
   float move = 0;
   if (slope != 0) move = total > 0 ? std::clamp(-slope / total, -longest, longest) : (slope > 0 ? -longest : longest);
@@ -78,7 +79,8 @@ float OpticsEstimate::Newton::step(float longest) {
 }
 
 float OpticsEstimate::update() {
-  const float stripe_move = stripe_.step(stripe_stride), lens_move = lens_.step(lens_stride), scatter_move = scatter_.step(scatter_stride);
+  const float stripe_move = stripe_.step(stripe_stride, width_remembered), lens_move = lens_.step(lens_stride, lens_remembered),
+              scatter_move = scatter_.step(scatter_stride, lens_remembered);
   if (stripe_move == 0 && lens_move == 0 && scatter_move == 0) return 0;
   optics_ = optics_of(width_in_picture_px(optics_) * std::exp(stripe_move), optics_.lens_px * std::exp(lens_move),
                       optics_.scatter + scatter_move);

@@ -26,7 +26,7 @@ class OpticsEstimate {
     float slope = 0, curvature = 0;  // of the deviance, of the columns added since the last update
     float known = 0;                 // curvature that earlier pictures have left
 
-    float step(float longest);
+    float step(float longest, float remembered);
   };
 
   StripeOptics optics_;

@@ -28,6 +28,7 @@ struct Peak {
   float amplitude = 0;       // grey levels of the brightest pixel over the local background
   float ratio = 0;           // second peak's response over this one's, 0..1; near 1 the choice is unsure
   std::uint8_t clipped = 0;  // pixels of the stripe at full scale; above 3 the centre is the plateau's, and less sure
+  float deviation_px = 0;    // standard deviation of the sub-pixel place by the noise; 0: not known
 };
 
 // Columns (or rows) seen by a detector, by what became of them. Never reset.

@@ -49,15 +49,19 @@ Plane blurred(const Plane& in, double sigma) {
     for (int i = -reach; i <= reach; ++i) {
       const int from = std::clamp(v + i, 0, in.height - 1);
       const double tap = taps[static_cast<std::size_t>(i + reach)];
-      for (int u = 0; u < in.width; ++u) down.at(u, v) += tap * in.at(u, from);
+      const double* above = in.values.data() + static_cast<std::ptrdiff_t>(from) * in.width;
+      double* row = &down.at(0, v);
+      for (int u = 0; u < in.width; ++u) row[u] += tap * above[u];
     }
   }
+  std::vector<double> line(static_cast<std::size_t>(in.width + 2 * reach));
   for (int v = 0; v < in.height; ++v) {
-    for (int u = 0; u < in.width; ++u) {
-      double sum = 0;
-      for (int i = -reach; i <= reach; ++i)
-        sum += taps[static_cast<std::size_t>(i + reach)] * down.at(std::clamp(u + i, 0, in.width - 1), v);
-      out.at(u, v) = sum;
+    for (int i = 0; i < in.width + 2 * reach; ++i) line[static_cast<std::size_t>(i)] = down.at(std::clamp(i - reach, 0, in.width - 1), v);
+    double* row = &out.at(0, v);
+    for (std::size_t i = 0; i < taps.size(); ++i) {
+      const double tap = taps[i];
+      const double* from = line.data() + i;
+      for (int u = 0; u < in.width; ++u) row[u] += tap * from[u];
     }
   }
   return out;

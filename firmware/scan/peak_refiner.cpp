@@ -1,0 +1,171 @@
+#include "firmware/scan/peak_refiner.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "firmware/scan/exposure_gain.hpp"
+
+namespace lf::scan {
+namespace {
+
+constexpr std::size_t blocks_to_learn = 8;  // of eight peaks: 64 of them tell the stripe's width within 2 %
+constexpr int first_rounds = 6;             // of learning, in the first picture
+constexpr float settled = 0.02f;
+constexpr std::int32_t farthest_half_height = 20;  // rows from a peak
+constexpr float half_height_to_sigma = 1 / 2.355f;
+constexpr std::int32_t border = 3;  // rows at a window's ends, by which the background is told where there is no picture of it
+
+}  // namespace
+
+template <class Pixel, std::int32_t MaxWidth, std::int32_t MaxHeight>
+std::size_t BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::refine(const PixelView<Pixel>& image, const PixelView<Pixel>& background,
+                                                                 std::span<Peak> peaks) {
+  if (!image.valid() || image.width > MaxWidth || image.height > MaxHeight) return 0;
+  if (background.valid() && (background.width != image.width || background.height != image.height)) return 0;
+  if (peaks.empty()) return 0;
+  const Pair pair{image, background};
+  gain_ = background.valid() ? gain_between(image, background, config_.full_scale) : 1;
+  if (background.valid()) {
+    haze_on_.compute(image, config_.haze_near_px);
+    haze_off_.compute(background, config_.haze_near_px);
+  }
+  learn(pair, peaks);
+
+  std::size_t kept = 0;
+  for (std::size_t first = 0; first < peaks.size(); first += lane_count) {
+    const std::span<Peak> block = peaks.subspan(first, std::min<std::size_t>(lane_count, peaks.size() - first));
+    StripeWindows windows;
+    const Firsts firsts = gather(pair, block, windows);
+    const StripeFits fits = fit_stripes(windows, optics(), config_.noise, FitStart::far);
+    for (std::size_t lane = 0; lane < block.size(); ++lane) {
+      const int i = static_cast<int>(lane);
+      if (!fits.found[i]) {
+        ++counters_.not_fitted;
+        continue;
+      }
+      if (!(fits.misfit[i] < config_.largest_misfit)) {
+        ++counters_.misfits;
+        continue;
+      }
+      Peak peak = block[lane];
+      along(peak) = static_cast<float>(firsts[lane]) + fits.centre[i];
+      peak.deviation_px = std::sqrt(fits.variance_px2[i]);
+      peaks[kept++] = peak;
+      ++counters_.refined;
+    }
+  }
+  return kept;
+}
+
+template <class Pixel, std::int32_t MaxWidth, std::int32_t MaxHeight>
+void BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::learn(const Pair& pair, std::span<Peak> peaks) {
+  if (!begun_) begin_with_width(pair, peaks);
+  const std::size_t blocks = peaks.size() / lane_count, taken = std::min(blocks, blocks_to_learn);
+  for (int round = begun_ ? first_rounds : 1; round <= first_rounds && taken > 0; ++round) {
+    for (std::size_t i = 0; i < taken; ++i) {
+      StripeWindows windows;
+      gather(pair, peaks.subspan(i * blocks / taken * lane_count, lane_count), windows);
+      estimate_.add(windows, config_.noise, fit_stripes(windows, optics(), config_.noise, FitStart::far));
+    }
+    if (estimate_.update() < settled) break;
+  }
+  begun_ = begun_ || taken > 0;
+}
+
+// The median of the peaks' widths at half of their height.
+template <class Pixel, std::int32_t MaxWidth, std::int32_t MaxHeight>
+void BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::begin_with_width(const Pair& pair, std::span<Peak> peaks) {
+  std::array<std::int32_t, 2 * farthest_half_height + 2> counts{};
+  std::int32_t measured = 0;
+  for (Peak& peak : peaks) {
+    const std::int32_t line = line_of(peak), middle = static_cast<std::int32_t>(std::lround(along(peak)));
+    if (middle < 0 || middle >= length(pair)) continue;
+    const bool two = pair.off.valid();
+    const float beside =
+        two ? 0 : 0.5f * (grey(pair.on, line, middle - farthest_half_height) + grey(pair.on, line, middle + farthest_half_height));
+    const auto stripe = [&](std::int32_t place) {
+      return grey(pair.on, line, place) - (two ? gain_ * grey(pair.off, line, place) : beside);
+    };
+    const float half = 0.5f * stripe(middle);
+    std::int32_t before = 0, after = 0;
+    while (before < farthest_half_height && stripe(middle - before - 1) > half) ++before;
+    while (after < farthest_half_height && stripe(middle + after + 1) > half) ++after;
+    ++counts[static_cast<std::size_t>(before + after + 1)];
+    ++measured;
+  }
+  if (measured == 0) return;
+  std::int32_t below = 0;
+  std::size_t median = 0;
+  while (2 * (below + counts[median]) < measured) below += counts[median++];
+  const float width = half_height_to_sigma * static_cast<float>(median), lens = config_.optics.lens_px;
+  const float beam2 = width * width - lens * lens - 1.0f / 12;
+  estimate_ = OpticsEstimate({std::sqrt(std::max(beam2, 0.1f)), lens, config_.optics.scatter});
+}
+
+template <class Pixel, std::int32_t MaxWidth, std::int32_t MaxHeight>
+std::int32_t BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::line_of(const Peak& peak) const {
+  return static_cast<std::int32_t>(std::lround(config_.axis == PeakAxis::column ? peak.u_px : peak.v_px));
+}
+
+// In grey levels of 0 to 255. Beyond the picture: that at its border. Of no picture: 0.
+template <class Pixel, std::int32_t MaxWidth, std::int32_t MaxHeight>
+float BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::grey(const PixelView<Pixel>& picture, std::int32_t line, std::int32_t place) const {
+  if (!picture.valid()) return 0;
+  const bool columns = config_.axis == PeakAxis::column;
+  const std::int32_t last = (columns ? picture.height : picture.width) - 1, inside = std::clamp(place, 0, last);
+  const Pixel pixel = columns ? picture.row(inside)[line] : picture.row(line)[inside];
+  return 255.0f / static_cast<float>(config_.full_scale) * static_cast<float>(pixel);
+}
+
+template <class Pixel, std::int32_t MaxWidth, std::int32_t MaxHeight>
+float BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::haze(const BasicHaze<Pixel, MaxWidth, MaxHeight>& of, std::int32_t line,
+                                                         std::int32_t place) const {
+  const auto a = static_cast<float>(line), b = static_cast<float>(place);
+  return 255.0f / static_cast<float>(config_.full_scale) * (config_.axis == PeakAxis::column ? of.at(a, b) : of.at(b, a));
+}
+
+template <class Pixel, std::int32_t MaxWidth, std::int32_t MaxHeight>
+auto BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::gather(const Pair& pair, std::span<Peak> peaks, StripeWindows& windows) -> Firsts {
+  const std::int32_t reach = reach_of_window(optics());
+  windows.count = 2 * reach + 1;
+  Firsts firsts{};
+  for (std::size_t lane = 0; lane < firsts.size(); ++lane) {
+    Peak& peak = peaks[std::min(lane, peaks.size() - 1)];
+    firsts[lane] = static_cast<std::int32_t>(std::lround(along(peak))) - reach;
+    windows.start[static_cast<int>(lane)] = along(peak) - static_cast<float>(firsts[lane]);
+    put(pair, line_of(peak), firsts[lane], static_cast<int>(lane), windows);
+  }
+  return firsts;
+}
+
+template <class Pixel, std::int32_t MaxWidth, std::int32_t MaxHeight>
+void BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::put(const Pair& pair, std::int32_t line, std::int32_t first, int lane,
+                                                       StripeWindows& windows) const {
+  const std::int32_t last = windows.count - 1;
+  const bool two = pair.off.valid();
+  float before = 0, after = 0;  // of a picture alone: what its window's ends have, and the straight line between is the background
+  for (std::int32_t i = 0; !two && i < border; ++i) {
+    before += grey(pair.on, line, first + i) / border;
+    after += grey(pair.on, line, first + last - i) / border;
+  }
+  for (std::int32_t i = 0; i <= last; ++i) {
+    const std::int32_t place = first + i;
+    const float on = grey(pair.on, line, place);
+    const auto row = static_cast<std::size_t>(i);
+    const float background =
+        two ? gain_ * grey(pair.off, line, place) : before + (after - before) * static_cast<float>(i) / static_cast<float>(last);
+    windows.stripe[row][lane] = on - background;
+    windows.ambient[row][lane] = two ? background : 0;
+    const float hazy = two ? gain_ * haze(haze_off_, line, place) : 0;
+    windows.ambient_haze[row][lane] = hazy;
+    windows.stripe_haze[row][lane] = two ? haze(haze_on_, line, place) - hazy : 0;
+    const bool inside = place >= 0 && place < length(pair);
+    windows.valid[row][lane] = inside && on < 255 ? 1.0f : 0.0f;
+  }
+}
+
+template class BasicPeakRefiner<std::uint8_t, 640, 480>;
+template class BasicPeakRefiner<std::uint8_t, 4096, 4096>;
+template class BasicPeakRefiner<std::uint16_t, 4096, 4096>;
+
+}  // namespace lf::scan

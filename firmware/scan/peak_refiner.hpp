@@ -1,0 +1,82 @@
+// Puts a detector's peaks where the stripe is: each column's fit of the stripe to the paint that it lights (stripe_fit.hpp).
+//
+// The stripe's width, the lens' blur and the water's haze are learned from the pictures, and kept from one to the next. The background may have another exposure.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "firmware/scan/haze.hpp"
+#include "firmware/scan/optics_estimate.hpp"
+#include "firmware/scan/peaks.hpp"
+#include "firmware/scan/pixel_view.hpp"
+#include "firmware/scan/stripe_fit.hpp"
+
+namespace lf::scan {
+
+struct RefinerConfig {
+  PeakAxis axis = PeakAxis::column;
+  std::int32_t full_scale = 255;  // grey level at which the sensor clips
+  PixelNoise noise;               // in grey levels of 0 to 255, whatever the pixels' bits are
+  StripeOptics optics;            // where learning begins; the stripe's width is measured at half of its height in the first picture
+  float haze_near_px = 8.0f;      // haze.hpp: 22 mrad
+  // Mean square of what the fit leaves over the noise's: above it, the column shows no stripe on paint but a silhouette, a shadow or two stripes.
+  float largest_misfit = 6.0f;
+};
+
+// Peaks by what became of them. Never reset.
+struct RefinerCounters {
+  std::uint64_t refined = 0;
+  std::uint64_t not_fitted = 0;  // no maximum within reach, or too few pixels that are not clipped
+  std::uint64_t misfits = 0;
+};
+
+template <class Pixel, std::int32_t MaxWidth, std::int32_t MaxHeight>
+class BasicPeakRefiner {
+ public:
+  explicit BasicPeakRefiner(const RefinerConfig& config = {}) : config_(config), estimate_(config.optics) {}
+
+  // Moves each of `peaks`, which a detector found in `image` less `background`, to its fit's centre. Drops, and counts, those without one; the others move up.
+  // Returns how many are left. Without a background (an invalid view) the paint is taken to be plain. Returns 0 for an invalid image, one that is too large, and
+  // a background of another size. O(peaks + width * height), no allocation.
+  std::size_t refine(const PixelView<Pixel>& image, const PixelView<Pixel>& background, std::span<Peak> peaks);
+
+  // What the pictures have told so far.
+  const StripeOptics& optics() const { return estimate_.optics(); }
+  float gain() const { return gain_; }  // of the newest picture over its background
+  const RefinerCounters& counters() const { return counters_; }
+
+ private:
+  struct Pair {
+    const PixelView<Pixel>& on;
+    const PixelView<Pixel>& off;
+  };
+  using Firsts = std::array<std::int32_t, lane_count>;  // row of each lane's window
+
+  float& along(Peak& peak) const { return config_.axis == PeakAxis::column ? peak.v_px : peak.u_px; }
+  std::int32_t line_of(const Peak& peak) const;
+  std::int32_t length(const Pair& pair) const { return config_.axis == PeakAxis::column ? pair.on.height : pair.on.width; }
+  // Places along `line`, in pixels from its first.
+  float grey(const PixelView<Pixel>& picture, std::int32_t line, std::int32_t place) const;
+  float haze(const BasicHaze<Pixel, MaxWidth, MaxHeight>& of, std::int32_t line, std::int32_t place) const;
+
+  void begin_with_width(const Pair& pair, std::span<Peak> peaks);
+  void learn(const Pair& pair, std::span<Peak> peaks);
+  // The windows of up to eight peaks; of fewer, the last is repeated.
+  Firsts gather(const Pair& pair, std::span<Peak> peaks, StripeWindows& windows);
+  void put(const Pair& pair, std::int32_t line, std::int32_t first, int lane, StripeWindows& windows) const;
+
+  RefinerConfig config_;
+  OpticsEstimate estimate_;
+  RefinerCounters counters_;
+  float gain_ = 1;
+  bool begun_ = false;  // a picture has told the stripe's width
+  BasicHaze<Pixel, MaxWidth, MaxHeight> haze_on_, haze_off_;
+};
+
+using PeakRefiner = BasicPeakRefiner<std::uint8_t, 640, 480>;
+using LargePeakRefiner = BasicPeakRefiner<std::uint8_t, 4096, 4096>;
+using LargePeakRefiner16 = BasicPeakRefiner<std::uint16_t, 4096, 4096>;
+
+}  // namespace lf::scan

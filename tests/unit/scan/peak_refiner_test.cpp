@@ -1,0 +1,217 @@
+// Detector and refiner together, on pictures that a camera forms: nothing is told of the stripe, the lens, the water or the exposures.
+#include "firmware/scan/peak_refiner.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <numbers>
+#include <vector>
+
+#include "tests/unit/scan/formed_stripe.hpp"
+
+namespace lf::scan {
+namespace {
+
+using test::form;
+using test::FormedImage;
+using test::FormedStripe;
+
+constexpr std::int32_t width = 320, height = 192;
+
+FormedStripe scene(double beam_px) {
+  FormedStripe s;
+  s.width = width;
+  s.height = height;
+  s.middle_px = 80.37;
+  s.beam_sigma_px = beam_px;
+  s.speckle = 0.18;
+  s.bars.phase_px = 3.3;
+  return s;
+}
+
+double width_of(const FormedStripe& s) {
+  return std::sqrt(s.beam_sigma_px * s.beam_sigma_px + s.lens_sigma_px * s.lens_sigma_px + 1.0 / 12);
+}
+
+template <class Pixel>
+std::vector<Pixel> pixels(const std::vector<double>& plane, double by = 1, double full_scale = 255) {
+  std::vector<Pixel> out;
+  for (const double grey : plane) out.push_back(static_cast<Pixel>(std::clamp(std::round(by * grey), 0.0, full_scale)));
+  return out;
+}
+
+template <class Pixel>
+std::vector<Pixel> turned(const std::vector<Pixel>& in) {
+  std::vector<Pixel> out(in.size());
+  for (std::int32_t v = 0; v < height; ++v) {
+    for (std::int32_t u = 0; u < width; ++u) out[static_cast<std::size_t>(u * height + v)] = in[static_cast<std::size_t>(v * width + u)];
+  }
+  return out;
+}
+
+// Peaks of the difference, as a detector finds them that knows nothing of edges.
+template <class Pixel>
+std::vector<Peak> coarse(const std::vector<Pixel>& on, const std::vector<Pixel>& off, double gain, std::int32_t full_scale) {
+  std::vector<Pixel> difference(on.size());
+  for (std::size_t i = 0; i < on.size(); ++i)
+    difference[i] = static_cast<Pixel>(
+        std::clamp(static_cast<double>(on[i]) - (off.empty() ? 0 : gain * off[i]), 0.0, static_cast<double>(full_scale)));
+  PeakConfig config;
+  config.full_scale = full_scale + 1;
+  auto detector = std::make_unique<BasicPeakDetector<Pixel, 4096>>(config);
+  std::vector<Peak> peaks(static_cast<std::size_t>(width));
+  peaks.resize(detector->detect({difference.data(), width, height, width}, {}, peaks));
+  return peaks;
+}
+
+struct Errors {
+  std::vector<double> at_edges, elsewhere;  // px
+  int columns = 0, far = 0;                 // far: by more than 2 px
+
+  static double rms(const std::vector<double>& errors) {
+    double squares = 0;
+    for (const double error : errors) squares += error * error;
+    return errors.empty() ? 0 : std::sqrt(squares / static_cast<double>(errors.size()));
+  }
+};
+
+void compare(const FormedStripe& s, const FormedImage& image, std::span<const Peak> peaks, Errors& errors) {
+  errors.columns += image.width;
+  for (const Peak& peak : peaks) {
+    const auto u = static_cast<std::size_t>(std::lround(peak.u_px));
+    const double error = peak.v_px - image.centre_px[u];
+    if (std::abs(error) > 2) {
+      ++errors.far;
+      continue;
+    }
+    (image.to_edge_px[u] <= 2.5 * width_of(s) ? errors.at_edges : errors.elsewhere).push_back(error);
+  }
+}
+
+// One refiner over four pictures, edges at as many angles.
+Errors over_angles(FormedStripe s, PeakRefiner& refiner, double gain = 1) {
+  Errors errors;
+  for (const double angle_rad : {0.0, 0.5, 1.0, 1.5}) {
+    s.bars.angle_rad = angle_rad;
+    s.seed = static_cast<std::uint64_t>(1 + 100 * angle_rad);
+    const FormedImage image = form(s);
+    const auto on = pixels<std::uint8_t>(image.on), off = pixels<std::uint8_t>(image.off, 1 / gain);
+    std::vector<Peak> peaks = coarse(on, off, gain, 255);
+    // Twice, so that the first picture is measured with what it has told.
+    for (int time = 0; time < 2; ++time) {
+      std::vector<Peak> refined = peaks;
+      refined.resize(refiner.refine({on.data(), width, height, width}, {off.data(), width, height, width}, refined));
+      if (time == 1) compare(s, image, refined, errors);
+    }
+  }
+  return errors;
+}
+
+// Asked for: 0.20 px at edges of 10:1, 0.25 with speckle and haze; recall 97 %; false peaks 0.2 %.
+TEST(PeakRefiner, ReachesItsFiguresAtEdges) {
+  for (const double beam : {1.2, 1.6, 2.4}) {
+    for (const double scatter : {0.0, 0.35}) {
+      FormedStripe s = scene(beam);
+      s.scatter_to_camera = scatter;
+      if (scatter == 0) s.speckle = 0;
+      const auto refiner = std::make_unique<PeakRefiner>();
+      const Errors errors = over_angles(s, *refiner);
+      EXPECT_LT(Errors::rms(errors.at_edges), scatter > 0 ? 0.25 : 0.20)
+          << "beam " << beam << " px, scatter " << scatter << "; found: beam " << refiner->optics().beam_px << ", lens "
+          << refiner->optics().lens_px << ", scatter " << refiner->optics().scatter;
+      EXPECT_GE(static_cast<double>(errors.at_edges.size() + errors.elsewhere.size()), 0.97 * errors.columns)
+          << "beam " << beam << " px, scatter " << scatter;
+      EXPECT_LE(errors.far, 0.002 * errors.columns) << "beam " << beam << " px, scatter " << scatter;
+    }
+  }
+}
+
+TEST(PeakRefiner, LearnsAnyWidth) {
+  for (const double beam : {0.8, 1.6, 3.5, 5.0}) {
+    const auto refiner = std::make_unique<PeakRefiner>();
+    const FormedStripe s = scene(beam);
+    const Errors errors = over_angles(s, *refiner);
+    EXPECT_NEAR(width_in_picture_px(refiner->optics()), width_of(s), 0.05 * width_of(s)) << "beam " << beam << " px";
+    EXPECT_LT(Errors::rms(errors.at_edges), 0.30) << "beam " << beam << " px";
+    EXPECT_LE(errors.far, 0.005 * errors.columns) << "beam " << beam << " px";
+  }
+}
+
+TEST(PeakRefiner, BearsABackgroundOfAnotherExposure) {
+  const FormedStripe s = scene(1.6);
+  for (const double gain : {0.7, 1.07, 1.6}) {
+    const auto refiner = std::make_unique<PeakRefiner>();
+    const Errors errors = over_angles(s, *refiner, gain);
+    EXPECT_NEAR(refiner->gain(), gain, 0.02 * gain);
+    EXPECT_LT(Errors::rms(errors.at_edges), 0.24) << "gain " << gain;
+    EXPECT_LT(Errors::rms(errors.elsewhere), 0.26) << "gain " << gain << ": most of it on dark paint";
+  }
+}
+
+// The same picture on its side, and in twelve bits.
+TEST(PeakRefiner, RowsAndDepthsAreAllOne) {
+  FormedStripe s = scene(1.6);
+  s.bits = 12;  // of values up to 255 here: sixteen times as fine below
+  s.bars.angle_rad = 0.5;
+  const FormedImage image = form(s);
+  const auto on = pixels<std::uint16_t>(image.on, 16, 4095), off = pixels<std::uint16_t>(image.off, 16, 4095);
+  std::vector<Peak> columns = coarse(on, off, 1, 4095), rows = columns;
+  for (Peak& peak : rows) std::swap(peak.u_px, peak.v_px);
+  RefinerConfig config;
+  config.full_scale = 4095;
+  const auto upright = std::make_unique<LargePeakRefiner16>(config);
+  config.axis = PeakAxis::row;
+  const auto on_its_side = std::make_unique<LargePeakRefiner16>(config);
+  columns.resize(upright->refine({on.data(), width, height, width}, {off.data(), width, height, width}, columns));
+  const auto on_turned = turned(on), off_turned = turned(off);
+  rows.resize(on_its_side->refine({on_turned.data(), height, width, height}, {off_turned.data(), height, width, height}, rows));
+  ASSERT_EQ(columns.size(), rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_EQ(columns[i].u_px, rows[i].v_px);
+    EXPECT_NEAR(columns[i].v_px, rows[i].u_px, 0.05) << "what is learned sums in another order";
+  }
+  Errors errors;
+  compare(s, image, columns, errors);
+  EXPECT_LT(Errors::rms(errors.at_edges), 0.24);
+}
+
+// On plain paint a picture by itself is enough, clipped or not.
+TEST(PeakRefiner, OnePictureIsEnoughOnPlainPaint) {
+  for (const double ambient : {40.0, 110.0}) {
+    FormedStripe s = scene(1.6);
+    s.bars.contrast = 1;
+    s.ambient_grey = ambient;
+    const FormedImage image = form(s);
+    const auto on = pixels<std::uint8_t>(image.on);
+    std::vector<Peak> peaks = coarse(on, {}, 1, 255);
+    const auto refiner = std::make_unique<PeakRefiner>();
+    peaks.resize(refiner->refine({on.data(), width, height, width}, {}, peaks));
+    Errors errors;
+    compare(s, image, peaks, errors);
+    EXPECT_GE(static_cast<int>(errors.elsewhere.size()), 0.99 * width) << "ambient light " << ambient;
+    EXPECT_LT(Errors::rms(errors.elsewhere), 0.20) << "ambient light " << ambient;
+  }
+}
+
+TEST(PeakRefiner, RefusesWhatItCannotTake) {
+  const auto refiner = std::make_unique<PeakRefiner>();
+  const std::vector<std::uint8_t> grey(static_cast<std::size_t>(width * height), 50), large(static_cast<std::size_t>(641 * 100), 50);
+  std::array<Peak, 3> peaks{};
+  const PixelView<std::uint8_t> sound(grey.data(), width, height, width);
+  EXPECT_EQ(refiner->refine({}, {}, peaks), 0u);
+  EXPECT_EQ(refiner->refine({large.data(), 641, 100, 641}, {}, peaks), 0u);
+  EXPECT_EQ(refiner->refine(sound, {grey.data(), width, height - 1, width}, peaks), 0u);
+  EXPECT_EQ(refiner->refine(sound, sound, {}), 0u);
+  EXPECT_EQ(refiner->counters().not_fitted, 0u);
+  // Peaks where there is none, at the corners and outside.
+  peaks = {Peak{0, 0}, Peak{319, 191}, Peak{10, 500}};
+  EXPECT_EQ(refiner->refine(sound, sound, peaks), 0u);
+  EXPECT_EQ(refiner->counters().not_fitted + refiner->counters().misfits, 3u);
+}
+
+}  // namespace
+}  // namespace lf::scan
