@@ -18,7 +18,7 @@ constexpr std::int32_t half_window = 5;  // bins to either side of the commonest
 
 // The bin of a ratio within e^-1.4 to e^1.4.
 std::int32_t bin_of(float ratio) {
-  return std::clamp(static_cast<std::int32_t>(std::floor(std::log(ratio) / bin_width)) + bins / 2, 0, bins - 1);
+  return std::clamp<std::int32_t>(static_cast<std::int32_t>(std::floor(std::log(ratio) / bin_width)) + bins / 2, 0, bins - 1);
 }
 
 // Calls take(on, off) for each sample that can tell.

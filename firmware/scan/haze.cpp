@@ -18,7 +18,7 @@ using Taps = std::array<float, most_reach + 1>;
 
 // Half of a Gaussian's integrals over cells. With its mirror they add up to 1.
 std::int32_t make_taps(float sigma, Taps& taps) {
-  const std::int32_t reach = std::clamp(static_cast<std::int32_t>(std::ceil(reach_in_sigmas * sigma)), 1, most_reach);
+  const std::int32_t reach = std::clamp<std::int32_t>(static_cast<std::int32_t>(std::ceil(reach_in_sigmas * sigma)), 1, most_reach);
   const float scale = 1 / (sigma * std::sqrt(2.0f));
   float sum = 0;
   for (std::int32_t i = 0; i <= reach; ++i) {
@@ -105,7 +105,8 @@ void BasicHaze<Pixel, MaxWidth, MaxHeight>::Plane<Columns, Rows>::blur(float sig
   std::array<float, static_cast<std::size_t>(Columns) + 2 * most_reach> line;
   for (std::int32_t r = 0; r < rows; ++r) {
     const float* in = row(r);
-    for (std::int32_t i = 0; i < columns + 2 * reach; ++i) line[static_cast<std::size_t>(i)] = in[std::clamp(i - reach, 0, columns - 1)];
+    for (std::int32_t i = 0; i < columns + 2 * reach; ++i)
+      line[static_cast<std::size_t>(i)] = in[std::clamp<std::int32_t>(i - reach, 0, columns - 1)];
     float* out = scratch.row(r);
     std::fill_n(out, columns, 0.0f);
     for (std::int32_t i = -reach; i <= reach; ++i) {
@@ -119,7 +120,7 @@ void BasicHaze<Pixel, MaxWidth, MaxHeight>::Plane<Columns, Rows>::blur(float sig
     std::fill_n(out, columns, 0.0f);
     for (std::int32_t i = -reach; i <= reach; ++i) {
       const float tap = share * taps[static_cast<std::size_t>(std::abs(i))];
-      const float* in = scratch.row(std::clamp(r + i, 0, rows - 1));
+      const float* in = scratch.row(std::clamp<std::int32_t>(r + i, 0, rows - 1));
       for (std::int32_t column = 0; column < columns; ++column) out[column] += tap * in[column];
     }
   }
@@ -129,8 +130,10 @@ template <class Pixel, std::int32_t MaxWidth, std::int32_t MaxHeight>
 template <std::int32_t Columns, std::int32_t Rows>
 float BasicHaze<Pixel, MaxWidth, MaxHeight>::Plane<Columns, Rows>::at(float x, float y) const {
   const float across = std::clamp(x, 0.0f, static_cast<float>(columns - 1)), down = std::clamp(y, 0.0f, static_cast<float>(rows - 1));
-  const std::int32_t left = std::min(static_cast<std::int32_t>(across), std::max(columns - 2, 0)), right = std::min(left + 1, columns - 1);
-  const std::int32_t top = std::min(static_cast<std::int32_t>(down), std::max(rows - 2, 0)), bottom = std::min(top + 1, rows - 1);
+  const std::int32_t left = std::min(static_cast<std::int32_t>(across), std::max<std::int32_t>(columns - 2, 0)),
+                     right = std::min(left + 1, columns - 1);
+  const std::int32_t top = std::min(static_cast<std::int32_t>(down), std::max<std::int32_t>(rows - 2, 0)),
+                     bottom = std::min(top + 1, rows - 1);
   const float to_right = across - static_cast<float>(left), to_bottom = down - static_cast<float>(top);
   const float above = row(top)[left] * (1 - to_right) + row(top)[right] * to_right;
   const float below = row(bottom)[left] * (1 - to_right) + row(bottom)[right] * to_right;

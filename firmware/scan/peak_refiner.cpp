@@ -90,15 +90,16 @@ void BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::begin_with_width(const Pair& 
     std::int32_t before = 0, after = 0;
     while (before < farthest_half_height && stripe(middle - before - 1) > half) ++before;
     while (after < farthest_half_height && stripe(middle + after + 1) > half) ++after;
-    ++counts[static_cast<std::size_t>(before + after + 1)];
+    const std::int32_t width = before + after + 1;
+    ++counts[static_cast<std::size_t>(width)];
     ++measured;
   }
   if (measured == 0) return;
   std::int32_t below = 0;
   std::size_t median = 0;
   while (2 * (below + counts[median]) < measured) below += counts[median++];
-  const float width = half_height_to_sigma * static_cast<float>(median), lens = config_.optics.lens_px;
-  const float beam2 = width * width - lens * lens - 1.0f / 12;
+  const float sigma = half_height_to_sigma * static_cast<float>(median), lens = config_.optics.lens_px;
+  const float beam2 = sigma * sigma - lens * lens - 1.0f / 12;
   estimate_ = OpticsEstimate({std::sqrt(std::max(beam2, 0.1f)), lens, config_.optics.scatter});
 }
 
@@ -112,7 +113,7 @@ template <class Pixel, std::int32_t MaxWidth, std::int32_t MaxHeight>
 float BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::grey(const PixelView<Pixel>& picture, std::int32_t line, std::int32_t place) const {
   if (!picture.valid()) return 0;
   const bool columns = config_.axis == PeakAxis::column;
-  const std::int32_t last = (columns ? picture.height : picture.width) - 1, inside = std::clamp(place, 0, last);
+  const std::int32_t last = (columns ? picture.height : picture.width) - 1, inside = std::clamp<std::int32_t>(place, 0, last);
   const Pixel pixel = columns ? picture.row(inside)[line] : picture.row(line)[inside];
   return 255.0f / static_cast<float>(config_.full_scale) * static_cast<float>(pixel);
 }
