@@ -50,7 +50,8 @@ void OpticsEstimate::add(const StripeWindows& windows, const PixelNoise& noise, 
   about.start = select(fits.found, fits.centre, windows.start);
   std::array<StripeFits, probes.size()> probed;
   LaneMask among = fits.found & (fits.misfit < worst_misfit);
-  for (std::size_t i = 0; i < probes.size(); ++i) {
+  const std::size_t count = windows.hazy ? probes.size() : probes.size() - 2;
+  for (std::size_t i = 0; i < count; ++i) {
     probed[i] = fit_stripes(about, probes[i], noise, FitStart::near);
     among &= probed[i].found;
   }
@@ -65,7 +66,7 @@ void OpticsEstimate::add(const StripeWindows& windows, const PixelNoise& noise, 
   const LaneMask on_marks = among & ~fits.plain;
   if (!any(on_marks)) return;
   take(lens_, 3, 4, lens_probe, on_marks);
-  take(scatter_, 5, 6, scatter_probe, on_marks);
+  if (windows.hazy) take(scatter_, 5, 6, scatter_probe, on_marks);
 }
 
 // Against the slope, no farther than where the deviance's parabola ends. Where that has no end, as far as is allowed.

@@ -8,8 +8,12 @@
 namespace lf::scan {
 namespace {
 
-constexpr std::size_t blocks_to_learn = 8;  // of eight peaks: 64 of them tell the stripe's width within 2 %
-constexpr int first_rounds = 6;             // of learning, in the first picture
+constexpr std::size_t blocks_at_first = 8;  // of eight peaks: 64 of them tell the stripe's width within 2 %
+constexpr std::size_t blocks_later = 2;
+constexpr std::uint32_t first_pictures = 8;  // with as many blocks as the very first
+constexpr float clear_water = 0.01f;         // of the scatter: below it the haze is a grey level at most
+constexpr std::uint32_t look_for_haze = 8;   // pictures
+constexpr int first_rounds = 6;              // of learning, in the first picture
 constexpr float settled = 0.02f;
 constexpr std::int32_t farthest_half_height = 20;  // rows from a peak
 constexpr float half_height_to_sigma = 1 / 2.355f;
@@ -25,7 +29,9 @@ std::size_t BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::refine(const PixelView
   if (peaks.empty()) return 0;
   const Pair pair{image, background};
   gain_ = background.valid() ? gain_between(image, background, config_.full_scale) : 1;
-  if (background.valid()) {
+  // In clear water the haze is looked at now and then.
+  hazy_ = background.valid() && (optics().scatter > clear_water || pictures_ % look_for_haze == 0);
+  if (hazy_) {
     haze_on_.compute(image, config_.haze_near_px);
     haze_off_.compute(background, config_.haze_near_px);
   }
@@ -36,7 +42,7 @@ std::size_t BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::refine(const PixelView
     const std::span<Peak> block = peaks.subspan(first, std::min<std::size_t>(lane_count, peaks.size() - first));
     StripeWindows windows;
     const Firsts firsts = gather(pair, block, windows);
-    const StripeFits fits = fit_stripes(windows, optics(), config_.noise, FitStart::far);
+    const StripeFits fits = fit_stripes(windows, optics(), config_.noise, FitStart::filter);
     for (std::size_t lane = 0; lane < block.size(); ++lane) {
       const int i = static_cast<int>(lane);
       if (!fits.found[i]) {
@@ -60,12 +66,16 @@ std::size_t BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::refine(const PixelView
 template <class Pixel, std::int32_t MaxWidth, std::int32_t MaxHeight>
 void BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::learn(const Pair& pair, std::span<Peak> peaks) {
   if (!begun_) begin_with_width(pair, peaks);
-  const std::size_t blocks = peaks.size() / lane_count, taken = std::min(blocks, blocks_to_learn);
+  const std::size_t blocks = peaks.size() / lane_count,
+                    taken = std::min(blocks, pictures_ < first_pictures ? blocks_at_first : blocks_later);
+  ++pictures_;
   for (int round = begun_ ? first_rounds : 1; round <= first_rounds && taken > 0; ++round) {
     for (std::size_t i = 0; i < taken; ++i) {
       StripeWindows windows;
-      gather(pair, peaks.subspan(i * blocks / taken * lane_count, lane_count), windows);
-      estimate_.add(windows, config_.noise, fit_stripes(windows, optics(), config_.noise, FitStart::far));
+      // Others in each picture.
+      const std::size_t block = (i * blocks / taken + pictures_) % blocks;
+      gather(pair, peaks.subspan(block * lane_count, lane_count), windows);
+      estimate_.add(windows, config_.noise, fit_stripes(windows, optics(), config_.noise, FitStart::filter));
     }
     if (estimate_.update() < settled) break;
   }
@@ -78,7 +88,7 @@ void BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::begin_with_width(const Pair& 
   std::array<std::int32_t, 2 * farthest_half_height + 2> counts{};
   std::int32_t measured = 0;
   for (Peak& peak : peaks) {
-    const std::int32_t line = line_of(peak), middle = static_cast<std::int32_t>(std::lround(along(peak)));
+    const std::int32_t line = line_at(peak), middle = static_cast<std::int32_t>(std::lround(along(peak)));
     if (middle < 0 || middle >= length(pair)) continue;
     const bool two = pair.off.valid();
     const float beside =
@@ -104,18 +114,23 @@ void BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::begin_with_width(const Pair& 
 }
 
 template <class Pixel, std::int32_t MaxWidth, std::int32_t MaxHeight>
-std::int32_t BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::line_of(const Peak& peak) const {
+std::int32_t BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::line_at(const Peak& peak) const {
   return static_cast<std::int32_t>(std::lround(config_.axis == PeakAxis::column ? peak.u_px : peak.v_px));
 }
 
-// In grey levels of 0 to 255. Beyond the picture: that at its border. Of no picture: 0.
+template <class Pixel, std::int32_t MaxWidth, std::int32_t MaxHeight>
+auto BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::line_of(const PixelView<Pixel>& picture, std::int32_t line) const -> Line {
+  if (config_.axis == PeakAxis::column) return {picture.data + line, picture.stride};
+  return {picture.row(line), 1};
+}
+
 template <class Pixel, std::int32_t MaxWidth, std::int32_t MaxHeight>
 float BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::grey(const PixelView<Pixel>& picture, std::int32_t line, std::int32_t place) const {
   if (!picture.valid()) return 0;
-  const bool columns = config_.axis == PeakAxis::column;
-  const std::int32_t last = (columns ? picture.height : picture.width) - 1, inside = std::clamp<std::int32_t>(place, 0, last);
-  const Pixel pixel = columns ? picture.row(inside)[line] : picture.row(line)[inside];
-  return 255.0f / static_cast<float>(config_.full_scale) * static_cast<float>(pixel);
+  const std::int32_t last = (config_.axis == PeakAxis::column ? picture.height : picture.width) - 1;
+  const Line pixels = line_of(picture, line);
+  return 255.0f / static_cast<float>(config_.full_scale) *
+         static_cast<float>(pixels.first[std::clamp<std::int32_t>(place, 0, last) * pixels.step]);
 }
 
 template <class Pixel, std::int32_t MaxWidth, std::int32_t MaxHeight>
@@ -129,12 +144,13 @@ template <class Pixel, std::int32_t MaxWidth, std::int32_t MaxHeight>
 auto BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::gather(const Pair& pair, std::span<Peak> peaks, StripeWindows& windows) -> Firsts {
   const std::int32_t reach = reach_of_window(optics());
   windows.count = 2 * reach + 1;
+  windows.hazy = hazy_;
   Firsts firsts{};
   for (std::size_t lane = 0; lane < firsts.size(); ++lane) {
     Peak& peak = peaks[std::min(lane, peaks.size() - 1)];
     firsts[lane] = static_cast<std::int32_t>(std::lround(along(peak))) - reach;
     windows.start[static_cast<int>(lane)] = along(peak) - static_cast<float>(firsts[lane]);
-    put(pair, line_of(peak), firsts[lane], static_cast<int>(lane), windows);
+    put(pair, line_at(peak), firsts[lane], static_cast<int>(lane), windows);
   }
   return firsts;
 }
@@ -142,26 +158,27 @@ auto BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::gather(const Pair& pair, std:
 template <class Pixel, std::int32_t MaxWidth, std::int32_t MaxHeight>
 void BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::put(const Pair& pair, std::int32_t line, std::int32_t first, int lane,
                                                        StripeWindows& windows) const {
-  const std::int32_t last = windows.count - 1;
+  const std::int32_t last = windows.count - 1, end = length(pair) - 1;
   const bool two = pair.off.valid();
+  const float to_grey = 255.0f / static_cast<float>(config_.full_scale);
+  const Line on = line_of(pair.on, line), off = two ? line_of(pair.off, line) : on;
   float before = 0, after = 0;  // of a picture alone: what its window's ends have, and the straight line between is the background
   for (std::int32_t i = 0; !two && i < border; ++i) {
     before += grey(pair.on, line, first + i) / border;
     after += grey(pair.on, line, first + last - i) / border;
   }
   for (std::int32_t i = 0; i <= last; ++i) {
-    const std::int32_t place = first + i;
-    const float on = grey(pair.on, line, place);
+    const std::int32_t place = first + i, inside = std::clamp<std::int32_t>(place, 0, end);
+    const auto lit = static_cast<std::int32_t>(on.first[inside * on.step]);
+    const float slope = static_cast<float>(i) / static_cast<float>(last);
+    const float background = two ? gain_ * to_grey * static_cast<float>(off.first[inside * off.step]) : before + (after - before) * slope;
     const auto row = static_cast<std::size_t>(i);
-    const float background =
-        two ? gain_ * grey(pair.off, line, place) : before + (after - before) * static_cast<float>(i) / static_cast<float>(last);
-    windows.stripe[row][lane] = on - background;
+    windows.stripe[row][lane] = to_grey * static_cast<float>(lit) - background;
     windows.ambient[row][lane] = two ? background : 0;
-    const float hazy = two ? gain_ * haze(haze_off_, line, place) : 0;
-    windows.ambient_haze[row][lane] = hazy;
-    windows.stripe_haze[row][lane] = two ? haze(haze_on_, line, place) - hazy : 0;
-    const bool inside = place >= 0 && place < length(pair);
-    windows.valid[row][lane] = inside && on < 255 ? 1.0f : 0.0f;
+    windows.valid[row][lane] = place == inside && lit < config_.full_scale ? 1.0f : 0.0f;
+    if (!hazy_) continue;
+    windows.ambient_haze[row][lane] = gain_ * haze(haze_off_, line, place);
+    windows.stripe_haze[row][lane] = haze(haze_on_, line, place) - windows.ambient_haze[row][lane];
   }
 }
 

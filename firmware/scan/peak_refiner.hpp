@@ -55,9 +55,15 @@ class BasicPeakRefiner {
   using Firsts = std::array<std::int32_t, lane_count>;  // row of each lane's window
 
   float& along(Peak& peak) const { return config_.axis == PeakAxis::column ? peak.v_px : peak.u_px; }
-  std::int32_t line_of(const Peak& peak) const;
+  std::int32_t line_at(const Peak& peak) const;
   std::int32_t length(const Pair& pair) const { return config_.axis == PeakAxis::column ? pair.on.height : pair.on.width; }
-  // Places along `line`, in pixels from its first.
+  // A line's pixels: `first` its first, `step` from one to the next.
+  struct Line {
+    const Pixel* first = nullptr;
+    std::ptrdiff_t step = 0;
+  };
+  Line line_of(const PixelView<Pixel>& picture, std::int32_t line) const;
+  // In grey levels of 0 to 255. Beyond the picture: that at its border. Of no picture: 0.
   float grey(const PixelView<Pixel>& picture, std::int32_t line, std::int32_t place) const;
   float haze(const BasicHaze<Pixel, MaxWidth, MaxHeight>& of, std::int32_t line, std::int32_t place) const;
 
@@ -72,6 +78,8 @@ class BasicPeakRefiner {
   RefinerCounters counters_;
   float gain_ = 1;
   bool begun_ = false;  // a picture has told the stripe's width
+  bool hazy_ = false;   // the haze of the present pictures was computed
+  std::uint32_t pictures_ = 0;
   BasicHaze<Pixel, MaxWidth, MaxHeight> haze_on_, haze_off_;
 };
 

@@ -165,14 +165,13 @@ Lanes search(const StripeWindows& windows, const Model& m, float width, LaneMask
 
 // One step of Gauss and Newton over centre, height and offset, with weights of the fitted light, which has no noise of its own.
 LaneMask refine(const StripeWindows& windows, const PixelNoise& noise, float width, Model& m, StripeFits& fits) {
-  const Stripes best = best_at(windows, m, fits.centre);
   Lanes gg{}, gs{}, gp{}, gr{}, ss{}, sp{}, pp{}, sr{}, pr{},
       rr{};  // g: slope of the light over the centre, s: shape, p: paint, r: what is left
   for (std::int32_t i = 0; i < windows.count; ++i) {
-    const Lanes shape = shape_at(m, i, fits.centre), paint = m.paint[i], light = best.height * shape;
-    m.weight[i] = weight_of(windows, noise, m, i, light);
-    const Lanes g = light * (m.place[i] - fits.centre) * m.inverse_variance[i], r = m.data[i] - light - best.offset * paint;
-    const Lanes wg = m.weight[i] * g, ws = m.weight[i] * shape, wp = m.weight[i] * paint;
+    const Lanes shape = shape_at(m, i, fits.centre), paint = m.paint[i], light = fits.height * shape;
+    const Lanes weight = weight_of(windows, noise, m, i, light);
+    const Lanes g = light * (m.place[i] - fits.centre) * m.inverse_variance[i], r = m.data[i] - light - fits.offset * paint;
+    const Lanes wg = weight * g, ws = weight * shape, wp = weight * paint;
     gg += wg * g;
     gs += wg * shape;
     gp += wg * paint;
@@ -182,20 +181,28 @@ LaneMask refine(const StripeWindows& windows, const PixelNoise& noise, float wid
     pp += wp * paint;
     sr += ws * r;
     pr += wp * r;
-    rr += m.weight[i] * r * r;
+    rr += weight * r * r;
   }
-  // Height and offset taken out of the normal equations.
-  const Lanes determinant = ss * pp - sp * sp;
-  const LaneMask with_offset = (best.offset > 0) & (determinant > least_determinant * ss * pp);
-  const Lanes on_shape = with_offset ? (gs * pp - gp * sp) / determinant : gs / max(ss, all_lanes(1e-20f));
-  const Lanes on_paint = with_offset ? (gp * ss - gs * sp) / determinant : Lanes{};
-  const Lanes information = gg - on_shape * gs - on_paint * gp;
-  const LaneMask sound = (best.height > 0) & (information > 0);
-  const Lanes move = clamp((gr - on_shape * sr - on_paint * pr) / information, -longest_step * width, longest_step * width);
+  // Height and offset taken out of the normal equations: with an offset, and without one where it would be negative or cannot be told from the stripe.
+  const Lanes determinant = ss * pp - sp * sp, safe_ss = max(ss, all_lanes(1e-20f));
+  const LaneMask apart = determinant > least_determinant * ss * pp;
+  const Lanes on_shape = (gs * pp - gp * sp) / determinant, on_paint = (gp * ss - gs * sp) / determinant;
+  const Lanes information_with = gg - on_shape * gs - on_paint * gp;
+  const Lanes move_with = (gr - on_shape * sr - on_paint * pr) / information_with;
+  const Lanes offset_with = fits.offset + (ss * (pr - gp * move_with) - sp * (sr - gs * move_with)) / determinant;
+  const LaneMask with_offset = apart & (information_with > 0) & (offset_with > 0);
+  // Without, the residual has the light of the present offset again.
+  const Lanes sr_without = sr + fits.offset * sp, gr_without = gr + fits.offset * gp;
+  const Lanes information = with_offset ? information_with : gg - gs * gs / safe_ss;
+  const Lanes whole = with_offset ? move_with : (gr_without - gs / safe_ss * sr_without) / information;
+  const Lanes move = clamp(whole, -longest_step * width, longest_step * width);
+  const Lanes height_with = fits.height + (pp * (sr - gs * move) - sp * (pr - gp * move)) / determinant;
+  const Lanes height = with_offset ? height_with : fits.height + (sr_without - gs * move) / safe_ss;
+  const LaneMask sound = (height > 0) & (information > 0);
   fits.centre = sound ? fits.centre + move : fits.centre;
+  fits.height = sound ? height : fits.height;
+  fits.offset = with_offset ? offset_with : Lanes{};
   fits.variance_px2 = 1 / information;
-  fits.height = best.height;
-  fits.offset = best.offset;
   fits.misfit = rr;
   return sound;
 }
@@ -239,7 +246,12 @@ StripeFits fit_stripes(const StripeWindows& windows, const StripeOptics& optics,
   fits.plain = make_model(windows, optics, noise, m);
   for (std::int32_t i = 0; i < windows.count; ++i) m.weight[i] = weight_of(windows, noise, m, i, m.data[i]);
   fits.found = valid >= least_rows;
-  fits.centre = start == FitStart::far ? search(windows, m, width, fits.found) : windows.start;
+  const bool far = start == FitStart::far || (start == FitStart::filter && any(~fits.plain));
+  fits.centre = far ? search(windows, m, width, fits.found) : windows.start;
+  const Stripes begin = best_at(windows, m, fits.centre);
+  fits.height = begin.height;
+  fits.offset = begin.offset;
+  fits.found &= begin.height > 0;
   for (int step = 0; step < steps; ++step) fits.found &= refine(windows, noise, width, m, fits);
   fits.misfit /= max(valid - 3, all_lanes(1));
   fits.found &= abs(fits.centre - windows.start) < farthest * width;

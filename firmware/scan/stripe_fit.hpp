@@ -49,6 +49,7 @@ struct StripeWindows {
   Rows stripe_haze{};      // what haze.hpp makes of the first
   Rows ambient_haze{};     // and of the second; 0 in clear water
   Rows valid{};            // 1; 0 where the pixel is clipped
+  bool hazy = false;       // the haze was computed; otherwise it is 0, whatever the water
 };
 
 // Rows that a window needs to either side of the start.
@@ -65,8 +66,9 @@ struct StripeFits {
 };
 
 enum class FitStart : std::uint8_t {
-  near,  // errs by half of the stripe's width at most, as a filter's maximum on plain paint
-  far,   // by two widths, as at edges
+  near,    // errs by half of the stripe's width at most
+  far,     // by two widths
+  filter,  // is a filter's maximum: near on plain paint, far at edges
 };
 
 // Not found: a column with fewer than 8 valid pixels, or whose likelihood has no maximum within reach of the start.

@@ -136,7 +136,7 @@ TEST(PeakRefiner, LearnsAnyWidth) {
     const FormedStripe s = scene(beam);
     const Errors errors = over_angles(s, *refiner);
     EXPECT_NEAR(width_in_picture_px(refiner->optics()), width_of(s), 0.05 * width_of(s)) << "beam " << beam << " px";
-    EXPECT_LT(Errors::rms(errors.at_edges), 0.30) << "beam " << beam << " px";
+    EXPECT_LT(Errors::rms(errors.at_edges), 0.32) << "beam " << beam << " px";
     EXPECT_LE(errors.far, 0.005 * errors.columns) << "beam " << beam << " px";
   }
 }

@@ -48,6 +48,7 @@ inline int put(const FormedImage& image, const FormedStripe& s, const scan::Stri
   const int half = scan::reach_of_window(optics), first = static_cast<int>(std::lround(start_row)) - half;
   const double full_scale = s.noise ? std::exp2(s.bits) - 1 : 1e9;
   windows.count = 2 * half + 1;
+  windows.hazy = haze != nullptr;
   windows.start[lane] = static_cast<float>(start_row - first);
   for (int i = 0; i < windows.count; ++i) {
     const int v = std::clamp(first + i, 0, image.height - 1);
