@@ -52,9 +52,11 @@ void sort_into_bins(Samples& samples) {
       a[lane] = samples.on[i];
       b[lane] = samples.off[i];
     }
-    const Lanes place = clamp(log(a / b) / bin_width + bins / 2, 0, bins - 1);
-    for (int lane = 0; lane < lane_count && first + lane < samples.count; ++lane)
-      samples.bin[static_cast<std::size_t>(first + lane)] = static_cast<std::int32_t>(place[lane]);
+    const Lanes place = clamp(log(a / b) / bin_width + 0.5f * bins, 0, bins - 1);
+    for (int lane = 0; lane < std::min<std::int32_t>(lane_count, samples.count - first); ++lane) {
+      const std::int32_t at = first + lane;
+      samples.bin[static_cast<std::size_t>(at)] = static_cast<std::int32_t>(place[lane]);
+    }
   }
 }
 
