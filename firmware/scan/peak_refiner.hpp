@@ -1,6 +1,7 @@
 // Puts a detector's peaks where the stripe is: each column's fit of the stripe to the paint that it lights (stripe_fit.hpp).
 //
-// The stripe's width, the lens' blur and the water's haze are learned from the pictures, and kept from one to the next. The background may have another exposure.
+// The stripe's width, the lens' blur, the water's haze and the noise are learned from the pictures, and kept from one to the next. The background may have another
+// exposure.
 #pragma once
 
 #include <array>
@@ -21,7 +22,8 @@ struct RefinerConfig {
   PixelNoise noise;               // in grey levels of 0 to 255, whatever the pixels' bits are
   StripeOptics optics;            // where learning begins; the stripe's width is measured at half of its height in the first picture
   float haze_near_px = 8.0f;      // haze.hpp: 22 mrad
-  // Mean square of what the fit leaves over the noise's: above it, the column shows no stripe on paint but a silhouette, a shadow or two stripes.
+  // Mean square of what the fit leaves, over what most columns' fits leave: above it, the column shows no stripe on paint but a silhouette, a shadow or two
+  // stripes.
   float largest_misfit = 6.0f;
 };
 
@@ -44,7 +46,8 @@ class BasicPeakRefiner {
 
   // What the pictures have told so far.
   const StripeOptics& optics() const { return estimate_.optics(); }
-  float gain() const { return gain_; }  // of the newest picture over its background
+  float gain() const { return gain_; }                // of the newest picture over its background
+  float noise_scale() const { return noise_scale_; }  // variance of what most columns' fits leave, over the configured noise's
   const RefinerCounters& counters() const { return counters_; }
 
  private:
@@ -69,6 +72,8 @@ class BasicPeakRefiner {
 
   void begin_with_width(const Pair& pair, std::span<Peak> peaks);
   void learn(const Pair& pair, std::span<Peak> peaks);
+  // The configured noise, made as large as it is.
+  PixelNoise noise() const;
   // The windows of up to eight peaks; of fewer, the last is repeated.
   Firsts gather(const Pair& pair, std::span<Peak> peaks, StripeWindows& windows);
   void put(const Pair& pair, std::int32_t line, std::int32_t first, int lane, StripeWindows& windows) const;
@@ -76,7 +81,7 @@ class BasicPeakRefiner {
   RefinerConfig config_;
   OpticsEstimate estimate_;
   RefinerCounters counters_;
-  float gain_ = 1;
+  float gain_ = 1, noise_scale_ = 1;
   bool begun_ = false;  // a picture has told the stripe's width
   bool hazy_ = false;   // the haze of the present pictures was computed
   std::uint32_t pictures_ = 0;
