@@ -13,20 +13,26 @@ constexpr std::size_t blocks_later = 2;
 constexpr std::uint32_t first_pictures = 8;  // with as many blocks as the very first
 constexpr float clear_water = 0.01f;         // of the scatter: below it the haze is a grey level at most
 constexpr std::uint32_t look_for_haze = 8;   // pictures
-constexpr int first_rounds = 6;              // of learning, in the first picture
+constexpr int first_rounds = 12;             // of learning, in the first picture
 constexpr float settled = 0.02f;
-constexpr float least_noise = 0.1f, most_noise = 100.0f;  // of the variance, over the configured noise's
-constexpr std::int32_t farthest_half_height = 20;         // rows from a peak
+constexpr float most_model_share = 0.3f;
+constexpr std::int32_t farthest_half_height = 20;  // rows from a peak
 constexpr float half_height_to_sigma = 1 / 2.355f;
 constexpr std::int32_t border = 3;  // rows at a window's ends, by which the background is told where there is no picture of it
 
-// The scale goes half of the way, as a factor, to where the median of the misfits is 1.
+// The model's share goes half of the way, as a factor, to where the median of the misfits is between these. Haze that is not learned yet makes 1.2, a camera that
+// sharpens 5 and more.
+constexpr float low_misfit = 0.7f, high_misfit = 1.5f;
+
+// Returns whether it is there.
 template <class Misfits>
-void follow_noise(Misfits& misfits, float& scale) {
-  if (misfits.empty()) return;
+bool follow_misfits(Misfits& misfits, float& model) {
+  if (misfits.empty()) return true;
   const auto middle = misfits.begin() + static_cast<std::ptrdiff_t>(misfits.size() / 2);
   std::nth_element(misfits.begin(), middle, misfits.end());
-  scale = std::clamp(scale * std::sqrt(std::max(*middle, 0.01f)), least_noise, most_noise);
+  const float wanted = std::clamp(*middle, low_misfit, high_misfit);
+  model = std::clamp(model * std::sqrt(std::max(*middle / wanted, 0.01f)), least_model_share, most_model_share);
+  return *middle == wanted || model == least_model_share || model == most_model_share;
 }
 
 }  // namespace
@@ -52,7 +58,7 @@ std::size_t BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::refine(const PixelView
     const std::span<Peak> block = peaks.subspan(first, std::min<std::size_t>(lane_count, peaks.size() - first));
     StripeWindows windows;
     const Firsts firsts = gather(pair, block, windows);
-    const StripeFits fits = fit_stripes(windows, optics(), noise(), FitStart::filter);
+    const StripeFits fits = fit_stripes(windows, optics(), noise_, FitStart::filter);
     for (std::size_t lane = 0; lane < block.size(); ++lane) {
       const int i = static_cast<int>(lane);
       if (!fits.found[i]) {
@@ -86,14 +92,14 @@ void BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::learn(const Pair& pair, std::
       // Others in each picture.
       const std::size_t block = (i * blocks / taken + pictures_) % blocks;
       gather(pair, peaks.subspan(block * lane_count, lane_count), windows);
-      const StripeFits fits = fit_stripes(windows, optics(), noise(), FitStart::filter);
+      const StripeFits fits = fit_stripes(windows, optics(), noise_, FitStart::filter);
       for (int lane = 0; lane < lane_count; ++lane) {
         if (fits.found[lane]) (void)misfits.push_back(fits.misfit[lane]);
       }
-      estimate_.add(windows, noise(), fits);
+      estimate_.add(windows, noise_, fits);
     }
-    follow_noise(misfits, noise_scale_);
-    if (estimate_.update() < settled) break;
+    const bool fits_well = follow_misfits(misfits, noise_.model);
+    if (estimate_.update() < settled && fits_well) break;
   }
   begun_ = begun_ || taken > 0;
 }
@@ -132,12 +138,6 @@ void BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::begin_with_width(const Pair& 
 template <class Pixel, std::int32_t MaxWidth, std::int32_t MaxHeight>
 std::int32_t BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::line_at(const Peak& peak) const {
   return static_cast<std::int32_t>(std::lround(config_.axis == PeakAxis::column ? peak.u_px : peak.v_px));
-}
-
-template <class Pixel, std::int32_t MaxWidth, std::int32_t MaxHeight>
-PixelNoise BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::noise() const {
-  const float root = std::sqrt(noise_scale_);
-  return {config_.noise.read_grey * root, config_.noise.electrons_per_grey / noise_scale_, config_.noise.speckle * root};
 }
 
 template <class Pixel, std::int32_t MaxWidth, std::int32_t MaxHeight>

@@ -1,9 +1,10 @@
 // Puts a detector's peaks where the stripe is: each column's fit of the stripe to the paint that it lights (stripe_fit.hpp).
 //
-// The stripe's width, the lens' blur, the water's haze and the noise are learned from the pictures, and kept from one to the next. The background may have another
+// The stripe's width, the lens' blur, the water's haze and how far the model holds are learned from the pictures, and kept from one to the next. The background may have another
 // exposure.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -16,14 +17,16 @@
 
 namespace lf::scan {
 
+// Of the stripe's peak, what the fit's model leaves out at least: a grey level of 200. From there it is learned.
+inline constexpr float least_model_share = 0.005f;
+
 struct RefinerConfig {
   PeakAxis axis = PeakAxis::column;
   std::int32_t full_scale = 255;  // grey level at which the sensor clips
   PixelNoise noise;               // in grey levels of 0 to 255, whatever the pixels' bits are
   StripeOptics optics;            // where learning begins; the stripe's width is measured at half of its height in the first picture
   float haze_near_px = 8.0f;      // haze.hpp: 22 mrad
-  // Mean square of what the fit leaves, over what most columns' fits leave: above it, the column shows no stripe on paint but a silhouette, a shadow or two
-  // stripes.
+  // Mean square of what the fit leaves, over the noise's: above it, the column shows no stripe on paint but a silhouette, a shadow or two stripes.
   float largest_misfit = 6.0f;
 };
 
@@ -37,7 +40,9 @@ struct RefinerCounters {
 template <class Pixel, std::int32_t MaxWidth, std::int32_t MaxHeight>
 class BasicPeakRefiner {
  public:
-  explicit BasicPeakRefiner(const RefinerConfig& config = {}) : config_(config), estimate_(config.optics) {}
+  explicit BasicPeakRefiner(const RefinerConfig& config = {}) : config_(config), estimate_(config.optics), noise_(config.noise) {
+    noise_.model = std::max(noise_.model, least_model_share);
+  }
 
   // Moves each of `peaks`, which a detector found in `image` less `background`, to its fit's centre. Drops, and counts, those without one; the others move up.
   // Returns how many are left. Without a background (an invalid view) the paint is taken to be plain. Returns 0 for an invalid image, one that is too large, and
@@ -47,7 +52,7 @@ class BasicPeakRefiner {
   // What the pictures have told so far.
   const StripeOptics& optics() const { return estimate_.optics(); }
   float gain() const { return gain_; }                // of the newest picture over its background
-  float noise_scale() const { return noise_scale_; }  // variance of what most columns' fits leave, over the configured noise's
+  const PixelNoise& noise() const { return noise_; }  // the configured one, with the model's share as it was learned
   const RefinerCounters& counters() const { return counters_; }
 
  private:
@@ -72,8 +77,6 @@ class BasicPeakRefiner {
 
   void begin_with_width(const Pair& pair, std::span<Peak> peaks);
   void learn(const Pair& pair, std::span<Peak> peaks);
-  // The configured noise, made as large as it is.
-  PixelNoise noise() const;
   // The windows of up to eight peaks; of fewer, the last is repeated.
   Firsts gather(const Pair& pair, std::span<Peak> peaks, StripeWindows& windows);
   void put(const Pair& pair, std::int32_t line, std::int32_t first, int lane, StripeWindows& windows) const;
@@ -81,7 +84,8 @@ class BasicPeakRefiner {
   RefinerConfig config_;
   OpticsEstimate estimate_;
   RefinerCounters counters_;
-  float gain_ = 1, noise_scale_ = 1;
+  PixelNoise noise_;
+  float gain_ = 1;
   bool begun_ = false;  // a picture has told the stripe's width
   bool hazy_ = false;   // the haze of the present pictures was computed
   std::uint32_t pictures_ = 0;

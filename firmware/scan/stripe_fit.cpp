@@ -39,6 +39,7 @@ struct Model {
   Rows shared_noise;      // of the picture without the laser, over the paint: what both the difference and the paint have of it
   Rows paint_variance;    // of the paint, over its square
   Rows weight;
+  Lanes highest_level;
 };
 
 // Of a pixel with the laser off, its haze taken out.
@@ -86,6 +87,7 @@ LaneMask make_model(const StripeWindows& windows, const StripeOptics& optics, co
   const float near = 1 + near_share * optics.scatter;
   clear_haze(windows, optics.scatter, m);
   const LaneMask plain = straighten_plain_paint(windows, noise, near, m.paint);
+  m.highest_level = Lanes{};
   Lanes before = log(m.paint[0]), here = before;
   for (std::int32_t i = 0; i <= last; ++i) {
     const Lanes after = i < last ? log(m.paint[i + 1]) : here;
@@ -94,6 +96,7 @@ LaneMask make_model(const StripeWindows& windows, const StripeOptics& optics, co
     m.place[i] = static_cast<float>(i) + clamp(blur * slope, -most_shift_px, most_shift_px);
     m.inverse_variance[i] = 1 / variance;
     m.level[i] = m.paint[i] * optics.beam_px * sqrt(m.inverse_variance[i]);
+    m.highest_level = max(m.highest_level, m.level[i]);
     const Lanes off = variance_of(noise, windows.ambient[i], near);
     const LaneMask differenced = windows.ambient[i] > 0;
     m.still_variance[i] = differenced ? off + off : off;
@@ -107,11 +110,11 @@ LaneMask make_model(const StripeWindows& windows, const StripeOptics& optics, co
 }
 
 // Of a pixel in which the stripe is expected to be `light`: read and shot noise, speckle, and the noise of the paint that the stripe is a multiple of.
-Lanes weight_of(const StripeWindows& windows, const PixelNoise& noise, const Model& m, std::int32_t row, Lanes light) {
+Lanes weight_of(const StripeWindows& windows, const PixelNoise& noise, const Model& m, std::int32_t row, Lanes light, Lanes peak) {
   const Lanes grey = max(light, Lanes{}), lit = grey + m.hazy_light[row];
   const Lanes by_light = lit * (1 / noise.electrons_per_grey + lit * square(noise.speckle));
   const Lanes by_paint = grey * (m.shared_noise[row] + grey * m.paint_variance[row]);
-  return windows.valid[row] / max(m.still_variance[row] + by_light + by_paint, all_lanes(least_variance));
+  return windows.valid[row] / max(m.still_variance[row] + by_light + by_paint + square(noise.model * peak), all_lanes(least_variance));
 }
 
 Lanes shape_at(const Model& m, std::int32_t row, Lanes centre) {
@@ -165,11 +168,12 @@ Lanes search(const StripeWindows& windows, const Model& m, float width, LaneMask
 
 // One step of Gauss and Newton over centre, height and offset, with weights of the fitted light, which has no noise of its own.
 LaneMask refine(const StripeWindows& windows, const PixelNoise& noise, float width, Model& m, StripeFits& fits) {
+  const Lanes peak = fits.height * m.highest_level;
   Lanes gg{}, gs{}, gp{}, gr{}, ss{}, sp{}, pp{}, sr{}, pr{},
       rr{};  // g: slope of the light over the centre, s: shape, p: paint, r: what is left
   for (std::int32_t i = 0; i < windows.count; ++i) {
     const Lanes shape = shape_at(m, i, fits.centre), paint = m.paint[i], light = fits.height * shape;
-    const Lanes weight = weight_of(windows, noise, m, i, light);
+    const Lanes weight = weight_of(windows, noise, m, i, light, peak);
     const Lanes g = light * (m.place[i] - fits.centre) * m.inverse_variance[i], r = m.data[i] - light - fits.offset * paint;
     const Lanes wg = weight * g, ws = weight * shape, wp = weight * paint;
     gg += wg * g;
@@ -223,10 +227,11 @@ float deviance(const StripeWindows& windows, const StripeOptics& optics, const P
   make_model(windows, optics, noise, m);
   const float scale =
       2 * std::log(1 + near_share * optics.scatter);  // from the clear picture's grey levels to those of the picture that was taken
+  const Lanes peak = fits.height * m.highest_level;
   Lanes sum{};
   for (std::int32_t i = 0; i < windows.count; ++i) {
     const Lanes light = fits.height * shape_at(m, i, fits.centre), left = m.data[i] - light - fits.offset * m.paint[i];
-    const Lanes weight = weight_of(windows, noise, m, i, light);
+    const Lanes weight = weight_of(windows, noise, m, i, light, peak);
     const LaneMask counted = among & (weight > 0);
     sum += select(counted, weight * square(left) - log(max(weight, all_lanes(1e-20f))) + scale, Lanes{});
   }
@@ -244,7 +249,9 @@ StripeFits fit_stripes(const StripeWindows& windows, const StripeOptics& optics,
   const float width = width_in_picture_px(optics);
   Model m;
   fits.plain = make_model(windows, optics, noise, m);
-  for (std::int32_t i = 0; i < windows.count; ++i) m.weight[i] = weight_of(windows, noise, m, i, m.data[i]);
+  Lanes highest{};
+  for (std::int32_t i = 0; i < windows.count; ++i) highest = max(highest, m.data[i]);
+  for (std::int32_t i = 0; i < windows.count; ++i) m.weight[i] = weight_of(windows, noise, m, i, m.data[i], highest);
   fits.found = valid >= least_rows;
   const bool far = start == FitStart::far || (start == FitStart::filter && any(~fits.plain));
   fits.centre = far ? search(windows, m, width, fits.found) : windows.start;

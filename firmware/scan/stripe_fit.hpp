@@ -35,6 +35,8 @@ struct PixelNoise {
   float read_grey = 1.5f;            // of one picture, rounding included
   float electrons_per_grey = 40.0f;  // shot noise: the variance of g grey levels is g over this
   float speckle = 0.18f;             // standard deviation of the laser's light, over its mean: 0.13 to 0.25 at F/2.8 and 6 um pixels
+  // What the model leaves out, as if it were noise of every pixel: this share of the stripe's peak. A camera that sharpens, a beam that is no Gaussian.
+  float model = 0.0f;
 };
 
 // Rows about a stripe in each of eight columns, grey levels, all finite. A column may begin at another row of the picture than its neighbours.
