@@ -137,6 +137,7 @@ class AssembledDaemon : public testing::Test {
     end();
     close(signals);
     pthread_sigmask(SIG_SETMASK, &signals_before, nullptr);
+    sea.reset();  // its thread reads the clock
     hal::slow_time_down(1);
   }
 
