@@ -211,7 +211,7 @@ TEST_F(AssembledDaemon, CommissionsAJointAndUsesItsZero) {
     ASSERT_TRUE(wait_until("the commissioning's end", ended, 120));
   }
   const Json done = ask("status")["commissioning"];
-  EXPECT_EQ(done["state"], "done") << ask("status").dump();
+  ASSERT_EQ(done["state"], "done") << ask("status").dump();
   EXPECT_GT(done["friction"]["jaw"].value("coulomb_mnm", 0.0), 0) << done.dump();
   EXPECT_TRUE(done["friction"]["jaw"].contains("rms_mnm")) << done.dump();
   EXPECT_FALSE(sea->any_powered());
