@@ -14,7 +14,9 @@ namespace lf::hal {
 namespace {
 
 constexpr Duration look_again = Duration::from_ms(20);
-constexpr int looks_a_flush = 25;  // twice a second
+constexpr Duration flush_period = Duration::from_ms(500);
+// Three times what a bus of 1 Mbit/s brings between two looks. On a disk that takes less than comes the ring is never empty, and the lines get their turn.
+constexpr int frames_a_look = 512;
 constexpr std::size_t most_lines = 4096;
 // NTP slews the monotonic clock as well, so that the difference changes only where the wall clock is set.
 constexpr std::int64_t step_ns = 1'000'000;
@@ -45,7 +47,8 @@ void LogWriter::stop() {
   if (thread_.joinable()) {
     stop_ = true;
     thread_.join();
-    write_frames();
+    while (write_frames() == frames_a_look) {
+    }
     write_lines();
   }
   note(frames_.close());
@@ -54,14 +57,16 @@ void LogWriter::stop() {
 
 void LogWriter::run() {
   name_thread("writer");
-  for (int look = 1; !stop_; ++look) {
+  Time next_flush = monotonic_now() + flush_period;
+  while (!stop_) {
     follow_wall_clock();
-    write_frames();
     write_lines();
-    if (look % looks_a_flush == 0) {
-      note(frames_.flush());
+    write_frames();
+    if (monotonic_now() >= next_flush) {
       note(lines_.flush());
+      note(frames_.flush());
       error_ = std::exchange(round_error_, 0);
+      next_flush = monotonic_now() + flush_period;
     }
     sleep_until(monotonic_now() + look_again);
   }
@@ -84,11 +89,14 @@ void LogWriter::follow_wall_clock() {
        {"by_s", 1e-9 * static_cast<double>(change_ns)}});
 }
 
-void LogWriter::write_frames() {
-  for (LogFrame frame; log_.frames.pop(frame);) {
+int LogWriter::write_frames() {
+  LogFrame frame;
+  int written = 0;
+  for (; written < frames_a_look && log_.frames.pop(frame); ++written) {
     const CandumpLine line = candump_line(frame.t + wall_from_monotonic_, config_.interface.c_str(), frame.frame);
     note(frames_.write({line.text.data(), line.size}));
   }
+  return written;
 }
 
 void LogWriter::write_lines() {

@@ -46,7 +46,8 @@ class LogWriter {
 
  private:
   void run();
-  void write_frames();
+  // As many as one look takes at most; returns how many there were.
+  int write_frames();
   void write_lines();
   void follow_wall_clock();
   void note(int error);

@@ -70,6 +70,52 @@ class Log : public testing::Test {
   TemporaryFolder folder;
 };
 
+// A disk that takes less than comes: the frames' ring is never empty, and the lines of faults and orders waited for it to be.
+TEST_F(Log, FramesThatComeFasterThanTheDiskLeaveRoomForLines) {
+  const std::string pipe = folder / "can0.log";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  const int reader = open(pipe.c_str(), O_RDWR);
+  ASSERT_GE(reader, 0);
+  LogWriter writer(*rings, {.folder = folder.path().string(), .interface = "can0"});
+  ASSERT_EQ(writer.open(), 0);
+  std::atomic<bool> over = false;
+  std::thread bus([&] {
+    while (!over) {
+      while (rings->frames.push(LogFrame{})) {
+      }
+      sleep_until(monotonic_now() + Duration::from_ms(1));
+    }
+  });
+  std::thread disk([&] {
+    std::vector<char> block(4096);
+    while (!over && read(reader, block.data(), block.size()) > 0) sleep_until(monotonic_now() + Duration::from_ms(20));
+  });
+  writer.start();
+  writer.say({{"kind", "said"}});
+  const Time limit = monotonic_now() + Duration::from_s(20);
+  while (folder.read("log.jsonl").find("said") == std::string::npos && monotonic_now() < limit)
+    sleep_until(monotonic_now() + Duration::from_ms(20));
+  EXPECT_THAT(folder.read("log.jsonl"), HasSubstr("said"));
+  over = true;
+  bus.join();
+  disk.join();
+  // What waits in the pipe is let go, so that the writer can end.
+  std::atomic<bool> ended = false;
+  std::thread drain([&] {
+    std::vector<char> block(1 << 16);
+    fcntl(reader, F_SETFL, O_NONBLOCK);
+    while (!ended) {
+      while (read(reader, block.data(), block.size()) > 0) {
+      }
+      sleep_until(monotonic_now() + Duration::from_ms(1));
+    }
+  });
+  writer.stop();
+  ended = true;
+  drain.join();
+  close(reader);
+}
+
 // The log's lock was held while the disk wrote: whoever had something to say waited with it.
 TEST_F(Log, ADiskThatDoesNotWriteHoldsUpNobody) {
   const std::string pipe = folder / "log.jsonl";
