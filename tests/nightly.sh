@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What takes longer than ./test.sh may: all sanitizers over everything, all faults, all ranges, hostile clients, fuzzing, coverage, and the systemd guest. One table at the end.
+# What takes longer than ./test.sh may: the sanitizers over all test programs (threads: over those that have any), all faults, all ranges, hostile clients, fuzzing, coverage, and the systemd guest. One table at the end.
 # Usage: tests/nightly.sh [--state FOLDER] [--fresh] [--table] [SHARD]...
 #
 # The shards are in tests/nightly_shards, each at most 150 minutes. What is done is kept in FOLDER (runs/nightly): interrupted, the next call goes on with the shard

@@ -110,7 +110,7 @@ function(lanternfish_core_flags target)
   target_compile_options(${target} PRIVATE -fno-exceptions -fno-rtti -fno-threadsafe-statics -Wconversion -Wno-sign-conversion)
   target_compile_definitions(${target} PRIVATE EIGEN_NO_MALLOC EIGEN_NO_IO)
   if(LANTERNFISH_COVERAGE)
-    target_compile_options(${target} PRIVATE -Og)  # each line keeps its own count, and a mission takes seconds; at -O0 Eigen makes it minutes
+    target_compile_options(${target} PRIVATE -Og)  # nearly every line keeps its own count; at -O0 Eigen makes a mission take minutes
   endif()
 endfunction()
 

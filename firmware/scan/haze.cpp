@@ -6,7 +6,6 @@
 namespace lf::scan {
 namespace {
 
-constexpr float near_weight = 0.248f, far_weight = 0.275f, farthest_weight = 0.118f;
 constexpr float wider = 4.0f;  // from each Gaussian to the next
 // What cells do to a picture by themselves, in cells^2: the box of one, the kernel's integrals over one, the straight lines between two.
 constexpr float own_variance = 1.0f / 12 + 1.0f / 12 + 1.0f / 6;
@@ -44,10 +43,10 @@ void BasicHaze<Pixel, MaxWidth, MaxHeight>::compute(const PixelView<Pixel>& pict
   if (!picture.valid() || picture.width > MaxWidth || picture.height > MaxHeight) return;
   add_up(picture);
   add_up_cells();
-  fine_.blur(sigma_in_cells(near_px, cell), near_weight, fine_scratch_);
+  fine_.blur(sigma_in_cells(near_px, cell), near_haze, fine_scratch_);
   widest_ = coarse_;
-  coarse_.blur(sigma_in_cells(wider * near_px, cell * coarse), far_weight, coarse_scratch_);
-  widest_.blur(sigma_in_cells(wider * wider * near_px, cell * coarse), farthest_weight, coarse_scratch_);
+  coarse_.blur(sigma_in_cells(wider * near_px, cell * coarse), far_haze, coarse_scratch_);
+  widest_.blur(sigma_in_cells(wider * wider * near_px, cell * coarse), farthest_haze, coarse_scratch_);
   for (std::int32_t row = 0; row < fine_.rows; ++row) {
     for (std::int32_t column = 0; column < fine_.columns; ++column) {
       const auto in_coarse = [](std::int32_t at) { return (static_cast<float>(at) + 0.5f) / coarse - 0.5f; };

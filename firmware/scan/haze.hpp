@@ -16,8 +16,9 @@
 
 namespace lf::scan {
 
-// M takes this share of a uniform picture.
-inline constexpr float haze_share = 0.248f + 0.275f + 0.118f;
+// Of the light that scatters once: what goes into each Gaussian, and the share of a uniform picture that M is.
+inline constexpr float near_haze = 0.248f, far_haze = 0.275f, farthest_haze = 0.118f;
+inline constexpr float haze_share = near_haze + far_haze + farthest_haze;
 // What scatters near: it belongs to the picture that the lens blurs.
 inline constexpr float near_share = 0.136f + 0.199f;
 

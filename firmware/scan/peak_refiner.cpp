@@ -10,12 +10,12 @@ namespace {
 
 constexpr std::size_t blocks_at_first = 8;  // of eight peaks: 64 of them tell the stripe's width within 2 %
 constexpr std::size_t blocks_later = 2;
-constexpr std::uint32_t first_pictures = 8;  // with as many blocks as the very first
-constexpr float clear_water = 0.01f;         // of the scatter: below it the haze is a grey level at most
-constexpr std::uint32_t look_for_haze = 8;   // pictures
-constexpr int first_rounds = 12;             // of learning, in the first picture
-constexpr float settled = 0.02f;
-constexpr float most_model_share = 0.3f;
+constexpr std::uint32_t first_pictures = 8;        // with as many blocks as the very first
+constexpr float clear_water = 0.01f;               // of the scatter: below it the haze is a grey level at most
+constexpr std::uint32_t look_for_haze = 8;         // pictures
+constexpr int first_rounds = 12;                   // of learning, in the first picture
+constexpr float settled = 0.02f;                   // change of a round: what 64 columns can tell
+constexpr float most_model_share = 0.3f;           // of the stripe's peak: beyond it no column is a misfit
 constexpr std::int32_t farthest_half_height = 20;  // rows from a peak
 constexpr float half_height_to_sigma = 1 / 2.355f;
 constexpr std::int32_t border = 3;  // rows at a window's ends, by which the background is told where there is no picture of it
@@ -110,7 +110,7 @@ void BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::begin_with_width(const Pair& 
   std::array<std::int32_t, 2 * farthest_half_height + 2> counts{};
   std::int32_t measured = 0;
   for (Peak& peak : peaks) {
-    const std::int32_t line = line_at(peak), middle = static_cast<std::int32_t>(std::lround(along(peak)));
+    const std::int32_t line = line_at(pair, peak), middle = static_cast<std::int32_t>(std::lround(along(peak)));
     if (middle < 0 || middle >= length(pair)) continue;
     const bool two = pair.off.valid();
     const float beside =
@@ -119,6 +119,7 @@ void BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::begin_with_width(const Pair& 
       return grey(pair.on, line, place) - (two ? gain_ * grey(pair.off, line, place) : beside);
     };
     const float half = 0.5f * stripe(middle);
+    if (!(half > 0)) continue;
     std::int32_t before = 0, after = 0;
     while (before < farthest_half_height && stripe(middle - before - 1) > half) ++before;
     while (after < farthest_half_height && stripe(middle + after + 1) > half) ++after;
@@ -136,8 +137,10 @@ void BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::begin_with_width(const Pair& 
 }
 
 template <class Pixel, std::int32_t MaxWidth, std::int32_t MaxHeight>
-std::int32_t BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::line_at(const Peak& peak) const {
-  return static_cast<std::int32_t>(std::lround(config_.axis == PeakAxis::column ? peak.u_px : peak.v_px));
+std::int32_t BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::line_at(const Pair& pair, const Peak& peak) const {
+  const bool columns = config_.axis == PeakAxis::column;
+  const auto last = static_cast<float>((columns ? pair.on.width : pair.on.height) - 1);
+  return static_cast<std::int32_t>(std::lround(std::clamp(columns ? peak.u_px : peak.v_px, 0.0f, last)));
 }
 
 template <class Pixel, std::int32_t MaxWidth, std::int32_t MaxHeight>
@@ -172,7 +175,7 @@ auto BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::gather(const Pair& pair, std:
     Peak& peak = peaks[std::min(lane, peaks.size() - 1)];
     firsts[lane] = static_cast<std::int32_t>(std::lround(along(peak))) - reach;
     windows.start[static_cast<int>(lane)] = along(peak) - static_cast<float>(firsts[lane]);
-    put(pair, line_at(peak), firsts[lane], static_cast<int>(lane), windows);
+    put(pair, line_at(pair, peak), firsts[lane], static_cast<int>(lane), windows);
   }
   return firsts;
 }
@@ -192,8 +195,8 @@ void BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::put(const Pair& pair, std::in
   for (std::int32_t i = 0; i <= last; ++i) {
     const std::int32_t place = first + i, inside = std::clamp<std::int32_t>(place, 0, end);
     const auto lit = static_cast<std::int32_t>(on.first[inside * on.step]);
-    const float slope = static_cast<float>(i) / static_cast<float>(last);
-    const float background = two ? gain_ * to_grey * static_cast<float>(off.first[inside * off.step]) : before + (after - before) * slope;
+    const float passed = static_cast<float>(i) / static_cast<float>(last);
+    const float background = two ? gain_ * to_grey * static_cast<float>(off.first[inside * off.step]) : before + (after - before) * passed;
     const auto row = static_cast<std::size_t>(i);
     windows.stripe[row][lane] = to_grey * static_cast<float>(lit) - background;
     windows.ambient[row][lane] = two ? background : 0;

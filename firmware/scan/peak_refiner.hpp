@@ -17,7 +17,7 @@
 
 namespace lf::scan {
 
-// Of the stripe's peak, what the fit's model leaves out at least: a grey level of 200. From there it is learned.
+// What the fit's model leaves out at least, over the stripe's peak: one grey level of a stripe of 200. More is learned.
 inline constexpr float least_model_share = 0.005f;
 
 struct RefinerConfig {
@@ -63,7 +63,8 @@ class BasicPeakRefiner {
   using Firsts = std::array<std::int32_t, lane_count>;  // row of each lane's window
 
   float& along(Peak& peak) const { return config_.axis == PeakAxis::column ? peak.v_px : peak.u_px; }
-  std::int32_t line_at(const Peak& peak) const;
+  // Within the picture, wherever the peak is said to be.
+  std::int32_t line_at(const Pair& pair, const Peak& peak) const;
   std::int32_t length(const Pair& pair) const { return config_.axis == PeakAxis::column ? pair.on.height : pair.on.width; }
   // A line's pixels: `first` its first, `step` from one to the next.
   struct Line {

@@ -47,7 +47,7 @@ Lanes variance_of(const PixelNoise& noise, Lanes ambient, float near) {
   return (square(noise.read_grey) + ambient / noise.electrons_per_grey) / square(near);
 }
 
-// Takes the haze out. The haze of a hazy picture is larger than that of the clear one by as much as the picture is: 1 / clear for a uniform picture.
+// Takes the haze out. It was computed of the hazy picture, which is brighter than the clear one: a uniform one by near + haze_share * scatter.
 void clear_haze(const StripeWindows& windows, float scatter, Model& m) {
   const float near = 1 + near_share * scatter, share = scatter / (near + haze_share * scatter);
   for (std::int32_t i = 0; i < windows.count; ++i) {

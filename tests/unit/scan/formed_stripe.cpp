@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 namespace lf::test {
@@ -163,6 +164,27 @@ FormedImage form(const FormedStripe& s) {
     image.to_edge_px.push_back(distance_to_edge(s.bars, u, row_of(s, u)));
   }
   return image;
+}
+
+double width_px(const FormedStripe& s) {
+  return std::sqrt(s.beam_sigma_px * s.beam_sigma_px + s.lens_sigma_px * s.lens_sigma_px + 1.0 / 12);
+}
+
+void over_edges(FormedStripe stripe, int step_deg, const VisitEdges& visit) {
+  constexpr int border = 12;  // columns, where the picture's end is in the blur
+  for (int angle = 0; angle <= 90; angle += step_deg) {
+    for (int seed = 1; seed <= 2; ++seed) {
+      stripe.bars.angle_rad = angle * std::numbers::pi / 180;
+      stripe.bars.phase_px = 3.3 * seed;
+      stripe.seed = static_cast<std::uint64_t>(100 * seed + angle);
+      const FormedImage image = form(stripe);
+      std::vector<int> columns;
+      for (int u = border; u < image.width - border; ++u) {
+        if (image.to_edge_px[static_cast<std::size_t>(u)] <= 2.5 * width_px(stripe)) columns.push_back(u);
+      }
+      visit(stripe, image, columns);
+    }
+  }
 }
 
 }  // namespace lf::test

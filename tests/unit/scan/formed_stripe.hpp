@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace lf::test {
@@ -53,5 +54,13 @@ struct FormedImage {
 };
 
 FormedImage form(const FormedStripe& stripe);
+
+// Standard deviation of the stripe in the picture: the beam's, the lens' and the pixel's.
+double width_px(const FormedStripe& stripe);
+
+// Calls visit(stripe, image, columns) for pictures of the stripe with edges at every `step_deg` from 0 to 90 degrees, two of each. The columns are those whose edge
+// lies within 2.5 widths of the stripe.
+using VisitEdges = std::function<void(const FormedStripe&, const FormedImage&, const std::vector<int>& columns)>;
+void over_edges(FormedStripe stripe, int step_deg, const VisitEdges& visit);
 
 }  // namespace lf::test

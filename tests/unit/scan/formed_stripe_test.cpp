@@ -175,25 +175,17 @@ double product_centre(const FormedImage& image, int u, double start, double sigm
 
 using Estimate = std::function<double(const FormedImage&, int column, double start)>;
 
-// Of each estimate, over all columns whose edge lies within 2.5 sigmas of the stripe, edges at seven angles.
-std::vector<double> rms_at_edges(FormedStripe stripe, const std::vector<Estimate>& estimates) {
+// Of each estimate, over edges at seven angles.
+std::vector<double> rms_at_edges(const FormedStripe& stripe, const std::vector<Estimate>& estimates) {
   std::vector<double> squares(estimates.size());
   int columns = 0;
-  const double total = std::sqrt(stripe.beam_sigma_px * stripe.beam_sigma_px + stripe.lens_sigma_px * stripe.lens_sigma_px + 1.0 / 12);
-  for (int angle = 0; angle <= 90; angle += 15) {
-    for (int seed = 1; seed <= 2; ++seed) {
-      stripe.bars.angle_rad = angle * pi / 180;
-      stripe.bars.phase_px = 3.3 * seed;
-      stripe.seed = static_cast<std::uint64_t>(100 * seed + angle);
-      const FormedImage image = form(stripe);
-      for (int u = 12; u < image.width - 12; ++u) {
-        if (image.to_edge_px[static_cast<std::size_t>(u)] > 2.5 * total) continue;
-        const double truth = image.centre_px[static_cast<std::size_t>(u)];
-        for (std::size_t i = 0; i < estimates.size(); ++i) squares[i] += std::pow(estimates[i](image, u, truth) - truth, 2);
-        ++columns;
-      }
+  over_edges(stripe, 15, [&](const FormedStripe&, const FormedImage& image, const std::vector<int>& at_edges) {
+    for (const int u : at_edges) {
+      const double truth = image.centre_px[static_cast<std::size_t>(u)];
+      for (std::size_t i = 0; i < estimates.size(); ++i) squares[i] += std::pow(estimates[i](image, u, truth) - truth, 2);
+      ++columns;
     }
-  }
+  });
   for (double& square : squares) square = std::sqrt(square / columns);
   return squares;
 }
@@ -207,7 +199,7 @@ TEST(EstimatorsAtEdges, ErrAsMuchOnThesePicturesAsElsewhere) {
   for (const Row& row : {Row{1.2, 0.58, 0.62, 0.33}, Row{1.6, 0.79, 0.89, 0.30}, Row{2.4, 1.21, 1.52, 0.23}}) {
     FormedStripe stripe;
     stripe.beam_sigma_px = row.beam_px;
-    const double total = std::sqrt(row.beam_px * row.beam_px + 1 + 1.0 / 12);
+    const double total = width_px(stripe);
     const Estimate mass = [&](const FormedImage& image, int u, double start) {
       return centre_of_mass(image, u, static_cast<int>(std::lround(start)), static_cast<int>(std::ceil(2.5 * total)));
     };

@@ -16,6 +16,7 @@ namespace {
 using test::form;
 using test::FormedImage;
 using test::FormedStripe;
+using test::width_px;
 
 // Half of the rows that are brighter than half the peak, of the middle one of the columns, as a Gaussian's standard deviation: where an estimate may begin.
 double width_at_half_height_px(const FormedImage& image) {
@@ -73,7 +74,7 @@ TEST(OpticsEstimate, FindsTheStripesWidthAndTheLensAtMarks) {
       const FormedImage image = form(s);
       OpticsEstimate found(first_guess(image));
       EXPECT_LE(estimate(s, image, found), 6) << "beam " << beam << " px, lens " << lens << " px";
-      const float width = width_in_picture_px(optics_of(s));
+      const float width = static_cast<float>(width_px(s));
       EXPECT_NEAR(width_in_picture_px(found.optics()), width, 0.04 * width) << "beam " << beam << " px, lens " << lens << " px";
       // A narrow beam's own width hides a lens that is narrower still.
       EXPECT_NEAR(found.optics().lens_px, lens, beam < 1 && lens < 1 ? 0.3 : 0.15 * lens)
@@ -110,7 +111,7 @@ TEST(OpticsEstimate, WhatItFindsInHazeFitsTheStripes) {
         const StripeFits fits = fit_stripes(windows, found.optics(), noise_of(stripes[i]), FitStart::far);
         for (int lane = 0; lane < lane_count; ++lane) {
           const auto column = static_cast<std::size_t>(u + lane);
-          if (images[i].to_edge_px[column] > 2.5 * width_in_picture_px(optics_of(stripes[i]))) continue;
+          if (images[i].to_edge_px[column] > 2.5 * width_px(stripes[i])) continue;
           lost += fits.found[lane] == 0;
           squares += std::pow(first[static_cast<std::size_t>(lane)] + fits.centre[lane] - images[i].centre_px[column], 2);
           ++columns;
@@ -140,7 +141,7 @@ TEST(OpticsEstimate, PlainPaintTellsTheWidthAndNothingOfTheLens) {
     OpticsEstimate found(first_guess(image));
     const float told = found.optics().lens_px;
     EXPECT_LE(estimate(s, image, found), 6) << "beam " << beam << " px";
-    const float width = width_in_picture_px(optics_of(s));
+    const float width = static_cast<float>(width_px(s));
     EXPECT_NEAR(width_in_picture_px(found.optics()), width, 0.04 * width) << "beam " << beam << " px";
     EXPECT_NEAR(found.optics().lens_px, told, 0.1f * told) << "beam " << beam << " px";
   }

@@ -19,6 +19,7 @@ namespace {
 using test::form;
 using test::FormedImage;
 using test::FormedStripe;
+using test::width_px;
 
 constexpr std::int32_t width = 320, height = 192;
 
@@ -31,10 +32,6 @@ FormedStripe scene(double beam_px) {
   s.speckle = 0.18;
   s.bars.phase_px = 3.3;
   return s;
-}
-
-double width_of(const FormedStripe& s) {
-  return std::sqrt(s.beam_sigma_px * s.beam_sigma_px + s.lens_sigma_px * s.lens_sigma_px + 1.0 / 12);
 }
 
 template <class Pixel>
@@ -88,7 +85,7 @@ void compare(const FormedStripe& s, const FormedImage& image, std::span<const Pe
       ++errors.far;
       continue;
     }
-    (image.to_edge_px[u] <= 2.5 * width_of(s) ? errors.at_edges : errors.elsewhere).push_back(error);
+    (image.to_edge_px[u] <= 2.5 * width_px(s) ? errors.at_edges : errors.elsewhere).push_back(error);
   }
 }
 
@@ -135,7 +132,7 @@ TEST(PeakRefiner, LearnsAnyWidth) {
     const auto refiner = std::make_unique<PeakRefiner>();
     const FormedStripe s = scene(beam);
     const Errors errors = over_angles(s, *refiner);
-    EXPECT_NEAR(width_in_picture_px(refiner->optics()), width_of(s), 0.05 * width_of(s)) << "beam " << beam << " px";
+    EXPECT_NEAR(width_in_picture_px(refiner->optics()), width_px(s), 0.05 * width_px(s)) << "beam " << beam << " px";
     EXPECT_LT(Errors::rms(errors.at_edges), 0.32) << "beam " << beam << " px";
     EXPECT_LE(errors.far, 0.005 * errors.columns) << "beam " << beam << " px";
   }
@@ -152,10 +149,9 @@ TEST(PeakRefiner, BearsABackgroundOfAnotherExposure) {
   }
 }
 
-// The same picture on its side, and in twelve bits.
+// The same picture on its side, its levels sixteenfold in twelve bits.
 TEST(PeakRefiner, RowsAndDepthsAreAllOne) {
   FormedStripe s = scene(1.6);
-  s.bits = 12;  // of values up to 255 here: sixteen times as fine below
   s.bars.angle_rad = 0.5;
   const FormedImage image = form(s);
   const auto on = pixels<std::uint16_t>(image.on, 16, 4095), off = pixels<std::uint16_t>(image.off, 16, 4095);
@@ -208,7 +204,7 @@ TEST(PeakRefiner, RefusesWhatItCannotTake) {
   EXPECT_EQ(refiner->refine(sound, sound, {}), 0u);
   EXPECT_EQ(refiner->counters().not_fitted, 0u);
   // Peaks where there is none, at the corners and outside.
-  peaks = {Peak{0, 0}, Peak{319, 191}, Peak{10, 500}};
+  peaks = {Peak{0, 0}, Peak{319, 191}, Peak{4000, 500}};
   EXPECT_EQ(refiner->refine(sound, sound, peaks), 0u);
   EXPECT_EQ(refiner->counters().not_fitted + refiner->counters().misfits, 3u);
 }

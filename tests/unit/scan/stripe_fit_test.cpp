@@ -19,8 +19,10 @@ using test::FormedImage;
 using test::FormedStripe;
 using test::noise_of;
 using test::optics_of;
+using test::over_edges;
 using test::PairHaze;
 using test::put;
+using test::width_px;
 
 constexpr double pi = std::numbers::pi;
 
@@ -69,22 +71,12 @@ void fit_columns(const FormedStripe& s, const FormedImage& image, const std::vec
   }
 }
 
-// Columns with an edge within 2.5 widths of the stripe, edges at four angles.
-Errors at_edges(FormedStripe s, double start_error_px = 0) {
+// Edges at four angles.
+Errors at_edges(const FormedStripe& stripe, double start_error_px = 0) {
   Errors errors;
-  for (int angle = 0; angle <= 90; angle += 30) {
-    for (int seed = 1; seed <= 2; ++seed) {
-      s.bars.angle_rad = angle * pi / 180;
-      s.bars.phase_px = 3.3 * seed;
-      s.seed = static_cast<std::uint64_t>(100 * seed + angle);
-      const FormedImage image = form(s);
-      std::vector<int> columns;
-      for (int u = 12; u < image.width - 12; ++u) {
-        if (image.to_edge_px[static_cast<std::size_t>(u)] <= 2.5 * width_in_picture_px(optics_of(s))) columns.push_back(u);
-      }
-      fit_columns(s, image, columns, start_error_px, FitStart::far, errors);
-    }
-  }
+  over_edges(stripe, 30, [&](const FormedStripe& s, const FormedImage& image, const std::vector<int>& columns) {
+    fit_columns(s, image, columns, start_error_px, FitStart::far, errors);
+  });
   return errors;
 }
 
@@ -103,7 +95,7 @@ Errors on_plain_paint(FormedStripe s, double start_error_px, FitStart start) {
 // The bound of a centre on plain paint: speckle moves a centre of mass by contrast * sqrt(sigma / (4 sqrt(pi))), a closed form; the sensor's noise moves a
 // fit by what the integral over a bell leaves, with the noise of both pictures at each row.
 double bound_px(const FormedStripe& s) {
-  const double sigma = std::sqrt(s.beam_sigma_px * s.beam_sigma_px + s.lens_sigma_px * s.lens_sigma_px + 1.0 / 12);
+  const double sigma = width_px(s);
   const double peak = s.peak_grey * s.beam_sigma_px / sigma;
   double information = 0;
   for (int v = -40; v <= 40; ++v) {
@@ -193,7 +185,7 @@ TEST(StripeFit, FindsTheStripeFromTwoWidthsAway) {
   for (const double beam : {1.2, 2.4}) {
     FormedStripe s;
     s.beam_sigma_px = beam;
-    const Errors near = at_edges(s), far = at_edges(s, 1.5 * width_in_picture_px(optics_of(s)));
+    const Errors near = at_edges(s), far = at_edges(s, 1.5 * width_px(s));
     EXPECT_LE(far.lost, static_cast<int>(far.px.size()) / 200) << "beam " << beam;
     EXPECT_LT(far.rms_px(), 1.1 * near.rms_px()) << "beam " << beam;
   }
