@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "host_sim/optics/formation/normal_deviates.hpp"
 #include "host_sim/optics/lanes.hpp"
 #include "host_sim/optics/optics.hpp"
 
@@ -25,8 +26,5 @@ class Sensor {
 
   float grey_per_radiance_, read_variance_, variance_per_grey_;
 };
-
-// The frame's noise key.
-std::uint64_t noise_key(std::uint64_t seed, std::uint64_t camera, std::uint64_t frame_number);
 
 }  // namespace lf::optics

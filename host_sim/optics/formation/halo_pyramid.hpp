@@ -1,0 +1,57 @@
+// Wide blurs of a whole picture, cheap: each Gaussian is applied to a picture halved until it is a few pixels wide there, and the sums are brought back up.
+//
+// Halving and doubling are filters of their own, (1 3 3 1) / 8 each: together they have the variance (n^2 - 1) / 2 after a reduction by n, which the Gaussian's own
+// is less by. A picture goes on past its borders as it is there, so an even one stays even. The sums have one order for any number of threads.
+#pragma once
+
+#include <vector>
+
+#include "host_sim/optics/formation/gaussian_taps.hpp"
+#include "host_sim/optics/worker_pool.hpp"
+
+namespace lf::optics {
+
+// Rows of floats in somebody's memory; each row may be read up to a multiple of eight.
+template <class Value>
+struct PlaneView {
+  Value* first = nullptr;
+  std::size_t stride = 0;
+  int width = 0, height = 0;
+  Value* row(int v) const { return first + static_cast<std::size_t>(v) * stride; }
+};
+
+struct HaloTerm {
+  float weight = 0;
+  double sigma_px = 0;
+};
+
+class HaloPyramid {
+ public:
+  HaloPyramid(int width, int height);
+
+  // Adds to `onto` the sum over `scattered_terms` of weight * Gaussian(sigma) * scattered, and the one `stray_term` of the sum of `stray`, all of the same size.
+  // `onto` may be one of the stray ones.
+  void add(PlaneView<const float> scattered, const std::vector<HaloTerm>& scattered_terms, const std::vector<PlaneView<const float>>& stray,
+           HaloTerm stray_term, PlaneView<float> onto, WorkerPool& pool);
+
+ private:
+  struct Level {
+    int width = 0, height = 0;
+    std::size_t stride = 0;
+    std::vector<float> scattered, stray, halo;
+  };
+  struct Placed {
+    GaussianTaps taps;
+    float weight = 0;
+    bool stray = false;
+  };
+  void place(HaloTerm term, bool stray);
+  void halve_sources(PlaneView<const float> scattered, const std::vector<PlaneView<const float>>& stray, WorkerPool& pool);
+  void gather(std::size_t level);
+
+  std::vector<Level> levels_;               // levels_[0] is half the picture
+  std::vector<std::vector<Placed>> terms_;  // of each level
+  std::vector<float> row_;
+};
+
+}  // namespace lf::optics

@@ -1,0 +1,34 @@
+// The lens's spot over the field of view: round, and wider toward the corners.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "host_sim/optics/formation/gaussian_taps.hpp"
+#include "host_sim/optics/formation/halo_pyramid.hpp"
+
+namespace lf::optics {
+
+class LensSpot {
+ public:
+  // The spot's standard deviation is `centre_px` in the middle of the picture and `corner_px` at its corners; its variance grows with the distance squared.
+  LensSpot(int width, int height, double centre_px, double corner_px);
+
+  double sigma_px(double u, double v) const;
+
+  // Row v of `from` as the lens shows it, into `to` (the padded width); `scratch` has room for a row and reach() on both sides. Packets of eight
+  // pixels for which `wanted` (one a packet, or nothing: all) is 0 are set to 0.
+  void show(PlaneView<const float> from, int v, const std::uint8_t* wanted, float* scratch, float* to) const;
+
+  static constexpr std::size_t reach() { return GaussianTaps::most + 8; }
+
+ private:
+  static constexpr int steps = 32;  // of the variance, from the centre to the corners
+  const GaussianTaps& taps_of(int u, int v) const;
+
+  double centre_u_, centre_v_, per_corner2_, variance_, growth_;
+  std::array<GaussianTaps, steps + 1> taps_;
+};
+
+}  // namespace lf::optics

@@ -1,0 +1,163 @@
+// The pieces of which a picture will be made after the rays, each against a closed form or a published figure.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "host_sim/optics/formation/halo_pyramid.hpp"
+#include "host_sim/optics/formation/lens_spot.hpp"
+#include "host_sim/optics/formation/speckle.hpp"
+
+namespace lf::optics::test {
+namespace {
+
+double bell(double x, double sigma) { return std::exp(-x * x / (2 * sigma * sigma)) / (sigma * std::sqrt(2 * pi)); }
+
+TEST(GaussianTaps, HaveTheVarianceThatIsAskedFor) {
+  for (double sigma = 0.05; sigma < 4.5; sigma += 0.07) {
+    const GaussianTaps taps = GaussianTaps::of(sigma);
+    double sum = taps.tap[0], variance = 0;
+    for (int k = 1; k <= taps.radius; ++k) {
+      sum += 2.0 * taps.tap[static_cast<std::size_t>(k)];
+      variance += 2.0 * k * k * taps.tap[static_cast<std::size_t>(k)];
+    }
+    EXPECT_NEAR(sum, 1, 1e-6) << sigma;
+    EXPECT_NEAR(variance, sigma * sigma, 1e-4 * sigma * sigma) << sigma;
+  }
+}
+
+struct Planes {
+  explicit Planes(int w, int h)
+      : width(w), height(h), stride((static_cast<std::size_t>(w) + 7) / 8 * 8), in(stride * static_cast<std::size_t>(h)), out(in) {}
+  void fill(float value) { std::fill(in.begin(), in.end(), value); }
+  PlaneView<const float> source() const { return {in.data(), stride, width, height}; }
+  PlaneView<float> target() { return {out.data(), stride, width, height}; }
+  int width, height;
+  std::size_t stride;
+  std::vector<float> in, out;
+};
+
+TEST(HaloPyramid, SpreadsALineAsTheGaussianThatWasAskedFor) {
+  WorkerPool pool(2);
+  for (const double sigma : {2.0, 2.4, 3.1, 5.5, 8.0, 20.0, 32.0, 60.0}) {
+    double worst = 0;
+    for (int place = 0; place < 16; ++place) {
+      Planes planes(640, 41);
+      const int line = 312 + place;
+      for (int v = 0; v < planes.height; ++v) planes.in[static_cast<std::size_t>(v) * planes.stride + static_cast<std::size_t>(line)] = 1;
+      HaloPyramid(planes.width, planes.height).add(planes.source(), {{1.f, sigma}}, {planes.source()}, {}, planes.target(), pool);
+      for (int u = 0; u < planes.width; ++u) {
+        worst = std::max(worst,
+                         std::abs(planes.out[20 * planes.stride + static_cast<std::size_t>(u)] - bell(u - line, sigma)) / bell(0, sigma));
+      }
+    }
+    EXPECT_LT(worst, sigma < 3 ? 0.06 : 0.03) << sigma;
+  }
+}
+
+TEST(HaloPyramid, LeavesAnEvenPictureEven) {
+  WorkerPool pool(1);
+  for (const auto& [width, height] : {std::pair{640, 480}, std::pair{333, 217}, std::pair{17, 3}, std::pair{1, 1}}) {
+    Planes planes(width, height);
+    planes.fill(7);
+    HaloPyramid(width, height)
+        .add(planes.source(), {{0.5f, 2.0}, {0.25f, 32.0}, {0.1f, 400.0}}, {planes.source()}, {0.05f, 6.0}, planes.target(), pool);
+    for (int v = 0; v < height; ++v) {
+      for (int u = 0; u < width; ++u)
+        ASSERT_NEAR(planes.out[static_cast<std::size_t>(v) * planes.stride + static_cast<std::size_t>(u)], 0.9 * 7, 1e-4);
+    }
+  }
+}
+
+TEST(LensSpot, TurnsAStepIntoTheNormalDistributionsOwn) {
+  const int width = 640, height = 480;
+  Planes planes(width, height);
+  const LensSpot lens(width, height, 0.9, 1.8);
+  std::vector<float> scratch(planes.stride + 2 * LensSpot::reach()), row(planes.stride);
+  for (const auto& [edge, v] : {std::pair{320, 240}, std::pair{40, 20}, std::pair{600, 460}, std::pair{160, 240}}) {
+    for (int y = 0; y < height; ++y) {
+      for (int u = 0; u < width; ++u)
+        planes.in[static_cast<std::size_t>(y) * planes.stride + static_cast<std::size_t>(u)] = u < edge ? 0.f : 1.f;
+    }
+    lens.show(planes.source(), v, nullptr, scratch.data(), row.data());
+    const double sigma = lens.sigma_px(edge - 0.5, v);
+    for (int u = edge - 6; u < edge + 6; ++u) {
+      // Pixels add their own width to the step, and samples of a bell their own to it: under a hundredth at this width.
+      EXPECT_NEAR(row[static_cast<std::size_t>(u)], 0.5 * std::erfc(-(u - (edge - 0.5)) / (sigma * std::sqrt(2.0))), 0.02)
+          << edge << " " << u;
+    }
+  }
+  EXPECT_NEAR(lens.sigma_px(319.5, 239.5), 0.9, 1e-9);
+  EXPECT_NEAR(lens.sigma_px(0, 0), 1.8, 1e-9);
+}
+
+TEST(LensSpot, ShowsNothingWhereNothingIsWanted) {
+  Planes planes(64, 32);
+  planes.fill(3);
+  const LensSpot lens(64, 32, 1.2, 1.2);
+  std::vector<float> scratch(planes.stride + 2 * LensSpot::reach()), row(planes.stride);
+  const std::vector<std::uint8_t> wanted{0, 0, 1, 1, 0, 0, 0, 0};
+  lens.show(planes.source(), 10, wanted.data(), scratch.data(), row.data());
+  for (int u = 0; u < 64; ++u) EXPECT_NEAR(row[static_cast<std::size_t>(u)], u / 8 == 2 || u / 8 == 3 ? 3 : 0, 1e-5) << u;
+}
+
+WordLanes numbers(std::uint32_t first) { return WordLanes{0, 1, 2, 3, 4, 5, 6, 7} + first; }
+
+TEST(Speckle, HasMeanOneAndItsContrast) {
+  for (const double contrast : {0.05, 0.18, 0.35}) {
+    const Speckle speckle(contrast, 5, {0.1234, 0.5, -0.3});
+    double sum = 0, squares = 0;
+    const std::uint32_t count = 200'000;
+    for (std::uint32_t i = 0; i < count; i += lane_count) {
+      const Lanes factor = speckle.factor(numbers(i));
+      for (int lane = 0; lane < lane_count; ++lane) sum += factor[lane], squares += double(factor[lane]) * factor[lane];
+    }
+    const double mean = sum / count;
+    EXPECT_NEAR(mean, 1, 4 * contrast / std::sqrt(double(count)) + 2e-3);
+    EXPECT_NEAR(std::sqrt(squares / count - mean * mean), contrast, 0.02 * contrast);
+  }
+}
+
+double likeness(const Speckle& a, const Speckle& b) {
+  double both = 0, first = 0, second = 0;
+  for (std::uint32_t i = 0; i < 40'000; i += lane_count) {
+    const Lanes x = a.factor(numbers(i)) - 1.f, y = b.factor(numbers(i)) - 1.f;
+    for (int lane = 0; lane < lane_count; ++lane)
+      both += double(x[lane]) * y[lane], first += double(x[lane]) * x[lane], second += double(y[lane]) * y[lane];
+  }
+  return both / std::sqrt(first * second);
+}
+
+TEST(Speckle, IsFrozenWithTheEmitterAndNewOnceThatHasMoved) {
+  const Vec3 place(0.2, -0.1, 0.35);
+  const Speckle at(0.18, 9, place);
+  EXPECT_DOUBLE_EQ(likeness(at, Speckle(0.18, 9, place)), 1);
+  EXPECT_GT(likeness(at, Speckle(0.18, 9, place + Vec3(0.00002, 0, 0))), 0.9);
+  for (const Vec3& move : {Vec3(0.0015, 0, 0), Vec3(0, -0.0015, 0), Vec3(0, 0, 0.0015)})
+    EXPECT_LT(std::abs(likeness(at, Speckle(0.18, 9, place + move))), 0.05);
+}
+
+// The centre of mass of a Gaussian stripe under speckle errs by 0.424 C (lambda F# / p) sqrt(s) pixels, where one pixel's contrast is 0.27 C at 6 um, F/2.8 and 520 nm.
+TEST(Speckle, MovesAStripesCentreOfMassAsMuchAsCoherentLightDoes) {
+  const double lambda_f_over_pitch = 0.52 * 2.8 / 6;
+  for (const double s : {1.2, 1.6, 2.4, 3.5}) {
+    const double expected = 0.424 * 0.71 * lambda_f_over_pitch * std::sqrt(s);
+    const Speckle speckle(0.27 * 0.71, 77, {0, 0, 0.1});
+    double squares = 0;
+    const int columns = 4000;
+    for (int column = 0; column < columns; ++column) {
+      double sum = 0, moment = 0;
+      for (int v = -20; v < 20; v += lane_count) {
+        const Lanes factor = speckle.factor(numbers(static_cast<std::uint32_t>(column * 64 + v + 20)));
+        for (int lane = 0; lane < lane_count; ++lane) {
+          const double light = bell(v + lane, s) * factor[lane];
+          sum += light, moment += light * (v + lane);
+        }
+      }
+      squares += moment / sum * moment / sum;
+    }
+    EXPECT_NEAR(std::sqrt(squares / columns), expected, 0.09 * expected) << s;
+  }
+}
+
+}  // namespace
+}  // namespace lf::optics::test
