@@ -24,12 +24,12 @@ double sample_bell(double t, int radius, std::array<double, GaussianTaps::most +
 
 GaussianTaps GaussianTaps::of(double sigma_px) {
   GaussianTaps taps;
-  const double sigma = std::clamp(sigma_px, 0.0, 4.5);
+  const double sigma = std::clamp(sigma_px, 0.0, widest_px);
   taps.tap[0] = 1;
   if (sigma < 1e-3) return taps;
   taps.radius = std::clamp(static_cast<int>(std::ceil(reach * sigma)), 1, most);
   std::array<double, most + 1> tap{};
-  double low = 1e-3, high = 100;  // sampling and cutting off change the variance: the spread that gives the wanted one, by halving
+  double low = 1e-3, high = 100;  // the spread whose samples have the wanted variance lies between
   for (int i = 0; i < 60; ++i) {
     const double middle = std::sqrt(low * high);
     (sample_bell(middle, taps.radius, tap) < sigma * sigma ? low : high) = middle;

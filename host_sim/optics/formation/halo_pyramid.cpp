@@ -21,7 +21,8 @@ void pad(float* row, int width) {
   std::fill_n(row + width, margin, row[width - 1]);
 }
 
-// Row r of the sum of `from` halved, by (1 3 3 1) / 8 both ways: the mean place of the light is kept. `row` has room for `margin` on both sides.
+// Adds `from` up, halves the sum by (1 3 3 1) / 8 both ways, and writes row r of that. Unlike the mean of 2x2, this keeps the light's mean place. `row` has room for
+// `margin` on both sides.
 void halve_row(const std::vector<PlaneView<const float>>& from, int r, int width, int height, float* row, float* to) {
   const auto clamped = [height](int v) { return std::clamp(v, 0, height - 1); };
   for (int u = 0; u < width; u += lane_count) {
@@ -42,7 +43,7 @@ void halve_row(const std::vector<PlaneView<const float>>& from, int r, int width
   }
 }
 
-// `row` has room for `margin` on both sides. Twice the rows' number and width come of `low`: this is row v of them.
+// Doubles `low` by straight lines between its pixels, and adds row v of that. `row` has room for `margin` on both sides.
 void add_doubled_row(PlaneView<const float> low, int v, float* row, int width, float* onto) {
   const int near = v / 2, far = std::clamp(v % 2 == 0 ? near - 1 : near + 1, 0, low.height - 1);
   for (int i = 0; i < low.width; i += lane_count) {
@@ -111,7 +112,7 @@ void HaloPyramid::halve_sources(PlaneView<const float> scattered, const std::vec
       halve_row(stray, r, scattered.width, scattered.height, row.data() + margin, first.stray.data() + at);
     }
   });
-  for (std::size_t i = 1; i < levels_.size() && i < terms_.size(); ++i) {
+  for (std::size_t i = 1; i < levels_.size(); ++i) {
     const Level& from = levels_[i - 1];
     Level& to = levels_[i];
     for (int r = 0; r < to.height; ++r) {

@@ -1,7 +1,7 @@
 // Wide blurs of a whole picture, cheap: each Gaussian is applied to a picture halved until it is a few pixels wide there, and the sums are brought back up.
 //
-// Halving and doubling are filters of their own, (1 3 3 1) / 8 each: together they have the variance (n^2 - 1) / 2 after a reduction by n, which the Gaussian's own
-// is less by. A picture goes on past its borders as it is there, so an even one stays even. The sums have one order for any number of threads.
+// Halving and doubling blur, too, by (1 3 3 1) / 8 each. A reduction by n and back has a variance of (n^2 - 1) / 2, so the Gaussian in between has that much less.
+// Beyond its borders a picture goes on as it ends: an even one stays even. The sums are taken in one order for any number of threads.
 #pragma once
 
 #include <vector>
