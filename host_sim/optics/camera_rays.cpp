@@ -1,5 +1,6 @@
 #include "host_sim/optics/camera_rays.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "shared/input_error.hpp"
@@ -61,7 +62,8 @@ std::optional<CameraRay> camera_ray(const CameraIntrinsics& intrinsics, const st
   return ray;
 }
 
-CameraRays::CameraRays(const CameraIntrinsics& intrinsics, const std::optional<FlatPort>& port) : port_(port.has_value()) {
+CameraRays::CameraRays(const CameraIntrinsics& intrinsics, const std::optional<FlatPort>& port)
+    : width_(intrinsics.width), height_(intrinsics.height), port_(port.has_value()) {
   const int padded_width = (intrinsics.width + lane_count - 1) / lane_count * lane_count;
   stride_ = static_cast<std::size_t>(padded_width) + 2;
   const std::size_t count = stride_ * static_cast<std::size_t>(intrinsics.height + 2);
@@ -159,6 +161,31 @@ RayPacket CameraRays::around(const CameraPlace& place, int u, int v, Lanes offse
     origin = {at(node_.origin_x), at(node_.origin_y), all_lanes(origin_z_)};
   }
   return to_base(place, origin, {at(node_.direction_x), at(node_.direction_y), all_lanes(1.f)}, slopes);
+}
+
+// Newton's method on the table of rays: it has distortion and port in it.
+std::optional<Vec2> CameraRays::project(const Vec3& point_m) const {
+  const double z = point_m.z() - static_cast<double>(origin_z_);
+  if (z < 1e-3) return std::nullopt;
+  double u = 0.5 * (width_ - 1), v = 0.5 * (height_ - 1);
+  for (int i = 0; i < 6; ++i) {
+    const int column = std::clamp(static_cast<int>(std::lround(u)), 0, width_ - 1),
+              row = std::clamp(static_cast<int>(std::lround(v)), 0, height_ - 1);
+    const std::size_t at = index(column, row);
+    // Where the pixel's ray is at that depth, and how far that is from one pixel to the next.
+    const auto reached = [&](const std::vector<float>& direction, const std::vector<float>& origin, std::size_t k) {
+      return static_cast<double>(origin[k]) + z * static_cast<double>(direction[k]);
+    };
+    const double x = reached(node_.direction_x, node_.origin_x, at), y = reached(node_.direction_y, node_.origin_y, at);
+    const double x_u = 0.5 * (reached(node_.direction_x, node_.origin_x, at + 1) - reached(node_.direction_x, node_.origin_x, at - 1));
+    const double y_v =
+        0.5 * (reached(node_.direction_y, node_.origin_y, at + stride_) - reached(node_.direction_y, node_.origin_y, at - stride_));
+    u = column + (point_m.x() - x) / x_u, v = row + (point_m.y() - y) / y_v;
+    if (std::abs(u) > 3 * width_ || std::abs(v) > 3 * height_) return std::nullopt;
+  }
+  const double margin = 16;  // of what reaches into the image
+  if (u < -margin || v < -margin || u > width_ - 1 + margin || v > height_ - 1 + margin) return std::nullopt;
+  return Vec2(u, v);
 }
 
 }  // namespace lf::optics

@@ -57,6 +57,9 @@ class CameraRays {
   // Eight rays through image points within about a pixel of pixel (u, v), each at its own offset.
   RayPacket around(const CameraPlace& place, int u, int v, Lanes offset_u, Lanes offset_v) const;
 
+  // Where the image of a point in the camera frame is, px; nothing where it is behind the camera or well outside the image. Within 0.01 px inside of it.
+  std::optional<Vec2> project(const Vec3& point_m) const;
+
   // Depth of the rays' origins along the camera's axis: 0 without a port.
   float origin_depth_m() const { return origin_z_; }
 
@@ -72,6 +75,7 @@ class CameraRays {
   RayPacket to_base(const CameraPlace& place, const Lanes3& origin, const Lanes3& direction, const std::array<Lanes, 8>& slopes) const;
 
   std::size_t stride_ = 0;
+  int width_ = 0, height_ = 0;
   bool port_ = false;
   float origin_z_ = 0;
   Node node_;

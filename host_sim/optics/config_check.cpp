@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "host_sim/optics/formation/gaussian_taps.hpp"
 #include "shared/input_error.hpp"
 
 namespace lf::optics {
@@ -41,7 +42,17 @@ void check(const CameraConfig& camera) {
   require_range(camera.sensitivity, 0, 1e12, "camera: sensitivity");
   require_range(camera.read_noise_grey, 0, 255, "camera: read_noise_grey");
   require_range(camera.electrons_per_grey, 0, 1e9, "camera: electrons_per_grey");
-  require_range(camera.blur_px, 0, 50, "camera: blur_px");
+  require_range(camera.blur_px, 0, GaussianTaps::widest_px, "camera: blur_px");
+  require_range(camera.corner_blur, 0.1, 4, "camera: corner_blur");
+  require_range(camera.stray_share, 0, 0.5, "camera: stray_share");
+  require_range(camera.stray_px, 2, 100, "camera: stray_px");
+  require_range(camera.ghost_share, 0, 1, "camera: ghost_share");
+  require_range(camera.ghost_px, 0, 1000, "camera: ghost_px");
+  require_range(camera.corner_light, 0.05, 1, "camera: corner_light");
+  require_range(camera.prnu, 0, 0.2, "camera: prnu");
+  require_range(camera.dsnu_grey, 0, 50, "camera: dsnu_grey");
+  require_range(camera.row_noise_grey, 0, 50, "camera: row_noise_grey");
+  require_range(camera.hot_pixels, 0, 0.1, "camera: hot_pixels");
   require_light(camera.response, "camera: response");
   if (!camera.port) return;
   require_range(camera.port->distance_m, 0, 1, "camera: port distance_m");
@@ -59,6 +70,7 @@ void check(const LaserConfig& laser) {
   require_light(laser.band, "laser: band");
   require_range(laser.waist_sigma_m, 1e-5, 0.1, "laser: waist_sigma_m");
   require_range(laser.divergence_rad, 0, 0.5, "laser: divergence_rad");
+  require_range(laser.speckle, 0, 0.5, "laser: speckle");
 }
 
 void check(const LampConfig& lamp) {
@@ -72,10 +84,10 @@ void check(const LampConfig& lamp) {
 void check(const WaterConfig& water) {
   require_range(water.attenuation_per_m, 0, 100, "water: attenuation_per_m");
   for (const float ratio : water.attenuation_ratio) require_range(ratio, 0, 100, "water: attenuation_ratio");
-  require_range(water.scattering_share, 0, 1, "water: scattering_share");
+  if (water.scattering_share != WaterConfig::sea_water) require_range(water.scattering_share, 0, 1, "water: scattering_share");
   require_range(water.asymmetry, -0.99, 0.99, "water: asymmetry");
-  require_range(water.halo_share, 0, 1, "water: halo_share");
-  require_range(water.halo_rad, 0.001, 1, "water: halo_rad");
+  require_range(water.particles_per_l, 0, 1000, "water: particles_per_l");
+  require(water.current_m_s.allFinite() && water.current_m_s.norm() <= 10, "water: current_m_s is not finite, or faster than 10 m/s");
   require_light(water.ambient_w_m2, "water: ambient_w_m2");
   require_light(water.water_w_m2_sr, "water: water_w_m2_sr");
 }

@@ -6,9 +6,12 @@
 #include <stdexcept>
 
 #include "host_sim/optics/config_check.hpp"
+#include "host_sim/optics/formation/formation.hpp"
+#include "host_sim/optics/formation/particles.hpp"
 #include "host_sim/optics/render_pass.hpp"
 #include "host_sim/optics/worker_pool.hpp"
 #include "shared/input_error.hpp"
+#include "shared/random.hpp"
 
 namespace lf::optics {
 namespace {
@@ -17,12 +20,19 @@ constexpr float grain = 0.05f;  // of the albedo: anodised plates and paint
 
 // A camera with all that is kept for it from frame to frame.
 struct Viewer {
-  Viewer(const CameraConfig& config, const scene::Scene& scene, bool edge_sampling)
-      : camera(config), tiles(camera), still(camera, tiles, scene, edge_sampling), live(camera, tiles) {}
+  Viewer(const CameraConfig& config, const OpticsConfig& optics)
+      : camera(config),
+        tiles(camera),
+        still(camera, tiles, optics.scene, optics.edge_sampling),
+        live(camera, tiles),
+        formation(camera),
+        particles(camera, optics.water, optics.seed) {}
   Camera camera;
   Tiles tiles;
   StillView still;
   LiveView live;
+  Formation formation;
+  Particles particles;
 };
 
 std::vector<std::uint16_t> objects_of_shapes(const scene::Scene& scene) {
@@ -46,26 +56,27 @@ struct Optics::Impl {
         arm(config.scene, moves),
         object_of_shape(objects_of_shapes(config.scene)),
         pool(config.threads) {
-    for (const CameraConfig& camera : config.cameras) viewers.push_back(std::make_unique<Viewer>(camera, config.scene, edge_sampling));
+    for (const CameraConfig& camera : config.cameras) viewers.push_back(std::make_unique<Viewer>(camera, config));
     for (const LaserConfig& laser : lasers) {
       patterns.push_back(laser.pattern ? std::optional<PatternTable>(*laser.pattern) : std::nullopt);
     }
   }
 
   void light(const Shot& shot, Shader& shader) const {
-    if (shot.laser) {
+    if (shot.laser > 0) {
       for (std::size_t i = 0; i < lasers.size(); ++i) {
-        shader.sheets.emplace_back(lasers[i], shot.poses[static_cast<std::size_t>(lasers[i].body)], patterns[i]);
+        shader.sheets.emplace_back(lasers[i], shot.poses[static_cast<std::size_t>(lasers[i].body)], patterns[i], shot.laser);
+        if (water.scatters()) shader.sheets.back().meet(scene);
       }
     }
-    if (shot.lamps) {
-      for (const LampConfig& lamp : lamps) shader.lamps.emplace_back(lamp, shot.poses[static_cast<std::size_t>(lamp.body)]);
+    if (shot.lamps > 0) {
+      for (const LampConfig& lamp : lamps) shader.lamps.emplace_back(lamp, shot.poses[static_cast<std::size_t>(lamp.body)], shot.lamps);
     }
   }
 
   std::vector<scene::BodyId> lamp_bodies(const Shot& shot) const {
     std::vector<scene::BodyId> bodies;
-    if (shot.lamps) {
+    if (shot.lamps > 0) {
       for (const LampConfig& lamp : lamps) bodies.push_back(lamp.body);
     }
     return bodies;
@@ -84,8 +95,20 @@ struct Optics::Impl {
     frame.stripe_grey.assign(stripes, 0.f);
   }
 
+  Exposing exposing_of(const CameraConfig& camera, const Shot& shot) const {
+    const double gain = camera.gain > 0 ? shot.gain.value_or(camera.gain) / camera.gain : 1;
+    const double exposure = camera.exposure.s() > 0 ? shot.exposure.value_or(camera.exposure).s() / camera.exposure.s() : 1;
+    return {static_cast<float>(gain * exposure), static_cast<float>(gain), noise_key(seed, shot.camera, shot.frame_number)};
+  }
+
+  // Of the first laser that is on: patterns overlay each other's grains anyway.
+  Speckle speckle_of(const Shader& shader) const {
+    const bool on = !shader.sheets.empty();
+    return Speckle(on ? lasers.front().speckle : 0, splitmix64(seed), on ? shader.sheets.front().emitter_m() : Vec3::Zero());
+  }
+
   // Of several centres in a column the brightest counts, as it does for a peak detector.
-  void find_stripes(const RenderPass& pass, const Shader& shader, int tile_rows, Frame& frame) {
+  void find_stripes(const RenderPass& pass, const Shader& shader, const Camera& camera, float light, int tile_rows, Frame& frame) {
     for (std::size_t laser = 0; laser < shader.sheets.size(); ++laser) {
       if (patterns[laser]) continue;
       std::vector<std::vector<RenderPass::StripeCentre>> found(static_cast<std::size_t>(tile_rows));
@@ -93,9 +116,10 @@ struct Optics::Impl {
       for (const auto& centres : found) {
         for (const RenderPass::StripeCentre& centre : centres) {
           const std::size_t column = laser * static_cast<std::size_t>(frame.width) + static_cast<std::size_t>(centre.u);
-          if (!(centre.grey > frame.stripe_grey[column])) continue;
+          const float grey = centre.grey * light * camera.sensor.vignetting(centre.u, static_cast<int>(centre.v));
+          if (!(grey > frame.stripe_grey[column])) continue;
           frame.stripe_v[column] = centre.v;
-          frame.stripe_grey[column] = centre.grey;
+          frame.stripe_grey[column] = grey;
         }
       }
     }
@@ -112,18 +136,27 @@ struct Optics::Impl {
     Shader shader(scene, look, water);
     light(shot, shader);
     size(viewer.camera, shot, frame);
-    if (viewer.still.update(shader, shot.poses, lamp_bodies(shot), pool)) viewer.live.forget();
+    if (viewer.still.update(shader, shot.poses, lamp_bodies(shot), shot.lamps, pool)) viewer.live.forget();
 
     const RenderPass pass(viewer.camera, viewer.tiles, viewer.still, shader, arm, viewer.live);
-    const std::uint64_t key = noise_key(seed, shot.camera, shot.frame_number);
+    const Exposing exposing = exposing_of(viewer.camera.config, shot);
     const int tile_rows = viewer.tiles.rows();
     pool.run(tile_rows, [&](int row) { pass.sample(row); });
     pool.run(tile_rows, [&](int row) {
+      pass.resample_marks(row);
       if (edge_sampling) pass.resample_edges(row);
-      pass.expose(row, key, frame);
       if (shot.truth) pass.write_geometry(row, object_of_shape, frame);
     });
-    if (shot.truth) find_stripes(pass, shader, tile_rows, frame);
+    viewer.particles.stamp(shot.time_s, shader, viewer.live.pixels);
+    viewer.formation.spread(viewer.live.pixels, pass.lines(), water.scatters(), pool);
+    const Speckle speckle = speckle_of(shader);
+    const std::size_t row_bytes = frame.pixels.size() / static_cast<std::size_t>(frame.height);
+    pool.run(tile_rows, [&](int row) {
+      for (int v = viewer.tiles.first_row(row); v < viewer.tiles.end_row(row); ++v)
+        viewer.formation.expose_row(viewer.live.pixels, v, speckle, exposing,
+                                    frame.pixels.data() + static_cast<std::size_t>(v) * row_bytes);
+    });
+    if (shot.truth) find_stripes(pass, shader, viewer.camera, exposing.light, tile_rows, frame);
   }
 
   std::vector<LaserConfig> lasers;

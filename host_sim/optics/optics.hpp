@@ -1,8 +1,9 @@
 // The underwater camera: ray-traced images of the scene under laser sheets, lamps and ambient light, through absorbing and scattering water.
 //
 // Light is carried in three bands (red, green, blue) in SI units: lasers in W, lamps in W/sr, ambient light in W/m2 of irradiance. Visibility and occlusion
-// are exact (ray casting), the laser's cross-section is analytic and integrated over the pixel, edges get 4x4 samples. The same seed, frame number and
-// poses give the same bytes for any number of threads.
+// are exact (ray casting), the laser's cross-section is analytic and integrated over the pixel, edges get 4x4 samples, and so does paint under a stripe. From
+// the radiance the picture is made in nature's order (formation/): forward scatter in the water, lens, particles, vignetting, speckle, the sensor's noise and fixed
+// pattern, quantisation. The same seed, frame number and poses give the same bytes for any number of threads.
 #pragma once
 
 #include <array>
@@ -37,7 +38,18 @@ struct CameraConfig {
   double sensitivity = 1.2e4;        // grey levels at gain 1 for each J/(m2 sr) of exposed radiance
   double read_noise_grey = 1.5;      // standard deviation at gain 1
   double electrons_per_grey = 40.0;  // at gain 1; sets the shot noise. 40 is a 10,000 electron well over 255 levels. 0: no shot noise
-  double blur_px = 1.0;              // standard deviation of the lens's spot; widens the stripe
+  double blur_px = 1.0;              // standard deviation of the lens's spot in the middle of the picture
+  double corner_blur = 1.4;          // of the spot at the corners, over that in the middle
+  double stray_share = 0.03;         // of the light: what lens and port spread over `stray_px`
+  double stray_px = 6.0;             // standard deviation
+  double ghost_share = 1.6e-3;       // a second reflection in an uncoated filter
+  double ghost_px = 11;              // by which it is shifted down the picture
+  double corner_light = 0.7;         // vignetting: of the light at the corners, over that in the middle
+  double prnu = 0.007;               // standard deviation of the pixels' sensitivities (EMVA 1288)
+  double dsnu_grey = 0.2;            // of their dark levels
+  double row_noise_grey = 0.3;       // of each row in each frame, at gain 1
+  double hot_pixels = 1e-5;          // share of the pixels that are 20 to 200 grey levels too bright
+  std::uint64_t serial = 1;          // picks the fixed pattern
   bool colour = false;               // false: one channel, the bands weighted by `response`; true: three channels R G B
   Rgb response{0.25f, 1.0f, 0.6f};   // of the mono sensor; of the three colour channels 1 each
 };
@@ -59,6 +71,8 @@ struct LaserConfig {
   Rgb band{0.f, 1.f, 0.f};         // how the power falls on red, green, blue: 532 nm
   double waist_sigma_m = 0.0010;   // cross-section's standard deviation at range r: hypot(waist_sigma_m, divergence_rad r)
   double divergence_rad = 0.0027;  // with the waist 1.9 mm at 0.6 m
+  double speckle =
+      0.18;  // standard deviation of one pixel's laser light over its mean: 0.13 to 0.19 of a diode, 0.18 to 0.25 of a DPSS laser
   std::optional<Pattern> pattern;
 };
 
@@ -75,12 +89,13 @@ struct LampConfig {
 struct WaterConfig {
   double attenuation_per_m = 0.3;            // of the green band, absorption and scattering together
   Rgb attenuation_ratio{2.2f, 1.0f, 1.15f};  // of the bands to green: red is absorbed most
-  double scattering_share = 0.5;             // of the attenuation that scatters (single-scattering albedo)
-  double asymmetry = 0.85;                   // Henyey-Greenstein g: sea water scatters forward
-  double halo_share = 0.4;                   // of the forward-scattered light that stays near the stripe as a broad skirt
-  double halo_rad = 0.03;                    // standard deviation of the skirt seen from the emitter
+  double scattering_share = sea_water;       // of the attenuation of green that scatters (single-scattering albedo)
+  double asymmetry = 0.935;                  // Henyey-Greenstein g of the forward lobe, which has 99 % of the scattered light
+  double particles_per_l = 0;                // specks of more than 0.5 mm in a litre; of d mm and more there are (0.5 / d)^2 as many
+  Vec3 current_m_s{0.01, 0.02, 0.0005};      // that carries them; they settle, too
   Rgb ambient_w_m2{3.f, 16.f, 16.f};         // downwelling irradiance on a surface that faces up
-  Rgb water_w_m2_sr{0.1f, 1.5f, 2.0f};       // radiance of the open water seen horizontally
+  Rgb water_w_m2_sr{0.1f, 1.5f, 2.0f};       // radiance of the open water seen horizontally, if it scatters as sea water does
+  static constexpr double sea_water = -1;    // the share that goes with the attenuation: formation/forward_scatter.hpp
 };
 
 struct OpticsConfig {
@@ -96,10 +111,13 @@ struct OpticsConfig {
 
 struct Shot {
   std::size_t camera = 0;
-  std::uint64_t frame_number = 0;  // picks the noise
-  scene::BodyPoses poses;          // at mid-exposure
-  bool laser = true;
-  bool lamps = false;
+  std::uint64_t frame_number = 0;    // picks the noise
+  scene::BodyPoses poses;            // at mid-exposure
+  double time_s = 0;                 // where the particles have drifted to
+  float laser = 1;                   // share of the exposure during which the lasers are on
+  float lamps = 0;                   // the lamps
+  std::optional<Duration> exposure;  // those of the camera's configuration
+  std::optional<double> gain;
   bool truth = false;
 };
 
@@ -112,7 +130,7 @@ struct Frame {
   // One a column and laser (index laser * width + u): the stripe's true centre v where it is brightest in the column, the ideal sheet meeting a surface that
   // is both visible and lit; NaN where there is none, and with patterns.
   std::vector<float> stripe_v;
-  std::vector<float> stripe_grey;  // its noise-free height over the background, grey levels
+  std::vector<float> stripe_grey;  // its noise-free height over the background, grey levels, without speckle
 };
 
 class Optics {

@@ -23,6 +23,8 @@ CameraConfig divers_camera(const OutsideView& view) {
   camera.exposure = Duration::from_us(3500);
   camera.read_noise_grey = 0.6;
   camera.electrons_per_grey = 200;
+  camera.blur_px = 0.6;
+  camera.corner_light = 0.9;
   return camera;
 }
 
@@ -35,6 +37,7 @@ OpticsConfig outside_view(const OpticsConfig& mission, const OutsideView& view) 
     laser.power_w *= view.sheet_gain / 4;
     laser.waist_sigma_m *= 0.7, laser.divergence_rad *= 0.5;  // overexposed it looks wider than it is
     laser.band = {0.05f, 1.f, 0.16f};                         // an overexposed green line is white in its middle
+    laser.speckle = 0;
   }
   for (LampConfig& lamp : config.lamps) {
     for (float& band : lamp.intensity_w_sr) band *= 3.f;
@@ -44,7 +47,7 @@ OpticsConfig outside_view(const OpticsConfig& mission, const OutsideView& view) 
   config.water.attenuation_ratio = {1.7f, 1.0f, 0.9f};
   config.water.scattering_share = 0.8;
   config.water.asymmetry = 0.2;  // haze seen from the side
-  config.water.halo_share = 0.05;
+  config.water.particles_per_l = 0;
   config.water.ambient_w_m2 = {9.f, 15.f, 17.f};
   config.water.water_w_m2_sr = {0.25f, 1.9f, 3.0f};
   return config;

@@ -8,13 +8,20 @@ constexpr float depth_step = 0.04f;     // of the depth; a plane seen at 45 degr
 
 }  // namespace
 
+void Sample::set(const Light& light, const Camera& camera) {
+  reached = light.reached, lit = light.lit;
+  grey = camera.grey(light.radiance);
+  scattered = camera.grey(light.scattered);
+  laser = camera.grey(light.laser);
+}
+
 void PixelStore::resize(int image_width, int image_height, std::size_t channel_count) {
   width = image_width, height = image_height, channels = channel_count;
   stride = (static_cast<std::size_t>(width) + lane_count - 1) / lane_count * lane_count;
   plane = stride * static_cast<std::size_t>(height) + 2 * lane_count;
   for (auto* values : {&depth_m, &normal_x, &normal_y, &normal_z}) values->resize(plane);
   for (auto* values : {&shape, &reached, &lit}) values->resize(plane);
-  grey.resize(plane * channels);
+  for (GreyPlanes* planes : {&grey, &scattered, &laser}) planes->resize(plane * channels);
 }
 
 Sample PixelStore::sample(std::size_t i) const {
@@ -24,13 +31,13 @@ Sample PixelStore::sample(std::size_t i) const {
   s.hit.shape = load_mask(&shape[i]);
   s.reached = load_mask(&reached[i]);
   s.lit = load_mask(&lit[i]);
-  s.grey = grey_at(i);
+  s.grey = at(grey, i), s.scattered = at(scattered, i), s.laser = at(laser, i);
   return s;
 }
 
-GreyLanes PixelStore::grey_at(std::size_t i) const {
+GreyLanes PixelStore::at(const GreyPlanes& planes, std::size_t i) const {
   GreyLanes values{};
-  for (std::size_t c = 0; c < channels; ++c) values[c] = load_lanes(&grey[c * plane + i]);
+  for (std::size_t c = 0; c < channels; ++c) values[c] = load_lanes(&planes[c * plane + i]);
   return values;
 }
 
@@ -44,13 +51,25 @@ void PixelStore::set_surface(std::size_t i, const HitPacket& hit, LaneMask reach
   store_mask(&lit[i], lit_lanes);
 }
 
-void PixelStore::set_grey(std::size_t i, const GreyLanes& values) {
-  for (std::size_t c = 0; c < channels; ++c) store_lanes(&grey[c * plane + i], values[c]);
+void PixelStore::set_planes(GreyPlanes& planes, std::size_t i, const GreyLanes& values) const {
+  for (std::size_t c = 0; c < channels; ++c) store_lanes(&planes[c * plane + i], values[c]);
+}
+
+void PixelStore::set_light(std::size_t i, const Sample& sample) {
+  set_planes(grey, i, sample.grey);
+  set_planes(scattered, i, sample.scattered);
+  set_planes(laser, i, sample.laser);
+}
+
+void PixelStore::copy_light(std::size_t i, const PixelStore& from) {
+  set_planes(grey, i, at(from.grey, i));
+  set_planes(scattered, i, at(from.scattered, i));
+  set_planes(laser, i, {});
 }
 
 void PixelStore::set(std::size_t i, const Sample& sample) {
   set_surface(i, sample.hit, sample.reached, sample.lit);
-  set_grey(i, sample.grey);
+  set_light(i, sample);
 }
 
 void PixelStore::copy_surface(std::size_t i, const PixelStore& from) {

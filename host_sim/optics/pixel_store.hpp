@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "host_sim/optics/camera.hpp"
+#include "host_sim/optics/light.hpp"
 #include "host_sim/optics/ray_scene.hpp"
 
 namespace lf::optics {
@@ -11,9 +12,14 @@ namespace lf::optics {
 // What eight rays meet and bring back.
 struct Sample {
   HitPacket hit;
-  LaneMask reached{}, lit{};  // as Light's
-  GreyLanes grey{};
+  LaneMask reached{}, lit{};               // as Light's
+  GreyLanes grey{}, scattered{}, laser{};  // Light's radiance, scattered and laser
+
+  void set(const Light& light, const Camera& camera);  // all but `hit`
 };
+
+// Planes of values of a picture, one a channel.
+using GreyPlanes = std::vector<float>;
 
 // Samples of every pixel, padded to whole packets. Planes of grey values, one a channel, follow each other.
 struct PixelStore {
@@ -23,9 +29,10 @@ struct PixelStore {
 
   Sample sample(std::size_t i) const;
   void set(std::size_t i, const Sample& sample);
-  GreyLanes grey_at(std::size_t i) const;
-  void set_grey(std::size_t i, const GreyLanes& values);
-  // All of a packet but its grey, from a store of the same size.
+  GreyLanes at(const GreyPlanes& planes, std::size_t i) const;
+  void set_light(std::size_t i, const Sample& sample);
+  // The light of a packet, all of a packet but its light: from a store of the same size.
+  void copy_light(std::size_t i, const PixelStore& from);
   void copy_surface(std::size_t i, const PixelStore& from);
 
   // Which of the pixels (u .. u + 7, v) differ from a neighbour in shape, depth, slope, or in what of the light that reaches both falls on them.
@@ -33,11 +40,13 @@ struct PixelStore {
 
   int width = 0, height = 0;
   std::size_t stride = 0, plane = 0, channels = 0;
-  std::vector<float> depth_m, normal_x, normal_y, normal_z, grey;  // depth past the ray's origin
-  std::vector<std::int32_t> shape, reached, lit;                   // Sample::reached and lit
+  std::vector<float> depth_m, normal_x, normal_y, normal_z;  // depth past the ray's origin
+  GreyPlanes grey, scattered, laser;                         // Sample's
+  std::vector<std::int32_t> shape, reached, lit;             // Sample::reached and lit
 
  private:
   void set_surface(std::size_t i, const HitPacket& hit, LaneMask reached_lanes, LaneMask lit_lanes);
+  void set_planes(GreyPlanes& planes, std::size_t i, const GreyLanes& values) const;
   LaneMask edge_between(std::size_t a, std::size_t b) const;
 };
 

@@ -42,19 +42,20 @@ void RenderPass::sample_packet(int u, int v, const std::vector<float>* haze_row)
   Changes& changes = live_.packets[packet(u, v)];
   const Changes before = std::exchange(changes, Changes{0});
   if (possible == 0 && shader_.sheets.empty()) {
-    live_.pixels.set_grey(i, still_.pixels().grey_at(i));
+    live_.pixels.copy_light(i, still_.pixels());
   } else if (possible == 0 && still_.open_water(u, v)) {
-    GreyLanes grey = still_.pixels().grey_at(i);
-    add_glow(camera_.lines(u, v), all_lanes(std::numeric_limits<float>::infinity()), grey);
-    live_.pixels.set_grey(i, grey);
+    Sample water;
+    water.grey = still_.pixels().at(still_.pixels().grey, i);
+    add_glow(camera_.lines(u, v), all_lanes(std::numeric_limits<float>::infinity()), water.grey);
+    live_.pixels.set_light(i, water);
   } else {
     const RayPacket rays = camera_.row(u, v);
     Sample sample = still_.pixels().sample(i);
     changes = put_in_moving(rays, possible, 1.f, {haze_row, static_cast<float>(u), 1.f}, sample);
-    if (add_stripes(rays, 1.f, sample)) changes |= striped;
+    changes |= add_stripes(rays, 1.f, sample);
     add_glow(rays, sample.hit.parameter, sample.grey);
     if (changes != 0) return live_.pixels.set(i, sample);
-    live_.pixels.set_grey(i, sample.grey);
+    live_.pixels.set_light(i, sample);
   }
   if (before != 0) live_.pixels.copy_surface(i, still_.pixels());
 }
@@ -68,24 +69,28 @@ Changes RenderPass::put_in_moving(const RayPacket& rays, Changes possible, float
   if (changes == 0) return changes;
   const Light base = shader_.base(rays, hit, footprint, haze, Casters::all);
   const LaneMask touched = behind | in_shadow;
-  const GreyLanes grey = camera_.grey(base.radiance);
-  for (std::size_t c = 0; c < camera_.channels(); ++c) sample.grey[c] = touched ? grey[c] : sample.grey[c];
+  const GreyLanes grey = camera_.grey(base.radiance), scattered = camera_.grey(base.scattered);
+  for (std::size_t c = 0; c < camera_.channels(); ++c) {
+    sample.grey[c] = touched ? grey[c] : sample.grey[c];
+    sample.scattered[c] = touched ? scattered[c] : sample.scattered[c];
+  }
   sample.reached = touched ? base.reached : sample.reached;
   sample.lit = touched ? base.lit : sample.lit;
   sample.hit = hit;
   return changes;
 }
 
-// Returns whether there were any.
-bool RenderPass::add_stripes(const RayPacket& rays, float footprint, Sample& sample) const {
-  if (shader_.sheets.empty()) return false;
-  const Light light = shader_.stripes(rays, sample.hit, footprint, camera_.blur_px());
-  if (!any(light.reached)) return false;
-  const GreyLanes grey = camera_.grey(light.radiance);
-  for (std::size_t c = 0; c < camera_.channels(); ++c) sample.grey[c] += grey[c];
+// Returns whether there were any, or their skirts.
+Changes RenderPass::add_stripes(const RayPacket& rays, float footprint, Sample& sample) const {
+  if (shader_.sheets.empty()) return 0;
+  const Light light = shader_.stripes(rays, sample.hit, footprint);
+  if (!any(light.reached | light.beside)) return 0;
+  const GreyLanes grey = camera_.grey(light.radiance), scattered = camera_.grey(light.scattered), laser = camera_.grey(light.laser);
+  for (std::size_t c = 0; c < camera_.channels(); ++c)
+    sample.grey[c] += grey[c], sample.scattered[c] += scattered[c], sample.laser[c] += laser[c];
   sample.reached |= light.reached;
   sample.lit |= light.lit;
-  return true;
+  return static_cast<Changes>((any(light.reached) ? striped : 0) | (any(light.beside) ? skirted : 0));
 }
 
 void RenderPass::add_glow(const RayLines& rays, Lanes surface_parameter, GreyLanes& grey) const {
@@ -106,43 +111,88 @@ Changes RenderPass::changes_about(int u, int v) const {
   return changes;
 }
 
+std::vector<Glow> RenderPass::glows(int u, int v) const {
+  std::vector<Glow> all;
+  for (const SheetLight& sheet : shader_.sheets) all.push_back(sheet.glow(camera_.lines(u, v), shader_.water()));
+  return all;
+}
+
 void RenderPass::resample_edges(int tile_row) const {
   for (int v = tiles_.first_row(tile_row); v < tiles_.end_row(tile_row); ++v) {
     std::vector<float> haze;
-    std::vector<Glow> glows;
     for (int u = 0; u < camera_.width(); u += lane_count) {
       const Changes changes = changes_about(u, v);
-      const LaneMask edge = changes != 0 ? live_.pixels.edges(u, v) : still_.edges(u, v);
+      const bool changed = (changes & ~skirted) != 0;
+      const LaneMask edge = changed ? live_.pixels.edges(u, v) : still_.edges(u, v);
       if (!any(edge)) continue;
-      if (changes != 0 && haze.empty()) haze = still_.haze_row(v);
-      glows.clear();
-      for (const SheetLight& sheet : shader_.sheets) glows.push_back(sheet.glow(camera_.lines(u, v), shader_.water()));
+      if (changed && haze.empty()) haze = still_.haze_row(v);
+      const std::vector<Glow> glow = changed ? glows(u, v) : std::vector<Glow>{};
       for (int lane = 0; lane < lane_count; ++lane) {
-        if (edge[lane] != 0) resample(u + lane, v, changes, glows, haze.empty() ? nullptr : &haze);
+        if (edge[lane] == 0) continue;
+        if (changed)
+          resample(u + lane, v, changes, glow, haze.empty() ? nullptr : &haze);
+        else
+          add_even_light(u + lane, v, *still_.sub_pixels(u + lane, v));
       }
     }
   }
 }
 
+LaneMask RenderPass::marks_under_stripe(int u, int v) const {
+  if ((live_.packets[packet(u, v)] & striped) == 0) return LaneMask{};
+  const Sample sample = live_.pixels.sample(live_.pixels.index(u, v));
+  Lanes light{};
+  for (const Lanes& channel : sample.laser) light += channel;
+  const LaneMask column = LaneMask{0, 1, 2, 3, 4, 5, 6, 7} + u;
+  const LaneMask lit = (light > 0.f) & (column < camera_.width());
+  return any(lit) ? lit & shader_.look().marks_edges(make_surface(camera_.row(u, v), sample.hit), sample.hit.shape, lit) : lit;
+}
+
+void RenderPass::resample_marks(int tile_row) const {
+  for (int v = tiles_.first_row(tile_row); v < tiles_.end_row(tile_row); ++v) {
+    std::vector<float> haze;
+    for (int u = 0; u < camera_.width(); u += lane_count) {
+      const LaneMask mixed = marks_under_stripe(u, v);
+      if (!any(mixed)) continue;
+      if (haze.empty()) haze = still_.haze_row(v);
+      const std::vector<Glow> glow = glows(u, v);
+      for (int lane = 0; lane < lane_count; ++lane) {
+        if (mixed[lane] != 0) resample(u + lane, v, changes_about(u, v), glow, haze.empty() ? nullptr : &haze);
+      }
+    }
+  }
+}
+
+// Of a pixel whose edges are the still view's: skirt and glow are even over it, so that they add to its mean what they add at its centre.
+void RenderPass::add_even_light(int u, int v, const SubPixels& kept) const {
+  PixelStore& pixels = live_.pixels;
+  for (std::size_t c = 0; c < camera_.channels(); ++c) {
+    const std::size_t at = c * pixels.plane + pixels.index(u, v);
+    pixels.grey[at] += kept.grey[c] - still_.pixels().grey[at];
+    pixels.scattered[at] += kept.scattered[c] - still_.pixels().scattered[at];
+  }
+}
+
+void RenderPass::put(int u, int v, const SubPixels& mean) const {
+  PixelStore& pixels = live_.pixels;
+  for (std::size_t c = 0; c < camera_.channels(); ++c) {
+    const std::size_t at = c * pixels.plane + pixels.index(u, v);
+    pixels.grey[at] = mean.grey[c], pixels.scattered[at] = mean.scattered[c], pixels.laser[at] = mean.laser[c];
+  }
+}
+
 // The mean of the sub-pixels. A sheet's glow is even over a pixel: the sub-pixels count that meet no surface before it.
 void RenderPass::resample(int u, int v, Changes changes, const std::vector<Glow>& glows, const std::vector<float>* haze_row) const {
-  const SubPixels* pixel = still_.sub_pixels(u, v);
-  SubPixels sampled;
-  if (changes != 0 || pixel == nullptr) {
-    sampled = sample_sub_pixels(u, v, changes, haze_row);
-    pixel = &sampled;
-  }
-  std::array<float, 3> grey = pixel->grey;
+  SubPixels pixel = sample_sub_pixels(u, v, changes, haze_row);
   for (const Glow& glow : glows) {
     const auto lane = static_cast<std::size_t>(u % lane_count);
-    const LaneMask behind = (pixel->half[0].hit.parameter > glow.parameter[lane]) + (pixel->half[1].hit.parameter > glow.parameter[lane]);
+    const LaneMask behind = (pixel.half[0].hit.parameter > glow.parameter[lane]) + (pixel.half[1].hit.parameter > glow.parameter[lane]);
     std::int32_t count = 0;
     for (int i = 0; i < lane_count; ++i) count -= behind[i];
     const GreyLanes values = camera_.grey(glow.radiance);
-    for (std::size_t c = 0; c < camera_.channels(); ++c) grey[c] += values[c][lane] * static_cast<float>(count) / (2 * lane_count);
+    for (std::size_t c = 0; c < camera_.channels(); ++c) pixel.grey[c] += values[c][lane] * static_cast<float>(count) / (2 * lane_count);
   }
-  PixelStore& pixels = live_.pixels;
-  for (std::size_t c = 0; c < camera_.channels(); ++c) pixels.grey[c * pixels.plane + pixels.index(u, v)] = grey[c];
+  put(u, v, pixel);
 }
 
 // Without the glow. Whether to look for the arm, its shadows and stripes the samples about the pixel have told.
@@ -158,29 +208,19 @@ SubPixels RenderPass::sample_sub_pixels(int u, int v, Changes changes, const std
       put_in_moving(rays, changes, 0.25f, haze, sample);
     } else {
       sample.hit = shader_.scene().all(rays);
-      sample.grey = camera_.grey(shader_.base(rays, sample.hit, 0.25f, haze, Casters::all).radiance);
+      sample.set(shader_.base(rays, sample.hit, 0.25f, haze, Casters::all), camera_);
     }
-    if ((changes & striped) != 0) add_stripes(rays, 0.25f, sample);
+    if ((changes & (striped | skirted)) != 0) add_stripes(rays, 0.25f, sample);
   }
   pixel.average(camera_.channels());
   return pixel;
 }
 
-void RenderPass::expose(int tile_row, std::uint64_t key, Frame& frame) const {
-  const PixelStore& pixels = live_.pixels;
-  const std::size_t width = static_cast<std::size_t>(camera_.width()), channels = camera_.channels();
-  std::vector<float> interleaved(channels > 1 ? width * channels : 0);
-  for (int v = tiles_.first_row(tile_row); v < tiles_.end_row(tile_row); ++v) {
-    const std::size_t first = static_cast<std::size_t>(v) * width * channels;
-    const float* values = pixels.grey.data() + pixels.index(0, v);
-    if (channels > 1) {
-      for (std::size_t u = 0; u < width; ++u) {
-        for (std::size_t c = 0; c < channels; ++c) interleaved[u * channels + c] = values[c * pixels.plane + u];
-      }
-      values = interleaved.data();
-    }
-    camera_.sensor.expose(values, frame.pixels.data() + first, width * channels, static_cast<std::uint32_t>(first), key);
-  }
+std::vector<std::uint8_t> RenderPass::lines() const {
+  std::vector<std::uint8_t> lines(live_.packets.size());
+  std::transform(live_.packets.begin(), live_.packets.end(), lines.begin(),
+                 [](Changes changes) { return static_cast<std::uint8_t>(changes & striped); });
+  return lines;
 }
 
 void RenderPass::write_geometry(int tile_row, const std::vector<std::uint16_t>& object_of_shape, Frame& frame) const {

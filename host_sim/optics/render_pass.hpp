@@ -1,4 +1,5 @@
-// The passes that make one frame of a still view: moving bodies and laser put in, sixteen samples where there is an edge, the sensor, and the ground truth.
+// The passes that make the light of one frame of a still view: moving bodies and laser put in, sixteen samples where there is an edge or a stripe on a mark's, and
+// the ground truth.
 // Each works on rows of tiles.
 #pragma once
 
@@ -9,7 +10,7 @@
 namespace lf::optics {
 
 // What of a frame is not its still view's, bit by bit: of a tile what may be, of a packet what is.
-enum Change : std::uint8_t { hidden = 1, shaded = 2, striped = 4 };
+enum Change : std::uint8_t { hidden = 1, shaded = 2, striped = 4, skirted = 8 };
 using Changes = std::uint8_t;
 
 // The frame being made. Packets whose `changes` are 0 hold the still view's surfaces, left from earlier frames.
@@ -27,7 +28,10 @@ class RenderPass {
   // Each tile row of a pass must be done before the next pass begins.
   void sample(int tile_row) const;          // first: a sample a pixel
   void resample_edges(int tile_row) const;  // second, where edge sampling is wanted
-  void expose(int tile_row, std::uint64_t key, Frame& frame) const;
+  void resample_marks(int tile_row) const;  // marks' edges under a stripe: the mean of paint times light is not the product of their means
+
+  // A packet of eight pixels, row by row: whether a laser's line may light it.
+  std::vector<std::uint8_t> lines() const;
 
   // Depth and object of each pixel centre; `object_of_shape` begins with open water's.
   void write_geometry(int tile_row, const std::vector<std::uint16_t>& object_of_shape, Frame& frame) const;
@@ -43,11 +47,14 @@ class RenderPass {
   Changes judge_tiles(int tile_row) const;
   void sample_packet(int u, int v, const std::vector<float>* haze_row) const;
   Changes put_in_moving(const RayPacket& rays, Changes possible, float footprint, const HazePlace& haze, Sample& sample) const;
-  bool add_stripes(const RayPacket& rays, float footprint, Sample& sample) const;
+  Changes add_stripes(const RayPacket& rays, float footprint, Sample& sample) const;
   void add_glow(const RayLines& rays, Lanes surface_parameter, GreyLanes& grey) const;
+  std::vector<Glow> glows(int u, int v) const;
   Changes changes_about(int u, int v) const;
-  LaneMask edges(int u, int v) const;
+  LaneMask marks_under_stripe(int u, int v) const;
   void resample(int u, int v, Changes changes, const std::vector<Glow>& glows, const std::vector<float>* haze_row) const;
+  void put(int u, int v, const SubPixels& mean) const;
+  void add_even_light(int u, int v, const SubPixels& kept) const;
   SubPixels sample_sub_pixels(int u, int v, Changes changes, const std::vector<float>* haze_row) const;
   void refine_stripe(std::size_t laser, int u, int v, Lanes offset_v, LaneMask wanted, std::vector<StripeCentre>& centres) const;
   std::size_t packet(int u, int v) const {

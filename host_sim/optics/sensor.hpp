@@ -1,30 +1,44 @@
-// From exposed light to 8-bit pixels: gain, shot and read noise, clipping.
-//
-// Noise is counter-based: a pixel's deviate is a hash of (seed, camera, frame number, pixel), so it does not depend on the order of the work.
+// The camera's sensor: what its pixels make of the light, the noise of light and electronics, and the step to bytes. Terms as EMVA 1288 has them.
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "host_sim/optics/formation/normal_deviates.hpp"
-#include "host_sim/optics/lanes.hpp"
 #include "host_sim/optics/optics.hpp"
+#include "shared/lanes/lanes.hpp"
 
 namespace lf::optics {
 
+// How one picture is exposed, against the camera's configuration.
+struct Exposing {
+  float light = 1;  // grey levels over those of the configured exposure and gain
+  float gain = 1;   // over the configured one: noise goes with it
+  std::uint64_t key = 0;
+};
+
 class Sensor {
  public:
-  // grey = gain * sensitivity * exposure * radiance; variance = (gain read_noise)^2 + gain grey / electrons_per_grey.
   explicit Sensor(const CameraConfig& camera);
 
+  // Grey levels for a radiance of 1 W/(m2 sr) at the configured exposure and gain.
   float grey_per_radiance() const { return grey_per_radiance_; }
 
-  // One row: `grey` noise-free in, 8 bits out. `first` is the index of the row's first value in the frame; `key` picks the frame's noise.
-  void expose(const float* grey, std::uint8_t* pixels, std::size_t count, std::uint32_t first, std::uint64_t key) const;
+  // Share of the light that comes to pixel (u, v) through the lens.
+  float vignetting(int u, int v) const;
+
+  // Turns row v into bytes: `grey` (channels interleaved, no noise, before vignetting) becomes pixels with the row's share of light, sensitivities, dark levels and noise.
+  void expose(const float* grey, int v, const Exposing& exposing, std::uint8_t* pixels) const;
 
  private:
-  void expose_packet(Lanes grey, std::uint8_t* pixels, std::uint32_t first, std::uint64_t key) const;
+  void expose_packet(Lanes grey, Lanes dark, const Exposing& exposing, std::uint32_t first, std::uint8_t* pixels) const;
 
-  float grey_per_radiance_, read_variance_, variance_per_grey_;
+  std::size_t row_size_;
+  int width_, height_;
+  double corner_loss_;
+  float grey_per_radiance_, read_variance_, variance_per_grey_, row_noise_;
+  std::vector<float> sensitivity_,
+      dark_;  // of each pixel and channel; rows padded to packets. The light that goes into ghosts and stray light is taken off
 };
 
 }  // namespace lf::optics

@@ -36,7 +36,16 @@ void Shader::add_water(const RayPacket& rays, Lanes range, RgbLanes& radiance) c
   const Lanes height = dot(rays.direction, Lanes3(up_in_base)) / CameraRays::slope(rays);
   const Lanes gradient = 1.f + 0.6f * height;
   for (std::size_t band = 0; band < 3; ++band)
-    radiance[band] += water_.water_w_m2_sr[band] * gradient * (1.f - water_.transmission(band, range));
+    radiance[band] += water_.water_w_m2_sr[band] * gradient * (1.f - water_.broad_transmission(band, range));
+}
+
+// `irradiance` has the way back to the camera in it. Adds what comes back directly, and what scatters on that way.
+void Shader::reflect(const RgbLanes& albedo, const RgbLanes& irradiance, Lanes scattered, RgbLanes& direct, RgbLanes& far) const {
+  for (std::size_t band = 0; band < 3; ++band) {
+    const Lanes light = albedo[band] * one_over_pi * irradiance[band];
+    direct[band] += light * (1.f + scatter_core * scattered);
+    far[band] += light * scattered;
+  }
 }
 
 Light Shader::base(const RayPacket& rays, const HitPacket& hit, float footprint, const HazePlace& haze, Casters casters) const {
@@ -46,10 +55,9 @@ Light Shader::base(const RayPacket& rays, const HitPacket& hit, float footprint,
     RgbLanes irradiance{};
     add_ambient(surface, irradiance);
     add_lamps(surface, casters, irradiance, light);
-    const RgbLanes albedo = look_.albedo(surface, hit.shape, footprint);
-    for (std::size_t band = 0; band < 3; ++band) {
-      light.radiance[band] = albedo[band] * one_over_pi * irradiance[band] * water_.transmission(band, surface.range);
-    }
+    for (std::size_t band = 0; band < 3; ++band)
+      irradiance[band] = surface.met ? irradiance[band] * water_.transmission(band, surface.range) : Lanes{};
+    reflect(look_.albedo(surface, hit.shape, footprint), irradiance, water_.scattered(surface.range), light.radiance, light.scattered);
   }
   const Lanes range = surface.met ? surface.range : all_lanes(open_water_m);
   add_water(rays, range, light.radiance);
@@ -70,21 +78,34 @@ LaneMask Shader::unshaded(const RayPacket& rays, const HitPacket& hit, LaneMask 
   return lit;
 }
 
+RgbLanes Shader::at(const Lanes3& point, float daylight_share) const {
+  RgbLanes irradiance{};
+  for (std::size_t band = 0; band < 3; ++band) irradiance[band] = all_lanes(daylight_share * water_.ambient_w_m2[band]);
+  const auto add = [&](const RgbLanes& light) {
+    for (std::size_t band = 0; band < 3; ++band) irradiance[band] += light[band];
+  };
+  for (const SheetLight& sheet : sheets) add(sheet.at(point, water_));
+  for (const SpotLight& lamp : lamps) add(lamp.at(point, water_));
+  return irradiance;
+}
+
 Light Shader::stripes(const RayPacket& rays, const HitPacket& hit, float footprint, float blur_px) const {
   Light light;
   if (!any(hit.shape >= 0)) return light;
   const SurfacePacket surface = make_surface(rays, hit);
   for (std::size_t i = 0; i < sheets.size(); ++i) {
-    const StripePacket stripe = sheets[i].on_surface(surface, water_, footprint, blur_px);
-    if (!any(stripe.reached)) continue;
+    StripePacket stripe = sheets[i].on_surface(surface, water_, footprint, blur_px);
+    if (!any(stripe.reached | stripe.beside)) continue;
     const RgbLanes albedo = look_.albedo(surface, hit.shape, footprint);
+    const Lanes scattered = water_.scattered(surface.range);
+    if (any(stripe.beside)) reflect(albedo, stripe.skirt, scattered, light.radiance, light.scattered);
+    light.beside |= stripe.beside;
+    if (!any(stripe.reached)) continue;
     const LaneMask lit = scene_.clear_of_all(sheets[i].emitter(), surface, stripe.reached);
     light.reached |= stripe.reached & (1 << i);
     light.lit |= lit & (1 << i);
-    for (std::size_t band = 0; band < 3; ++band) {
-      const Lanes reflected = albedo[band] * one_over_pi * stripe.irradiance[band];
-      light.radiance[band] += lit ? reflected : Lanes{};
-    }
+    for (Lanes& band : stripe.irradiance) band = lit ? band : Lanes{};
+    reflect(albedo, stripe.irradiance, scattered, light.laser, light.scattered);
   }
   return light;
 }

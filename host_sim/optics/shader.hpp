@@ -6,18 +6,13 @@
 
 #include <vector>
 
+#include "host_sim/optics/light.hpp"
 #include "host_sim/optics/sheet_light.hpp"
 #include "host_sim/optics/split_scene.hpp"
 #include "host_sim/optics/spot_light.hpp"
 #include "host_sim/optics/surface_look.hpp"
 
 namespace lf::optics {
-
-// Radiance toward the camera. Bit i of `reached` says that light i could reach the lane, of `lit` that it does: lasers from bit 0, lamps from bit 16.
-struct Light {
-  LaneMask reached{}, lit{};
-  RgbLanes radiance{};
-};
 
 // The lamps' haze along a packet of rays: a row of its grid, and where in the row the first lane lies and how far it is to the next.
 struct HazePlace {
@@ -37,7 +32,11 @@ class Shader {
   // Of `lit`, bits of lamps that light resting surfaces, those that no moving body shades.
   LaneMask unshaded(const RayPacket& rays, const HitPacket& hit, LaneMask lit) const;
 
-  Light stripes(const RayPacket& rays, const HitPacket& hit, float footprint, float blur_px) const;
+  // `blur_px` as SheetLight::on_surface has it.
+  Light stripes(const RayPacket& rays, const HitPacket& hit, float footprint, float blur_px = 0) const;
+
+  // Irradiance of something small in the water that faces the lights, W/m2: lasers' lines, lamps without shadows, and a share of the daylight.
+  RgbLanes at(const Lanes3& point, float daylight_share) const;
 
   const SplitScene& scene() const { return scene_; }
   const SurfaceLook& look() const { return look_; }
@@ -50,6 +49,7 @@ class Shader {
   void add_ambient(const SurfacePacket& surface, RgbLanes& irradiance) const;
   void add_lamps(const SurfacePacket& surface, Casters casters, RgbLanes& irradiance, Light& light) const;
   void add_water(const RayPacket& rays, Lanes range, RgbLanes& radiance) const;
+  void reflect(const RgbLanes& albedo, const RgbLanes& irradiance, Lanes scattered, RgbLanes& direct, RgbLanes& far) const;
 
   const SplitScene& scene_;
   const SurfaceLook& look_;

@@ -6,9 +6,10 @@ namespace lf::optics {
 namespace {
 
 constexpr float root_two_pi = 2.50662827f;
-constexpr float fan_edge = 0.01f;   // the fan's ends fade over this much of tan(angle)
-constexpr float core_reach = 4.5f;  // standard deviations: 4e-5 of the peak
-constexpr float halo_reach = 3.0f;
+constexpr float fan_edge = 0.01f;              // the fan's ends fade over this much of tan(angle)
+constexpr float core_reach = 4.5f;             // standard deviations: 4e-5 of the peak
+constexpr float skirt_reach_rad = 3 * 0.088f;  // the widest Gaussian but one; of the widest 5e-4 of the peak is left there at 0.8 1/m
+constexpr int end_count = 512;
 constexpr float least_range_m = 0.02f;  // nothing is lit closer to the emitter
 
 // A Gaussian of unit height, integrated over a pixel (box) of the given extents along and across its gradient.
@@ -20,19 +21,43 @@ Lanes box_gaussian(Lanes offset, Lanes own_sigma, Lanes sigma, Lanes box) {
 
 }  // namespace
 
-SheetLight::SheetLight(const LaserConfig& config, const Pose& base_from_body, const std::optional<PatternTable>& pattern)
+SheetLight::SheetLight(const LaserConfig& config, const Pose& base_from_body, const std::optional<PatternTable>& pattern, float share)
     : tan_half_fan_(static_cast<float>(std::tan(config.fan_half_angle_rad))),
-      w_per_rad_(static_cast<float>(config.power_w / (2 * config.fan_half_angle_rad))),
+      w_per_rad_(share * static_cast<float>(config.power_w / (2 * config.fan_half_angle_rad))),
       waist_m_(static_cast<float>(config.waist_sigma_m)),
       divergence_rad_(static_cast<float>(config.divergence_rad)),
       tan_cone_(static_cast<float>(std::tan(config.cone_rad))),
       cos_cone_(static_cast<float>(std::cos(config.cone_rad))),
-      power_w_(config.power_w),
+      power_w_(share * config.power_w),
       band_(config.band),
       pattern_(pattern) {
   const Pose base_from_laser = base_from_body * config.body_from_laser;
   base_from_laser_ = Rotation(base_from_laser.linear());
-  emitter_ = Lanes3(base_from_laser.translation());
+  emitter_m_ = base_from_laser.translation();
+  emitter_ = Lanes3(emitter_m_);
+}
+
+void SheetLight::meet(const SplitScene& scene) {
+  if (pattern_.has_value()) return;
+  ends_m_.resize(end_count);
+  for (int first = 0; first < end_count; first += lane_count) {
+    Lanes tangent;
+    for (int lane = 0; lane < lane_count; ++lane)
+      tangent[lane] = tan_half_fan_ * (2.f * static_cast<float>(first + lane) / (end_count - 1) - 1.f);
+    const Lanes radius = sqrt(1.f + tangent * tangent);
+    const RayLines rays{emitter_, base_from_laser_ * Lanes3(tan_cone_ * radius, tangent, all_lanes(1.f))};
+    store_lanes(ends_m_.data() + first, scene.all(rays).parameter * CameraRays::slope(rays));
+  }
+}
+
+Lanes SheetLight::end_m(Lanes y, Lanes z) const {
+  constexpr float endless_m = 1e6f;
+  if (ends_m_.empty()) return all_lanes(endless_m);
+  const Lanes share = 0.5f + 0.5f * y / (max(z, all_lanes(1e-4f)) * tan_half_fan_);
+  const LaneMask place = __builtin_convertvector(clamp(share, 0.f, 1.f) * (end_count - 1) + 0.5f, LaneMask);
+  Lanes end;
+  for (int lane = 0; lane < lane_count; ++lane) end[lane] = ends_m_[static_cast<std::size_t>(place[lane])];
+  return end;
 }
 
 Lanes SheetLight::fan_weight(Lanes y, Lanes z) const {
@@ -50,6 +75,7 @@ StripePacket SheetLight::on_surface(const SurfacePacket& surface, const Water& w
 SheetLight::ImageDistance SheetLight::image_distance(const SurfacePacket& s) const {
   ImageDistance d;
   const Lanes3 place = base_from_laser_.transposed_times(s.point - emitter_);
+  d.place = place;
   d.range2 = dot(place, place);
   // The sheet's distance and its normal at this place: of the plane, or of the cone's tangent plane.
   d.distance = place.x;
@@ -67,19 +93,43 @@ SheetLight::ImageDistance SheetLight::image_distance(const SurfacePacket& s) con
   return d;
 }
 
-// Lanes that core or skirt reach, both as wide as they are at this place; compared as squares.
-LaneMask SheetLight::within_reach(const SurfacePacket& s, const ImageDistance& d, const Water& water, float blur_px) const {
+// Lanes that the line reaches, as wide as it is at this place; compared as squares.
+LaneMask SheetLight::within_reach(const SurfacePacket& s, const ImageDistance& d, float blur_px) const {
   const Lanes facing2 = s.facing * s.facing;
   const Lanes spot =
       (waist_m_ * waist_m_ + divergence_rad_ * divergence_rad_ * d.range2) * facing2 + (blur_px * blur_px + 1.f) * d.gradient2;
-  const Lanes skirt = spot + water.halo_rad * water.halo_rad * d.range2 * facing2;
-  return s.met & (d.w * d.w < max(core_reach * core_reach * spot, halo_reach * halo_reach * skirt));
+  return s.met & (d.w * d.w < core_reach * core_reach * spot);
+}
+
+void SheetLight::add_skirt(const SurfacePacket& s, const ImageDistance& d, const Water& water, StripePacket& stripe) const {
+  constexpr float past_end_m = 0.005f;  // the surface that ends the sheet is lit itself
+  LaneMask beside = s.met & (d.distance * d.distance < skirt_reach_rad * skirt_reach_rad * d.range2);
+  if (!any(beside)) return;
+  const Lanes range = max(sqrt(d.range2), all_lanes(least_range_m));
+  const Lanes incidence = max(-dot(s.normal, s.point - emitter_) / range, Lanes{});
+  const Lanes weight = fan_weight(d.place.y, d.place.z) * incidence;
+  beside &= (weight > 0.f) & (range < end_m(d.place.y, d.place.z) * (1.f + skirt_reach_rad) + past_end_m);
+  if (!any(beside)) return;
+  const Lanes distance2 = d.distance * d.distance;
+  const Lanes sigma2 = waist_m_ * waist_m_ + divergence_rad_ * divergence_rad_ * range * range;
+  Lanes bells{};
+  for (const ScatterTerm& term : scatter_terms) {
+    const Lanes per_width2 = 1.f / (sigma2 + term.angle_rad * term.angle_rad * range * range);
+    bells += term.weight * sqrt(per_width2) * exp(-0.5f * distance2 * per_width2);
+  }
+  const Lanes light = w_per_rad_ / (range * root_two_pi) * weight * water.scattered(range) * bells;
+  stripe.beside = beside;
+  for (std::size_t band = 0; band < 3; ++band) {
+    if (band_[band] == 0.f) continue;
+    stripe.skirt[band] = beside ? light * band_[band] * water.transmission(band, range + s.range) : Lanes{};
+  }
 }
 
 StripePacket SheetLight::line(const SurfacePacket& s, const Water& water, float footprint, float blur_px) const {
   StripePacket stripe;
   const ImageDistance d = image_distance(s);
-  const LaneMask near = within_reach(s, d, water, blur_px);
+  if (water.scatters()) add_skirt(s, d, water, stripe);
+  const LaneMask near = within_reach(s, d, blur_px);
   if (!any(near)) return stripe;
   const Lanes w_du = d.w_du, w_dv = d.w_dv, distance = d.distance;
   const Lanes gradient = max(sqrt(d.gradient2), all_lanes(1e-9f));
@@ -108,21 +158,31 @@ StripePacket SheetLight::line(const SurfacePacket& s, const Water& water, float 
   const Lanes box_u = footprint * abs(w_du) / gradient, box_v = footprint * abs(w_dv) / gradient;
   const Lanes wide = max(box_u, box_v), narrow = min(box_u, box_v);
   const Lanes sigma = sqrt(sigma_px * sigma_px + blur_px * blur_px + narrow * narrow * (1.f / 12.f));
-  const Lanes halo_m = water.halo_rad * range;
-  const Lanes halo_sigma = sqrt(sigma * sigma + halo_m * halo_m * px_per_m * px_per_m);
   stripe.reached = near & (weight > 0.f);
   if (!any(stripe.reached)) return stripe;
 
   const Lanes peak = w_per_rad_ / (range * root_two_pi * sigma_m) * weight;
   const Lanes core = box_gaussian(stripe.offset_px, sigma_px, sigma, wide);
-  const Lanes bell = exp(-0.5f * stripe.offset_px * stripe.offset_px / (halo_sigma * halo_sigma)) * sigma_px / halo_sigma;
   for (std::size_t band = 0; band < 3; ++band) {
     if (band_[band] == 0.f) continue;
     const Lanes path = range + camera_range;
-    const Lanes light = peak * band_[band] * water.transmission(band, path) * (core + bell * water.halo_power(band, path));
+    const Lanes light = peak * band_[band] * water.transmission(band, path) * core * (1.f + scatter_core * water.scattered(range));
     stripe.irradiance[band] = stripe.reached ? light : Lanes{};
   }
   return stripe;
+}
+
+RgbLanes SheetLight::at(const Lanes3& point, const Water& water) const {
+  RgbLanes irradiance{};
+  if (pattern_.has_value()) return irradiance;
+  const Lanes3 place = base_from_laser_.transposed_times(point - emitter_);
+  const Lanes range = max(norm(place), all_lanes(least_range_m));
+  const Lanes lit = range < end_m(place.y, place.z) ? fan_weight(place.y, place.z) : Lanes{};
+  const Lanes off_m = place.x - tan_cone_ * sqrt(place.y * place.y + place.z * place.z);
+  const Lanes sigma2 = waist_m_ * waist_m_ + divergence_rad_ * divergence_rad_ * range * range;
+  const Lanes light = lit * w_per_rad_ / (range * root_two_pi * sqrt(sigma2)) * exp(-0.5f * off_m * off_m / sigma2);
+  for (std::size_t band = 0; band < 3; ++band) irradiance[band] = light * band_[band] * water.transmission(band, range);
+  return irradiance;
 }
 
 StripePacket SheetLight::picture(const SurfacePacket& s, const Water& water, float footprint) const {
@@ -161,9 +221,11 @@ Glow SheetLight::glow(const RayLines& rays, const Water& water) const {
   const Lanes per_approach = 1.f / (abs(direction.x) > 1e-4f ? direction.x : all_lanes(1e-4f));
   glow.parameter = -start.x * per_approach;
   const Lanes y = start.y + glow.parameter * direction.y, z = start.z + glow.parameter * direction.z;
-  const Lanes weight = glow.parameter > 0.f ? fan_weight(y, z) : Lanes{};
-  if (!any(weight > 0.f)) return glow;
   const Lanes range = max(sqrt(y * y + z * z), all_lanes(least_range_m));
+  Lanes weight = glow.parameter > 0.f ? fan_weight(y, z) : Lanes{};
+  if (!water.scatters() || !any(weight > 0.f)) return glow;
+  weight = range < end_m(y, z) ? weight : Lanes{};
+  if (!any(weight > 0.f)) return glow;
   const Lanes slope2 = dot(direction, direction), slope = sqrt(slope2);
   const Lanes per_length2 = 1.f / (range * slope);
   // Light flows along the beam and turns back along the ray.
@@ -171,8 +233,7 @@ Glow SheetLight::glow(const RayLines& rays, const Water& water) const {
   const Lanes crossing = w_per_rad_ * weight * slope2 * per_length2 * abs(per_approach);
   for (std::size_t band = 0; band < 3; ++band) {
     if (band_[band] == 0.f) continue;
-    glow.radiance[band] =
-        crossing * band_[band] * water.scattering(band, cosine) * water.transmission(band, range + glow.parameter * slope);
+    glow.radiance[band] = crossing * band_[band] * water.scattering(cosine) * water.transmission(band, range + glow.parameter * slope);
   }
   return glow;
 }

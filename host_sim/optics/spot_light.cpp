@@ -17,7 +17,7 @@ float knot_range(float knot) {
 
 }  // namespace
 
-SpotLight::SpotLight(const LampConfig& config, const Pose& base_from_body)
+SpotLight::SpotLight(const LampConfig& config, const Pose& base_from_body, float share)
     : intensity_w_sr_(config.intensity_w_sr),
       cos_outer_(static_cast<float>(std::cos(std::min(config.cone_half_angle_rad + 0.5 * config.edge_rad, pi)))),
       cos_inner_(static_cast<float>(std::cos(std::max(config.cone_half_angle_rad - 0.5 * config.edge_rad, 0.0)))),
@@ -25,6 +25,7 @@ SpotLight::SpotLight(const LampConfig& config, const Pose& base_from_body)
   const Pose base_from_lamp = base_from_body * config.body_from_lamp;
   position_ = Lanes3(base_from_lamp.translation());
   axis_ = Lanes3(Vec3(base_from_lamp.linear().col(2)));
+  for (float& band : intensity_w_sr_) band *= share;
 }
 
 Lanes SpotLight::cone_weight(const Lanes3& beam, Lanes range_m) const {
@@ -39,7 +40,16 @@ RgbLanes SpotLight::on_surface(const SurfacePacket& surface, const Water& water)
   const Lanes incidence = max(-dot(surface.normal, beam) / range, Lanes{});
   const Lanes weight = cone_weight(beam, range) * incidence / (range * range);
   RgbLanes irradiance;
-  for (std::size_t band = 0; band < 3; ++band) irradiance[band] = intensity_w_sr_[band] * weight * water.transmission(band, range);
+  for (std::size_t band = 0; band < 3; ++band) irradiance[band] = intensity_w_sr_[band] * weight * water.broad_transmission(band, range);
+  return irradiance;
+}
+
+RgbLanes SpotLight::at(const Lanes3& point, const Water& water) const {
+  const Lanes3 beam = point - position_;
+  const Lanes range = max(norm(beam), all_lanes(least_range_m));
+  const Lanes weight = cone_weight(beam, range) / (range * range);
+  RgbLanes irradiance;
+  for (std::size_t band = 0; band < 3; ++band) irradiance[band] = intensity_w_sr_[band] * weight * water.broad_transmission(band, range);
   return irradiance;
 }
 
@@ -50,7 +60,7 @@ RgbLanes SpotLight::scattered(const Lanes3& point, const Lanes3& unit_direction,
   const Lanes weight = cone_weight(beam, range) / (range * range);
   RgbLanes radiance;
   for (std::size_t band = 0; band < 3; ++band) {
-    radiance[band] = intensity_w_sr_[band] * weight * water.scattering(band, cosine) * water.transmission(band, range + camera_range_m);
+    radiance[band] = intensity_w_sr_[band] * weight * water.scattering(cosine) * water.broad_transmission(band, range + camera_range_m);
   }
   return radiance;
 }

@@ -10,13 +10,17 @@ namespace lf::optics {
 
 class SpotLight {
  public:
-  SpotLight(const LampConfig& config, const Pose& base_from_body);
+  // `share`: of the exposure during which it is on.
+  SpotLight(const LampConfig& config, const Pose& base_from_body, float share = 1);
 
   // The share of the lamp's full intensity that leaves it toward a point.
   Lanes cone_weight(const Lanes3& beam, Lanes range_m) const;
 
   // Irradiance (W/m2) of a surface before occlusion, attenuated on the way there.
   RgbLanes on_surface(const SurfacePacket& surface, const Water& water) const;
+
+  // Of something small that faces the lamp.
+  RgbLanes at(const Lanes3& point, const Water& water) const;
 
   // Radiance scattered toward `origin` by a metre of water at `point`, 1/m, attenuated on both ways.
   RgbLanes scattered(const Lanes3& point, const Lanes3& unit_direction, Lanes camera_range_m, const Water& water) const;

@@ -13,12 +13,17 @@ const std::vector<float>* if_any(const std::vector<float>& row) { return row.emp
 }  // namespace
 
 void SubPixels::average(std::size_t channels) {
-  for (std::size_t c = 0; c < channels; ++c) {
+  const auto mean = [this](GreyLanes Sample::*of, std::size_t c) {
     float sum = 0;
     for (const Sample& samples : half) {
-      for (int i = 0; i < lane_count; ++i) sum += samples.grey[c][i];
+      for (int i = 0; i < lane_count; ++i) sum += (samples.*of)[c][i];
     }
-    grey[c] = sum / (2 * lane_count);
+    return sum / (2 * lane_count);
+  };
+  for (std::size_t c = 0; c < channels; ++c) {
+    grey[c] = mean(&Sample::grey, c);
+    scattered[c] = mean(&Sample::scattered, c);
+    laser[c] = mean(&Sample::laser, c);
   }
 }
 
@@ -39,15 +44,16 @@ StillView::StillView(const Camera& camera, const Tiles& tiles, const scene::Scen
 }
 
 // Marks what is no longer true and takes note of what will be. Returns whether there is any.
-bool StillView::find_stale(const scene::BodyPoses& poses, const std::vector<scene::BodyId>& lamp_bodies) {
+bool StillView::find_stale(const scene::BodyPoses& poses, const std::vector<scene::BodyId>& lamp_bodies, float lamp_share) {
   std::vector<Pose> fixed_poses;
   for (std::size_t i = 0; i < scene::body_count; ++i) {
     if (fixed(static_cast<scene::BodyId>(i))) fixed_poses.push_back(poses[i]);
   }
   for (const scene::BodyId body : lamp_bodies) fixed_poses.push_back(poses[static_cast<std::size_t>(body)]);
-  const bool all =
-      lamp_bodies != lamp_bodies_ || !std::equal(fixed_poses.begin(), fixed_poses.end(), fixed_poses_.begin(), fixed_poses_.end(), same);
+  const bool all = lamp_bodies != lamp_bodies_ || lamp_share != lamp_share_ ||
+                   !std::equal(fixed_poses.begin(), fixed_poses.end(), fixed_poses_.begin(), fixed_poses_.end(), same);
   lamp_bodies_ = lamp_bodies;
+  lamp_share_ = lamp_share;
   fixed_poses_ = std::move(fixed_poses);
   std::fill(stale_.begin(), stale_.end(), std::uint8_t{all});
   bool any_stale = all;
@@ -68,9 +74,9 @@ void StillView::mark(const BodyBounds& bodies) {
   }
 }
 
-bool StillView::update(const Shader& shader, const scene::BodyPoses& poses, const std::vector<scene::BodyId>& lamp_bodies,
+bool StillView::update(const Shader& shader, const scene::BodyPoses& poses, const std::vector<scene::BodyId>& lamp_bodies, float lamp_share,
                        WorkerPool& pool) {
-  if (!find_stale(poses, lamp_bodies)) return false;
+  if (!find_stale(poses, lamp_bodies, lamp_share)) return false;
   haze_.reset();
   if (!shader.lamps.empty()) {
     haze_.emplace(camera_.rays, camera_.place, camera_.width(), camera_.height(), shader.lamps, shader.water());
@@ -112,8 +118,7 @@ void StillView::sample_packet(const Shader& shader, int u, int v, const std::vec
   Sample sample;
   sample.hit = shader.scene().resting(rays);
   const Light light = shader.base(rays, sample.hit, 1.f, {haze_row, static_cast<float>(u), 1.f}, Casters::resting);
-  sample.reached = light.reached, sample.lit = light.lit;
-  sample.grey = camera_.grey(light.radiance);
+  sample.set(light, camera_);
   pixels_.set(pixels_.index(u, v), sample);
   packets_[packet(u, v)] = {!any(sample.hit.shape >= 0), 0, 0};
 }
@@ -145,8 +150,7 @@ SubPixels StillView::trace_sub_pixels(const Shader& shader, int u, int v, const 
     Sample& sample = pixel.half[static_cast<std::size_t>(half)];
     sample.hit = shader.scene().resting(rays);
     const Light light = shader.base(rays, sample.hit, 0.25f, {haze_row, static_cast<float>(u), 0.f}, Casters::resting);
-    sample.reached = light.reached, sample.lit = light.lit;
-    sample.grey = camera_.grey(light.radiance);
+    sample.set(light, camera_);
   }
   pixel.average(camera_.channels());
   return pixel;

@@ -21,7 +21,7 @@ namespace lf::optics {
 struct SubPixels {
   void average(std::size_t channels);
   std::array<Sample, 2> half;
-  std::array<float, 3> grey{};
+  std::array<float, 3> grey{}, scattered{}, laser{};
 };
 
 class StillView {
@@ -29,9 +29,10 @@ class StillView {
   // `camera` and `tiles` outlive it.
   StillView(const Camera& camera, const Tiles& tiles, const scene::Scene& scene, bool edge_sampling);
 
-  // Brings the view to these poses and to the lamps that are on, of which `lamp_bodies` has the bodies; `shader` has the same poses and lamps.
-  // Returns whether anything had to be made anew.
-  bool update(const Shader& shader, const scene::BodyPoses& poses, const std::vector<scene::BodyId>& lamp_bodies, WorkerPool& pool);
+  // Brings the view to these poses and to the lamps that are on, of which `lamp_bodies` has the bodies, for `lamp_share` of the exposure; `shader` has the same poses
+  // and lamps. Returns whether anything had to be made anew.
+  bool update(const Shader& shader, const scene::BodyPoses& poses, const std::vector<scene::BodyId>& lamp_bodies, float lamp_share,
+              WorkerPool& pool);
 
   const PixelStore& pixels() const { return pixels_; }
 
@@ -62,7 +63,7 @@ class StillView {
     Pose pose;
   };
   std::size_t packet(int u, int v) const { return static_cast<std::size_t>(v) * packets_a_row_ + static_cast<std::size_t>(u / lane_count); }
-  bool find_stale(const scene::BodyPoses& poses, const std::vector<scene::BodyId>& lamp_bodies);
+  bool find_stale(const scene::BodyPoses& poses, const std::vector<scene::BodyId>& lamp_bodies, float lamp_share);
   void mark(const BodyBounds& bodies);
   bool stale_about(int column, int tile_row) const;
   void sample_tiles(const Shader& shader, int tile_row);
@@ -77,6 +78,7 @@ class StillView {
   std::size_t packets_a_row_;
 
   std::vector<scene::BodyId> lamp_bodies_;
+  float lamp_share_ = 0;
   std::vector<Pose> fixed_poses_;  // of the fixed bodies and the lamps'; empty before the first update
   std::vector<Yielding> yielding_;
   std::vector<std::uint8_t> stale_;  // a tile

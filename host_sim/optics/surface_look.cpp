@@ -83,16 +83,26 @@ Lanes SurfaceLook::grain(const SurfacePacket& surface, LaneMask shape, float foo
          grain_ * (value_noise(noise_, a * coarse_per_m, b * coarse_per_m) + fine * value_noise(noise_, a * fine_per_m, b * fine_per_m));
 }
 
-void SurfaceLook::draw_marker(const SurfacePacket& surface, int lane, const Look& look, float footprint, RgbLanes& albedo) const {
+std::optional<float> SurfaceLook::white_share(const SurfacePacket& surface, int lane, const Look& look, float footprint) const {
   const auto at = [lane](const Lanes3& v) { return Vec3(v.x[lane], v.y[lane], v.z[lane]); };
   const Pose shape_from_base = (poses_[look.body] * look.body_from_shape).inverse();
   const Vec3 p = shape_from_base * at(surface.point);
-  if (std::abs(p.z() - look.top_m) > 1e-4) return;
+  if (std::abs(p.z() - look.top_m) > 1e-4) return std::nullopt;
   const Vec3 du = shape_from_base.linear() * at(surface.point_du) * footprint,
              dv = shape_from_base.linear() * at(surface.point_dv) * footprint;
-  const float white = look.marker->white_share(p.head<2>(), du.head<2>(), dv.head<2>());
-  constexpr float paper = 0.80f, ink = 0.04f;  // printed plastic
-  for (std::size_t band = 0; band < 3; ++band) albedo[band][lane] = ink + (paper - ink) * white;
+  return look.marker->white_share(p.head<2>(), du.head<2>(), dv.head<2>());
+}
+
+LaneMask SurfaceLook::marks_edges(const SurfacePacket& surface, LaneMask shape, LaneMask wanted) const {
+  LaneMask edges{};
+  for (int i = 0; i < lane_count; ++i) {
+    if (wanted[i] == 0 || shape[i] < 0) continue;
+    const Look& look = looks_[static_cast<std::size_t>(shape[i])];
+    if (!look.marker) continue;
+    const std::optional<float> white = white_share(surface, i, look, 1.f);
+    edges[i] = white && *white > 0.01f && *white < 0.99f ? -1 : 0;
+  }
+  return edges;
 }
 
 RgbLanes SurfaceLook::albedo(const SurfacePacket& surface, LaneMask shape, float footprint) const {
@@ -110,7 +120,10 @@ RgbLanes SurfaceLook::albedo(const SurfacePacket& surface, LaneMask shape, float
   for (int i = 0; i < lane_count; ++i) {
     if (shape[i] < 0) continue;
     const Look& look = looks_[static_cast<std::size_t>(shape[i])];
-    if (look.marker) draw_marker(surface, i, look, footprint, albedo);
+    if (!look.marker) continue;
+    constexpr float paper = 0.80f, ink = 0.04f;  // printed plastic
+    const std::optional<float> white = white_share(surface, i, look, footprint);
+    for (std::size_t band = 0; white && band < 3; ++band) albedo[band][i] = ink + (paper - ink) * *white;
   }
   return albedo;
 }

@@ -21,6 +21,9 @@ class SurfaceLook {
   // Albedo of each lane's surface, 0 where there is none. `footprint`: side of the sample's square, px.
   RgbLanes albedo(const SurfacePacket& surface, LaneMask shape, float footprint) const;
 
+  // Which of the wanted lanes' pixels hold an edge of a mark.
+  LaneMask marks_edges(const SurfacePacket& surface, LaneMask shape, LaneMask wanted) const;
+
  private:
   struct Look {
     Rgb albedo{};
@@ -30,7 +33,8 @@ class SurfaceLook {
     double top_m = 0;  // of the marker's face
   };
   Lanes grain(const SurfacePacket& surface, LaneMask shape, float footprint) const;
-  void draw_marker(const SurfacePacket& surface, int lane, const Look& look, float footprint, RgbLanes& albedo) const;
+  // White share of the lane's square; nothing beside the marker's face.
+  std::optional<float> white_share(const SurfacePacket& surface, int lane, const Look& look, float footprint) const;
 
   std::vector<Look> looks_;
   std::vector<float> noise_;

@@ -3,15 +3,16 @@
 namespace lf::optics {
 
 Water::Water(const WaterConfig& config)
-    : asymmetry(static_cast<float>(config.asymmetry)),
-      halo_share(static_cast<float>(config.halo_share)),
-      halo_rad(static_cast<float>(config.halo_rad)),
-      ambient_w_m2(config.ambient_w_m2),
-      water_w_m2_sr(config.water_w_m2_sr) {
-  // Scattering hardly depends on the band (large particles): what red loses more it loses by absorption.
+    : asymmetry(static_cast<float>(config.asymmetry)), ambient_w_m2(config.ambient_w_m2), water_w_m2_sr(config.water_w_m2_sr) {
+  const double sea = sea_scattering_per_m(config.attenuation_per_m);
+  const bool as_sea = config.scattering_share == WaterConfig::sea_water;
+  const double scattering = as_sea ? sea : config.attenuation_per_m * config.scattering_share;
+  scattering_per_m = static_cast<float>(scattering);
   for (std::size_t band = 0; band < 3; ++band) {
-    attenuation_per_m[band] = static_cast<float>(config.attenuation_per_m) * config.attenuation_ratio[band];
-    scattering_per_m[band] = static_cast<float>(config.attenuation_per_m * config.scattering_share);
+    // Scattering hardly depends on the band (large particles): what red loses more it loses by absorption.
+    attenuation_per_m[band] = std::max(static_cast<float>(config.attenuation_per_m) * config.attenuation_ratio[band], scattering_per_m);
+    // The water's own light is scattered daylight: an absorber is dark.
+    if (!as_sea) water_w_m2_sr[band] *= static_cast<float>(sea > 0 ? std::min(scattering / sea, 2.0) : 0.0);
   }
 }
 

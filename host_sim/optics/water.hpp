@@ -1,8 +1,9 @@
-// Light's way through the water: Beer-Lambert attenuation per band, and single scattering after Henyey and Greenstein.
+// Light's way through the water: Beer-Lambert attenuation per band, forward scatter, and single scattering by large angles.
 #pragma once
 
 #include <array>
 
+#include "host_sim/optics/formation/forward_scatter.hpp"
 #include "host_sim/optics/lanes.hpp"
 #include "host_sim/optics/optics.hpp"
 
@@ -14,23 +15,38 @@ class Water {
  public:
   explicit Water(const WaterConfig& config);
 
-  // The share of a band that is left after `path_m`.
+  // The share of a band that is left of a thin beam after `path_m`.
   Lanes transmission(std::size_t band, Lanes path_m) const { return exp(-attenuation_per_m[band] * path_m); }
-  float transmission(std::size_t band, float path_m) const { return std::exp(-attenuation_per_m[band] * path_m); }
 
-  // Scattered radiance per irradiance and metre of path, 1/(sr m), of light that turns by an angle with this cosine.
-  Lanes scattering(std::size_t band, Lanes cosine) const {
-    const float g = asymmetry;
-    const Lanes base = max(1.f + g * g - 2.f * g * cosine, all_lanes(1e-4f));
-    return scattering_per_m[band] * (1.f - g * g) / (static_cast<float>(4 * pi) * base * sqrt(base));
+  // The same of light that is as bright all round, a lamp's or a wide surface's: what is scattered forward is not lost to it.
+  Lanes broad_transmission(std::size_t band, Lanes path_m) const {
+    return (1.f - scatter_forward) * transmission(band, path_m) +
+           scatter_forward * exp((scattering_per_m - attenuation_per_m[band]) * path_m);
   }
 
-  // The power in the skirt that forward scattering lays round a line after `path_m`, per power that is left in the line itself.
-  Lanes halo_power(std::size_t band, Lanes path_m) const { return halo_share * (exp(scattering_per_m[band] * path_m) - 1.f); }
+  // The light that has scattered on a way of `path_m` and is still under way, over the direct light.
+  Lanes scattered(Lanes path_m) const { return exp(min(scattering_per_m * path_m, all_lanes(most_depth))) - 1.f; }
 
-  Rgb attenuation_per_m{}, scattering_per_m{};
-  float asymmetry, halo_share, halo_rad;
+  // Scattered radiance per irradiance and metre of path, 1/(sr m), of light that turns by an angle with this cosine: two lobes after Henyey and Greenstein. With the
+  // default's forward lobe 0.66, 0.83 and 0.94 of the light stay within 10, 20 and 45 degrees and 0.020 turns back; Petzold's mean has 0.67, 0.81, 0.93 and 0.018.
+  Lanes scattering(Lanes cosine) const {
+    return scattering_per_m * ((1.f - back_share) * lobe(asymmetry, cosine) + back_share * lobe(back_asymmetry, cosine));
+  }
+
+  bool scatters() const { return scattering_per_m > 0; }
+
+  Rgb attenuation_per_m{};
+  float scattering_per_m = 0;  // of every band
+  float asymmetry;
   Rgb ambient_w_m2, water_w_m2_sr;
+
+ private:
+  static constexpr float back_share = 0.01f, back_asymmetry = -0.14f;
+  static constexpr float most_depth = 5;  // optical: nothing is seen through more
+  static Lanes lobe(float g, Lanes cosine) {
+    const Lanes base = max(1.f + g * g - 2.f * g * cosine, all_lanes(1e-4f));
+    return (1.f - g * g) / (static_cast<float>(4 * pi) * base * sqrt(base));
+  }
 };
 
 }  // namespace lf::optics

@@ -43,6 +43,7 @@ struct MissionScene {
   OpticsConfig config() const {
     OpticsConfig config;
     config.scene = scene;
+    config.water.particles_per_l = 3;
     CameraConfig camera;
     camera.intrinsics.width = 320, camera.intrinsics.height = 240;
     camera.intrinsics.fx = camera.intrinsics.fy = 180.8;

@@ -56,18 +56,26 @@ inline scene::BodyPoses resting() {
   return poses;
 }
 
+// Without what lens and sensor do beside the lens's spot.
+inline CameraConfig lossless(CameraConfig camera) {
+  camera.stray_share = camera.ghost_share = camera.prnu = camera.dsnu_grey = camera.row_noise_grey = camera.hot_pixels = 0;
+  camera.corner_light = camera.corner_blur = 1;
+  return camera;
+}
+
 inline CameraConfig quiet_camera() {
   CameraConfig camera;
   camera.base_from_camera = looking(Vec3::Zero(), Vec3::UnitX());
   camera.read_noise_grey = 0;
   camera.electrons_per_grey = 0;
-  return camera;
+  return lossless(camera);
 }
 
 inline LaserConfig vehicle_laser(const Pose& base_from_laser) {
   LaserConfig laser;
   laser.body = scene::BodyId::vehicle;
   laser.body_from_laser = base_from_laser;
+  laser.speckle = 0;
   return laser;
 }
 
@@ -95,8 +103,8 @@ struct Bench {
   float green(const CameraConfig& camera, const CameraRays& rays, int u, int v) const {
     const RayPacket packet = rays.around(CameraPlace(camera.base_from_camera), u, v, Lanes{}, Lanes{});
     const HitPacket hit = scene.all(packet);
-    float green = shader.base(packet, hit, 1.f, {}, Casters::all).radiance[1][0] +
-                  shader.stripes(packet, hit, 1.f, static_cast<float>(camera.blur_px)).radiance[1][0];
+    const Light stripes = shader.stripes(packet, hit, 1.f, static_cast<float>(camera.blur_px));
+    float green = shader.base(packet, hit, 1.f, {}, Casters::all).radiance[1][0] + stripes.radiance[1][0] + stripes.laser[1][0];
     for (const SheetLight& sheet : shader.sheets) {
       const Glow glow = sheet.glow(packet, water);
       if (glow.parameter[0] < hit.parameter[0]) green += glow.radiance[1][0];

@@ -1,4 +1,4 @@
-// The pieces of which a picture will be made after the rays, each against a closed form or a published figure.
+// The pieces of which a picture is made after the rays, each against a closed form or a published figure.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -88,19 +88,59 @@ TEST(Radiometry, StripesPowerAcrossItIsTheFansPowerPerMetre) {
 TEST(Radiometry, RedFadesFasterThanGreen) {
   const WaterConfig config;
   const Water water(config);
-  EXPECT_NEAR(water.transmission(1, 2.f), std::exp(-0.6), 1e-6);
-  EXPECT_NEAR(water.transmission(0, 2.f), std::exp(-0.6 * config.attenuation_ratio[0]), 1e-6);
+  EXPECT_NEAR(water.transmission(1, all_lanes(2.f))[0], std::exp(-0.6), 1e-6);
+  EXPECT_NEAR(water.transmission(0, all_lanes(2.f))[0], std::exp(-0.6 * double(config.attenuation_ratio[0])), 1e-6);
 }
 
-TEST(Radiometry, ScatteringSumsToItsCoefficientOverAllDirections) {
-  const Water water(WaterConfig{});
-  double sum = 0;
-  const int steps = 20000;
-  for (int i = 0; i < steps; ++i) {
-    const double cosine = -1 + (i + 0.5) * 2.0 / steps;
-    sum += water.scattering(1, all_lanes(static_cast<float>(cosine)))[0] * 2 * pi * 2.0 / steps;
+// Shares of the scattered light within an angle, and what turns back: Petzold's mean phase function for particles, as published.
+TEST(Radiometry, ScatteringFollowsPetzoldsMeanPhaseFunction) {
+  WaterConfig config;
+  config.attenuation_per_m = 0.8;
+  const Water water(config);
+  const auto within = [&](double degrees) {
+    const int steps = 40000;
+    double sum = 0;
+    for (int i = 0; i < steps; ++i) {
+      const double angle = rad_from_deg(degrees) * (i + 0.5) / steps;
+      sum += double(water.scattering(all_lanes(static_cast<float>(std::cos(angle))))[0]) * 2 * pi * std::sin(angle) *
+             rad_from_deg(degrees) / steps;
+    }
+    return sum / double(water.scattering_per_m);
+  };
+  EXPECT_NEAR(water.scattering_per_m, 0.58, 0.01);  // of a harbour-like 0.8 1/m
+  EXPECT_NEAR(within(180), 1, 2e-3);
+  for (const auto& [degrees, share] : {std::pair{10.0, 0.668}, std::pair{20.0, 0.812}, std::pair{45.0, 0.932}})
+    EXPECT_NEAR(within(degrees), share, 0.02) << degrees;
+  EXPECT_NEAR(1 - within(90), 0.018, 0.004);
+  EXPECT_NEAR(water.scattering(all_lanes(static_cast<float>(std::cos(rad_from_deg(160)))))[0] / water.scattering_per_m, 2.7e-3, 0.3e-3);
+}
+
+TEST(Radiometry, WaterScattersAsMuchAsPetzoldsThreeWaters) {
+  for (const auto& [attenuation, scattering] : {std::pair{0.151, 0.037}, std::pair{0.398, 0.219}, std::pair{2.190, 1.824}})
+    EXPECT_NEAR(sea_scattering_per_m(attenuation), scattering, 0.01 + 0.02 * scattering) << attenuation;
+}
+
+// Lit from all sides a field loses only what is absorbed and what turns back.
+TEST(Radiometry, AWideFieldLosesOnlyWhatIsAbsorbedAndTurnsBack) {
+  WaterConfig config;
+  config.attenuation_per_m = 0.8;
+  const Water water(config);
+  const double b = double(water.scattering_per_m);
+  for (const double range : {0.3, 0.9, 2.0}) {
+    const double expected = std::exp(-0.8 * range) * (1 + 0.976 * (std::exp(b * range) - 1));
+    EXPECT_NEAR(water.broad_transmission(1, all_lanes(static_cast<float>(range)))[0], expected, 1e-5);
   }
-  EXPECT_NEAR(sum, 0.15, 2e-3 * 0.15);
+}
+
+TEST(Radiometry, AnAbsorberIsDark) {
+  const Middle middle;
+  WaterConfig water;
+  water.attenuation_per_m = 2;
+  water.scattering_share = 0;
+  scene::Scene nothing;
+  Bench bench(nothing, water);
+  bench.add(vehicle_laser(sheet({0.3, 0, 0.4}, {0.2, 0, -1}, Vec3::UnitY())));
+  EXPECT_EQ(middle(bench), 0);
 }
 
 TEST(Radiometry, OpenWaterGathersTowardItsOwnColour) {

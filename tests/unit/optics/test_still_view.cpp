@@ -44,8 +44,9 @@ void compare_with_fresh(OpticsConfig config, std::uint32_t seed, int frames) {
     if (i % 7 == 5) drift[std::size_t(scene::BodyId::panel)] = Eigen::Translation3d(1e-9 * i, 0, 0) * Pose::Identity();
     if (i % 11 == 9) drift[std::size_t(scene::BodyId::vehicle)] = Eigen::Translation3d(0, 1e-3 * i, 0) * Pose::Identity();
     for (std::size_t body = 0; body < scene::body_count; ++body) shot.poses[body] = drift[body] * shot.poses[body];
-    shot.laser = random() % 3 != 0;
-    shot.lamps = random() % 3 == 0;
+    shot.laser = random() % 3 != 0 ? 1.f : 0.f;
+    shot.lamps = random() % 3 == 0 ? (random() % 2 == 0 ? 1.f : 0.4f) : 0.f;
+    shot.time_s = i;
     shot.truth = true;
     kept.render(shot, frame);
     config.threads = 1;
@@ -103,7 +104,7 @@ struct Inside {
       bench.add(lamp, poses);
       lamp_bodies.push_back(lamp.body);
     }
-    still.update(bench.shader, poses, lamp_bodies, pool);
+    still.update(bench.shader, poses, lamp_bodies, 1, pool);
   }
   Camera camera;
   Tiles tiles;

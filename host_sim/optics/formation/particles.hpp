@@ -1,0 +1,49 @@
+// Specks that drift in the water before a camera: marine snow, sand.
+//
+// Each cell of 5 cm of a grid that moves with the water has its own specks, drawn from the cell's number. Their sizes follow the power law of the sea, a number per
+// size of d^-3 (Jackson et al., Deep-Sea Res. 44, 1997). A speck is a grey disc of albedo 0.1 to 0.5, lit by lasers, lamps and daylight, seen as a Gaussian of its
+// own size and the lens's defocus at its distance. A speck is a few grey levels bright, a large one in the sheet as bright as the stripe.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "host_sim/optics/pixel_store.hpp"
+#include "host_sim/optics/shader.hpp"
+
+namespace lf::optics {
+
+class Particles {
+ public:
+  static constexpr double least_m = 0.0005;  // diameter
+  static constexpr double most_m = 0.008;
+  static constexpr double cell_m = 0.05;
+  static constexpr double near_m = 0.10, far_m = 1.0;  // from the camera, along its axis
+
+  // Those that `camera`, which outlives this, can see.
+  Particles(const Camera& camera, const WaterConfig& water, std::uint64_t seed);
+
+  // Adds their light to the grey of `pixels`, whose surfaces hide what is behind them. `time_s`: how long the water has drifted.
+  void stamp(double time_s, const Shader& shader, PixelStore& pixels) const;
+
+  // One of them, in the base frame.
+  struct Speck {
+    Vec3 place_m = Vec3::Zero();
+    double diameter_m = 0;
+    double albedo = 0;
+  };
+  std::vector<Speck> at(double time_s) const;
+
+ private:
+  using Cell = std::array<std::int32_t, 3>;
+  void show(const Speck& speck, const RgbLanes& irradiance, int lane, const Shader& shader, PixelStore& pixels) const;
+
+  const Camera& camera_;
+  double per_cell_;
+  Vec3 current_m_s_;
+  std::uint64_t seed_;
+  std::vector<Cell> cells_;  // that reach into the view, whatever part of a cell's size the grid has drifted
+};
+
+}  // namespace lf::optics
