@@ -19,6 +19,13 @@ constexpr std::int32_t rows_a_sample = 8;
 
 Duration distance(Time a, Time b) { return a < b ? b - a : a - b; }
 
+// Haze is as wide in angle for every camera.
+scan::RefinerConfig scaled(scan::RefinerConfig config, const CameraCalibration& camera) {
+  constexpr double near_haze_rad = 0.0221;
+  if (camera.intrinsics.fy > 0) config.haze_near_px = static_cast<float>(near_haze_rad * camera.intrinsics.fy);
+  return config;
+}
+
 scan::PlaneFitter::Config toward_camera(scan::PlaneFitter::Config config, const CameraCalibration& camera) {
   config.toward_m = camera.base_from_camera.translation();
   return config;
@@ -28,7 +35,10 @@ scan::PlaneFitter::Config toward_camera(scan::PlaneFitter::Config config, const 
 
 template <ScanCapacity capacity>
 BasicScanPipeline<capacity>::BasicScanPipeline(const ScanConfig& config)
-    : config_(config), detector_(config.peaks), triangulator_(config.camera, config.laser, config.triangulation) {
+    : config_(config),
+      detector_(config.peaks),
+      refiner_(scaled(config.refiner, config.camera)),
+      triangulator_(config.camera, config.laser, config.triangulation) {
   config_.plane = toward_camera(config.plane, config.camera);
 }
 
@@ -203,10 +213,12 @@ ImageView BasicScanPipeline<capacity>::background_of(const Exposure& exposure) c
 // The stripe's peaks; those of a sweep wait for their joints.
 template <ScanCapacity capacity>
 void BasicScanPipeline<capacity>::measure(const Image& image, const Exposure& exposure) {
-  last_peaks_count_ = detector_.detect(image.view, background_of(exposure), last_peaks_);
+  const ImageView background = background_of(exposure);
+  const std::size_t found = detector_.detect(image.view, background, last_peaks_);
+  last_peaks_count_ = refiner_.refine(image.view, background, std::span(last_peaks_).first(found));
   last_peaks_time_ = image.mid_exposure();
   const scan::PeakCounters& counters = detector_.counters();
-  stats_.peaks = static_cast<std::uint32_t>(counters.found);
+  stats_.peaks = static_cast<std::uint32_t>(refiner_.counters().refined);
   stats_.peaks_weak = static_cast<std::uint32_t>(counters.weak);
   stats_.peaks_saturated = static_cast<std::uint32_t>(counters.saturated);
   if (!exposure.in_sweep) return;

@@ -14,6 +14,7 @@
 #include "firmware/arm/kinematics.hpp"
 #include "firmware/scan/cloud.hpp"
 #include "firmware/scan/joint_history.hpp"
+#include "firmware/scan/peak_refiner.hpp"
 #include "firmware/scan/peaks.hpp"
 #include "firmware/scan/plane.hpp"
 #include "firmware/scan/triangulate.hpp"
@@ -30,6 +31,7 @@ struct ScanConfig {
   LaserCalibration laser;
   std::uint8_t camera_index = 0;  // whose images are measured
   scan::PeakConfig peaks{.peaks_per_line = 4};
+  scan::RefinerConfig refiner;  // its haze is scaled to the camera
   scan::Triangulator::Config triangulation;
   // An image without a trigger counter belongs to the exposure ordered within this of its start; exposures are 40 ms apart. It covers the tick's lateness, the
   // camera's own delay, and how well its clock is known.
@@ -136,6 +138,7 @@ class BasicScanPipeline {
 
   ScanConfig config_;
   scan::BasicPeakDetector<std::uint8_t, std::max(image_width, image_height)> detector_;
+  scan::BasicPeakRefiner<std::uint8_t, image_width, image_height> refiner_;
   scan::Triangulator triangulator_;
   scan::JointHistory joints_;
   scan::PlaneFitter fitter_;
@@ -159,7 +162,7 @@ class BasicScanPipeline {
   Time last_peaks_time_;
 };
 
-// Every point of the slowest sweep. The cloud is 4.2 MB of it, two stored images 0.6, stripes 0.2, the detector 0.1.
+// Every point of the slowest sweep. The cloud is 4.2 MB of it, two stored images 0.6, stripes 0.2, detector and refiner 0.2.
 inline constexpr ScanCapacity full_scan{};
 using ScanPipeline = BasicScanPipeline<full_scan>;
 static_assert(sizeof(ScanPipeline) <= 6 * 1024 * 1024, "a computer's, or a board's external 8 MB");

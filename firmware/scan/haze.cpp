@@ -144,6 +144,7 @@ float BasicHaze<Pixel, MaxWidth, MaxHeight>::at(float u, float v) const {
   return fine_.columns == 0 ? 0 : fine_.at((u + 0.5f) / cell - 0.5f, (v + 0.5f) / cell - 0.5f);
 }
 
+template class BasicHaze<std::uint8_t, 320, 240>;
 template class BasicHaze<std::uint8_t, 640, 480>;
 template class BasicHaze<std::uint8_t, 4096, 4096>;
 template class BasicHaze<std::uint16_t, 4096, 4096>;

@@ -5,7 +5,7 @@
 // picture y of a scene x is then x + S M(x), with M these three and S = exp(b R) - 1 at a scattering of b over the range R. Light that is scattered less far, into
 // 2 px and the core, widens the picture as the lens does and is left to the fit's blur.
 //
-// The haze is smooth: it is computed in cells of 4 by 4 pixels, its wide parts in cells of 16 by 16.
+// The haze is smooth: it is computed in cells of 8 by 8 pixels, its wide parts in cells of 16 by 16.
 #pragma once
 
 #include <array>
@@ -34,7 +34,7 @@ class BasicHaze {
   float at(float u, float v) const;
 
  private:
-  static constexpr std::int32_t cell = 4, coarse = 4;  // pixels a cell, cells a coarse cell
+  static constexpr std::int32_t cell = 8, coarse = 2;  // pixels a cell, cells a coarse cell
 
   template <std::int32_t Columns, std::int32_t Rows>
   struct Plane {

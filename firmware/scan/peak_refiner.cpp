@@ -207,6 +207,7 @@ void BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::put(const Pair& pair, std::in
   }
 }
 
+template class BasicPeakRefiner<std::uint8_t, 320, 240>;
 template class BasicPeakRefiner<std::uint8_t, 640, 480>;
 template class BasicPeakRefiner<std::uint8_t, 4096, 4096>;
 template class BasicPeakRefiner<std::uint16_t, 4096, 4096>;

@@ -226,35 +226,22 @@ std::size_t BasicPeakDetector<Pixel, MaxLength>::finish(const Strip& s, std::int
       return 0;
     }
   }
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < (alone ? 1 : stripes.size()); ++i) count += measure(s, lane, stripes[i], ratio, peaks[count]) ? 1 : 0;
+  const std::size_t count = alone ? 1 : stripes.size();
+  for (std::size_t i = 0; i < count; ++i) measure(s, lane, stripes[i], ratio, peaks[i]);
   return count;
 }
 
 template <class Pixel, std::int32_t MaxLength>
-bool BasicPeakDetector<Pixel, MaxLength>::measure(const Strip& s, std::int32_t lane, const Maximum& maximum, float ratio, Peak& peak) {
+void BasicPeakDetector<Pixel, MaxLength>::measure(const Strip& s, std::int32_t lane, const Maximum& maximum, float ratio, Peak& peak) {
   const std::int32_t line = s.first + lane;
   const Plateau plateau = find_plateau(s, line, maximum.row);
-  float position = plateau.length > few_clipped ? plateau_centre(s, line, plateau) : response_peak(s, lane, maximum.row);
-  const auto middle = static_cast<std::int32_t>(std::lround(position));
-  if (s.off.valid() && middle >= StripeProfile::half && middle + StripeProfile::half < s.length) {
-    if (const StripeProfile about = profile(s, line, middle); has_edges(about)) {
-      auto offset = centre_on_marks(about);
-      if (!offset) offset = centre_by_flanks(about, position - static_cast<float>(middle));
-      if (!offset) {
-        ++counters_.ambiguous;
-        return false;
-      }
-      position = static_cast<float>(middle) + *offset;
-    }
-  }
+  const float position = plateau.length > few_clipped ? plateau_centre(s, line, plateau) : response_peak(s, lane, maximum.row);
   peak.u_px = config_.axis == PeakAxis::column ? static_cast<float>(line) : position;
   peak.v_px = config_.axis == PeakAxis::column ? position : static_cast<float>(line);
   peak.amplitude = amplitude(s, line, maximum.row);
   peak.ratio = ratio;
   peak.clipped = static_cast<std::uint8_t>(std::min<std::int32_t>(plateau.length, 255));
   ++counters_.found;
-  return true;
 }
 
 // The vertex of the parabola through the response's maximum and its neighbours. A stripe found narrow is filtered again with the same spline at a
@@ -294,20 +281,6 @@ auto BasicPeakDetector<Pixel, MaxLength>::next_maximum(const Strip& s, std::int3
     highest_row = row;
   }
   return highest > 0 ? maximum_at(s, lane, highest_row, static_cast<float>(highest)) : Maximum{};
-}
-
-template <class Pixel, std::int32_t MaxLength>
-StripeProfile BasicPeakDetector<Pixel, MaxLength>::profile(const Strip& s, std::int32_t line, std::int32_t middle) const {
-  const float grey = 255.0f / static_cast<float>(config_.full_scale);
-  StripeProfile about;
-  for (std::int32_t i = 0; i < StripeProfile::rows; ++i) {
-    const std::int32_t row = middle - StripeProfile::half + i, on = pixel(s.on, line, row), off = pixel(s.off, line, row);
-    const auto at = static_cast<std::size_t>(i);
-    about.stripe[at] = grey * static_cast<float>(on - off);
-    about.background[at] = grey * static_cast<float>(off);
-    about.clipped[at] = on >= config_.full_scale;
-  }
-  return about;
 }
 
 template <class Pixel, std::int32_t MaxLength>

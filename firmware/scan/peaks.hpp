@@ -5,9 +5,7 @@
 // second derivative in place of the first: on a backscatter skirt the zero-mean Laplacian-of-Gaussian of sigma 2.5-3 px erred a third as much).
 // The filter here is the cubic B-spline's second difference, sigma 2.83 px, 19 taps: -(1 - z^5)^4 / (1 - z)^2, so five shifted rows and two
 // running sums in place of 19 multiplications; its sums wrap around in 16 bits, and the result, below 255 * 68, is exact all the same.
-// A stripe across an edge (a marker's border, the panel's arris, a silhouette) is pulled to its bright side. Where the background shows such a step, its
-// centre is taken from the pattern that it lights, or from the flanks on both sides (edge_stripe.hpp), and what stays unsure is left out. Without ambient light
-// there is no background.
+// A stripe across an edge of the paint is pulled to its bright side, by up to 0.9 of its width: peak_refiner.hpp puts it where it is.
 #pragma once
 
 #include <array>
@@ -16,7 +14,6 @@
 #include <span>
 #include <type_traits>
 
-#include "firmware/scan/edge_stripe.hpp"
 #include "firmware/scan/pixel_view.hpp"
 #include "shared/messages/static_vector.hpp"
 
@@ -114,10 +111,8 @@ class BasicPeakDetector {
   std::size_t finish(const Strip& s, std::int32_t lane, std::span<Peak> peaks);
   Maximum maximum_at(const Strip& s, std::int32_t lane, std::int32_t row, float response) const;
   Maximum next_maximum(const Strip& s, std::int32_t lane, std::span<const Maximum> before) const;
-  // False, and counted, when the stripe is at an edge that leaves its centre unsure.
-  bool measure(const Strip& s, std::int32_t lane, const Maximum& maximum, float ratio, Peak& peak);
+  void measure(const Strip& s, std::int32_t lane, const Maximum& maximum, float ratio, Peak& peak);
   float response_peak(const Strip& s, std::int32_t lane, std::int32_t row) const;
-  StripeProfile profile(const Strip& s, std::int32_t line, std::int32_t middle) const;
   std::int32_t pixel(const PixelView<Pixel>& image, std::int32_t line, std::int32_t row) const;
   std::int32_t difference(const Strip& s, std::int32_t line, std::int32_t row) const;
   Plateau find_plateau(const Strip& s, std::int32_t line, std::int32_t row) const;

@@ -19,8 +19,10 @@ struct SimConfig {
   devices::DevicesConfig devices;
   vision::PanelVisionConfig vision;
 
-  // From the start of an exposure until the image can be received: exposure, readout and transfer of a 640x480 camera on Gigabit Ethernet.
+  // From the trigger until the image can be received, if the exposure is over by then: exposure, readout and transfer of a 640x480 camera on Gigabit Ethernet.
   Duration image_latency = Duration::from_ms(30);
+  // By which the shutter opens after the trigger that the core takes for the exposure's start: the camera's own delay, and the offset of the two clocks.
+  Duration exposure_delay;
   // From a question to panel vision until its answer can be received. The real one takes 20 to 100 ms on a desktop.
   Duration vision_latency = Duration::from_ms(300);
 

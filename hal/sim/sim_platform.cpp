@@ -83,27 +83,40 @@ void SimPlatform::step() {
   observer_.on_step(now_, world_);
 }
 
-// Takes new exposures, and hands those whose middle has come to the renderer with the bodies as they are now.
+// Once the shutter has closed the renderer makes the picture, with the bodies where they were at its middle.
+void SimPlatform::expose(PendingExposure& pending) {
+  pending.shutter.pass(now_ - physics_step, now_, devices_.laser_on(), devices_.lamps_on());
+  if (!pending.posed && now_ + physics_step / 2 >= pending.shutter.middle()) {
+    pending.poses = world_.base_from_body();
+    pending.posed = true;
+  }
+  if (!pending.shutter.closed(now_)) return;
+  pending.submitted = true;
+  if (renderer_) pending.ticket = renderer_->submit(shot_of(pending));
+}
+
+optics::Shot SimPlatform::shot_of(const PendingExposure& pending) const {
+  optics::Shot shot;
+  shot.frame_number = pending.sequence;
+  shot.poses = pending.poses;
+  shot.laser = pending.shutter.laser_share();
+  shot.lamps = pending.shutter.lamp_share();
+  shot.exposure = pending.exposure.duration;
+  shot.time_s = pending.shutter.middle().s();
+  shot.truth = pending.exposure.laser;
+  return shot;
+}
+
 void SimPlatform::expose() {
   while (const std::optional<devices::Exposure> exposure = devices_.take_exposure()) {
     PendingExposure pending;
     pending.exposure = *exposure;
     pending.sequence = exposures_++;
+    pending.shutter = Shutter(exposure->start, config_.exposure_delay, exposure->duration);
     pending_.push_back(std::move(pending));
   }
   for (PendingExposure& pending : pending_) {
-    const Time mid = pending.exposure.start + pending.exposure.duration / 2;
-    if (pending.submitted || now_ + physics_step / 2 < mid) continue;
-    pending.submitted = true;
-    pending.poses = world_.base_from_body();
-    if (!renderer_) continue;
-    optics::Shot shot;
-    shot.frame_number = pending.sequence;
-    shot.poses = pending.poses;
-    shot.laser = pending.exposure.laser;
-    shot.lamps = pending.exposure.lamps;
-    shot.truth = pending.exposure.laser;
-    pending.ticket = renderer_->submit(shot);
+    if (!pending.submitted) expose(pending);
   }
 }
 

@@ -14,6 +14,7 @@
 
 #include "hal/ports.hpp"
 #include "hal/sim/render_worker.hpp"
+#include "hal/sim/shutter.hpp"
 #include "hal/sim/sim_config.hpp"
 #include "hal/sim/sim_faults.hpp"
 #include "hal/vision/panel_vision.hpp"
@@ -77,13 +78,17 @@ class SimPlatform : public Unattended {
   struct PendingExposure {
     devices::Exposure exposure;
     std::uint32_t sequence = 0;
-    scene::BodyPoses poses;
+    Shutter shutter;
+    scene::BodyPoses poses;  // at its middle
+    bool posed = false;
     RenderWorker::Ticket ticket = 0;
     bool submitted = false;
   };
 
   void step();
   void expose();
+  void expose(PendingExposure& pending);
+  optics::Shot shot_of(const PendingExposure& pending) const;
   void picture(const PendingExposure& exposure);
   bool spoil_image(Image& image);
   PanelResult see_as_it_is(const PanelRequest& request) const;

@@ -24,18 +24,20 @@ double valve_error(const record::RunResult& result) {
   return worst;
 }
 
-const std::array<Figure, 12> figures{{{"plane_normal_deg", "deg", [](const record::RunResult& r) { return r.errors.plane_normal_deg; }},
-                                      {"plane_offset_mm", "mm", [](const record::RunResult& r) { return r.errors.plane_offset_mm; }},
-                                      {"valve_base_mm", "mm", [](const record::RunResult& r) { return r.errors.valve_base_mm; }},
-                                      {"handle_angle_deg", "deg", [](const record::RunResult& r) { return r.errors.handle_angle_deg; }},
-                                      {"valve_final_deg", "deg", valve_error},
-                                      {"cloud_rms_mm", "mm", [](const record::RunResult& r) { return r.errors.cloud_rms_mm; }},
-                                      {"cloud_truth_p95_mm", "mm", [](const record::RunResult& r) { return r.errors.cloud_truth_p95_mm; }},
-                                      {"peak_rms_px", "px", [](const record::RunResult& r) { return r.errors.peak_rms_px; }},
-                                      {"peak_rms_smooth_px", "px", [](const record::RunResult& r) { return r.errors.peak_rms_smooth_px; }},
-                                      {"peak_recall", "", [](const record::RunResult& r) { return r.errors.peak_recall; }, true},
-                                      {"simulated_s", "s", [](const record::RunResult& r) { return r.time.simulated_s; }},
-                                      {"real_time_factor", "x", [](const record::RunResult& r) { return r.time.real_time_factor; }, true}}};
+const std::array<Figure, 12> figures{
+    {{"plane_normal_deg", "deg", [](const record::RunResult& r) { return r.errors.plane_normal_deg; }},
+     {"plane_offset_mm", "mm", [](const record::RunResult& r) { return r.errors.plane_offset_mm; }},
+     {"valve_base_mm", "mm", [](const record::RunResult& r) { return r.errors.valve_base_mm; }},
+     {"handle_angle_deg", "deg", [](const record::RunResult& r) { return r.errors.handle_angle_deg; }},
+     {"valve_final_deg", "deg", valve_error},
+     {"cloud_truth_median_mm", "mm", [](const record::RunResult& r) { return r.errors.cloud_truth_median_mm; }},
+     {"cloud_truth_p95_mm", "mm", [](const record::RunResult& r) { return r.errors.cloud_truth_p95_mm; }},
+     {"peak_rms_px", "px", [](const record::RunResult& r) { return r.errors.peak_rms_px; }},
+     {"peak_rms_smooth_px", "px", [](const record::RunResult& r) { return r.errors.peak_rms_smooth_px; }},
+     {"peak_recall", "", [](const record::RunResult& r) { return r.errors.peak_recall; }, true},
+     {"peaks_false", "", [](const record::RunResult& r) { return r.errors.peaks_false; }},
+     {"simulated_s", "s", [](const record::RunResult& r) { return r.time.simulated_s; }},
+     {"real_time_factor", "x", [](const record::RunResult& r) { return r.time.real_time_factor; }, true}}};
 
 Spread3 spread_of(std::vector<double> values, bool more_is_better) {
   if (!more_is_better) return {percentile(values, 0.5), percentile(values, 0.95), percentile(values, 1.0)};

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "firmware/scan/peak_refiner.hpp"
 #include "firmware/scan/peaks.hpp"
 #include "hal/vision/image_file.hpp"
 #include "host_sim/app/command.hpp"
@@ -22,6 +23,8 @@ struct Options {
 struct Found {
   std::vector<scan::Peak> peaks;
   scan::PeakCounters counters;
+  scan::RefinerCounters refined;
+  scan::StripeOptics optics;
 };
 
 template <class Pixel>
@@ -32,6 +35,13 @@ Found detect(const scan::PixelView<Pixel>& image, const scan::PixelView<Pixel>& 
   found.peaks.resize(static_cast<std::size_t>(std::max(image.width, image.height)));
   found.peaks.resize(detector->detect(image, off, found.peaks));
   found.counters = detector->counters();
+  scan::RefinerConfig refiner_config;
+  refiner_config.axis = config.axis;
+  refiner_config.full_scale = config.full_scale;
+  const auto refiner = std::make_unique<scan::BasicPeakRefiner<Pixel, 4096, 4096>>(refiner_config);
+  found.peaks.resize(refiner->refine(image, off, found.peaks));
+  found.refined = refiner->counters();
+  found.optics = refiner->optics();
   return found;
 }
 

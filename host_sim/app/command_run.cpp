@@ -67,11 +67,12 @@ void tell(const RunOutcome& outcome, const std::string& folder) {
   tell_error("plane, offset", result.errors.plane_offset_mm, "mm");
   tell_error("valve's base", result.errors.valve_base_mm, "mm");
   tell_error("handle's angle", result.errors.handle_angle_deg, "deg");
-  tell_error("cloud to its plane, rms", result.errors.cloud_rms_mm, "mm");
+  tell_error("cloud to the true surface, median", result.errors.cloud_truth_median_mm, "mm");
   tell_error("cloud to the true surface, p95", result.errors.cloud_truth_p95_mm, "mm");
   tell_error("peaks, rms", result.errors.peak_rms_px, "px");
   tell_error("peaks away from edges, rms", result.errors.peak_rms_smooth_px, "px");
   tell_error("peaks, recall", result.errors.peak_recall, "");
+  tell_error("peaks, false", result.errors.peaks_false, "");
   print("%.1f s simulated in %.1f s, %.1f x real time\n", result.time.simulated_s, result.time.wall_s, result.time.real_time_factor);
   for (const std::string& fault : result.faults_not_made) print("note: this fault did not happen: %s\n", fault.c_str());
   if (result.success) {

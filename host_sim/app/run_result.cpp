@@ -90,16 +90,19 @@ record::ErrorRecord score(const RunRecorder& recorder, const hal::SimConfig& tru
   errors.peak_rms_px = recorder.peaks().rms_px();
   errors.peak_rms_smooth_px = recorder.peaks().smooth_rms_px();
   errors.peak_recall = recorder.peaks().recall();
+  errors.peaks_false = recorder.peaks().false_share();
+  errors.peaks_elsewhere = recorder.peaks().elsewhere_share();
   if (!recorder.panel().located()) return errors;
   const Located& located = *recorder.panel().located();
   const Pose& base_from_panel = truth.world.base_from_panel;
   const PlaneFit& fit = located.panel.fit;
   errors.plane_normal_deg = plane_normal_error_deg(fit.plane, base_from_panel);
   errors.plane_offset_mm = plane_offset_error_mm(fit.plane, base_from_panel, truth.world.layout);
-  errors.cloud_rms_mm = 1e3 * fit.rms_m;
   errors.handle_angle_deg = handle_error_deg(located.handle_found_rad, located.handle_true_rad);
   errors.valve_base_mm = 1e3 * (located.base_from_panel.translation() - base_from_panel.translation()).norm();
-  errors.cloud_truth_p95_mm = cloud_truth_p95_mm(located.cloud, truth.world.scene, located.poses);
+  const std::vector<double> cloud_mm = cloud_errors_mm(located.cloud, truth.world.scene, located.poses);
+  errors.cloud_truth_median_mm = percentile(cloud_mm, 0.5);
+  errors.cloud_truth_p95_mm = percentile(cloud_mm, 0.95);
   return errors;
 }
 
@@ -131,6 +134,7 @@ std::vector<std::pair<std::string, std::string>> conditions(const scenario::Samp
       {"valve's start angle", formatted("%.1f deg", deg_from_rad(s.valve_start_rad))},
       {"friction torque", formatted("%.2f N m", s.valve_friction_nm)},
       {"attenuation", formatted("%.2f per m", s.attenuation_per_m)},
+      {"particles", formatted("%.1f per litre", s.particles_per_l)},
       {"camera noise", formatted("%.1f grey levels", s.camera_noise_grey)},
       {"lamps", s.lamps_lit ? "on" : "off"},
       {"camera's mounting error", formatted("%.2f mm, %.3f deg", 1e3 * s.camera_shift_m.norm(), deg_from_rad(s.camera_turn_rad.norm()))},
@@ -142,6 +146,8 @@ record::DrawnRecord drawn(const scenario::Sample& s) {
   const auto degrees = [](const Vec3& v) { return std::vector<double>{deg_from_rad(v.x()), deg_from_rad(v.y()), deg_from_rad(v.z())}; };
   std::vector<double> joint_offset_deg;
   for (const double offset_rad : s.joint_offset_rad) joint_offset_deg.push_back(deg_from_rad(offset_rad));
+  std::vector<double> button_shift_m;
+  for (const Vec2& shift : s.button_shift_m) button_shift_m.insert(button_shift_m.end(), {shift.x(), shift.y()});
   return {{"docking_shift_m", metres(s.docking_shift_m)},
           {"docking_turn_deg", degrees(s.docking_turn_rad)},
           {"valve_start_deg", {deg_from_rad(s.valve_start_rad)}},
@@ -155,7 +161,16 @@ record::DrawnRecord drawn(const scenario::Sample& s) {
           {"laser_turn_deg", degrees(s.laser_turn_rad)},
           {"joint_offset_deg", std::move(joint_offset_deg)},
           {"marker_shift_m", metres(s.marker_shift_m)},
-          {"marker_turn_deg", {deg_from_rad(s.marker_turn_rad)}}};
+          {"marker_turn_deg", {deg_from_rad(s.marker_turn_rad)}},
+          {"principal_point_px", {s.principal_point_px.x(), s.principal_point_px.y()}},
+          {"focal_percent", {100 * (s.focal_ratio - 1)}},
+          {"distortion_px", metres(s.distortion_px)},
+          {"lens_percent", {100 * (s.lens_ratio - 1)}},
+          {"laser_cone_mrad", {1e3 * s.laser_cone_rad}},
+          {"beam_percent", {100 * (s.beam_ratio - 1)}},
+          {"button_shift_m", std::move(button_shift_m)},
+          {"exposure_delay_ms", {1e3 * s.exposure_delay_s}},
+          {"particles_per_l", {s.particles_per_l}}};
 }
 
 }  // namespace lf::app

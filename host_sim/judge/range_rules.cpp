@@ -52,6 +52,7 @@ const std::vector<Group>& groups() {
       {"laser.", sight()},
       {"sensors.", sight()},
       {"mounting.", place()},
+      {"calibration.", place()},
       {"latency.image_ms", {"image", "camera", "points", "handle", "panel"}},
       {"latency.", {"panel vision"}},
       {"vehicle.", {"in the way", "out of reach", "vehicle"}},

@@ -53,6 +53,7 @@ void check(const CameraConfig& camera) {
   require_range(camera.dsnu_grey, 0, 50, "camera: dsnu_grey");
   require_range(camera.row_noise_grey, 0, 50, "camera: row_noise_grey");
   require_range(camera.hot_pixels, 0, 0.1, "camera: hot_pixels");
+  require_range(camera.exposure_jitter, 0, 0.2, "camera: exposure_jitter");
   require_light(camera.response, "camera: response");
   if (!camera.port) return;
   require_range(camera.port->distance_m, 0, 1, "camera: port distance_m");
@@ -84,7 +85,7 @@ void check(const LampConfig& lamp) {
 void check(const WaterConfig& water) {
   require_range(water.attenuation_per_m, 0, 100, "water: attenuation_per_m");
   for (const float ratio : water.attenuation_ratio) require_range(ratio, 0, 100, "water: attenuation_ratio");
-  if (water.scattering_share != WaterConfig::sea_water) require_range(water.scattering_share, 0, 1, "water: scattering_share");
+  require_range(water.scattering_share, -1, 1, "water: scattering_share");
   require_range(water.asymmetry, -0.99, 0.99, "water: asymmetry");
   require_range(water.particles_per_l, 0, 1000, "water: particles_per_l");
   require(water.current_m_s.allFinite() && water.current_m_s.norm() <= 10, "water: current_m_s is not finite, or faster than 10 m/s");

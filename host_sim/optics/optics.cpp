@@ -93,12 +93,15 @@ struct Optics::Impl {
     const std::size_t stripes = shot.truth ? lasers.size() * static_cast<std::size_t>(frame.width) : 0;
     frame.stripe_v.assign(stripes, std::numeric_limits<float>::quiet_NaN());
     frame.stripe_grey.assign(stripes, 0.f);
+    frame.pieces.clear();
   }
 
   Exposing exposing_of(const CameraConfig& camera, const Shot& shot) const {
     const double gain = camera.gain > 0 ? shot.gain.value_or(camera.gain) / camera.gain : 1;
     const double exposure = camera.exposure.s() > 0 ? shot.exposure.value_or(camera.exposure).s() / camera.exposure.s() : 1;
-    return {static_cast<float>(gain * exposure), static_cast<float>(gain), noise_key(seed, shot.camera, shot.frame_number)};
+    const std::uint64_t key = noise_key(seed, shot.camera, shot.frame_number);
+    const double jitter = 1 + camera.exposure_jitter * static_cast<double>(normal_deviate(0, key + 2));
+    return {static_cast<float>(gain * exposure * jitter), static_cast<float>(gain), key};
   }
 
   // Of the first laser that is on: patterns overlay each other's grains anyway.
@@ -117,6 +120,7 @@ struct Optics::Impl {
         for (const RenderPass::StripeCentre& centre : centres) {
           const std::size_t column = laser * static_cast<std::size_t>(frame.width) + static_cast<std::size_t>(centre.u);
           const float grey = centre.grey * light * camera.sensor.vignetting(centre.u, static_cast<int>(centre.v));
+          frame.pieces.push_back({static_cast<std::int32_t>(laser), centre.u, centre.v, grey});
           if (!(grey > frame.stripe_grey[column])) continue;
           frame.stripe_v[column] = centre.v;
           frame.stripe_grey[column] = grey;

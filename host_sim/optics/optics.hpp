@@ -50,6 +50,7 @@ struct CameraConfig {
   double row_noise_grey = 0.3;       // of each row in each frame, at gain 1
   double hot_pixels = 1e-5;          // share of the pixels that are 20 to 200 grey levels too bright
   std::uint64_t serial = 1;          // picks the fixed pattern
+  double exposure_jitter = 0.005;    // standard deviation of a frame's exposure over the ordered one: shutter, flicker of the light
   bool colour = false;               // false: one channel, the bands weighted by `response`; true: three channels R G B
   Rgb response{0.25f, 1.0f, 0.6f};   // of the mono sensor; of the three colour channels 1 each
 };
@@ -95,7 +96,7 @@ struct WaterConfig {
   Vec3 current_m_s{0.01, 0.02, 0.0005};      // that carries them; they settle, too
   Rgb ambient_w_m2{3.f, 16.f, 16.f};         // downwelling irradiance on a surface that faces up
   Rgb water_w_m2_sr{0.1f, 1.5f, 2.0f};       // radiance of the open water seen horizontally, if it scatters as sea water does
-  static constexpr double sea_water = -1;    // the share that goes with the attenuation: formation/forward_scatter.hpp
+  static constexpr double sea_water = -1;    // any share below 0: the one that goes with the attenuation, formation/forward_scatter.hpp
 };
 
 struct OpticsConfig {
@@ -121,6 +122,12 @@ struct Shot {
   bool truth = false;
 };
 
+// A place of a laser's stripe: where the ideal sheet meets, in the middle of column u, a surface that is both visible and lit.
+struct StripePiece {
+  std::int32_t laser = 0, u = 0;
+  float v = 0, grey = 0;  // its height as Frame::stripe_grey has it
+};
+
 // Pixels and, on request, what is true of them (otherwise those vectors are empty). Reuse one Frame: its memory is kept.
 struct Frame {
   std::int32_t width = 0, height = 0, channels = 1;
@@ -130,7 +137,8 @@ struct Frame {
   // One a column and laser (index laser * width + u): the stripe's true centre v where it is brightest in the column, the ideal sheet meeting a surface that
   // is both visible and lit; NaN where there is none, and with patterns.
   std::vector<float> stripe_v;
-  std::vector<float> stripe_grey;  // its noise-free height over the background, grey levels, without speckle
+  std::vector<float> stripe_grey;   // its noise-free height over the background, grey levels, without speckle
+  std::vector<StripePiece> pieces;  // all of them, those that are not the brightest of their column included; a piece may be listed twice
 };
 
 class Optics {

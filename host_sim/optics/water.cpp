@@ -5,7 +5,7 @@ namespace lf::optics {
 Water::Water(const WaterConfig& config)
     : asymmetry(static_cast<float>(config.asymmetry)), ambient_w_m2(config.ambient_w_m2), water_w_m2_sr(config.water_w_m2_sr) {
   const double sea = sea_scattering_per_m(config.attenuation_per_m);
-  const bool as_sea = config.scattering_share == WaterConfig::sea_water;
+  const bool as_sea = config.scattering_share < 0;
   const double scattering = as_sea ? sea : config.attenuation_per_m * config.scattering_share;
   scattering_per_m = static_cast<float>(scattering);
   for (std::size_t band = 0; band < 3; ++band) {

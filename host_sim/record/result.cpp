@@ -48,11 +48,13 @@ Json to_json(const ErrorRecord& errors) {
           {"plane_offset_mm", number(errors.plane_offset_mm)},
           {"valve_base_mm", number(errors.valve_base_mm)},
           {"handle_angle_deg", number(errors.handle_angle_deg)},
-          {"cloud_rms_mm", number(errors.cloud_rms_mm)},
+          {"cloud_truth_median_mm", number(errors.cloud_truth_median_mm)},
           {"cloud_truth_p95_mm", number(errors.cloud_truth_p95_mm)},
           {"peak_rms_px", number(errors.peak_rms_px)},
           {"peak_rms_smooth_px", number(errors.peak_rms_smooth_px)},
-          {"peak_recall", number(errors.peak_recall)}};
+          {"peak_recall", number(errors.peak_recall)},
+          {"peaks_false", number(errors.peaks_false)},
+          {"peaks_elsewhere", number(errors.peaks_elsewhere)}};
 }
 
 Json to_json(const DockingRecord& docking) {

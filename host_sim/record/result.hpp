@@ -40,11 +40,13 @@ struct ErrorRecord {
   double plane_offset_mm = unknown;
   double valve_base_mm = unknown;
   double handle_angle_deg = unknown;
-  double cloud_rms_mm = unknown;        // to the fitted plane
-  double cloud_truth_p95_mm = unknown;  // to the true surface
+  double cloud_truth_median_mm = unknown;  // to the true surface
+  double cloud_truth_p95_mm = unknown;
   double peak_rms_px = unknown;         // of all columns, those at edges of the scene included
   double peak_rms_smooth_px = unknown;  // of those whose stripe lies on one smooth surface
   double peak_recall = unknown;         // 0..1
+  double peaks_false = unknown;         // 0..1 of all peaks: on no piece of the stripe
+  double peaks_elsewhere = unknown;     // 0..1 of the visible columns: on another piece than the brightest, and not on that
 };
 
 struct DockingRecord {

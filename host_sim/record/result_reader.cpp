@@ -64,11 +64,13 @@ ErrorRecord errors_from(const Json& json) {
   read(json, "plane_offset_mm", errors.plane_offset_mm);
   read(json, "valve_base_mm", errors.valve_base_mm);
   read(json, "handle_angle_deg", errors.handle_angle_deg);
-  read(json, "cloud_rms_mm", errors.cloud_rms_mm);
+  read(json, "cloud_truth_median_mm", errors.cloud_truth_median_mm);
   read(json, "cloud_truth_p95_mm", errors.cloud_truth_p95_mm);
   read(json, "peak_rms_px", errors.peak_rms_px);
   read(json, "peak_rms_smooth_px", errors.peak_rms_smooth_px);
   read(json, "peak_recall", errors.peak_recall);
+  read(json, "peaks_false", errors.peaks_false);
+  read(json, "peaks_elsewhere", errors.peaks_elsewhere);
   return errors;
 }
 

@@ -72,6 +72,17 @@ Sample draw(const Scenario& s, std::uint64_t seed) {
   sample.marker_shift_m = draws.each_axis(s.mounting.marker_m, "mounting.marker_m");
   sample.marker_shift_m.z() = 0;
   sample.marker_turn_rad = draws.degrees(s.mounting.marker_deg, "mounting.marker_deg");
+  const Calibration& c = s.calibration;
+  sample.principal_point_px = draws.each_axis(c.principal_point_px, "calibration.principal_point_px").head<2>();
+  sample.focal_ratio = 1 + 0.01 * draws.of(c.focal_percent, "calibration.focal_percent");
+  sample.distortion_px = draws.each_axis(c.distortion_px, "calibration.distortion_px");
+  sample.lens_ratio = 1 + 0.01 * draws.of(c.lens_percent, "calibration.lens_percent");
+  sample.laser_cone_rad = 1e-3 * draws.of(c.laser_cone_mrad, "calibration.laser_cone_mrad");
+  sample.beam_ratio = 1 + 0.01 * draws.of(c.beam_percent, "calibration.beam_percent");
+  for (std::size_t i = 0; i < sample.button_shift_m.size(); ++i)
+    sample.button_shift_m[i] = draws.each_axis(c.buttons_m, "calibration.buttons_m." + std::to_string(i)).head<2>();
+  sample.exposure_delay_s = 1e-3 * draws.of(c.exposure_delay_ms, "calibration.exposure_delay_ms");
+  sample.particles_per_l = draws.of(s.water.particles_per_l, "water.particles_per_l");
   const std::uint64_t sensor_seed = s.sensors.seed > 0 ? static_cast<std::uint64_t>(s.sensors.seed) : seed;
   sample.optics_seed = bits(sensor_seed, "sensors.optics");
   sample.devices_seed = bits(sensor_seed, "sensors.devices");

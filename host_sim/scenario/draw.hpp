@@ -32,6 +32,14 @@ struct Sample {
   std::array<double, joint_count> breakaway{}, one_way{}, pivot_m{};
   Vec3 marker_shift_m = Vec3::Zero();  // in the panel frame, within its plane: z is 0
   double marker_turn_rad = 0;          // about the panel's normal
+  // The true machine, over its calibration.
+  Vec2 principal_point_px = Vec2::Zero();
+  double focal_ratio = 1, lens_ratio = 1, beam_ratio = 1;
+  Vec3 distortion_px = Vec3::Zero();  // at the picture's corners: by k1, p1, p2
+  double laser_cone_rad = 0;
+  std::array<Vec2, PanelLayout::button_count> button_shift_m{Vec2::Zero(), Vec2::Zero(), Vec2::Zero()};
+  double exposure_delay_s = 0;
+  double particles_per_l = 0;
   std::uint64_t optics_seed = 0;
   std::uint64_t devices_seed = 0;
 };

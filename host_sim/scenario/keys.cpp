@@ -44,18 +44,22 @@ void add_place(Keys& all, Scenario& s) {
 void add_sight(Keys& all, Scenario& s) {
   all.push_back(key("water.attenuation_per_m", "1/m", 0, 5, &s.water.attenuation_per_m,
                     "attenuation of green light, absorption and scattering together"));
-  all.push_back(key("water.scattering_share", "", 0, 1, &s.water.scattering_share, "of the attenuation that scatters"));
-  all.push_back(key("water.asymmetry", "", -0.99, 0.99, &s.water.asymmetry, "Henyey-Greenstein g of the scattering"));
+  all.push_back(key("water.scattering_share", "", -1, 1, &s.water.scattering_share,
+                    "of the attenuation that scatters; below 0: as much as sea water of that attenuation"));
+  all.push_back(key("water.asymmetry", "", -0.99, 0.99, &s.water.asymmetry, "Henyey-Greenstein g of the light that scatters forward"));
+  all.push_back(key("water.particles_per_l", "1/l", 0, 100, &s.water.particles_per_l, "specks of more than 0.5 mm in a litre of water"));
   all.push_back(key("water.ambient", "", 0, 100, &s.water.ambient, "daylight, over the default's"));
   all.push_back(key("lamps.lit", "", 0, 0, &s.lamps.lit, "whether the robot uses its lamps"));
   all.push_back(key("lamps.power", "", 0, 100, &s.lamps.power, "their power, over the default's"));
   all.push_back(key("camera.always_on", "", 0, 0, &s.camera.always_on, "a frame every 40 ms throughout, also when nobody needs it"));
   all.push_back(key("camera.noise_grey", "grey", 0, 50, &s.camera.noise_grey, "standard deviation of the read noise"));
-  all.push_back(key("camera.blur_px", "px", 0, 10, &s.camera.blur_px, "standard deviation of the lens's spot"));
+  all.push_back(
+      key("camera.blur_px", "px", 0, 4.5, &s.camera.blur_px, "standard deviation of the lens's spot in the middle of the picture"));
   config::add_camera(all, s.camera);
   all.push_back(key("laser.power_w", "W", 0, 10, &s.laser.power_w, "power of the line"));
   all.push_back(
       key("laser.waist_sigma_m", "m", 0.0001, 0.02, &s.laser.waist_sigma_m, "standard deviation of its cross-section at the emitter"));
+  all.push_back(key("laser.speckle", "", 0, 0.5, &s.laser.speckle, "standard deviation of a pixel's laser light over its mean"));
   config::add_laser(all, s.laser);
   all.push_back(key("mounting.camera_m", "m", -0.005, 0.005, &s.mounting.camera_m, "unknown shift of the camera, each axis"));
   all.push_back(key("mounting.camera_deg", "deg", -0.4, 0.4, &s.mounting.camera_deg, "unknown turn of the camera, each axis"));
@@ -65,6 +69,22 @@ void add_sight(Keys& all, Scenario& s) {
   all.push_back(
       key("mounting.marker_m", "m", -0.005, 0.005, &s.mounting.marker_m, "unknown shift of the marker within the panel, each axis"));
   all.push_back(key("mounting.marker_deg", "deg", -0.4, 0.4, &s.mounting.marker_deg, "unknown turn of the marker within the panel"));
+}
+
+void add_calibration(Keys& all, Scenario& s) {
+  Calibration& c = s.calibration;
+  all.push_back(key("calibration.principal_point_px", "px", -3, 3, &c.principal_point_px,
+                    "unknown shift of the camera's principal point, each axis"));
+  all.push_back(key("calibration.focal_percent", "%", -0.5, 0.5, &c.focal_percent, "unknown part of the focal length"));
+  all.push_back(key("calibration.distortion_px", "px", -2, 2, &c.distortion_px,
+                    "unknown distortion at the picture's corners, of each of the terms k1, p1, p2"));
+  all.push_back(key("calibration.lens_percent", "%", -50, 50, &c.lens_percent, "unknown part of the lens's spot"));
+  all.push_back(
+      key("calibration.laser_cone_mrad", "mrad", -20, 20, &c.laser_cone_mrad, "cone that the laser's sheet is bent to; its middle stays"));
+  all.push_back(key("calibration.beam_percent", "%", -50, 50, &c.beam_percent, "unknown part of the laser line's width"));
+  all.push_back(key("calibration.buttons_m", "m", -0.002, 0.002, &c.buttons_m, "unknown shift of each button on the panel, each axis"));
+  all.push_back(key("calibration.exposure_delay_ms", "ms", 0, 2, &c.exposure_delay_ms,
+                    "from the trigger that the core takes for an exposure's start until the shutter opens"));
 }
 
 void add_machine(Keys& all, Scenario& s) {
@@ -113,6 +133,7 @@ std::vector<Key> keys(Scenario& scenario) {
   add_place(all, scenario);
   config::add_panel(all, scenario.panel);
   add_sight(all, scenario);
+  add_calibration(all, scenario);
   add_machine(all, scenario);
   config::add_drives(all, scenario.drives);
   config::add_mission(all, scenario.mission);

@@ -53,6 +53,7 @@ struct Water {
   Spread attenuation_per_m{0.1, 0.8};  // of green light, absorption and scattering together
   double scattering_share = optics::WaterConfig{}.scattering_share;
   double asymmetry = optics::WaterConfig{}.asymmetry;
+  Spread particles_per_l{0.1, 3};
   double ambient = 1.0;  // daylight over the default's
 };
 
@@ -70,6 +71,7 @@ struct Camera : config::Camera {
 struct Laser : config::Laser {
   double power_w = optics::LaserConfig{}.power_w;
   double waist_sigma_m = optics::LaserConfig{}.waist_sigma_m;
+  double speckle = optics::LaserConfig{}.speckle;
 };
 
 // Assembly errors that nobody measured: between the machine as it is and as its calibration says. Drawn for each axis and joint on its own.
@@ -81,6 +83,18 @@ struct Mounting {
   Spread joints_deg = Spread::around(0, 0.05);
   Spread marker_m = Spread::around(0, 0.0002);
   Spread marker_deg = Spread::around(0, 0.05);
+};
+
+// The machine as it is, against the calibration that the core has of it: what a good calibration leaves. Drawn once a run.
+struct Calibration {
+  Spread principal_point_px = Spread::around(0, 0.3);
+  Spread focal_percent = Spread::around(0, 0.05);
+  Spread distortion_px = Spread::around(0, 0.3);  // at the picture's corners, each of three terms: some 0.1 px rms over the picture
+  Spread lens_percent = Spread::around(0, 20);    // of the spot's width
+  Spread laser_cone_mrad = Spread::around(0, 5);  // the line's bow: 0.1 % of its length
+  Spread beam_percent = Spread::around(0, 20);    // of the line's width
+  Spread buttons_m = Spread::around(0, 0.0005);
+  Spread exposure_delay_ms{0, 0.5};
 };
 
 struct Arm {
@@ -156,6 +170,7 @@ struct Scenario {
   Camera camera;
   Laser laser;
   Mounting mounting;
+  Calibration calibration;
   config::Vehicle vehicle;
   Arm arm;
   Jaw jaw;

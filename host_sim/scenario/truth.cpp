@@ -7,6 +7,7 @@
 #include "hal/config/homing_file.hpp"
 #include "hal/config/share.hpp"
 #include "host_sim/devices/drive/drive_dictionary.hpp"
+#include "host_sim/optics/formation/gaussian_taps.hpp"
 #include "host_sim/scenario/bounds.hpp"
 #include "host_sim/scenario/instance.hpp"
 #include "shared/arm/arm_description.hpp"
@@ -48,12 +49,34 @@ void move_marker(scene::Body& panel, const Sample& sample) {
   }
 }
 
+// The panel as it was built: its buttons off their drawn places.
+PanelLayout true_layout(PanelLayout layout, const Sample& sample) {
+  for (std::size_t i = 0; i < layout.buttons_m.size(); ++i) layout.buttons_m[i] += sample.button_shift_m[i];
+  return layout;
+}
+
+// Distortion terms whose shift at the picture's corner is so many px.
+void distort(CameraIntrinsics& k, const Vec3& corner_px) {
+  const Vec2 corner(k.cx / k.fx, k.cy / k.fy);
+  const double r2 = corner.squaredNorm(), f = std::sqrt(k.fx * k.fy);
+  k.distortion[0] += corner_px[0] / (f * r2 * std::sqrt(r2));
+  k.distortion[2] += corner_px[1] / (f * 3 * r2);
+  k.distortion[3] += corner_px[2] / (f * 3 * r2);
+}
+
+CameraIntrinsics true_intrinsics(CameraIntrinsics k, const Sample& sample) {
+  k.cx += sample.principal_point_px.x(), k.cy += sample.principal_point_px.y();
+  k.fx *= sample.focal_ratio, k.fy *= sample.focal_ratio;
+  distort(k, sample.distortion_px);
+  return k;
+}
+
 std::size_t button_of(const std::string& name) { return name == "left" ? 0 : name == "centre" ? 1 : 2; }
 
 world::WorldConfig world_config(const Scenario& scenario, const Sample& sample) {
   world::WorldConfig world;
   world.arm = true_arm(scenario);
-  world.layout = scenario.panel;
+  world.layout = true_layout(scenario.panel, sample);
   world.scene = scene::make_scene(world.arm, world.layout);
   move_marker(world.scene[std::size_t(scene::BodyId::panel)], sample);
   world.base_from_panel = true_base_from_panel(scenario.panel, sample);
@@ -94,26 +117,34 @@ optics::OpticsConfig optics_config(const Scenario& scenario, const Sample& sampl
                                    const world::WorldConfig& world) {
   optics::OpticsConfig optics;
   optics::CameraConfig camera;
-  camera.intrinsics = nominal.controller.camera.intrinsics;
+  camera.intrinsics = true_intrinsics(nominal.controller.camera.intrinsics, sample);
+  camera.serial = sample.optics_seed;
   camera.base_from_camera = nominal.controller.camera.base_from_camera * small_pose(sample.camera_shift_m, sample.camera_turn_rad);
   camera.exposure = nominal.controller.camera.exposure;
   camera.read_noise_grey = sample.camera_noise_grey;
-  camera.blur_px = scenario.camera.blur_px;
+  camera.blur_px = std::min(scenario.camera.blur_px * sample.lens_ratio, optics::GaussianTaps::widest_px);
   optics.cameras.push_back(camera);
 
   optics::LaserConfig laser;
   const Pose forearm_from_tool = world.arm.joints[std::size_t(Joint::roll)].parent_from_joint * world.arm.wrist_from_tool;
   laser.body_from_laser =
       forearm_from_tool * nominal.controller.laser.tool_from_laser * small_pose(sample.laser_shift_m, sample.laser_turn_rad);
+  // Bent to a cone, the sheet keeps its middle where the calibration found it.
+  laser.cone_rad = sample.laser_cone_rad;
+  laser.body_from_laser.linear() =
+      laser.body_from_laser.linear() * Eigen::AngleAxisd(-sample.laser_cone_rad, Vec3::UnitY()).toRotationMatrix();
   laser.fan_half_angle_rad = nominal.controller.laser.fan_half_angle_rad;
   laser.power_w = scenario.laser.power_w;
-  laser.waist_sigma_m = scenario.laser.waist_sigma_m;
+  laser.waist_sigma_m = scenario.laser.waist_sigma_m * sample.beam_ratio;
+  laser.divergence_rad *= sample.beam_ratio;
+  laser.speckle = scenario.laser.speckle;
   optics.lasers.push_back(laser);
 
   optics.lamps = lamps(scenario.lamps.power);
   optics.water.attenuation_per_m = sample.attenuation_per_m;
   optics.water.scattering_share = scenario.water.scattering_share;
   optics.water.asymmetry = scenario.water.asymmetry;
+  optics.water.particles_per_l = sample.particles_per_l;
   for (float& band : optics.water.ambient_w_m2) band *= static_cast<float>(scenario.water.ambient);
   for (float& band : optics.water.water_w_m2_sr) band *= static_cast<float>(scenario.water.ambient);
   optics.scene = world.scene;
@@ -325,6 +356,7 @@ hal::SimConfig make_truth(const Scenario& scenario, const Sample& sample, const 
   sim.vision.marker = nominal.controller.marker;
   sim.vision.panel = scenario.panel;
   sim.image_latency = Duration::from_s(scenario.latency.image_ms * 1e-3);
+  sim.exposure_delay = Duration::from_s(sample.exposure_delay_s);
   sim.vision_latency = Duration::from_s(scenario.latency.panel_vision_ms * 1e-3);
   return sim;
 }

@@ -6,8 +6,10 @@ optics::Shot shot_of(const PictureOrder& order) {
   optics::Shot shot;
   shot.frame_number = order.info.sequence;
   shot.poses = order.poses;
-  shot.laser = (order.info.flags & frame_laser) != 0;
-  shot.lamps = (order.info.flags & frame_lamps) != 0;
+  shot.laser = (order.info.flags & frame_laser) != 0 ? 1 : 0;
+  shot.lamps = (order.info.flags & frame_lamps) != 0 ? 1 : 0;
+  shot.exposure = Duration::from_ns(order.info.exposure_ns);
+  shot.time_s = Time::from_ns(order.info.start_ns).s();
   return shot;
 }
 

@@ -1,5 +1,6 @@
 #include "host_sim/serve/served_camera.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace lf::serve {
@@ -40,7 +41,8 @@ void ServedCamera::step(Time t, const scene::BodyPoses& poses, const Pace& pace)
       if (!renderer_.take(picture)) return;
       next_ = std::move(picture);
     }
-    if (clock < Time::from_ns(next_->info.start_ns) + latency_) return;
+    const Duration exposure = Duration::from_ns(next_->info.exposure_ns);
+    if (clock < Time::from_ns(next_->info.start_ns) + std::max(latency_, exposure)) return;
     deliver(*next_, clock);
     next_.reset();
   }

@@ -41,8 +41,8 @@ std::vector<OutsidePictures::Picture> OutsidePictures::draw(const optics::Optics
   for (const Kept& kept : kept_) {
     optics::Shot shot;
     shot.poses = kept.poses;
-    shot.laser = kept.moment->laser;
-    shot.lamps = true;
+    shot.laser = kept.moment->laser ? 1 : 0;
+    shot.lamps = 1;
     camera.render(shot, frame);
     Picture picture{kept.moment->name, kept.moment->title, record::RgbImage(frame.width, frame.height)};
     picture.image.pixels = frame.pixels;

@@ -59,7 +59,8 @@ void Formation::add_ghost(PixelStore& pixels) const {
     for (std::size_t c = 0; c < pixels.channels; ++c) {
       float* onto = pixels.grey.data() + c * pixels.plane + pixels.index(0, v);
       const float* from = pixels.laser.data() + c * pixels.plane + pixels.index(0, v - shift);
-      for (std::size_t u = 0; u < pixels.stride; u += lane_count) store_lanes(onto + u, load_lanes(onto + u) + share * load_lanes(from + u));
+      for (std::size_t u = 0; u < pixels.stride; u += lane_count)
+        store_lanes(onto + u, load_lanes(onto + u) + share * load_lanes(from + u));
     }
   }
 }
@@ -93,7 +94,8 @@ void Formation::expose_row(const PixelStore& pixels, int v, const Speckle& speck
     for (std::size_t p = 0; lit && p < packets_a_row_; ++p) {
       if (wanted[p] == 0) continue;
       const std::size_t u = p * lane_count;
-      const auto number = static_cast<std::uint32_t>((c * static_cast<std::size_t>(pixels.height) + static_cast<std::size_t>(v)) * pixels.stride + u);
+      const auto number =
+          static_cast<std::uint32_t>((c * static_cast<std::size_t>(pixels.height) + static_cast<std::size_t>(v)) * pixels.stride + u);
       store_lanes(row.data() + u, load_lanes(row.data() + u) + load_lanes(line.data() + u) * speckle.factor(count_up + number));
     }
     for (std::size_t u = 0; channels > 1 && u < static_cast<std::size_t>(pixels.width); ++u) interleaved[u * channels + c] = row[u];

@@ -77,7 +77,8 @@ std::vector<Particles::Speck> Particles::at(double time_s) const {
   const Vec3 whole = drift.array().floor();
   for (const Cell& cell : cells_) {
     std::uint64_t key = seed_;
-    for (int axis = 0; axis < 3; ++axis) key = splitmix64(key + static_cast<std::uint64_t>(cell[static_cast<std::size_t>(axis)] - static_cast<std::int64_t>(whole[axis])));
+    for (int axis = 0; axis < 3; ++axis)
+      key = splitmix64(key + static_cast<std::uint64_t>(cell[static_cast<std::size_t>(axis)] - static_cast<std::int64_t>(whole[axis])));
     Draws draw(key);
     const int count = count_of(per_cell_, draw());
     for (int i = 0; i < count; ++i) {
@@ -121,7 +122,8 @@ void Particles::show(const Speck& speck, const RgbLanes& irradiance, int lane, c
     const double du = centre_u + k - image->x(), dv = centre_v + k - image->y();
     across[static_cast<std::size_t>(k + reach)] = static_cast<float>(std::exp(-du * du / (2 * sigma * sigma)));
     down[static_cast<std::size_t>(k + reach)] = static_cast<float>(std::exp(-dv * dv / (2 * sigma * sigma)));
-    sum_across += static_cast<double>(across[static_cast<std::size_t>(k + reach)]), sum_down += static_cast<double>(down[static_cast<std::size_t>(k + reach)]);
+    sum_across += static_cast<double>(across[static_cast<std::size_t>(k + reach)]),
+        sum_down += static_cast<double>(down[static_cast<std::size_t>(k + reach)]);
   }
   for (int y = std::max(centre_v - reach, 0); y <= std::min(centre_v + reach, pixels.height - 1); ++y) {
     const float row = down[static_cast<std::size_t>(y - centre_v + reach)] / static_cast<float>(sum_down * sum_across);

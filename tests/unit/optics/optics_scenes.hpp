@@ -58,7 +58,8 @@ inline scene::BodyPoses resting() {
 
 // Without what lens and sensor do beside the lens's spot.
 inline CameraConfig lossless(CameraConfig camera) {
-  camera.stray_share = camera.ghost_share = camera.prnu = camera.dsnu_grey = camera.row_noise_grey = camera.hot_pixels = 0;
+  camera.stray_share = camera.ghost_share = camera.prnu = camera.dsnu_grey = camera.row_noise_grey = camera.hot_pixels =
+      camera.exposure_jitter = 0;
   camera.corner_light = camera.corner_blur = 1;
   return camera;
 }

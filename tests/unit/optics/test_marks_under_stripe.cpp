@@ -17,7 +17,8 @@ struct MarkedPlate {
     config.cameras.push_back(camera);
     // A marker of 8 x 8 cells, some 6 px each, facing the camera. Its face is a box's top: the plate is turned toward the camera.
     scene::Shape plate = make_shape(scene::ShapeKind::box, {0.4, 0.4, 0.02}, Vec3::Zero(), 0.8f);
-    plate.body_from_shape.linear() = (Eigen::AngleAxisd(0.35, Vec3::UnitX()) * Eigen::AngleAxisd(-pi / 2, Vec3::UnitY())).toRotationMatrix();
+    plate.body_from_shape.linear() =
+        (Eigen::AngleAxisd(0.35, Vec3::UnitX()) * Eigen::AngleAxisd(-pi / 2, Vec3::UnitY())).toRotationMatrix();
     plate.body_from_shape.translation() = Vec3(0.71, 0, 0);
     plate.marker_id = 5;
     plate.marker_size_m = 0.075;

@@ -1,9 +1,8 @@
-#include "host_sim/optics/formation/particles.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "host_sim/optics/formation/particles.hpp"
 #include "tests/unit/optics/optics_scenes.hpp"
 
 namespace lf::optics::test {
@@ -124,7 +123,8 @@ TEST(Particles, InTheSheetAreBrightAndBesideItDark) {
   const CameraIntrinsics& k = dark.camera.config.intrinsics;
   const auto grey_at = [&](const Vec3& place) {
     const Vec3 p = dark.camera.config.base_from_camera.inverse() * place;
-    const int u = static_cast<int>(std::lround(k.cx + k.fx * p.x() / p.z())), v = static_cast<int>(std::lround(k.cy + k.fy * p.y() / p.z()));
+    const int u = static_cast<int>(std::lround(k.cx + k.fx * p.x() / p.z())),
+              v = static_cast<int>(std::lround(k.cy + k.fy * p.y() / p.z()));
     return u < 0 || v < 0 || u >= k.width || v >= k.height ? 0.f : dark.pixels.grey[dark.pixels.index(u, v)];
   };
   for (const Particles::Speck& speck : particles.at(0)) {

@@ -228,7 +228,11 @@ TEST(Picture, GlowEndsWhereTheSheetMeetsSomething) {
     bench.shader.sheets[0].meet(bench.scene);
     const CameraConfig camera = quiet_camera();
     const CameraRays rays(camera.intrinsics, camera.port);
-    const auto glow = [&](int v) { return double(bench.shader.sheets[0].glow(rays.around(CameraPlace(camera.base_from_camera), 320, v, Lanes{}, Lanes{}), bench.water).radiance[1][0]); };
+    const auto glow = [&](int v) {
+      return double(bench.shader.sheets[0]
+                        .glow(rays.around(CameraPlace(camera.base_from_camera), 320, v, Lanes{}, Lanes{}), bench.water)
+                        .radiance[1][0]);
+    };
     return std::pair(glow(239 + 180), glow(239));  // above and below the wall, seen from its side
   };
   const auto [before, after] = lit_water(false);

@@ -25,8 +25,8 @@ TEST(Result, HasTheKeysThatUsersScriptAgainst) {
                           "core", "bus", "host", "time", "digest"}) {
     EXPECT_TRUE(json.contains(key)) << key;
   }
-  for (const char* key :
-       {"plane_normal_deg", "plane_offset_mm", "valve_base_mm", "handle_angle_deg", "cloud_rms_mm", "peak_rms_px", "peak_recall"}) {
+  for (const char* key : {"plane_normal_deg", "plane_offset_mm", "valve_base_mm", "handle_angle_deg", "cloud_truth_median_mm",
+                          "peak_rms_px", "peak_recall"}) {
     EXPECT_TRUE(json["errors"].contains(key)) << key;
   }
   EXPECT_EQ(json["drawn"], (nlohmann::json{{"valve_friction_nm", 1.5}, {"docking_shift_m", {0.004, -0.012, 0.019}}}));
@@ -40,12 +40,12 @@ TEST(Result, HasTheKeysThatUsersScriptAgainst) {
 TEST(Result, WritesNullForWhatIsNotAFiniteNumber) {
   RunResult result;
   result.time.wall_s = std::numeric_limits<double>::infinity();
-  result.errors.cloud_rms_mm = -std::numeric_limits<double>::quiet_NaN();
+  result.errors.cloud_truth_median_mm = -std::numeric_limits<double>::quiet_NaN();
   result.phases.push_back({"boot", 0, unknown, "failed"});
   const std::string text = result_json(result);
   const auto json = nlohmann::json::parse(text);
   EXPECT_TRUE(json["time"]["wall_s"].is_null());
-  EXPECT_TRUE(json["errors"]["cloud_rms_mm"].is_null());
+  EXPECT_TRUE(json["errors"]["cloud_truth_median_mm"].is_null());
   EXPECT_TRUE(json["phases"][0]["end_s"].is_null());
   EXPECT_TRUE(json["core"]["heap_calls"].is_null());
   EXPECT_EQ(text.find("nan"), std::string::npos);

@@ -37,7 +37,7 @@ TEST(Haze, OfAUniformPictureIsItsShare) {
   }
 }
 
-// Lines wherever they lie over the cells, along rows and along columns.
+// Within a tenth of the peak, as cells of 8 px follow a Gaussian of 8. Lines wherever they lie over the cells, along rows and along columns.
 TEST(Haze, OfALineIsThreeGaussians) {
   const auto haze = std::make_unique<Haze>();
   for (const std::int32_t line : {236, 239, 240, 243}) {
@@ -50,10 +50,10 @@ TEST(Haze, OfALineIsThreeGaussians) {
     for (const std::int32_t distance : {0, 3, 7, 10, 15, 25, 50, 80}) {
       const double expected = 750 * haze_of_line(distance);
       haze->compute(view(along_rows));
-      EXPECT_NEAR(haze->at(320, static_cast<float>(line + distance)), expected, 0.04 * peak) << "row " << line << " + " << distance;
-      EXPECT_NEAR(haze->at(320, static_cast<float>(line - distance)), expected, 0.04 * peak) << "row " << line << " - " << distance;
+      EXPECT_NEAR(haze->at(320, static_cast<float>(line + distance)), expected, 0.10 * peak) << "row " << line << " + " << distance;
+      EXPECT_NEAR(haze->at(320, static_cast<float>(line - distance)), expected, 0.10 * peak) << "row " << line << " - " << distance;
       haze->compute(view(along_columns));
-      EXPECT_NEAR(haze->at(static_cast<float>(line + distance), 240), expected, 0.04 * peak) << "column " << line << " + " << distance;
+      EXPECT_NEAR(haze->at(static_cast<float>(line + distance), 240), expected, 0.10 * peak) << "column " << line << " + " << distance;
     }
   }
 }

@@ -75,6 +75,46 @@ TEST(Truth, ARatingThatTheSimulatedDriveDoesNotSayIsRefusedByName) {
   EXPECT_EQ(refused(2, "cia402_rated"), "");
 }
 
+// The machine is not its calibration: what the core is told stays, and what is true goes off by what was drawn.
+TEST(Truth, TheMachineIsOffItsCalibrationByWhatWasDrawn) {
+  const Scenario scenario =
+      load_scenario("default", {"calibration.principal_point_px=0.3", "calibration.focal_percent=0.05", "calibration.distortion_px=0.3",
+                                "calibration.lens_percent=20", "calibration.laser_cone_mrad=5", "calibration.beam_percent=-20",
+                                "calibration.buttons_m=0.0004", "calibration.exposure_delay_ms=0.3", "camera.blur_px=1",
+                                "mounting.laser_deg=0", "mounting.laser_m=0"});
+  const Nominal told = make_nominal(scenario, false);
+  const hal::SimConfig truth = make_truth(scenario, draw(scenario, 1), told, 1);
+  const CameraIntrinsics& k = told.controller.camera.intrinsics;
+  const optics::CameraConfig& camera = truth.optics.cameras[0];
+  EXPECT_NEAR(camera.intrinsics.cx, k.cx + 0.3, 1e-9);
+  EXPECT_NEAR(camera.intrinsics.cy, k.cy + 0.3, 1e-9);
+  EXPECT_NEAR(camera.intrinsics.fx, k.fx * 1.0005, 1e-9);
+  EXPECT_NEAR(camera.blur_px, 1.2, 1e-9);
+  // Each of the three terms by itself moves the image at the corner by 0.3 px: along the radius k1, and p1 and p2 together by no more than their sum.
+  const CameraIntrinsics& t = camera.intrinsics;
+  const Vec2 corner(-t.cx / t.fx, -t.cy / t.fy);
+  const double r2 = corner.squaredNorm();
+  EXPECT_NEAR(std::abs(t.distortion[0] - k.distortion[0]) * r2 * corner.norm() * t.fx, 0.3, 0.01);
+  const double p1 = t.distortion[2] - k.distortion[2], p2 = t.distortion[3] - k.distortion[3];
+  const Vec2 by_p1(2 * p1 * corner.x() * corner.y(), p1 * (r2 + 2 * corner.y() * corner.y()));
+  const Vec2 by_p2(p2 * (r2 + 2 * corner.x() * corner.x()), 2 * p2 * corner.x() * corner.y());
+  for (const Vec2& shift : {by_p1, by_p2}) {
+    EXPECT_LT(shift.norm() * t.fx, 0.31);
+    EXPECT_GT(shift.norm() * t.fx, 0.1);
+  }
+  // The sheet's bow: its middle lies where the plane's does.
+  const optics::LaserConfig& laser = truth.optics.lasers[0];
+  EXPECT_NEAR(laser.cone_rad, 0.005, 1e-12);
+  const Vec3 middle = laser.body_from_laser.linear() * Vec3(std::sin(laser.cone_rad), 0, std::cos(laser.cone_rad));
+  const Scenario plain = load_scenario("default", {"calibration.laser_cone_mrad=0", "mounting.laser_deg=0", "mounting.laser_m=0"});
+  const hal::SimConfig flat = make_truth(plain, draw(plain, 1), make_nominal(plain, false), 1);
+  EXPECT_LT((middle - flat.optics.lasers[0].body_from_laser.linear().col(2)).norm(), 1e-9);
+  EXPECT_NEAR(laser.waist_sigma_m, 0.8 * scenario.laser.waist_sigma_m, 1e-12);
+  for (std::size_t i = 0; i < PanelLayout::button_count; ++i)
+    EXPECT_LT((truth.world.layout.buttons_m[i] - scenario.panel.buttons_m[i] - Vec2(0.0004, 0.0004)).norm(), 1e-12);
+  EXPECT_EQ(truth.exposure_delay, Duration::from_us(300));
+}
+
 TEST(Nominal, EveryShippedScenarioCanBeRun) {
   for (const ShippedScenario& shipped : shipped_scenarios()) EXPECT_EQ(refusal(load_scenario(shipped.name)), "") << shipped.name;
 }
