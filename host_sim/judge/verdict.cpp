@@ -208,13 +208,12 @@ class Judge {
     return bits;
   }
 
-  // The longest of their ramps, and the time after it.
-  double unreached_off_s(std::uint8_t joints, double from_s) const {
+  // The arm's ramp, which ends with its slowest joint's, and the time after it.
+  double unreached_off_s(double from_s) const {
     double ramp_s = 0;
     const auto at = static_cast<std::size_t>(from_s / ms);
-    for (std::size_t joint = 0; joint < joint_count && at < moments_.size(); ++joint) {
-      if ((joints >> joint & 1u) != 0) ramp_s = std::max(ramp_s, moments_[at].speed_rad_s[joint] / situation_.deceleration_rad_s2[joint]);
-    }
+    for (std::size_t joint = 0; joint < joint_count && at < moments_.size(); ++joint)
+      ramp_s = std::max(ramp_s, moments_[at].speed_rad_s[joint] / situation_.deceleration_rad_s2[joint]);
     return ramp_s + figures_.unreached_off_s;
   }
 
@@ -244,7 +243,7 @@ class Judge {
     const bool halts = deadline.cause != nullptr && deadline.cause->rule->report == Report::halt;
     const std::uint8_t unreached = joints_unreached();
     const double by_restart_s = told_to_run_s(unreached);
-    if (by_restart_s > deadline.end_s() + unreached_off_s(unreached, deadline.end_s()) + ms)
+    if (by_restart_s > deadline.end_s() + unreached_off_s(deadline.end_s()) + ms)
       wrong(formatted("still runs unreached %.0f ms after the report", (by_restart_s - deadline.at_s) / ms));
     const double by_nmt_s = told_to_run_s(untold & static_cast<std::uint8_t>(~unreached));
     const double late_s = halts ? figures_.unheeded_lowering_s : figures_.unheeded_stop_s;
@@ -355,7 +354,7 @@ class Judge {
     };
     const double reached_off_s = powered_s(reachable);
     const std::uint8_t unreached = joints_unreached();
-    if (!master_is_cut_off() && powered_s(unreached) - from_s > unreached_off_s(unreached, from_s) + ms)
+    if (!master_is_cut_off() && powered_s(unreached) - from_s > unreached_off_s(from_s) + ms)
       wrong(formatted("power is off %.2f s after the stop of a drive that nothing reaches", powered_s(unreached) - from_s));
     untold &= static_cast<std::uint8_t>(~unreached);
     const double late_s = halts ? figures_.unheeded_lowering_s : figures_.unheeded_off_s;

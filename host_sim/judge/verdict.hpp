@@ -26,8 +26,9 @@ struct SafetyFigures {
   // which brakes may close.
   double unheeded_stop_s = 0.020, unheeded_lowering_s = 0.7;
   double unheeded_off_s = 0.120;  // until it is restarted, from when its power had to be off
-  // A drive that hears no process data and is not heard either looks like one that brakes in good order: it is restarted when a ramp and a brake would be over.
-  double unreached_off_s = 0.44;  // over its own ramp
+  // A drive that hears no process data and is not heard either looks like one that brakes in good order, and that is told to go down once the arm stands: it is
+  // restarted when the arm's ramp and a brake would be over.
+  double unreached_off_s = 0.44;  // over the longest ramp
   double quivers_rad = 0.001;     // by which a joint whose motor stands may quiver under a load: half a millimetre at the tool
   double unwinding_s = 0.5;       // in which a joint whose motor stands may still unwind its gear
 };
