@@ -24,7 +24,7 @@ double valve_error(const record::RunResult& result) {
   return worst;
 }
 
-const std::array<Figure, 12> figures{
+const std::array<Figure, 13> figures{
     {{"plane_normal_deg", "deg", [](const record::RunResult& r) { return r.errors.plane_normal_deg; }},
      {"plane_offset_mm", "mm", [](const record::RunResult& r) { return r.errors.plane_offset_mm; }},
      {"valve_base_mm", "mm", [](const record::RunResult& r) { return r.errors.valve_base_mm; }},

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <bit>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -38,6 +39,8 @@ Found detect(const scan::PixelView<Pixel>& image, const scan::PixelView<Pixel>& 
   scan::RefinerConfig refiner_config;
   refiner_config.axis = config.axis;
   refiner_config.full_scale = config.full_scale;
+  refiner_config.largest_misfit =
+      std::numeric_limits<float>::infinity();  // nothing comes after that would sort silhouettes out, or miss them
   const auto refiner = std::make_unique<scan::BasicPeakRefiner<Pixel, 4096, 4096>>(refiner_config);
   found.peaks.resize(refiner->refine(image, off, found.peaks));
   found.refined = refiner->counters();
