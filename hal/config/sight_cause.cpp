@@ -137,10 +137,8 @@ Cause sight_cause(StepFailure failure, const Sight& sight) {
   // An answer that was not made of pictures, as on a test bench that gives sight, has points all the same.
   if (sight.look == 0 || (sight.stripes == 0 && sight.points > 0)) return {};
   const bool by_seeing = failure != StepFailure::unreachable && failure != StepFailure::panel_in_the_way;
-  if (by_seeing) {
-    if (Cause light = light_of(sight); !light.name.empty()) return light;
-  }
-  if (Cause place = place_of(sight); !place.name.empty()) return place;
+  if (by_seeing && !light_of(sight).name.empty()) return light_of(sight);
+  if (!place_of(sight).name.empty()) return place_of(sight);
   switch (failure) {
     case StepFailure::no_panel:
     case StepFailure::too_few_points:

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "firmware/arm/actuator.hpp"
+#include "hal/config/event_json.hpp"
 #include "hal/config/share.hpp"
 #include "hal/vehicle/status_json.hpp"
 #include "host_sim/devices/drive/drive_dictionary.hpp"
