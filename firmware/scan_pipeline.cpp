@@ -5,6 +5,7 @@
 
 #include "firmware/arm/collision.hpp"
 #include "firmware/arm/kinematics.hpp"
+#include "firmware/scan/picture_light.hpp"
 
 namespace lf {
 namespace {
@@ -197,7 +198,11 @@ void BasicScanPipeline<capacity>::on_image(std::uint8_t camera, const Image& rec
       add_points(false);
       return;
     case ExposureKind::background: store(image, exposure, background_); return;
-    case ExposureKind::still: store(image, exposure, still_); return;
+    case ExposureKind::still:
+      store(image, exposure, still_);
+      ++stats_.stills;
+      stats_.still = scan::picture_light(image.view);
+      return;
     case ExposureKind::monitor: return;
   }
 }
@@ -222,6 +227,7 @@ void BasicScanPipeline<capacity>::measure(const Image& image, const Exposure& ex
   stats_.peaks_weak = static_cast<std::uint32_t>(counters.weak);
   stats_.peaks_saturated = static_cast<std::uint32_t>(counters.saturated);
   if (!exposure.in_sweep) return;
+  ++stats_.stripes;
   if (stripes_.full()) add_points(true);
   Stripe& stripe = *stripes_.extend();
   stripe.start = exposure.start;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "firmware/mission/sight.hpp"
 #include "firmware/mission/step_failure.hpp"
 #include "firmware/mission/steps.hpp"
 #include "firmware/safety/faults.hpp"
@@ -48,6 +49,7 @@ struct Telemetry {
   std::uint32_t rejected_inputs = 0;
   std::array<std::uint32_t, safety::fault_count> faults{};
   StaticVector<Event, 16> events;  // of this tick
+  mission::Sight sight;            // of the newest look; a fault of panel vision is explained by it
 };
 
 }  // namespace lf

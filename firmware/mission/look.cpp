@@ -91,6 +91,7 @@ Progress Look::run_verify_reach(Workbench& bench) {
 
 void Look::begin_scan(const StepTick& tick) {
   ++sweep_;
+  before_sweep_ = stats_;
   send(tick, ScanCommand::Kind::begin_sweep);
   tick.bench.camera.set_mode(CameraWork::Mode::sweep, tick.now);
   tick.bench.motion.sweep();
@@ -110,11 +111,13 @@ void Look::begin_question(const StepTick& tick) {
   send(tick, ScanCommand::Kind::analyse);
 }
 
-bool Look::answered(const StepTick& tick) const {
+bool Look::answered(const StepTick& tick) {
   const Duration timeout = Duration::from_s(tick.bench.config.mission_limits.vision_timeout_s);
   tick.clock.expect(timeout);
   const bool late = tick.clock.elapsed(tick.now) > timeout;
   if (!panel_arrived_ && late) tick.faults.report(safety::Fault::vision_late);
+  if (panel_arrived_)
+    sight_ = sight_of(panel_, before_sweep_, stats_, tick.bench.mission().layout, tick.bench.config.camera.base_from_camera);
   return panel_arrived_;
 }
 

@@ -2,6 +2,7 @@
 // the handle's surroundings and judges the angle.
 #pragma once
 
+#include "firmware/mission/sight.hpp"
 #include "firmware/mission/workbench.hpp"
 
 namespace lf::mission {
@@ -15,6 +16,11 @@ class Look {
   Progress run(const StepTick& tick);
   // An answer to an earlier question came too late to matter and is ignored.
   void on_panel(const PanelResult& result);
+  void on_scan(const ScanStats& stats) { stats_ = stats; }
+
+  // Of the newest answer that was taken.
+  const Sight& sight() const { return sight_; }
+  const ScanStats& scan_stats() const { return stats_; }
 
  private:
   void begin_deploy(const StepTick& tick);
@@ -24,7 +30,7 @@ class Look {
   static Progress run_verify_reach(Workbench& bench);
   void begin_question(const StepTick& tick);
   // True when the answer is there; reports vision that is late.
-  bool answered(const StepTick& tick) const;
+  bool answered(const StepTick& tick);
   Progress run_perceive(const StepTick& tick);
   Progress run_verify(const StepTick& tick);
   void send(const StepTick& tick, ScanCommand::Kind kind) const;
@@ -32,6 +38,8 @@ class Look {
   std::uint32_t sweep_ = 0;
   PanelResult panel_;
   bool panel_arrived_ = false;
+  ScanStats stats_, before_sweep_;
+  Sight sight_;
 };
 
 }  // namespace lf::mission

@@ -334,6 +334,7 @@ void Mission::report(const StepTick& tick) {
   }
   telemetry.outputs = tick.network.io().wanted_outputs();
   telemetry.faults = fault_counts_;
+  telemetry.sight = look_.sight();
 }
 
 }  // namespace lf::mission

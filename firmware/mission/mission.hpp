@@ -49,7 +49,7 @@ class Mission {
   bool order(const Order& order, Time now);
   void on_panel(const PanelResult& result) { look_.on_panel(result); }
   void on_scan(const ScanStats& stats) {
-    scan_stats_ = stats;
+    look_.on_scan(stats);
     bench_.camera.on_image(stats.newest_exposure);
   }
   void on_port_error(Port port) { sources_.on_port_error(port); }
@@ -59,7 +59,9 @@ class Mission {
 
   Step step() const { return step_; }
   Standing standing() const { return mission::standing(step_, on_hold()); }
-  const ScanStats& scan_stats() const { return scan_stats_; }
+  const ScanStats& scan_stats() const { return look_.scan_stats(); }
+  // What the newest look saw, by which a failed one is explained.
+  const Sight& sight() const { return look_.sight(); }
   // The mission has ended and nothing is under power any more: the loop may end. A held arm is powered, and is watched on.
   bool over() const { return ended() && bench_.power.off(); }
   const safety::Power& power() const { return bench_.power; }
@@ -131,7 +133,6 @@ class Mission {
   std::optional<arm::JointVector> grip_lag_rad_;  // of the step under way, as it began
   std::optional<CameraWork::Mode> hold_;          // the operator holds the arm: what the camera did when it was held
   Outcome outcome_;
-  ScanStats scan_stats_;
   bool nodes_stopped_ = false;  // for good, after a shut-down
 };
 

@@ -3,8 +3,8 @@
 #include <array>
 #include <cstdio>
 
-#include "firmware/mission/step_failure.hpp"
 #include "firmware/telemetry.hpp"
+#include "hal/config/cause.hpp"
 #include "shared/messages/joint_io.hpp"
 #include "shared/messages/joint_names.hpp"
 
@@ -29,7 +29,7 @@ std::string bus_text(std::int32_t code) {
   }
 }
 
-std::string cause(Fault fault, std::int32_t code) {
+std::string cause(Fault fault, std::int32_t code, const mission::Sight& sight) {
   switch (fault) {
     case Fault::node_lost:
     case Fault::node_rebooted:
@@ -42,7 +42,7 @@ std::string cause(Fault fault, std::int32_t code) {
     case Fault::unexpected_contact: return node_text(code);
     case Fault::boot_failed: return code < 0 ? "" : node_text(code);
     case Fault::step_failed:
-    case Fault::vision_poor: return name(static_cast<StepFailure>(code));
+    case Fault::vision_poor: return cause_of(fault, code, sight).name;
     case Fault::second_master: return "identifier " + hex(static_cast<unsigned>(code));
     case Fault::estop: return code == 0 ? "the chain is open" : "by order";
     case Fault::aborted: return code == 0 ? "" : "shut down by order";
@@ -59,12 +59,12 @@ std::string node_text(std::int32_t index) {
   return known ? node_names[static_cast<std::size_t>(index)] : std::to_string(index);
 }
 
-std::string fault_text(Fault fault, std::int32_t code, std::uint16_t emcy, const ErrorTexts& texts) {
+std::string fault_text(Fault fault, std::int32_t code, std::uint16_t emcy, const ErrorTexts& texts, const mission::Sight& sight) {
   std::string text = safety::name(fault);
-  if (const std::string why = cause(fault, code); !why.empty()) text += ": " + why;
+  if (const std::string why = cause(fault, code, sight); !why.empty()) text += ": " + why;
   const bool failed = fault == Fault::step_failed || fault == Fault::vision_poor;
-  if (const char* what_to_do = failed ? remedy(static_cast<StepFailure>(code)) : ""; *what_to_do != 0)
-    text += std::string(" (") + what_to_do + ")";
+  if (const std::string what_to_do = failed ? cause_of(fault, code, sight).remedy : ""; !what_to_do.empty())
+    text += " (" + what_to_do + ")";
   // Every fault that an EMCY comes with has its node's index for a code.
   if (emcy != 0) text += ", EMCY " + hex(emcy) + " (" + texts.of_joint(code, emcy) + ")";
   return text;

@@ -1,5 +1,7 @@
 #include "hal/vehicle/status_board.hpp"
 
+#include "hal/config/event_json.hpp"
+
 namespace lf::hal {
 
 namespace {
@@ -10,7 +12,7 @@ constexpr Duration counters_every = Duration::from_ms(500);
 
 void StatusBoard::collect(Time now, const std::function<void(const Json&)>& tell) {
   for (Telemetry telemetry; log_.telemetry.pop(telemetry);) {
-    for (const Event& event : telemetry.events) tell(event_json(event, texts_));
+    for (const Event& event : telemetry.events) tell(config::event_json(event, texts_, telemetry.sight));
     const std::lock_guard lock(mutex_);
     newest_.telemetry = telemetry;
   }

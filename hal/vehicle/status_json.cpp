@@ -7,6 +7,7 @@
 #include "firmware/canopen/emcy.hpp"
 #include "firmware/canopen/sdo_abort.hpp"
 #include "hal/config/boot_sentence.hpp"
+#include "hal/config/event_json.hpp"
 #include "hal/config/fault_text.hpp"
 #include "hal/config/homing_file.hpp"
 
@@ -20,18 +21,6 @@ const char* name(Port port) {
 }
 
 namespace {
-
-const char* kind_of(Event::Kind kind) {
-  switch (kind) {
-    case Event::Kind::step: return "step";
-    case Event::Kind::fault: return "fault";
-    case Event::Kind::located: return "located";
-    case Event::Kind::task_done: return "task done";
-    case Event::Kind::task_failed: return "task failed";
-    case Event::Kind::emcy: return "emcy";
-  }
-  return "event";
-}
 
 void count(Json& json, const char* what, std::uint64_t n) {
   if (n > 0) json[what] = n;
@@ -90,12 +79,6 @@ Json scan_counters(const ScanStats& s) {
   return json;
 }
 
-Json faults_json(const mission::FaultCounts& counts) {
-  Json json = Json::object();
-  for (std::size_t i = 0; i < counts.size(); ++i) count(json, safety::name(static_cast<safety::Fault>(i)), counts[i]);
-  return json;
-}
-
 Json node_json(const canopen::NodeBoot& boot) {
   Json json;
   constexpr std::array<const char*, 4> states{"idle", "running", "done", "failed"};
@@ -137,35 +120,6 @@ Json tasks_json(const ControlReport& control) {
 
 }  // namespace
 
-Json event_json(const Event& event, const config::ErrorTexts& texts) {
-  Json json;
-  json["t_s"] = event.t.s();
-  json["kind"] = kind_of(event.kind);
-  json["step"] = mission::row(event.step).name;
-  if (event.kind == Event::Kind::fault) {
-    json["fault"] = safety::name(event.fault);
-    json["reaction"] = safety::name(event.reaction);
-    json["code"] = event.code;
-    json["text"] = config::fault_text(event.fault, event.code, event.emcy, texts);
-    const bool step_failed = event.fault == safety::Fault::step_failed || event.fault == safety::Fault::vision_poor;
-    if (step_failed) {
-      json["because"] = lf::name(static_cast<StepFailure>(event.code));
-      json["remedy"] = lf::remedy(static_cast<StepFailure>(event.code));
-    }
-  }
-  if (event.kind == Event::Kind::emcy) {
-    json["node"] = event.code;
-    json["emcy"] = event.emcy;
-    json["text"] = texts.of_node(event.code, event.emcy);
-  }
-  if (event.kind == Event::Kind::located) json["handle_deg"] = deg_from_rad(event.value);
-  if (event.kind == Event::Kind::task_done || event.kind == Event::Kind::task_failed) {
-    json["task"] = event.task;
-    json["value"] = event.value;
-  }
-  return json;
-}
-
 Json histogram_json(const LatencyHistogram& histogram) {
   return {{"count", histogram.count()},
           {"p50", histogram.percentile_us(0.5)},
@@ -180,7 +134,7 @@ Json counters_json(const ControlReport& control, const CameraReport& camera, con
   for (std::size_t i = 0; i < port_count; ++i) count(ports, name(static_cast<Port>(i)), control.port_errors[i]);
   for (std::size_t i = 0; i < canopen::refusal_count; ++i)
     count(refused, canopen::name(static_cast<canopen::Refusal>(i)), control.network.refused[i]);
-  json["faults"] = faults_json(telemetry.faults);
+  json["faults"] = config::fault_counts_json(telemetry.faults);
   json["platform calls failed"] = ports;
   json["frames refused"] = refused;
   json["can"] = can_counters(control.can);
@@ -202,13 +156,16 @@ Json status_json(const ControlReport& control, const Telemetry& telemetry, const
   json["stage"] = mission::row(control.step).stage;
   if (control.outcome.ended) {
     json["success"] = control.outcome.success;
-    if (!control.outcome.success)
-      json["failure"] = {{"phase", control.outcome.stage},
-                         {"step", mission::row(control.outcome.step).name},
-                         {"reason", safety::name(control.outcome.fault)},
-                         {"text", config::fault_text(control.outcome.fault, control.outcome.code, control.outcome.emcy, texts)},
-                         {"code", control.outcome.code}};
-    const Json later = faults_json(control.faults_after_end);
+    if (!control.outcome.success) {
+      json["failure"] = {
+          {"phase", control.outcome.stage},
+          {"step", mission::row(control.outcome.step).name},
+          {"reason", safety::name(control.outcome.fault)},
+          {"text", config::fault_text(control.outcome.fault, control.outcome.code, control.outcome.emcy, texts, telemetry.sight)},
+          {"code", control.outcome.code}};
+      json["failure"].update(config::cause_json(control.outcome.fault, control.outcome.code, telemetry.sight));
+    }
+    const Json later = config::fault_counts_json(control.faults_after_end);
     if (!later.empty()) json["faults since the end"] = later;
   }
   json["tasks"] = tasks_json(control);

@@ -14,14 +14,12 @@ using Json = nlohmann::ordered_json;
 
 const char* name(Port port);
 
-// `texts`: what the drives' error codes mean.
-Json event_json(const Event& event, const config::ErrorTexts& texts);
 // {"count", "p50", "p99", "p999", "max"} in us.
 Json histogram_json(const LatencyHistogram& histogram);
 // Everything that is counted and is not zero: faults, platform calls that failed, refused frames, CAN errors, camera troubles, missed ticks ... The names are
 // those of docs/operating.md.
 Json counters_json(const ControlReport& control, const CameraReport& camera, const Telemetry& telemetry);
-// Mission, tasks, joints, nodes, inputs and outputs.
+// Mission, tasks, joints, nodes, inputs and outputs. `texts`: what the drives' error codes mean.
 Json status_json(const ControlReport& control, const Telemetry& telemetry, const config::ErrorTexts& texts);
 
 }  // namespace lf::hal

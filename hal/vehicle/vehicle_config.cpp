@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "hal/config/handle_check.hpp"
+#include "hal/config/panel_check.hpp"
 #include "hal/config/share.hpp"
 #include "hal/config/text_file.hpp"
 #include "hal/config/yaml_reader.hpp"
@@ -101,6 +102,7 @@ void check_together(const VehicleConfig& c, const std::string& file, std::vector
   if ((panel.plate_min_m.array() >= panel.plate_max_m.array()).any()) refuse("'panel.plate_min_m' is not below 'panel.plate_max_m'");
   if (panel.marker_plate_m <= panel.marker_size_m) refuse("'panel.marker_plate_m' is not larger than 'panel.marker_size_m'");
   for (const std::string& problem : config::handle_problems(panel, c.machine.valve, c.machine.tasks)) refuse(problem);
+  for (const std::string& problem : config::panel_problems(panel)) refuse(problem);
   const double between_ms = c.machine.mission.camera_syncs * can_map::sync_period.s() * 1e3;
   if (c.match_window_us * 1e-3 >= between_ms / 2)
     refuse("'camera.match_window_us' is half the time between two exposures or more: an image could belong to either");

@@ -30,6 +30,10 @@ void print(const char* format, ...) {
   check_stdout();
 }
 
+void tell_doubts(const std::string& file, const std::vector<std::string>& doubts) {
+  for (const std::string& doubt : doubts) std::fprintf(stderr, "lanternfish: %s: doubtful: %s\n", file.c_str(), doubt.c_str());
+}
+
 std::string count_of(std::size_t n, const std::string& noun) {
   std::string text = std::to_string(n);
   text += " ";

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace lf::app {
 
@@ -45,6 +46,9 @@ void print_json(const Json& document);
 
 // printf to stdout. Throws EnvironmentError when stdout cannot be written (a full disk).
 void print(const char* format, ...) __attribute__((format(printf, 1, 2)));
+
+// Says on stderr why the answer about `file` is to be doubted, a line a reason; the command then ends with exit status 1.
+void tell_doubts(const std::string& file, const std::vector<std::string>& doubts);
 
 // "1 peak", "3 peaks".
 std::string count_of(std::size_t n, const std::string& noun);

@@ -8,6 +8,7 @@
 #include "firmware/scan/peaks.hpp"
 #include "hal/vision/image_file.hpp"
 #include "host_sim/app/command.hpp"
+#include "host_sim/app/peak_doubt.hpp"
 #include "host_sim/record/file_sink.hpp"
 #include "host_sim/record/png.hpp"
 #include "shared/input_error.hpp"
@@ -84,6 +85,17 @@ void check_sizes(const Options& options, const vision::DeepImage& image, const s
   if (off->deep != image.deep) throw InputError(options.off + ": not of the depth of " + options.image);
 }
 
+StripePicture picture_of(const vision::DeepImage& image, const std::optional<vision::DeepImage>& off, scan::PeakAxis axis) {
+  const bool columns = axis == scan::PeakAxis::column;
+  const auto grey = [](const vision::DeepImage& of, std::size_t at) { return double(of.deep ? of.pixels16[at] : of.pixels8[at]); };
+  return {columns ? image.width : image.height, columns ? image.height : image.width,
+          [&image, &off, columns, grey](std::int32_t line, std::int32_t place) {
+            const std::int32_t u = columns ? line : place, v = columns ? place : line;
+            const std::size_t at = static_cast<std::size_t>(v) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(u);
+            return grey(image, at) - (off ? grey(*off, at) : 0);
+          }};
+}
+
 void write_overlay(const Options& options, const Found& found) {
   const vision::GreyImage grey = vision::read_image_file(options.image, vision::channel_from_name(options.channel));
   std::vector<record::PixelPoint> points;
@@ -92,7 +104,8 @@ void write_overlay(const Options& options, const Found& found) {
   record::write_file_atomically(options.overlay, {reinterpret_cast<const char*>(png.data()), png.size()});
 }
 
-void tell(const Options& options, const vision::DeepImage& image, const Found& found) {
+void tell(const Options& options, const vision::DeepImage& image, const Found& found, const StripeLook& look,
+          const std::vector<std::string>& doubts) {
   if (options.json) {
     Json peaks = Json::array();
     for (const scan::Peak& peak : found.peaks)
@@ -101,7 +114,10 @@ void tell(const Options& options, const vision::DeepImage& image, const Found& f
         {{"width", image.width},
          {"height", image.height},
          {"peaks", peaks},
-         {"rejected", {{"weak", found.counters.weak}, {"saturated", found.counters.saturated}, {"ambiguous", found.counters.ambiguous}}}});
+         {"rejected", {{"weak", found.counters.weak}, {"saturated", found.counters.saturated}, {"ambiguous", found.counters.ambiguous}}},
+         {"stripe_width_px", look.width_px},
+         {"scatter_px", look.scatter_px},
+         {"doubts", doubts}});
   } else if (options.csv) {
     print("u,v,amplitude,ratio\n");
     for (const scan::Peak& peak : found.peaks) {
@@ -124,8 +140,11 @@ int peaks(const Options& options) {
   config.axis = options.axis == "column" ? scan::PeakAxis::column : scan::PeakAxis::row;
   const Found found = detect(image, off, config);
   if (!options.overlay.empty()) write_overlay(options, found);
-  tell(options, image, found);
-  return done;
+  const StripeLook look = look_at_stripe(picture_of(image, off, config.axis), found.peaks, config.axis);
+  const std::vector<std::string> doubts = peak_doubts(look, found.peaks.size());
+  tell_doubts(options.image, doubts);
+  tell(options, image, found, look, doubts);
+  return doubts.empty() ? done : failed;
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "firmware/scan/plane.hpp"
 #include "host_sim/app/checks.hpp"
 #include "host_sim/app/command.hpp"
+#include "host_sim/app/plane_doubt.hpp"
 #include "host_sim/record/cloud_file.hpp"
 
 namespace lf::app {
@@ -27,18 +28,21 @@ int plane(const Options& options) {
     std::fprintf(stderr, "lanternfish: %s: no plane in %s\n", options.cloud.c_str(), count_of(cloud.points.size(), "point").c_str());
     return failed;
   }
+  const std::vector<std::string> doubts = plane_doubts(cloud.points, fit, config.threshold_m);
+  tell_doubts(options.cloud, doubts);
   const Vec3& n = fit.plane.normal;
   if (options.json) {
     print_json({{"normal", {n.x(), n.y(), n.z()}},
                 {"offset_m", fit.plane.offset_m},
                 {"inliers", fit.inliers},
                 {"points", fit.points},
-                {"rms_mm", 1e3 * fit.rms_m}});
+                {"rms_mm", 1e3 * fit.rms_m},
+                {"doubts", doubts}});
   } else {
     print("normal  %.9f %.9f %.9f\noffset  %.9f m\ninliers %u of %u\nrms     %.4f mm\n", n.x(), n.y(), n.z(), fit.plane.offset_m,
           fit.inliers, fit.points, 1e3 * fit.rms_m);
   }
-  return done;
+  return doubts.empty() ? done : failed;
 }
 
 }  // namespace

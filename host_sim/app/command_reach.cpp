@@ -1,10 +1,13 @@
 #include <cmath>
 #include <memory>
 
+#include "hal/config/arm_match.hpp"
+#include "hal/config/share.hpp"
 #include "host_sim/app/command.hpp"
 #include "host_sim/app/reach_picture.hpp"
 #include "host_sim/app/reach_survey.hpp"
 #include "host_sim/record/file_sink.hpp"
+#include "shared/input_error.hpp"
 
 namespace lf::app {
 
@@ -51,8 +54,18 @@ void tell(const ReachTarget& target) {
   print("\n");
 }
 
+// The survey is made with the control core's kinematics, which are those of the URDF that the program was built with.
+void check_arm(const scenario::Scenario& scenario) {
+  const std::string file = config::named_file(scenario.file, "arm.urdf", scenario.arm.urdf);
+  const std::string differs = config::difference_from_core(load_arm_urdf(file));
+  if (differs.empty()) return;
+  throw InputError(scenario.file + ": 'arm.urdf' names another arm than the control core's (" + file + "): " + differs +
+                   ". `reach` surveys the core's own arm: put this URDF in place of shared/arm/arm5e.urdf and build again");
+}
+
 int reach(const Options& options) {
   const scenario::Scenario scenario = scenario::load_scenario(options.scenario, options.set);
+  check_arm(scenario);
   const std::vector<ReachGrid> grids{survey_grid(scenario.panel, scenario.panel.button_height_m, closed_tip_m()),
                                      survey_grid(scenario.panel, scenario.panel.handle_height_m, 0)};
   const std::vector<ReachTarget> targets = survey_targets(scenario, options.draws);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <filesystem>
 #include <memory>
 #include <thread>
@@ -28,6 +29,7 @@ struct Options {
   bool realtime = false;
   int render_threads = 0;
   bool outside = true;
+  bool record_images = false;
   bool json = false;
 };
 
@@ -47,6 +49,22 @@ std::string command_of(const Options& options) {
   std::string command = "lanternfish run " + shell_word(options.scenario) + " --seed " + std::to_string(options.seed);
   for (const std::string& set : options.set) command += " --set " + shell_word(set);
   return command;
+}
+
+// ISO 8601, to the second.
+std::string utc_text(std::time_t time) {
+  std::tm utc{};
+  gmtime_r(&time, &utc);
+  char text[32];
+  return {text, std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc)};
+}
+
+// What the reason does not say already.
+void tell_failure(const record::FailureRecord& failure) {
+  const auto is_news = [&failure](const std::string& text) { return failure.reason.find(text) == std::string::npos; };
+  if (is_news(failure.cause)) print("  cause: %s\n", failure.cause.c_str());
+  if (is_news(failure.remedy)) print("  what to do: %s\n", failure.remedy.c_str());
+  if (!failure.seen.empty()) print("  the look saw: %s\n", failure.seen.c_str());
 }
 
 void tell_error(const char* name, double value, const char* unit) {
@@ -74,6 +92,8 @@ void tell(const RunOutcome& outcome, const std::string& folder) {
   tell_error("peaks, recall", result.errors.peak_recall, "");
   tell_error("peaks, false", result.errors.peaks_false, "");
   print("%.1f s simulated in %.1f s, %.1f x real time\n", result.time.simulated_s, result.time.wall_s, result.time.real_time_factor);
+  print("bus load %.1f %%; without stuff bits %.1f %%, with worst-case stuffing %.1f %%\n", result.bus.load_percent,
+        result.bus.load_unstuffed_percent, result.bus.load_worst_case_percent);
   for (const std::string& fault : result.faults_not_made) print("note: this fault did not happen: %s\n", fault.c_str());
   if (result.success) {
     const std::string expected = result.expected_failure ? ": it failed as expected, " + result.expected_failure->reason : "";
@@ -81,6 +101,7 @@ void tell(const RunOutcome& outcome, const std::string& folder) {
   } else {
     print("%s in %s: %s\n", result.false_success ? "FALSE SUCCESS" : "FAILED", result.failure->phase.c_str(),
           result.failure->reason.c_str());
+    tell_failure(*result.failure);
   }
   if (outcome.has_report && outcome.kept) print("report: %s/report.html\n", folder.c_str());
 }
@@ -99,7 +120,10 @@ int run(const Options& options) {
   request.out = options.out.empty()
                     ? default_folder(request.scenario.name + "-" + std::to_string(options.seed), !options.set.empty(), request.experiment)
                     : std::filesystem::path(options.out);
-  request.command = command_of(options);
+  request.record_images = options.record_images;
+  request.provenance.command = command_of(options);
+  request.provenance.set = options.set;
+  request.provenance.date_utc = utc_text(std::time(nullptr));
   if (isatty(STDERR_FILENO) != 0) {
     request.say = [](const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); };
   }
@@ -130,6 +154,7 @@ void add_run(CLI::App& app, Action& action) {
   command->add_flag("--realtime", options->realtime, "No faster than the clock on the wall");
   command->add_option("--render-threads", options->render_threads, "Threads that render (default: all; the result is the same)")
       ->check(CLI::Range(1, 256));
+  command->add_flag("--record-images", options->record_images, "Keep the camera's pictures as they are, with their poses, in raw/ (40 MB)");
   command->add_flag("!--no-outside", options->outside, "No pictures of the robot from outside");
   command->add_flag("--json", options->json, "Print result.json");
   command->callback([options, &action] { action = [options] { return run(*options); }; });

@@ -98,7 +98,8 @@ judge::Ending ending_of(const Flight& flight, const Watched& watched, const Matr
   ending.ended = outcome.ended;
   ending.success = outcome.ended && outcome.success;
   ending.step = mission::row(flight.mission_step()).name;
-  if (ending.ended && !ending.success) ending.reason = config::fault_text(outcome.fault, outcome.code, outcome.emcy, flight.error_texts());
+  if (ending.ended && !ending.success)
+    ending.reason = config::fault_text(outcome.fault, outcome.code, outcome.emcy, flight.error_texts(), flight.mission().sight());
   ending.holds = flight.mission_step() == Step::held;
   const bool must_stop = std::any_of(row.causes.begin(), row.causes.end(), [](const judge::Cause& cause) {
     return cause.rule->demand == judge::Demand::stop || cause.rule->kind == "runaway";

@@ -4,8 +4,8 @@
 
 namespace lf::app {
 
-std::string reason_of(const mission::Outcome& outcome, const config::ErrorTexts& texts) {
-  return config::fault_text(outcome.fault, outcome.code, outcome.emcy, texts) + ", in step " + mission::row(outcome.step).name;
+std::string reason_of(const mission::Outcome& outcome, const config::ErrorTexts& texts, const mission::Sight& sight) {
+  return config::fault_text(outcome.fault, outcome.code, outcome.emcy, texts, sight) + ", in step " + mission::row(outcome.step).name;
 }
 
 }  // namespace lf::app

@@ -9,9 +9,14 @@ RunRecorder::RunRecorder(const record::RunFolder* folder, const config::ErrorTex
     : files_(folder),
       bus_(files_, digest_),
       phases_(digest_, texts, std::move(say)),
+      events_(files_, texts),
       curves_(files_, bus_),
       panel_(files_),
       pictures_(files_) {}
+
+void RunRecorder::keep_raw_images(const CameraCalibration& camera, const LaserCalibration& laser, const optics::OpticsConfig& optics) {
+  all_.add(raw_images_.emplace(files_, camera, laser, optics));
+}
 
 void RunRecorder::after_control(const mission::Mission& mission) {
   pictures_.after_control();
@@ -30,6 +35,8 @@ void RunRecorder::finish(const world::World& world, const std::string& failure) 
   digest_.decision(Time::from_s(world.time_s()), "ended: " + failure);
   bus_.finish();
   curves_.finish();
+  events_.finish();
+  if (raw_images_) raw_images_->finish();
 }
 
 }  // namespace lf::app

@@ -8,10 +8,12 @@
 #include "hal/sim/observers.hpp"
 #include "host_sim/app/observers/bus_observer.hpp"
 #include "host_sim/app/observers/curve_observer.hpp"
+#include "host_sim/app/observers/event_observer.hpp"
 #include "host_sim/app/observers/panel_observer.hpp"
 #include "host_sim/app/observers/peak_observer.hpp"
 #include "host_sim/app/observers/phase_observer.hpp"
 #include "host_sim/app/observers/picture_observer.hpp"
+#include "host_sim/app/observers/raw_image_observer.hpp"
 #include "host_sim/judge/truth.hpp"
 
 namespace lf::app {
@@ -22,6 +24,9 @@ class RunRecorder {
   RunRecorder(const record::RunFolder* folder, const config::ErrorTexts& texts, PhaseObserver::Say say);
   RunRecorder(const RunRecorder&) = delete;
   RunRecorder& operator=(const RunRecorder&) = delete;
+
+  // Keeps the camera's pictures as they are; before the run.
+  void keep_raw_images(const CameraCalibration& camera, const LaserCalibration& laser, const optics::OpticsConfig& optics);
 
   hal::SimObserver& observer() { return all_; }
   // After each turn of the control thread and of the vision thread, outside of their timing.
@@ -36,6 +41,7 @@ class RunRecorder {
   const PeakScore& peaks() const { return peaks_.score(); }
   const judge::TruthObserver& truth() const { return truth_; }
   PictureObserver& pictures() { return pictures_; }
+  EventObserver& events() { return events_; }
   std::string digest() const { return digest_.hex(); }
   // Why something could not be written, if so: full disk.
   const std::string& write_error() const { return files_.error(); }
@@ -46,11 +52,13 @@ class RunRecorder {
   judge::TruthObserver truth_;
   BusObserver bus_;
   PhaseObserver phases_;
+  EventObserver events_;
   CurveObserver curves_;
   PanelObserver panel_;
   PeakObserver peaks_;
   PictureObserver pictures_;
-  hal::SimObservers all_{&truth_, &bus_, &phases_, &curves_, &panel_, &peaks_, &pictures_};
+  std::optional<RawImageObserver> raw_images_;
+  hal::SimObservers all_{&truth_, &bus_, &phases_, &events_, &curves_, &panel_, &peaks_, &pictures_};
 };
 
 }  // namespace lf::app

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "hal/config/boot_sentence.hpp"
+#include "hal/config/cause.hpp"
 #include "host_sim/app/outcome_text.hpp"
 #include "host_sim/judge/truth.hpp"
 #include "host_sim/scenario/instance.hpp"
@@ -27,7 +28,15 @@ std::optional<record::FailureRecord> failure_of(const Controller& controller, co
   const mission::Outcome& outcome = controller.mission().outcome();
   if (outcome.ended && outcome.success) return std::nullopt;
   const std::string boot = outcome.fault == safety::Fault::boot_failed ? config::boot_sentences(controller.network().boot()) : "";
-  if (outcome.ended) return record::FailureRecord{outcome.stage, reason_of(outcome, texts) + boot};
+  if (outcome.ended) {
+    const mission::Sight& sight = controller.mission().sight();
+    record::FailureRecord failure{outcome.stage, reason_of(outcome, texts, sight) + boot};
+    const config::Cause cause = config::cause_of(outcome.fault, outcome.code, sight);
+    failure.cause = cause.name;
+    failure.remedy = cause.remedy;
+    if (outcome.fault == safety::Fault::vision_poor) failure.seen = config::sight_text(sight);
+    return failure;
+  }
   if (interrupted) return record::FailureRecord{recorder.phases().stage(), "interrupted"};
   return record::FailureRecord{recorder.phases().stage(),
                                formatted("not ended by the time limit of %g s, at %.1f s", scenario.time_limit_s, world.time_s())};

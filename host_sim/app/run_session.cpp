@@ -11,10 +11,12 @@
 
 #include "firmware/controller.hpp"
 #include "firmware/scan_pipeline.hpp"
+#include "hal/config/event_json.hpp"
 #include "hal/core_loop.hpp"
 #include "hal/heap_guard/heap_guard.hpp"
 #include "hal/sim/sim_platform.hpp"
 #include "host_sim/app/interrupt.hpp"
+#include "host_sim/app/run_experiment.hpp"
 #include "host_sim/app/run_recorder.hpp"
 #include "host_sim/app/run_result.hpp"
 #include "host_sim/judge/truth.hpp"
@@ -62,7 +64,16 @@ class Session {
         pipeline_(std::make_unique<ScanPipeline>(nominal_.scan)),
         rings_(std::make_unique<hal::CoreRings>()),
         ticks_(static_cast<std::size_t>(request.scenario.time_limit_s / can_map::sync_period.s()) + 1),
-        frames_(16384) {}
+        frames_(16384) {
+    if (request.record_images) recorder_.keep_raw_images(nominal_.controller.camera, nominal_.controller.laser, sim_.optics);
+    recorder_.events().say({{"t_s", 0.0},
+                            {"kind", "begin"},
+                            {"config", request.scenario.file},
+                            {"seed", request.seed},
+                            {"version", version()},
+                            {"date_utc", request.provenance.date_utc},
+                            {"command", request.provenance.command}});
+  }
 
   // Runs until the arm stands without power after the mission's end, or to the time limit or an interrupt.
   void run() {
@@ -70,7 +81,9 @@ class Session {
     const Clock::time_point start = Clock::now();
     Time now;
     TickOutput out;
-    controller_->on_command(Command::start, now);
+    const bool taken = controller_->on_command(Command::start, now);
+    recorder_.events().say(
+        {{"t_s", config::json_seconds(now)}, {"kind", "order"}, {"order", {{"do", "start"}}}, {"by", "run"}, {"answer", {{"ok", taken}}}});
     while (!settled(now) && now.s() < request_.scenario.time_limit_s && !interrupted()) {
       (void)hal::control_turn(*platform_, *controller_, *rings_, out, now, ticks_);
       recorder_.after_control(controller_->mission());
@@ -100,11 +113,11 @@ class Session {
     return true;
   }
 
-  // A scenario that expects a failure has succeeded when the mission failed so, and safely.
-  static void hold_against(const std::string& expected, bool safe, record::RunResult& result) {
+  // A scenario that expects a failure has succeeded when the mission failed so, and safely. The fault itself is compared: its text may quote another one's name.
+  static void hold_against(const std::string& expected, const mission::Outcome& outcome, bool safe, record::RunResult& result) {
     if (!result.failure) {
       result.failure = record::FailureRecord{"end", "expected was the failure '" + expected + "', but the mission succeeded"};
-    } else if (result.failure->reason.find(expected) == std::string::npos) {
+    } else if (!outcome.ended || outcome.success || expected != safety::name(outcome.fault)) {
       result.failure->reason += "; expected was '" + expected + "'";
     } else if (!safe) {
       result.failure->reason += ", as expected, but the arm moves or has power 3 s after the end";
@@ -120,7 +133,7 @@ class Session {
     if (!result.failure && !safe() && !held) result.failure = record::FailureRecord{"end", "the end is not safe"};
     const std::string& expected = request_.scenario.expect.failure;
     if (expected != scenario::Expect::nothing && !interrupted()) {
-      hold_against(expected, safe(), result);
+      hold_against(expected, controller_->mission().outcome(), safe(), result);
     } else if (result.failure && !safe() && !held && !interrupted() && controller_->mission().outcome().ended) {
       result.failure->reason += "; the arm moves or has power 3 s after the end";
     }
@@ -133,8 +146,14 @@ class Session {
     result.scenario = request_.scenario.name;
     result.seed = request_.seed;
     result.version = version();
+    result.provenance = request_.provenance;
+    result.provenance.scenario_file = request_.scenario.file;
+    if (!request_.experiment.empty()) result.provenance.experiment = record::hash_of(request_.experiment);
     result.drawn = drawn(sample_);
     judge(result);
+    result.faults = recorder_.events().faults();
+    result.faults_left_out = recorder_.events().faults_left_out();
+    tell_end(result);
     recorder_.finish(platform_->world(), result.failure ? result.failure->reason : "");
     result.phases = recorder_.phases().phases();
     result.faults_not_made = faults_not_made(request_.scenario, *platform_);
@@ -148,7 +167,7 @@ class Session {
     result.core.frame_us = record::times_record(frames_.times_us());
     result.core.rejected_inputs = rejected_inputs(*controller_, *pipeline_, *rings_);
     const devices::BusStats bus = platform_->devices().bus();
-    result.bus = {bus.load_percent, bus.frames, bus.errors};
+    result.bus = {bus.load_percent, bus.load_unstuffed_percent, bus.load_worst_case_percent, bus.frames, bus.errors};
     result.host = {build_type(), request_.render_threads, std::string(compiler()) + ", " + revision()};
     const double simulated_s = platform_->now().s();
     result.time = {simulated_s, wall_s_, wall_s_ > 0 ? simulated_s / wall_s_ : record::unknown};
@@ -159,7 +178,7 @@ class Session {
   record::ReportData report(const record::RunResult& result) {
     record::ReportData data;
     data.result = result;
-    data.command = request_.command;
+    data.command = request_.provenance.command;
     data.conditions = conditions(sample_);
     data.errors = record::report_errors(result, sample_.attenuation_per_m);
     if (request_.outside) recorder_.pictures().draw_outside(sim_.optics, request_.render_threads);
@@ -178,6 +197,14 @@ class Session {
   const std::string& write_error() const { return recorder_.write_error(); }
 
  private:
+  void tell_end(const record::RunResult& result) {
+    nlohmann::ordered_json line{{"t_s", config::json_seconds(platform_->now())}, {"kind", "end"}, {"success", result.success}};
+    if (result.failure) line["failure"] = {{"phase", result.failure->phase}, {"text", result.failure->reason}};
+    if (result.expected_failure)
+      line["expected_failure"] = {{"phase", result.expected_failure->phase}, {"text", result.expected_failure->reason}};
+    recorder_.events().say_end(line);
+  }
+
   static hal::SimConfig truth(const RunRequest& request, const scenario::Sample& sample, const scenario::Nominal& nominal) {
     hal::SimConfig sim = scenario::make_truth(request.scenario, sample, nominal, request.render_threads);
     sim.given_sight = request.given_sight;
@@ -203,7 +230,10 @@ class Session {
 
 RunOutcome run_mission(const RunRequest& request) {
   std::optional<record::FolderInWriting> writing;
-  if (!request.out.empty()) writing.emplace(request.out, request.experiment);
+  if (!request.out.empty()) {
+    writing.emplace(request.out, request.experiment);
+    keep_scenario(request.scenario, writing->folder());
+  }
   Session session(request, writing ? &writing->folder() : nullptr);
   session.run();
   RunOutcome outcome;

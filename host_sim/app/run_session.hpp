@@ -21,10 +21,11 @@ struct RunRequest {
   int render_threads = 1;
   bool realtime = false;
   bool given_sight = false;                     // nothing is rendered: for runs that are not about seeing
+  bool record_images = false;                   // the camera's pictures as they are, in raw/
   bool outside = true;                          // pictures of the robot from outside
   std::filesystem::path out;                    // the run folder; empty keeps nothing
   record::Experiment experiment;                // what the folder is held against
-  std::string command;                          // that reproduces the run, for the report
+  record::ProvenanceRecord provenance;          // command, date, --set; the rest is filled in
   std::function<void(const std::string&)> say;  // progress, one line a phase; may be empty
 };
 

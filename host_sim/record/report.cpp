@@ -33,10 +33,18 @@ std::string tiles(const ReportData& data) {
   }
   html += tile(formatted("%.1f s", result.time.simulated_s), "simulated");
   html += tile(formatted("%.1f ×", result.time.real_time_factor), "real time");
-  html += tile(formatted("%.1f %%", result.bus.load_percent), "CAN bus load");
+  html += tile(formatted("%.1f %%", result.bus.load_percent), "CAN bus load, stuff bits included");
   html += tile(result.core.heap_calls ? std::to_string(*result.core.heap_calls) : "–", "heap calls in the core");
   html += tile(formatted("%.0f µs", result.core.tick_us.p999), "core tick, 99.9 %");
   return html + "</div>";
+}
+
+std::string explanation(const FailureRecord& failure) {
+  std::string html;
+  if (!failure.cause.empty()) html += row("cause", failure.cause, "");
+  if (!failure.remedy.empty()) html += row("what to do", failure.remedy, "");
+  if (!failure.seen.empty()) html += row("what the look saw", failure.seen, "");
+  return html.empty() ? "" : "<table>" + html + "</table>";
 }
 
 std::string header(const ReportData& data) {
@@ -47,9 +55,16 @@ std::string header(const ReportData& data) {
   if (result.failure) {
     html +=
         "<p class=\"reason\">In phase <b>" + escape_html(result.failure->phase) + "</b>: " + escape_html(result.failure->reason) + "</p>";
+    html += explanation(*result.failure);
+  } else if (result.expected_failure) {
+    html += "<p class=\"soft\">It failed as the scenario expects, in phase <b>" + escape_html(result.expected_failure->phase) +
+            "</b>: " + escape_html(result.expected_failure->reason) + "</p>";
   }
-  html += "<div class=\"soft\">Lanternfish " + escape_html(result.version) + ". The same run again:</div><pre>" +
-          escape_html(data.command) + "</pre>";
+  const std::string& date = result.provenance.date_utc;
+  html += "<div class=\"soft\">Lanternfish " + escape_html(result.version) + (date.empty() ? "" : ", " + escape_html(date)) +
+          ". The same run again, with the file as it is now:</div><pre>" + escape_html(data.command) +
+          "</pre><div class=\"soft\">With the scenario as it was then, resolved, beside this report:</div><pre>" +
+          escape_html("lanternfish run ./scenario.yaml --seed " + std::to_string(result.seed)) + "</pre>";
   html += tiles(data);
   if (!data.notes.empty()) {
     html += "<ul>";
@@ -75,6 +90,21 @@ std::string tasks_table(const RunResult& result) {
     html += "</td><td class=\"n\">" + reached + "</td><td class=\"mark " + (task.done ? "good\">done" : "bad\">not done") + "</td></tr>";
   }
   return html + "</table>";
+}
+
+std::string faults_table(const RunResult& result) {
+  if (result.faults.empty()) return "";
+  std::string html = "<table><tr><th class=\"n\">at</th><th>in step</th><th>what</th><th>reaction</th><th class=\"n\">times</th></tr>";
+  for (const FaultRecord& fault : result.faults) {
+    html += "<tr><td class=\"n\">" + formatted("%.3f s", fault.t_s) + "</td><td>" + escape_html(fault.step) + "</td><td>" +
+            escape_html(fault.text) + "</td><td>" + escape_html(fault.reaction) + "</td><td class=\"n\">" + std::to_string(fault.times);
+    if (fault.times > 1) html += ", to " + formatted("%.3f s", fault.last_s);
+    html += "</td></tr>";
+  }
+  html += "</table>";
+  if (result.faults_left_out > 0)
+    html += "<p class=\"soft\">And " + std::to_string(result.faults_left_out) + " more: log.jsonl has all.</p>";
+  return html;
 }
 
 std::string error_row(const ReportError& error) {
@@ -134,6 +164,9 @@ std::string machine_table(const RunResult& result) {
   html += row("core tick: median / 99 % / 99.9 % / maximum", times_text(result.core.tick_us));
   html += row("image to points: the same", times_text(result.core.frame_us));
   html += row("controller's memory", formatted("%.1f kB", static_cast<double>(result.core.controller_bytes) / 1000));
+  html += row("CAN load: as sent / without stuff bits / with worst-case stuffing",
+              formatted("%.1f", result.bus.load_percent) + " / " + formatted("%.1f", result.bus.load_unstuffed_percent) + " / " +
+                  formatted("%.1f %%", result.bus.load_worst_case_percent));
   html += row("CAN frames, of these errors", std::to_string(result.bus.frames) + ", " + std::to_string(result.bus.errors));
   html += row("peak contact force", formatted("%.1f N", result.contact.peak_force_n));
   html += row("unintended contacts", std::to_string(result.contact.unintended_contacts));
@@ -174,6 +207,7 @@ std::string report_html(const ReportData& data) {
           std::to_string(result.seed) + "</title><style>" + std::string(report_style()) + "</style></head>\n<body><main>\n";
   html += header(data);
   html += section("Phases", timeline_svg(result.phases));
+  html += section("Faults and reactions", faults_table(result));
   html += "<div class=\"two\">" + section("Tasks", tasks_table(result)) + section("Conditions drawn by the seed", conditions_table(data)) +
           "</div>\n";
   html += section("Errors", errors_table(data.errors));

@@ -74,6 +74,32 @@ Json to_json(const CoreRecord& core) {
           {"rejected_inputs", std::move(rejected)}};
 }
 
+Json to_json(const FailureRecord& failure) {
+  Json json{{"phase", failure.phase}, {"reason", failure.reason}};
+  if (!failure.cause.empty()) json["cause"] = failure.cause;
+  if (!failure.remedy.empty()) json["remedy"] = failure.remedy;
+  if (!failure.seen.empty()) json["seen"] = failure.seen;
+  return json;
+}
+
+Json to_json(const FaultRecord& fault) {
+  Json json{{"t_s", number(fault.t_s)}, {"step", fault.step}, {"fault", fault.fault}, {"text", fault.text}};
+  if (!fault.reaction.empty()) json["reaction"] = fault.reaction;
+  if (fault.times > 1) {
+    json["times"] = fault.times;
+    json["last_s"] = number(fault.last_s);
+  }
+  return json;
+}
+
+Json to_json(const ProvenanceRecord& provenance) {
+  return {{"date_utc", provenance.date_utc},
+          {"command", provenance.command},
+          {"set", provenance.set},
+          {"scenario_file", provenance.scenario_file},
+          {"experiment", provenance.experiment}};
+}
+
 template <class Record>
 Json list(const std::vector<Record>& records) {
   Json array = Json::array();
@@ -98,12 +124,14 @@ std::string result_json(const RunResult& result) {
   document["scenario"] = result.scenario;
   document["seed"] = result.seed;
   document["version"] = result.version;
+  document["provenance"] = to_json(result.provenance);
   document["success"] = result.success;
   document["failure"] = nullptr;
-  if (result.failure) document["failure"] = {{"phase", result.failure->phase}, {"reason", result.failure->reason}};
-  if (result.expected_failure)
-    document["expected_failure"] = {{"phase", result.expected_failure->phase}, {"reason", result.expected_failure->reason}};
+  if (result.failure) document["failure"] = to_json(*result.failure);
+  if (result.expected_failure) document["expected_failure"] = to_json(*result.expected_failure);
   document["false_success"] = result.false_success;
+  document["faults"] = list(result.faults);
+  if (result.faults_left_out > 0) document["faults_left_out"] = result.faults_left_out;
   if (!result.faults_not_made.empty()) document["faults_not_made"] = result.faults_not_made;
   document["drawn"] = to_json(result.drawn);
   document["phases"] = list(result.phases);
@@ -113,7 +141,11 @@ std::string result_json(const RunResult& result) {
   document["contact"] = {{"peak_force_n", number(result.contact.peak_force_n)},
                          {"unintended_contacts", result.contact.unintended_contacts}};
   document["core"] = to_json(result.core);
-  document["bus"] = {{"load_percent", number(result.bus.load_percent)}, {"frames", result.bus.frames}, {"errors", result.bus.errors}};
+  document["bus"] = {{"load_percent", number(result.bus.load_percent)},
+                     {"load_unstuffed_percent", number(result.bus.load_unstuffed_percent)},
+                     {"load_worst_case_percent", number(result.bus.load_worst_case_percent)},
+                     {"frames", result.bus.frames},
+                     {"errors", result.bus.errors}};
   document["host"] = {{"isa", result.host.isa}, {"threads", result.host.threads}, {"build", result.host.build}};
   document["time"] = {{"simulated_s", number(result.time.simulated_s)},
                       {"wall_s", number(result.time.wall_s)},

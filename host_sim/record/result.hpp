@@ -75,7 +75,9 @@ struct CoreRecord {
 };
 
 struct BusRecord {
-  double load_percent = unknown;
+  double load_percent = unknown;             // mean, with the stuff bits that these frames have
+  double load_unstuffed_percent = unknown;   // the same frames without stuff bits
+  double load_worst_case_percent = unknown;  // with as many as any content of their length could need: what a bus is planned for
   std::uint64_t frames = 0;
   std::uint64_t errors = 0;
 };
@@ -95,19 +97,47 @@ struct TimeRecord {
 struct FailureRecord {
   std::string phase;
   std::string reason;
+  std::string cause{};   // by name; empty where `reason` says it all
+  std::string remedy{};  // what to do about it; may be empty
+  std::string seen{};    // what the look that failed saw, where it was one
+};
+
+// A fault that the core reported, with what it did about it, or an error message of a node. Equal ones that follow each other are one record.
+struct FaultRecord {
+  double t_s = unknown;     // of the first
+  double last_s = unknown;  // of the last
+  std::uint64_t times = 1;
+  std::string step;
+  std::string fault;     // its kind: "drive fault", or "emcy"
+  std::string text;      // in words, with its cause
+  std::string reaction;  // the core's; empty for an error message
+};
+
+// How a run came about.
+struct ProvenanceRecord {
+  std::string date_utc;          // when it began: "2026-11-24T21:34:07Z"
+  std::string command;           // that began it
+  std::vector<std::string> set;  // its --set, as they were given
+  std::string scenario_file;     // of which scenario.yaml, beside this, was resolved
+  std::string experiment;        // SHA-256 over experiment.json: resolved scenario, seed, program and files
 };
 
 // What the seed drew, by key, the unit in its name: one number, or one an axis or a joint.
 using DrawnRecord = std::map<std::string, std::vector<double>>;
 
+inline constexpr std::size_t most_faults = 200;
+
 struct RunResult {
   std::string scenario;
   std::uint64_t seed = 0;
   std::string version;
+  ProvenanceRecord provenance;
   bool success = false;
   std::optional<FailureRecord> failure;
   std::optional<FailureRecord> expected_failure;  // that the scenario asked for, and got
   bool false_success = false;                     // the mission believes it succeeded, and the truth disagrees
+  std::vector<FaultRecord> faults;                // in the order of their times, at most `most_faults`
+  std::uint64_t faults_left_out = 0;              // beyond these
   std::vector<std::string> faults_not_made;       // of the scenario: the run had ended before, or never came to their step
   DrawnRecord drawn;
   std::vector<PhaseRecord> phases;

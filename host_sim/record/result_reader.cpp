@@ -44,6 +44,39 @@ PhaseRecord phase_from(const Json& json) {
   return phase;
 }
 
+FailureRecord failure_from(const Json& json) {
+  FailureRecord failure;
+  read(json, "phase", failure.phase);
+  read(json, "reason", failure.reason);
+  read(json, "cause", failure.cause);
+  read(json, "remedy", failure.remedy);
+  read(json, "seen", failure.seen);
+  return failure;
+}
+
+FaultRecord fault_from(const Json& json) {
+  FaultRecord fault;
+  read(json, "t_s", fault.t_s);
+  fault.last_s = fault.t_s;
+  read(json, "last_s", fault.last_s);
+  read(json, "times", fault.times);
+  read(json, "step", fault.step);
+  read(json, "fault", fault.fault);
+  read(json, "text", fault.text);
+  read(json, "reaction", fault.reaction);
+  return fault;
+}
+
+ProvenanceRecord provenance_from(const Json& json) {
+  ProvenanceRecord provenance;
+  read(json, "date_utc", provenance.date_utc);
+  read(json, "command", provenance.command);
+  read(json, "set", provenance.set);
+  read(json, "scenario_file", provenance.scenario_file);
+  read(json, "experiment", provenance.experiment);
+  return provenance;
+}
+
 TaskRecord task_from(const Json& json) {
   TaskRecord task;
   json.at("task").get_to(task.task);
@@ -96,6 +129,8 @@ CoreRecord core_from(const Json& json) {
 void read_host(const Json& document, RunResult& result) {
   const Json& bus = section(document, "bus");
   read(bus, "load_percent", result.bus.load_percent);
+  read(bus, "load_unstuffed_percent", result.bus.load_unstuffed_percent);
+  read(bus, "load_worst_case_percent", result.bus.load_worst_case_percent);
   read(bus, "frames", result.bus.frames);
   read(bus, "errors", result.bus.errors);
   const Json& host = section(document, "host");
@@ -125,17 +160,12 @@ RunResult result_from(const Json& document) {
   document.at("seed").get_to(result.seed);
   document.at("success").get_to(result.success);
   read(document, "version", result.version);
-  if (const Json& failure = section(document, "failure"); !failure.empty()) {
-    result.failure.emplace();
-    read(failure, "phase", result.failure->phase);
-    read(failure, "reason", result.failure->reason);
-  }
-  if (const Json& failure = section(document, "expected_failure"); !failure.empty()) {
-    result.expected_failure.emplace();
-    read(failure, "phase", result.expected_failure->phase);
-    read(failure, "reason", result.expected_failure->reason);
-  }
+  result.provenance = provenance_from(section(document, "provenance"));
+  if (const Json& failure = section(document, "failure"); !failure.empty()) result.failure = failure_from(failure);
+  if (const Json& failure = section(document, "expected_failure"); !failure.empty()) result.expected_failure = failure_from(failure);
   read(document, "false_success", result.false_success);
+  for (const Json& fault : section(document, "faults")) result.faults.push_back(fault_from(fault));
+  read(document, "faults_left_out", result.faults_left_out);
   read(document, "faults_not_made", result.faults_not_made);
   result.drawn = drawn_from(section(document, "drawn"));
   for (const Json& phase : section(document, "phases")) result.phases.push_back(phase_from(phase));

@@ -8,6 +8,7 @@
 #include "hal/config/fault_kinds.hpp"
 #include "hal/config/handle_check.hpp"
 #include "hal/config/nearest.hpp"
+#include "hal/config/panel_check.hpp"
 #include "hal/config/share.hpp"
 #include "hal/config/text_file.hpp"
 #include "hal/config/yaml_reader.hpp"
@@ -83,6 +84,7 @@ void check_buttons(const Scenario& s, const std::function<void(const std::string
 void check_together(const Scenario& s, const std::string& where, std::vector<std::string>& problems) {
   const auto refuse = [&](const std::string& message) { problems.push_back(where + ": " + message); };
   for (const std::string& problem : config::handle_problems(s.panel, s.valve, s.tasks)) refuse(problem);
+  for (const std::string& problem : config::panel_problems(s.panel)) refuse(problem);
   if (s.valve.start_deg.min < s.valve.stop_min_deg || s.valve.start_deg.max > s.valve.stop_max_deg)
     refuse("'valve.start_deg' lies beyond the valve's stops");
   check_buttons(s, refuse);

@@ -23,7 +23,7 @@ struct ServeResult {
   std::vector<record::TaskRecord> tasks;
   record::ContactRecord contact;
   std::uint64_t frames_received = 0, frames_sent = 0, send_failures = 0, error_frames = 0;
-  double load_percent = record::unknown;  // of the bus at the map's bit rate, by the frames that were seen
+  double load_percent = record::unknown;  // of the bus at the map's bit rate, by the frames that were seen, their stuff bits included
   record::TimesRecord answer_us;          // from a SYNC's reception to the last answer's way into the kernel
   std::optional<ServedCamera::Stats> camera;
   PaceStats pace;

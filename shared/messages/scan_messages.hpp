@@ -41,9 +41,20 @@ struct ScanCommand {
   std::uint32_t sweep = 0;
 };
 
+// How a picture as a whole is lit.
+struct PictureLight {
+  float mean_grey = 0;
+  // Of squares of 8 pixels beside one another: the step in brightness that one in a hundred exceeds. Noise leaves below 2 of it and a shape's edge over 10;
+  // turbid water hides the edges.
+  float contrast_grey = 0;
+  float white_share = 0;  // of the pixels at full scale, 0..1
+};
+
 // Counters of the vision side, never reset.
 struct ScanStats {
   std::uint32_t images = 0;             // measured: a stripe, a background or a still was taken from them
+  std::uint32_t stripes = 0;            // of these, images of the laser in a sweep
+  std::uint32_t stills = 0;             // of these, stills
   std::uint32_t images_unexpected = 0;  // no exposure was ordered at their time
   std::uint32_t images_refused = 0;     // malformed, stale, or dropped by order
   std::uint32_t images_missing = 0;     // exposures whose image did not come before the sweep's end
@@ -56,6 +67,7 @@ struct ScanStats {
   std::uint32_t points_overflowed = 0;  // the cloud was full
   std::uint32_t points_no_joints = 0;   // no joint samples around mid-exposure
   std::uint32_t commands_refused = 0;   // out of order, or not a number
+  PictureLight still;                   // of the newest still
   Time newest_exposure;                 // as ordered, of the newest image that came and was no repetition
 };
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "firmware/arm/actuator.hpp"
+#include "hal/config/event_json.hpp"
 #include "hal/config/share.hpp"
 #include "hal/vehicle/status_json.hpp"
 #include "host_sim/devices/drive/drive_dictionary.hpp"
@@ -101,7 +102,7 @@ TEST(MixedDrives, TellTheirErrorsInTheirMakersWords) {
     ASSERT_TRUE(rig.run_to_end(10)) << rig.story();
     std::string told;
     for (const Event& event : rig.events()) {
-      if (event.kind == Event::Kind::emcy && event.emcy == c.code) told = hal::event_json(event, texts)["text"];
+      if (event.kind == Event::Kind::emcy && event.emcy == c.code) told = config::event_json(event, texts, {})["text"];
     }
     EXPECT_EQ(told, c.event);
     hal::ControlReport report;

@@ -222,10 +222,10 @@ void pass(S& s, ControllerConfig& v) {
 // What comes from the vision side.
 template <class S>
 void pass(S& s, ScanStats& v) {
-  auto& [images, unexpected, refused, missing, repeated, peaks, weak, saturated, ambiguous, points, overflowed, no_joints, commands,
-         newest] = v;
-  pass_all(s, images, unexpected, refused, missing, repeated, peaks, weak, saturated, ambiguous, points, overflowed, no_joints, commands,
-           newest);
+  auto& [images, stripes, stills, unexpected, refused, missing, repeated, peaks, weak, saturated, ambiguous, points, overflowed, no_joints,
+         commands, still, newest] = v;
+  pass_all(s, images, stripes, stills, unexpected, refused, missing, repeated, peaks, weak, saturated, ambiguous, points, overflowed,
+           no_joints, commands, still.mean_grey, still.contrast_grey, still.white_share, newest);
 }
 template <class S>
 void pass(S& s, PlaneFit& v) {

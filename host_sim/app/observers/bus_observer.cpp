@@ -1,5 +1,6 @@
 #include "host_sim/app/observers/bus_observer.hpp"
 
+#include "host_sim/devices/bus/can_bits.hpp"
 #include "shared/can/can_map.hpp"
 
 namespace lf::app {
@@ -11,7 +12,7 @@ BusObserver::BusObserver(RunFiles& files, record::RunDigest& digest) : files_(fi
 void BusObserver::on_bus_frame(const devices::BusRecord& record) {
   const bool from_core = record.sender == can_map::master_node;
   digest_.can_frame(record.delivered, 0, from_core ? record::CanDirection::to_devices : record::CanDirection::to_core, record.frame);
-  bits_ += 47u + 8u * record.frame.length;
+  bits_ += devices::frame_bits(record.frame) + devices::interframe_bits;
   if (log_ && !log_->write(record.delivered, record.frame)) files_.lost(log_->sink().error());
 }
 

@@ -19,7 +19,7 @@ class BusObserver : public hal::SimObserver {
   void on_bus_frame(const devices::BusRecord& record) override;
   void finish();
 
-  std::uint64_t bits() const { return bits_; }  // without stuffing, which a load shown over time does not need
+  std::uint64_t bits() const { return bits_; }  // of delivered frames, with their stuff bits and interframe space
 
  private:
   RunFiles& files_;

@@ -46,7 +46,7 @@ std::vector<record::ReportChart> CurveObserver::charts() const {
   return {positions,
           torques,
           {"Valve, true angle", "deg", {{"valve", t_s_, valve_deg_, false}}},
-          {"Bus load", "%", {{"can0", t_s_, bus_load_percent_, false}}}};
+          {"Bus load, stuff bits included", "%", {{"can0", t_s_, bus_load_percent_, false}}}};
 }
 
 }  // namespace lf::app

@@ -17,10 +17,10 @@ std::string clock_text(double s) {
 }  // namespace
 
 void PhaseObserver::on_telemetry(const Telemetry& telemetry) {
-  for (const Event& event : telemetry.events) on_event(event);
+  for (const Event& event : telemetry.events) on_event(event, telemetry.sight);
 }
 
-void PhaseObserver::on_event(const Event& event) {
+void PhaseObserver::on_event(const Event& event, const mission::Sight& sight) {
   const mission::StepRow& step = mission::row(event.step);
   char text[160];
   std::snprintf(text, sizeof text, "%d %s %s %s %d %d %.17g", int(event.kind), step.name,
@@ -35,7 +35,7 @@ void PhaseObserver::on_event(const Event& event) {
   if (event.reaction == safety::Reaction::retry) retried_ = true;
   if (event.reaction > safety::Reaction::retry) given_up_ = event.fault == safety::Fault::aborted ? "aborted" : "failed";
   if (say_)
-    say_(clock_text(event.t.s()) + step.name + ": " + config::fault_text(event.fault, event.code, event.emcy, texts_) +
+    say_(clock_text(event.t.s()) + step.name + ": " + config::fault_text(event.fault, event.code, event.emcy, texts_, sight) +
          ", reaction: " + safety::name(event.reaction));
 }
 

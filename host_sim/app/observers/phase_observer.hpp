@@ -27,7 +27,7 @@ class PhaseObserver : public hal::SimObserver {
   std::string stage() const { return phases_.empty() ? "boot" : phases_.back().name; }
 
  private:
-  void on_event(const Event& event);
+  void on_event(const Event& event, const mission::Sight& sight);
   void enter_step(const Event& event);
   std::string outcome() const;  // of the phase under way
 

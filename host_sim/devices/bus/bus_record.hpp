@@ -15,11 +15,14 @@ struct BusRecord {
 };
 
 struct BusStats {
-  std::uint64_t frames = 0;      // delivered
-  std::uint64_t bits = 0;        // of all, stuffing, error frames and interframe space included
-  std::uint64_t errors = 0;      // error frames
-  std::uint64_t lost = 0;        // frames dropped by a fault, by a full queue or by a controller off the bus
-  double load_percent = 0;       // mean since the first frame
+  std::uint64_t frames = 0;  // delivered
+  std::uint64_t bits = 0;    // of all, stuffing, error frames and interframe space included
+  std::uint64_t errors = 0;  // error frames
+  std::uint64_t lost = 0;    // frames dropped by a fault, by a full queue or by a controller off the bus
+  double load_percent = 0;   // mean since the first frame, of `bits`
+  // The same frames without their stuff bits, and with as many as any content could need. What a frame really has lies between the two.
+  double load_unstuffed_percent = 0;
+  double load_worst_case_percent = 0;
   double peak_load_percent = 0;  // worst window of 100 ms
 };
 

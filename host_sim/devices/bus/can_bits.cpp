@@ -8,6 +8,9 @@ namespace {
 constexpr std::uint32_t crc_bits = 15;
 constexpr std::uint32_t unstuffed_tail_bits = 10;  // CRC delimiter, ACK slot and delimiter, end of frame
 
+// Start of frame, identifier, control bits, length and CRC: what is stuffed besides the data.
+std::uint32_t stuffed_header_bits(const CanFrame& frame) { return (frame.id & CanFrame::extended_flag) != 0 ? 54 : 34; }
+
 // Counts stuff bits and runs the frame's CRC-15 while bits are sent.
 class Wire {
  public:
@@ -66,6 +69,16 @@ std::uint32_t frame_bits(const CanFrame& frame) {
   }
   wire.send_crc();
   return wire.bits() + unstuffed_tail_bits;
+}
+
+std::uint32_t unstuffed_bits(const CanFrame& frame) {
+  const bool remote = (frame.id & CanFrame::remote_flag) != 0;
+  return stuffed_header_bits(frame) + (remote ? 0 : 8 * std::min<std::uint32_t>(frame.length, 8)) + unstuffed_tail_bits + interframe_bits;
+}
+
+std::uint32_t worst_case_bits(const CanFrame& frame) {
+  const std::uint32_t bits = unstuffed_bits(frame);
+  return bits + (bits - unstuffed_tail_bits - interframe_bits - 1) / 4;
 }
 
 std::uint32_t arbitration_key(const CanFrame& frame) {

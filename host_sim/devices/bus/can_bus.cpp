@@ -49,6 +49,9 @@ bool CanBus::next(Time until, BusRecord& record) {
     if (end > until) return false;
     ++attempts_;
     occupy(start, on_wire + interframe_bits);
+    // What an error frame destroyed took as long in every account.
+    unstuffed_bits_ += destroyed ? on_wire + interframe_bits : unstuffed_bits(waiting_[best].frame);
+    worst_case_bits_ += destroyed ? on_wire + interframe_bits : worst_case_bits(waiting_[best].frame);
     if (destroyed) {
       ++stats_.errors;
       continue;
@@ -98,10 +101,16 @@ void CanBus::set_bus_off(std::uint8_t sender, bool off) {
   std::erase_if(waiting_, [sender](const Waiting& w) { return w.sender == sender; });
 }
 
+double CanBus::percent_of(std::uint64_t bits) const {
+  const Duration span = started_ ? free_ - first_ : Duration{};
+  return span.ns() > 0 ? 100.0 * static_cast<double>(bits) / (span.s() * bits_per_s_) : 0;
+}
+
 BusStats CanBus::stats() const {
   BusStats stats = stats_;
-  const Duration span = started_ ? free_ - first_ : Duration{};
-  if (span.ns() > 0) stats.load_percent = 100.0 * static_cast<double>(stats.bits) / (span.s() * bits_per_s_);
+  stats.load_percent = percent_of(stats.bits);
+  stats.load_unstuffed_percent = percent_of(unstuffed_bits_);
+  stats.load_worst_case_percent = percent_of(worst_case_bits_);
   const std::uint64_t worst = std::max(worst_window_bits_, window_bits_);
   stats.peak_load_percent = 100.0 * static_cast<double>(worst) / (load_window.s() * bits_per_s_);
   return stats;

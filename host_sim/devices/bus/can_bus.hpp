@@ -49,6 +49,7 @@ class CanBus {
 
   std::size_t winner(Time& start) const;
   void occupy(Time start, std::uint32_t bits);
+  double percent_of(std::uint64_t bits) const;
   Duration time_of(std::uint32_t bits) const { return Duration::from_ns(bits * std::int64_t{1'000'000'000} / bits_per_s_); }
   bool dropped(std::uint32_t id) const;
 
@@ -65,6 +66,7 @@ class CanBus {
   Time first_, window_;
   std::uint64_t window_bits_ = 0;
   std::uint64_t worst_window_bits_ = 0;
+  std::uint64_t unstuffed_bits_ = 0, worst_case_bits_ = 0;
   BusStats stats_;
 };
 

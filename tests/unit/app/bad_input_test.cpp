@@ -227,7 +227,7 @@ TEST_F(BadInput, AFullDiskBehindTheOutputIsNoCrash) {
 TEST_F(BadInput, ADiskThatFillsUpDuringARunLeavesWhatWasWritten) {
   std::filesystem::create_directory(folder() / "disk");
   const std::string in_namespace = "unshare --user --map-root-user --mount sh -c ";
-  const std::string mount = "mount -t tmpfs -o size=96k none '" + (folder() / "disk").string() + "'";
+  const std::string mount = "mount -t tmpfs -o size=128k none '" + (folder() / "disk").string() + "'";
   if (std::system((in_namespace + "\"" + mount + "\" 2>/dev/null").c_str()) != 0) GTEST_SKIP() << "no file system can be mounted here";
   const std::string run = LANTERNFISH_PROGRAM " run --set time_limit_s=2 --no-outside --out disk/run >out 2>err; echo \\$? >status";
   const std::string command =

@@ -110,6 +110,38 @@ TEST(Report, OfARunThatFailedAtOnceSaysSoAndIsWhole) {
   EXPECT_THAT(html, Not(HasSubstr("nan")));
 }
 
+TEST(Report, ShowsFaultsWithTheirReactionsAndTimes) {
+  ReportData data = small_run();
+  data.result.faults = {{12.5, 12.75, 3, "scan", "image lost", "image lost <1>", "count"},
+                        {13.25, 13.25, 1, "perceive", "panel vision unsure", "panel vision unsure: no panel seen", "retry"}};
+  data.result.faults_left_out = 4;
+  const std::string html = report_html(data);
+  EXPECT_THAT(html, HasSubstr("12.500 s</td><td>scan</td><td>image lost &lt;1&gt;</td><td>count</td><td class=\"n\">3, to 12.750 s"));
+  EXPECT_THAT(html,
+              HasSubstr("13.250 s</td><td>perceive</td><td>panel vision unsure: no panel seen</td><td>retry</td><td class=\"n\">1</td>"));
+  EXPECT_THAT(html, HasSubstr("And 4 more"));
+  EXPECT_EQ(first_unbalanced_tag(html), "");
+  EXPECT_THAT(report_html(small_run()), Not(HasSubstr("Faults and reactions")));
+}
+
+TEST(Report, SaysWhyARunFailedWhatToDoAndWhenItWas) {
+  ReportData data = small_run();
+  data.result.success = false;
+  data.result.failure = FailureRecord{"perceive", "no panel", "the pictures are dark", "Raise the <exposure>.", "mean 2 grey"};
+  data.result.provenance.date_utc = "2026-11-24T21:34:07Z";
+  const std::string html = report_html(data);
+  for (const char* words : {"the pictures are dark", "Raise the &lt;exposure&gt;.", "mean 2 grey", "2026-11-24T21:34:07Z",
+                            "lanternfish run ./scenario.yaml --seed 7"})
+    EXPECT_THAT(html, HasSubstr(words));
+  EXPECT_EQ(first_unbalanced_tag(html), "");
+}
+
+TEST(Report, TellsTheBusLoadsApart) {
+  const std::string html = report_html(small_run());
+  EXPECT_THAT(html, HasSubstr("CAN bus load, stuff bits included"));
+  EXPECT_THAT(html, HasSubstr("as sent / without stuff bits / with worst-case stuffing</td><td class=\"n\">34.9 / 33.4 / 36.3 %"));
+}
+
 TEST(Report, KeepsSpikesOfAMillionSamplesInAFewPoints) {
   ReportData data;
   ReportSeries series{"torque", {}, {}, false};

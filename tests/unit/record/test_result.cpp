@@ -21,8 +21,8 @@ TEST(Result, HasTheKeysThatUsersScriptAgainst) {
   RunResult result = test::demo_run().result;
   result.docking = DockingRecord{1, 4, 0.5, 60};
   const auto json = nlohmann::json::parse(result_json(result));
-  for (const char* key : {"scenario", "seed", "version", "success", "failure", "drawn", "phases", "tasks", "errors", "docking", "contact",
-                          "core", "bus", "host", "time", "digest"}) {
+  for (const char* key : {"scenario", "seed", "version", "provenance", "faults", "success", "failure", "drawn", "phases", "tasks", "errors",
+                          "docking", "contact", "core", "bus", "host", "time", "digest"}) {
     EXPECT_TRUE(json.contains(key)) << key;
   }
   for (const char* key : {"plane_normal_deg", "plane_offset_mm", "valve_base_mm", "handle_angle_deg", "cloud_truth_median_mm",
@@ -48,7 +48,7 @@ TEST(Result, WritesNullForWhatIsNotAFiniteNumber) {
   EXPECT_TRUE(json["errors"]["cloud_truth_median_mm"].is_null());
   EXPECT_TRUE(json["phases"][0]["end_s"].is_null());
   EXPECT_TRUE(json["core"]["heap_calls"].is_null());
-  EXPECT_EQ(text.find("nan"), std::string::npos);
+  for (const char* not_json : {": nan", ": -nan"}) EXPECT_EQ(text.find(not_json), std::string::npos) << "a key may be called provenance";
   EXPECT_EQ(text.find("inf"), std::string::npos);
 }
 
@@ -56,9 +56,22 @@ TEST(Result, ComesBackFromItsFileAsItWas) {
   RunResult result = test::demo_run().result;
   result.success = false;
   result.failure = FailureRecord{"grip", "the jaw closed on nothing: \"<held>\" \xFF"};
+  result.failure->cause = "the pictures are dark";
+  result.failure->remedy = "light them";
+  result.failure->seen = "nothing";
+  result.faults = {{12.5, 12.75, 3, "scan", "image lost", "image lost", "count"}, {13, 13, 1, "scan", "emcy", "node 3: hot", ""}};
+  result.faults_left_out = 4;
+  result.provenance = {"2026-11-24T21:34:07Z", "lanternfish run a --seed 7", {"a.b=1", "c=2"}, "a.yaml", "0123"};
   result.errors.peak_rms_px = unknown;
   const std::string text = result_json(result);
   EXPECT_EQ(result_json(parse_result_json(text, "result.json")), text);
+}
+
+TEST(Result, TellsThreeBusLoadsApart) {
+  const auto json = nlohmann::json::parse(result_json(test::demo_run().result));
+  EXPECT_EQ(json["bus"]["load_unstuffed_percent"], 33.4);
+  EXPECT_EQ(json["bus"]["load_percent"], 34.9);
+  EXPECT_EQ(json["bus"]["load_worst_case_percent"], 36.3);
 }
 
 TEST(Result, RefusesTextThatIsNoResult) {

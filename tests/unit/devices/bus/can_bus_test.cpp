@@ -83,6 +83,36 @@ TEST(CanBus, the_lowest_identifier_that_waits_goes_next) {
   EXPECT_EQ(order, (std::vector<std::uint32_t>{0x300, 0x081, 0x181, 0x7FF}));
 }
 
+// ISO 11898-1, bit by bit: SOF 1, identifier 11, RTR, IDE, r0 3, DLC 4, CRC 15, delimiter 1, ACK 2, EOF 7, interframe 3 = 47.
+TEST(CanBits, a_frame_lies_between_its_length_without_stuff_bits_and_the_worst_case) {
+  EXPECT_EQ(unstuffed_bits(frame(0x123)), 47u);
+  EXPECT_EQ(unstuffed_bits(frame(0x123, {1, 2, 3})), 71u);
+  EXPECT_EQ(unstuffed_bits(frame(0x123 | CanFrame::extended_flag)), 67u) << "SRR, r1 and 18 more bits of the identifier";
+  CanFrame remote = frame(0x123 | CanFrame::remote_flag, {0, 0});
+  EXPECT_EQ(unstuffed_bits(remote), 47u) << "a remote frame has a length and no data";
+  for (std::uint32_t id = 0; id < 0x800; id += 7) {
+    const CanFrame f = frame(id, {static_cast<std::uint8_t>(id), 0, 0xFF, static_cast<std::uint8_t>(id >> 3)});
+    EXPECT_LE(unstuffed_bits(f), frame_bits(f) + interframe_bits) << id;
+    EXPECT_LE(frame_bits(f) + interframe_bits, worst_case_bits(f)) << id;
+    EXPECT_EQ(worst_case_bits(f), worst_case_bits(f.length)) << id;
+  }
+}
+
+TEST(CanBus, tells_its_load_with_without_and_with_the_most_stuff_bits) {
+  CanBus bus;
+  // The same frame, whose content needs some stuff bits, back to back: the bus is full.
+  const CanFrame f = frame(0x100, {0, 0, 1});
+  for (int i = 0; i < 50; ++i) bus.send(1, f, Time{});
+  BusRecord r;
+  while (bus.next(Time::from_s(1), r)) {
+  }
+  const double sent = bits_by_the_book(f) + 3;
+  ASSERT_GT(sent, 71);
+  EXPECT_NEAR(bus.stats().load_percent, 100, 1e-9);
+  EXPECT_NEAR(bus.stats().load_unstuffed_percent, 100 * 71 / sent, 1e-9);
+  EXPECT_NEAR(bus.stats().load_worst_case_percent, 100 * (71 + 57 / 4) / sent, 1e-9);
+}
+
 TEST(CanBus, a_data_frame_wins_over_a_remote_one_and_both_over_an_extended_one) {
   const std::uint32_t base = 0x123;
   EXPECT_LT(arbitration_key(frame(base)), arbitration_key(frame(base | CanFrame::remote_flag)));

@@ -1,0 +1,65 @@
+#include "firmware/mission/sight.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lf::mission {
+namespace {
+
+void hold_plane(const PlaneFit& fit, const Pose& base_from_panel, Sight& sight) {
+  sight.plane_found = fit.valid && fit.plane.normal.allFinite() && std::isfinite(fit.plane.offset_m);
+  if (!sight.plane_found) return;
+  sight.inliers = fit.inliers;
+  sight.plane_rms_m = static_cast<float>(fit.rms_m);
+  const Vec3 outward = base_from_panel.linear().col(2);
+  sight.plane_off_m = static_cast<float>(fit.plane.signed_distance_m(base_from_panel.translation()));
+  sight.plane_tilt_rad = static_cast<float>(std::acos(std::clamp(fit.plane.normal.dot(outward), -1.0, 1.0)));
+}
+
+// As scan::find_handle takes one for a handle, wherever it stands.
+bool like_handle(const ProudCluster& cluster, const PanelLayout& layout) {
+  constexpr double height_low = 0.70, height_high = 1.25, length_low = 0.5, length_high = 1.4;
+  return cluster.centroid_m.allFinite() && cluster.height_m >= height_low * layout.handle_height_m &&
+         cluster.height_m <= height_high * layout.handle_height_m && cluster.length_m >= length_low * layout.handle_length_m &&
+         cluster.length_m <= length_high * layout.handle_length_m;
+}
+
+void hold_handle(const PanelResult& result, const PanelLayout& layout, const Pose& base_from_panel, Sight& sight) {
+  const Vec3 nominal_m = base_from_panel * Vec3(0, 0, layout.handle_height_m);
+  for (const ProudCluster& cluster : result.clusters) {
+    if (!like_handle(cluster, layout)) continue;
+    const auto off_m = static_cast<float>((cluster.centroid_m - nominal_m).norm());
+    if (!sight.handle_found || off_m < sight.handle_off_m) sight.handle_off_m = off_m;
+    sight.handle_found = true;
+  }
+}
+
+}  // namespace
+
+Sight sight_of(const PanelResult& result, const ScanStats& before, const ScanStats& now, const PanelLayout& layout,
+               const Pose& base_from_camera) {
+  const Pose base_from_panel = layout.nominal_base_from_panel();
+  Sight sight;
+  sight.look = result.id;
+  sight.stripes = now.stripes - before.stripes;
+  sight.images_missing = now.images_missing - before.images_missing;
+  sight.images_refused = now.images_refused - before.images_refused;
+  sight.columns_found = now.peaks - before.peaks;
+  sight.columns_weak = now.peaks_weak - before.peaks_weak;
+  sight.columns_saturated = now.peaks_saturated - before.peaks_saturated;
+  sight.points = result.fit.points;
+  hold_plane(result.fit, base_from_panel, sight);
+  sight.still_taken = now.stills != before.stills;
+  if (sight.still_taken) sight.still = now.still;
+  const Vec3 seen_m = (base_from_camera * result.marker.camera_from_tag).translation();
+  sight.marker_found = result.marker.found && seen_m.allFinite();
+  if (sight.marker_found) {
+    sight.marker_margin_grey = static_cast<float>(result.marker.margin);
+    sight.marker_off_m = static_cast<float>((seen_m - (base_from_panel * layout.panel_from_tag()).translation()).norm());
+  }
+  hold_handle(result, layout, base_from_panel, sight);
+  sight.proud_clusters = static_cast<std::uint32_t>(result.clusters.size()) + result.clusters_dropped;
+  return sight;
+}
+
+}  // namespace lf::mission

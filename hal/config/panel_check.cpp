@@ -1,0 +1,50 @@
+#include "hal/config/panel_check.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+namespace lf::config {
+
+namespace {
+
+constexpr std::array<const char*, PanelLayout::button_count> button_names{"left", "centre", "right"};
+
+// From a point to a square about the origin, 0 inside of it.
+double distance_to_square(const Vec2& point, double side) {
+  const Vec2 outside = (point.cwiseAbs() - Vec2::Constant(side / 2)).cwiseMax(0.0);
+  return outside.norm();
+}
+
+std::string millimetres(double m) {
+  std::array<char, 32> text;
+  (void)std::snprintf(text.data(), text.size(), "%.1f mm", 1e3 * m);
+  return text.data();
+}
+
+bool inside_plate(const PanelLayout& panel, const Vec2& centre, double half) {
+  const Vec2 low = centre - Vec2::Constant(half), high = centre + Vec2::Constant(half);
+  return (low.array() >= panel.plate_min_m.array()).all() && (high.array() <= panel.plate_max_m.array()).all();
+}
+
+}  // namespace
+
+std::vector<std::string> panel_problems(const PanelLayout& panel) {
+  std::vector<std::string> problems;
+  const double radius = panel.button_width_m / 2;
+  for (std::size_t i = 0; i < PanelLayout::button_count; ++i) {
+    const std::string name = std::string("'panel.buttons_m': the ") + button_names[i] + " button";
+    const double gap = distance_to_square(panel.buttons_m[i] - panel.marker_centre_m, panel.marker_plate_m) - radius;
+    if (gap < 0) problems.push_back(name + " covers the marker's plate by " + millimetres(-gap) + ": no look would find the marker");
+    for (std::size_t j = 0; j < i; ++j) {
+      const double between = (panel.buttons_m[i] - panel.buttons_m[j]).norm() - 2 * radius;
+      if (between < 0) problems.push_back(name + " and the " + button_names[j] + " one overlap by " + millimetres(-between));
+    }
+    if (!inside_plate(panel, panel.buttons_m[i], radius)) problems.push_back(name + " hangs beyond the plate");
+  }
+  if (!inside_plate(panel, panel.marker_centre_m, panel.marker_plate_m / 2))
+    problems.emplace_back("'panel.marker_centre_m': the marker's plate hangs beyond the panel's");
+  return problems;
+}
+
+}  // namespace lf::config

@@ -1,0 +1,210 @@
+// What one run leaves in its folder, and what it says.
+#include <gmock/gmock.h>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/unit/app/program.hpp"
+
+namespace lf::app {
+
+namespace {
+
+using Json = nlohmann::json;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::MatchesRegex;
+
+class RunFolder : public Program {
+ protected:
+  Json result_of(const std::string& run_folder) const { return Json::parse(text_of(folder() / run_folder / "result.json")); }
+  std::vector<Json> lines_of(const std::string& name) const {
+    std::vector<Json> lines;
+    std::istringstream text(text_of(folder() / name));
+    for (std::string line; std::getline(text, line);) lines.push_back(Json::parse(line));
+    return lines;
+  }
+};
+
+TEST_F(RunFolder, SaysHowItCameAbout) {
+  file("my.yaml", "time_limit_s: 400\n");
+  EXPECT_EQ(run("run ./my.yaml --no-outside --seed 3 --set time_limit_s=2 --set 'description=a b' --out r").status, 1);
+  const Json result = result_of("r");
+  const Json& provenance = result["provenance"];
+  EXPECT_THAT(provenance["date_utc"].get<std::string>(), MatchesRegex("20[0-9][0-9]-[01][0-9]-[0-3][0-9]T[0-2][0-9]:[0-5][0-9]:[0-6][0-9]Z"));
+  EXPECT_EQ(provenance["command"], "lanternfish run ./my.yaml --seed 3 --set time_limit_s=2 --set 'description=a b'");
+  EXPECT_EQ(provenance["set"], Json::parse(R"(["time_limit_s=2", "description=a b"])"));
+  EXPECT_EQ(provenance["scenario_file"], "./my.yaml");
+  EXPECT_FALSE(result["version"].get<std::string>().empty());
+  // The hash is that of the folder's own experiment.json, as any tool makes it.
+  ASSERT_EQ(std::system(("cd '" + (folder() / "r").string() + "' && sha256sum experiment.json > ../sum").c_str()), 0);
+  EXPECT_EQ(provenance["experiment"].get<std::string>(), text_of(folder() / "sum").substr(0, 64));
+}
+
+// The user's file and the arm that it names have changed since.
+TEST_F(RunFolder, RunsAgainFromItsOwnResolvedScenario) {
+  const std::string urdf = text_of(std::string(LANTERNFISH_SOURCE_DIR) + "/shared/arm/arm5e.urdf");
+  file("our.urdf", urdf);
+  file("my.yaml", "time_limit_s: 4\narm: {urdf: our.urdf}\nvalve: {friction_nm: {min: 1, max: 1.7}}\n");
+  EXPECT_EQ(run("run ./my.yaml --no-outside --seed 3 --set water.attenuation_per_m=0.37 --out first").status, 1);
+  file("my.yaml", "time_limit_s: 3\n");
+  std::filesystem::remove(folder() / "our.urdf");
+  std::filesystem::rename(folder() / "first", folder() / "moved");
+  const Said again = run("run ./moved/scenario.yaml --no-outside --seed 3 --out again");
+  EXPECT_EQ(again.status, 1) << again.err;
+  EXPECT_EQ(result_of("again")["digest"], result_of("moved")["digest"]);
+  EXPECT_EQ(result_of("again")["provenance"]["experiment"], result_of("moved")["provenance"]["experiment"]);
+  EXPECT_EQ(text_of(folder() / "again" / "our.urdf"), urdf);
+  EXPECT_EQ(run("run ./moved/scenario.yaml --no-outside --seed 3 --set water.attenuation_per_m=0.38 --out other").status, 1);
+  EXPECT_NE(result_of("other")["provenance"]["experiment"], result_of("moved")["provenance"]["experiment"]);
+}
+
+// What lies above the scenario's folder is found from the run's folder, too.
+TEST_F(RunFolder, NamesFilesAboveTheScenarioByTheirWholePath) {
+  std::filesystem::create_directory(folder() / "below");
+  file("our.urdf", text_of(std::string(LANTERNFISH_SOURCE_DIR) + "/shared/arm/arm5e.urdf"));
+  file("below/my.yaml", "time_limit_s: 1\narm: {urdf: ../our.urdf}\n");
+  EXPECT_EQ(run("run below/my.yaml --no-outside --out r").status, 1);
+  const Said again = run("run r/scenario.yaml --no-outside --out again");
+  EXPECT_EQ(again.status, 1) << again.err;
+  EXPECT_EQ(result_of("again")["digest"], result_of("r")["digest"]);
+}
+
+TEST_F(RunFolder, HasALogOfStepsFaultsAndReactions) {
+  const std::string fault = "--set 'faults=[{at_step: deploy, after_s: 0.1, kind: overcurrent, node: elbow}]'";
+  EXPECT_EQ(run("run drive_fault --no-outside --out r " + fault).status, 0);
+  const std::vector<Json> log = lines_of("r/log.jsonl");
+  ASSERT_GT(log.size(), 10u);
+  EXPECT_EQ(log.front()["kind"], "begin");
+  EXPECT_EQ(log.front()["seed"], 1);
+  EXPECT_EQ(log.back()["kind"], "end");
+  EXPECT_EQ(log.back()["success"], true);
+  double before_s = 0;
+  std::map<std::string, int> kinds;
+  for (const Json& line : log) {
+    EXPECT_GE(double(line["t_s"]), before_s) << line;
+    before_s = line["t_s"];
+    ++kinds[line["kind"]];
+  }
+  EXPECT_EQ(kinds["order"], 1);
+  EXPECT_GE(kinds["step"], 5);
+  EXPECT_GE(kinds["emcy"], 1);
+  EXPECT_GE(kinds["counted"], 1);
+  const auto told = std::find_if(log.begin(), log.end(), [](const Json& line) { return line["kind"] == "fault"; });
+  ASSERT_NE(told, log.end());
+  EXPECT_EQ((*told)["fault"], "drive fault");
+  EXPECT_EQ((*told)["step"], "deploy");
+  EXPECT_THAT((*told)["text"].get<std::string>(), HasSubstr("drive fault: elbow"));
+  EXPECT_EQ((*told)["reaction"], "quick stop");
+
+  const Json result = result_of("r");
+  const auto same = std::find_if(result["faults"].begin(), result["faults"].end(), [](const Json& row) { return row["fault"] == "drive fault"; });
+  ASSERT_NE(same, result["faults"].end()) << result["faults"];
+  EXPECT_EQ((*same)["t_s"], (*told)["t_s"]);
+  EXPECT_EQ((*same)["text"], (*told)["text"]);
+  EXPECT_THAT(text_of(folder() / "r" / "report.html"), HasSubstr("<h2>Faults and reactions</h2>"));
+}
+
+// An error message's text may quote another fault's name; the fault itself is what is expected.
+TEST_F(RunFolder, AnExpectedFaultIsTheFaultItselfNotAWordOfItsText) {
+  const std::string follow = "run drive_fault --no-outside --set 'faults=[{at_step: deploy, after_s: 0.1, kind: hot, node: elbow}]' ";
+  const Said right = run(follow + "--out right --set 'expect.failure=drive fault'");
+  EXPECT_EQ(right.status, 0) << right.out;
+  const Said wrong = run(follow + "--out wrong --set 'expect.failure=emergency stop'");
+  EXPECT_EQ(wrong.status, 1);
+  EXPECT_THAT(wrong.out, HasSubstr("expected was 'emergency stop'"));
+  const Said misspelt = run(follow + "--out no --set 'expect.failure=drive falt'");
+  EXPECT_EQ(misspelt.status, 2);
+  EXPECT_THAT(misspelt.err, HasSubstr("did you mean 'drive fault'?"));
+}
+
+// Counted again from the log of all frames: 47 bits and the data without stuff bits, ISO 11898-1.
+TEST_F(RunFolder, TellsItsBusLoadWithAndWithoutStuffBits) {
+  const Said said = run("run turn_only --no-outside --set time_limit_s=6 --out r");
+  const Json bus = result_of("r")["bus"];
+  EXPECT_THAT(said.out, HasSubstr("without stuff bits"));
+  EXPECT_THAT(said.out, HasSubstr("with worst-case stuffing"));
+  double bits = 0, first_s = 0, last_s = 0;
+  std::istringstream log(text_of(folder() / "r" / "can0.log"));
+  for (std::string line; std::getline(log, line);) {
+    const std::string frame = line.substr(line.rfind(' ') + 1);
+    const std::string data = frame.substr(frame.find('#') + 1);
+    bits += 47 + (data[0] == 'R' ? 0.0 : 4.0 * static_cast<double>(data.size()));
+    last_s = std::stod(line.substr(1));
+    if (first_s == 0) first_s = last_s;
+  }
+  EXPECT_NEAR(bus["load_unstuffed_percent"], 100 * bits / ((last_s - first_s) * 1e6), 0.05);
+  EXPECT_LT(double(bus["load_unstuffed_percent"]), double(bus["load_percent"]));
+  EXPECT_LT(double(bus["load_percent"]), double(bus["load_worst_case_percent"]));
+}
+
+Eigen::Isometry3d pose_of(const Json& rows) {
+  Eigen::Matrix4d matrix;
+  for (int row = 0; row < 4; ++row) {
+    for (int column = 0; column < 4; ++column)
+      matrix(row, column) = rows[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)];
+  }
+  return Eigen::Isometry3d(matrix);
+}
+
+// A machine without mounting errors: told and true poses agree to what encoders and interpolation leave.
+TEST_F(RunFolder, KeepsRawPairsThatPeaksWorksOn) {
+  run("run turn_only --no-outside --record-images --set time_limit_s=14 --set mounting.camera_m=0 --set mounting.camera_deg=0 "
+      "--set mounting.laser_m=0 --set mounting.laser_deg=0 --set mounting.joints_deg=0 --set water.attenuation_per_m=0.3 --out r");
+  const std::vector<Json> lines = lines_of("r/raw/images.jsonl");
+  ASSERT_GT(lines.size(), 60u);
+  EXPECT_EQ(lines[0]["kind"], "calibration");
+  EXPECT_EQ(lines[0]["camera"]["width"], 640);
+  EXPECT_EQ(lines[0]["camera"]["fx"], 361.7);
+  int pairs = 0;
+  double most_shift_mm = 0;
+  Json pair;
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    const Json& line = lines[i];
+    ASSERT_EQ(line["kind"], "image");
+    EXPECT_EQ(line["exposure_us"], 2000);
+    EXPECT_TRUE(std::filesystem::exists(folder() / "r" / line["file"].get<std::string>())) << line;
+    const Eigen::Isometry3d off = pose_of(line["told"]["base_from_laser"]).inverse() * pose_of(line["true"]["base_from_laser"]);
+    most_shift_mm = std::max(most_shift_mm, 1e3 * off.translation().norm());
+    if (!line["laser"] || line["off"].is_null()) continue;
+    pair = line;
+    ++pairs;
+  }
+  EXPECT_GT(pairs, 40);
+  EXPECT_LT(most_shift_mm, 0.5);
+  const std::string on = "r/" + pair["file"].get<std::string>(), off = "r/" + pair["off"].get<std::string>();
+  const std::string png = text_of(folder() / on);
+  EXPECT_EQ(png.substr(12, 4), "IHDR");
+  EXPECT_EQ(png[24], 8) << "bits";
+  EXPECT_EQ(png[25], 0) << "grey";
+  const Said said = run("peaks " + on + " --off " + off + " --json");
+  EXPECT_EQ(said.status, 0) << said.err;
+  EXPECT_GT(Json::parse(said.out)["peaks"].size(), 300u);
+  EXPECT_FALSE(std::filesystem::exists(folder() / "without" / "raw"));
+}
+
+TEST_F(RunFolder, NamesWhyALookFailedOnTheConsoleInTheReportAndInTheResult) {
+  const std::string once = "run turn_only --no-outside --set mission.tries=1 --set lamps.lit=true ";
+  for (const auto& [set, cause] : {std::pair{"water.attenuation_per_m=5", "the water is too turbid"},
+                                   std::pair{"camera.exposure_us=10", "the pictures are dark"}}) {
+    SCOPED_TRACE(set);
+    const Said said = run(once + "--set " + set + " --out r" + std::string(set).substr(0, 5));
+    EXPECT_EQ(said.status, 1);
+    EXPECT_THAT(said.out, HasSubstr(cause));
+    EXPECT_THAT(said.out, HasSubstr("the look saw: "));
+    const std::string name = "r" + std::string(set).substr(0, 5);
+    const Json failure = result_of(name)["failure"];
+    EXPECT_THAT(failure["cause"].get<std::string>(), HasSubstr(cause));
+    EXPECT_FALSE(failure["remedy"].get<std::string>().empty());
+    EXPECT_THAT(text_of(folder() / name / "report.html"), HasSubstr(cause));
+    EXPECT_THAT(text_of(folder() / name / "log.jsonl"), HasSubstr(cause));
+  }
+}
+
+}  // namespace
+
+}  // namespace lf::app

@@ -1,0 +1,31 @@
+#include "hal/config/arm_match.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "hal/config/share.hpp"
+
+namespace lf::config {
+namespace {
+
+using testing::HasSubstr;
+
+ArmDescription shipped() { return load_arm_urdf(share_folder() / "arm" / "arm5e.urdf"); }
+
+TEST(ArmMatch, TheShippedArmIsTheCores) { EXPECT_EQ(difference_from_core(shipped()), ""); }
+
+TEST(ArmMatch, AnArmWithALongerForearmIsToldByHowFarItsToolIsOff) {
+  ArmDescription longer = shipped();
+  longer.wrist_from_tool.translate(Vec3(0, 0, 0.0312));
+  EXPECT_EQ(difference_from_core(longer), "its tool is up to 31.20 mm and 0.000 degrees off");
+}
+
+TEST(ArmMatch, OtherLimitsAreNamedByTheirJoints) {
+  ArmDescription other = shipped();
+  other.joints[0].upper_rad += 0.1;
+  other.joints[2].lower_rad -= 0.1;
+  EXPECT_EQ(difference_from_core(other), "the limits of slew, elbow differ");
+}
+
+}  // namespace
+}  // namespace lf::config

@@ -1,0 +1,42 @@
+#include "hal/config/panel_check.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace lf::config {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+TEST(PanelCheck, TheDefaultPanelIsFree) { EXPECT_THAT(panel_problems({}), IsEmpty()); }
+
+// The plate's right edge lies at -170 + 50 mm, a button's own at 20 mm from its centre.
+TEST(PanelCheck, AButtonOverTheMarkerIsNamedWithHowFar) {
+  PanelLayout panel;
+  panel.buttons_m[0] = Vec2(-0.105, 0.072);
+  EXPECT_THAT(panel_problems(panel), ElementsAre(HasSubstr("the left button covers the marker's plate by 5.0 mm")));
+  panel.buttons_m[0] = Vec2(-0.0999, 0.072);
+  EXPECT_THAT(panel_problems(panel), IsEmpty());
+  // At a corner the nearest point is the corner: 15 mm off along both axes are 21.2 mm.
+  panel.buttons_m[0] = Vec2(-0.120 + 0.015, 0.122 + 0.015);
+  EXPECT_THAT(panel_problems(panel), Not(testing::Contains(HasSubstr("covers"))));
+  panel.buttons_m[0] = Vec2(-0.120 + 0.013, 0.122 + 0.013);
+  EXPECT_THAT(panel_problems(panel), testing::Contains(HasSubstr("covers the marker's plate by 1.6 mm")));
+}
+
+TEST(PanelCheck, OverlappingButtonsAndWhatHangsBeyondThePlateAreNamed) {
+  PanelLayout panel;
+  panel.buttons_m[1] = panel.buttons_m[0] + Vec2(0.03, 0);
+  EXPECT_THAT(panel_problems(panel), ElementsAre(HasSubstr("the centre button and the left one overlap by 10.0 mm")));
+  panel = {};
+  panel.buttons_m[2] = Vec2(0.39, 0);
+  EXPECT_THAT(panel_problems(panel), ElementsAre(HasSubstr("the right button hangs beyond the plate")));
+  panel = {};
+  panel.marker_centre_m = Vec2(-0.36, 0);
+  EXPECT_THAT(panel_problems(panel), ElementsAre(HasSubstr("the marker's plate hangs beyond")));
+}
+
+}  // namespace
+}  // namespace lf::config
