@@ -129,5 +129,14 @@ TEST_F(Campaigns, TellARunsPhasesOnlyToItsOwnUser) {
   EXPECT_EQ(run("run ./my.yaml --no-outside --out r --quiet").err, "");
 }
 
+TEST_F(Campaigns, OfRangesLeaveTestCases) {
+  const Said said = run("campaign default --ranges --draws 1 --many 0 --kinds valve.friction_nm --out m --json");
+  const Json table = Json::parse(said.out);
+  EXPECT_TRUE(
+      has(text_of(folder() / "m/junit.xml"), "<testsuite name=\"default ranges\" tests=\"" + std::to_string(int(table["rows"]) + 1) + "\""))
+      << said.err;
+  EXPECT_TRUE(there("m/ranges.md"));
+}
+
 }  // namespace
 }  // namespace lf::app
