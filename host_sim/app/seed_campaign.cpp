@@ -9,6 +9,7 @@
 
 #include "host_sim/app/command.hpp"
 #include "host_sim/app/interrupt.hpp"
+#include "host_sim/app/lost_run.hpp"
 #include "host_sim/app/progress_line.hpp"
 #include "host_sim/app/run_experiment.hpp"
 #include "host_sim/app/run_processes.hpp"
@@ -148,16 +149,15 @@ class Flyer {
     tell(task, false);
   }
 
-  // Of a run that left no result.
-  static campaign::RunSummary lost(const Task& task, const RunProcesses::Ended& ended) {
+  // Of a run that left no result that counts.
+  campaign::RunSummary lost(const Task& task, const RunProcesses::Ended& ended) const {
+    record::Experiment ours = campaign_.cells[task.cell].experiment;
+    ours["seed"] = std::to_string(task.seed);
+    const std::optional<record::Experiment> theirs = record::read_experiment(folder_ / name_of(task));
     record::RunResult result;
     result.seed = task.seed;
-    const int status = ended.status;
-    const bool refused = WIFEXITED(status) && WEXITSTATUS(status) == bad_input;
-    const std::string how = refused               ? "refused"
-                            : WIFSIGNALED(status) ? "ended by signal " + std::to_string(WTERMSIG(status))
-                                                  : "exit status " + std::to_string(WEXITSTATUS(status));
-    result.failure = record::FailureRecord{"start", ended.words.empty() ? how : how + ": " + ended.words};
+    result.failure =
+        record::FailureRecord{"start", lost_reason(ended.status, ended.words, theirs ? record::difference(ours, *theirs) : "")};
     return campaign::run_of(result, "", false);
   }
 

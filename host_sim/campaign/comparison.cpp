@@ -143,6 +143,7 @@ class Comparer {
 
   void add(Change change, Test test) {
     test.change = comparison_.changes.size();
+    change.differs = test.differs;
     comparison_.changes.push_back(std::move(change));
     tests_.push_back(test);
   }

@@ -23,6 +23,7 @@ struct Change {
   std::string before_counts{}, after_counts{};  // "48 of 50", of shares
   std::string test{};                           // "" of what is not tested: it depends on the machine
   std::size_t n = 0;                            // pairs, or runs of both
+  bool differs = false;                         // in any pair; of shares of other seeds: in themselves
   double p = 1, p_of_all = 1;                   // p_of_all: as it counts among all tests
   Verdict verdict = Verdict::same;              // by p_of_all
 };

@@ -55,7 +55,7 @@ std::string curves(const Campaign& campaign) {
   std::string html;
   for (std::size_t i = 0; i < figures().size(); ++i) html += curve_svg(campaign, i);
   if (html.empty()) return "";
-  const std::string bars = campaign.cells.size() == 1 ? " The bars behind it are the histogram." : "";
+  const std::string bars = html.find("class=\"histogram\"") != std::string::npos ? " The bars behind are the histogram." : "";
   return "<p class=\"none\">Share of the runs, in %, that are at most so large; each point is a run and leads to its report, failed runs "
          "are red." +
          bars + "</p>" + legend(campaign) + "<div class=\"curves\">" + html + "</div>";

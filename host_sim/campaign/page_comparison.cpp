@@ -51,11 +51,16 @@ std::string comparison_html(const Comparison& comparison) {
     html += "</ul>";
   }
   const bool has_cells = !comparison.changes.empty() && !comparison.changes[0].cell.empty();
-  html += std::string("<div class=\"wide\"><table><tr>") + (has_cells ? "<th></th>" : "") +
-          "<th></th><th class=\"n\">before</th><th class=\"n\">now</th><th>test</th><th class=\"n\">p</th><th class=\"n\">p among all "
-          "tests</th><th></th></tr>";
-  for (const Change& change : comparison.changes) html += change_row(change, has_cells);
-  return html + "</table></div>";
+  const std::string head =
+      std::string("<div class=\"wide\"><table><tr>") + (has_cells ? "<th></th>" : "") +
+      "<th></th><th class=\"n\">before</th><th class=\"n\">now</th><th>test</th><th class=\"n\">p</th><th class=\"n\">p among all "
+      "tests</th><th></th></tr>";
+  std::string differ, same;
+  for (const Change& change : comparison.changes) (change.differs ? differ : same) += change_row(change, has_cells);
+  if (!differ.empty()) html += head + differ + "</table></div>";
+  if (!same.empty())
+    html += "<details><summary>what does not differ in any run, or is not tested</summary>" + head + same + "</table></div></details>";
+  return html;
 }
 
 }  // namespace lf::campaign

@@ -57,8 +57,9 @@ Scale scale_of(const std::vector<std::vector<Point>>& curves) {
   }
   // A figure that is zero at best is drawn from zero, unless its range is a small part of it.
   if (scale.low > 0 && scale.low < scale.high / 2) scale.low = 0;
-  const double least = 1e-6 * std::max({std::abs(scale.low), std::abs(scale.high), 1e-6});
-  const double margin = std::max(0.04 * (scale.high - scale.low), least);
+  // Where all runs are alike the axis has to have a length all the same: a hundredth of the value, or one about zero.
+  const double size = std::max(std::abs(scale.low), std::abs(scale.high));
+  const double margin = std::max(0.04 * (scale.high - scale.low), size > 0 ? 0.005 * size : 0.5);
   if (scale.low != 0) scale.low -= margin;
   scale.high += margin;
   return scale;

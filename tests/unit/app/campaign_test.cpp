@@ -122,6 +122,20 @@ TEST_F(Campaigns, AreComparedWithAnEarlierOne) {
   EXPECT_TRUE(has(across.out, "doubtful: too few runs to tell a change from chance")) << across.out;
 }
 
+// The folder of one seed holds what another experiment left: that run is refused, and the others are flown.
+TEST_F(Campaigns, ARunThatIsRefusedIsARowWithItsReason) {
+  file("my.yaml", short_scenario);
+  ASSERT_EQ(run("campaign ./my.yaml --seeds 1 --out c").status, 1);
+  ASSERT_EQ(run("run ./my.yaml --set time_limit_s=1.5 --seed 2 --no-outside --out c/2").status, 1);
+  const Said said = run("campaign ./my.yaml --seeds 1-3 --out c");
+  EXPECT_EQ(said.status, 1);
+  EXPECT_TRUE(has(said.out, "failed in start: refused: lanternfish: ")) << said.out;
+  EXPECT_TRUE(has(said.out, "holds another experiment: time_limit_s was 1.5, is 1")) << said.out;
+  EXPECT_EQ(json_of("c/campaign.json")["runs"], 3);
+  EXPECT_TRUE(has(text_of(folder() / "c/junit.xml"), "failures=\"2\" errors=\"1\""));
+  EXPECT_FALSE(has(text_of(folder() / "c/campaign.html"), "href=\"2/report.html\"")) << "a report of another experiment";
+}
+
 TEST_F(Campaigns, TellARunsPhasesOnlyToItsOwnUser) {
   file("my.yaml", short_scenario);
   const Said loud = run("run ./my.yaml --no-outside --out r");

@@ -106,6 +106,18 @@ TEST(Page, DrawsEachFigureOfEachRun) {
   EXPECT_EQ(count_of(page, ">95 %</text>"), figures().size());
 }
 
+// Runs that are all alike: the axis has a length, and its marks are told apart.
+TEST(Page, AFigureThatIsTheSameInAllRunsHasAnAxis) {
+  Campaign campaign = test::campaign(6);
+  for (RunSummary& run : campaign.cells[0].runs) {
+    run.figures.assign(figures().size(), 0);
+    run.figures[0] = 42;
+  }
+  const std::string page = page_html(campaign, nullptr);
+  EXPECT_THAT(page, Not(HasSubstr(">0.00000")));
+  EXPECT_THAT(page, HasSubstr("y=\"208.0\">42.0</text>"));
+}
+
 TEST(Page, OfAGridHasARowACellAndACurveACell) {
   const std::string page = page_html(test::grid(), nullptr);
   EXPECT_THAT(page, HasSubstr("<h2>The grid</h2>"));
@@ -138,6 +150,9 @@ TEST(Page, ShowsTheComparison) {
   EXPECT_THAT(page, HasSubstr("runs/&lt;before&gt;"));
   EXPECT_THAT(page, HasSubstr("<span class=\"mark bad\">worse</span>"));
   EXPECT_THAT(page, HasSubstr("depends on the machine, not tested"));
+  const std::string first = page.substr(page.find("<h2>Compared"), page.find("<details>") - page.find("<h2>Compared"));
+  EXPECT_EQ(count_of(first, "plane_normal_deg"), 2u);
+  EXPECT_EQ(count_of(first, "valve_base_mm"), 0u) << "what does not differ stands behind what does";
 }
 
 TEST(Page, TextOfOthersIsEscaped) {
