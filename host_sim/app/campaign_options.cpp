@@ -35,9 +35,12 @@ int jobs_of(const CampaignOptions& options) {
   return options.jobs > 0 ? options.jobs : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-CampaignFolder::CampaignFolder(const CampaignOptions& options, const scenario::Scenario& scenario, const std::string& kind) {
+CampaignFolder::CampaignFolder(const CampaignOptions& options, const scenario::Scenario& scenario, const std::string& kind,
+                               const std::vector<std::string>& grid) {
   record::Experiment experiment = experiment_of(scenario);
   experiment["campaign"] = kind;
+  // The values are no part of it: each cell has a folder of its own, and a grid may be extended.
+  for (const std::string& key : grid) experiment["grid"] += (experiment["grid"].empty() ? "" : ", ") + key;
   path_ = options.out.empty() ? default_folder(scenario.name + "-" + kind, !options.set.empty(), experiment) : fs::path(options.out);
   record::refuse_other(path_, experiment);
   const record::RunFolder folder(path_);

@@ -25,6 +25,8 @@ struct CampaignOptions {
   bool ranges = false;
   std::size_t draws = 5, many = 300;
   std::string shard = "1/1";
+  std::string compare;              // an earlier campaign's folder
+  std::vector<std::string> across;  // keys that may differ from its
 };
 
 struct Shard {
@@ -38,8 +40,9 @@ int jobs_of(const CampaignOptions& options);
 // A campaign's folder, locked while it runs, with the experiment that it is of.
 class CampaignFolder {
  public:
-  // Throws InputError when it holds another experiment or another campaign is writing there. `kind` names the default folder.
-  CampaignFolder(const CampaignOptions& options, const scenario::Scenario& scenario, const std::string& kind);
+  // Throws InputError when it holds another experiment or another campaign is writing there. `kind` names the default folder; `grid`: the keys of one.
+  CampaignFolder(const CampaignOptions& options, const scenario::Scenario& scenario, const std::string& kind,
+                 const std::vector<std::string>& grid = {});
   ~CampaignFolder();
   CampaignFolder(const CampaignFolder&) = delete;
   CampaignFolder& operator=(const CampaignFolder&) = delete;
@@ -51,6 +54,7 @@ class CampaignFolder {
   int lock_ = -1;
 };
 
+int seed_campaign(const CampaignOptions& options);
 int fault_campaign(const CampaignOptions& options);
 int range_campaign(const CampaignOptions& options);
 

@@ -26,6 +26,7 @@ using Action = std::function<int()>;
 // Each adds its sub-command to `app`, which sets `action` when it is chosen.
 void add_run(CLI::App& app, Action& action);
 void add_campaign(CLI::App& app, Action& action);
+void add_compare(CLI::App& app, Action& action);
 void add_scenarios(CLI::App& app, Action& action);
 void add_serve(CLI::App& app, Action& action);
 void add_render_frames(CLI::App& app, Action& action);

@@ -1,14 +1,19 @@
 // `lanternfish campaign --faults`.
 #include <algorithm>
 #include <cstdio>
+#include <ctime>
 #include <set>
 
 #include "hal/config/key_text.hpp"
 #include "host_sim/app/campaign_options.hpp"
+#include "host_sim/app/fault_suite.hpp"
 #include "host_sim/app/fault_table.hpp"
 #include "host_sim/app/interrupt.hpp"
+#include "host_sim/app/progress_line.hpp"
+#include "host_sim/campaign/utc_time.hpp"
 #include "host_sim/record/run_folder.hpp"
 #include "shared/input_error.hpp"
+#include "shared/version/version.hpp"
 
 namespace lf::app {
 
@@ -62,10 +67,17 @@ int fault_campaign(const CampaignOptions& options) {
     if (wanted.contains(row.name())) missing.push_back(row);
   }
   if (kept > 0) std::fprintf(stderr, "%zu rows are kept, %zu are missing\n", kept, missing.size());
+  const std::string begun = campaign::utc_text(std::time(nullptr));
+  ProgressLine progress(missing.size(), "row");
   fly_matrix(base, missing, options.rendered ? Sight::rendered : Sight::given, jobs_of(options), file, [&](const RowResult& row) {
+    progress.ended(!row.safe());
+    progress.clear();
     say(row);
+    progress.tick();
+    wanted.erase(row.row);
     results.push_back(row);
   });
+  progress.clear();
 
   std::sort(results.begin(), results.end(), [](const RowResult& a, const RowResult& b) { return a.row < b.row; });
   const FaultTable table = tabulate_faults(results);
@@ -75,6 +87,10 @@ int fault_campaign(const CampaignOptions& options) {
   Json json = json_of(table);
   json["folder"] = folder.path().string();
   out.write("faults.json", json.dump(2) + "\n");
+  campaign::TestSuite suite = fault_suite(base.name, results, table, {wanted.begin(), wanted.end()});
+  suite.begun = begun;
+  suite.properties = {{"command", command_of(options)}, {"version", version()}, {"revision", revision()}};
+  out.write(campaign::junit_file, junit_xml(suite));
   options.json ? print_json(json) : tell(table);
   if (interrupted()) return exit_interrupted;
   return table.good() ? done : failed;

@@ -1,6 +1,6 @@
 // `lanternfish campaign --ranges`: every key of the scenario, drawn over its documented range.
 #include <algorithm>
-#include <array>
+#include <ctime>
 #include <fstream>
 #include <map>
 #include <optional>
@@ -11,24 +11,31 @@
 #include "host_sim/app/command.hpp"
 #include "host_sim/app/copies.hpp"
 #include "host_sim/app/interrupt.hpp"
+#include "host_sim/app/progress_line.hpp"
 #include "host_sim/app/range_draws.hpp"
+#include "host_sim/app/range_suite.hpp"
 #include "host_sim/app/run_session.hpp"
+#include "host_sim/app/shell_word.hpp"
+#include "host_sim/campaign/utc_time.hpp"
 #include "host_sim/judge/range_rules.hpp"
 #include "host_sim/judge/truth.hpp"
 #include "host_sim/record/run_folder.hpp"
 #include "host_sim/scenario/duration.hpp"
 #include "shared/input_error.hpp"
+#include "shared/version/version.hpp"
 
 namespace lf::app {
 
 namespace {
 
-// What a drawn value came to. "unnamed": it ended safely, but its reason names none of the drawn keys (judge/range_rules.hpp).
-constexpr std::array verdicts{"success", "safe", "refused", "unnamed", "unsafe"};
-
-struct RangeResult {
-  std::string name, key, set, verdict, reason;
-};
+std::string command_of(const CampaignOptions& options) {
+  std::string command = "lanternfish campaign " + shell_word(options.scenario) + " --ranges --draws " + std::to_string(options.draws) +
+                        " --many " + std::to_string(options.many);
+  for (const std::string& key : options.kinds) command += " --kinds " + shell_word(key);
+  for (const std::string& set : options.set) command += " --set " + shell_word(set);
+  if (options.shard != "1/1") command += " --shard " + options.shard;
+  return command;
+}
 
 std::string line_of(const RangeResult& result) {
   const Json json{{"row", result.name}, {"key", result.key}, {"set", result.set}, {"verdict", result.verdict}, {"reason", result.reason}};
@@ -139,27 +146,43 @@ int range_campaign(const CampaignOptions& options) {
   for (std::string line; std::getline(kept, line);) {
     if (std::optional<RangeResult> result = parse(line)) results[result->name] = *result;
   }
+  std::vector<const RangeRow*> missing;
+  for (const RangeRow& row : rows) {
+    if (!results.contains(row.name)) missing.push_back(&row);
+  }
+  if (missing.size() < rows.size())
+    std::fprintf(stderr, "%zu rows are kept, %zu are missing\n", rows.size() - missing.size(), missing.size());
+  const std::string begun = campaign::utc_text(std::time(nullptr));
   LineFile lines(file);
+  ProgressLine progress(missing.size(), "row");
   std::map<std::string, const RangeRow*> by_name;
   Copies copies(jobs_of(options), [&](const Copies::Ended& ended) {
     const RangeRow& row = *by_name.at(ended.name);
     RangeResult result = parse(ended.line).value_or(RangeResult{row.name, row.key, row.set.front(), "unsafe", ended.failure});
     lines.append(line_of(result));
+    progress.ended(result.verdict == "unsafe" || result.verdict == "unnamed");
+    progress.clear();
     std::fprintf(stderr, "%-8s %s %s\n", result.verdict.c_str(), result.name.c_str(), result.reason.c_str());
+    progress.tick();
     results[result.name] = result;
   });
-  for (const RangeRow& row : rows) {
-    if (results.contains(row.name) || interrupted()) continue;
-    by_name[row.name] = &row;
-    copies.start(row.name, [&] { return line_of(fly(options, row)); });
+  for (const RangeRow* row : missing) {
+    if (interrupted()) break;
+    by_name[row->name] = row;
+    copies.start(row->name, [&] { return line_of(fly(options, *row)); });
   }
   copies.finish();
+  progress.clear();
 
   std::vector<RangeResult> mine;
+  std::vector<std::string> not_flown;
   Counts counts, single;
   for (const RangeRow& row : rows) {
     const auto found = results.find(row.name);
-    if (found == results.end()) continue;
+    if (found == results.end()) {
+      not_flown.push_back(row.name);
+      continue;
+    }
     mine.push_back(found->second);
     ++counts[found->second.verdict];
     if (row.key != "many") ++single[found->second.verdict];
@@ -171,6 +194,10 @@ int range_campaign(const CampaignOptions& options) {
   Json json{{"rows", mine.size()}, {"single_draws", singles}, {"folder", folder.path().string()}};
   for (const char* verdict : verdicts) json[verdict] = counts[verdict];
   out.write("ranges.json", json.dump(2) + "\n");
+  campaign::TestSuite suite = range_suite(base.name, mine, not_flown);
+  suite.begun = begun;
+  suite.properties = {{"command", command_of(options)}, {"version", version()}, {"revision", revision()}};
+  out.write(campaign::junit_file, junit_xml(suite));
   if (options.json) {
     print_json(json);
   } else {
@@ -179,8 +206,7 @@ int range_campaign(const CampaignOptions& options) {
     print("single-key draws: %zu of %zu succeeded\n", single["success"], singles);
   }
   if (interrupted()) return exit_interrupted;
-  constexpr double wanted_share = 0.8;
-  const bool enough = static_cast<double>(single["success"]) >= wanted_share * static_cast<double>(singles);
+  const bool enough = static_cast<double>(single["success"]) >= single_share * static_cast<double>(singles);
   return counts["unsafe"] + counts["unnamed"] == 0 && enough ? done : failed;
 }
 

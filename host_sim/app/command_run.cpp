@@ -1,5 +1,3 @@
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <ctime>
@@ -14,6 +12,7 @@
 #include "host_sim/app/interrupt.hpp"
 #include "host_sim/app/run_experiment.hpp"
 #include "host_sim/app/run_session.hpp"
+#include "host_sim/app/shell_word.hpp"
 #include "host_sim/scenario/instance.hpp"
 #include "shared/input_error.hpp"
 
@@ -30,20 +29,12 @@ struct Options {
   int render_threads = 0;
   bool outside = true;
   bool record_images = false;
+  bool quiet = false;
   bool json = false;
 };
 
 // One thread steps the world, the rest render.
 int default_render_threads() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
-
-std::string shell_word(const std::string& text) {
-  if (!text.empty() &&
-      text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=,:+") == std::string::npos)
-    return text;
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
 
 std::string command_of(const Options& options) {
   std::string command = "lanternfish run " + shell_word(options.scenario) + " --seed " + std::to_string(options.seed);
@@ -124,9 +115,7 @@ int run(const Options& options) {
   request.provenance.command = command_of(options);
   request.provenance.set = options.set;
   request.provenance.date_utc = utc_text(std::time(nullptr));
-  if (isatty(STDERR_FILENO) != 0) {
-    request.say = [](const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); };
-  }
+  if (!options.quiet) request.say = [](const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); };
   catch_interrupts();
   const RunOutcome outcome = run_mission(request);
   if (options.json) {
@@ -156,6 +145,7 @@ void add_run(CLI::App& app, Action& action) {
       ->check(CLI::Range(1, 256));
   command->add_flag("--record-images", options->record_images, "Keep the camera's pictures as they are, with their poses, in raw/ (40 MB)");
   command->add_flag("!--no-outside", options->outside, "No pictures of the robot from outside");
+  command->add_flag("--quiet", options->quiet, "Do not tell each phase on stderr as it ends");
   command->add_flag("--json", options->json, "Print result.json");
   command->callback([options, &action] { action = [options] { return run(*options); }; });
 }

@@ -22,6 +22,7 @@ namespace {
 void add_commands(CLI::App& app, Action& action) {
   add_run(app, action);
   add_campaign(app, action);
+  add_compare(app, action);
   add_serve(app, action);
   add_render_frames(app, action);
   add_scenarios(app, action);

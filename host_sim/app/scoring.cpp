@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "host_sim/campaign/statistics/percentile.hpp"
+
 namespace lf::app {
 
 namespace {
@@ -155,12 +157,6 @@ double PeakScore::false_share() const { return share(false_, peaks_); }
 
 double PeakScore::elsewhere_share() const { return share(elsewhere_, visible_); }
 
-double percentile(std::vector<double> values, double share) {
-  if (values.empty()) return not_known;
-  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
-  const auto index = std::min(values.size() - 1, rank > 0 ? rank - 1 : 0);
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(index), values.end());
-  return values[index];
-}
+double percentile(std::vector<double> values, double share) { return campaign::nearest_rank(values, share); }
 
 }  // namespace lf::app

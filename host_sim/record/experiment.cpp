@@ -24,8 +24,27 @@ std::string bytes_of(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// The listing's keys with their values; a line is "  key: value  # what it means", and a group is "group:" with its keys indented.
-std::map<std::string, std::string> keys_of(const std::string& yaml) {
+std::string changed(const std::string& name, const std::map<std::string, std::string>& before,
+                    const std::map<std::string, std::string>& now) {
+  const auto was = before.find(name), is = now.find(name);
+  return name + " was " + (was == before.end() ? "not given" : was->second) + ", is " + (is == now.end() ? "not given" : is->second);
+}
+
+void add_scenario(const std::string& before, const std::string& now, std::vector<std::string>& clauses) {
+  const std::map<std::string, std::string> was = scenario_keys(before), is = scenario_keys(now);
+  std::set<std::string> names;
+  for (const auto& [name, value] : was) names.insert(name);
+  for (const auto& [name, value] : is) names.insert(name);
+  for (const std::string& name : names) {
+    const auto a = was.find(name), b = is.find(name);
+    if (a == was.end() || b == is.end() || a->second != b->second) clauses.push_back(changed(name, was, is));
+  }
+}
+
+}  // namespace
+
+// A line is "  key: value  # what it means", and a group is "group:" with its keys indented.
+std::map<std::string, std::string> scenario_keys(const std::string& yaml) {
   std::map<std::string, std::string> keys;
   std::istringstream lines(yaml);
   std::string group;
@@ -43,25 +62,6 @@ std::map<std::string, std::string> keys_of(const std::string& yaml) {
   }
   return keys;
 }
-
-std::string changed(const std::string& name, const std::map<std::string, std::string>& before,
-                    const std::map<std::string, std::string>& now) {
-  const auto was = before.find(name), is = now.find(name);
-  return name + " was " + (was == before.end() ? "not given" : was->second) + ", is " + (is == now.end() ? "not given" : is->second);
-}
-
-void add_scenario(const std::string& before, const std::string& now, std::vector<std::string>& clauses) {
-  const std::map<std::string, std::string> was = keys_of(before), is = keys_of(now);
-  std::set<std::string> names;
-  for (const auto& [name, value] : was) names.insert(name);
-  for (const auto& [name, value] : is) names.insert(name);
-  for (const std::string& name : names) {
-    const auto a = was.find(name), b = is.find(name);
-    if (a == was.end() || b == is.end() || a->second != b->second) clauses.push_back(changed(name, was, is));
-  }
-}
-
-}  // namespace
 
 std::string hash_of(const Experiment& experiment) { return sha256_hex(experiment_json(experiment)); }
 

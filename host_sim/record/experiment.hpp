@@ -24,6 +24,9 @@ std::string file_hash(const std::filesystem::path& path);
 // How `theirs` differs from `ours`, one clause each: "valve.friction_nm was 2, is 3". Empty when they are the same.
 std::string difference(const Experiment& theirs, const Experiment& ours);
 
+// The keys of a resolved scenario's YAML with their values, by path: "valve.friction_nm" is "{min: 0.5, max: 3}".
+std::map<std::string, std::string> scenario_keys(const std::string& yaml);
+
 std::string experiment_json(const Experiment& experiment);
 // The experiment that made a folder; nothing where there is none, or the file is not one.
 std::optional<Experiment> read_experiment(const std::filesystem::path& folder);

@@ -33,6 +33,7 @@ LAYERS = {
     "host_sim/optics/": ["host_sim/optics/", "shared/"],
     "host_sim/devices/": ["host_sim/devices/", "shared/"],
     "host_sim/record/": ["host_sim/record/", "hal/vision/", "firmware/", "shared/"],
+    "host_sim/campaign/": ["host_sim/campaign/", "host_sim/record/", "shared/"],
     "host_sim/scenario/": ["hal/config/", "host_sim/scenario/", "host_sim/world/", "host_sim/optics/", "host_sim/devices/", "hal/sim/sim_config.hpp",
                            "hal/vision/", "firmware/", "shared/"],
     "host_sim/judge/": ["host_sim/judge/", "host_sim/scenario/", "host_sim/world/", "host_sim/devices/", "hal/config/", "hal/sim/", "firmware/", "shared/"],

@@ -38,8 +38,8 @@ class Commands : public Program {
 };
 
 TEST_F(Commands, EveryCommandHasHelpAndHelpIsNoFailure) {
-  for (const char* command : {"", "run", "campaign", "serve", "render-frames", "scenarios", "reach", "peaks", "plane", "markers", "ik",
-                              "bench", "doctor", "version"}) {
+  for (const char* command : {"", "run", "campaign", "compare", "serve", "render-frames", "scenarios", "reach", "peaks", "plane", "markers",
+                              "ik", "bench", "doctor", "version"}) {
     const Said said = run(std::string(command) + " --help");
     EXPECT_EQ(said.status, 0) << command;
     EXPECT_NE(said.out.find("--help"), std::string::npos) << command;
@@ -296,7 +296,12 @@ TEST_F(Commands, ARowThatThereIsNotIsRefused) { EXPECT_EQ(run("campaign default 
 
 TEST_F(Commands, AFaultCampaignGoesOnWhereItStopped) {
   const std::string arguments = "campaign default --faults --kinds estop --steps 'boot;deploy' --jobs 1 --out m --json";
-  EXPECT_EQ(Json::parse(run(arguments).out)["rows"], 2);
+  const Said first = run(arguments);
+  EXPECT_EQ(Json::parse(first.out)["rows"], 2);
+  EXPECT_NE(first.err.find("0 of 2 rows\n"), std::string::npos) << first.err;
+  EXPECT_NE(text_of(folder() / "m" / "junit.xml")
+                .find("<testsuite name=\"default faults\" tests=\"2\" failures=\"0\" errors=\"0\" skipped=\"0\""),
+            std::string::npos);
   const Said again = run(arguments);
   EXPECT_NE(again.err.find("2 rows are kept, 0 are missing"), std::string::npos) << again.err;
   const Said misspelt = run("campaign default --faults --kinds estpo");
@@ -313,6 +318,11 @@ TEST_F(Commands, CtrlCStopsACampaignAndItsRuns) {
   const Json result = Json::parse(text_of(folder() / "many" / "1" / "result.json"), nullptr, false);
   ASSERT_FALSE(result.is_discarded()) << "the run's record is lost";
   EXPECT_EQ(result["failure"]["reason"], "interrupted");
+  const Json campaign = Json::parse(text_of(folder() / "many" / "campaign.json"));
+  EXPECT_EQ(int(campaign["runs"]) + int(campaign["not_flown"]), 40);
+  EXPECT_GE(int(campaign["not_flown"]), 38);
+  EXPECT_NE(text_of(folder() / "many" / "campaign.html").find("The campaign was interrupted"), std::string::npos);
+  EXPECT_NE(text_of(folder() / "many" / "junit.xml").find("not flown: the campaign was interrupted"), std::string::npos);
 }
 
 }  // namespace
