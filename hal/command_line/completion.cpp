@@ -10,22 +10,22 @@ namespace {
 
 bool is_number(const CLI::Option& option) { return value_name(option) == "N" || value_name(option) == "NUMBER"; }
 
-std::string source_of(const CLI::Option& option, const WordSources& sources) {
+WordSource source_of(const CLI::Option& option, const WordSources& sources) {
   const std::string name = option.get_positional() ? option.get_name(true) : "--" + option.get_lnames().front();
   const auto found = sources.find(name);
   if (found != sources.end()) return found->second;
   std::string words;
   for (const std::string& word : words_of(option)) words += " " + word;
-  return words.empty() ? "" : "printf '%s\\n'" + words;
+  return {words.empty() ? "" : "printf '%s\\n'" + words};
 }
 
 // What becomes of the word that is typed: words of a source, a file's name, or nothing.
 std::string bash_value(const CLI::Option& option, const WordSources& sources) {
-  const std::string source = source_of(option, sources);
+  const WordSource source = source_of(option, sources);
   const bool key = option.get_lnames().size() == 1 && option.get_lnames().front() == "set";
-  if (!source.empty())
-    return std::string(key ? "compopt -o nospace; " : "") + "COMPREPLY=($(compgen -W \"$(" + source + ")\" -- \"$word\"))" +
-           (option.get_positional() ? "; COMPREPLY+=($(compgen -f -- \"$word\"))" : "");
+  if (!source.command.empty())
+    return std::string(key ? "compopt -o nospace; " : "") + "COMPREPLY=($(compgen -W \"$(" + source.command + ")\" -- \"$word\"))" +
+           (source.or_file ? "; COMPREPLY+=($(compgen -f -- \"$word\"))" : "");
   return is_number(option) ? ":" : "compopt -o filenames; COMPREPLY=($(compgen -f -- \"$word\"))";
 }
 
@@ -78,7 +78,7 @@ std::string zsh_text(const std::string& text, bool in_brackets) {
 }
 
 std::string zsh_value(const CLI::Option& option, const WordSources& sources) {
-  const std::string source = source_of(option, sources);
+  const WordSource source = source_of(option, sources);
   const std::string name = option.get_positional() ? option.get_name(true) : value_name(option);
   std::string action = is_number(option) ? " " : "_files";
   const std::vector<std::string> words = words_of(option);
@@ -86,10 +86,10 @@ std::string zsh_value(const CLI::Option& option, const WordSources& sources) {
     action = "(";
     for (const std::string& word : words) action += (action.size() > 1 ? " " : "") + word;
     action += ")";
-  } else if (!source.empty()) {
+  } else if (!source.command.empty()) {
     const bool key = option.get_lnames().size() == 1 && option.get_lnames().front() == "set";
-    action = std::string("{compadd ") + (key ? "-S \"\" " : "") + "-- ${(f)\"$(" + zsh_text(source, false) + ")\"}";
-    action += option.get_positional() ? "; _files}" : "}";
+    action = std::string("{compadd ") + (key ? "-S \"\" " : "") + "-- ${(f)\"$(" + zsh_text(source.command, false) + ")\"}";
+    action += source.or_file ? "; _files}" : "}";
   }
   return ":" + zsh_text(name, false) + ":" + action;
 }

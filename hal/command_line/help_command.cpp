@@ -54,7 +54,10 @@ void add_help_commands(CLI::App& app, std::function<int()>& action, const ManPag
   completion->add_option("SHELL", wanted->shell, "bash or zsh")->check(CLI::IsMember({"bash", "zsh"}))->required();
   completion->callback([&app, &action, sources, print, wanted] {
     action = [&app, sources, print, wanted] {
-      print(wanted->shell == "bash" ? bash_completion(app, sources) : zsh_completion(app, sources));
+      WordSources all = sources;
+      std::string& names = all["COMMAND"].command = "printf \"%s\\n\"";
+      for (const CLI::App* command : commands_of(app)) names += " " + command->get_name();
+      print(wanted->shell == "bash" ? bash_completion(app, all) : zsh_completion(app, all));
       return 0;
     };
   });

@@ -1,6 +1,8 @@
 #include "hal/config/key_listing.hpp"
 
 #include <algorithm>
+#include <map>
+#include <numeric>
 #include <vector>
 
 #include "hal/config/key_text.hpp"
@@ -22,6 +24,24 @@ std::vector<std::string> parts_of(const std::string& path) {
   return parts;
 }
 
+// The keys' places in the table, but with all of a group where its first one stands: a group that is written twice is refused.
+std::vector<std::size_t> by_groups(const Keys& table) {
+  std::map<std::string, std::size_t> first;
+  std::vector<std::vector<std::size_t>> ranks;  // for each key the first place of every group that it is in, then its own
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const std::string& path = table[i].path;
+    std::vector<std::size_t> rank;
+    for (std::size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.', dot + 1))
+      rank.push_back(first.emplace(path.substr(0, dot), i).first->second);
+    rank.push_back(i);
+    ranks.push_back(std::move(rank));
+  }
+  std::vector<std::size_t> order(table.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return ranks[a] < ranks[b]; });
+  return order;
+}
+
 std::string comment_of(const Key& key, const std::string& value, const std::string& usual) {
   std::string text = key.doc;
   if (!key.words.empty()) text += "; " + type_name(key);
@@ -36,7 +56,7 @@ std::string comment_of(const Key& key, const std::string& value, const std::stri
 std::string key_listing(const Keys& table, const Keys& defaults) {
   std::string out;
   std::vector<std::string> open;  // the groups that the line before was in
-  for (std::size_t i = 0; i < table.size(); ++i) {
+  for (const std::size_t i : by_groups(table)) {
     std::vector<std::string> parts = parts_of(table[i].path);
     const std::string name = parts.back();
     parts.pop_back();

@@ -1,4 +1,5 @@
-// A table of keys spelled out as YAML: every key with its value, its meaning, its range, and its default where the value is another.
+// A table of keys spelled out as YAML: every key with its value, its meaning, its range, and its default where the value is another. In the table's order, but
+// for groups whose keys stand apart in it.
 #pragma once
 
 #include <string>
