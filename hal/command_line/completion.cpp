@@ -112,7 +112,8 @@ std::string zsh_arguments(const CLI::App& app, const WordSources& sources, const
 }  // namespace
 
 std::string bash_completion(const CLI::App& app, const WordSources& sources) {
-  const std::string program = app.get_name(), function = "_" + program;
+  const std::string& program = app.get_name();
+  const std::string function = "_" + program;
   const std::vector<const CLI::App*> commands = commands_of(app);
   std::string with_value;  // options of the program, whose value is no command
   for (const CLI::Option* option : options_of(app)) {
@@ -132,7 +133,7 @@ std::string bash_completion(const CLI::App& app, const WordSources& sources) {
 }
 
 std::string zsh_completion(const CLI::App& app, const WordSources& sources) {
-  const std::string program = app.get_name();
+  const std::string& program = app.get_name();
   std::string out = "#compdef " + program + "\n# Completion of " + program + " for zsh, printed by `" + program +
                     " completion zsh`: do not edit.\n_" + program +
                     "() {\n  local curcontext=$curcontext state line\n  local -a commands\n  commands=(\n";

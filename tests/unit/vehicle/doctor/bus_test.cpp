@@ -59,6 +59,9 @@ TEST(CanLink, IsAskedOfTheRealKernel) {
   const CanLink loopback = read_can_link("lo", linux_calls());
   ASSERT_EQ(loopback.error, 0);
   EXPECT_FALSE(loopback.is_can);
+  EXPECT_EQ(std::to_string(loopback.queue), first_line("/sys/class/net/lo/tx_queue_len"));
+  // The flags in hex, 1 is IFF_UP.
+  EXPECT_EQ(loopback.up, std::stoul(first_line("/sys/class/net/lo/flags"), nullptr, 16) % 2 == 1);
 }
 
 class BusExamination : public testing::Test {
