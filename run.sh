@@ -3,7 +3,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 toolchain/setup.sh
-cmake --preset release >build-configure.log 2>&1 || { cat build-configure.log >&2; exit 3; }
+toolchain/configure.sh release >build-configure.log 2>&1 || { cat build-configure.log >&2; exit 3; }
 rm -f build-configure.log
 echo "run: building (the first time takes some minutes) ..."
 cmake --build --preset release --target lanternfish -- --quiet

@@ -17,7 +17,7 @@ if [ "$preset" = aarch64 ]; then
 else
   toolchain/setup.sh --tests
 fi
-cmake --preset "$preset"
+toolchain/configure.sh "$preset"
 cmake --build --preset "$preset" -- --quiet
 report=$PWD/build/$preset/tests.xml
 rm -f "$report"

@@ -6,7 +6,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 build=build/coverage
 programs=(test_canopen test_safety test_arm test_mission)
 [ "${1:-}" = --core ] || programs+=(test_scan test_hil_mission test_hil_orders test_hil_valve test_hil_safety test_hil_settings test_hil_start_up_faults)
-cmake --preset coverage >/dev/null
+toolchain/configure.sh coverage >/dev/null
 cmake --build --preset coverage --target "${programs[@]}" -- --quiet
 find "$build" -name '*.gcda' -delete
 for program in "${programs[@]}"; do

@@ -30,7 +30,7 @@ command -v clang++-14 >/dev/null || { echo "fuzz: skipped, there is no clang++-1
 
 build=build/fuzz
 mkdir -p "$build/crashes"
-cmake --preset fuzz >"$build/configure.log" 2>&1 && cmake --build --preset fuzz --target "${targets[@]/#/fuzz_}" -- --quiet >"$build/build.log" 2>&1 ||
+toolchain/configure.sh fuzz >"$build/configure.log" 2>&1 && cmake --build --preset fuzz --target "${targets[@]/#/fuzz_}" -- --quiet >"$build/build.log" 2>&1 ||
   { tail -n 40 "$build"/configure.log "$build"/build.log >&2; exit 1; }
 
 # The libraries of Debian are not instrumented: containers that cross to them look overflowed when they are not. The JSON and YAML libraries keep what

@@ -25,7 +25,7 @@ build=build/$preset
 mkdir -p "$build"
 exec 9>"$build/lock"
 flock 9  # two of them would build the same files
-cmake --preset "$preset" >"$build.log" 2>&1 || { tail -n 40 "$build.log"; exit 1; }
+toolchain/configure.sh "$preset" >"$build.log" 2>&1 || { tail -n 40 "$build.log"; exit 1; }
 if [[ ${programs[*]} == *'*'* ]]; then
   mapfile -t known < <(ninja -C "$build" -t targets all | sed -nE 's/^(test_[a-z_]+): phony$/\1/p' | grep -vE '^test_(vcan|qemu)_')
   patterns=("${programs[@]}") programs=()

@@ -12,7 +12,7 @@ tests=(test_frame_ring test_vehicle test_serve test_optics test_vision test_poin
 export LANTERNFISH_SLOWDOWN=${LANTERNFISH_SLOWDOWN:-24}
 build=build/tsan
 mkdir -p "$build"
-cmake --preset tsan >"$build/configure.log"
+toolchain/configure.sh tsan >"$build/configure.log"
 cmake --build --preset tsan --target "${tests[@]}" lanternfish -- --quiet
 [ "${1:-}" != --build ] || exit 0
 

@@ -19,6 +19,16 @@ bool holds_files(const fs::path& folder) {
 
 }  // namespace
 
+fs::path share_beside(const fs::path& program) {
+  fs::path installed = program.parent_path().parent_path() / "share" / "lanternfish";
+  if (holds_files(installed)) return installed;
+  // CHECKOUT/build/PRESET/bin or .../tests: a build folder's depth is its user's affair.
+  for (fs::path above = program.parent_path(); above.has_relative_path(); above = above.parent_path()) {
+    if (fs::path source = above / "shared"; holds_files(source)) return source;
+  }
+  return {};
+}
+
 fs::path share_folder() {
   if (const char* set = std::getenv("LANTERNFISH_SHARE"); set != nullptr && *set != '\0') {
     if (holds_files(set)) return set;
@@ -27,8 +37,7 @@ fs::path share_folder() {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   if (!error) {
-    fs::path installed = program.parent_path().parent_path() / "share" / "lanternfish";
-    if (holds_files(installed)) return installed;
+    if (fs::path near = share_beside(program); !near.empty()) return near;
   }
   if (fs::path source = fs::path(LANTERNFISH_SOURCE_DIR) / "shared"; holds_files(source)) return source;
   throw InputError("the shipped files are not beside the program, nor in " LANTERNFISH_SOURCE_DIR

@@ -6,9 +6,13 @@
 
 namespace lf::config {
 
-// The first of these that holds arm/arm5e.urdf: $LANTERNFISH_SHARE, share/lanternfish beside the program's bin folder, the source tree's shared/.
+// The first of these that holds arm/arm5e.urdf: $LANTERNFISH_SHARE, what is beside the program, the shared/ of the source tree that it was built from.
 // Throws InputError when $LANTERNFISH_SHARE is set and has none, or when there is none at all.
 std::filesystem::path share_folder();
+
+// Of an installed `program` share/lanternfish beside its bin folder; of a built one shared/ in the nearest folder above it, so that a checkout that was
+// copied or moved uses its own files. Empty when neither holds arm/arm5e.urdf.
+std::filesystem::path share_beside(const std::filesystem::path& program);
 
 // `name` as a path: itself when absolute, else in `folder` if it is there, else in the share folder if it is there, else in `folder`.
 std::filesystem::path find_file(const std::string& name, const std::filesystem::path& folder);

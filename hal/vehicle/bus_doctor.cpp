@@ -273,6 +273,40 @@ std::string habits_text(const config::DriveKind& kind) {
 
 }  // namespace
 
+nlohmann::ordered_json doctor_json(const std::vector<FoundNode>& nodes, const std::vector<config::DriveKind>& kinds,
+                                   const ConfiguredDrives& configured) {
+  using Json = nlohmann::ordered_json;
+  Json all = Json::array(), missing = Json::array();
+  bool agrees = !nodes.empty();
+  for (const FoundNode& node : nodes) {
+    Json one{{"node", node.node}, {"name", node.name()}, {"drive", node.drive()}};
+    for (const auto& [key, sub] : {std::pair{"vendor", std::uint8_t{1}}, std::pair{"product", std::uint8_t{2}}}) {
+      const ReadObject* read = node.find(0x1018, sub);
+      one[key] = read != nullptr && read->there() ? Json(read->number()) : Json(nullptr);
+    }
+    const auto told = configured.find(node.node);
+    const auto fit = kinds_of(node, kinds);
+    const config::DriveKind* kind = told != configured.end() ? &told->second.kind : fit.empty() ? nullptr : fit.front();
+    if (told != configured.end()) one["joint"] = told->second.joint;
+    one["profile"] = kind != nullptr ? Json(kind->name) : Json(nullptr);
+    if (node.drive() && kind != nullptr) {
+      one["differences"] = differences(node, *kind);
+      one["unconfirmed"] = kind->unconfirmed;
+    }
+    if (node.drive() && kind == nullptr) one["draft"] = draft_profile(node);
+    const bool as_told = one.contains("differences") && one["differences"].empty();
+    if (told != configured.end() && !as_told) agrees = false;
+    all.push_back(one);
+  }
+  for (const auto& [number, drive] : configured) {
+    const std::uint8_t node = number;
+    if (std::any_of(nodes.begin(), nodes.end(), [node](const FoundNode& found) { return found.node == node; })) continue;
+    missing.push_back({{"node", node}, {"joint", drive.joint}});
+    agrees = false;
+  }
+  return {{"agrees", agrees}, {"nodes", all}, {"missing", missing}};
+}
+
 std::string doctor_text(const std::vector<FoundNode>& nodes, const std::vector<config::DriveKind>& kinds,
                         const ConfiguredDrives& configured) {
   if (nodes.empty()) return "nobody answers: look at the bus' power, bit rate and termination\n";

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -73,6 +74,11 @@ std::vector<std::string> differences(const FoundNode& node, const config::DriveK
 
 // A profile in YAML, filled with what was read; what a reader has to state stands there as a question.
 std::string draft_profile(const FoundNode& node);
+
+// All of it, for programs: {"nodes": [...], "missing": [...], "agrees": ...}. "agrees" is false where nobody answers, and where a configured drive does
+// not answer or differs from its profile.
+nlohmann::ordered_json doctor_json(const std::vector<FoundNode>& nodes, const std::vector<config::DriveKind>& kinds,
+                                   const ConfiguredDrives& configured = {});
 
 // All of it, for people. A node that is `configured` is held against that profile, whatever it says it is.
 std::string doctor_text(const std::vector<FoundNode>& nodes, const std::vector<config::DriveKind>& kinds,

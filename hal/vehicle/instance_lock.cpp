@@ -33,22 +33,22 @@ std::string owner_of(int fd) {
   return owner.empty() ? "" : " (process " + owner + ")";
 }
 
-std::string path_of(const std::string& folder, const std::string& interface) {
-  return folder + "/lanternfishd-" + interface + "-" + namespace_number() + ".lock";
-}
-
 std::string held_by(int fd, const std::string& path, const std::string& interface) {
   return "another lanternfishd" + owner_of(fd) + " is the master of " + interface + ", says " + path;
 }
 
 }  // namespace
 
+std::string InstanceLock::file_of(const std::string& folder, const std::string& interface) {
+  return folder + "/lanternfishd-" + interface + "-" + namespace_number() + ".lock";
+}
+
 InstanceLock::~InstanceLock() {
   if (fd_ >= 0) close(fd_);
 }
 
 std::string InstanceLock::take(const std::string& folder, const std::string& interface) {
-  path_ = path_of(folder, interface);
+  path_ = file_of(folder, interface);
   fd_ = open(path_.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW);
   if (fd_ < 0 && errno == ENOENT) fd_ = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
   if (fd_ < 0) return path_ + ": " + std::strerror(errno) + "; `lock_folder` names where lock files may be";
@@ -66,7 +66,7 @@ std::string InstanceLock::take(const std::string& folder, const std::string& int
 }
 
 std::optional<std::string> locked_by_another(const std::string& folder, const std::string& interface) {
-  const std::string path = path_of(folder, interface);
+  const std::string path = InstanceLock::file_of(folder, interface);
   const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
   if (fd < 0) return std::nullopt;
   std::optional<std::string> held;

@@ -21,6 +21,8 @@ class InstanceLock {
   // in the way, with the other's process number where the file has it.
   std::string take(const std::string& folder, const std::string& interface);
   const std::string& path() const { return path_; }
+  // Where that file is.
+  static std::string file_of(const std::string& folder, const std::string& interface);
 
  private:
   int fd_ = -1;

@@ -10,17 +10,19 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "hal/command_line/help_command.hpp"
+#include "hal/command_line/refusal.hpp"
 #include "hal/config/arm_notes.hpp"
-#include "hal/config/drive_kind.hpp"
-#include "hal/config/nearest.hpp"
+#include "hal/config/homing_file.hpp"
 #include "hal/config/share.hpp"
-#include "hal/vehicle/bus_doctor.hpp"
 #include "hal/vehicle/daemon.hpp"
+#include "hal/vehicle/doctor/examination.hpp"
+#include "hal/vehicle/doctor_command.hpp"
 #include "hal/vehicle/end_signals.hpp"
-#include "hal/vehicle/instance_lock.hpp"
-#include "hal/vehicle/machine_check.hpp"
+#include "hal/vehicle/manual.hpp"
 #include "hal/vehicle/operator_client.hpp"
 #include "hal/vehicle/tick_clock.hpp"
 #include "shared/input_error.hpp"
@@ -37,8 +39,12 @@ struct Options {
   std::string socket;
   bool run_job = false;
   bool check = false;
+  bool print_config = false;
+  bool print_schema = false;
   bool json = false;
 };
+
+bool json_wanted = false;
 
 void complain(const std::string& message) {
   for (std::size_t at = 0; at < message.size();) {
@@ -46,6 +52,21 @@ void complain(const std::string& message) {
     std::fprintf(stderr, "lanternfishd: %s\n", message.substr(at, end - at).c_str());
     at = end + 1;
   }
+}
+
+// Of what ends the program: a script that asked for JSON reads why from stdout, as a person does from stderr.
+int refuse(const std::string& message, int status) {
+  complain(message);
+  if (!json_wanted) return status;
+  Json problems = Json::array();
+  for (std::size_t at = 0; at < message.size();) {
+    const std::size_t end = std::min(message.find('\n', at), message.size());
+    problems.push_back(message.substr(at, end - at));
+    at = end + 1;
+  }
+  const Json document{{"problems", problems}, {"exit_status", status}};
+  std::printf("%s\n", document.dump(1, ' ', false, Json::error_handler_t::replace).c_str());
+  return status;
 }
 
 std::vector<std::string> notes_of(const VehicleConfig& config) {
@@ -66,8 +87,9 @@ int check(const Options& options) {
     const VehicleConfig config = load_vehicle_config(options.config, problems);
     for (const std::string& problem : problems) report["problems"].push_back({{"problem", problem}});
     if (problems.empty()) report["notes"] = notes_of(config);
-    for (const Finding& finding : check_machine(config)) {
-      report["problems"].push_back({{"key", finding.key}, {"problem", finding.problem}, {"remedy", finding.remedy}});
+    for (const doctor::Examination& one : doctor::examine(config)) {
+      if (one.grade != doctor::Grade::bad) continue;
+      report["problems"].push_back({{"key", one.key.empty() ? one.subject : one.key}, {"problem", one.found}, {"remedy", one.remedy}});
       status = environment;
     }
     if (!problems.empty()) status = bad_input;
@@ -92,6 +114,10 @@ int check(const Options& options) {
 }
 
 int run_daemon(const Options& options) {
+  if (options.print_schema || options.print_config) {
+    std::fputs((options.print_schema ? vehicle_schema() : print_vehicle_config(options.config)).c_str(), stdout);
+    return done;
+  }
   if (options.config.empty()) throw InputError("--config FILE is needed; `lanternfishd --help` has more");
   if (options.check) return check(options);
   const VehicleConfig config = load_vehicle_config(options.config);
@@ -209,64 +235,37 @@ int commission(const Options& options, const CommissionOptions& wanted) {
   return follow_commissioning(socket, options.json);
 }
 
-// On its own interface, or the configuration's. Refused while another program is master of the bus.
-int examine_bus(const Options& options, std::string interface) {
-  std::string lock_folder = VehicleConfig().lock_folder;
-  ConfiguredDrives configured;
-  if (!options.config.empty()) {
-    const VehicleConfig vehicle = load_vehicle_config(options.config);
-    lock_folder = vehicle.lock_folder;
-    for (std::size_t i = 0; i < joint_count; ++i) {
-      const config::JointDriveChoice drive = config::drive_of(vehicle.machine.drives, i);
-      configured[static_cast<std::uint8_t>(drive.node)] = {
-          config::joint_name(i), config::find_drive_kind(drive.profile, std::filesystem::path(vehicle.machine.file).parent_path())};
-    }
-    if (interface.empty()) interface = vehicle.interface;
-  }
-  if (interface.empty()) throw InputError("doctor needs --interface, or --config with 'can.interface'");
-  // A daemon that waits for its first order sends nothing that could be heard.
-  if (const auto held = locked_by_another(lock_folder, interface)) throw EnvironmentLacks(*held + "; stop it first");
-  SocketCan::Config config;
-  config.interface = interface;
-  config.filters = core_filters();
-  for (std::uint32_t node = 1; node <= 126; ++node) config.filters.push_back(CanFilter::exactly(0x580 + node));
-  SocketCan can(config);
-  if (const PortStatus error = can.open(); error != port_ok) throw EnvironmentLacks(SocketCan::explain(error, interface));
-  // Questions on a bus that has a master would stop its arm: a core takes them for another master's.
-  if (const auto master = hear_another_master(can, listen_for_a_master)) throw EnvironmentLacks(interface + ": " + *master);
-  TickClock clock(Duration::from_ms(1));
-  clock.start();
-  std::vector<config::DriveKind> kinds, checked;
-  for (const std::string& name : config::shipped_drive_kinds()) kinds.push_back(config::find_drive_kind(name, ""));
-  checked = kinds;
-  for (const auto& [node, drive] : configured) checked.push_back(drive.kind);
-  BusDoctor doctor(1, 126, checked);
-  std::vector<CanFrame> out;
-  while (!doctor.done()) {
-    const Time now = clock.wait();
-    for (ReceivedFrame received; can.receive(received) == port_ok;) doctor.on_frame(received.frame, now);
-    out.clear();
-    doctor.step(now, out);
-    (void)can.send(out);
-  }
-  std::fputs(doctor_text(doctor.nodes(), kinds, configured).c_str(), stdout);
-  return doctor.nodes().empty() ? failed : done;
-}
-
 void add_doctor(CLI::App& app, const Options& options, Action& action) {
-  auto interface = std::make_shared<std::string>();
-  CLI::App* command = app.add_subcommand("doctor", "read the bus: which drives are on it, and what differs from their profiles");
-  command->add_option("--interface", *interface, "the CAN interface, in place of the configuration's");
-  command->callback([&options, &action, interface] { action = [&options, interface] { return examine_bus(options, *interface); }; });
+  auto request = std::make_shared<DoctorRequest>();
+  CLI::App* command = app.add_subcommand(
+      "doctor",
+      "look at this machine as the configuration has it, and read the bus: which drives are on it, and what differs from their profiles");
+  command->add_option("--interface", request->interface, "The CAN interface, in place of the configuration's");
+  CLI::Option* machine = command->add_flag("--machine", request->machine_only, "Leave the bus alone");
+  command->add_flag("--bus", request->bus_only, "Only read the bus")->excludes(machine);
+  command->callback([&options, &action, request] {
+    action = [&options, request] {
+      request->config = options.config;
+      request->json = options.json;
+      return run_doctor(*request);
+    };
+  });
 }
 
 void add_commission(CLI::App& app, const Options& options, Action& action) {
   auto wanted = std::make_shared<CommissionOptions>();
   CLI::App* command = app.add_subcommand("commission", right_of("commission")->does);
-  command->add_option("--joint", wanted->joints, "only this one; may be given again")->allow_extra_args(false);
+  command->add_option("--joint", wanted->joints, "only this one")->allow_extra_args(false);
   command->add_flag("--here", wanted->here, "the arm stands at its zero, in a jig: nothing moves");
   command->add_flag("--clear", wanted->clear, "nobody and nothing is within the arm's reach");
   command->callback([&options, &action, wanted] { action = [&options, wanted] { return commission(options, *wanted); }; });
+}
+
+// What completes the arguments of orders.
+command_line::WordSources word_sources() {
+  std::string joints = "printf \"%s\\n\"";
+  for (std::size_t i = 0; i < joint_count; ++i) joints += std::string(" ") + config::joint_name(i);
+  return {{"JOINT", {joints}}, {"--joint", {joints}}, {"--press", {"printf \"%s\\n\" left centre right"}}};
 }
 
 int run(int argc, char** argv) {
@@ -276,6 +275,8 @@ int run(int argc, char** argv) {
   app.add_option("--config", options.config, "The vehicle's configuration");
   app.add_option("--socket", options.socket, "The operator interface's socket, for the sub-commands");
   app.add_flag("--check", options.check, "Only check the configuration, and what this machine has of it");
+  app.add_flag("--print-config", options.print_config, "Print every key with its range and default: of --config, else with the defaults");
+  app.add_flag("--print-schema", options.print_schema, "Print the JSON Schema of configurations, for editors");
   app.add_flag("--run", options.run_job, "Start the job at once and end with it");
   app.add_flag("--json", options.json, "Answer in JSON");
   app.set_version_flag("--version", version_line("lanternfishd"), "Print which build this is");
@@ -286,19 +287,14 @@ int run(int argc, char** argv) {
   add_task(app, options, action);
   add_commission(app, options, action);
   add_doctor(app, options, action);
+  command_line::add_help_commands(app, action, manual_of(app), word_sources(),
+                                  [](const std::string& text) { std::fputs(text.c_str(), stdout); });
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {
     return app.exit(help);
-  } catch (const CLI::ExtrasError& error) {
-    std::vector<std::string> names;
-    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) names.push_back(command->get_name());
-    const std::vector<std::string> extras = app.remaining(true);
-    complain(error.what() + (extras.empty() ? std::string() : config::suggestion(extras.front(), names)));
-    return bad_input;
   } catch (const CLI::ParseError& error) {
-    complain(error.what());
-    return bad_input;
+    return refuse(command_line::refusal(app, error), bad_input);
   }
   return action();
 }
@@ -309,16 +305,14 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);
+  lf::hal::json_wanted = std::any_of(argv, argv + argc, [](std::string_view word) { return word == "--json"; });
   try {
     return lf::hal::run(argc, argv);
   } catch (const lf::InputError& error) {
-    lf::hal::complain(error.what());
-    return lf::hal::bad_input;
+    return lf::hal::refuse(error.what(), lf::hal::bad_input);
   } catch (const lf::hal::EnvironmentLacks& error) {
-    lf::hal::complain(error.what());
-    return lf::hal::environment;
+    return lf::hal::refuse(error.what(), lf::hal::environment);
   } catch (const std::exception& error) {
-    lf::hal::complain(std::string("unexpected: ") + error.what());
-    return lf::hal::environment;
+    return lf::hal::refuse(std::string("unexpected: ") + error.what(), lf::hal::environment);
   }
 }

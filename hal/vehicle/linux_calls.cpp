@@ -5,6 +5,7 @@
 #include <sys/ioctl.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
+#include <sys/timex.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -75,6 +76,17 @@ int LinuxCalls::poll(int fd, short events, std::int64_t timeout_ns) {
 
 std::int64_t LinuxCalls::monotonic_ns() { return clock_ns(CLOCK_MONOTONIC); }
 std::int64_t LinuxCalls::realtime_ns() { return clock_ns(CLOCK_REALTIME); }
+
+std::int64_t LinuxCalls::monotonic_step_ns() {
+  timespec step{};
+  clock_getres(CLOCK_MONOTONIC, &step);
+  return step.tv_sec * std::int64_t{1'000'000'000} + step.tv_nsec;
+}
+
+bool LinuxCalls::wall_clock_synchronised() {
+  timex nothing_set{};
+  return adjtimex(&nothing_set) >= 0 && (nothing_set.status & STA_UNSYNC) == 0;
+}
 
 LinuxCalls& linux_calls() {
   static LinuxCalls calls;

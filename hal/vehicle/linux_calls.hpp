@@ -29,7 +29,9 @@ class LinuxCalls {
   // Waits until `fd` has one of poll(2)'s `events` or `timeout_ns` have passed; the events that came, 0 after the time.
   virtual int poll(int fd, short events, std::int64_t timeout_ns);
   virtual std::int64_t monotonic_ns();
-  virtual std::int64_t realtime_ns();  // only to translate the kernel's stamps
+  virtual std::int64_t realtime_ns();        // only to translate the kernel's stamps
+  virtual std::int64_t monotonic_step_ns();  // the finest that CLOCK_MONOTONIC and its timers tell apart
+  virtual bool wall_clock_synchronised();    // as whoever keeps it says (NTP, PTP)
 };
 
 LinuxCalls& linux_calls();  // the kernel's own

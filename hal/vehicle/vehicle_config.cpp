@@ -7,6 +7,8 @@
 #include <system_error>
 
 #include "hal/config/handle_check.hpp"
+#include "hal/config/key_listing.hpp"
+#include "hal/config/key_schema.hpp"
 #include "hal/config/panel_check.hpp"
 #include "hal/config/share.hpp"
 #include "hal/config/text_file.hpp"
@@ -125,6 +127,14 @@ void find_homing(config::Machine& machine, std::vector<std::string>& problems) {
   machine.homing_file.clear();
 }
 
+void read_keys(const std::string& path, VehicleConfig& config, std::vector<std::string>& problems) {
+  config.machine.file = path;
+  const config::Source source = config::Source::of_file(path, problems);
+  const YAML::Node root = config::parse_yaml(config::read_text_file(path), source);
+  if (!root.IsNull() && !root.IsMap()) source.refuse(root.Mark(), "a vehicle's configuration is a group of keys");
+  if (root.IsMap()) config::read_map(root, "", "", keys(config), source);
+}
+
 std::string joined(const std::vector<std::string>& problems) {
   std::string text;
   for (const std::string& problem : problems) text += (text.empty() ? "" : "\n") + problem;
@@ -175,13 +185,22 @@ VehicleConfig load_vehicle_config(const std::string& path) {
   return config;
 }
 
+std::string print_vehicle_config(const std::string& path) {
+  std::vector<std::string> problems;
+  VehicleConfig config, defaults;
+  if (!path.empty()) read_keys(path, config, problems);
+  if (!problems.empty()) throw InputError(joined(problems));
+  return config::key_listing(keys(config), keys(defaults));
+}
+
+std::string vehicle_schema() {
+  VehicleConfig config;
+  return config::key_schema(keys(config), "Lanternfish vehicle");
+}
+
 VehicleConfig load_vehicle_config(const std::string& path, std::vector<std::string>& problems) {
   VehicleConfig config;
-  config.machine.file = path;
-  const config::Source source = config::Source::of_file(path, problems);
-  const YAML::Node root = config::parse_yaml(config::read_text_file(path), source);
-  if (!root.IsNull() && !root.IsMap()) source.refuse(root.Mark(), "a vehicle's configuration is a group of keys");
-  if (root.IsMap()) config::read_map(root, "", "", keys(config), source);
+  read_keys(path, config, problems);
   check_together(config, path, problems);
   find_homing(config.machine, problems);
   config.core = config::make_core(config.machine, problems);

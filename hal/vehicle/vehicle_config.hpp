@@ -54,6 +54,13 @@ struct VehicleConfig {
 // In the order of the documentation. The pointers are into the argument.
 config::Keys keys(VehicleConfig& config);
 
+// Every key spelled out with its value, meaning, range and default, as YAML that load_vehicle_config reads back to the same. Empty `path`: the defaults;
+// else what the file says, whether or not the files that it names are there. Throws InputError as load_vehicle_config does.
+std::string print_vehicle_config(const std::string& path = "");
+
+// JSON Schema of vehicle.yaml; shared/vehicle/vehicle.schema.json is its output.
+std::string vehicle_schema();
+
 // Throws InputError whose text has every problem on a line of its own, each with file and line where it has one.
 VehicleConfig load_vehicle_config(const std::string& path);
 // The same, but adds what is wrong to `problems`, as long as the file is YAML; what comes back is then good for looking at this machine alone.

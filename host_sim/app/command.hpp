@@ -42,7 +42,7 @@ void add_version(CLI::App& app, Action& action);
 // Keys in the order they are put in, as the contract lists them.
 using Json = nlohmann::ordered_json;
 
-// One document on stdout, numbers that are not finite as null.
+// One document on stdout, numbers that are not finite as null. Both: what a reader that went away (`| head`) would have got is left out in silence.
 void print_json(const Json& document);
 
 // printf to stdout. Throws EnvironmentError when stdout cannot be written (a full disk).

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <cstdio>
 #include <memory>
 
 #include "firmware/arm/inverse_kinematics.hpp"
@@ -16,6 +17,9 @@ struct Options {
   double margin_rad = arm::default_limit_margin_rad;
   bool json = false;
 };
+
+// Metres and radians: a thousand arms' lengths. Squares of what is far larger are no numbers, and neither is by how much it is too far.
+constexpr double farthest = 1000;
 
 bool is_length(arm::IkOutcome outcome) { return outcome == arm::IkOutcome::too_far || outcome == arm::IkOutcome::too_near; }
 
@@ -53,6 +57,13 @@ void tell(const arm::IkResult& ik) {
 int ik(const Options& options) {
   for (const double value : {options.x_m, options.y_m, options.z_m, options.roll_rad, options.margin_rad}) {
     if (!std::isfinite(value)) throw InputError("ik takes finite numbers");
+  }
+  for (const auto& [name, value] :
+       {std::pair{"--x", options.x_m}, {"--y", options.y_m}, {"--z", options.z_m}, {"--roll", options.roll_rad}}) {
+    if (std::abs(value) <= farthest) continue;
+    char text[96];
+    std::snprintf(text, sizeof text, "ik: %s takes a number from -%g to %g, not %g", name, farthest, farthest, value);
+    throw InputError(text);
   }
   const arm::IkResult result = arm::inverse_kinematics(Vec3(options.x_m, options.y_m, options.z_m), options.roll_rad, options.margin_rad);
   if (options.json) {

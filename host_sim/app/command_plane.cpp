@@ -50,7 +50,7 @@ int plane(const Options& options) {
 void add_plane(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("plane", "The plane that most points of a cloud lie on");
   auto options = std::make_shared<Options>();
-  command->add_option("CLOUD", options->cloud, "A .pcd, .ply or .csv file, in metres")->required();
+  command->add_option("CLOUD", options->cloud, "A .pcd, .ply, .csv or .xyz file, in metres")->required();
   command->add_option("--threshold-mm", options->threshold_mm, "Inliers are nearer to the plane than this")
       ->check(within(1e-3, 1e4))
       ->capture_default_str();

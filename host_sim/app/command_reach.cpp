@@ -64,13 +64,14 @@ void check_arm(const scenario::Scenario& scenario) {
 }
 
 int reach(const Options& options) {
+  const std::string format = picture_format(options.out);
   const scenario::Scenario scenario = scenario::load_scenario(options.scenario, options.set);
   check_arm(scenario);
   const std::vector<ReachGrid> grids{survey_grid(scenario.panel, scenario.panel.button_height_m, closed_tip_m()),
                                      survey_grid(scenario.panel, scenario.panel.handle_height_m, 0)};
   const std::vector<ReachTarget> targets = survey_targets(scenario, options.draws);
-  const std::vector<std::uint8_t> png = draw_reach(scenario, grids, targets);
-  record::write_file_atomically(options.out, {reinterpret_cast<const char*>(png.data()), png.size()});
+  const std::vector<std::uint8_t> picture = draw_reach(scenario, grids, targets, format);
+  record::write_file_atomically(options.out, {reinterpret_cast<const char*>(picture.data()), picture.size()});
   bool all = true;
   for (const ReachTarget& target : targets) all = all && target.nominal.outcome == arm::IkOutcome::ok;
   if (options.json) {
@@ -97,7 +98,7 @@ void add_reach(CLI::App& app, Action& action) {
   auto options = std::make_shared<Options>();
   command->add_option("SCENARIO", options->scenario, "A file or a shipped name")->capture_default_str();
   command->add_option("--set", options->set, "path.to.key=value, as for run")->allow_extra_args(false);
-  command->add_option("--out", options->out, "The picture")->capture_default_str();
+  command->add_option("--out", options->out, "The picture, .png or .jpg")->capture_default_str();
   command->add_option("--draws", options->draws, "Docking errors to try")->check(CLI::Range(1, 1000000))->capture_default_str();
   command->add_flag("--json", options->json, "Print JSON");
   command->callback([options, &action] { action = [options] { return reach(*options); }; });

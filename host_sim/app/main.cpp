@@ -9,8 +9,11 @@
 #include <string_view>
 #include <vector>
 
+#include "hal/command_line/help_command.hpp"
+#include "hal/command_line/refusal.hpp"
 #include "hal/config/nearest.hpp"
 #include "host_sim/app/command.hpp"
+#include "host_sim/app/manual.hpp"
 #include "host_sim/record/file_sink.hpp"
 #include "shared/input_error.hpp"
 #include "shared/version/version.hpp"
@@ -34,6 +37,7 @@ void add_commands(CLI::App& app, Action& action) {
   add_bench(app, action);
   add_doctor(app, action);
   add_version(app, action);
+  command_line::add_help_commands(app, action, manual_of(app), word_sources(), [](const std::string& text) { print("%s", text.c_str()); });
 }
 
 bool json_wanted = false;
@@ -83,7 +87,7 @@ int run_command(int argc, char** argv) {
   } catch (const CLI::Success& help) {  // --help and its like
     return app.exit(help);
   } catch (const CLI::ParseError& error) {
-    return complain(error.what(), bad_input);
+    return complain(command_line::refusal(app, error), bad_input);
   }
 }
 

@@ -1,5 +1,6 @@
 #include "host_sim/app/reach_picture.hpp"
 
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <opencv2/imgcodecs.hpp>
@@ -121,8 +122,16 @@ std::string target_line(const ReachTarget& target) {
 
 }  // namespace
 
+std::string picture_format(const std::filesystem::path& name) {
+  std::string ending = name.extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (ending.empty() || ending == ".png") return ".png";
+  if (ending == ".jpg" || ending == ".jpeg") return ".jpg";
+  throw InputError(name.string() + ": the picture is written as .png or .jpg");
+}
+
 std::vector<std::uint8_t> draw_reach(const scenario::Scenario& scenario, const std::vector<ReachGrid>& grids,
-                                     const std::vector<ReachTarget>& targets) {
+                                     const std::vector<ReachTarget>& targets, const std::string& format) {
   const PanelLayout& layout = scenario.panel;
   const Vec2 size_px = (layout.plate_max_m - layout.plate_min_m) * px_per_m;
   const int width = static_cast<int>(size_px.x()), height = static_cast<int>(size_px.y());
@@ -143,9 +152,9 @@ std::vector<std::uint8_t> draw_reach(const scenario::Scenario& scenario, const s
     write(picture, target_line(target), {margin_px, y}, 0.5);
     y += 22;
   }
-  std::vector<std::uint8_t> png;
-  cv::imencode(".png", picture, png);
-  return png;
+  std::vector<std::uint8_t> bytes;
+  cv::imencode(format, picture, bytes);
+  return bytes;
 }
 
 }  // namespace lf::app

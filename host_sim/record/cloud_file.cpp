@@ -124,14 +124,14 @@ void add_point(CloudFile& cloud, double x, double y, double z, double intensity)
 CloudFile read_cloud_file(const std::filesystem::path& path) {
   const std::string name = path.string();
   const std::string ending = lower_case(path.extension().string());
-  const bool known = ending == ".pcd" || ending == ".ply" || ending == ".csv";
-  if (!known) throw InputError(name, 0, "is not a cloud: .pcd, .ply or .csv is read");
+  const bool known = ending == ".pcd" || ending == ".ply" || ending == ".csv" || ending == ".xyz";
+  if (!known) throw InputError(name, 0, "is not a cloud: .pcd, .ply, .csv or .xyz is read");
   std::ifstream file(path, std::ios::binary);
   if (!file || std::filesystem::is_directory(path)) throw InputError(name, 0, "cannot be read");
   const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   if (ending == ".pcd") return read_pcd(name, bytes);
   if (ending == ".ply") return read_ply(name, bytes);
-  return read_csv(name, bytes);
+  return ending == ".csv" ? read_csv(name, bytes) : read_xyz(name, bytes);
 }
 
 }  // namespace lf::record

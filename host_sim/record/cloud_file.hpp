@@ -1,4 +1,4 @@
-// Clouds in files: PCD and PLY written, PCD, PLY and CSV read. Metres. Points have x, y, z and an intensity (the peak's amplitude).
+// Clouds in files: PCD and PLY written, PCD, PLY, CSV and XYZ read. Metres. Points have x, y, z and an intensity (the peak's amplitude).
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,8 @@ struct CloudFile {
 };
 
 // By the name's ending, whatever its case: .pcd (ascii, binary, binary_compressed), .ply (ascii, binary of either byte order), .csv (columns x, y, z by a
-// header line, else the first three; separated by commas, semicolons, tabs or blanks; # starts a comment).
+// header line, else the first three; separated by commas, semicolons, tabs or blanks; # starts a comment), .xyz (rows of x y z; a fourth column alone is the
+// intensity, others are left; # and // start comments; a first line with one whole number states how many points follow).
 // Numeric fields of any type and order are taken; without `intensity` the amplitude is 0.
 // Throws InputError (with the line in text) for another ending and for an unreadable, malformed or truncated file, or one without x, y, z.
 CloudFile read_cloud_file(const std::filesystem::path& path);

@@ -56,5 +56,6 @@ void add_point(CloudFile& cloud, double x, double y, double z, double intensity)
 CloudFile read_pcd(const std::string& name, std::string_view bytes);
 CloudFile read_ply(const std::string& name, std::string_view bytes);
 CloudFile read_csv(const std::string& name, std::string_view bytes);
+CloudFile read_xyz(const std::string& name, std::string_view bytes);
 
 }  // namespace lf::record

@@ -1,103 +1,15 @@
 #include "host_sim/scenario/describe.hpp"
 
-#include <concepts>
-#include <nlohmann/json.hpp>
-
+#include "hal/config/key_listing.hpp"
+#include "hal/config/key_schema.hpp"
 #include "hal/config/key_text.hpp"
 #include "host_sim/scenario/keys.hpp"
 
 namespace lf::scenario {
 
-namespace {
-
-using Json = nlohmann::ordered_json;
-
-Json nested_schema(const std::vector<Key>& table);
-
-Json number_schema(const Key& key, const char* type) { return {{"type", type}, {"minimum", key.min}, {"maximum", key.max}}; }
-
-Json words_schema(const Key& key) {
-  Json schema{{"type", "string"}};
-  if (!key.words.empty()) schema["enum"] = key.words;
-  return schema;
-}
-
-Json list_schema(const Json& items, std::size_t count) {
-  Json schema{{"type", "array"}, {"items", items}};
-  if (count > 0) schema["minItems"] = schema["maxItems"] = count;
-  return schema;
-}
-
-struct TypeSchema {
-  const Key& key;
-
-  Json operator()(double*) const { return number_schema(key, "number"); }
-  template <std::integral Integer>
-  Json operator()(Integer*) const {
-    return number_schema(key, "integer");
-  }
-  Json operator()(bool*) const { return {{"type", "boolean"}}; }
-  Json operator()(std::string*) const { return words_schema(key); }
-  Json operator()(Spread*) const {
-    const Json number = number_schema(key, "number");
-    const Json range{{"type", "object"},
-                     {"properties", {{"min", number}, {"max", number}}},
-                     {"required", {"min", "max"}},
-                     {"additionalProperties", false}};
-    return {{"oneOf", {number, range}}};
-  }
-  Json operator()(Chance*) const { return {{"enum", Json::array({true, false, "either"})}}; }
-  Json operator()(PanelLayout::Pointer*) const { return words_schema(key); }
-  Json operator()(std::array<double, 3>*) const { return list_schema(number_schema(key, "number"), 3); }
-  Json operator()(Vec2*) const { return list_schema(number_schema(key, "number"), 2); }
-  Json operator()(std::array<Vec2, 3>*) const { return list_schema((*this)(static_cast<Vec2*>(nullptr)), 3); }
-  Json operator()(std::vector<double>*) const { return list_schema(number_schema(key, "number"), 0); }
-  template <std::size_t Count>
-  Json operator()(std::vector<std::array<double, Count>>*) const {
-    return list_schema(list_schema(number_schema(key, "number"), Count), 0);
-  }
-  Json operator()(std::vector<std::string>*) const { return list_schema(words_schema(key), 0); }
-  Json operator()(std::vector<Task>*) const {
-    Task task;
-    Json item = nested_schema(keys(task));
-    item["minProperties"] = item["maxProperties"] = 1;
-    return list_schema(item, 0);
-  }
-  Json operator()(std::vector<Fault>*) const {
-    Fault fault;
-    Json item = nested_schema(keys(fault));
-    item["required"] = {"kind"};
-    return list_schema(item, 0);
-  }
-};
-
-// The table's dotted paths as nested objects.
-Json nested_schema(const std::vector<Key>& table) {
-  Json root{{"type", "object"}, {"additionalProperties", false}, {"properties", Json::object()}};
-  for (const Key& key : table) {
-    Json* object = &root;
-    std::size_t begin = 0;
-    for (std::size_t dot = key.path.find('.'); dot != std::string::npos; dot = key.path.find('.', begin)) {
-      Json& section = (*object)["properties"][key.path.substr(begin, dot - begin)];
-      if (section.is_null())
-        section = Json{{"type", Json::array({"object", "null"})}, {"additionalProperties", false}, {"properties", Json::object()}};
-      object = &section;
-      begin = dot + 1;
-    }
-    Json schema = std::visit(TypeSchema{key}, key.value);
-    schema["description"] = key.doc + (key.unit.empty() ? "" : " [" + key.unit + "]");
-    (*object)["properties"][key.path.substr(begin)] = schema;
-  }
-  return root;
-}
-
-}  // namespace
-
 std::string json_schema() {
   Scenario scenario;
-  Json schema{{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "Lanternfish scenario"}};
-  schema.update(nested_schema(keys(scenario)));
-  return schema.dump(2) + "\n";
+  return config::key_schema(keys(scenario), "Lanternfish scenario");
 }
 
 std::string keys_markdown() {
@@ -112,18 +24,8 @@ std::string keys_markdown() {
 }
 
 std::string scenario_yaml(const Scenario& of) {
-  Scenario scenario = of;
-  std::string out, section;
-  for (const Key& key : keys(scenario)) {
-    const std::size_t dot = key.path.find('.');
-    const std::string group = dot == std::string::npos ? "" : key.path.substr(0, dot);
-    if (group != section && !group.empty()) out += group + ":\n";
-    section = group;
-    const std::string line = (group.empty() ? "" : "  ") + key.path.substr(group.empty() ? 0 : dot + 1) + ": " + config::value_text(key);
-    out += line + std::string(line.size() < 44 ? 44 - line.size() : 1, ' ') + "# " + key.doc + (key.unit.empty() ? "" : ", " + key.unit) +
-           "\n";
-  }
-  return out;
+  Scenario scenario = of, defaults;
+  return config::key_listing(keys(scenario), keys(defaults));
 }
 
 }  // namespace lf::scenario

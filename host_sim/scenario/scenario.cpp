@@ -48,6 +48,20 @@ fs::path find_scenario(const std::string& file_or_name) {
   throw InputError("no scenario '" + file_or_name + "'" + (near.empty() ? "; there are " + list + ", or give a file" : near));
 }
 
+// A profile's name without an ending is a shipped one's.
+bool names_a_file(const std::string& path, const std::string& value) {
+  if (path.starts_with("drives.") && path.ends_with("profile")) return looks_like_a_file(value);
+  return path == "arm.urdf" || path == "safety.limits" || path == "safety.mission_limits";
+}
+
+// Whoever types a name means the present folder; in the scenario's file a name means the file's own.
+void take_from_here(const Key& key) {
+  auto* const* name = std::get_if<std::string*>(&key.value);
+  if (name == nullptr || !names_a_file(key.path, **name) || fs::path(**name).is_absolute()) return;
+  std::error_code none;
+  if (fs::is_regular_file(**name, none)) **name = fs::absolute(**name).lexically_normal();
+}
+
 void apply_override(Scenario& scenario, const std::string& text) {
   const config::Source source = config::Source::of_override(text);
   const std::size_t equals = text.find('=');
@@ -60,6 +74,7 @@ void apply_override(Scenario& scenario, const std::string& text) {
     source.refuse(YAML::Mark::null_mark(), "'" + path + "' is a group of keys: name one of them, as " + within->path + "=VALUE");
   if (found == table.end()) source.refuse(YAML::Mark::null_mark(), "unknown key '" + path + "'" + config::suggest_path(path, table));
   config::read_value(parse_yaml(text.substr(equals + 1), source), path, *found, source);
+  take_from_here(*found);
 }
 
 void check_buttons(const Scenario& s, const std::function<void(const std::string&)>& refuse) {

@@ -37,7 +37,7 @@ void use(const record::CloudFile& cloud) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
-  for (const auto read : {lf::record::read_pcd, lf::record::read_ply, lf::record::read_csv}) {
+  for (const auto read : {lf::record::read_pcd, lf::record::read_ply, lf::record::read_csv, lf::record::read_xyz}) {
     try {
       lf::fuzz::use(read("fuzz", bytes));
     } catch (const lf::InputError& refused) {

@@ -56,6 +56,16 @@ if [ -e "$daemon" ]; then
     in_root lanternfishd --config "$file" --check || [ $? = 3 ]
   done
   in_root getent passwd lanternfish
+  for file in usr/share/man/man8/lanternfishd.8.gz usr/share/man/man5/lanternfish-vehicle.5.gz usr/share/man/man5/vehicle.yaml.5.gz \
+              usr/share/lanternfish/vehicle/vehicle.schema.json usr/share/bash-completion/completions/lanternfishd usr/share/zsh/vendor-completions/_lanternfishd; do
+    [ -s "$root/$file" ] || { echo "not installed: /$file"; exit 1; }
+  done
+  # Every page that the configuration and the units name is there.
+  for page in $(grep -oh '[a-z]*\.md' "$root/etc/lanternfish/vehicle.yaml" "$root"/usr/lib/systemd/system/lanternfish*.service | sort -u); do
+    [ -s "$root/usr/share/doc/lanternfishd/$page" ] || { echo "the package names $page and has it not"; exit 1; }
+  done
+  in_root lanternfishd --config /etc/lanternfish/vehicle.yaml doctor --machine || [ $? = 3 ]
+  in_root lanternfishd --print-config >"$work/printed.yaml"
   for file in usr/lib/systemd/system/lanternfishd.service usr/lib/systemd/system/lanternfish-can.service usr/lib/udev/rules.d/70-lanternfishd.rules \
               usr/lib/lanternfish/lanternfish-can etc/lanternfish/lanternfish-can.conf; do
     [ -s "$root/$file" ] || { echo "not installed: /$file"; exit 1; }
@@ -90,5 +100,8 @@ for file in result.json report.html cloud.pcd can0.log; do
   [ -s "$root/tmp/run/$file" ] || { echo "the run left no $file"; exit 1; }
 done
 gzip -t "$root"/usr/share/man/man?/lanternfish*.gz
+for file in bash-completion/completions/lanternfish zsh/vendor-completions/_lanternfish; do
+  cmp "$root/usr/share/$file" <(in_root lanternfish completion "${file%%[-/]*}") || { echo "not what the program prints: /usr/share/$file"; exit 1; }
+done
 remove lanternfish lanternfish-common
 echo "installed, used, upgraded and removed"

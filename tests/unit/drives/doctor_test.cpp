@@ -142,6 +142,32 @@ TEST(BusDoctor, ReadsWhatAProfileWantsCheckedAndNamesAllThatFit) {
   EXPECT_NE(text.find("it may as well be: ipos4808"), std::string::npos) << text;
 }
 
+// The document says what the text says, and whether a script may go on.
+TEST(BusDoctor, TheDocumentAgreesWhenEveryConfiguredDriveDoes) {
+  DriveBench bench({"", "lmdrive"});
+  const std::vector<hal::FoundNode> nodes = examine(bench);
+  const auto document = [&](const char* profile, std::uint8_t node) {
+    return hal::doctor_json(nodes, all_kinds(), {{node, {"elbow", config::find_drive_kind(profile, "")}}});
+  };
+  const auto right = document("lmdrive", 3);
+  EXPECT_EQ(right["agrees"], true) << right.dump(1);
+  ASSERT_EQ(right["nodes"].size(), 6u);
+  EXPECT_EQ(right["nodes"][2]["joint"], "elbow");
+  EXPECT_EQ(right["nodes"][2]["profile"], "lmdrive");
+  EXPECT_EQ(right["nodes"][2]["vendor"], 0x0800005A);
+  EXPECT_TRUE(right["nodes"][2]["differences"].empty());
+  EXPECT_EQ(right["nodes"][5]["drive"], false);
+  EXPECT_FALSE(right["nodes"][5].contains("differences"));
+  const auto wrong = document("epos4", 3), absent = document("lmdrive", 9), output_node = document("lmdrive", 6);
+  EXPECT_EQ(wrong["agrees"], false);
+  EXPECT_FALSE(wrong["nodes"][2]["differences"].empty());
+  EXPECT_EQ(absent["agrees"], false);
+  EXPECT_EQ(absent["missing"][0]["node"], 9);
+  EXPECT_EQ(absent["missing"][0]["joint"], "elbow");
+  EXPECT_EQ(output_node["agrees"], false) << "no drive at all";
+  EXPECT_EQ(hal::doctor_json({}, {})["agrees"], false) << "nobody answers";
+}
+
 TEST(BusDoctor, AnEmptyBusIsToldAsOne) { EXPECT_NE(hal::doctor_text({}, {}).find("nobody answers"), std::string::npos); }
 
 }  // namespace

@@ -111,6 +111,21 @@ TEST(CloudFile, ReadsCsvByItsHeaderOrByItsFirstThreeColumns) {
   EXPECT_EQ(read_cloud_file(folder.write("c.csv", "1   2\t3\n")).points.size(), 1u);
 }
 
+TEST(CloudFile, ReadsXyzWithWhateverStandsBesideThePoints) {
+  const TemporaryFolder folder;
+  const auto bare = read_cloud_file(folder.write("a.xyz", "1 2 3\n4\t5  6.5\r\n\n"));
+  ASSERT_EQ(bare.points.size(), 2u);
+  EXPECT_EQ(bare.points[1].p_m, Eigen::Vector3f(4, 5, 6.5f));
+  EXPECT_EQ(bare.points[1].amplitude, 0);
+  const auto intensity = read_cloud_file(folder.write("b.XYZ", "//X Y Z Intensity\n2\n1 2 3 40\nnan 2 3 40\n"));
+  ASSERT_EQ(intensity.points.size(), 1u);
+  EXPECT_EQ(intensity.points[0].amplitude, 40);
+  EXPECT_EQ(intensity.skipped, 1u);
+  const auto colours = read_cloud_file(folder.write("c.xyz", "# r g b\n1,2,3,255,0,0\n"));
+  EXPECT_EQ(colours.points.at(0).p_m, Eigen::Vector3f(1, 2, 3));
+  EXPECT_EQ(colours.points.at(0).amplitude, 0) << "a colour is no intensity";
+}
+
 struct BadFile {
   const char* name;
   std::string bytes;
@@ -141,7 +156,13 @@ TEST(CloudFile, RefusesBadFilesInOneLineWithTheLineWhereThereIsOne) {
       {"r.csv", "1,2,3\n1,,3\n", "r.csv:2: '' is not a number"},
       {"s.csv", "u,v,w\n", "s.csv:1: is neither numbers nor a header"},
       {"t.csv", "# nothing\n", "is empty"},
-      {"u.xyz", "1 2 3\n", ".pcd, .ply or .csv is read"},
+      {"u.txt", "1 2 3\n", ".pcd, .ply, .csv or .xyz is read"},
+      {"v.xyz", "", "is empty"},
+      {"w.xyz", "3\n", "is empty"},
+      {"x.xyz", "1 2 3\n1 2\n", "x.xyz:2: has fewer than three columns"},
+      {"y.xyz", "1 2 3 4\n1 2 3\n", "y.xyz:2: has 3 columns, not 4"},
+      {"z.xyz", "1 2 far\n", "z.xyz:1: 'far' is not a number"},
+      {"0.xyz", "3\n1 2 3\n4 5 6\n", "has 2 points, not the 3 that its first line says"},
   };
   const TemporaryFolder folder;
   for (const BadFile& file : files) {

@@ -49,7 +49,15 @@ class FakeLinux : public hal::LinuxCalls {
   int open_sockets = 0;
   int polled = 0;  // what poll() answers
 
+  std::vector<char> link;  // what the kernel answers about an interface (rtnetlink); empty: nothing, ever
+
+  // Clocks.
+  std::int64_t monotonic_step = 1;
+  bool wall_clock_kept = true;
+
   // The camera.
+  std::vector<std::uint32_t> formats{V4L2_PIX_FMT_GREY};
+  std::pair<std::int32_t, std::int32_t> exposure_range{1, 5000}, gain_range{0, 100};  // empty where the first is greater
   struct Frame {
     std::uint32_t sequence = 0;
     std::int64_t stamp_ns = 0;
@@ -78,10 +86,10 @@ class FakeLinux : public hal::LinuxCalls {
     return buffers[static_cast<std::size_t>(offset)].data();
   }
   int unmap(void*, std::size_t) override { return 0; }
-  int socket(int, int, int) override {
-    if (!has_can) return -EAFNOSUPPORT;
+  int socket(int family, int, int) override {
+    if (family != AF_NETLINK && !has_can) return -EAFNOSUPPORT;
     ++open_sockets;
-    return 50;
+    return family == AF_NETLINK ? 60 : 50;
   }
   int bind(int, const sockaddr*, std::size_t) override { return interface_there ? 0 : -ENODEV; }
   int set_option(int, int level, int name, const void* value, std::size_t bytes) override {
@@ -105,7 +113,12 @@ class FakeLinux : public hal::LinuxCalls {
     return fd == 100 ? camera_ioctl(request, argument) : can_ioctl(request, argument);
   }
 
-  int receive_many(int, mmsghdr* messages, unsigned count) override {
+  int receive_many(int fd, mmsghdr* messages, unsigned count) override {
+    if (fd == 60) {
+      std::memcpy(messages->msg_hdr.msg_iov->iov_base, link.data(), link.size());
+      messages->msg_len = static_cast<unsigned>(link.size());
+      return 1;
+    }
     if (receive_error != 0) return -std::exchange(receive_error, 0);
     if (arriving.empty()) return -EAGAIN;
     unsigned n = 0;
@@ -119,7 +132,8 @@ class FakeLinux : public hal::LinuxCalls {
     }
     return static_cast<int>(n);
   }
-  int send_many(int, mmsghdr* messages, unsigned count) override {
+  int send_many(int fd, mmsghdr* messages, unsigned count) override {
+    if (fd == 60) return 1;
     if (send_error != 0) return -send_error;
     if (room == 0) return -ENOBUFS;
     unsigned n = 0;
@@ -130,12 +144,15 @@ class FakeLinux : public hal::LinuxCalls {
     }
     return static_cast<int>(n);
   }
-  int poll(int, short, std::int64_t timeout_ns) override {
+  int poll(int fd, short, std::int64_t timeout_ns) override {
+    if (fd == 60 && !link.empty()) return POLLIN;
     monotonic += timeout_ns;
     return polled;
   }
   std::int64_t monotonic_ns() override { return monotonic; }
   std::int64_t realtime_ns() override { return realtime; }
+  std::int64_t monotonic_step_ns() override { return monotonic_step; }
+  bool wall_clock_synchronised() override { return wall_clock_kept; }
 
   void pass(std::int64_t ns) {
     monotonic += ns;
@@ -205,6 +222,27 @@ class FakeLinux : public hal::LinuxCalls {
         auto* control = static_cast<v4l2_control*>(argument);
         if (control->id != V4L2_CID_EXPOSURE_ABSOLUTE) return -EINVAL;
         control->value = exposure_100us;
+        return 0;
+      }
+      case VIDIOC_ENUM_FMT: {
+        auto* format = static_cast<v4l2_fmtdesc*>(argument);
+        if (format->index >= formats.size()) return -EINVAL;
+        format->pixelformat = formats[format->index];
+        return 0;
+      }
+      case VIDIOC_ENUM_FRAMESIZES: {
+        auto* size = static_cast<v4l2_frmsizeenum*>(argument);
+        if (size->index > 0) return -EINVAL;
+        size->type = V4L2_FRMSIZE_TYPE_DISCRETE;
+        size->discrete = {640, 480};
+        return 0;
+      }
+      case VIDIOC_QUERYCTRL: {
+        auto* control = static_cast<v4l2_queryctrl*>(argument);
+        const auto& range = control->id == V4L2_CID_GAIN ? gain_range : exposure_range;
+        if (range.first > range.second) return -EINVAL;
+        control->minimum = range.first;
+        control->maximum = range.second;
         return 0;
       }
       case VIDIOC_STREAMON: streaming = true; return 0;

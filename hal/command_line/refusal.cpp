@@ -1,0 +1,47 @@
+#include "hal/command_line/refusal.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "hal/command_line/tree.hpp"
+#include "hal/config/nearest.hpp"
+
+namespace lf::command_line {
+
+namespace {
+
+// The chosen commands from the program down.
+std::vector<const CLI::App*> chosen_of(const CLI::App& app) {
+  std::vector<const CLI::App*> chosen{&app};
+  for (std::vector<CLI::App*> next = app.get_subcommands(); !next.empty(); next = next.front()->get_subcommands())
+    chosen.push_back(next.front());
+  return chosen;
+}
+
+std::string unknown_option(const std::string& word, const std::vector<const CLI::App*>& chosen) {
+  const std::string name = word.substr(0, word.find('='));
+  std::vector<std::string> known;
+  std::string command;
+  for (auto one = chosen.rbegin(); one != chosen.rend(); ++one) {
+    for (const CLI::Option* option : options_of(**one)) known.push_back("--" + option->get_lnames().front());
+    command = (*one)->get_name() + (command.empty() ? "" : " " + command);
+  }
+  const std::string near = config::suggestion(name, known);
+  return command + " has no option '" + name + "'" + (near.empty() ? "; `" + command + " --help` lists those it has" : near);
+}
+
+}  // namespace
+
+std::string refusal(const CLI::App& app, const CLI::ParseError& error) {
+  const std::vector<std::string> extras = app.remaining(true);
+  const std::vector<const CLI::App*> chosen = chosen_of(app);
+  const auto option =
+      std::find_if(extras.begin(), extras.end(), [](const std::string& word) { return word.starts_with("-") && word.size() > 1; });
+  if (option != extras.end()) return unknown_option(*option, chosen);
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr || extras.empty()) return error.what();
+  std::vector<std::string> names;
+  for (const CLI::App* command : commands_of(*chosen.back())) names.push_back(command->get_name());
+  return error.what() + config::suggestion(extras.front(), names);
+}
+
+}  // namespace lf::command_line
