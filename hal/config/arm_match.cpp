@@ -20,7 +20,8 @@ constexpr double same_rad = 1e-5;
 Pose tool_of(const ArmDescription& arm, const arm::JointVector& q) {
   Pose base_from_body = Pose::Identity();
   for (std::size_t i = 0; i < arm_joint_count; ++i)
-    base_from_body = base_from_body * arm.joints[i].parent_from_joint * Eigen::AngleAxisd(q[static_cast<Eigen::Index>(i)], arm.joints[i].axis);
+    base_from_body =
+        base_from_body * arm.joints[i].parent_from_joint * Eigen::AngleAxisd(q[static_cast<Eigen::Index>(i)], arm.joints[i].axis);
   return base_from_body * arm.wrist_from_tool;
 }
 
@@ -49,7 +50,8 @@ std::string difference_from_core(const ArmDescription& arm) {
   std::string text;
   if (off_m > same_m || turned_rad > same_rad) {
     std::array<char, 96> words;
-    (void)std::snprintf(words.data(), words.size(), "its tool is up to %.2f mm and %.3f degrees off", 1e3 * off_m, deg_from_rad(turned_rad));
+    (void)std::snprintf(words.data(), words.size(), "its tool is up to %.2f mm and %.3f degrees off", 1e3 * off_m,
+                        deg_from_rad(turned_rad));
     text = words.data();
   }
   std::string limits;

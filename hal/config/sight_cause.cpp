@@ -48,28 +48,29 @@ Cause pictures_refused() {
           "trigger, and the laser's interlock."};
 }
 Cause pictures_dark() {
-  return {"the pictures are dark",
-          "The exposure is too short, or the lens is covered: raise camera.exposure_us, check the camera's aperture and gain, and the lamps."};
+  return {
+      "the pictures are dark",
+      "The exposure is too short, or the lens is covered: raise camera.exposure_us, check the camera's aperture and gain, and the lamps."};
 }
 Cause pictures_white() {
   return {"the pictures are white", "The exposure is too long: lower camera.exposure_us or the gain, or dim the lamps."};
 }
 Cause turbid() {
-  return {"the water is too turbid",
-          "The still picture shows no contrast: wait for clearer water or dock nearer; in haze, lamps that are off or farther from the camera "
-          "help."};
+  return {
+      "the water is too turbid",
+      "The still picture shows no contrast: wait for clearer water or dock nearer; in haze, lamps that are off or farther from the camera "
+      "help."};
 }
 Cause no_line() {
   return {"the laser's line is missing or too weak",
           "The marker is at its place and the picture has contrast, but hardly a point of the line was found: check the laser's power, its "
           "window and interlock; in turbid water dock nearer or sweep slower (mission.sweep_speed_rad_s)."};
 }
-Cause line_saturated() {
-  return {"the laser's line is white over its width", "Lower camera.exposure_us or the laser's power."};
-}
+Cause line_saturated() { return {"the laser's line is white over its width", "Lower camera.exposure_us or the laser's power."}; }
 Cause marker_hidden() {
   return {"the marker is hidden or another one",
-          "Panel and handle are at their place and the picture has contrast: look at the still picture for what covers the marker; check panel.marker_id "
+          "Panel and handle are at their place and the picture has contrast: look at the still picture for what covers the marker; check "
+          "panel.marker_id "
           "and panel.marker_centre_m."};
 }
 Cause docked_off(double off_m) {
@@ -82,9 +83,10 @@ Cause docked_askew(double tilt_rad) {
           "Dock again, nearer to the nominal place: mission.docking_rad is what the arm allows for."};
 }
 Cause panel_elsewhere() {
-  return {"neither marker nor handle is at its place",
-          "The picture has contrast: look at the still picture. Where the panel stands elsewhere, dock again, nearer to the nominal place, and "
-          "check panel.ahead_m, panel.right_m and panel.down_m; where it is covered, clean it."};
+  return {
+      "neither marker nor handle is at its place",
+      "The picture has contrast: look at the still picture. Where the panel stands elsewhere, dock again, nearer to the nominal place, and "
+      "check panel.ahead_m, panel.right_m and panel.down_m; where it is covered, clean it."};
 }
 
 // The panel was seen somewhere: is that where docking allows it?
@@ -150,7 +152,8 @@ Cause sight_cause(StepFailure failure, const Sight& sight) {
 
 std::string sight_text(const Sight& sight) {
   if (sight.look == 0) return "";
-  std::string text = formatted("%.0f images of the laser", sight.stripes) + formatted(", peaks in %.0f %% of their columns", 100 * stripe_share(sight));
+  std::string text =
+      formatted("%.0f images of the laser", sight.stripes) + formatted(", peaks in %.0f %% of their columns", 100 * stripe_share(sight));
   if (sight.images_missing > 0) text += formatted(", %.0f images missing", sight.images_missing);
   if (sight.images_refused > 0) text += formatted(", %.0f images refused", sight.images_refused);
   text += formatted("; %.0f points", sight.points);

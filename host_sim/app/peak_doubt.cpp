@@ -45,9 +45,7 @@ double width_of(const StripePicture& picture, std::span<const Place> places) {
       weight[index(i)] += 1;
     }
   }
-  const auto grey = [&](std::int32_t i) {
-    return weight[index(i)] > 0 ? sum[index(i)] / weight[index(i)] : std::nan("");
-  };
+  const auto grey = [&](std::int32_t i) { return weight[index(i)] > 0 ? sum[index(i)] / weight[index(i)] : std::nan(""); };
   double floor = HUGE_VAL, top = -HUGE_VAL;
   for (std::int32_t i = -half_window; i <= half_window; ++i) {
     if (std::isfinite(grey(i))) floor = std::min(floor, grey(i));
@@ -99,12 +97,14 @@ std::vector<std::string> peak_doubts(const StripeLook& look, std::size_t found) 
   std::vector<std::string> doubts;
   if (found < fewest_peaks) return doubts;
   if (look.width_px > widest_px)
-    doubts.push_back(formatted("the stripe is %.0f px wide at half its height, and peaks are sure up to %.0f px: bin the picture or focus "
-                               "the line",
-                               look.width_px, widest_px));
+    doubts.push_back(
+        formatted("the stripe is %.0f px wide at half its height, and peaks are sure up to %.0f px: bin the picture or focus "
+                  "the line",
+                  look.width_px, widest_px));
   if (look.scatter_px > most_scatter_px)
-    doubts.push_back(formatted("the peaks scatter by %.2f px about their neighbours: the picture is too noisy for places better than %.1f px",
-                               look.scatter_px, most_scatter_px));
+    doubts.push_back(
+        formatted("the peaks scatter by %.2f px about their neighbours: the picture is too noisy for places better than %.1f px",
+                  look.scatter_px, most_scatter_px));
   return doubts;
 }
 

@@ -1,9 +1,9 @@
 #include "host_sim/app/plane_doubt.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <Eigen/Eigenvalues>
 #include <cstdio>
 
 namespace lf::app {
@@ -48,7 +48,8 @@ double normal_sigma_deg(std::span<const CloudPoint> points, const PlaneFit& fit,
   Mat3 spread = Mat3::Zero();
   for (const Vec3& p : inliers) spread += (p - mean) * (p - mean).transpose();
   spread /= static_cast<double>(inliers.size());
-  const Vec3 variance = Eigen::SelfAdjointEigenSolver<Mat3>(spread).eigenvalues();  // ascending: the scatter, then the plane's short and long axis
+  const Vec3 variance =
+      Eigen::SelfAdjointEigenSolver<Mat3>(spread).eigenvalues();  // ascending: the scatter, then the plane's short and long axis
   const double across_m = std::sqrt(std::max(variance[1], 0.0)), scatter_m = std::sqrt(std::max(variance[0], 0.0));
   if (across_m <= 0) return 90;
   return deg_from_rad(std::atan(scatter_m / (across_m * std::sqrt(static_cast<double>(inliers.size())))));
@@ -59,9 +60,11 @@ double normal_sigma_deg(std::span<const CloudPoint> points, const PlaneFit& fit,
 std::vector<std::string> plane_doubts(std::span<const CloudPoint> points, const PlaneFit& fit, double threshold_m) {
   std::vector<std::string> doubts;
   const double extent_m = widest_extent_m(points);
-  const std::string unit = extent_m > widest_m ? formatted("; the cloud is %.0f m wide: is it in millimetres? Clouds are in metres", extent_m) : "";
+  const std::string unit =
+      extent_m > widest_m ? formatted("; the cloud is %.0f m wide: is it in millimetres? Clouds are in metres", extent_m) : "";
   if (fit.inliers < fewest_share * fit.points) {
-    doubts.push_back(formatted("only %.0f of %.0f points lie within %.3g mm of the plane", fit.inliers, fit.points, 1e3 * threshold_m) + unit);
+    doubts.push_back(formatted("only %.0f of %.0f points lie within %.3g mm of the plane", fit.inliers, fit.points, 1e3 * threshold_m) +
+                     unit);
   } else if (!unit.empty()) {
     doubts.push_back(unit.substr(2));
   }

@@ -22,7 +22,8 @@ class FirstVerdict : public hal::SimObserver {
   void on_telemetry(const Telemetry& telemetry) override {
     for (const Event& event : telemetry.events) {
       if (told || (event.kind != Event::Kind::fault && event.kind != Event::Kind::located)) continue;
-      if (event.kind == Event::Kind::fault && event.fault != safety::Fault::vision_poor && event.fault != safety::Fault::step_failed) continue;
+      if (event.kind == Event::Kind::fault && event.fault != safety::Fault::vision_poor && event.fault != safety::Fault::step_failed)
+        continue;
       told = event;
       sight = telemetry.sight;
     }
@@ -57,7 +58,8 @@ Verdict first_look(const Differ& differ, std::vector<std::string> overrides = {}
   return verdict;
 }
 
-void expect_cause(const std::string& name, const std::string& remedy, const Differ& differ, const std::vector<std::string>& overrides = {}) {
+void expect_cause(const std::string& name, const std::string& remedy, const Differ& differ,
+                  const std::vector<std::string>& overrides = {}) {
   const Verdict verdict = first_look(differ, overrides);
   EXPECT_FALSE(verdict.located) << verdict.seen;
   EXPECT_NE(verdict.cause.name.find(name), std::string::npos) << verdict.cause.name << "\n  " << verdict.seen;
@@ -70,7 +72,10 @@ TEST(LookCause, APanelAtItsPlaceInClearWaterIsLocated) {
 }
 
 TEST(LookCause, WaterThatHidesAll) {
-  expect_cause("the water is too turbid", "clearer water", [](scenario::Scenario& real) { real.water.attenuation_per_m = {5, 5}; },
+  expect_cause("the water is too turbid", "clearer water",
+               [](scenario::Scenario& real) {
+                 real.water.attenuation_per_m = {5, 5};
+               },
                {"lamps.lit=false"});
 }
 

@@ -42,7 +42,8 @@ class Doubts : public Program {
     std::string csv = "x,y,z\n";
     for (int i = 0; i < points; ++i) {
       const double x = place(random), y = width_m * place(random);
-      csv += std::to_string(unit * x) + "," + std::to_string(unit * y) + "," + std::to_string(unit * (0.5 + 0.25 * x + noise(random))) + "\n";
+      csv +=
+          std::to_string(unit * x) + "," + std::to_string(unit * y) + "," + std::to_string(unit * (0.5 + 0.25 * x + noise(random))) + "\n";
     }
     return file(name, csv);
   }

@@ -35,7 +35,8 @@ TEST_F(RunFolder, SaysHowItCameAbout) {
   EXPECT_EQ(run("run ./my.yaml --no-outside --seed 3 --set time_limit_s=2 --set 'description=a b' --out r").status, 1);
   const Json result = result_of("r");
   const Json& provenance = result["provenance"];
-  EXPECT_THAT(provenance["date_utc"].get<std::string>(), MatchesRegex("20[0-9][0-9]-[01][0-9]-[0-3][0-9]T[0-2][0-9]:[0-5][0-9]:[0-6][0-9]Z"));
+  EXPECT_THAT(provenance["date_utc"].get<std::string>(),
+              MatchesRegex("20[0-9][0-9]-[01][0-9]-[0-3][0-9]T[0-2][0-9]:[0-5][0-9]:[0-6][0-9]Z"));
   EXPECT_EQ(provenance["command"], "lanternfish run ./my.yaml --seed 3 --set time_limit_s=2 --set 'description=a b'");
   EXPECT_EQ(provenance["set"], Json::parse(R"(["time_limit_s=2", "description=a b"])"));
   EXPECT_EQ(provenance["scenario_file"], "./my.yaml");
@@ -102,7 +103,8 @@ TEST_F(RunFolder, HasALogOfStepsFaultsAndReactions) {
   EXPECT_EQ((*told)["reaction"], "quick stop");
 
   const Json result = result_of("r");
-  const auto same = std::find_if(result["faults"].begin(), result["faults"].end(), [](const Json& row) { return row["fault"] == "drive fault"; });
+  const auto same =
+      std::find_if(result["faults"].begin(), result["faults"].end(), [](const Json& row) { return row["fault"] == "drive fault"; });
   ASSERT_NE(same, result["faults"].end()) << result["faults"];
   EXPECT_EQ((*same)["t_s"], (*told)["t_s"]);
   EXPECT_EQ((*same)["text"], (*told)["text"]);
@@ -145,8 +147,7 @@ TEST_F(RunFolder, TellsItsBusLoadWithAndWithoutStuffBits) {
 Eigen::Isometry3d pose_of(const Json& rows) {
   Eigen::Matrix4d matrix;
   for (int row = 0; row < 4; ++row) {
-    for (int column = 0; column < 4; ++column)
-      matrix(row, column) = rows[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)];
+    for (int column = 0; column < 4; ++column) matrix(row, column) = rows[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)];
   }
   return Eigen::Isometry3d(matrix);
 }
@@ -189,8 +190,8 @@ TEST_F(RunFolder, KeepsRawPairsThatPeaksWorksOn) {
 
 TEST_F(RunFolder, NamesWhyALookFailedOnTheConsoleInTheReportAndInTheResult) {
   const std::string once = "run turn_only --no-outside --set mission.tries=1 --set lamps.lit=true ";
-  for (const auto& [set, cause] : {std::pair{"water.attenuation_per_m=5", "the water is too turbid"},
-                                   std::pair{"camera.exposure_us=10", "the pictures are dark"}}) {
+  for (const auto& [set, cause] :
+       {std::pair{"water.attenuation_per_m=5", "the water is too turbid"}, std::pair{"camera.exposure_us=10", "the pictures are dark"}}) {
     SCOPED_TRACE(set);
     const Said said = run(once + "--set " + set + " --out r" + std::string(set).substr(0, 5));
     EXPECT_EQ(said.status, 1);

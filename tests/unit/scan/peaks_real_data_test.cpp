@@ -38,7 +38,9 @@ Picture red_of(const std::string& file) {
 
 std::vector<Peak> peaks_of(const Picture& on, const Picture& off) {
   const auto detector = std::make_unique<LargePeakDetector>();
-  const auto refiner = std::make_unique<LargePeakRefiner>(RefinerConfig{.largest_misfit = std::numeric_limits<float>::infinity()});
+  RefinerConfig config;
+  config.largest_misfit = std::numeric_limits<float>::infinity();  // as `peaks` has it
+  const auto refiner = std::make_unique<LargePeakRefiner>(config);
   const PixelView<std::uint8_t> background = off.pixels.empty() ? PixelView<std::uint8_t>() : off.view();
   std::vector<Peak> peaks(static_cast<std::size_t>(on.width));
   peaks.resize(detector->detect(on.view(), background, peaks));
