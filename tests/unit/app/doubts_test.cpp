@@ -87,10 +87,10 @@ TEST_F(Doubts, APlaneOfAFewOfItsPoints) {
   EXPECT_THAT(said.err, ::testing::ContainsRegex("only [0-9]+ of 5000 points lie within 3 mm of the plane"));
 }
 
-// 300 points of 0.5 mm noise on a strip: across it they are spread by width / sqrt(12). On 3 mm that leaves the normal 0.5 / 0.87 / sqrt(300) = 0.033 rad, 1.9 degrees;
-// on 20 mm 0.3 degrees.
+// Across a strip of 20 mm points are spread by 20 / sqrt(12) = 5.8 mm. 40 points of 2 mm noise leave the normal 2 / 5.8 / sqrt(40) = 0.055 rad, 3 degrees, and 300 of
+// 0.5 mm 0.3 degrees. A strip whose width is a hundredth of its length is no plane at all.
 TEST_F(Doubts, APlaneThroughALine) {
-  expect_doubt("plane " + plane("strip.csv", 1, 0.0005, 0.003, 300), "lie along a line: its normal is known to ");
+  expect_doubt("plane " + plane("strip.csv", 1, 0.002, 0.02, 40), "lie along a line: its normal is known to ");
   EXPECT_EQ(run("plane " + plane("band.csv", 1, 0.0005, 0.02, 300)).status, 0);
 }
 
