@@ -229,7 +229,7 @@ TEST_F(BadInput, ADiskThatFillsUpDuringARunLeavesWhatWasWritten) {
   const std::string in_namespace = "unshare --user --map-root-user --mount sh -c ";
   const std::string mount = "mount -t tmpfs -o size=128k none '" + (folder() / "disk").string() + "'";
   if (std::system((in_namespace + "\"" + mount + "\" 2>/dev/null").c_str()) != 0) GTEST_SKIP() << "no file system can be mounted here";
-  const std::string run = LANTERNFISH_PROGRAM " run --set time_limit_s=2 --no-outside --out disk/run >out 2>err; echo \\$? >status";
+  const std::string run = LANTERNFISH_PROGRAM " run --quiet --set time_limit_s=2 --no-outside --out disk/run >out 2>err; echo \\$? >status";
   const std::string command =
       "cd '" + folder().string() + "' && " + in_namespace + "\"" + mount + " && { " + run + "; cp -r disk/run kept; }\"";
   ASSERT_EQ(std::system(command.c_str()), 0);
