@@ -123,9 +123,9 @@ int run_doctor(const DoctorRequest& request) {
   if (!request.config.empty()) vehicle = load_vehicle_config(request.config, report.problems);
   if (!request.interface.empty()) vehicle.interface = request.interface;
   const bool with_machine = !request.config.empty() && !request.bus_only;
+  doctor::Machine machine;
+  machine.daemon_runs = locked_by_another(vehicle.lock_folder, vehicle.interface).has_value();
   if (with_machine) {
-    doctor::Machine machine;
-    machine.daemon_runs = locked_by_another(vehicle.lock_folder, vehicle.interface).has_value();
     report.machine = doctor::examine(vehicle, machine);
   }
   if (!request.machine_only && report.problems.empty()) {
@@ -135,8 +135,9 @@ int run_doctor(const DoctorRequest& request) {
       report.nodes = read_bus(vehicle, report.kinds, report.configured);
     } catch (const EnvironmentLacks& lacks) {
       if (!with_machine) throw;
-      // What keeps it from being read is bad in itself, and told so above, but for a daemon at work.
-      report.machine.push_back({"drives", "", Grade::note, std::string("not read: ") + lacks.what(), "again, once that is so"});
+      // A daemon at work is in order. Anything else, such as a foreign master, would keep the daemon from its start, too.
+      const Grade grade = machine.daemon_runs ? Grade::note : Grade::bad;
+      report.machine.push_back({"drives", "", grade, std::string("not read: ") + lacks.what(), "the same again, once that is so"});
     }
   }
   if (request.json) {

@@ -34,7 +34,8 @@ struct Machine {
   bool daemon_runs = false;  // it has the camera then
 };
 
-// Each adds what it found of its part. Nothing is changed, and nothing stays open.
+// Each adds what it found of its part. Nothing stays open, and nothing is changed but the camera's exposure and gain, which are set as the
+// daemon sets them.
 void examine_bus(const VehicleConfig& config, const Machine& machine, Examinations& found);
 void examine_camera(const VehicleConfig& config, const Machine& machine, Examinations& found);
 void examine_realtime(const VehicleConfig& config, const Machine& machine, Examinations& found);

@@ -140,6 +140,7 @@ TEST_F(Daemon, TheDoctorNamesWhatTheMachineLacksWithItsRemedy) {
   EXPECT_THAT(text.out, ::testing::ContainsRegex("interface +BAD +there is no interface can99\n +to do: `ip link` lists them"));
   EXPECT_THAT(text.out, ::testing::ContainsRegex("camera +BAD +/dev/video77: there is no camera"));
   EXPECT_THAT(text.out, ::testing::ContainsRegex("log +good +"));
+  EXPECT_THAT(text.out, ::testing::ContainsRegex("drives +BAD +not read: "));
   const Said said = run("--config vehicle.yaml doctor --json");
   EXPECT_EQ(said.status, 3);
   const Json document = Json::parse(said.out);
