@@ -66,6 +66,7 @@ void compare_files(const record::Experiment& before, const record::Experiment& n
 
 std::string labels_of(const Campaign& campaign) {
   std::vector<std::string> labels;
+  labels.reserve(campaign.cells.size());
   for (const Cell& cell : campaign.cells) labels.push_back(cell.choice.empty() ? "no grid" : label_of(cell.choice));
   return list_of(labels, "; ");
 }

@@ -118,6 +118,7 @@ std::string histogram(const std::vector<Point>& points, const Scale& scale) {
 std::string ranks(const std::vector<Point>& points, const Scale& scale, const Figure& figure) {
   const double sign = figure.good == Figure::Good::more ? -1 : 1;
   std::vector<double> values;
+  values.reserve(points.size());
   for (const Point& point : points) values.push_back(sign * point.value);
   const double median = sign * nearest_rank(values, 0.5), p95 = sign * nearest_rank(values, 0.95);
   const auto mark = [&](double value, const char* name) {

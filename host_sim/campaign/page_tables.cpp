@@ -67,6 +67,7 @@ std::string cells_table(const Campaign& campaign) {
   if (campaign.keys.empty()) return "";
   std::vector<std::size_t> shown;  // figures that any cell has, but for those of the machine
   std::vector<Tally> tallies;
+  tallies.reserve(campaign.cells.size());
   for (const Cell& cell : campaign.cells) tallies.push_back(tally_of(cell));
   for (std::size_t i = 0; i < figures().size(); ++i) {
     const auto has = [i](const Tally& tally) {
