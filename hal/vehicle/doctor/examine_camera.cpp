@@ -21,7 +21,7 @@ std::string fourcc(std::uint32_t format) {
   return text;
 }
 
-std::string list(std::string text, const std::string& one) { return text.empty() ? one : text + ", " + one; }
+std::string list(const std::string& text, const std::string& one) { return text.empty() ? one : text + ", " + one; }
 
 class Camera {
  public:
