@@ -4,7 +4,7 @@ _lanternfish() {
   COMPREPLY=()
   for ((i = 1; i < COMP_CWORD; i++)); do
     case ${COMP_WORDS[i]} in
-      run|campaign|serve|render-frames|scenarios|reach|peaks|plane|markers|ik|bench|doctor|version|help|completion) command=${COMP_WORDS[i]}; break ;;
+      run|campaign|compare|serve|render-frames|scenarios|reach|peaks|plane|markers|ik|bench|doctor|version|help|completion) command=${COMP_WORDS[i]}; break ;;
     esac
   done
   case $command in
@@ -18,7 +18,7 @@ _lanternfish() {
         --out) compopt -o filenames; COMPREPLY=($(compgen -f -- "$word")); return ;;
         --render-threads) :; return ;;
       esac
-      options='--help --seed --set --out --realtime --render-threads --no-outside --json'
+      options='--help --seed --set --out --realtime --render-threads --record-images --no-outside --quiet --json'
       [[ $word == -* ]] || { COMPREPLY=($(compgen -W "$(lanternfish scenarios 2>/dev/null | cut -d" " -f1)" -- "$word")); COMPREPLY+=($(compgen -f -- "$word")); return; }
       ;;
     'campaign')
@@ -35,9 +35,18 @@ _lanternfish() {
         --jobs) :; return ;;
         --set) compopt -o nospace; COMPREPLY=($(compgen -W "$(lanternfish scenarios --keys 2>/dev/null | sed -n "s/^| .\([a-z_.]*\). | .*/\1=/p")" -- "$word")); return ;;
         --out) compopt -o filenames; COMPREPLY=($(compgen -f -- "$word")); return ;;
+        --compare) compopt -o filenames; COMPREPLY=($(compgen -f -- "$word")); return ;;
+        --across) compopt -o filenames; COMPREPLY=($(compgen -f -- "$word")); return ;;
       esac
-      options='--help --seeds --faults --ranges --draws --many --kinds --steps --rows --rendered --pairs --one-in --into --shard --jobs --set --out --json'
+      options='--help --seeds --faults --ranges --draws --many --kinds --steps --rows --rendered --pairs --one-in --into --shard --jobs --set --out --compare --across --json'
       [[ $word == -* ]] || { COMPREPLY=($(compgen -W "$(lanternfish scenarios 2>/dev/null | cut -d" " -f1)" -- "$word")); COMPREPLY+=($(compgen -f -- "$word")); return; }
+      ;;
+    'compare')
+      case $before in
+        --across) compopt -o filenames; COMPREPLY=($(compgen -f -- "$word")); return ;;
+      esac
+      options='--help --across --json'
+      [[ $word == -* ]] || { compopt -o filenames; COMPREPLY=($(compgen -f -- "$word")); return; }
       ;;
     'serve')
       case $before in
@@ -133,14 +142,14 @@ _lanternfish() {
       ;;
     'help')
       options='--help'
-      [[ $word == -* ]] || { COMPREPLY=($(compgen -W "$(printf "%s\n" run campaign serve render-frames scenarios reach peaks plane markers ik bench doctor version help completion)" -- "$word")); return; }
+      [[ $word == -* ]] || { COMPREPLY=($(compgen -W "$(printf "%s\n" run campaign compare serve render-frames scenarios reach peaks plane markers ik bench doctor version help completion)" -- "$word")); return; }
       ;;
     'completion')
       options='--help'
       [[ $word == -* ]] || { COMPREPLY=($(compgen -W "$(printf '%s\n' bash zsh)" -- "$word")); return; }
       ;;
   esac
-  [ -n "$command" ] || options+=' run campaign serve render-frames scenarios reach peaks plane markers ik bench doctor version help completion'
+  [ -n "$command" ] || options+=' run campaign compare serve render-frames scenarios reach peaks plane markers ik bench doctor version help completion'
   COMPREPLY=($(compgen -W "$options" -- "$word"))
 }
 complete -F _lanternfish lanternfish
