@@ -212,6 +212,7 @@ TEST_F(AssembledDaemon, CommissionsAJointAndUsesItsZero) {
   }
   const Json done = ask("status")["commissioning"];
   ASSERT_EQ(done["state"], "done") << ask("status").dump();
+  ASSERT_TRUE(done.contains("friction") && done["friction"].contains("jaw")) << done.dump();
   EXPECT_GT(done["friction"]["jaw"].value("coulomb_mnm", 0.0), 0) << done.dump();
   EXPECT_TRUE(done["friction"]["jaw"].contains("rms_mnm")) << done.dump();
   EXPECT_FALSE(sea->any_powered());
