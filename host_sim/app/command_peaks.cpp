@@ -24,6 +24,7 @@ struct Options {
 
 struct Found {
   std::vector<scan::Peak> peaks;
+  std::vector<scan::Peak> detected;  // before the fit: what a doubt is seen by
   scan::PeakCounters counters;
   scan::RefinerCounters refined;
   scan::StripeOptics optics;
@@ -43,7 +44,10 @@ Found detect(const scan::PixelView<Pixel>& image, const scan::PixelView<Pixel>& 
   refiner_config.largest_misfit =
       std::numeric_limits<float>::infinity();  // nothing comes after that would sort silhouettes out, or miss them
   const auto refiner = std::make_unique<scan::BasicPeakRefiner<Pixel, 4096, 4096>>(refiner_config);
+  found.detected = found.peaks;
   found.peaks.resize(refiner->refine(image, off, found.peaks));
+  // A stripe that is wider than the fit's window, or no Gaussian: what the filter finds is the better answer, and doubtful.
+  if (found.peaks.size() * 2 < found.detected.size()) found.peaks = found.detected;
   found.refined = refiner->counters();
   found.optics = refiner->optics();
   return found;
@@ -140,8 +144,8 @@ int peaks(const Options& options) {
   config.axis = options.axis == "column" ? scan::PeakAxis::column : scan::PeakAxis::row;
   const Found found = detect(image, off, config);
   if (!options.overlay.empty()) write_overlay(options, found);
-  const StripeLook look = look_at_stripe(picture_of(image, off, config.axis), found.peaks, config.axis);
-  const std::vector<std::string> doubts = peak_doubts(look, found.peaks.size());
+  const StripeLook look = look_at_stripe(picture_of(image, off, config.axis), found.detected, config.axis);
+  const std::vector<std::string> doubts = peak_doubts(look, found.detected.size());
   tell_doubts(options.image, doubts);
   tell(options, image, found, look, doubts);
   return doubts.empty() ? done : failed;

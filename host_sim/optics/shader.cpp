@@ -40,10 +40,11 @@ void Shader::add_water(const RayPacket& rays, Lanes range, RgbLanes& radiance) c
 }
 
 // `irradiance` has the way back to the camera in it. Adds what comes back directly, and what scatters on that way.
-void Shader::reflect(const RgbLanes& albedo, const RgbLanes& irradiance, Lanes scattered, RgbLanes& direct, RgbLanes& far) const {
+void Shader::reflect(const RgbLanes& albedo, const RgbLanes& irradiance, Lanes range, RgbLanes& direct, RgbLanes& far) const {
+  const Lanes unspread = water_.direct(range), scattered = water_.scattered(range);
   for (std::size_t band = 0; band < 3; ++band) {
     const Lanes light = albedo[band] * one_over_pi * irradiance[band];
-    direct[band] += light * (1.f + scatter_core * scattered);
+    direct[band] += light * unspread;
     far[band] += light * scattered;
   }
 }
@@ -57,7 +58,7 @@ Light Shader::base(const RayPacket& rays, const HitPacket& hit, float footprint,
     add_lamps(surface, casters, irradiance, light);
     for (std::size_t band = 0; band < 3; ++band)
       irradiance[band] = surface.met ? irradiance[band] * water_.transmission(band, surface.range) : Lanes{};
-    reflect(look_.albedo(surface, hit.shape, footprint), irradiance, water_.scattered(surface.range), light.radiance, light.scattered);
+    reflect(look_.albedo(surface, hit.shape, footprint), irradiance, surface.range, light.radiance, light.scattered);
   }
   const Lanes range = surface.met ? surface.range : all_lanes(open_water_m);
   add_water(rays, range, light.radiance);
@@ -97,15 +98,14 @@ Light Shader::stripes(const RayPacket& rays, const HitPacket& hit, float footpri
     StripePacket stripe = sheets[i].on_surface(surface, water_, footprint, blur_px);
     if (!any(stripe.reached | stripe.beside)) continue;
     const RgbLanes albedo = look_.albedo(surface, hit.shape, footprint);
-    const Lanes scattered = water_.scattered(surface.range);
-    if (any(stripe.beside)) reflect(albedo, stripe.skirt, scattered, light.radiance, light.scattered);
+    if (any(stripe.beside)) reflect(albedo, stripe.skirt, surface.range, light.radiance, light.scattered);
     light.beside |= stripe.beside;
     if (!any(stripe.reached)) continue;
     const LaneMask lit = scene_.clear_of_all(sheets[i].emitter(), surface, stripe.reached);
     light.reached |= stripe.reached & (1 << i);
     light.lit |= lit & (1 << i);
     for (Lanes& band : stripe.irradiance) band = lit ? band : Lanes{};
-    reflect(albedo, stripe.irradiance, scattered, light.laser, light.scattered);
+    reflect(albedo, stripe.irradiance, surface.range, light.laser, light.scattered);
   }
   return light;
 }

@@ -49,7 +49,7 @@ class Shader {
   void add_ambient(const SurfacePacket& surface, RgbLanes& irradiance) const;
   void add_lamps(const SurfacePacket& surface, Casters casters, RgbLanes& irradiance, Light& light) const;
   void add_water(const RayPacket& rays, Lanes range, RgbLanes& radiance) const;
-  void reflect(const RgbLanes& albedo, const RgbLanes& irradiance, Lanes scattered, RgbLanes& direct, RgbLanes& far) const;
+  void reflect(const RgbLanes& albedo, const RgbLanes& irradiance, Lanes range, RgbLanes& direct, RgbLanes& far) const;
 
   const SplitScene& scene_;
   const SurfaceLook& look_;

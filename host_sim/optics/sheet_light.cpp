@@ -166,7 +166,7 @@ StripePacket SheetLight::line(const SurfacePacket& s, const Water& water, float 
   for (std::size_t band = 0; band < 3; ++band) {
     if (band_[band] == 0.f) continue;
     const Lanes path = range + camera_range;
-    const Lanes light = peak * band_[band] * water.transmission(band, path) * core * (1.f + scatter_core * water.scattered(range));
+    const Lanes light = peak * band_[band] * water.transmission(band, path) * core * water.direct(range);
     stripe.irradiance[band] = stripe.reached ? light : Lanes{};
   }
   return stripe;

@@ -86,11 +86,12 @@ TEST(Tally, FiguresAreThoseOfTheRun) {
   not_done.target_deg = 0;
   not_done.reached_deg = 50;
   result.tasks = {done, not_done};
+  result.errors.peaks_false = 0.95;
   result.contact.peak_force_n = 12;
   result.time = {33, 4, 8};
   result.core.tick_us.p999 = 55;
   const std::vector<double> values = figures_of(result);
-  EXPECT_EQ(values, (std::vector<double>{0.1, 0.2, 0.3, 0.4, 1.5, 0.5, 0.6, 0.7, 0.8, 0.9, 12, 33, 8, 55}));
+  EXPECT_EQ(values, (std::vector<double>{0.1, 0.2, 0.3, 0.4, 1.5, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 12, 33, 8, 55}));
   EXPECT_TRUE(std::isnan(figures_of(record::RunResult{})[0]));
 }
 

@@ -62,7 +62,7 @@ TEST(Picture, AnEvenFieldKeepsWhatIsScatteredForward) {
   for (const double attenuation : {0.4, 1.2, 2.2}) {
     s.config.water.attenuation_per_m = attenuation;
     const double b = 0.89 * (attenuation - 0.145);
-    const double expected = clear * std::exp(-attenuation * 0.7) * (1 + 0.976 * (std::exp(b * 0.7) - 1));
+    const double expected = clear * std::exp(-attenuation * 0.7 + 0.976 * b * 0.7);
     // Toward the picture's edges the plate is farther away, and the widest Gaussian reaches there.
     EXPECT_NEAR(s.middle(), expected, 0.03 * expected) << attenuation;
   }
@@ -161,14 +161,14 @@ TEST(Picture, DarkPaintNearBrightTakesItsLight) {
   };
   EXPECT_NEAR(black(0).first, 0.24, 0.05);  // the noise's own mean above 0
   const auto [dark, bright] = black(1.2);
-  // Ten pixels from a straight edge: the mixture's edge spread, of a share S = exp(b R) - 1 of the direct light.
-  const double S = std::exp(0.89 * (1.2 - 0.145) * 0.7) - 1;
-  double scattered = 0, all = 0.136;
+  // Ten pixels from a straight edge: the mixture's edge spread, of what scatters once and again, over what does not spread.
+  const double depth = 0.89 * (1.2 - 0.145) * 0.7, core = std::exp(0.136 * depth), S = (std::exp(0.976 * depth) - core) / 0.84;
+  double scattered = 0, all = 0;
   for (const auto& [weight, sigma] : {std::pair{.199, 2.0}, std::pair{.248, 8.0}, std::pair{.275, 32.0}, std::pair{.118, 128.0}}) {
     scattered += weight * 0.5 * std::erfc(9.5 / (sigma * std::sqrt(2.0)));
     all += weight * (1 - 0.5 * std::erfc(180.5 / (sigma * std::sqrt(2.0))));
   }
-  EXPECT_NEAR((dark - 0.24) / bright, S * scattered / (1 + S * all), 0.06 * S * scattered);
+  EXPECT_NEAR((dark - 0.24) / bright, S * scattered / (core + S * all), 0.06 * S * scattered);
 }
 
 TEST(Picture, StrayLightIsItsShareBesideABrightField) {

@@ -257,7 +257,7 @@ TEST(Truth, WithoutErrorsTheWorldIsAsTheCoreIsTold) {
 
 // The laser as the simulator mounts it on the forearm, against the core's kinematics with the nominal calibration: two ways to one pose.
 TEST(Truth, TheLaserOnTheForearmIsWhereTheCoreThinksItIs) {
-  const Scenario scenario = load_scenario("default", {"mounting.laser_m=0", "mounting.laser_deg=0"});
+  const Scenario scenario = load_scenario("default", {"mounting.laser_m=0", "mounting.laser_deg=0", "calibration.laser_cone_mrad=0"});
   const Nominal nominal = make_nominal(scenario, false);
   const hal::SimConfig truth = make_truth(scenario, draw(scenario, 1), nominal, 1);
   for (const arm::JointVector& q_rad : {arm::JointVector(0, 0.945, 2.095, 0), arm::JointVector(-0.3, 0.6, 1.2, 1.0)}) {
