@@ -70,6 +70,7 @@ void Formation::spread(PixelStore& pixels, const std::vector<std::uint8_t>& line
   // The sensor takes the strayed share off all light, so what is added here is over the rest.
   const auto stray = static_cast<float>(camera_.config.stray_share);
   std::vector<HaloTerm> terms;
+  terms.reserve(scatter_terms.size());
   for (const ScatterTerm& term : scatter_terms)
     terms.push_back({term.weight / (1 - stray), static_cast<double>(term.angle_rad) * camera_.config.intrinsics.fy});
   if (!scatters) terms.clear();

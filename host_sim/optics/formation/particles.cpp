@@ -115,20 +115,15 @@ void Particles::show(const Speck& speck, const RgbLanes& irradiance, int lane, c
 
   const int reach = static_cast<int>(std::ceil(3.5 * sigma));
   const auto centre_u = static_cast<int>(std::lround(image->x())), centre_v = static_cast<int>(std::lround(image->y()));
-  std::array<float, 128> across{}, down{};
-  if (2 * reach + 1 > static_cast<int>(across.size())) return;
-  double sum_across = 0, sum_down = 0;
-  for (int k = -reach; k <= reach; ++k) {
-    const double du = centre_u + k - image->x(), dv = centre_v + k - image->y();
-    across[static_cast<std::size_t>(k + reach)] = static_cast<float>(std::exp(-du * du / (2 * sigma * sigma)));
-    down[static_cast<std::size_t>(k + reach)] = static_cast<float>(std::exp(-dv * dv / (2 * sigma * sigma)));
-    sum_across += static_cast<double>(across[static_cast<std::size_t>(k + reach)]),
-        sum_down += static_cast<double>(down[static_cast<std::size_t>(k + reach)]);
-  }
+  const auto bell = [&](int at, double centre) {
+    return static_cast<float>(std::exp(-(at - centre) * (at - centre) / (2 * sigma * sigma)));
+  };
+  float sum_across = 0, sum_down = 0;
+  for (int k = -reach; k <= reach; ++k) sum_across += bell(centre_u + k, image->x()), sum_down += bell(centre_v + k, image->y());
   for (int y = std::max(centre_v - reach, 0); y <= std::min(centre_v + reach, pixels.height - 1); ++y) {
-    const float row = down[static_cast<std::size_t>(y - centre_v + reach)] / static_cast<float>(sum_down * sum_across);
+    const float row = bell(y, image->y()) / (sum_down * sum_across);
     for (int x = std::max(centre_u - reach, 0); x <= std::min(centre_u + reach, pixels.width - 1); ++x) {
-      const float share = row * across[static_cast<std::size_t>(x - centre_u + reach)];
+      const float share = row * bell(x, image->x());
       for (std::size_t c = 0; c < pixels.channels; ++c) pixels.grey[c * pixels.plane + pixels.index(x, y)] += share * grey[c][0];
     }
   }
