@@ -14,8 +14,8 @@ using mission::Sight;
 // Mean of a still: the lamps' backscatter alone gives 30 grey levels; a camera's black level and noise stay below this.
 constexpr float dark_grey = 6;
 constexpr float white_share = 0.5f;
-// PictureLight::contrast_grey of the default panel, in the simulator: 40 at an attenuation of 0.3 per m (16 without lamps and marker), 4.8 at 2.8, where the line is
-// too weak for a look, and 1.0 at 5.
+// PictureLight::contrast_grey of the default panel under its lamps, in the simulator: 9.0 at an attenuation of 4 per m, where the marker is still found and the pointer
+// is not, and 5.8 at 5, where no marker is found.
 constexpr float no_contrast_grey = 6;
 // Of the cloud's points: a sweep over a panel has 80,000, and PanelMap takes less for no scan. Peaks alone tell nothing: edges of the arm's moving shadow are some.
 constexpr std::uint32_t fewest_points = 2000;

@@ -18,8 +18,8 @@ Manual program_manual() {
                   "perception on its own.\n\n"
                   "With `--json` a command prints one JSON document on standard output and nothing else there; everything said on the way "
                   "goes to standard error. "
-                  "What is refused is a document, too: its `problems` and the `exit_status`. Progress is told on a terminal and not in a "
-                  "pipe. A reader that goes away, as "
+                  "What is refused is a document, too: its `problems` and the `exit_status`. A run tells each phase as it ends and a "
+                  "campaign each minute how far it is; `run --quiet` does not. A reader that goes away, as "
                   "`head` does, ends no command.\n\n"
                   "A SCENARIO is a file or the name of a shipped one: see `lanternfish-scenario(5)`. `--set path.to.key=value` changes a "
                   "key of it, the value written as "
@@ -43,7 +43,7 @@ Manual program_manual() {
        {{"/usr/share/lanternfish", "Scenarios with their JSON Schema, the arm, its safety limits, drive profiles, EDS and DBC files."},
         {"runs/SCENARIO-SEED",
          "What a run leaves: report.html, result.json, experiment.json (the resolved scenario and the hashes of all that was used), "
-         "cloud.pcd, can0.log, "
+         "scenario.yaml (to fly it again), cloud.pcd, can0.log, log.jsonl, "
          "joints.csv, images."},
         {"/usr/share/doc/lanternfish/commands.md", "More about each command."}}},
       {"EXAMPLES",

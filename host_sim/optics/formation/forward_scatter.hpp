@@ -21,6 +21,10 @@ struct ScatterTerm {
   float angle_rad = 0;  // standard deviation, seen from where the way ends
 };
 inline constexpr std::array<ScatterTerm, 4> scatter_terms{{{0.199f, 0.0055f}, {0.248f, 0.022f}, {0.275f, 0.088f}, {0.118f, 0.354f}}};
-inline constexpr float scatter_forward = scatter_core + 0.199f + 0.248f + 0.275f + 0.118f;
+inline constexpr float scatter_forward = [] {
+  float sum = scatter_core;
+  for (const ScatterTerm& term : scatter_terms) sum += term.weight;
+  return sum;
+}();
 
 }  // namespace lf::optics

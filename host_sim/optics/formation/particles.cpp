@@ -118,12 +118,17 @@ void Particles::show(const Speck& speck, const RgbLanes& irradiance, int lane, c
   const auto bell = [&](int at, double centre) {
     return static_cast<float>(std::exp(-(at - centre) * (at - centre) / (2 * sigma * sigma)));
   };
+  std::vector<float> across;
+  across.reserve(2 * static_cast<std::size_t>(reach) + 1);
   float sum_across = 0, sum_down = 0;
-  for (int k = -reach; k <= reach; ++k) sum_across += bell(centre_u + k, image->x()), sum_down += bell(centre_v + k, image->y());
+  for (int k = -reach; k <= reach; ++k) {
+    across.push_back(bell(centre_u + k, image->x()));
+    sum_across += across.back(), sum_down += bell(centre_v + k, image->y());
+  }
   for (int y = std::max(centre_v - reach, 0); y <= std::min(centre_v + reach, pixels.height - 1); ++y) {
     const float row = bell(y, image->y()) / (sum_down * sum_across);
     for (int x = std::max(centre_u - reach, 0); x <= std::min(centre_u + reach, pixels.width - 1); ++x) {
-      const float share = row * bell(x, image->x());
+      const float share = row * across[static_cast<std::size_t>(x - centre_u + reach)];
       for (std::size_t c = 0; c < pixels.channels; ++c) pixels.grey[c * pixels.plane + pixels.index(x, y)] += share * grey[c][0];
     }
   }

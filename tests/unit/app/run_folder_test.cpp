@@ -127,6 +127,7 @@ TEST_F(RunFolder, AnExpectedFaultIsTheFaultItselfNotAWordOfItsText) {
 // Counted again from the log of all frames: 47 bits and the data without stuff bits, ISO 11898-1.
 TEST_F(RunFolder, TellsItsBusLoadWithAndWithoutStuffBits) {
   const Said said = run("run turn_only --no-outside --set time_limit_s=6 --out r");
+  EXPECT_FALSE(std::filesystem::exists(folder() / "r" / "raw")) << "pictures are kept on request only";
   const Json bus = result_of("r")["bus"];
   EXPECT_THAT(said.out, HasSubstr("without stuff bits"));
   EXPECT_THAT(said.out, HasSubstr("with worst-case stuffing"));
@@ -185,7 +186,6 @@ TEST_F(RunFolder, KeepsRawPairsThatPeaksWorksOn) {
   const Said said = run("peaks " + on + " --off " + off + " --json");
   EXPECT_EQ(said.status, 0) << said.err;
   EXPECT_GT(Json::parse(said.out)["peaks"].size(), 300u);
-  EXPECT_FALSE(std::filesystem::exists(folder() / "without" / "raw"));
 }
 
 TEST_F(RunFolder, NamesWhyALookFailedOnTheConsoleInTheReportAndInTheResult) {
