@@ -128,7 +128,7 @@ void Particles::show(const Speck& speck, const RgbLanes& irradiance, int lane, c
   for (int y = std::max(centre_v - reach, 0); y <= std::min(centre_v + reach, pixels.height - 1); ++y) {
     const float row = bell(y, image->y()) / (sum_down * sum_across);
     for (int x = std::max(centre_u - reach, 0); x <= std::min(centre_u + reach, pixels.width - 1); ++x) {
-      const float share = row * across[static_cast<std::size_t>(x - centre_u + reach)];
+      const float share = row * across[static_cast<std::size_t>(std::int64_t{x} - centre_u + reach)];
       for (std::size_t c = 0; c < pixels.channels; ++c) pixels.grey[c * pixels.plane + pixels.index(x, y)] += share * grey[c][0];
     }
   }
