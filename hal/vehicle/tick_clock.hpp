@@ -16,8 +16,9 @@ Time thread_time_now();
 // Sleeps until `t` on CLOCK_MONOTONIC; returns at once when it is past. Signals do not shorten it.
 void sleep_until(Time t);
 
-// For tests on machines that do not keep time: from now on both of the above go `factor` times slower than the clock. Before threads are started.
-void slow_time_down(int factor);
+// For tests on machines that do not keep time: from now on both of the above go `factor` times slower than the clock, and none reads more than `longest_step`
+// after the one before it, on any thread: while the machine stands still, time does. Duration(): as the clock goes. Before threads are started.
+void slow_time_down(int factor, Duration longest_step = {});
 
 class TickClock {
  public:

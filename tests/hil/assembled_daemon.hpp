@@ -1,7 +1,8 @@
 // lanternfishd, all of it but main(), on a bus of the test's making: its threads, its socket, its log, and the served drives in real time on the other end.
 // No kernel's CAN, no rights and no real time are needed, so that it runs under the sanitizers as well.
 //
-// Time passes four times slower than the clock, for a machine that has other work; LANTERNFISH_SLOWDOWN=N has it pass N times slower, for a sanitizer.
+// Time passes four times slower than the clock, for a machine that has other work; LANTERNFISH_SLOWDOWN=N has it pass N times slower, for a sanitizer. Where the
+// whole machine stands still, as a shared one does, so does this time: a stop of 100 ms is no three SYNCs without an answer.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -123,7 +124,7 @@ class Sea {
 class AssembledDaemon : public testing::Test {
  protected:
   AssembledDaemon() {
-    hal::slow_time_down(slowdown());
+    hal::slow_time_down(slowdown(), Duration::from_ms(10));
     pthread_sigmask(SIG_SETMASK, nullptr, &signals_before);
     signals = hal::take_end_signals();
     int ends[2] = {-1, -1};

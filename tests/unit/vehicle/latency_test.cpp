@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <random>
+#include <thread>
 #include <vector>
 
 #include "hal/vehicle/control_loop.hpp"
@@ -107,6 +109,23 @@ TEST(TickClock, KeepsItsGridAndCountsWhatItMissed) {
   EXPECT_EQ((late - first).ns() % 2'000'000, 0);
   EXPECT_GT(clock.wait(), late);
   EXPECT_EQ(clock.lateness().count(), 4u);
+}
+
+// A shared machine stands still for as long as it likes. What is tested on it is not told of that time.
+TEST(SlowTime, StandsStillWithTheMachine) {
+  constexpr int factor = 2;
+  slow_time_down(factor, Duration::from_ms(10));
+  const Time before = monotonic_now();
+  const auto begun = std::chrono::steady_clock::now();
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  const Time after = monotonic_now();
+  EXPECT_LE(after - before, Duration::from_ms(10));
+  // A sleep is as long as it was asked to be, by the slow clock.
+  sleep_until(after + Duration::from_ms(100));
+  const auto took = std::chrono::steady_clock::now() - begun;
+  EXPECT_GE(monotonic_now() - after, Duration::from_ms(100));
+  EXPECT_GE(took, std::chrono::milliseconds(200 + factor * 100));
+  slow_time_down(1);
 }
 
 TEST(TimingProbe, TellsWorkFromWaiting) {
