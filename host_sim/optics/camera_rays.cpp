@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "shared/input_error.hpp"
 
@@ -168,9 +169,11 @@ std::optional<Vec2> CameraRays::project(const Vec3& point_m) const {
   const double z = point_m.z() - static_cast<double>(origin_z_);
   if (z < 1e-3) return std::nullopt;
   double u = 0.5 * (width_ - 1), v = 0.5 * (height_ - 1);
+  int column = -1, row = -1;
   for (int i = 0; i < 6; ++i) {
-    const int column = std::clamp(static_cast<int>(std::lround(u)), 0, width_ - 1),
-              row = std::clamp(static_cast<int>(std::lround(v)), 0, height_ - 1);
+    const int last_column = std::exchange(column, std::clamp(static_cast<int>(std::lround(u)), 0, width_ - 1)),
+              last_row = std::exchange(row, std::clamp(static_cast<int>(std::lround(v)), 0, height_ - 1));
+    if (column == last_column && row == last_row) break;  // the next step is this one
     const std::size_t at = index(column, row);
     // Where the pixel's ray is at that depth, and how far that is from one pixel to the next.
     const auto reached = [&](const std::vector<float>& direction, const std::vector<float>& origin, std::size_t k) {

@@ -13,6 +13,9 @@ constexpr int most_in_a_cell = 60;
 constexpr double aperture_m = 0.00077, focus_m = 0.75;  // f 2.17 mm at F/2.8
 constexpr double disc_sigma = 1 / 2.4;                  // of a Gaussian as wide as a disc, over its diameter
 constexpr double least_sigma_px = 0.35;
+constexpr double widest = 1.2;  // of a corner's ray, distorted or behind a port, over the pinhole's
+constexpr double image_margin_m = 0.03;
+constexpr float least_grey = 0.1f;
 constexpr float daylight_share = 0.55f;  // of the downwelling light that falls on a speck, from all sides
 
 // Draws of one stream.
@@ -28,9 +31,9 @@ class Draws {
   std::uint64_t state_;
 };
 
-// Of Poisson's distribution, by its inverse.
-int count_of(double mean, double draw) {
-  double share = std::exp(-mean), sum = share;
+// Of Poisson's distribution, by its inverse. `none`: exp(-mean).
+int count_of(double mean, double none, double draw) {
+  double share = none, sum = share;
   int count = 0;
   while (draw > sum && count < most_in_a_cell) share *= mean / ++count, sum += share;
   return count;
@@ -39,7 +42,15 @@ int count_of(double mean, double draw) {
 }  // namespace
 
 Particles::Particles(const Camera& camera, const WaterConfig& water, std::uint64_t seed)
-    : camera_(camera), per_cell_(water.particles_per_l * 1e3 * cell_m * cell_m * cell_m), current_m_s_(water.current_m_s), seed_(seed) {
+    : camera_(camera),
+      camera_from_base_(camera.config.base_from_camera.inverse()),
+      tan_u_(widest * std::max(camera.config.intrinsics.cx + 1, camera.config.intrinsics.width - camera.config.intrinsics.cx) /
+             camera.config.intrinsics.fx),
+      tan_v_(widest * std::max(camera.config.intrinsics.cy + 1, camera.config.intrinsics.height - camera.config.intrinsics.cy) /
+             camera.config.intrinsics.fy),
+      per_cell_(water.particles_per_l * 1e3 * cell_m * cell_m * cell_m),
+      current_m_s_(water.current_m_s),
+      seed_(seed) {
   if (per_cell_ <= 0) return;
   const Pose& base_from_camera = camera.config.base_from_camera;
   const CameraIntrinsics& k = camera.config.intrinsics;
@@ -48,23 +59,21 @@ Particles::Particles(const Camera& camera, const WaterConfig& water, std::uint64
   for (const double z : {near_m, far_m}) {
     for (const double u : {-1.0, k.width + 0.0}) {
       for (const double v : {-1.0, k.height + 0.0}) {
-        const Vec3 corner = base_from_camera * Vec3((u - k.cx) / k.fx * z * 1.2, (v - k.cy) / k.fy * z * 1.2, z);
+        const Vec3 corner = base_from_camera * Vec3((u - k.cx) / k.fx * z * widest, (v - k.cy) / k.fy * z * widest, z);
         low = low.cwiseMin(corner), high = high.cwiseMax(corner);
       }
     }
   }
-  const Pose camera_from_base = base_from_camera.inverse();
   const double reach_m = cell_m * 1.8;  // a cell's diagonal, and a margin
-  const double tan_u = 1.2 * std::max(k.cx + 1, k.width - k.cx) / k.fx, tan_v = 1.2 * std::max(k.cy + 1, k.height - k.cy) / k.fy;
   const Eigen::Vector3i first = (low / cell_m).array().floor().cast<int>() - 1, last = (high / cell_m).array().floor().cast<int>();
   for (std::int32_t x = first.x(); x <= last.x(); ++x) {
     for (std::int32_t y = first.y(); y <= last.y(); ++y) {
       for (std::int32_t z = first.z(); z <= last.z(); ++z) {
         // With its drift of up to a cell it lies about one cell's corner.
-        const Vec3 p = camera_from_base * (cell_m * Vec3(x + 1, y + 1, z + 1));
+        const Vec3 p = camera_from_base_ * (cell_m * Vec3(x + 1, y + 1, z + 1));
         if (p.z() < near_m - reach_m || p.z() > far_m + reach_m) continue;
-        if (std::abs(p.x()) > tan_u * std::max(p.z(), 0.0) + reach_m * (1 + tan_u)) continue;
-        if (std::abs(p.y()) > tan_v * std::max(p.z(), 0.0) + reach_m * (1 + tan_v)) continue;
+        if (std::abs(p.x()) > tan_u_ * std::max(p.z(), 0.0) + reach_m * (1 + tan_u_)) continue;
+        if (std::abs(p.y()) > tan_v_ * std::max(p.z(), 0.0) + reach_m * (1 + tan_v_)) continue;
         cells_.push_back({x, y, z});
       }
     }
@@ -75,12 +84,13 @@ std::vector<Particles::Speck> Particles::at(double time_s) const {
   std::vector<Speck> specks;
   const Vec3 drift = current_m_s_ * (time_s / cell_m);
   const Vec3 whole = drift.array().floor();
+  const double none = std::exp(-per_cell_);
   for (const Cell& cell : cells_) {
     std::uint64_t key = seed_;
     for (int axis = 0; axis < 3; ++axis)
       key = splitmix64(key + static_cast<std::uint64_t>(cell[static_cast<std::size_t>(axis)] - static_cast<std::int64_t>(whole[axis])));
     Draws draw(key);
-    const int count = count_of(per_cell_, draw());
+    const int count = count_of(per_cell_, none, draw());
     for (int i = 0; i < count; ++i) {
       Speck speck;
       for (int axis = 0; axis < 3; ++axis)
@@ -93,16 +103,24 @@ std::vector<Particles::Speck> Particles::at(double time_s) const {
   return specks;
 }
 
+std::vector<Particles::Speck> Particles::in_view(double time_s) const {
+  std::vector<Speck> specks = at(time_s);
+  std::size_t kept = 0;
+  for (Speck& speck : specks) {
+    const Vec3 p = camera_from_base_ * speck.place_m;
+    if (p.z() < near_m || p.z() > far_m || std::abs(p.x()) > tan_u_ * p.z() + image_margin_m ||
+        std::abs(p.y()) > tan_v_ * p.z() + image_margin_m)
+      continue;
+    speck.place_m = p;
+    specks[kept++] = speck;
+  }
+  specks.resize(kept);
+  return specks;
+}
+
 // Its light, spread over the pixels about its image: radiance times pixels is irradiance * albedo / pi * area * (f / z)^2.
 void Particles::show(const Speck& speck, const RgbLanes& irradiance, int lane, const Shader& shader, PixelStore& pixels) const {
-  const Vec3 p = camera_.config.base_from_camera.inverse() * speck.place_m;
-  if (p.z() < near_m || p.z() > far_m) return;
-  const std::optional<Vec2> image = camera_.rays.project(p);
-  if (!image) return;
-  const int u = std::clamp(static_cast<int>(std::lround(image->x())), 0, pixels.width - 1);
-  const int v = std::clamp(static_cast<int>(std::lround(image->y())), 0, pixels.height - 1);
-  const double depth_m = static_cast<double>(pixels.depth_m[pixels.index(u, v)]) + static_cast<double>(camera_.rays.origin_depth_m());
-  if (p.z() >= depth_m) return;
+  const Vec3& p = speck.place_m;
   const double px_per_m = camera_.config.intrinsics.fy / p.z();
   const double defocus_px = aperture_m * camera_.config.intrinsics.fy * std::abs(1 / p.z() - 1 / focus_m);
   const double sigma = std::max(std::hypot(speck.diameter_m * px_per_m, defocus_px) * disc_sigma, least_sigma_px);
@@ -112,6 +130,14 @@ void Particles::show(const Speck& speck, const RgbLanes& irradiance, int lane, c
   for (std::size_t band = 0; band < 3; ++band)
     radiance[band] = all_lanes(irradiance[band][lane] * size) * shader.water().transmission(band, range);
   const GreyLanes grey = camera_.grey(radiance);
+  const Lanes brightest = max(grey[0], max(grey[1], grey[2])) / static_cast<float>(2 * pi * sigma * sigma);
+  if (brightest[0] < least_grey) return;
+  const std::optional<Vec2> image = camera_.rays.project(p);
+  if (!image) return;
+  const int u = std::clamp(static_cast<int>(std::lround(image->x())), 0, pixels.width - 1);
+  const int v = std::clamp(static_cast<int>(std::lround(image->y())), 0, pixels.height - 1);
+  const double depth_m = static_cast<double>(pixels.depth_m[pixels.index(u, v)]) + static_cast<double>(camera_.rays.origin_depth_m());
+  if (p.z() >= depth_m) return;
 
   const int reach = static_cast<int>(std::ceil(3.5 * sigma));
   const auto centre_u = static_cast<int>(std::lround(image->x())), centre_v = static_cast<int>(std::lround(image->y()));
@@ -136,12 +162,12 @@ void Particles::show(const Speck& speck, const RgbLanes& irradiance, int lane, c
 
 void Particles::stamp(double time_s, const Shader& shader, PixelStore& pixels) const {
   if (cells_.empty()) return;
-  const std::vector<Speck> specks = at(time_s);
+  const std::vector<Speck> specks = in_view(time_s);
   for (std::size_t first = 0; first < specks.size(); first += lane_count) {
     const std::size_t count = std::min<std::size_t>(lane_count, specks.size() - first);
     Lanes3 place;
     for (int lane = 0; lane < lane_count; ++lane) {
-      const Vec3& p = specks[first + std::min(static_cast<std::size_t>(lane), count - 1)].place_m;
+      const Vec3 p = camera_.config.base_from_camera * specks[first + std::min(static_cast<std::size_t>(lane), count - 1)].place_m;
       place.x[lane] = static_cast<float>(p.x()), place.y[lane] = static_cast<float>(p.y()), place.z[lane] = static_cast<float>(p.z());
     }
     const RgbLanes irradiance = shader.at(place, daylight_share);

@@ -24,7 +24,8 @@ class Particles {
   // Those that `camera`, which outlives this, can see.
   Particles(const Camera& camera, const WaterConfig& water, std::uint64_t seed);
 
-  // Adds their light to the grey of `pixels`, whose surfaces hide what is behind them. `time_s`: how long the water has drifted.
+  // Adds their light to the grey of `pixels`, whose surfaces hide what is behind them. `time_s`: how long the water has drifted. What adds less than a
+  // tenth of a grey level to any pixel is left out.
   void stamp(double time_s, const Shader& shader, PixelStore& pixels) const;
 
   // One of them, in the base frame.
@@ -37,9 +38,13 @@ class Particles {
 
  private:
   using Cell = std::array<std::int32_t, 3>;
+  // Those before the camera; place_m in its frame.
+  std::vector<Speck> in_view(double time_s) const;
   void show(const Speck& speck, const RgbLanes& irradiance, int lane, const Shader& shader, PixelStore& pixels) const;
 
   const Camera& camera_;
+  Pose camera_from_base_;
+  double tan_u_, tan_v_;  // of the view's edges, and some
   double per_cell_;
   Vec3 current_m_s_;
   std::uint64_t seed_;
