@@ -249,10 +249,13 @@ void BasicScanPipeline<capacity>::add_points(bool final) {
 // False when the stripe has to wait.
 template <ScanCapacity capacity>
 bool BasicScanPipeline<capacity>::add_points(const Stripe& stripe, bool final) {
-  if (stripe.count == 0) return true;
-  std::array<double, arm_joint_count> q_rad;
-  const scan::JointHistory::Outcome outcome = joints_.at(stripe.mid_exposure, final, q_rad);
+  std::array<double, arm_joint_count> q_rad{};
+  const scan::JointHistory::Outcome outcome =
+      stripe.count == 0 ? scan::JointHistory::Outcome::done : joints_.at(stripe.mid_exposure, final, q_rad);
   if (outcome == scan::JointHistory::Outcome::wait) return false;
+  taken_count_ = 0;
+  taken_time_ = stripe.mid_exposure;
+  if (stripe.count == 0) return true;
   if (outcome != scan::JointHistory::Outcome::done) {
     stats_.points_no_joints += static_cast<std::uint32_t>(stripe.count);
     return true;
@@ -261,13 +264,16 @@ bool BasicScanPipeline<capacity>::add_points(const Stripe& stripe, bool final) {
   const Pose base_from_laser = arm::base_from_laser(q, config_.laser);
   arm_ = arm::link_capsules(q, jaw_while_scanning_rad);
   const std::span<const scan::Peak> peaks = std::span(stripe.peaks).first(stripe.count);
+  const std::span<std::uint8_t> chains = std::span(chains_).first(peaks.size());
+  scan::measure_chains(peaks, config_.chain.step_px, chains);
+  if (*std::max_element(chains.begin(), chains.end()) < config_.chain.panel_columns) return true;
   const std::uint32_t apart = std::max<std::uint32_t>(config_.columns_apart, 1u);
   const std::uint32_t shift = stripes_seen_++ % apart;
   for (std::size_t begin = 0; begin < peaks.size();) {
     std::size_t end = begin + 1;
     while (end < peaks.size() && peaks[end].u_px == peaks[begin].u_px) ++end;
     const auto column = static_cast<std::uint32_t>(std::max(peaks[begin].u_px, 0.f));
-    if (column % apart == shift) add_column(peaks.subspan(begin, end - begin), base_from_laser);
+    if (column % apart == shift) add_column(peaks.subspan(begin, end - begin), chains.subspan(begin, end - begin), base_from_laser);
     begin = end;
   }
   return true;
@@ -282,20 +288,28 @@ bool BasicScanPipeline<capacity>::behind_arm(const Vec3& point_m) const {
   });
 }
 
-// A column shows the panel and at most one proud part in the laser's plane; where more of its peaks could be points, none is believed.
+// Where more of a column's peaks could be points than it can show, none is believed.
 template <ScanCapacity capacity>
-void BasicScanPipeline<capacity>::add_column(std::span<const scan::Peak> peaks, const Pose& base_from_laser) {
-  constexpr std::size_t most = 2;
+void BasicScanPipeline<capacity>::add_column(std::span<const scan::Peak> peaks, std::span<const std::uint8_t> chains,
+                                             const Pose& base_from_laser) {
   StaticVector<CloudPoint, scan::max_peaks_per_line> points;
-  for (const scan::Peak& peak : peaks) {
+  StaticVector<Eigen::Vector2f, scan::max_peaks_per_line> seen;
+  for (std::size_t i = 0; i < peaks.size(); ++i) {
+    const scan::Peak& peak = peaks[i];
+    if (chains[i] < config_.chain.least_columns) continue;
     const std::optional<Vec3> point_m = triangulator_.point(Vec2(peak.u_px, peak.v_px), base_from_laser);
-    if (point_m && !behind_arm(*point_m)) (void)points.push_back({.p_m = point_m->cast<float>(), .amplitude = peak.amplitude});
+    if (!point_m || behind_arm(*point_m)) continue;
+    (void)points.push_back({.p_m = point_m->cast<float>(), .amplitude = peak.amplitude});
+    (void)seen.push_back({peak.u_px, peak.v_px});
   }
-  if (points.size() > most) {
+  if (points.size() > points_a_column) {
     ++stats_.peaks_ambiguous;
     return;
   }
   for (const CloudPoint& point : points) ++(cloud_.add(point) ? stats_.points : stats_.points_overflowed);
+  for (const Eigen::Vector2f& place : seen) {
+    if (taken_count_ < taken_.size()) taken_[taken_count_++] = place;
+  }
 }
 
 template <ScanCapacity capacity>

@@ -17,6 +17,7 @@
 #include "firmware/scan/peak_refiner.hpp"
 #include "firmware/scan/peaks.hpp"
 #include "firmware/scan/plane.hpp"
+#include "firmware/scan/stripe_chain.hpp"
 #include "firmware/scan/triangulate.hpp"
 #include "shared/calibration/calibration.hpp"
 #include "shared/messages/image.hpp"
@@ -32,6 +33,7 @@ struct ScanConfig {
   std::uint8_t camera_index = 0;  // whose images are measured
   scan::PeakConfig peaks{.peaks_per_line = 4};
   scan::RefinerConfig refiner;  // its haze is scaled to the camera
+  scan::ChainConfig chain;
   scan::Triangulator::Config triangulation;
   // An image without a trigger counter belongs to the exposure ordered within this of its start; exposures are 40 ms apart. It covers the tick's lateness, the
   // camera's own delay, and how well its clock is known.
@@ -88,6 +90,9 @@ class BasicScanPipeline {
   // Of the newest laser-on image, for the report.
   std::span<const scan::Peak> last_peaks() const { return {last_peaks_.data(), last_peaks_count_}; }
   Time last_peaks_time() const { return last_peaks_time_; }
+  // Where those are that became points, px, of a sweep's newest stripe whose joints are known: the report's, too.
+  std::span<const Eigen::Vector2f> last_taken() const { return {taken_.data(), taken_count_}; }
+  Time last_taken_time() const { return taken_time_; }
 
   const ScanStats& stats() const { return stats_; }
 
@@ -130,7 +135,7 @@ class BasicScanPipeline {
   void add_points(bool final);
   bool add_points(const Stripe& stripe, bool final);
   bool behind_arm(const Vec3& point_m) const;
-  void add_column(std::span<const scan::Peak> peaks, const Pose& base_from_laser);
+  void add_column(std::span<const scan::Peak> peaks, std::span<const std::uint8_t> chains, const Pose& base_from_laser);
   void analyse(std::uint32_t sweep);
 
   // At 125 Hz and 0.2 s from trigger to image 25 are on their way; more are images that never came.
@@ -160,6 +165,12 @@ class BasicScanPipeline {
   std::array<scan::Peak, max_peaks> last_peaks_{};
   std::size_t last_peaks_count_ = 0;
   Time last_peaks_time_;
+  // A column shows the panel and at most one proud part in the laser's plane.
+  static constexpr std::size_t points_a_column = 2;
+  std::array<Eigen::Vector2f, points_a_column * image_width> taken_;
+  std::array<std::uint8_t, max_peaks> chains_{};  // columns of the chain that each peak of the stripe under work stands in
+  std::size_t taken_count_ = 0;
+  Time taken_time_;
 };
 
 // Every point of the slowest sweep. The cloud is 4.2 MB of it, two stored images 0.6, stripes 0.2, detector and refiner 0.2.
