@@ -1,17 +1,34 @@
 #include "host_sim/app/run_recorder.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <utility>
 
 namespace lf::app {
+namespace {
 
-RunRecorder::RunRecorder(const record::RunFolder* folder, const config::ErrorTexts& texts, PhaseObserver::Say say)
+PictureNoise noise_of(const optics::OpticsConfig& optics) {
+  PictureNoise noise;
+  if (!optics.cameras.empty()) {
+    const optics::CameraConfig& camera = optics.cameras.front();
+    noise.read_grey = camera.gain * camera.read_noise_grey;
+    noise.electrons_per_grey = camera.electrons_per_grey / std::max(camera.gain, 1e-9);
+  }
+  if (!optics.lasers.empty()) noise.speckle = optics.lasers.front().speckle;
+  return noise;
+}
+
+}  // namespace
+
+RunRecorder::RunRecorder(const record::RunFolder* folder, const config::ErrorTexts& texts, PhaseObserver::Say say,
+                         const optics::OpticsConfig& optics)
     : files_(folder),
       bus_(files_, digest_),
       phases_(digest_, texts, std::move(say)),
       events_(files_, texts),
       curves_(files_, bus_),
       panel_(files_),
+      peaks_(noise_of(optics)),
       pictures_(files_) {}
 
 void RunRecorder::keep_raw_images(const CameraCalibration& camera, const LaserCalibration& laser, const optics::OpticsConfig& optics) {

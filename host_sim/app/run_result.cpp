@@ -6,6 +6,7 @@
 #include "hal/config/boot_sentence.hpp"
 #include "hal/config/cause.hpp"
 #include "host_sim/app/outcome_text.hpp"
+#include "host_sim/app/scoring.hpp"
 #include "host_sim/judge/truth.hpp"
 #include "host_sim/scenario/instance.hpp"
 
@@ -98,6 +99,8 @@ record::ErrorRecord score(const RunRecorder& recorder, const hal::SimConfig& tru
   record::ErrorRecord errors;
   errors.peak_rms_px = recorder.peaks().rms_px();
   errors.peak_rms_smooth_px = recorder.peaks().smooth_rms_px();
+  errors.peak_rms_clear_px = recorder.peaks().clear_rms_px();
+  errors.peak_bound_px = recorder.peaks().clear_bound_px();
   errors.peak_recall = recorder.peaks().recall();
   errors.peaks_false = recorder.peaks().false_share();
   errors.peaks_elsewhere = recorder.peaks().elsewhere_share();

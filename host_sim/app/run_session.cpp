@@ -58,7 +58,7 @@ class Session {
         sample_(scenario::draw(request.scenario, request.seed)),
         nominal_(scenario::make_nominal(request.scenario, sample_.lamps_lit)),
         sim_(truth(request, sample_, nominal_)),
-        recorder_(folder, nominal_.error_texts, request.say),
+        recorder_(folder, nominal_.error_texts, request.say, sim_.optics),
         platform_(std::make_unique<hal::SimPlatform>(sim_, recorder_.observer())),
         controller_(std::make_unique<Controller>(nominal_.controller)),
         pipeline_(std::make_unique<ScanPipeline>(nominal_.scan)),

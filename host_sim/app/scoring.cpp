@@ -10,8 +10,6 @@ namespace lf::app {
 
 namespace {
 
-constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
-
 // Signed distance to a box of half extents `half`, from outside positive.
 double box_distance(const Vec3& p, const Vec3& half) {
   const Vec3 q = p.cwiseAbs() - half;
@@ -22,8 +20,6 @@ double cylinder_distance(const Vec3& p, double radius, double half_height) {
   const Vec2 q(p.head<2>().norm() - radius, std::abs(p.z()) - half_height);
   return q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0);
 }
-
-double share(std::uint64_t part, std::uint64_t all) { return all > 0 ? static_cast<double>(part) / static_cast<double>(all) : not_known; }
 
 double segment_distance(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 along = b - a;
@@ -37,19 +33,6 @@ double triangle_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3
   const auto inside_of = [&](const Vec3& from, const Vec3& to) { return normal.dot((to - from).cross(p - from)) >= 0; };
   if (normal.squaredNorm() > 0 && inside_of(a, b) && inside_of(b, c) && inside_of(c, a)) return std::abs(normal.normalized().dot(p - a));
   return std::min({segment_distance(p, a, b), segment_distance(p, b, c), segment_distance(p, c, a)});
-}
-
-// Whether the depth has no jump and no crease within the stripe's width about a pixel.
-bool on_smooth_surface(const optics::Frame& truth, std::int32_t u, std::int32_t v) {
-  constexpr std::int32_t reach = 5;  // px: three standard deviations of a stripe in clear water
-  constexpr double bend_m = 2e-3;    // a face of the panel seen at a slant bends by 0.1 mm over the reach, its arris by 5 mm
-  if (u < reach || v < reach || u + reach >= truth.width || v + reach >= truth.height) return false;
-  const auto depth_m = [&](std::int32_t x, std::int32_t y) {
-    return double(truth.depth_m[static_cast<std::size_t>(y) * static_cast<std::size_t>(truth.width) + static_cast<std::size_t>(x)]);
-  };
-  const double centre_m = depth_m(u, v);
-  return std::abs(depth_m(u, v - reach) + depth_m(u, v + reach) - 2 * centre_m) < bend_m &&
-         std::abs(depth_m(u - reach, v) + depth_m(u + reach, v) - 2 * centre_m) < bend_m;
 }
 
 }  // namespace
@@ -101,61 +84,6 @@ std::vector<double> cloud_errors_mm(std::span<const CloudPoint> cloud, const sce
   }
   return distances;
 }
-
-void PeakScore::add(const optics::Frame& truth, std::span<const scan::Peak> peaks) {
-  const auto width = static_cast<std::size_t>(truth.width);
-  if (truth.stripe_v.size() < width || truth.stripe_grey.size() < width) return;
-  std::vector<std::vector<const optics::StripePiece*>> pieces(width);
-  for (const optics::StripePiece& piece : truth.pieces) pieces[static_cast<std::size_t>(piece.u)].push_back(&piece);
-  const auto nearest_in = [&](std::size_t column, double v) {
-    double nearest = std::numeric_limits<double>::infinity();
-    for (const optics::StripePiece* piece : pieces[column]) {
-      if (const double error = v - double(piece->v); std::abs(error) < std::abs(nearest)) nearest = error;
-    }
-    return nearest;
-  };
-  const bool has_depth = truth.depth_m.size() == width * static_cast<std::size_t>(truth.height);
-  std::vector<bool> brightest_found(width), other_found(width);
-  for (const scan::Peak& peak : peaks) {
-    const auto column = static_cast<std::size_t>(std::lround(peak.u_px));
-    if (column >= width) continue;
-    ++peaks_;
-    const double v = double(peak.v_px), error = nearest_in(column, v);
-    if (!(std::abs(error) <= match_px)) {
-      bool beside = false;
-      for (std::int32_t step = -beside_px; step <= beside_px; ++step) {
-        const auto other = static_cast<std::int64_t>(column) + step;
-        if (other < 0 || other >= truth.width) continue;
-        beside = beside || std::abs(nearest_in(static_cast<std::size_t>(other), v)) <= match_px;
-      }
-      if (!beside) ++false_;
-      continue;
-    }
-    (std::abs(v - double(truth.stripe_v[column])) <= match_px ? brightest_found : other_found)[column] = true;
-    ++matched_;
-    squares_ += error * error;
-    if (!has_depth || !on_smooth_surface(truth, static_cast<std::int32_t>(column), static_cast<std::int32_t>(std::lround(v - error))))
-      continue;
-    ++smooth_;
-    smooth_squares_ += error * error;
-  }
-  for (std::size_t u = 0; u < width; ++u) {
-    if (!std::isfinite(truth.stripe_v[u]) || !(truth.stripe_grey[u] >= visible_grey)) continue;
-    ++visible_;
-    found_ += brightest_found[u] ? 1 : 0;
-    elsewhere_ += !brightest_found[u] && other_found[u] ? 1 : 0;
-  }
-}
-
-double PeakScore::rms_px() const { return matched_ > 0 ? std::sqrt(squares_ / static_cast<double>(matched_)) : not_known; }
-
-double PeakScore::smooth_rms_px() const { return smooth_ > 0 ? std::sqrt(smooth_squares_ / static_cast<double>(smooth_)) : not_known; }
-
-double PeakScore::recall() const { return share(found_, visible_); }
-
-double PeakScore::false_share() const { return share(false_, peaks_); }
-
-double PeakScore::elsewhere_share() const { return share(elsewhere_, visible_); }
 
 double percentile(std::vector<double> values, double share) { return campaign::nearest_rank(values, share); }
 

@@ -1,5 +1,6 @@
 #include "host_sim/optics/optics.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <mutex>
@@ -120,11 +121,39 @@ struct Optics::Impl {
         for (const RenderPass::StripeCentre& centre : centres) {
           const std::size_t column = laser * static_cast<std::size_t>(frame.width) + static_cast<std::size_t>(centre.u);
           const float grey = centre.grey * light * camera.sensor.vignetting(centre.u, static_cast<int>(centre.v));
-          frame.pieces.push_back({static_cast<std::int32_t>(laser), centre.u, centre.v, grey});
+          frame.pieces.push_back({static_cast<std::int32_t>(laser), centre.u, centre.v, grey, centre.sigma_px, false});
           if (!(grey > frame.stripe_grey[column])) continue;
           frame.stripe_v[column] = centre.v;
           frame.stripe_grey[column] = grey;
         }
+      }
+    }
+  }
+
+  // Where the picture's laser light is brightest in its column, and no centre is near. Of lines only: a pattern's light is not told apart.
+  void find_parts(const PixelStore& pixels, const std::vector<std::uint8_t>& line_packets, const Camera& camera, float light,
+                  Frame& frame) const {
+    if (!std::all_of(patterns.begin(), patterns.end(), [](const auto& pattern) { return !pattern.has_value(); })) return;
+    constexpr float apart_px = 4, least_grey = 3;
+    std::vector<std::vector<float>> centres(static_cast<std::size_t>(frame.width));
+    for (const StripePiece& piece : frame.pieces) centres[static_cast<std::size_t>(piece.u)].push_back(piece.v);
+    const std::size_t packets_a_row = pixels.stride / lane_count;
+    const auto laser_at = [&](std::size_t at) {
+      float brightest = pixels.laser[at];
+      for (std::size_t c = 1; c < pixels.channels; ++c) brightest = std::max(brightest, pixels.laser[c * pixels.plane + at]);
+      return brightest;
+    };
+    for (std::int32_t v = 1; v + 1 < frame.height; ++v) {
+      for (std::int32_t u = 0; u < frame.width; ++u) {
+        if (line_packets[static_cast<std::size_t>(v) * packets_a_row + static_cast<std::size_t>(u / lane_count)] == 0) continue;
+        const std::size_t at = pixels.index(u, v);
+        const float here = laser_at(at);
+        if (!(here > laser_at(at - pixels.stride)) || !(here >= laser_at(at + pixels.stride))) continue;
+        const float grey = here * light * camera.sensor.vignetting(u, v);
+        const std::vector<float>& near = centres[static_cast<std::size_t>(u)];
+        const auto is_near = [&](float centre) { return std::abs(centre - static_cast<float>(v)) <= apart_px; };
+        if (grey >= least_grey && std::none_of(near.begin(), near.end(), is_near))
+          frame.pieces.push_back({0, u, static_cast<float>(v), grey, 0, true});
       }
     }
   }
@@ -160,7 +189,9 @@ struct Optics::Impl {
         viewer.formation.expose_row(viewer.live.pixels, v, speckle, exposing,
                                     frame.pixels.data() + static_cast<std::size_t>(v) * row_bytes);
     });
-    if (shot.truth) find_stripes(pass, shader, viewer.camera, exposing.light, tile_rows, frame);
+    if (!shot.truth) return;
+    find_stripes(pass, shader, viewer.camera, exposing.light, tile_rows, frame);
+    if (!shader.sheets.empty()) find_parts(viewer.live.pixels, pass.lines(), viewer.camera, exposing.light, frame);
   }
 
   std::vector<LaserConfig> lasers;

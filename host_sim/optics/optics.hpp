@@ -122,10 +122,13 @@ struct Shot {
   bool truth = false;
 };
 
-// A place of a laser's stripe: where the ideal sheet meets, in the middle of column u, a surface that is both visible and lit.
+// A place of a laser's stripe: where the ideal sheet meets, in the middle of column u, a surface that is both visible and lit; or a part of one.
 struct StripePiece {
   std::int32_t laser = 0, u = 0;
   float v = 0, grey = 0;  // its height as Frame::stripe_grey has it
+  float sigma_px = 0;     // standard deviation along the column, beam, lens and pixel together; 0 for a part
+  // No centre: the beam's middle misses the surface, at its border, and its flank falls on it. v is where that is brightest.
+  bool part = false;
 };
 
 // Pixels and, on request, what is true of them (otherwise those vectors are empty). Reuse one Frame: its memory is kept.

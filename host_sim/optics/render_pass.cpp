@@ -254,8 +254,10 @@ void RenderPass::refine_stripe(std::size_t laser, int u, int v, Lanes offset_v, 
   for (std::size_t band = 0; band < 3; ++band) radiance[band] = albedo[band] * static_cast<float>(1 / pi) * stripe.irradiance[band];
   const GreyLanes grey = camera_.grey(radiance);
   const Lanes height = max(grey[0], max(grey[1], grey[2]));
+  // The other side of the pixel is of another direction: here the whole square counts.
+  const Lanes sigma_v = sqrt(stripe.sigma_px * stripe.sigma_px + 1.f / 12.f) / max(abs(stripe.slope_v), all_lanes(0.02f));
   for (int lane = 0; lane < lane_count && u + lane < camera_.width(); ++lane) {
-    if (lit[lane] != 0) centres.push_back({u + lane, static_cast<float>(v) + offset_v[lane], height[lane]});
+    if (lit[lane] != 0) centres.push_back({u + lane, static_cast<float>(v) + offset_v[lane], height[lane], sigma_v[lane]});
   }
 }
 

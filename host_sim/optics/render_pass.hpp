@@ -39,7 +39,7 @@ class RenderPass {
   // The true centres of `laser`'s stripe among this tile row's pixels.
   struct StripeCentre {
     std::int32_t u;
-    float v, grey;
+    float v, grey, sigma_px;
   };
   std::vector<StripeCentre> stripe_centres(int tile_row, std::size_t laser) const;
 

@@ -158,6 +158,7 @@ StripePacket SheetLight::line(const SurfacePacket& s, const Water& water, float 
   const Lanes box_u = footprint * abs(w_du) / gradient, box_v = footprint * abs(w_dv) / gradient;
   const Lanes wide = max(box_u, box_v), narrow = min(box_u, box_v);
   const Lanes sigma = sqrt(sigma_px * sigma_px + blur_px * blur_px + narrow * narrow * (1.f / 12.f));
+  stripe.sigma_px = sigma;
   stripe.reached = near & (weight > 0.f);
   if (!any(stripe.reached)) return stripe;
 

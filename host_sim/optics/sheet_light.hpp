@@ -22,6 +22,7 @@ struct StripePacket {
   LaneMask beside{};      // lanes that its skirt falls on; not where the sheet ends before them
   Lanes offset_px{};      // the pixel's distance to the stripe's centre
   Lanes slope_v{};        // its change from one row to the next
+  Lanes sigma_px{};       // the stripe's, across it: beam, lens and the pixel's narrow side
   RgbLanes irradiance{};  // W/m2 there times the way back to the camera, unoccluded
   RgbLanes skirt{};       // the same of the light that the water scattered
 };

@@ -101,6 +101,8 @@ ErrorRecord errors_from(const Json& json) {
   read(json, "cloud_truth_p95_mm", errors.cloud_truth_p95_mm);
   read(json, "peak_rms_px", errors.peak_rms_px);
   read(json, "peak_rms_smooth_px", errors.peak_rms_smooth_px);
+  read(json, "peak_rms_clear_px", errors.peak_rms_clear_px);
+  read(json, "peak_bound_px", errors.peak_bound_px);
   read(json, "peak_recall", errors.peak_recall);
   read(json, "peaks_false", errors.peaks_false);
   read(json, "peaks_elsewhere", errors.peaks_elsewhere);

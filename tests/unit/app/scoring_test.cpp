@@ -66,69 +66,6 @@ TEST(Scoring, DistancesToSpheresCapsulesAndMeshes) {
     EXPECT_NEAR(distance_to_surface_m(p, mesh), distance_to_surface_m(p, box), 1e-12) << p.transpose();
 }
 
-TEST(Scoring, PeaksAreHeldAgainstTheRenderedStripe) {
-  optics::Frame frame;
-  frame.width = 4;
-  frame.height = 100;
-  const float nan = std::numeric_limits<float>::quiet_NaN();
-  frame.stripe_v = {50, 51, nan, 53};
-  frame.stripe_grey = {100, 100, 100, 3};  // the last is too faint to count
-  frame.pieces = {{0, 0, 50, 100}, {0, 1, 51, 100}, {0, 3, 53, 3}};
-  PeakScore score;
-  const scan::Peak peaks[] = {{0, 50.3f, 100, 0, 0}, {1, 80.0f, 100, 0, 0}, {2, 10.0f, 100, 0, 0}};
-  score.add(frame, peaks);
-  EXPECT_EQ(score.visible(), 2u);
-  EXPECT_NEAR(score.recall(), 0.5, 1e-12) << "29 px off is another thing";
-  EXPECT_NEAR(score.rms_px(), 0.3, 1e-6);
-  EXPECT_EQ(score.false_peaks(), 2u);
-  EXPECT_NEAR(score.false_share(), 2.0 / 3, 1e-12);
-}
-
-// A column with a bright piece on a button and a faint one on the panel; beside it none, but a lens's light of the bright one.
-TEST(Scoring, APeakOnAnotherPieceIsNeitherFalseNorTheOneThatCounts) {
-  optics::Frame frame;
-  frame.width = 8;
-  frame.height = 100;
-  frame.stripe_v.assign(8, std::numeric_limits<float>::quiet_NaN());
-  frame.stripe_grey.assign(8, 0);
-  frame.stripe_v[3] = 40, frame.stripe_grey[3] = 100;
-  frame.pieces = {{0, 3, 40, 100}, {0, 3, 60, 30}};
-  PeakScore other, both, beside;
-  other.add(frame, std::vector<scan::Peak>{{3, 60.2f, 30, 0, 0}});
-  EXPECT_EQ(other.recall(), 0);
-  EXPECT_EQ(other.elsewhere_share(), 1);
-  EXPECT_EQ(other.false_peaks(), 0u);
-  EXPECT_NEAR(other.rms_px(), 0.2, 1e-5);
-  both.add(frame, std::vector<scan::Peak>{{3, 40.1f, 100, 0, 0}, {3, 60.2f, 30, 0, 0}, {3, 80, 30, 0, 0}});
-  EXPECT_EQ(both.recall(), 1);
-  EXPECT_EQ(both.elsewhere_share(), 0);
-  EXPECT_EQ(both.false_peaks(), 1u);
-  beside.add(frame, std::vector<scan::Peak>{{5, 40.5f, 20, 0, 0}, {6, 40.5f, 20, 0, 0}});
-  EXPECT_EQ(beside.false_peaks(), 1u) << "three columns off no light of it is left";
-  EXPECT_EQ(beside.recall(), 0);
-}
-
-TEST(Scoring, PeaksAtAStepOfDepthAreScoredApartFromThoseOnASmoothSurface) {
-  optics::Frame frame;
-  frame.width = 60;
-  frame.height = 60;
-  frame.stripe_v.assign(60, 30);
-  frame.stripe_grey.assign(60, 100);
-  frame.depth_m.resize(3600);
-  // A slope, and beyond column 30 another thing 50 mm nearer.
-  for (int v = 0; v < 60; ++v) {
-    for (int u = 0; u < 60; ++u)
-      frame.depth_m[static_cast<std::size_t>(v * 60 + u)] = 1 + 0.004f * static_cast<float>(v) - (u > 30 ? 0.05f : 0);
-  }
-  for (int u = 0; u < 60; ++u) frame.pieces.push_back({0, u, 30, 100});
-  std::vector<scan::Peak> peaks;
-  for (int u = 0; u < 60; ++u) peaks.push_back({static_cast<float>(u), u > 25 && u < 36 ? 31.0f : 30.1f, 100, 0, 0});
-  PeakScore score;
-  score.add(frame, peaks);
-  EXPECT_NEAR(score.smooth_rms_px(), 0.1, 1e-5);
-  EXPECT_NEAR(score.rms_px(), std::sqrt((10 * 1.0 + 50 * 0.01) / 60), 1e-5);
-}
-
 TEST(Scoring, PercentilesAreNearestRank) {
   EXPECT_EQ(percentile({5, 1, 4, 2, 3}, 0.5), 3);
   EXPECT_EQ(percentile({5, 1, 4, 2, 3}, 0.95), 5);
