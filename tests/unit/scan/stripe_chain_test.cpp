@@ -22,7 +22,8 @@ TEST(StripeChain, GoesOnFromColumnToColumnOverAMissingOne) {
     peaks.push_back({static_cast<float>(u), 100 + 1.5f * static_cast<float>(u)});
   }
   const std::vector<int> columns = chains_of(peaks);
-  for (std::size_t i = 0; i < peaks.size(); ++i) EXPECT_EQ(columns[i], peaks[i].u_px < 30 ? 19 : 8) << peaks[i].u_px << ": two in a row end it";
+  for (std::size_t i = 0; i < peaks.size(); ++i)
+    EXPECT_EQ(columns[i], peaks[i].u_px < 30 ? 19 : 8) << peaks[i].u_px << ": two in a row end it";
 }
 
 TEST(StripeChain, APieceBeforeThePanelIsAChainOfItsOwn) {
