@@ -13,8 +13,24 @@ bool PeakObserver::after_vision(const ScanPipeline& pipeline) {
   if (frame_ == nullptr || !has_laser_ || pipeline.last_peaks_time() == peaks_of_) return false;
   peaks_of_ = pipeline.last_peaks_time();
   if (peaks_of_ != frame_middle_ && peaks_of_ != frame_start_) return false;  // of another image
+  const PeakScore before = score_;
   score_.add(*frame_, pipeline.last_peaks());
+  const auto visible = static_cast<double>(score_.visible() - before.visible());
+  t_s_.push_back(frame_start_.s());
+  peaks_.push_back(static_cast<double>(pipeline.last_peaks().size()));
+  visible_.push_back(visible);
+  false_.push_back(static_cast<double>(score_.false_peaks() - before.false_peaks()));
+  recall_percent_.push_back(visible > 0 ? 100 * static_cast<double>(score_.found() - before.found()) / visible : record::unknown);
   return true;
+}
+
+std::vector<record::ReportChart> PeakObserver::charts() const {
+  return {{"Peaks of each laser picture",
+           "columns",
+           {{"found by the core", t_s_, peaks_, false},
+            {"with a visible stripe (truth)", t_s_, visible_, true},
+            {"false (truth)", t_s_, false_, false}}},
+          {"Recall of each laser picture, truth", "%", {{"recall", t_s_, recall_percent_, false}}}};
 }
 
 }  // namespace lf::app
