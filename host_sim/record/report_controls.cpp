@@ -10,7 +10,7 @@ std::string controls_html() {
 <div class="track"><input type="range" id="time" min="0" max="1" step="0.01" value="0" aria-label="Time in the run"><div id="flags" aria-hidden="true"></div></div>
 <div class="row"><span class="soft">Charts:</span><button type="button" id="closer">zoom in</button><button type="button" id="farther">zoom out</button>
 <button type="button" id="whole">whole run</button><button type="button" id="wide" aria-pressed="false">wide</button></div>
-<p class="facts">Drag over a chart to zoom, double click for the whole run. A name in a legend switches its line.</p></div>)html";
+<p class="facts">Time is simulated, in seconds. Drag over a chart to zoom, double click for the whole run. A name in a legend switches its line.</p></div>)html";
 }
 
 }  // namespace lf::record

@@ -79,7 +79,9 @@ TEST(ReportData, KeepsSpikesAndGapsOfALongRunInBoundedSpace) {
   ASSERT_EQ(times.size(), most_samples);
   ASSERT_EQ(values.size(), most_samples);
   const double piece_s = 0.004 * 2 * count / most_samples;
-  const auto place_of = [&](double value) { return static_cast<std::size_t>(std::find(values.begin(), values.end(), value) - values.begin()); };
+  const auto place_of = [&](double value) {
+    return static_cast<std::size_t>(std::find(values.begin(), values.end(), value) - values.begin());
+  };
   ASSERT_LT(place_of(1000), values.size());
   ASSERT_LT(place_of(-500), values.size());
   EXPECT_NEAR(times[place_of(1000)].get<double>(), spike * 0.004, piece_s);
@@ -94,7 +96,8 @@ TEST(ReportData, KeepsSpikesAndGapsOfALongRunInBoundedSpace) {
 TEST(ReportData, HasPhasesAndFaultsWithTheirTimes) {
   ReportData data;
   data.result.phases = {{"boot", 0.004, 1.5, "done"}, {"scan", 1.5, 21.25, "failed"}, {"never", unknown, unknown, ""}};
-  data.result.faults = {{12.5, 12.75, 3, "scan", "image lost", "image lost", "count"}, {13.25, 13.25, 1, "scan", "emcy", "EMCY 0x2310", ""}};
+  data.result.faults = {{12.5, 12.75, 3, "scan", "image lost", "image lost", "count"},
+                        {13.25, 13.25, 1, "scan", "emcy", "EMCY 0x2310", ""}};
   const Json json = json_of(data);
   EXPECT_EQ(json["phases"], Json::parse(R"([{"name":"boot","from":0.004,"to":1.5},{"name":"scan","from":1.5,"to":21.25}])"));
   EXPECT_EQ(json["faults"], Json::parse(R"([{"t":12.5,"last":12.75,"times":3,"text":"image lost","reaction":"count"},
@@ -123,12 +126,14 @@ TEST(ReportData, HasTheRobotsPartsAndHowTheyMoved) {
     ASSERT_EQ(shown["at"].size(), 12u);
     for (int row = 0; row < 3; ++row) {
       for (int column = 0; column < 4; ++column)
-        EXPECT_NEAR(shown["at"][static_cast<std::size_t>(4 * row + column)].get<double>(), part.parent_from_part.matrix()(row, column), 1e-8);
+        EXPECT_NEAR(shown["at"][static_cast<std::size_t>(4 * row + column)].get<double>(), part.parent_from_part.matrix()(row, column),
+                    1e-8);
     }
     ASSERT_EQ(shown["solids"].size(), part.shapes.size());
   }
   ASSERT_EQ(motion["coordinates"].size(), data.motion.coordinates.size());
-  for (std::size_t i = 0; i < data.motion.coordinates.size(); ++i) expect_equal(motion["coordinates"][i]["v"], data.motion.coordinates[i].value);
+  for (std::size_t i = 0; i < data.motion.coordinates.size(); ++i)
+    expect_equal(motion["coordinates"][i]["v"], data.motion.coordinates[i].value);
   EXPECT_EQ(json_of(ReportData{})["motion"], nullptr);
 }
 
