@@ -124,16 +124,17 @@ std::string scale_legend() {
          "</span> mm from the fitted plane, positive toward the robot</div>";
 }
 
-std::string tools(bool has_robot) {
+std::string tools(bool has_cloud, bool has_robot) {
   std::string html =
       "<div class=\"tools live\" hidden><button type=\"button\" data-view=\"0.5,0.35\">oblique</button>"
       "<button type=\"button\" data-view=\"0,0\">front</button><button type=\"button\" data-view=\"0,1.5708\">from above</button>"
       "<button type=\"button\" data-view=\"1.5708,0\">from the side</button>"
       "<button type=\"button\" data-zoom=\"1.3\" aria-label=\"enlarge\">+</button>"
       "<button type=\"button\" data-zoom=\"0.77\" aria-label=\"reduce\">−</button>";
+  if (has_robot && has_cloud) html += "<button type=\"button\" data-show=\"cloud\">cloud</button>";
   if (has_robot) {
     html +=
-        "<button type=\"button\" data-show=\"cloud\">cloud</button><button type=\"button\" data-show=\"robot\">robot</button>"
+        "<button type=\"button\" data-show=\"robot\">robot</button>"
         "<button type=\"button\" data-show=\"controls\">valve, buttons</button><button type=\"button\" data-show=\"panel\">panel</button>"
         "<button type=\"button\" data-show=\"vehicle\">vehicle</button>";
   }
@@ -181,7 +182,7 @@ std::string cloud_html(const ReportData& data) {
   }
   html += "<canvas width=\"1120\" height=\"672\" tabindex=\"0\" role=\"img\" aria-label=\"" +
           std::string(has_robot ? "Cloud and robot" : "Cloud") + " in 3D; arrow keys turn it, plus and minus enlarge it\" hidden></canvas>";
-  html += tools(has_robot) + "</div>";
+  html += tools(!points.empty(), has_robot) + "</div>";
   if (!points.empty()) {
     html += "<script type=\"text/plain\" id=\"points\">" + packed(points) + "</script>" + scale_legend() + "<p class=\"facts\">" +
             facts(data, points.size()) + "<span class=\"live\" hidden>; drag to turn</span>.</p>";

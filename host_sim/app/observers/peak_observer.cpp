@@ -2,6 +2,12 @@
 
 namespace lf::app {
 
+namespace {
+
+constexpr double pause_s = 1;  // longer than any interval of the camera's, twice 80 ms: charts show no line over it
+
+}  // namespace
+
 void PeakObserver::on_image(const hal::ExposureRecord& exposure) {
   frame_ = exposure.frame;
   frame_start_ = exposure.exposure.start;
@@ -16,6 +22,10 @@ bool PeakObserver::after_vision(const ScanPipeline& pipeline) {
   const PeakScore before = score_;
   score_.add(*frame_, pipeline.last_peaks());
   const auto visible = static_cast<double>(score_.visible() - before.visible());
+  if (!t_s_.empty() && frame_start_.s() > t_s_.back() + pause_s) {
+    t_s_.push_back(t_s_.back() + pause_s / 2);
+    for (std::vector<double>* series : {&peaks_, &visible_, &false_, &recall_percent_}) series->push_back(record::unknown);
+  }
   t_s_.push_back(frame_start_.s());
   peaks_.push_back(static_cast<double>(pipeline.last_peaks().size()));
   visible_.push_back(visible);

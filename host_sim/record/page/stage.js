@@ -37,7 +37,7 @@ function makeStage(box) {
   const canvas = box.querySelector('canvas'), raster = new Raster(canvas), motion = run.motion, view = run.view;
   const points = readPoints(), paints = new Uint32Array(points.length / 3);
   for (let i = 0; i < paints.length; ++i) paints[i] = cloudColour(1000 * points[3 * i + 2]);
-  const shown = {cloud: true, robot: true, controls: true, panel: false, vehicle: false};
+  const shown = {cloud: true, robot: true, controls: true, panel: points.length === 0, vehicle: false};
   const place = document.getElementById('tool-place');
   let yaw = view.yaw, pitch = view.pitch, zoom = 1, asked = false;
 

@@ -86,6 +86,24 @@ TEST(Report, ShowsTheVerdictTheCommandAndEveryPhaseWithoutScripts) {
   EXPECT_THAT(without_scripts, HasSubstr("66812 of 71000"));
 }
 
+TEST(Report, ShowsTheRobotWhereThereIsNoCloudAndTheCloudWhereThereIsNoRobot) {
+  ReportData data = small_run();
+  data.cloud.clear();
+  const std::string robot = report_html(data);
+  EXPECT_THAT(robot, HasSubstr("id=\"tool-place\""));
+  EXPECT_THAT(robot, Not(HasSubstr("data-show=\"cloud\"")));
+  EXPECT_THAT(robot, Not(HasSubstr("id=\"points\"")));
+  EXPECT_EQ(first_unbalanced_tag(robot), "");
+  data = small_run();
+  data.motion = {};
+  const std::string cloud = report_html(data);
+  EXPECT_THAT(cloud, HasSubstr("id=\"points\""));
+  EXPECT_THAT(cloud, Not(HasSubstr("id=\"tool-place\"")));
+  EXPECT_EQ(first_unbalanced_tag(cloud), "");
+  EXPECT_THAT(robot, HasSubstr("<canvas"));
+  EXPECT_THAT(cloud, HasSubstr("<canvas"));
+}
+
 TEST(Report, OpensAndClosesItsElementsInPairs) { EXPECT_EQ(first_unbalanced_tag(report_html(small_run())), ""); }
 
 TEST(Report, EscapesAllText) {
