@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Installs the Debian packages of toolchain/packages.txt that are missing, says what it does, and does nothing the second time.
-# Usage: toolchain/setup.sh [--tests] [--aarch64]
+# Usage: toolchain/setup.sh [--tests] [--browser] [--aarch64]
 #   --tests    those of packages_tests.txt, too; without one of these its tests are skipped
+#   --browser  those of packages_browser.txt, too; the same
 #   --aarch64  those of packages_aarch64.txt, too
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -44,6 +45,10 @@ for word in "$@"; do
   case $word in
     --tests)
       mapfile -t missing < <(missing_of "$here/packages_tests.txt")
+      [ ${#missing[@]} -eq 0 ] || install "${missing[@]}" || echo "setup: without them, the tests that need them are skipped." >&2
+      ;;
+    --browser)
+      mapfile -t missing < <(missing_of "$here/packages_browser.txt")
       [ ${#missing[@]} -eq 0 ] || install "${missing[@]}" || echo "setup: without them, the tests that need them are skipped." >&2
       ;;
     --aarch64)

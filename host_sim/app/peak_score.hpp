@@ -36,6 +36,7 @@ class PeakScore {
   double false_share() const;      // peaks on no piece of the stripe, over all peaks; NaN without any
   double elsewhere_share() const;  // visible columns of which another piece was found and the brightest was not; NaN without any
   std::uint64_t visible() const { return visible_; }
+  std::uint64_t found() const { return found_; }  // of these, those whose brightest piece was found
   std::uint64_t false_peaks() const { return false_; }
 
  private:

@@ -44,6 +44,15 @@ void RunRecorder::after_vision(const ScanPipeline& pipeline) {
   if (peaks_.after_vision(pipeline)) pictures_.on_peaks(peaks_.frame(), peaks_.frame_start(), pipeline.last_peaks());
 }
 
+// What the arm did, what it did to the panel, what it saw, and what that took.
+std::vector<record::ReportChart> RunRecorder::charts() const {
+  std::vector<record::ReportChart> charts = curves_.joint_charts();
+  for (record::ReportChart& chart : motion_.charts()) charts.push_back(std::move(chart));
+  for (record::ReportChart& chart : peaks_.charts()) charts.push_back(std::move(chart));
+  charts.push_back(curves_.bus_chart());
+  return charts;
+}
+
 void RunRecorder::finish(const world::World& world, const std::string& failure) {
   phases_.finish(world.time_s(), failure);
   char state[24];

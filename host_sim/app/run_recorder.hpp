@@ -9,6 +9,7 @@
 #include "host_sim/app/observers/bus_observer.hpp"
 #include "host_sim/app/observers/curve_observer.hpp"
 #include "host_sim/app/observers/event_observer.hpp"
+#include "host_sim/app/observers/motion_observer.hpp"
 #include "host_sim/app/observers/panel_observer.hpp"
 #include "host_sim/app/observers/peak_observer.hpp"
 #include "host_sim/app/observers/phase_observer.hpp"
@@ -38,8 +39,10 @@ class RunRecorder {
 
   const PhaseObserver& phases() const { return phases_; }
   const CurveObserver& curves() const { return curves_; }
+  const MotionObserver& motion() const { return motion_; }
   const PanelObserver& panel() const { return panel_; }
   const PeakScore& peaks() const { return peaks_.score(); }
+  std::vector<record::ReportChart> charts() const;
   const judge::TruthObserver& truth() const { return truth_; }
   PictureObserver& pictures() { return pictures_; }
   EventObserver& events() { return events_; }
@@ -55,11 +58,12 @@ class RunRecorder {
   PhaseObserver phases_;
   EventObserver events_;
   CurveObserver curves_;
+  MotionObserver motion_;
   PanelObserver panel_;
   PeakObserver peaks_;
   PictureObserver pictures_;
   std::optional<RawImageObserver> raw_images_;
-  hal::SimObservers all_{&truth_, &bus_, &phases_, &events_, &curves_, &panel_, &peaks_, &pictures_};
+  hal::SimObservers all_{&truth_, &bus_, &phases_, &events_, &curves_, &motion_, &panel_, &peaks_, &pictures_};
 };
 
 }  // namespace lf::app

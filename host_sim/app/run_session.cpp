@@ -2,6 +2,7 @@
 
 #include <time.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -187,7 +188,9 @@ class Session {
       data.cloud = located->cloud;
       data.fit = located->panel.fit;
     }
-    data.charts = recorder_.curves().charts();
+    data.charts = recorder_.charts();
+    data.charts.push_back(tick_chart());
+    data.motion = recorder_.motion().motion(sim_.world);
     if (!recorder_.write_error().empty()) data.notes.push_back("Not everything could be recorded: " + recorder_.write_error() + ".");
     for (const world::UnintendedContact& contact : platform_->world().contacts().unintended)
       data.notes.push_back("Unintended contact: " + judge::contact_text(contact) + ".");
@@ -197,6 +200,19 @@ class Session {
   const std::string& write_error() const { return recorder_.write_error(); }
 
  private:
+  // The core has one tick a telemetry: each sample is the longest of those until the next.
+  record::ReportChart tick_chart() const {
+    const std::vector<double>& t_s = recorder_.curves().times_s();
+    const std::vector<double>& tick_us = ticks_.times_us();
+    std::vector<double> longest_us;
+    for (std::size_t i = 0; i < t_s.size(); ++i) {
+      const auto first = tick_us.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(i * ticks_a_sample, tick_us.size()));
+      const auto last = tick_us.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>((i + 1) * ticks_a_sample, tick_us.size()));
+      longest_us.push_back(first == last ? record::unknown : *std::max_element(first, last));
+    }
+    return {"Core's tick, the longest of ten, CPU time on this host", "µs", {{"tick", t_s, longest_us, false}}};
+  }
+
   void tell_end(const record::RunResult& result) {
     nlohmann::ordered_json line{{"t_s", config::json_seconds(platform_->now())}, {"kind", "end"}, {"success", result.success}};
     if (result.failure) line["failure"] = {{"phase", result.failure->phase}, {"text", result.failure->reason}};

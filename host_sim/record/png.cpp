@@ -79,6 +79,15 @@ std::vector<std::uint8_t> encode_png(const RgbImage& image) {
   return encode(swapped);
 }
 
+std::vector<std::uint8_t> encode_jpeg(const RgbImage& image, int quality) {
+  if (image.pixels.empty()) throw InputError("an empty image cannot be written as JPEG");
+  cv::Mat swapped;
+  cv::cvtColor(cv::Mat(image.height, image.width, CV_8UC3, const_cast<std::uint8_t*>(image.pixels.data())), swapped, cv::COLOR_RGB2BGR);
+  std::vector<std::uint8_t> file;
+  if (!cv::imencode(".jpg", swapped, file, {cv::IMWRITE_JPEG_QUALITY, quality})) throw InputError("this OpenCV writes no JPEG");
+  return file;
+}
+
 std::string base64(std::span<const std::uint8_t> bytes) {
   constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;

@@ -38,6 +38,9 @@ void draw_outline(RgbImage& image, std::span<const PixelPoint> corners, std::arr
 std::vector<std::uint8_t> encode_png(ImageView image);
 std::vector<std::uint8_t> encode_png(const RgbImage& image);
 
+// A JPEG file in memory, for the report: a noisy picture takes a fifth of its PNG. `quality` of 0 to 100. Throws InputError when the image is empty.
+std::vector<std::uint8_t> encode_jpeg(const RgbImage& image, int quality = 85);
+
 // RFC 4648 with padding, one line.
 std::string base64(std::span<const std::uint8_t> bytes);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host_sim/record/page/page_files.hpp"
 #include "host_sim/record/png.hpp"
 #include "host_sim/record/report_parts.hpp"
 
@@ -96,8 +97,9 @@ std::string faults_table(const RunResult& result) {
   if (result.faults.empty()) return "";
   std::string html = "<table><tr><th class=\"n\">at</th><th>in step</th><th>what</th><th>reaction</th><th class=\"n\">times</th></tr>";
   for (const FaultRecord& fault : result.faults) {
-    html += "<tr><td class=\"n\">" + formatted("%.3f s", fault.t_s) + "</td><td>" + escape_html(fault.step) + "</td><td>" +
-            escape_html(fault.text) + "</td><td>" + escape_html(fault.reaction) + "</td><td class=\"n\">" + std::to_string(fault.times);
+    html += "<tr><td class=\"n\" data-t=\"" + formatted("%.6g", fault.t_s) + "\">" + formatted("%.3f s", fault.t_s) + "</td><td>" +
+            escape_html(fault.step) + "</td><td>" + escape_html(fault.text) + "</td><td>" + escape_html(fault.reaction) +
+            "</td><td class=\"n\">" + std::to_string(fault.times);
     if (fault.times > 1) html += ", to " + formatted("%.3f s", fault.last_s);
     html += "</td></tr>";
   }
@@ -130,21 +132,26 @@ std::string errors_table(const std::vector<ReportError>& errors) {
   return html + "</table>";
 }
 
+const char* kind_of(const ReportPicture& picture) { return picture.file.size() > 1 && picture.file[0] == 0xFF ? "jpeg" : "png"; }
+
 std::string pictures(const std::vector<ReportPicture>& list) {
   if (list.empty()) return "";
   std::string html = "<div class=\"pictures\">";
   for (const ReportPicture& picture : list) {
-    html += "<figure><img alt=\"" + escape_html(picture.title) + "\" src=\"data:image/png;base64," + base64(picture.png) +
-            "\"><figcaption><b>" + escape_html(picture.title) + "</b> <span>" + escape_html(picture.caption) +
+    html += "<figure><img alt=\"" + escape_html(picture.title) + "\" src=\"data:image/" + kind_of(picture) + ";base64," +
+            base64(picture.file) + "\"><figcaption><b>" + escape_html(picture.title) + "</b> <span>" + escape_html(picture.caption) +
             "</span></figcaption></figure>";
   }
   return html + "</div>";
 }
 
-std::string charts(const ReportData& data) {
-  std::string html;
-  for (const ReportChart& chart : data.charts) html += chart_svg(chart, data.result.phases);
-  return html;
+// The 3D view beside the charts; on a narrow screen above them.
+std::string over_time(const ReportData& data) {
+  const std::string cloud = cloud_html(data);
+  if (cloud.empty() && data.charts.empty()) return "";
+  std::string html = "<div class=\"split\" id=\"split\"><div class=\"stage\">" + cloud + controls_html() + "</div><div class=\"charts\">";
+  for (std::size_t i = 0; i < data.charts.size(); ++i) html += chart_figure(data, i);
+  return html + "</div></div>";
 }
 
 std::string conditions_table(const ReportData& data) {
@@ -200,25 +207,33 @@ std::vector<ReportError> report_errors(const RunResult& result, double attenuati
   return errors;
 }
 
+std::string_view report_style() { return page::own_style; }
+
 std::string report_html(const ReportData& data) {
   const RunResult& result = data.result;
   std::string html =
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width,initial-scale=1\">";
+  // Held by the browser itself: nothing is asked of any network.
+  html +=
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; style-src 'unsafe-inline'; "
+      "script-src 'unsafe-inline'\">";
   html += "<meta name=\"color-scheme\" content=\"light dark\"><title>Lanternfish: " + escape_html(result.scenario) + ", seed " +
-          std::to_string(result.seed) + "</title><style>" + std::string(report_style()) + "</style></head>\n<body><main>\n";
+          std::to_string(result.seed) + "</title><style>" + page::library_style + "\n" + std::string(report_style()) +
+          "</style></head>\n<body><main class=\"run\">\n";
   html += header(data);
   html += section("Phases", timeline_svg(result.phases));
   html += section("Faults and reactions", faults_table(result));
   html += "<div class=\"two\">" + section("Tasks", tasks_table(result)) + section("Conditions drawn by the seed", conditions_table(data)) +
           "</div>\n";
   html += section("Errors", errors_table(data.errors));
+  html += section("The run over time", over_time(data));
   html += section("What the camera saw", pictures(data.pictures));
-  html += section("The panel in 3D", cloud_view(data.cloud, data.fit));
-  html += section("Over time", charts(data));
   html += section("Core, bus and host", machine_table(result));
   html += "<footer>Written by lanternfish " + escape_html(result.version) + "; the same figures stand in result.json.</footer>\n";
-  return html + "</main><script>" + std::string(report_script()) + "</script></body></html>\n";
+  html += "</main><script type=\"application/json\" id=\"run\">" + page_data(data) + "</script>\n<script>" + page::library_script +
+          "</script>\n<script>" + page::own_script;
+  return html + "</script></body></html>\n";
 }
 
 }  // namespace lf::record

@@ -96,16 +96,26 @@ std::vector<Sample> thinned(const ReportSeries& series, double low, double high)
   return kept;
 }
 
-// A dashed series has the colour of the one before it: the target of what was reached.
 std::vector<std::string> kinds_of(const ReportChart& chart) {
   std::vector<std::string> kinds;
-  std::size_t solid = 0;
-  for (const ReportSeries& series : chart.series) {
-    const std::size_t colour = series.dashed && solid > 0 ? solid - 1 : solid;
-    if (colour == solid) ++solid;
-    kinds.push_back("series s" + std::to_string(colour % 6) + (series.dashed ? " dashed" : ""));
-  }
+  const std::vector<std::size_t> colours = series_colours(chart);
+  for (std::size_t i = 0; i < colours.size(); ++i)
+    kinds.push_back("series s" + std::to_string(colours[i]) + (chart.series[i].dashed ? " dashed" : ""));
   return kinds;
+}
+
+// A line with a flag; a fault that came again is a bar to its last time.
+std::string fault_flags(const std::vector<FaultRecord>& faults, const Axis& time, double top, double bottom) {
+  std::string svg;
+  for (const FaultRecord& fault : faults) {
+    if (!(fault.t_s >= time.low && fault.t_s <= time.high)) continue;
+    const double from = time.at(fault.t_s), to = time.at(std::clamp(fault.last_s, fault.t_s, time.high));
+    svg += "<g class=\"fault\"><title>" + formatted("%.3f s: ", fault.t_s) + escape_html(fault.text) +
+           (fault.reaction.empty() ? "" : ": " + escape_html(fault.reaction)) + "</title>" + line(from, top, from, bottom, "flag") +
+           "<rect class=\"flag\" x=\"" + px(from) + "\" y=\"" + px(top) + "\" width=\"" + px(std::max(7.0, to - from)) +
+           "\" height=\"5\"/></g>";
+  }
+  return svg;
 }
 
 std::string polyline(const ReportSeries& series, const std::string& kind, const Axis& time, const Axis& value) {
@@ -154,6 +164,17 @@ void ranges(const ReportChart& chart, Axis& time, Axis& value, bool& found) {
 
 }  // namespace
 
+std::vector<std::size_t> series_colours(const ReportChart& chart) {
+  std::vector<std::size_t> colours;
+  std::size_t solid = 0;
+  for (const ReportSeries& series : chart.series) {
+    const std::size_t colour = series.dashed && solid > 0 ? solid - 1 : solid;
+    if (colour == solid) ++solid;
+    colours.push_back(colour % 6);
+  }
+  return colours;
+}
+
 std::string timeline_svg(const std::vector<PhaseRecord>& phases) {
   constexpr double left = 170, row = 24, top = 6;
   std::vector<PhaseRecord> drawn;
@@ -184,27 +205,32 @@ std::string timeline_svg(const std::vector<PhaseRecord>& phases) {
   return svg + "</svg>";
 }
 
-std::string chart_svg(const ReportChart& chart, const std::vector<PhaseRecord>& phases) {
+std::string chart_svg(const ReportChart& chart, const RunResult& result) {
   constexpr double left = 64, top = 10, bottom = 210;
   Axis time{0, 1, left, width - right_margin, 10}, value{0, 1, bottom, top, 5};
   bool found = false;
   ranges(chart, time, value, found);
-  std::string html = "<figure class=\"chart\"><figcaption><b>" + escape_html(chart.title) + "</b> <span class=\"unit\">" +
-                     escape_html(chart.unit) + "</span></figcaption>" + legend(chart);
-  if (!found) return html + "<p class=\"none\">nothing was recorded</p></figure>";
+  std::string html = "<div class=\"still\">" + legend(chart);
+  if (!found) return html + "<p class=\"none\">nothing was recorded</p></div>";
   html += "<svg class=\"drawing\" viewBox=\"0 0 " + px(width) + " " + px(bottom + 38) + "\" role=\"img\" aria-label=\"" +
           escape_html(chart.title) + " over time\">" + time_marks(time, top, bottom);
   for (const double v : value.marks()) {
     html += line(left, value.at(v), width - right_margin, value.at(v), v == 0 ? "zero" : "grid") +
             text(left - 8, value.at(v) + 4, "tick end", value.label(v));
   }
-  for (const PhaseRecord& phase : phases) {
+  for (const PhaseRecord& phase : result.phases) {
     if (!drawable(phase) || phase.start_s <= time.low || phase.start_s >= time.high) continue;
     html += line(time.at(phase.start_s), top, time.at(phase.start_s), bottom, "phase");
   }
   const std::vector<std::string> kinds = kinds_of(chart);
   for (std::size_t i = 0; i < chart.series.size(); ++i) html += polyline(chart.series[i], kinds[i], time, value);
-  return html + "</svg></figure>";
+  return html + fault_flags(result.faults, time, top, bottom) + "</svg></div>";
+}
+
+std::string chart_figure(const ReportData& data, std::size_t index) {
+  const ReportChart& chart = data.charts[index];
+  return "<figure class=\"chart\" data-chart=\"" + std::to_string(index) + "\"><figcaption><b>" + escape_html(chart.title) +
+         "</b> <span class=\"unit\">" + escape_html(chart.unit) + "</span></figcaption>" + chart_svg(chart, data.result) + "</figure>";
 }
 
 }  // namespace lf::record

@@ -36,25 +36,28 @@ bool chosen(std::size_t i, double share) {
   return place - std::floor(place) < share;
 }
 
-// In the plane's frame: x right and y up as the robot sees the panel, z toward the robot; origin at the points' middle.
-std::vector<Vec3> points_on_plane(const std::vector<CloudPoint>& cloud, const PlaneFit& fit) {
+std::vector<Vec3> finite_points(const std::vector<CloudPoint>& cloud) {
   std::vector<Vec3> points;
-  Vec3 middle = Vec3::Zero();
   for (const CloudPoint& point : cloud) {
-    if (!point.p_m.allFinite()) continue;
-    points.push_back(point.p_m.cast<double>());
-    middle += points.back();
+    if (point.p_m.allFinite()) points.push_back(point.p_m.cast<double>());
   }
-  if (points.empty()) return points;
+  return points;
+}
+
+// x right and y up as the robot sees the panel, z toward the robot; origin on the plane, under the points' middle.
+Pose plane_from_base(const std::vector<Vec3>& points, const PlaneFit& fit) {
+  Vec3 middle = Vec3::Zero();
+  for (const Vec3& p : points) middle += p;
   middle /= static_cast<double>(points.size());
   const Plane plane = fit.valid ? fit.plane : Plane{-Vec3::UnitX(), middle.x()};  // without a fit: as the panel stands when docked exactly
   const Vec3 z = plane.normal.normalized();
   const Vec3 x = (Vec3::UnitY() - z * z.y()).normalized();
-  Mat3 plane_from_base;
-  plane_from_base << x.transpose(), z.cross(x).transpose(), z.transpose();
-  const Vec3 origin = middle - z * plane.signed_distance_m(middle);
-  for (Vec3& p : points) p = plane_from_base * (p - origin);
-  return points;
+  Mat3 turn;
+  turn << x.transpose(), z.cross(x).transpose(), z.transpose();
+  Pose pose = Pose::Identity();
+  pose.linear() = turn;
+  pose.translation() = -(turn * (middle - z * plane.signed_distance_m(middle)));
+  return pose;
 }
 
 // What stands proud is kept before what lies on the plane.
@@ -83,33 +86,22 @@ std::string packed(const std::vector<Vec3>& points) {
   return base64(bytes);
 }
 
-struct View {
-  std::int32_t width = 1120, height = 620;
-  double yaw_rad = 0.5, pitch_rad = 0.35;
-};
-
-// Metres to pixels, so that the panel fits.
-double scale_of(const std::vector<Vec3>& points, const View& view) {
-  double radius = 0.05;
-  for (const Vec3& p : points) radius = std::max(radius, p.head<2>().norm());
-  return 0.5 * std::min<double>(view.width, 1.35 * view.height) / std::min(radius, 1.0);
-}
-
-RgbImage drawn(const std::vector<Vec3>& points, const View& view) {
-  RgbImage image(view.width, view.height, ground);
-  std::vector<float> depth(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height),
-                           std::numeric_limits<float>::lowest());
+// The cloud as the page shows it before its script does.
+RgbImage drawn(const std::vector<Vec3>& points, const StageView& view) {
+  constexpr std::int32_t width = 1120, height = 672;
+  RgbImage image(width, height, ground);
+  std::vector<float> depth(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), std::numeric_limits<float>::lowest());
   const double cy = std::cos(view.yaw_rad), sy = std::sin(view.yaw_rad), cp = std::cos(view.pitch_rad), sp = std::sin(view.pitch_rad);
-  const double scale = scale_of(points, view);
+  const double scale = 0.5 * std::min<double>(width, 1.35 * height) / view.radius_m;  // the panel fits
   for (const Vec3& p : points) {
     const double x = cy * p.x() + sy * p.z(), z = cy * p.z() - sy * p.x();
     const double y = cp * p.y() - sp * z, near = sp * p.y() + cp * z;
-    const auto u = static_cast<std::int32_t>(std::lround(view.width / 2.0 + scale * x));
-    const auto v = static_cast<std::int32_t>(std::lround(view.height / 2.0 - scale * y));
+    const auto u = static_cast<std::int32_t>(std::lround(width / 2.0 + scale * x));
+    const auto v = static_cast<std::int32_t>(std::lround(height / 2.0 - scale * y));
     for (std::int32_t k = 0; k < 4; ++k) {  // two by two pixels a point
       const std::int32_t pu = u + k % 2, pv = v + k / 2;
-      if (pu < 0 || pv < 0 || pu >= view.width || pv >= view.height) continue;
-      float& in_front = depth[static_cast<std::size_t>(pv) * static_cast<std::size_t>(view.width) + static_cast<std::size_t>(pu)];
+      if (pu < 0 || pv < 0 || pu >= width || pv >= height) continue;
+      float& in_front = depth[static_cast<std::size_t>(pv) * static_cast<std::size_t>(width) + static_cast<std::size_t>(pu)];
       if (static_cast<float>(near) < in_front) continue;
       in_front = static_cast<float>(near);
       image.set(pu, pv, colour_of(p.z() * 1000));
@@ -132,29 +124,71 @@ std::string scale_legend() {
          "</span> mm from the fitted plane, positive toward the robot</div>";
 }
 
+std::string tools(bool has_cloud, bool has_robot) {
+  std::string html =
+      "<div class=\"tools live\" hidden><button type=\"button\" data-view=\"0.5,0.35\">oblique</button>"
+      "<button type=\"button\" data-view=\"0,0\">front</button><button type=\"button\" data-view=\"0,1.5708\">from above</button>"
+      "<button type=\"button\" data-view=\"1.5708,0\">from the side</button>"
+      "<button type=\"button\" data-zoom=\"1.3\" aria-label=\"enlarge\">+</button>"
+      "<button type=\"button\" data-zoom=\"0.77\" aria-label=\"reduce\">−</button>";
+  if (has_robot && has_cloud) html += "<button type=\"button\" data-show=\"cloud\">cloud</button>";
+  if (has_robot) {
+    html +=
+        "<button type=\"button\" data-show=\"robot\">robot</button>"
+        "<button type=\"button\" data-show=\"controls\">valve, buttons</button><button type=\"button\" data-show=\"panel\">panel</button>"
+        "<button type=\"button\" data-show=\"vehicle\">vehicle</button>";
+  }
+  return html + "</div>";
+}
+
+std::string facts(const ReportData& data, std::size_t shown) {
+  std::string html = std::to_string(shown) + " of " + std::to_string(data.cloud.size()) + " points shown";
+  if (data.fit.valid) {
+    html += "; plane fitted to " + std::to_string(data.fit.inliers) + " of " + std::to_string(data.fit.points) + " points, " +
+            formatted("%.2f mm rms", data.fit.rms_m * 1000);
+  } else {
+    html += "; no plane was fitted, distances are to the nominal panel through the points' middle";
+  }
+  return html;
+}
+
 }  // namespace
 
-std::string cloud_view(const std::vector<CloudPoint>& cloud, const PlaneFit& fit) {
-  const std::vector<Vec3> points = thinned(points_on_plane(cloud, fit));
-  if (points.empty()) return "";
-  const View view;
-  const std::string picture = base64(encode_png(drawn(points, view)));
-  std::string html = "<div class=\"cloud\" id=\"cloud\" data-scale=\"" + formatted("%.3f", scale_of(points, view) / units_per_m) + "\">";
-  html += "<img alt=\"The cloud seen from the robot's upper left\" src=\"data:image/png;base64," + picture + "\">";
-  html += "<canvas width=\"" + std::to_string(view.width) + "\" height=\"" + std::to_string(view.height) + "\" hidden></canvas>";
-  html +=
-      "<div class=\"tools\" hidden><button data-view=\"0.5,0.35\">oblique</button><button data-view=\"0,0\">front</button>"
-      "<button data-view=\"0,1.5708\">from above</button><button data-view=\"1.5708,0\">from the side</button>"
-      "<button data-zoom=\"1.3\">+</button><button data-zoom=\"0.77\">−</button></div></div>";
-  html += "<script type=\"text/plain\" id=\"points\">" + packed(points) + "</script>" + scale_legend();
-  std::string facts = std::to_string(points.size()) + " of " + std::to_string(cloud.size()) + " points shown";
-  if (fit.valid) {
-    facts += "; plane fitted to " + std::to_string(fit.inliers) + " of " + std::to_string(fit.points) + " points, " +
-             formatted("%.2f mm rms", fit.rms_m * 1000);
-  } else {
-    facts += "; no plane was fitted, distances are to the nominal panel through the points' middle";
+StageView stage_view(const ReportData& data) {
+  StageView view;
+  const std::vector<Vec3> points = finite_points(data.cloud);
+  if (points.empty()) {
+    view.view_from_base = data.motion.base_from_panel.inverse();
+    return view;
   }
-  return html + "<p class=\"facts\">" + facts + "<span class=\"live\" hidden>; drag to turn</span>.</p>";
+  view.view_from_base = plane_from_base(points, data.fit);
+  double radius = 0.05;
+  for (const Vec3& p : points) radius = std::max(radius, (view.view_from_base * p).head<2>().norm());
+  view.radius_m = std::min(radius, 1.0);
+  return view;
+}
+
+std::string cloud_html(const ReportData& data) {
+  std::vector<Vec3> points = finite_points(data.cloud);
+  const bool has_robot = !data.motion.parts.empty() && !data.motion.t_s.empty();
+  if (points.empty() && !has_robot) return "";
+  const StageView view = stage_view(data);
+  for (Vec3& p : points) p = view.view_from_base * p;
+  points = thinned(points);
+  std::string html = "<div class=\"cloud\" id=\"cloud\">";
+  if (!points.empty()) {
+    html += "<img alt=\"The cloud seen from the robot's upper left\" src=\"data:image/png;base64," +
+            base64(encode_png(drawn(points, view))) + "\">";
+  }
+  html += "<canvas width=\"1120\" height=\"672\" tabindex=\"0\" role=\"img\" aria-label=\"" +
+          std::string(has_robot ? "Cloud and robot" : "Cloud") + " in 3D; arrow keys turn it, plus and minus enlarge it\" hidden></canvas>";
+  html += tools(!points.empty(), has_robot) + "</div>";
+  if (!points.empty()) {
+    html += "<script type=\"text/plain\" id=\"points\">" + packed(points) + "</script>" + scale_legend() + "<p class=\"facts\">" +
+            facts(data, points.size()) + "<span class=\"live\" hidden>; drag to turn</span>.</p>";
+  }
+  if (has_robot) html += "<p class=\"facts live\" hidden>The robot as it truly stood: <span id=\"tool-place\"></span>.</p>";
+  return html;
 }
 
 }  // namespace lf::record

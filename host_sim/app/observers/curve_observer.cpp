@@ -7,12 +7,6 @@
 
 namespace lf::app {
 
-namespace {
-
-constexpr std::uint32_t ticks_a_sample = 10;  // 25 Hz
-
-}  // namespace
-
 CurveObserver::CurveObserver(RunFiles& files, const BusObserver& bus) : files_(files), bus_(bus) {
   if (files_.wanted()) joint_log_.emplace(files_.path("joints.csv"));
 }
@@ -26,7 +20,6 @@ void CurveObserver::on_telemetry(const Telemetry& telemetry) {
     actual_rad_[i].push_back(telemetry.actual_rad[i]);
     torque_nm_[i].push_back(telemetry.torque_nm[i]);
   }
-  valve_deg_.push_back(world_ != nullptr ? deg_from_rad(world_->valve_angle_rad()) : record::unknown);
   const double window_s = ticks_a_sample * can_map::sync_period.s();
   bus_load_percent_.push_back(100.0 * static_cast<double>(bus_.bits() - bits_before_) / (window_s * can_map::bitrate));
   bits_before_ = bus_.bits();
@@ -36,17 +29,19 @@ void CurveObserver::finish() {
   if (joint_log_ && !joint_log_->close()) files_.lost(joint_log_->sink().error());
 }
 
-std::vector<record::ReportChart> CurveObserver::charts() const {
-  record::ReportChart positions{"Joint positions", "rad", {}}, torques{"Joint torques", "N m", {}};
+std::vector<record::ReportChart> CurveObserver::joint_charts() const {
+  record::ReportChart positions{"Joint positions, measured and asked", "rad", {}},
+      torques{"Motor torques at the joints, measured", "N m", {}};
   for (std::size_t i = 0; i < joint_count; ++i) {
     positions.series.push_back({joint_names[i], t_s_, actual_rad_[i], false});
-    positions.series.push_back({std::string(joint_names[i]) + ", target", t_s_, target_rad_[i], true});
+    positions.series.push_back({std::string(joint_names[i]) + ", asked", t_s_, target_rad_[i], true});
     torques.series.push_back({joint_names[i], t_s_, torque_nm_[i], false});
   }
-  return {positions,
-          torques,
-          {"Valve, true angle", "deg", {{"valve", t_s_, valve_deg_, false}}},
-          {"Bus load, stuff bits included", "%", {{"can0", t_s_, bus_load_percent_, false}}}};
+  return {positions, torques};
+}
+
+record::ReportChart CurveObserver::bus_chart() const {
+  return {"Bus load, stuff bits included", "%", {{"can0", t_s_, bus_load_percent_, false}}};
 }
 
 }  // namespace lf::app

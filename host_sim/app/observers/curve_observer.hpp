@@ -1,4 +1,4 @@
-// What is shown over time: joints, valve and bus load, at 25 Hz, and joints.csv.
+// What the core knew of its joints, and the bus load, at 25 Hz; and joints.csv.
 #pragma once
 
 #include <array>
@@ -12,27 +12,31 @@
 
 namespace lf::app {
 
+// At which charts are sampled: 25 Hz.
+inline constexpr std::uint32_t ticks_a_sample = 10;
+
 class CurveObserver : public hal::SimObserver {
  public:
   // Both outlive the observer.
   CurveObserver(RunFiles& files, const BusObserver& bus);
 
-  void on_step(Time, const world::World& world) override { world_ = &world; }
   void on_telemetry(const Telemetry& telemetry) override;
   void finish();
 
-  std::vector<record::ReportChart> charts() const;
+  // Positions and torques of the joints, and the load of the bus.
+  std::vector<record::ReportChart> joint_charts() const;
+  record::ReportChart bus_chart() const;
+  const std::vector<double>& times_s() const { return t_s_; }  // of the samples
 
  private:
   RunFiles& files_;
   const BusObserver& bus_;
   std::optional<record::JointLog> joint_log_;
-  const world::World* world_ = nullptr;
   std::uint64_t bits_before_ = 0;
   std::uint32_t ticks_ = 0;
   std::vector<double> t_s_;
   std::array<std::vector<double>, joint_count> target_rad_, actual_rad_, torque_nm_;
-  std::vector<double> valve_deg_, bus_load_percent_;
+  std::vector<double> bus_load_percent_;
 };
 
 }  // namespace lf::app

@@ -8,6 +8,8 @@ namespace {
 // Frame::object is 1 + the body.
 bool of_the_panel(std::uint16_t object) { return object > static_cast<std::uint16_t>(scene::BodyId::panel); }
 
+constexpr double pause_s = 1;  // longer than any interval of the camera's, twice 80 ms: charts show no line over it
+
 }  // namespace
 
 void PeakObserver::on_image(const hal::ExposureRecord& exposure) {
@@ -24,12 +26,36 @@ bool PeakObserver::after_vision(const ScanPipeline& pipeline) {
   if (pipeline.last_taken_time() != taken_of_) {
     taken_of_ = pipeline.last_taken_time();
     for (const Waiting& stripe : waiting_) {
-      if (taken_of_ == stripe.middle || taken_of_ == stripe.start) score_.add(stripe.truth, pipeline.last_taken());
+      if (taken_of_ == stripe.middle || taken_of_ == stripe.start) add(stripe.start, stripe.truth, pipeline.last_taken());
     }
   }
   if (frame_ == nullptr || !has_laser_ || pipeline.last_peaks_time() == peaks_of_) return false;
   peaks_of_ = pipeline.last_peaks_time();
   return peaks_of_ == frame_middle_ || peaks_of_ == frame_start_;  // and not of another image
+}
+
+void PeakObserver::add(Time start, const StripeTruth& truth, std::span<const Eigen::Vector2f> points) {
+  const PeakScore before = score_;
+  score_.add(truth, points);
+  const auto visible = static_cast<double>(score_.visible() - before.visible());
+  if (!t_s_.empty() && start.s() > t_s_.back() + pause_s) {
+    t_s_.push_back(t_s_.back() + pause_s / 2);
+    for (std::vector<double>* series : {&points_, &visible_, &false_, &recall_percent_}) series->push_back(record::unknown);
+  }
+  t_s_.push_back(start.s());
+  points_.push_back(static_cast<double>(points.size()));
+  visible_.push_back(visible);
+  false_.push_back(static_cast<double>(score_.false_peaks() - before.false_peaks()));
+  recall_percent_.push_back(visible > 0 ? 100 * static_cast<double>(score_.found() - before.found()) / visible : record::unknown);
+}
+
+std::vector<record::ReportChart> PeakObserver::charts() const {
+  return {{"Each stripe of the sweeps",
+           "columns",
+           {{"peaks that became points", t_s_, points_, false},
+            {"with a visible stripe (truth)", t_s_, visible_, true},
+            {"false points (truth)", t_s_, false_, false}}},
+          {"Recall of each stripe, truth", "%", {{"recall", t_s_, recall_percent_, false}}}};
 }
 
 }  // namespace lf::app

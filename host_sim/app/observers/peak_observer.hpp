@@ -2,10 +2,12 @@
 #pragma once
 
 #include <deque>
+#include <vector>
 
 #include "firmware/scan_pipeline.hpp"
 #include "hal/sim/sim_platform.hpp"
 #include "host_sim/app/peak_score.hpp"
+#include "host_sim/record/report.hpp"
 
 namespace lf::app {
 
@@ -22,7 +24,12 @@ class PeakObserver : public hal::SimObserver {
   // Of what became points: what the core throws out itself, outlines of its moving hand for the most, is no peak of the stripe to it.
   const PeakScore& score() const { return score_; }
 
+  // Of each stripe of a sweep: what became points, and what of it could be seen.
+  std::vector<record::ReportChart> charts() const;
+
  private:
+  void add(Time start, const StripeTruth& truth, std::span<const Eigen::Vector2f> points);
+
   // A stripe waits for its joints.
   struct Waiting {
     Time start, middle;
@@ -36,6 +43,7 @@ class PeakObserver : public hal::SimObserver {
   bool has_laser_ = false;
   Time peaks_of_, taken_of_;
   std::deque<Waiting> waiting_;
+  std::vector<double> t_s_, points_, visible_, false_, recall_percent_;
 };
 
 }  // namespace lf::app

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint32_t frames_a_picture = 20;  // a sweep has about 230 stripes
 constexpr std::uint32_t frames_a_report_picture = 60;
-constexpr std::size_t most_in_report = 12;  // 100 kB each: the report stays within 4 MB
+constexpr std::size_t most_in_report = 12;  // some 100 kB each: the report stays within 5 MB
 
 std::string formatted(const char* format, double value) {
   char text[160];
@@ -70,9 +70,8 @@ void PictureObserver::on_peaks(const optics::Frame& frame, Time start, std::span
 void PictureObserver::keep(const std::string& name, const std::string& title, const std::string& caption, const record::RgbImage& image,
                            bool in_report) {
   if (!files_.wanted()) return;
-  std::vector<std::uint8_t> png = record::encode_png(image);
-  files_.write(name, png);
-  if (in_report && pictures_.size() < most_in_report) pictures_.push_back({title, caption, std::move(png)});
+  files_.write(name, record::encode_png(image));
+  if (in_report && pictures_.size() < most_in_report) pictures_.push_back({title, caption, record::encode_jpeg(image)});
 }
 
 void PictureObserver::draw_outside(const optics::OpticsConfig& optics, int threads) {

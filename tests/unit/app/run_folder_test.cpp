@@ -111,6 +111,69 @@ TEST_F(RunFolder, HasALogOfStepsFaultsAndReactions) {
   EXPECT_THAT(text_of(folder() / "r" / "report.html"), HasSubstr("<h2>Faults and reactions</h2>"));
 }
 
+// The page's charts are the record's own numbers: those of joints.csv and result.json.
+TEST_F(RunFolder, HasAReportWithTheNumbersOfTheRecord) {
+  EXPECT_EQ(run("run drive_fault --no-outside --out r").status, 0);
+  const std::string page = text_of(folder() / "r" / "report.html");
+  EXPECT_LT(page.size(), 5'000'000u);
+  const std::string open = "<script type=\"application/json\" id=\"run\">";
+  const std::size_t at = page.find(open);
+  ASSERT_NE(at, page.npos);
+  const std::size_t from = at + open.size();
+  const Json shown = Json::parse(page.substr(from, page.find("</script>", from) - from));
+
+  std::map<std::string, Json> charts;
+  for (const Json& chart : shown["charts"]) charts[chart["title"]] = chart;
+  for (const char* title :
+       {"Joint positions, measured and asked", "Motor torques at the joints, measured", "Joint speeds, truth",
+        "Tool's place in the base frame, truth, and asked", "Tool's distance from where it is asked to be, truth", "Valve's angle, truth",
+        "Contact force, truth", "Peaks of each laser picture", "Recall of each laser picture, truth", "Bus load, stuff bits included",
+        "Core's tick, the longest of ten, CPU time on this host"})
+    EXPECT_EQ(charts.count(title), 1u) << title;
+
+  // joints.csv: t_s, then of each joint its angle, target and torque.
+  std::istringstream csv(text_of(folder() / "r" / "joints.csv"));
+  std::string line;
+  std::getline(csv, line);
+  const Json& positions = charts["Joint positions, measured and asked"]["series"];
+  const Json& torques = charts["Motor torques at the joints, measured"]["series"];
+  const Json& times = shown["times"][positions[0]["t"].get<std::size_t>()];
+  std::size_t row = 0;
+  for (; std::getline(csv, line); ++row) {
+    ASSERT_LT(row, times.size());
+    std::istringstream cells(line);
+    const auto next = [&] {
+      std::string cell;
+      std::getline(cells, cell, ',');
+      return std::stod(cell);
+    };
+    ASSERT_NEAR(times[row].get<double>(), next(), 1e-6);
+    for (std::size_t joint = 0; joint < 5; ++joint) {
+      ASSERT_NEAR(positions[2 * joint]["v"][row].get<double>(), next(), 1e-5);
+      ASSERT_NEAR(positions[2 * joint + 1]["v"][row].get<double>(), next(), 1e-5);
+      ASSERT_NEAR(torques[joint]["v"][row].get<double>(), next(), 1e-3);
+    }
+  }
+  EXPECT_EQ(row, times.size());
+
+  const Json result = result_of("r");
+  ASSERT_EQ(shown["faults"].size(), result["faults"].size());
+  for (std::size_t i = 0; i < shown["faults"].size(); ++i) {
+    EXPECT_NEAR(double(shown["faults"][i]["t"]), double(result["faults"][i]["t_s"]), 1e-6);
+    EXPECT_EQ(shown["faults"][i]["text"], result["faults"][i]["text"]);
+  }
+  // The 3D view's joints are where the drives say, within the gears' play and wind-up.
+  ASSERT_EQ(shown["motion"]["coordinates"].size(), 9u);
+  EXPECT_EQ(shown["motion"]["parts"].size(), 12u);
+  for (std::size_t joint = 0; joint < 5; ++joint) {
+    EXPECT_NEAR(shown["motion"]["coordinates"][joint]["v"].back().get<double>(), positions[2 * joint]["v"].back().get<double>(), 0.02);
+  }
+  // The largest force ever, sampled at 25 Hz, is no more than the record's peak.
+  double largest_n = 0;
+  for (const Json& force : charts["Contact force, truth"]["series"][0]["v"]) largest_n = std::max(largest_n, force.get<double>());
+  EXPECT_LE(largest_n, double(result["contact"]["peak_force_n"]) + 1e-3);
+}
+
 // An error message's text may quote another fault's name; the fault itself is what is expected.
 TEST_F(RunFolder, AnExpectedFaultIsTheFaultItselfNotAWordOfItsText) {
   const std::string follow = "run drive_fault --no-outside --set 'faults=[{at_step: deploy, after_s: 0.1, kind: hot, node: elbow}]' ";

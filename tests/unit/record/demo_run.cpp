@@ -37,6 +37,8 @@ RunResult demo_result() {
   result.bus = {34.9, 33.4, 36.3, 318'244, 0};
   result.host = {"avx2", 2, "release, GCC 12.2"};
   result.time = {t, t / 9.3, 9.3};
+  result.faults = {{31.5, 33.25, 4, "sweep", "image lost", "image lost", "count"},
+                   {55.125, 55.125, 1, "grip", "slip", "grip slipped on the handle", "retry"}};
   result.digest = std::string(64, 'a');
   return result;
 }
@@ -56,7 +58,7 @@ ReportPicture stripe_picture(int index) {
     }
   }
   const RgbImage overlay = overlay_peaks({pixels.data(), 640, 480, 640}, peaks, 1.4f);
-  return {"Stripe at " + std::to_string(12 + 4 * index) + " s", "Detected peaks in red: 631 of 640 columns.", encode_png(overlay)};
+  return {"Stripe at " + std::to_string(12 + 4 * index) + " s", "Detected peaks in red: 631 of 640 columns.", encode_jpeg(overlay)};
 }
 
 // Stripes 2.6 mm apart over plate, handle and buttons, in the base frame.
@@ -109,6 +111,39 @@ ReportChart noisy_chart(const std::string& title, const std::string& unit, const
   return chart;
 }
 
+// A mast that turns, an arm that slides out of it, and a panel that stands still.
+ReportMotion demo_motion(double end_s) {
+  ReportMotion motion;
+  motion.parts.resize(3);
+  motion.parts[0].name = "mast";
+  motion.parts[0].coordinate = 0;
+  motion.parts[1].name = "arm";
+  motion.parts[1].parent = 0;
+  motion.parts[1].parent_from_part.translation() = Vec3(0.1, 0, 0.4);
+  motion.parts[1].coordinate = 1;
+  motion.parts[1].slides = true;
+  motion.parts[1].axis = Vec3::UnitX();
+  motion.parts[2].name = "panel";
+  motion.parts[2].group = PartGroup::panel;
+  motion.parts[2].parent_from_part.translation() = Vec3(0.44, 0, 0.4);
+  const Vec3 sizes[] = {Vec3(0.06, 0.06, 0.9), Vec3(0.3, 0.04, 0.04), Vec3(0.02, 0.8, 0.6)};
+  for (std::size_t i = 0; i < motion.parts.size(); ++i) {
+    scene::Shape shape;
+    shape.size_m = sizes[i];
+    shape.albedo = {0.8f, 0.5f, 0.1f};
+    motion.parts[i].shapes = {shape};
+  }
+  motion.coordinates = {{"turn", {}}, {"reach", {}}};
+  for (double t = 0; t < end_s; t += 0.04) {
+    motion.t_s.push_back(t);
+    motion.coordinates[0].value.push_back(0.8 * std::sin(0.3 * t));
+    motion.coordinates[1].value.push_back(0.1 + 0.05 * std::cos(0.7 * t));
+  }
+  motion.tool_part = 1;
+  motion.tool_m = Vec3(0.15, 0, 0);
+  return motion;
+}
+
 }  // namespace
 
 ReportData demo_run() {
@@ -130,6 +165,7 @@ ReportData demo_run() {
   data.charts = {joints_chart(end_s), noisy_chart("Joint torques", "N m", {"slew", "shoulder", "elbow", "jaw rotate", "jaw"}, 30, end_s),
                  noisy_chart("CAN bus load", "%", {"can0"}, 35, end_s),
                  noisy_chart("Contact force", "N", {"gripper", "target"}, 12, end_s)};
+  data.motion = demo_motion(end_s);
   return data;
 }
 

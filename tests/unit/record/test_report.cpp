@@ -38,7 +38,7 @@ std::string first_unbalanced_tag(const std::string& page) {
     if (end == html.npos) return "no > after " + html.substr(at, 30);
     const std::string tag = html.substr(at + 1, end - at - 1);
     const std::string name = tag.substr(tag[0] == '/', tag.find(' ') - (tag[0] == '/'));
-    if (name == "img" || name == "meta" || tag[0] == '!' || tag.back() == '/') continue;
+    if (name == "img" || name == "input" || name == "meta" || tag[0] == '!' || tag.back() == '/') continue;
     if (tag[0] != '/') {
       open.push_back(name);
     } else if (open.empty() || open.back() != name) {
@@ -59,9 +59,18 @@ ReportData small_run() {
 
 TEST(Report, RefersToNothingOutsideOfItself) {
   const std::string html = report_html(small_run());
-  for (const char* reference : {"http://", "https://", "src=\"/", "url(", "@import", "<link", "fetch(", "XMLHttpRequest"}) {
+  for (const char* reference : {"http://", "src=\"/", "url(", "@import", "<link", "fetch(", "XMLHttpRequest"}) {
     EXPECT_THAT(html, Not(HasSubstr(reference)));
   }
+  EXPECT_EQ(count_of(html, "https://"), 1u);
+  EXPECT_THAT(html, HasSubstr("/*! https://github.com/leeoniya/uPlot")) << "a comment: where the library is from";
+  EXPECT_THAT(html, HasSubstr("Content-Security-Policy\" content=\"default-src 'none'; img-src data:;")) << "held by the browser, too";
+}
+
+TEST(Report, CarriesTheLicenceOfTheLibraryInIt) {
+  const std::string html = report_html(small_run());
+  EXPECT_THAT(html, HasSubstr("Copyright (c) 2022 Leon Sorokin"));
+  EXPECT_THAT(html, HasSubstr("The above copyright notice and this permission notice shall be included in"));
 }
 
 TEST(Report, ShowsTheVerdictTheCommandAndEveryPhaseWithoutScripts) {
@@ -71,8 +80,28 @@ TEST(Report, ShowsTheVerdictTheCommandAndEveryPhaseWithoutScripts) {
   EXPECT_THAT(without_scripts, HasSubstr("<span class=\"verdict\">done</span>"));
   EXPECT_THAT(without_scripts, HasSubstr(data.command));
   for (const PhaseRecord& phase : data.result.phases) EXPECT_THAT(without_scripts, HasSubstr(">" + phase.name + "</text>"));
-  EXPECT_EQ(count_of(without_scripts, "data:image/png;base64,"), 2u);  // one picture and the cloud
+  EXPECT_EQ(count_of(without_scripts, "data:image/jpeg;base64,"), 1u);  // the picture
+  EXPECT_EQ(count_of(without_scripts, "data:image/png;base64,"), 1u);   // the cloud
+  EXPECT_EQ(count_of(without_scripts, "<svg class=\"drawing\""), 1 + data.charts.size()) << "the phases, and each chart";
   EXPECT_THAT(without_scripts, HasSubstr("66812 of 71000"));
+}
+
+TEST(Report, ShowsTheRobotWhereThereIsNoCloudAndTheCloudWhereThereIsNoRobot) {
+  ReportData data = small_run();
+  data.cloud.clear();
+  const std::string robot = report_html(data);
+  EXPECT_THAT(robot, HasSubstr("id=\"tool-place\""));
+  EXPECT_THAT(robot, Not(HasSubstr("data-show=\"cloud\"")));
+  EXPECT_THAT(robot, Not(HasSubstr("id=\"points\"")));
+  EXPECT_EQ(first_unbalanced_tag(robot), "");
+  data = small_run();
+  data.motion = {};
+  const std::string cloud = report_html(data);
+  EXPECT_THAT(cloud, HasSubstr("id=\"points\""));
+  EXPECT_THAT(cloud, Not(HasSubstr("id=\"tool-place\"")));
+  EXPECT_EQ(first_unbalanced_tag(cloud), "");
+  EXPECT_THAT(robot, HasSubstr("<canvas"));
+  EXPECT_THAT(cloud, HasSubstr("<canvas"));
 }
 
 TEST(Report, OpensAndClosesItsElementsInPairs) { EXPECT_EQ(first_unbalanced_tag(report_html(small_run())), ""); }
@@ -121,7 +150,12 @@ TEST(Report, ShowsFaultsWithTheirReactionsAndTimes) {
               HasSubstr("13.250 s</td><td>perceive</td><td>panel vision unsure: no panel seen</td><td>retry</td><td class=\"n\">1</td>"));
   EXPECT_THAT(html, HasSubstr("And 4 more"));
   EXPECT_EQ(first_unbalanced_tag(html), "");
-  EXPECT_THAT(report_html(small_run()), Not(HasSubstr("Faults and reactions")));
+  // In every chart a flag: its line, and a bar to the last time.
+  EXPECT_EQ(count_of(html, "<title>12.500 s: image lost &lt;1&gt;: count</title>"), data.charts.size());
+  data.result.faults.clear();
+  data.result.faults_left_out = 0;
+  EXPECT_THAT(report_html(data), Not(HasSubstr("Faults and reactions")));
+  EXPECT_THAT(report_html(data), Not(HasSubstr("<g class=\"fault\">")));
 }
 
 TEST(Report, SaysWhyARunFailedWhatToDoAndWhenItWas) {
@@ -151,7 +185,9 @@ TEST(Report, KeepsSpikesOfAMillionSamplesInAFewPoints) {
   }
   data.charts = {{"Torque", "N m", {series}}};
   const std::string html = report_html(data);
-  EXPECT_LT(html.size(), 60'000u);
+  // Without the library and the page's own script, which are some 80 kB.
+  EXPECT_LT(without(html, "script").size(), 60'000u);
+  EXPECT_LT(html.size(), 300'000u);
   // The spike is drawn at the top: y of 1000 in a chart from 0 to 1050 and 210 to 10.
   EXPECT_THAT(html, HasSubstr(" 19.5"));
 }

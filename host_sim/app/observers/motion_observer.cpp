@@ -1,0 +1,70 @@
+#include "host_sim/app/observers/motion_observer.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <string>
+
+#include "firmware/arm/kinematics.hpp"
+#include "host_sim/app/observers/curve_observer.hpp"
+#include "host_sim/app/report_parts_of.hpp"
+#include "shared/messages/joint_names.hpp"
+
+namespace lf::app {
+
+void MotionObserver::on_telemetry(const Telemetry& telemetry) {
+  if (ticks_++ % ticks_a_sample != 0 || world_ == nullptr) return;
+  t_s_.push_back(telemetry.t.s());
+  const JointReadings joints = world_->readings();
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    position_rad_[i].push_back(joints[i].position_rad);
+    speed_rad_s_[i].push_back(joints[i].velocity_rad_s);
+  }
+  // Before the drives have answered nothing is asked of them: the targets are zeros.
+  const bool asked = telemetry.step != mission::Step::idle && telemetry.step != mission::Step::boot;
+  arm::JointVector asked_rad;
+  for (std::size_t i = 0; i < arm_joint_count; ++i) asked_rad[static_cast<Eigen::Index>(i)] = telemetry.target_rad[i];
+  const Vec3 tool_m = world_->base_from_tool().translation(), asked_m = arm::base_from_tool(asked_rad).translation();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    tool_mm_[axis].push_back(1000 * tool_m[static_cast<Eigen::Index>(axis)]);
+    asked_tool_mm_[axis].push_back(asked ? 1000 * asked_m[static_cast<Eigen::Index>(axis)] : record::unknown);
+  }
+  tool_error_mm_.push_back(asked ? 1000 * (tool_m - asked_m).norm() : record::unknown);
+  valve_rad_.push_back(world_->valve_angle_rad());
+  for (std::size_t i = 0; i < button_depth_m_.size(); ++i) button_depth_m_[i].push_back(world_->button(i).depth_m);
+  const world::ContactReport contacts = world_->contacts();
+  contact_n_.push_back(contacts.largest_force_n);
+  grip_n_.push_back(contacts.grip_force_n);
+}
+
+std::vector<record::ReportChart> MotionObserver::charts() const {
+  record::ReportChart speeds{"Joint speeds, truth", "rad/s", {}}, tool{"Tool's place in the base frame, truth, and asked", "mm", {}};
+  for (std::size_t i = 0; i < joint_count; ++i) speeds.series.push_back({joint_names[i], t_s_, speed_rad_s_[i], false});
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::string name(1, "xyz"[axis]);
+    tool.series.push_back({name, t_s_, tool_mm_[axis], false});
+    tool.series.push_back({name + ", asked", t_s_, asked_tool_mm_[axis], true});
+  }
+  std::vector<double> valve_deg;
+  std::transform(valve_rad_.begin(), valve_rad_.end(), std::back_inserter(valve_deg), deg_from_rad);
+  return {speeds,
+          tool,
+          {"Tool's distance from where it is asked to be, truth", "mm", {{"distance", t_s_, tool_error_mm_, false}}},
+          {"Valve's angle, truth", "deg", {{"valve", t_s_, valve_deg, false}}},
+          {"Contact force, truth", "N", {{"largest", t_s_, contact_n_, false}, {"grip on the handle", t_s_, grip_n_, false}}}};
+}
+
+record::ReportMotion MotionObserver::motion(const world::WorldConfig& config) const {
+  record::ReportMotion motion;
+  motion.parts = report_parts_of(config);
+  motion.t_s = t_s_;
+  for (std::size_t i = 0; i < joint_count; ++i) motion.coordinates.push_back({joint_names[i], position_rad_[i]});
+  motion.coordinates.push_back({"valve", valve_rad_});
+  for (const char* name : {"left button", "centre button", "right button"})
+    motion.coordinates.push_back({name, button_depth_m_[motion.coordinates.size() - joint_count - 1]});
+  motion.tool_part = static_cast<std::size_t>(scene::BodyId::wrist);
+  motion.tool_m = config.arm.wrist_from_tool.translation();
+  motion.base_from_panel = config.base_from_panel;
+  return motion;
+}
+
+}  // namespace lf::app

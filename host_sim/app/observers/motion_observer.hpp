@@ -1,0 +1,33 @@
+// What truly moved, at 25 Hz, for the report's charts and its 3D view. Nothing of it goes back into the core.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "hal/sim/sim_platform.hpp"
+#include "host_sim/record/report.hpp"
+
+namespace lf::app {
+
+class MotionObserver : public hal::SimObserver {
+ public:
+  void on_step(Time, const world::World& world) override { world_ = &world; }
+  void on_telemetry(const Telemetry& telemetry) override;
+
+  // Speeds, tool, valve and contact.
+  std::vector<record::ReportChart> charts() const;
+  // `config` is that of the world it watched.
+  record::ReportMotion motion(const world::WorldConfig& config) const;
+
+ private:
+  const world::World* world_ = nullptr;
+  std::uint32_t ticks_ = 0;
+  std::vector<double> t_s_;
+  std::array<std::vector<double>, joint_count> position_rad_, speed_rad_s_;
+  std::array<std::vector<double>, 3> tool_mm_, asked_tool_mm_;
+  std::vector<double> tool_error_mm_;
+  std::vector<double> valve_rad_, contact_n_, grip_n_;
+  std::array<std::vector<double>, PanelLayout::button_count> button_depth_m_;
+};
+
+}  // namespace lf::app

@@ -1,0 +1,71 @@
+// The report's chain of parts stands where the simulated world's bodies do.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "host_sim/app/report_parts_of.hpp"
+#include "tests/unit/world/world_fixture.hpp"
+
+namespace lf::app {
+namespace {
+
+// base_from_part of each, as docs/report.md says that the page does it.
+std::vector<Pose> poses_of(const std::vector<record::ReportPart>& parts, const std::vector<double>& coordinates) {
+  std::vector<Pose> poses;
+  for (const record::ReportPart& part : parts) {
+    Pose pose = part.parent < 0 ? part.parent_from_part : Pose(poses[static_cast<std::size_t>(part.parent)] * part.parent_from_part);
+    if (part.coordinate >= 0) {
+      const double value = coordinates[static_cast<std::size_t>(part.coordinate)];
+      if (part.slides) {
+        pose.translate(value * part.axis);
+      } else {
+        pose.rotate(Eigen::AngleAxisd(value, part.axis));
+      }
+    }
+    poses.push_back(pose);
+  }
+  return poses;
+}
+
+void expect_parts_where_the_bodies_are(const world::World& world, const std::vector<record::ReportPart>& parts) {
+  std::vector<double> coordinates;
+  for (const JointReading& joint : world.readings()) coordinates.push_back(joint.position_rad);
+  coordinates.push_back(world.valve_angle_rad());
+  for (std::size_t i = 0; i < PanelLayout::button_count; ++i) coordinates.push_back(world.button(i).depth_m);
+  const std::vector<Pose> poses = poses_of(parts, coordinates);
+  const scene::BodyPoses bodies = world.base_from_body();
+  ASSERT_EQ(poses.size(), bodies.size());
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    EXPECT_LT((poses[i].translation() - bodies[i].translation()).norm(), 1e-6) << parts[i].name;
+    // The jaw's angle is one for both fingers, which under way differ by some 0.05 mrad.
+    const bool finger = i == std::size_t(scene::BodyId::finger_a) || i == std::size_t(scene::BodyId::finger_b);
+    EXPECT_LT((poses[i].linear() - bodies[i].linear()).norm(), finger ? 2e-4 : 1e-6) << parts[i].name;
+  }
+}
+
+TEST(ReportParts, StandWhereTheBodiesDoAsTheArmMoves) {
+  world::WorldConfig config = world::nominal_config();
+  config.valve.start_rad = 0.4;
+  const std::vector<record::ReportPart> parts = report_parts_of(config);
+  world::World world(config);
+  expect_parts_where_the_bodies_are(world, parts);
+  world::Script drives(world, {0.3, 0.8, 1.6, -0.9, 0.1});
+  for (int i = 0; i < 5; ++i) {
+    drives.run(0.5);
+    expect_parts_where_the_bodies_are(world, parts);
+  }
+}
+
+TEST(ReportParts, HaveTheWorldsShapes) {
+  const world::WorldConfig config = world::nominal_config();
+  const std::vector<record::ReportPart> parts = report_parts_of(config);
+  ASSERT_EQ(parts.size(), scene::body_count);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    EXPECT_EQ(parts[i].name, config.scene[i].name);
+    EXPECT_EQ(parts[i].shapes.size(), config.scene[i].shapes.size());
+  }
+}
+
+}  // namespace
+}  // namespace lf::app
