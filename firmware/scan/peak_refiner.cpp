@@ -97,7 +97,9 @@ void BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::learn(const Pair& pair, std::
         if (fits.found[lane]) (void)misfits.push_back(fits.misfit[lane]);
       }
       estimate_.add(windows, noise_, fits);
+      speckle_.add(speckle_between(windows, optics(), noise_, fits));
     }
+    noise_.speckle = speckle_.contrast_or(noise_.speckle);
     const bool fits_well = follow_misfits(misfits, noise_.model);
     if (estimate_.update() < settled && fits_well) break;
   }
@@ -167,7 +169,7 @@ float BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::haze(const BasicHaze<Pixel, 
 
 template <class Pixel, std::int32_t MaxWidth, std::int32_t MaxHeight>
 auto BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::gather(const Pair& pair, std::span<Peak> peaks, StripeWindows& windows) -> Firsts {
-  const std::int32_t reach = reach_of_window(optics());
+  const std::int32_t reach = reach_of_window(optics(), pair.off.valid());
   windows.count = 2 * reach + 1;
   windows.hazy = hazy_;
   Firsts firsts{};
