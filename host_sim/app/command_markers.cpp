@@ -67,7 +67,7 @@ void add_markers(CLI::App& app, Action& action) {
   auto options = std::make_shared<Options>();
   command->add_option("FILE", options->files, "Images or videos")->required();
   command->add_option("--family", options->family, "36h11, 25h9, 16h5 ...")->capture_default_str();
-  command->add_option("--channel", options->channel, "grey, red, green or blue")->capture_default_str();
+  command->add_option("--channel", options->channel, vision::channel_names)->capture_default_str();
   command->add_option("--camera", options->camera, "Calibration (YAML of OpenCV or ROS): gives poses; needs --size-m");
   command->add_option("--size-m", options->size_m, "Side of the black square, m")->check(within(1e-4, 100));
   command->add_option("--decimate", options->decimate, "Search on an image so many times smaller")->capture_default_str();

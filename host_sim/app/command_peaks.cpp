@@ -161,7 +161,7 @@ void add_peaks(CLI::App& app, Action& action) {
   command->add_option("--axis", options->axis, "One peak in each column or row")
       ->check(CLI::IsMember({"column", "row"}))
       ->capture_default_str();
-  command->add_option("--channel", options->channel, "grey, red, green or blue")->capture_default_str();
+  command->add_option("--channel", options->channel, vision::channel_names)->capture_default_str();
   command->add_option("--overlay", options->overlay, "Write the image with its peaks in red to this PNG");
   CLI::Option* csv = command->add_flag("--csv", options->csv, "Print CSV");
   command->add_flag("--json", options->json, "Print JSON")->excludes(csv);
