@@ -10,7 +10,6 @@
 #include <string>
 #include <string_view>
 
-#include "hal/config/nearest.hpp"
 #include "hal/vision/pixels.hpp"
 #include "shared/input_error.hpp"
 
@@ -151,8 +150,7 @@ Channel channel_from_name(const std::string& name) {
   if (name == "red-excess") return Channel::red_excess;
   if (name == "green-excess") return Channel::green_excess;
   if (name == "blue-excess") return Channel::blue_excess;
-  const std::string near = config::suggestion(name, {"grey", "red", "green", "blue", "red-excess", "green-excess", "blue-excess"});
-  throw InputError("unknown channel '" + name + "'" + (near.empty() ? std::string(": ") + channel_names : near));
+  throw InputError("unknown channel '" + name + "': " + channel_names);
 }
 
 GreyImage read_image_file(const std::string& path, Channel channel) {

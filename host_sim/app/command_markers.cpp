@@ -1,5 +1,6 @@
 #include <memory>
 
+#include "hal/config/nearest.hpp"
 #include "hal/vision/calibration_file.hpp"
 #include "hal/vision/marker_files.hpp"
 #include "host_sim/app/checks.hpp"
@@ -42,6 +43,8 @@ int markers(const Options& options) {
   asked.detector.family = options.family;
   asked.detector.decimate = options.decimate;
   asked.detector.min_margin = options.min_margin;
+  config::check_names({options.channel}, {"grey", "red", "green", "blue", "r", "g", "b", "red-excess", "green-excess", "blue-excess"},
+                      "--channel");
   asked.channel = vision::channel_from_name(options.channel);
   asked.size_m = options.size_m;
   asked.overlay_path = options.overlay;

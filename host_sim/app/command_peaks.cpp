@@ -6,6 +6,7 @@
 
 #include "firmware/scan/peak_refiner.hpp"
 #include "firmware/scan/peaks.hpp"
+#include "hal/config/nearest.hpp"
 #include "hal/vision/image_file.hpp"
 #include "host_sim/app/command.hpp"
 #include "host_sim/app/peak_doubt.hpp"
@@ -135,6 +136,8 @@ void tell(const Options& options, const vision::DeepImage& image, const Found& f
 }
 
 int peaks(const Options& options) {
+  config::check_names({options.channel}, {"grey", "red", "green", "blue", "r", "g", "b", "red-excess", "green-excess", "blue-excess"},
+                      "--channel");
   const vision::Channel channel = vision::channel_from_name(options.channel);
   const vision::DeepImage image = vision::read_deep_image(options.image, channel);
   std::optional<vision::DeepImage> off;
