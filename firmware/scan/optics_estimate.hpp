@@ -1,7 +1,7 @@
 // How wide the stripe and the lens' blur are and how hazy the water, as the pictures themselves tell: what makes the fitted columns likeliest.
 //
-// Plain columns tell the stripe's width in the picture. Columns at the paint's edges tell how much of it is the lens', and how much haze lies on dark paint. Each picture moves the estimate by a step
-// of Newton's on the deviance of some of its columns, against what the pictures before have told.
+// Plain columns tell the stripe's width and its skew in the picture. Columns at the paint's edges tell how much of the width is the lens', and how much haze lies on dark paint.
+// Each picture moves the estimate by a step of Newton's on the squares that the fits of some of its columns leave, against what the pictures before have told.
 #pragma once
 
 #include "firmware/scan/stripe_fit.hpp"
@@ -17,20 +17,25 @@ class OpticsEstimate {
   // Columns that were fitted with `optics()`. Those that fit badly are left out: another stripe, a silhouette.
   void add(const StripeWindows& windows, const PixelNoise& noise, const StripeFits& fits);
 
-  // Moves the estimate by what was added since the last call. Returns the largest change: of the widths relative, of the scatter as it is. 0 where nothing was added.
+  // Moves the estimate by what was added since the last call. Returns the largest change: of the widths relative, of scatter and skew as they are. 0 where nothing was added.
   float update();
 
  private:
-  // Of a width's logarithm, or of the scatter.
+  // Of a width's logarithm, of the scatter or of the skew.
   struct Newton {
-    float slope = 0, curvature = 0;  // of the deviance, of the columns added since the last update
+    float slope = 0, curvature = 0;  // of the squares that are left, of the columns added since the last update
     float known = 0;                 // curvature that earlier pictures have left
 
+    // The squares that are left a probe below the estimate, at it and above it.
+    void add(float below, float here, float above, float probe);
     float step(float longest, float remembered);
   };
 
+  void add_shape(const StripeWindows& about, const PixelNoise& noise, LaneMask among);
+  void add_lens(const StripeWindows& about, const PixelNoise& noise, LaneMask among);
+
   StripeOptics optics_;
-  Newton stripe_, lens_, scatter_;
+  Newton stripe_, lens_, scatter_, skew_;
 };
 
 }  // namespace lf::scan

@@ -18,7 +18,10 @@ constexpr float settled = 0.02f;                   // change of a round: what 64
 constexpr float most_model_share = 0.3f;           // of the stripe's peak: beyond it no column is a misfit
 constexpr std::int32_t farthest_half_height = 20;  // rows from a peak
 constexpr float half_height_to_sigma = 1 / 2.355f;
-constexpr std::int32_t border = 3;  // rows at a window's ends, by which the background is told where there is no picture of it
+// Rows about a window's ends, most of them beyond, by which the background is told where there is no picture of it: twice as many as the stripe has, so that their noise
+// hardly moves its centre.
+constexpr std::int32_t inside_border = 3, least_border = 3;
+constexpr float border_widths = 5.0f;
 
 // The model's share goes half of the way, as a factor, to where the median of the misfits is between these. Haze that is not learned yet makes 1.2, a camera that
 // sharpens 5 and more.
@@ -97,7 +100,9 @@ void BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::learn(const Pair& pair, std::
         if (fits.found[lane]) (void)misfits.push_back(fits.misfit[lane]);
       }
       estimate_.add(windows, noise_, fits);
+      speckle_.add(speckle_between(windows, optics(), noise_, fits));
     }
+    noise_.speckle = speckle_.contrast_or(noise_.speckle);
     const bool fits_well = follow_misfits(misfits, noise_.model);
     if (estimate_.update() < settled && fits_well) break;
   }
@@ -167,7 +172,7 @@ float BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::haze(const BasicHaze<Pixel, 
 
 template <class Pixel, std::int32_t MaxWidth, std::int32_t MaxHeight>
 auto BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::gather(const Pair& pair, std::span<Peak> peaks, StripeWindows& windows) -> Firsts {
-  const std::int32_t reach = reach_of_window(optics());
+  const std::int32_t reach = reach_of_window(optics(), pair.off.valid());
   windows.count = 2 * reach + 1;
   windows.hazy = hazy_;
   Firsts firsts{};
@@ -187,15 +192,18 @@ void BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::put(const Pair& pair, std::in
   const bool two = pair.off.valid();
   const float to_grey = 255.0f / static_cast<float>(config_.full_scale);
   const Line on = line_of(pair.on, line), off = two ? line_of(pair.off, line) : on;
-  float before = 0, after = 0;  // of a picture alone: what its window's ends have, and the straight line between is the background
+  // Of a picture alone: what lies about its window's ends, and the straight line between is the background.
+  const auto border = std::max(least_border, static_cast<std::int32_t>(std::ceil(border_widths * width_in_picture_px(optics()))));
+  const float middle = static_cast<float>(inside_border) - 0.5f * static_cast<float>(border + 1);
+  float before = 0, after = 0;
   for (std::int32_t i = 0; !two && i < border; ++i) {
-    before += grey(pair.on, line, first + i) / border;
-    after += grey(pair.on, line, first + last - i) / border;
+    before += grey(pair.on, line, first + inside_border - 1 - i) / static_cast<float>(border);
+    after += grey(pair.on, line, first + last - inside_border + 1 + i) / static_cast<float>(border);
   }
   for (std::int32_t i = 0; i <= last; ++i) {
     const std::int32_t place = first + i, inside = std::clamp<std::int32_t>(place, 0, end);
     const auto lit = static_cast<std::int32_t>(on.first[inside * on.step]);
-    const float passed = static_cast<float>(i) / static_cast<float>(last);
+    const float passed = (static_cast<float>(i) - middle) / (static_cast<float>(last) - 2 * middle);
     const float background = two ? gain_ * to_grey * static_cast<float>(off.first[inside * off.step]) : before + (after - before) * passed;
     const auto row = static_cast<std::size_t>(i);
     windows.stripe[row][lane] = to_grey * static_cast<float>(lit) - background;

@@ -1,6 +1,6 @@
 // Puts a detector's peaks where the stripe is: each column's fit of the stripe to the paint that it lights (stripe_fit.hpp).
 //
-// The stripe's width, the lens' blur, the water's haze and how far the model holds are learned from the pictures, and kept from one to the next. The background may have another
+// The stripe's width and skew, the lens' blur, the water's haze, the speckle and how far the model holds are learned from the pictures, and kept from one to the next. The background may have another
 // exposure.
 #pragma once
 
@@ -13,6 +13,7 @@
 #include "firmware/scan/optics_estimate.hpp"
 #include "firmware/scan/peaks.hpp"
 #include "firmware/scan/pixel_view.hpp"
+#include "firmware/scan/speckle_estimate.hpp"
 #include "firmware/scan/stripe_fit.hpp"
 
 namespace lf::scan {
@@ -52,7 +53,7 @@ class BasicPeakRefiner {
   // What the pictures have told so far.
   const StripeOptics& optics() const { return estimate_.optics(); }
   float gain() const { return gain_; }                // of the newest picture over its background
-  const PixelNoise& noise() const { return noise_; }  // the configured one, with the model's share as it was learned
+  const PixelNoise& noise() const { return noise_; }  // the configured one, with speckle and the model's share as they were learned
   const RefinerCounters& counters() const { return counters_; }
 
  private:
@@ -86,6 +87,7 @@ class BasicPeakRefiner {
   OpticsEstimate estimate_;
   RefinerCounters counters_;
   PixelNoise noise_;
+  SpeckleEstimate speckle_;
   float gain_ = 1;
   bool begun_ = false;  // a picture has told the stripe's width
   bool hazy_ = false;   // the haze of the present pictures was computed

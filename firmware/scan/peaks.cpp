@@ -199,7 +199,6 @@ std::size_t BasicPeakDetector<Pixel, MaxLength>::finish(const Strip& s, std::int
   while (next.response >= least && !known.full()) {
     (void)known.push_back(next);
     const bool too_wide = next.last - next.first - 2 * exclusion >= config_.max_clipped;
-    if (too_wide && !several) break;
     if (!too_wide) (void)stripes.push_back(next);
     if (static_cast<std::int32_t>(stripes.size()) >= std::max<std::int32_t>(2, config_.peaks_per_line)) break;
     if (!stripes.empty() && second <= share * stripes[0].response) break;
@@ -208,6 +207,11 @@ std::size_t BasicPeakDetector<Pixel, MaxLength>::finish(const Strip& s, std::int
     if (!stripes.empty() && second <= share * stripes[0].response) break;
   }
   if (stripes.empty()) {
+    ++counters_.saturated;
+    return 0;
+  }
+  // Of one peak a line: what is passed over may be the stripe itself, and what is left a ghost of it.
+  if (!several && stripes[0].response < config_.min_second_ratio * known[0].response) {
     ++counters_.saturated;
     return 0;
   }

@@ -52,7 +52,8 @@ struct PeakConfig {
   std::int32_t peaks_per_line = 1;
   float min_second_ratio =
       0.4f;  // of a further peak to the first: parts like the panel give 0.7 and more, edges of moving shadows mostly less
-  std::int32_t max_clipped = 12;  // px at full scale; a wider plateau is no stripe; of several it is passed over
+  std::int32_t max_clipped =
+      12;  // px at full scale; a wider plateau is no stripe and is passed over, where what is left has `min_second_ratio` of it
   std::int32_t full_scale = 255;  // grey level at which the sensor clips
 };
 

@@ -12,6 +12,7 @@ using Rows = StripeWindows::Rows;
 
 constexpr float pixel_variance = 1.0f / 12;  // of a pixel's aperture
 constexpr float window_widths = 2.5f;        // to either side of the centre, and two rows more
+constexpr float alone_widths = 3.5f;         // the same of a picture without background: 0.2 % of the peak are left there
 constexpr float most_shift_px = 2.0f;        // of a pixel's light: more is noise of dark paint
 constexpr float least_spread = 0.1f;         // of the variance of a pixel's light, over the blur's: noise may take it below 0
 constexpr float least_rows = 8;              // that are not clipped
@@ -22,6 +23,8 @@ constexpr float longest_step = 0.5f;         // stripe widths
 constexpr float farthest = 3.0f;             // stripe widths from the start: beyond it, another stripe
 constexpr float least_determinant = 1e-5f;   // of stripe and offset, relative: below it they cannot be told apart
 constexpr float plain_sigmas = 3.0f;         // by which the squares about a line may exceed the noise's
+constexpr float faintest = 0.1f;             // variance of a speckle of 0.3: columns whose other noise is more tell nothing of it
+constexpr float median_of_square = 0.455f;   // of a normal deviate
 constexpr float least_variance = 1e-3f;      // grey levels^2: of a picture without noise
 
 Lanes square(Lanes x) { return x * x; }
@@ -40,6 +43,7 @@ struct Model {
   Rows paint_variance;    // of the paint, over its square
   Rows weight;
   Lanes highest_level;
+  float skew = 0;
 };
 
 // Of a pixel with the laser off, its haze taken out.
@@ -88,6 +92,7 @@ LaneMask make_model(const StripeWindows& windows, const StripeOptics& optics, co
   clear_haze(windows, optics.scatter, m);
   const LaneMask plain = straighten_plain_paint(windows, noise, near, m.paint);
   m.highest_level = Lanes{};
+  m.skew = optics.skew;
   Lanes before = log(m.paint[0]), here = before;
   for (std::int32_t i = 0; i <= last; ++i) {
     const Lanes after = i < last ? log(m.paint[i + 1]) : here;
@@ -117,8 +122,15 @@ Lanes weight_of(const StripeWindows& windows, const PixelNoise& noise, const Mod
   return windows.valid[row] / max(m.still_variance[row] + by_light + by_paint + square(noise.model * peak), all_lanes(least_variance));
 }
 
-Lanes shape_at(const Model& m, std::int32_t row, Lanes centre) {
-  return m.level[row] * exp(-0.5f * square(m.place[row] - centre) * m.inverse_variance[row]);
+struct Shape {
+  Lanes light, slope;  // of a stripe of height 1; slope over its centre
+};
+
+// A bell and Hermite's third function. The slope of each of Hermite's functions is the next one, turned.
+Shape shape_at(const Model& m, std::int32_t row, Lanes centre) {
+  const Lanes per_px = sqrt(m.inverse_variance[row]), z = (m.place[row] - centre) * per_px, z2 = z * z;
+  const Lanes bell = m.level[row] * exp(-0.5f * z2);
+  return {bell * (1 + m.skew * z * (z2 - 3)), bell * per_px * (z + m.skew * (z2 * (z2 - 6) + 3))};
 }
 
 // The best stripes whose centres are given. `explained`: by how much they lessen the sum of weighted squares.
@@ -129,7 +141,7 @@ struct Stripes {
 Stripes best_at(const StripeWindows& windows, const Model& m, Lanes centre) {
   Lanes ss{}, sp{}, pp{}, sd{}, pd{};  // s: shape, p: paint, d: the picture's stripe
   for (std::int32_t i = 0; i < windows.count; ++i) {
-    const Lanes shape = shape_at(m, i, centre), paint = m.paint[i], d = m.data[i];
+    const Lanes shape = shape_at(m, i, centre).light, paint = m.paint[i], d = m.data[i];
     const Lanes ws = m.weight[i] * shape, wp = m.weight[i] * paint;
     ss += ws * shape;
     sp += ws * paint;
@@ -172,9 +184,10 @@ LaneMask refine(const StripeWindows& windows, const PixelNoise& noise, float wid
   Lanes gg{}, gs{}, gp{}, gr{}, ss{}, sp{}, pp{}, sr{}, pr{},
       rr{};  // g: slope of the light over the centre, s: shape, p: paint, r: what is left
   for (std::int32_t i = 0; i < windows.count; ++i) {
-    const Lanes shape = shape_at(m, i, fits.centre), paint = m.paint[i], light = fits.height * shape;
+    const auto [shape, slope] = shape_at(m, i, fits.centre);
+    const Lanes paint = m.paint[i], light = fits.height * shape;
     const Lanes weight = weight_of(windows, noise, m, i, light, peak);
-    const Lanes g = light * (m.place[i] - fits.centre) * m.inverse_variance[i], r = m.data[i] - light - fits.offset * paint;
+    const Lanes g = fits.height * slope, r = m.data[i] - light - fits.offset * paint;
     const Lanes wg = weight * g, ws = weight * shape, wp = weight * paint;
     gg += wg * g;
     gs += wg * shape;
@@ -217,8 +230,9 @@ float width_in_picture_px(const StripeOptics& optics) {
   return std::sqrt(square(optics.beam_px) + square(optics.lens_px) + pixel_variance);
 }
 
-std::int32_t reach_of_window(const StripeOptics& optics) {
-  const auto rows = static_cast<std::int32_t>(std::ceil(window_widths * width_in_picture_px(optics))) + 2;
+std::int32_t reach_of_window(const StripeOptics& optics, bool with_background) {
+  const float widths = with_background ? window_widths : alone_widths;
+  const auto rows = static_cast<std::int32_t>(std::ceil(widths * width_in_picture_px(optics))) + 2;
   return std::min(rows, (StripeWindows::most_rows - 1) / 2);
 }
 
@@ -230,7 +244,7 @@ float deviance(const StripeWindows& windows, const StripeOptics& optics, const P
   const Lanes peak = fits.height * m.highest_level;
   Lanes sum{};
   for (std::int32_t i = 0; i < windows.count; ++i) {
-    const Lanes light = fits.height * shape_at(m, i, fits.centre), left = m.data[i] - light - fits.offset * m.paint[i];
+    const Lanes light = fits.height * shape_at(m, i, fits.centre).light, left = m.data[i] - light - fits.offset * m.paint[i];
     const Lanes weight = weight_of(windows, noise, m, i, light, peak);
     const LaneMask counted = among & (weight > 0);
     sum += select(counted, weight * square(left) - log(max(weight, all_lanes(1e-20f))) + scale, Lanes{});
@@ -238,6 +252,75 @@ float deviance(const StripeWindows& windows, const StripeOptics& optics, const P
   float total = 0;
   for (int lane = 0; lane < lane_count; ++lane) total += sum[lane];
   return total;
+}
+
+PixelWeights weights_of(const StripeWindows& windows, const StripeOptics& optics, const PixelNoise& noise, const StripeFits& fits) {
+  Model m;
+  make_model(windows, optics, noise, m);
+  const float near = 1 + near_share * optics.scatter;
+  const Lanes peak = fits.height * m.highest_level;
+  PixelWeights weights;
+  for (std::int32_t i = 0; i < windows.count; ++i) {
+    const Lanes light = fits.height * shape_at(m, i, fits.centre).light, weight = weight_of(windows, noise, m, i, light, peak);
+    weights.rows[i] = weight / square(near);
+    weights.brightest = max(weights.brightest, weight * square(light));
+  }
+  return weights;
+}
+
+float squares_left(const StripeWindows& windows, const StripeOptics& optics, const PixelNoise& noise, const StripeFits& fits,
+                   const PixelWeights& weights, LaneMask among) {
+  Model m;
+  make_model(windows, optics, noise, m);
+  const float near = 1 + near_share * optics.scatter;
+  Lanes sum{};
+  for (std::int32_t i = 0; i < windows.count; ++i) {
+    const Lanes light = fits.height * shape_at(m, i, fits.centre).light;
+    sum += select(among, weights.rows[i] * square(near * (m.data[i] - light - fits.offset * m.paint[i])), Lanes{});
+  }
+  float total = 0;
+  for (int lane = 0; lane < lane_count; ++lane) total += sum[lane];
+  return total;
+}
+
+SpeckleVariances speckle_between(const StripeWindows& windows, const StripeOptics& optics, const PixelNoise& noise,
+                                 const StripeFits& fits) {
+  Model m;
+  make_model(windows, optics, noise, m);
+  const Lanes peak = fits.height * m.highest_level;
+  // The heights are those of what is left of the shape beside the offset's.
+  Lanes sp{}, pp{};
+  for (std::int32_t i = 0; i < windows.count; ++i) {
+    const Lanes shape = shape_at(m, i, fits.centre).light;
+    m.weight[i] = weight_of(windows, noise, m, i, fits.height * shape, peak);
+    sp += m.weight[i] * shape * m.paint[i];
+    pp += m.weight[i] * square(m.paint[i]);
+  }
+  const Lanes on_paint = fits.offset > 0 ? sp / pp : Lanes{};
+  // Variances of the heights as the fit weighs its pixels: of a speckle of 1, and of all else.
+  Lanes ss{}, speckled{}, still{};
+  PixelNoise even = noise;
+  even.speckle = even.model = 0;
+  for (std::int32_t i = 0; i < windows.count; ++i) {
+    const Lanes shape = shape_at(m, i, fits.centre).light, light = fits.height * shape, beside = shape - on_paint * m.paint[i];
+    const Lanes without = weight_of(windows, even, m, i, light, peak), on_height = square(m.weight[i] * beside);
+    ss += m.weight[i] * square(beside);
+    speckled += on_height * square(light);
+    still += without > 0 ? on_height / without : Lanes{};
+  }
+  const Lanes relative = 1 / max(square(ss * fits.height), all_lanes(1e-20f));
+  speckled *= relative;
+  still *= relative;
+  const LaneMask among = fits.found & fits.plain;
+  SpeckleVariances variances;
+  for (int a = 0, b = 1; b < lane_count; ++a, ++b) {
+    if (among[a] == 0 || among[b] == 0) continue;
+    if (!(still[a] + still[b] < faintest * (speckled[a] + speckled[b]))) continue;
+    const float apart = 2 * (fits.height[a] - fits.height[b]) / (fits.height[a] + fits.height[b]);
+    const float variance = (square(apart) / median_of_square - still[a] - still[b]) / (speckled[a] + speckled[b]);
+    if (std::isfinite(variance)) (void)variances.push_back(variance);
+  }
+  return variances;
 }
 
 StripeFits fit_stripes(const StripeWindows& windows, const StripeOptics& optics, const PixelNoise& noise, FitStart start) {
@@ -251,7 +334,10 @@ StripeFits fit_stripes(const StripeWindows& windows, const StripeOptics& optics,
   fits.plain = make_model(windows, optics, noise, m);
   Lanes highest{};
   for (std::int32_t i = 0; i < windows.count; ++i) highest = max(highest, m.data[i]);
-  for (std::int32_t i = 0; i < windows.count; ++i) m.weight[i] = weight_of(windows, noise, m, i, m.data[i], highest);
+  // Where the stripe is, its brightest pixels tell, speckled or not.
+  PixelNoise even = noise;
+  even.speckle = 0;
+  for (std::int32_t i = 0; i < windows.count; ++i) m.weight[i] = weight_of(windows, even, m, i, m.data[i], highest);
   fits.found = valid >= least_rows;
   const bool far = start == FitStart::far || (start == FitStart::filter && any(~fits.plain));
   fits.centre = far ? search(windows, m, width, fits.found) : windows.start;

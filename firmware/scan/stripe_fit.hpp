@@ -17,6 +17,7 @@
 #include <cstdint>
 
 #include "shared/lanes/lanes.hpp"
+#include "shared/messages/static_vector.hpp"
 
 namespace lf::scan {
 
@@ -25,6 +26,9 @@ struct StripeOptics {
   float beam_px = 1.2f;  // of the laser's light on the surface, before the lens
   float lens_px = 0.8f;  // of the lens' blur; a pixel's aperture comes on top
   float scatter = 0.0f;  // exp(b R) - 1 of the water between surface and camera: once-scattered light over direct light
+  // What makes one flank steeper than the other: the share of Hermite's third function in the stripe (Gram and Charlier's series). A lens with coma, a camera that
+  // sharpens, a beam with a lobe on one side.
+  float skew = 0.0f;
 };
 
 // Of a stripe in the picture.
@@ -54,8 +58,9 @@ struct StripeWindows {
   bool hazy = false;       // the haze was computed; otherwise it is 0, whatever the water
 };
 
-// Rows that a window needs to either side of the start.
-std::int32_t reach_of_window(const StripeOptics& optics);
+// Rows that a window needs to either side of the start. Of a picture alone (`with_background` false) its ends tell the background, and have to lie where the stripe has
+// ended: 2.5 widths out, where a pair's window ends, 4 % of the peak are left, which bent single pictures' centres by 0.08 px and narrowed wide stripes by a fifth.
+std::int32_t reach_of_window(const StripeOptics& optics, bool with_background = true);
 
 struct StripeFits {
   LaneMask found{};      // the rest holds for these columns
@@ -80,5 +85,20 @@ StripeFits fit_stripes(const StripeWindows& windows, const StripeOptics& optics,
 // What the fits of eight columns leave: the sum, over the valid pixels of the columns `among`, of squared residuals over their variance and of the variance's
 // logarithm. Of two optics the one with less is likelier.
 float deviance(const StripeWindows& windows, const StripeOptics& optics, const PixelNoise& noise, const StripeFits& fits, LaneMask among);
+
+struct PixelWeights {
+  StripeWindows::Rows rows{};  // one over each pixel's variance, of the pictures as they were taken
+  Lanes brightest{};           // the most that a pixel's light squared is over its variance
+};
+PixelWeights weights_of(const StripeWindows& windows, const StripeOptics& optics, const PixelNoise& noise, const StripeFits& fits);
+
+// The sum of squared residuals by given weights.
+float squares_left(const StripeWindows& windows, const StripeOptics& optics, const PixelNoise& noise, const StripeFits& fits,
+                   const PixelWeights& weights, LaneMask among);
+
+// By how much the heights of neighbouring columns (lanes) differ, as the speckle's variance that would explain it. Half of them are below the true variance and half
+// above. Speckle sets neighbours apart; what the model leaves out of the stripe's shape they have in common.
+using SpeckleVariances = StaticVector<float, lane_count>;
+SpeckleVariances speckle_between(const StripeWindows& windows, const StripeOptics& optics, const PixelNoise& noise, const StripeFits& fits);
 
 }  // namespace lf::scan

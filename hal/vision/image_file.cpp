@@ -99,7 +99,37 @@ int used_bits(const cv::Mat& image) {
 
 }  // namespace
 
+namespace {
+
+template <class Pixel>
+void take_excess(const cv::Mat& image, int own, cv::Mat& excess) {
+  const int channels = image.channels(), first = (own + 1) % 3, second = (own + 2) % 3;
+  for (int v = 0; v < image.rows; ++v) {
+    const Pixel* from = image.ptr<Pixel>(v);
+    Pixel* to = excess.ptr<Pixel>(v);
+    for (int u = 0; u < image.cols; ++u, from += channels)
+      to[u] = static_cast<Pixel>(std::max(0, (2 * from[own] - from[first] - from[second] + 1) / 2));
+  }
+}
+
+// `own`: OpenCV's place of the channel, blue 0 to red 2.
+cv::Mat excess_of(const cv::Mat& image, int own) {
+  cv::Mat excess(image.size(), CV_MAKETYPE(image.depth(), 1), cv::Scalar(0));
+  if (image.channels() < 3) return excess;
+  if (image.depth() == CV_16U) {
+    take_excess<std::uint16_t>(image, own, excess);
+  } else {
+    take_excess<std::uint8_t>(image, own, excess);
+  }
+  return excess;
+}
+
+}  // namespace
+
 cv::Mat one_channel(const cv::Mat& image, Channel channel) {
+  if (channel == Channel::red_excess) return excess_of(image, 2);
+  if (channel == Channel::green_excess) return excess_of(image, 1);
+  if (channel == Channel::blue_excess) return excess_of(image, 0);
   cv::Mat grey;
   const int channels = image.channels();
   if (channels < 3) {
@@ -114,10 +144,13 @@ cv::Mat one_channel(const cv::Mat& image, Channel channel) {
 
 Channel channel_from_name(const std::string& name) {
   if (name == "grey") return Channel::grey;
-  if (name == "red") return Channel::red;
-  if (name == "green") return Channel::green;
-  if (name == "blue") return Channel::blue;
-  throw InputError("unknown channel '" + name + "': grey, red, green or blue");
+  if (name == "red" || name == "r") return Channel::red;
+  if (name == "green" || name == "g") return Channel::green;
+  if (name == "blue" || name == "b") return Channel::blue;
+  if (name == "red-excess") return Channel::red_excess;
+  if (name == "green-excess") return Channel::green_excess;
+  if (name == "blue-excess") return Channel::blue_excess;
+  throw InputError("unknown channel '" + name + "': " + channel_names);
 }
 
 GreyImage read_image_file(const std::string& path, Channel channel) {

@@ -9,9 +9,11 @@
 
 namespace lf::vision {
 
-enum class Channel { grey, red, green, blue };
+// An excess is a channel less the mean of the other two, at least 0: of one colour picture what has the laser's colour. A grey picture has none.
+enum class Channel { grey, red, green, blue, red_excess, green_excess, blue_excess };
 
-// "grey", "red", "green" or "blue". Throws InputError for anything else.
+// "grey", "red", "green", "blue", their first letters, "red-excess" and so on. Throws InputError for anything else.
+inline constexpr const char* channel_names = "grey, red, green, blue (or r, g, b), red-excess, green-excess, blue-excess";
 Channel channel_from_name(const std::string& name);
 
 // 8-bit grey pixels that own their storage, rows without padding.

@@ -1,5 +1,6 @@
 #include <memory>
 
+#include "hal/config/nearest.hpp"
 #include "hal/vision/calibration_file.hpp"
 #include "hal/vision/marker_files.hpp"
 #include "host_sim/app/checks.hpp"
@@ -42,6 +43,8 @@ int markers(const Options& options) {
   asked.detector.family = options.family;
   asked.detector.decimate = options.decimate;
   asked.detector.min_margin = options.min_margin;
+  config::check_names({options.channel}, {"grey", "red", "green", "blue", "r", "g", "b", "red-excess", "green-excess", "blue-excess"},
+                      "--channel");
   asked.channel = vision::channel_from_name(options.channel);
   asked.size_m = options.size_m;
   asked.overlay_path = options.overlay;
@@ -67,7 +70,7 @@ void add_markers(CLI::App& app, Action& action) {
   auto options = std::make_shared<Options>();
   command->add_option("FILE", options->files, "Images or videos")->required();
   command->add_option("--family", options->family, "36h11, 25h9, 16h5 ...")->capture_default_str();
-  command->add_option("--channel", options->channel, "grey, red, green or blue")->capture_default_str();
+  command->add_option("--channel", options->channel, vision::channel_names)->capture_default_str();
   command->add_option("--camera", options->camera, "Calibration (YAML of OpenCV or ROS): gives poses; needs --size-m");
   command->add_option("--size-m", options->size_m, "Side of the black square, m")->check(within(1e-4, 100));
   command->add_option("--decimate", options->decimate, "Search on an image so many times smaller")->capture_default_str();

@@ -6,6 +6,7 @@
 
 #include "firmware/scan/peak_refiner.hpp"
 #include "firmware/scan/peaks.hpp"
+#include "hal/config/nearest.hpp"
 #include "hal/vision/image_file.hpp"
 #include "host_sim/app/command.hpp"
 #include "host_sim/app/peak_doubt.hpp"
@@ -135,6 +136,8 @@ void tell(const Options& options, const vision::DeepImage& image, const Found& f
 }
 
 int peaks(const Options& options) {
+  config::check_names({options.channel}, {"grey", "red", "green", "blue", "r", "g", "b", "red-excess", "green-excess", "blue-excess"},
+                      "--channel");
   const vision::Channel channel = vision::channel_from_name(options.channel);
   const vision::DeepImage image = vision::read_deep_image(options.image, channel);
   std::optional<vision::DeepImage> off;
@@ -161,7 +164,7 @@ void add_peaks(CLI::App& app, Action& action) {
   command->add_option("--axis", options->axis, "One peak in each column or row")
       ->check(CLI::IsMember({"column", "row"}))
       ->capture_default_str();
-  command->add_option("--channel", options->channel, "grey, red, green or blue")->capture_default_str();
+  command->add_option("--channel", options->channel, vision::channel_names)->capture_default_str();
   command->add_option("--overlay", options->overlay, "Write the image with its peaks in red to this PNG");
   CLI::Option* csv = command->add_flag("--csv", options->csv, "Print CSV");
   command->add_flag("--json", options->json, "Print JSON")->excludes(csv);

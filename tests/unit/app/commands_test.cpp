@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
 #include <sstream>
 
 #include "firmware/safety/faults.hpp"
@@ -94,8 +95,7 @@ TEST_F(Commands, PeaksFindsAKnownStripe) {
   EXPECT_EQ(found["width"], 120);
   EXPECT_EQ(found["height"], 100);
   ASSERT_EQ(found["peaks"].size(), 120u);
-  for (const Json& peak : found["peaks"])
-    EXPECT_NEAR(double(peak["v"]), 40.3 + 0.1 * double(peak["u"]), 0.1);  // a fit that expects speckle leans on the rounded flanks
+  for (const Json& peak : found["peaks"]) EXPECT_NEAR(double(peak["v"]), 40.3 + 0.1 * double(peak["u"]), 0.07);
   EXPECT_TRUE(std::filesystem::exists(folder() / "overlay.png"));
   const Said csv = run("peaks " + image + " --csv");
   EXPECT_EQ(csv.out.substr(0, 22), "u,v,amplitude,ratio\n0.");
@@ -105,6 +105,30 @@ TEST_F(Commands, PeaksSubtractsTheImageWithoutTheLaser) {
   const std::string image = stripe("stripe.png", 40, 0);
   const Json found = json_of("peaks " + image + " --off " + image);
   EXPECT_EQ(found["peaks"].size(), 0u) << "the same picture twice leaves nothing";
+}
+
+// A green stripe at row 40 and a white one, brighter, at row 70, of 12 bits in 16: grey sees the white one, green-excess the green one.
+TEST_F(Commands, PeaksFindsTheLasersColourInOnePicture) {
+  cv::Mat picture(100, 120, CV_16UC3);
+  for (int v = 0; v < 100; ++v) {
+    const double green = 1500 * std::exp(-0.5 * std::pow((v - 40.3) / 2, 2)), white = 3000 * std::exp(-0.5 * std::pow((v - 70.0) / 2, 2));
+    for (int u = 0; u < 120; ++u) {
+      const auto light = [](double grey) { return static_cast<std::uint16_t>(std::lround(300 + grey)); };
+      picture.at<cv::Vec3w>(v, u) = cv::Vec3w(light(white), light(white + green), light(white));
+    }
+  }
+  for (const char* name : {"colour.png", "colour.tiff"}) {
+    ASSERT_TRUE(cv::imwrite((folder() / name).string(), picture));
+    const Json excess = json_of(std::string("peaks ") + name + " --channel green-excess"), grey = json_of(std::string("peaks ") + name);
+    ASSERT_EQ(excess["peaks"].size(), 120u) << name;
+    ASSERT_EQ(grey["peaks"].size(), 120u) << name;
+    for (const Json& peak : excess["peaks"]) EXPECT_NEAR(double(peak["v"]), 40.3, 0.05) << name;
+    for (const Json& peak : grey["peaks"]) EXPECT_NEAR(double(peak["v"]), 70.0, 0.05) << name;
+  }
+  EXPECT_EQ(json_of("peaks colour.png --channel g")["peaks"].size(), 120u);
+  const Said refused = run("peaks colour.png --channel green-exces");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("did you mean 'green-excess'?"), std::string::npos) << refused.err;
 }
 
 TEST_F(Commands, PlaneFitsAKnownPlane) {

@@ -170,6 +170,17 @@ double width_px(const FormedStripe& s) {
   return std::sqrt(s.beam_sigma_px * s.beam_sigma_px + s.lens_sigma_px * s.lens_sigma_px + 1.0 / 12);
 }
 
+double bound_px(const FormedStripe& s, bool with_off) {
+  const double sigma = width_px(s), peak = s.peak_grey * s.beam_sigma_px / sigma, pictures = with_off ? 2 : 1;
+  double information = 0;
+  for (int v = -40; v <= 40; ++v) {
+    const double light = peak * std::exp(-0.5 * v * v / (sigma * sigma)), slope = light * v / (sigma * sigma);
+    const double read = s.read_noise_grey * s.read_noise_grey + 1.0 / 12;
+    information += slope * slope / (pictures * read + (light + pictures * s.ambient_grey) / s.electrons_per_grey);
+  }
+  return std::sqrt(s.speckle * s.speckle * sigma / (4 * std::sqrt(std::numbers::pi)) + 1 / information);
+}
+
 void over_edges(FormedStripe stripe, int step_deg, const VisitEdges& visit) {
   constexpr int border = 12;  // columns, where the picture's end is in the blur
   for (int angle = 0; angle <= 90; angle += step_deg) {

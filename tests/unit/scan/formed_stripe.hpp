@@ -58,6 +58,10 @@ FormedImage form(const FormedStripe& stripe);
 // Standard deviation of the stripe in the picture: the beam's, the lens' and the pixel's.
 double width_px(const FormedStripe& stripe);
 
+// The bound of a centre on plain paint: speckle moves a centre of mass by contrast * sqrt(sigma / (4 sqrt(pi))), a closed form; the sensor's noise moves a
+// fit by what the integral over a bell leaves, with the noise of both pictures at each row, or of the one.
+double bound_px(const FormedStripe& stripe, bool with_off = true);
+
 // Calls visit(stripe, image, columns) for pictures of the stripe with edges at every `step_deg` from 0 to 90 degrees, two of each. The columns are those whose edge
 // lies within 2.5 widths of the stripe.
 using VisitEdges = std::function<void(const FormedStripe&, const FormedImage&, const std::vector<int>& columns)>;

@@ -14,6 +14,7 @@
 namespace lf::scan {
 namespace {
 
+using test::bound_px;
 using test::form;
 using test::FormedImage;
 using test::FormedStripe;
@@ -23,8 +24,6 @@ using test::over_edges;
 using test::PairHaze;
 using test::put;
 using test::width_px;
-
-constexpr double pi = std::numbers::pi;
 
 struct Errors {
   std::vector<double> px;    // fitted less true row
@@ -90,20 +89,6 @@ Errors on_plain_paint(FormedStripe s, double start_error_px, FitStart start) {
     fit_columns(s, image, columns, start_error_px, start, errors);
   }
   return errors;
-}
-
-// The bound of a centre on plain paint: speckle moves a centre of mass by contrast * sqrt(sigma / (4 sqrt(pi))), a closed form; the sensor's noise moves a
-// fit by what the integral over a bell leaves, with the noise of both pictures at each row.
-double bound_px(const FormedStripe& s) {
-  const double sigma = width_px(s);
-  const double peak = s.peak_grey * s.beam_sigma_px / sigma;
-  double information = 0;
-  for (int v = -40; v <= 40; ++v) {
-    const double light = peak * std::exp(-0.5 * v * v / (sigma * sigma)), slope = light * v / (sigma * sigma);
-    information +=
-        slope * slope / (2 * (s.read_noise_grey * s.read_noise_grey + 1.0 / 12) + (light + 2 * s.ambient_grey) / s.electrons_per_grey);
-  }
-  return std::sqrt(s.speckle * s.speckle * sigma / (4 * std::sqrt(pi)) + 1 / information);
 }
 
 TEST(StripeFit, OnPlainPaintItReachesTheBound) {
