@@ -266,7 +266,7 @@ bool BasicScanPipeline<capacity>::add_points(const Stripe& stripe, bool final) {
   const std::span<const scan::Peak> peaks = std::span(stripe.peaks).first(stripe.count);
   const std::span<std::uint8_t> chains = std::span(chains_).first(peaks.size());
   scan::measure_chains(peaks, config_.chain.step_px, chains);
-  if (*std::max_element(chains.begin(), chains.end()) < config_.chain.panel_columns) return true;
+  if (*std::max_element(chains.begin(), chains.end()) < config_.chain.panel_columns(config_.camera.intrinsics.fx)) return true;
   const std::uint32_t apart = std::max<std::uint32_t>(config_.columns_apart, 1u);
   const std::uint32_t shift = stripes_seen_++ % apart;
   for (std::size_t begin = 0; begin < peaks.size();) {
@@ -292,11 +292,12 @@ bool BasicScanPipeline<capacity>::behind_arm(const Vec3& point_m) const {
 template <ScanCapacity capacity>
 void BasicScanPipeline<capacity>::add_column(std::span<const scan::Peak> peaks, std::span<const std::uint8_t> chains,
                                              const Pose& base_from_laser) {
+  const int part_columns = config_.chain.part_columns(config_.camera.intrinsics.fx);
   StaticVector<CloudPoint, scan::max_peaks_per_line> points;
   StaticVector<Eigen::Vector2f, scan::max_peaks_per_line> seen;
   for (std::size_t i = 0; i < peaks.size(); ++i) {
     const scan::Peak& peak = peaks[i];
-    if (chains[i] < config_.chain.least_columns) continue;
+    if (chains[i] < part_columns) continue;
     const std::optional<Vec3> point_m = triangulator_.point(Vec2(peak.u_px, peak.v_px), base_from_laser);
     if (!point_m || behind_arm(*point_m)) continue;
     (void)points.push_back({.p_m = point_m->cast<float>(), .amplitude = peak.amplitude});

@@ -13,11 +13,18 @@
 namespace lf::scan {
 
 struct ChainConfig {
-  // At a focal length of 361.7 px a bar of 8 mm is 4 px wide at 0.7 m; the lens and the filter make that 6 columns. A speck of 1 mm is seen in as many.
-  std::uint8_t least_columns = 5;
-  // A picture without a chain of so many shows no panel, so that its short ones are no parts before a panel.
-  std::uint8_t panel_columns = 24;
+  // As wide in angle for every camera. A bar of 8 mm at 0.7 m is 0.011 wide, and lens and filter add to that; a speck of 1 mm is seen as wide.
+  double part_rad = 0.0138;
+  // A picture without a chain so wide shows no panel, so that its short ones are no parts before a panel.
+  double panel_rad = 0.066;
   float step_px = 2.5f;  // from one column to the next; a stripe seen at 60 degrees rises by 1.7
+
+  // Columns of a part and of a panel, at least, for a camera of this focal length.
+  int part_columns(double fx_px) const { return columns(part_rad * fx_px); }
+  int panel_columns(double fx_px) const { return columns(panel_rad * fx_px); }
+
+ private:
+  static int columns(double px) { return px < 255 ? std::max(static_cast<int>(std::lround(px)), 2) : 255; }
 };
 
 // For each peak the columns of the longest chain that it stands in, its own included, at most 255. In a chain a column may be missing, and the place changes by at most

@@ -127,12 +127,7 @@ class AssembledDaemon : public testing::Test {
     hal::slow_time_down(slowdown(), Duration::from_ms(10));
     pthread_sigmask(SIG_SETMASK, nullptr, &signals_before);
     signals = hal::take_end_signals();
-    int ends[2] = {-1, -1};
-    EXPECT_EQ(socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, ends), 0);
-    sea = std::make_unique<Sea>(ends[0]);
-    bus = std::make_unique<PairLinux>(ends[1]);
-    folder.write("estop", "1\n");
-    folder.write("homing.yaml", config_text("homing/simulator.yaml"));
+    put_to_sea();
   }
   ~AssembledDaemon() override {
     end();
@@ -145,6 +140,20 @@ class AssembledDaemon : public testing::Test {
   static std::string config_text(const std::string& shared) {
     std::ifstream file(std::string(LANTERNFISH_SOURCE_DIR "/shared/") + shared);
     return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+  // An arm and a bus as new, with every zero known; without a daemon.
+  void put_to_sea() {
+    end();
+    daemon.reset();
+    bus.reset();
+    sea.reset();
+    int ends[2] = {-1, -1};
+    EXPECT_EQ(socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, ends), 0);
+    sea = std::make_unique<Sea>(ends[0]);
+    bus = std::make_unique<PairLinux>(ends[1]);
+    folder.write("estop", "1\n");
+    folder.write("homing.yaml", config_text("homing/simulator.yaml"));
   }
 
   // A ring that nobody writes into: the camera is there, and no image comes.

@@ -187,27 +187,29 @@ TEST_F(AssembledDaemon, TakesTheZeroOfADriveThatLostItsPosition) {
 }
 
 TEST_F(AssembledDaemon, CommissionsAJointAndUsesItsZero) {
-  config::HomingOffsets offsets = config::read_homing_file(folder / "homing.yaml");
-  offsets.known[4] = false;
-  config::write_homing_file(folder / "homing.yaml", offsets);
-  begin();
-  expect_refused("home", "jaw");
-  expect_refused(unclear, "clear its reach");
-  order(commission_jaw);
-  ASSERT_TRUE(wait_standing("commissioning", 5));
-  expect_refused("home", "jaw");
-  expect_refused("reset", "commissioned");
+  config::HomingOffsets offsets;
   const auto ended = [&] { return ask("status")["standing"] != "commissioning" && ask("status")["commissioning"]["state"] != "under way"; };
-  ASSERT_TRUE(wait_until("the commissioning's end", ended, 120));
-  // It takes some ten seconds, in which a machine that stands still for three SYNCs ends it: rightly, and it is asked again.
   const auto stood_still = [&] {
     const std::string why = ask("status")["commissioning"].value("why", "");
     return why.find("no process data") != std::string::npos || why.find("the emergency-stop chain cannot be read") != std::string::npos;
   };
-  for (int again = 0; again < 3 && stood_still(); ++again) {
-    EXPECT_FALSE(sea->any_powered());
+  // It takes some ten seconds, in which a thread that gets no processor for three SYNCs ends it: rightly. Then it is begun anew, with an arm as new: one that stands
+  // at its stop has no stretch left on which its friction could be found.
+  for (int attempt = 0; attempt < 4 && (attempt == 0 || stood_still()); ++attempt) {
+    if (attempt > 0) {
+      EXPECT_FALSE(sea->any_powered());
+      put_to_sea();
+    }
+    offsets = config::read_homing_file(folder / "homing.yaml");
+    offsets.known[4] = false;
+    config::write_homing_file(folder / "homing.yaml", offsets);
+    begin();
+    expect_refused("home", "jaw");
+    expect_refused(unclear, "clear its reach");
     order(commission_jaw);
     ASSERT_TRUE(wait_standing("commissioning", 5));
+    expect_refused("home", "jaw");
+    expect_refused("reset", "commissioned");
     ASSERT_TRUE(wait_until("the commissioning's end", ended, 120));
   }
   const Json done = ask("status")["commissioning"];

@@ -45,6 +45,17 @@ TEST(StripeChain, IsCountedToAtMost255) {
   EXPECT_TRUE(chains_of({}).empty());
 }
 
+// The same bar in the picture of another camera.
+TEST(StripeChain, PartsAreAsWideInAngleForEveryCamera) {
+  const ChainConfig config;
+  EXPECT_EQ(config.part_columns(361.7), 5);
+  EXPECT_EQ(config.panel_columns(361.7), 24);
+  EXPECT_EQ(config.part_columns(180.9), 2) << "binned";
+  EXPECT_EQ(config.part_columns(1085), 15);
+  EXPECT_EQ(config.panel_columns(1e9), 255);
+  EXPECT_EQ(config.part_columns(0), 2);
+}
+
 // Against all chains, searched one by one.
 TEST(StripeChain, IsTheLongestOfAll) {
   for (unsigned seed = 1; seed <= 200; ++seed) {
