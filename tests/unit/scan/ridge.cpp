@@ -31,17 +31,31 @@ std::vector<double> taps_of(double sigma, int order) {
   return taps;
 }
 
-// Convolved along columns, or along rows. Beyond its borders the picture goes on as it ends.
-Plane convolved(const Plane& in, const std::vector<double>& taps, bool along_columns) {
+// A convolution: the tap of place i meets the pixel at -i. Beyond its borders the picture goes on as it ends.
+
+Plane along_columns(const Plane& in, const std::vector<double>& taps) {
   const int reach = static_cast<int>(taps.size()) / 2;
   Plane out{in.width, in.height, std::vector<double>(in.values.size())};
   for (int v = 0; v < in.height; ++v) {
     for (int i = -reach; i <= reach; ++i) {
-      // A convolution: the tap of place i meets the pixel at -i.
       const double tap = taps[static_cast<std::size_t>(i + reach)];
-      const int row = along_columns ? std::clamp(v - i, 0, in.height - 1) : v;
-      const int shift = along_columns ? 0 : i;
-      for (int u = 0; u < in.width; ++u) out.at(u, v) += tap * in.at(std::clamp(u - shift, 0, in.width - 1), row);
+      const int row = std::clamp(v - i, 0, in.height - 1);
+      for (int u = 0; u < in.width; ++u) out.at(u, v) += tap * in.at(u, row);
+    }
+  }
+  return out;
+}
+
+Plane along_rows(const Plane& in, const std::vector<double>& taps) {
+  const int reach = static_cast<int>(taps.size()) / 2;
+  Plane out{in.width, in.height, std::vector<double>(in.values.size())};
+  std::vector<double> row(static_cast<std::size_t>(in.width + 2 * reach));
+  for (int v = 0; v < in.height; ++v) {
+    for (int u = -reach; u < in.width + reach; ++u) row[static_cast<std::size_t>(u + reach)] = in.at(std::clamp(u, 0, in.width - 1), v);
+    for (int i = -reach; i <= reach; ++i) {
+      const double tap = taps[static_cast<std::size_t>(i + reach)];
+      const double* from = row.data() + reach - i;
+      for (int u = 0; u < in.width; ++u) out.at(u, v) += tap * from[u];
     }
   }
   return out;
@@ -53,8 +67,8 @@ struct Derivatives {
 
 Derivatives derivatives_of(const Plane& picture, double sigma) {
   const std::vector<double> g0 = taps_of(sigma, 0), g1 = taps_of(sigma, 1), g2 = taps_of(sigma, 2);
-  const Plane y0 = convolved(picture, g0, true), y1 = convolved(picture, g1, true), y2 = convolved(picture, g2, true);
-  return {convolved(y0, g1, false), convolved(y1, g0, false), convolved(y0, g2, false), convolved(y1, g1, false), convolved(y2, g0, false)};
+  const Plane y0 = along_columns(picture, g0), y1 = along_columns(picture, g1), y2 = along_columns(picture, g2);
+  return {along_rows(y0, g1), along_rows(y1, g0), along_rows(y0, g2), along_rows(y1, g1), along_rows(y2, g0)};
 }
 
 struct Normal {
