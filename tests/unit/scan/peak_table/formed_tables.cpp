@@ -104,6 +104,7 @@ FormedStripe plain(const Format& format, double beam_px, double speckle, std::ui
 // Two pictures, each with the kinds of off picture. The bound of another exposure is not known: it is higher than that of the same.
 std::vector<TableRow> plain_rows(const FormedStripe& stripe, const std::string& scene, const std::vector<Off>& kinds, bool bound_known) {
   std::vector<Measurement> measurements;
+  measurements.reserve(kinds.size());
   for (const Off off : kinds) measurements.emplace_back(stripe, off);
   FormedStripe s = stripe;
   for (int picture = 0; picture < 2; ++picture, ++s.seed) {
@@ -218,14 +219,16 @@ Table step_table(std::uint64_t seed) {
       for (const double angle : {0.0, 30.0, 60.0}) {
         const std::string scene = std::string(water.name) + words(", beam %.1f, %.0f deg", beam, angle);
         table.parts.emplace_back([=] {
-          return std::vector{step_row(step(beam, angle, water, seed), scene, Off::same, {.rms_px = water.asked_rms_px, .percentile_999_px = 1.0})};
+          return std::vector{
+              step_row(step(beam, angle, water, seed), scene, Off::same, {.rms_px = water.asked_rms_px, .percentile_999_px = 1.0})};
         });
       }
     }
   }
   for (const bool noisy_first : {true, false}) {
     for (const double beam : {1.2, 1.6, 2.4}) {
-      const std::string scene = std::string(noisy_first ? "bias alone, clear" : "bias alone, clear, no noisy picture before") + words(", beam %.1f, %.0f deg", beam, 30);
+      const std::string scene = std::string(noisy_first ? "bias alone, clear" : "bias alone, clear, no noisy picture before") +
+                                words(", beam %.1f, %.0f deg", beam, 30);
       table.parts.emplace_back([=] { return std::vector{bias_row(in_bits(step(beam, 30, waters[0], seed), 12), scene, noisy_first)}; });
     }
   }

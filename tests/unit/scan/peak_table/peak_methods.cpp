@@ -20,6 +20,7 @@ Rows no_rows(int width) { return Rows(static_cast<std::size_t>(width), std::nume
 template <class Pixel>
 std::vector<Pixel> pixels(const std::vector<double>& plane, int full_scale) {
   std::vector<Pixel> out;
+  out.reserve(plane.size());
   for (const double grey : plane) out.push_back(static_cast<Pixel>(std::clamp(std::round(grey), 0.0, static_cast<double>(full_scale))));
   return out;
 }
@@ -34,10 +35,12 @@ FormedImage in_grey(const Shot& shot, double gain) {
   image.off.assign(image.on.size(), 0);
   for (int u = 0; u < image.width; ++u) {
     std::vector<double> column;
+    column.reserve(static_cast<std::size_t>(image.height));
     for (int v = 0; v < image.height; ++v) column.push_back(image.at(image.on, u, v));
     std::nth_element(column.begin(), column.begin() + image.height / 2, column.end());
     const double median = column[static_cast<std::size_t>(image.height / 2)];
-    for (int v = 0; v < image.height; ++v) image.off[static_cast<std::size_t>(v) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(u)] = median;
+    for (int v = 0; v < image.height; ++v)
+      image.off[static_cast<std::size_t>(v) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(u)] = median;
   }
   return image;
 }

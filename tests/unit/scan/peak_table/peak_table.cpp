@@ -11,8 +11,10 @@
 
 int main(int count, char** arguments) {
   const std::uint64_t seed = count > 1 ? std::strtoull(arguments[1], nullptr, 10) : 1;
-  std::printf("Seed %llu. Each cell: rms px / 99.9th percentile px / recall %% / false %%. Behind the bound, in brackets: rms of detector + fit over it.\n",
-              static_cast<unsigned long long>(seed));
+  std::printf(
+      "Seed %llu. Each cell: rms px / 99.9th percentile px / recall %% / false %%. Behind the bound, in brackets: rms of detector + fit "
+      "over it.\n",
+      static_cast<unsigned long long>(seed));
   std::vector<lf::test::Table> tables{lf::test::step_table(seed), lf::test::hard_table(seed)};
   for (lf::test::Table& table : lf::test::plain_tables(seed)) tables.push_back(std::move(table));
   lf::test::print_real_pairs();

@@ -15,7 +15,9 @@ using AllRows = std::array<Rows, method_names.size()>;
 
 // The others are told the width and the exposure that the fit has found: nobody knows the true ones.
 AllRows rows_of(const Picture& on, const Picture& off) {
-  Shot shot{{on.width, on.height, {on.pixels.begin(), on.pixels.end()}, {off.pixels.begin(), off.pixels.end()}, {}, {}}, !off.pixels.empty(), 255};
+  Shot shot{{on.width, on.height, {on.pixels.begin(), on.pixels.end()}, {off.pixels.begin(), off.pixels.end()}, {}, {}},
+            !off.pixels.empty(),
+            255};
   DetectorAndFit ours(255);
   const Rows fitted = ours.rows(shot);
   const std::array<Rows, 4> others = rows_of_others(shot, ours.width_px(), ours.gain());
@@ -68,7 +70,9 @@ void print_real_pairs() {
 
 void print_real_weld() {
   const AllRows rows = rows_of(red_of("weld_stripe_speckle/weld2.png"), {});
-  std::printf("\n### Real speckle, one picture (tests/data/weld_stripe_speckle): rms about the piece's line, px, and columns within 14 px of it\n\n| method |");
+  std::printf(
+      "\n### Real speckle, one picture (tests/data/weld_stripe_speckle): rms about the piece's line, px, and columns within 14 px of "
+      "it\n\n| method |");
   for (const Piece& piece : pieces) std::printf(" %s (%d) |", piece.name, piece.last - piece.first + 1);
   std::printf(" in the gap (74) |\n|---|---|---|---|---|---|\n");
   for (std::size_t i = 0; i < rows.size(); ++i) {
