@@ -41,7 +41,7 @@ Words words(StepFailure failure) {
     case StepFailure::jaw_not_closed:
       return {"the jaw does not close", "Look at what is between the fingers; free it by hand without power."};
     case StepFailure::touched_on_the_way_back:
-      return {"touched something on the way back", "Look at what the arm touches before it is moved again."};
+      return {"touched something on the way back", "Press the emergency stop, then look at what the arm touches before it is moved again."};
     case StepFailure::stalled: return {"the turn stalled", "The valve takes more torque than the wrist has, or something blocks it."};
     case StepFailure::marker_wrong:
       return {"the marker has another size than surveyed", "Check panel.marker_size_m and the camera's calibration."};

@@ -123,6 +123,7 @@ void OpticsEstimate::add_lens(const StripeWindows& about, const PixelNoise& nois
 }
 
 void OpticsEstimate::Newton::add(float below, float here, float above, float probe) {
+  if (!std::isfinite(below) || !std::isfinite(here) || !std::isfinite(above)) return;
   slope += (above - below) / (2 * probe);
   curvature += (above - 2 * here + below) / square(probe);
 }

@@ -13,18 +13,19 @@
 namespace lf::scan {
 
 struct ChainConfig {
-  // As wide in angle for every camera. A bar of 8 mm at 0.7 m is 0.011 wide, and lens and filter add to that; a speck of 1 mm is seen as wide.
-  double part_rad = 0.0138;
+  // A bar of 8 mm at 0.95 m; lens and filter add to that in pixels, whatever the camera. A speck of 1 mm is seen as wide.
+  double part_rad = 0.0084;
+  double spread_px = 2;
   // A picture without a chain so wide shows no panel, so that its short ones are no parts before a panel.
   double panel_rad = 0.066;
   float step_px = 2.5f;  // from one column to the next; a stripe seen at 60 degrees rises by 1.7
 
   // Columns of a part and of a panel, at least, for a camera of this focal length.
-  int part_columns(double fx_px) const { return columns(part_rad * fx_px); }
+  int part_columns(double fx_px) const { return columns(part_rad * fx_px + spread_px); }
   int panel_columns(double fx_px) const { return columns(panel_rad * fx_px); }
 
  private:
-  static int columns(double px) { return px < 255 ? std::max(static_cast<int>(std::lround(px)), 2) : 255; }
+  static int columns(double px) { return px < 255 ? std::max(static_cast<int>(std::lround(px)), 4) : 255; }
 };
 
 // For each peak the columns of the longest chain that it stands in, its own included, at most 255. In a chain a column may be missing, and the place changes by at most

@@ -11,17 +11,20 @@ const char* remedy_of(Fault fault) {
   switch (fault) {
     case Fault::limits_refused: return "Take the shipped file of limits, or the checksum that the refusal names.";
     case Fault::boot_failed: return "Check the node's power, cable, node number and profile; `lanternfishd doctor` asks each drive.";
-    case Fault::estop: return "Close the emergency-stop chain, then reset.";
+    case Fault::estop: return "Find who opened the emergency-stop chain and why, see that nobody is in reach, close it, then reset.";
     case Fault::node_lost: return "Check the node's power and cable, and the bus's termination.";
     case Fault::node_rebooted: return "Its power dipped: check the supply under load and the connector.";
-    case Fault::drive_fault: return "Look up the drive's error; let a hot motor cool down, free a jammed joint; then reset.";
-    case Fault::following_error: return "The joint does not follow: look for what blocks it, and whether its encoder counts.";
+    case Fault::drive_fault:
+      return "Look up the drive's error; let a hot motor cool down. Free a jammed joint with the emergency stop pressed: a load may hang "
+             "on it. Then reset.";
+    case Fault::following_error: return "Press the emergency stop, then look for what blocks the joint, and whether its encoder counts.";
     case Fault::stale_position: return "The drive sends no position: check the bus's load and errors, and the drive's TPDO.";
-    case Fault::joint_limit: return "Bring the joint back within its limits by `jog`; check its zero by `lanternfishd commission`.";
+    case Fault::joint_limit:
+      return "Hold the joint's zero against where the joint really stands before anything moves; then `jog` it back within its limits.";
     case Fault::overspeed: return "Check counts_per_rev and the joint's zero, then the drive's own speed limit.";
-    case Fault::overload: return "Look for what the joint presses against, and at its brake.";
+    case Fault::overload: return "Press the emergency stop, then look for what the joint presses against, and at its brake.";
     case Fault::workspace: return "Bring the tool back into its box by `jog`; check safety.limits.";
-    case Fault::unexpected_contact: return "Look at what the arm touches before it is moved again.";
+    case Fault::unexpected_contact: return "Press the emergency stop, then look at what the arm touches before it is moved again.";
     case Fault::io_lost: return "Check the output node's power and cable: laser, lamps and the emergency-stop chain hang on it.";
     case Fault::interlock: return "Close the laser's interlock.";
     case Fault::image_lost:

@@ -101,7 +101,8 @@ int seed_campaign(const CampaignOptions& options) {
   write(campaign, compared, folder.path());
   tell(options, campaign, compared, folder.path());
   if (interrupted()) return exit_interrupted;
-  // A script that asks whether it got worse is told that, and not whether all succeeded; what cannot be told is no "no".
+  // A script that asks whether it got worse is told that, and not whether all succeeded; what cannot be told is no "no". A success that is none is worse than anything.
+  if (comparison && total_of(campaign).false_successes > 0) return failed;
   if (comparison) return comparison->worse() || !comparison->doubt.empty() ? failed : done;
   return all_succeeded(campaign) ? done : failed;
 }

@@ -148,7 +148,7 @@ int peaks(const Options& options) {
   const Found found = detect(image, off, config);
   if (!options.overlay.empty()) write_overlay(options, found);
   const StripeLook look = look_at_stripe(picture_of(image, off, config.axis), found.detected, config.axis);
-  const std::vector<std::string> doubts = peak_doubts(look, found.detected.size());
+  const std::vector<std::string> doubts = peak_doubts(look);
   tell_doubts(options.image, doubts);
   tell(options, image, found, look, doubts);
   return doubts.empty() ? done : failed;

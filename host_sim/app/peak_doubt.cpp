@@ -16,6 +16,11 @@ constexpr double widest_px = 12;
 // 0.1 px is usual, 0.3 px what speckle gives. With more a neighbour tells as little as the peak itself.
 constexpr double most_scatter_px = 0.7;
 
+// A stripe crosses a picture, or a good part of it.
+constexpr double least_share = 0.125;
+// Specks and what moved leave a dark line in some columns.
+constexpr double most_dark_share = 0.3;
+
 // In a profile, of the pixel `i` from the peak.
 std::size_t index(std::int32_t i) { return static_cast<std::size_t>(i) + static_cast<std::size_t>(half_window); }
 
@@ -76,6 +81,28 @@ double scatter_of(std::span<const Place> places) {
   return 1.4826 * *middle / std::sqrt(6.0);
 }
 
+// How far a place stands over what is some stripe's width beside it.
+double height_at(const StripePicture& picture, std::int32_t line, std::int32_t at) {
+  constexpr std::int32_t beside = 8;
+  if (at < beside || at + beside >= picture.length) return 0;
+  return picture.grey(line, at) - 0.5 * (picture.grey(line, at - beside) + picture.grey(line, at + beside));
+}
+
+// A picture of the laser that is subtracted leaves its own stripe, dark.
+double dark_share_of(const StripePicture& picture, std::span<const Place> places) {
+  constexpr std::int32_t apart = 12;
+  std::size_t dark = 0;
+  for (const Place& place : places) {
+    const auto middle = static_cast<std::int32_t>(std::lround(place.along));
+    const double least = -0.5 * height_at(picture, place.line, middle);
+    bool found = false;
+    for (std::int32_t at = 0; at < picture.length && !found; ++at)
+      found = std::abs(at - middle) > apart && height_at(picture, place.line, at) < least && height_at(picture, place.line, at + 1) < least;
+    dark += found ? 1 : 0;
+  }
+  return static_cast<double>(dark) / static_cast<double>(places.size());
+}
+
 std::string formatted(const char* format, double a, double b) {
   std::array<char, 200> text;
   (void)std::snprintf(text.data(), text.size(), format, a, b);
@@ -87,15 +114,25 @@ std::string formatted(const char* format, double a, double b) {
 StripeLook look_at_stripe(const StripePicture& picture, std::span<const scan::Peak> peaks, scan::PeakAxis axis) {
   StripeLook look;
   const std::vector<Place> places = places_of(peaks, axis);
+  look.lines = picture.lines;
+  look.found = static_cast<std::int32_t>(places.size());
   if (places.size() < fewest_peaks) return look;
+  look.dark_share = dark_share_of(picture, places);
   look.width_px = width_of(picture, places);
   look.scatter_px = scatter_of(places);
   return look;
 }
 
-std::vector<std::string> peak_doubts(const StripeLook& look, std::size_t found) {
+std::vector<std::string> peak_doubts(const StripeLook& look) {
   std::vector<std::string> doubts;
-  if (found < fewest_peaks) return doubts;
+  if (look.found < least_share * look.lines)
+    doubts.push_back(formatted(
+        "peaks in %.0f of %.0f lines alone: is the laser in this picture and in this channel, and is --off the same scene without it?",
+        look.found, look.lines));
+  if (look.dark_share > most_dark_share)
+    doubts.push_back(
+        formatted("beside %.0f %% of the peaks stands a dark line: --off seems to have the laser, too", 100 * look.dark_share, 0));
+  if (look.found < static_cast<std::int32_t>(fewest_peaks)) return doubts;
   if (look.width_px > widest_px)
     doubts.push_back(
         formatted("the stripe is %.0f px wide at half its height, and peaks are sure up to %.0f px: bin the picture or focus "

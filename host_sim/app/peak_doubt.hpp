@@ -18,6 +18,8 @@ struct StripePicture {
 };
 
 struct StripeLook {
+  std::int32_t lines = 0, found = 0;
+  double dark_share = 0;  // of the lines found, those in which a dark line stands elsewhere, more than half as deep as the peak is high
   double width_px = 0;    // of the mean profile at half its height; 0: not measured
   double scatter_px = 0;  // 1 sigma of the peaks about their neighbours, by the median of their second differences; 0: not measured
 };
@@ -25,7 +27,7 @@ struct StripeLook {
 // The peaks' places are `v_px` for PeakAxis::column, `u_px` for row; at most one a line.
 StripeLook look_at_stripe(const StripePicture& picture, std::span<const scan::Peak> peaks, scan::PeakAxis axis);
 
-// Reasons to doubt the peaks, a sentence each; empty: none. Where fewer than 10 peaks are there is nothing to judge.
-std::vector<std::string> peak_doubts(const StripeLook& look, std::size_t found);
+// Reasons to doubt the peaks, a sentence each; empty: none. Where fewer than 10 peaks are, their look is not judged.
+std::vector<std::string> peak_doubts(const StripeLook& look);
 
 }  // namespace lf::app

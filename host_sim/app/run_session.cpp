@@ -132,6 +132,8 @@ class Session {
     if (!result.failure) result.failure = disagreement(*controller_, platform_->world(), recorder_);
     const bool held = controller_->mission().step() == mission::Step::held;
     if (!result.failure && !safe() && !held) result.failure = record::FailureRecord{"end", "the end is not safe"};
+    // Before what was expected of it: a mission that did its tasks where it should have failed has claimed nothing that is not so.
+    result.false_success = result.failure.has_value() && controller_->mission().outcome().ended && controller_->mission().outcome().success;
     const std::string& expected = request_.scenario.expect.failure;
     if (expected != scenario::Expect::nothing && !interrupted()) {
       hold_against(expected, controller_->mission().outcome(), safe(), result);
@@ -139,7 +141,6 @@ class Session {
       result.failure->reason += "; the arm moves or has power 3 s after the end";
     }
     result.success = !result.failure.has_value();
-    result.false_success = controller_->mission().outcome().ended && controller_->mission().outcome().success && !result.success;
   }
 
   record::RunResult result() {

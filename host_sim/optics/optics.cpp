@@ -134,9 +134,10 @@ struct Optics::Impl {
   void find_parts(const PixelStore& pixels, const std::vector<std::uint8_t>& line_packets, const Camera& camera, float light,
                   Frame& frame) const {
     if (!std::all_of(patterns.begin(), patterns.end(), [](const auto& pattern) { return !pattern.has_value(); })) return;
-    constexpr float apart_px = 4, least_grey = 3;
-    std::vector<std::vector<float>> centres(static_cast<std::size_t>(frame.width));
-    for (const StripePiece& piece : frame.pieces) centres[static_cast<std::size_t>(piece.u)].push_back(piece.v);
+    // Beyond 4.5 standard deviations a piece's light is under a ten-thousandth of its height: paint does not lift that over `least_grey`.
+    constexpr float least_grey = 3, reach_sigmas = 4.5f, least_reach_px = 4;
+    std::vector<std::vector<StripePiece>> centres(static_cast<std::size_t>(frame.width));
+    for (const StripePiece& piece : frame.pieces) centres[static_cast<std::size_t>(piece.u)].push_back(piece);
     const std::size_t packets_a_row = pixels.stride / lane_count;
     const auto laser_at = [&](std::size_t at) {
       float brightest = pixels.laser[at];
@@ -150,8 +151,10 @@ struct Optics::Impl {
         const float here = laser_at(at);
         if (!(here > laser_at(at - pixels.stride)) || !(here >= laser_at(at + pixels.stride))) continue;
         const float grey = here * light * camera.sensor.vignetting(u, v);
-        const std::vector<float>& near = centres[static_cast<std::size_t>(u)];
-        const auto is_near = [&](float centre) { return std::abs(centre - static_cast<float>(v)) <= apart_px; };
+        const std::vector<StripePiece>& near = centres[static_cast<std::size_t>(u)];
+        const auto is_near = [&](const StripePiece& piece) {
+          return std::abs(piece.v - static_cast<float>(v)) <= std::max(reach_sigmas * piece.sigma_px, least_reach_px);
+        };
         if (grey >= least_grey && std::none_of(near.begin(), near.end(), is_near))
           frame.pieces.push_back({0, u, static_cast<float>(v), grey, 0, true});
       }

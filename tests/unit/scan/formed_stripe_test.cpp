@@ -11,6 +11,8 @@
 #include <numbers>
 #include <vector>
 
+#include "tests/unit/scan/stripe_estimators.hpp"
+
 namespace lf::test {
 namespace {
 
@@ -18,16 +20,6 @@ constexpr double pi = std::numbers::pi;
 
 double density(double z) { return std::exp(-0.5 * z * z) / std::sqrt(2 * pi); }
 double distribution(double z) { return 0.5 * (1 + std::erf(z / std::sqrt(2.0))); }
-
-// Of the stripe in column `u`, over `half` rows to either side of `middle`.
-double centre_of_mass(const FormedImage& image, int u, int middle, int half) {
-  double weight = 0, moment = 0;
-  for (int v = std::max(0, middle - half); v <= std::min(image.height - 1, middle + half); ++v) {
-    weight += image.stripe(u, v);
-    moment += image.stripe(u, v) * (v - middle);
-  }
-  return middle + moment / weight;
-}
 
 FormedStripe plain() {
   FormedStripe stripe;
@@ -129,48 +121,6 @@ TEST(FormedStripe, HasTheNoiseOfItsSensor) {
   const double variance = squares / count - sum / count * sum / count;
   EXPECT_NEAR(sum / count, 110, 0.05);
   EXPECT_NEAR(variance, 1.5 * 1.5 + 110.0 / 40 + 1.0 / 12, 0.1);
-}
-
-// The place within `reach` of `start` where `response` is largest: to a tenth of a row, then by a parabola.
-double largest(double start, double reach, const std::function<double(double)>& response) {
-  constexpr double step = 0.1;
-  double best = start, highest = response(start);
-  for (double v = start - reach; v <= start + reach; v += step) {
-    if (const double r = response(v); r > highest) highest = r, best = v;
-  }
-  const double before = response(best - step), after = response(best + step), curvature = before - 2 * highest + after;
-  return curvature < 0 ? best + step * std::clamp(0.5 * (before - after) / curvature, -1.0, 1.0) : best;
-}
-
-// The field's estimators, from a start at the true row.
-
-double log_centre(const FormedImage& image, int u, double start, double sigma) {
-  return largest(start, 1.5 * sigma, [&](double centre) {
-    double sum = 0;
-    for (int v = static_cast<int>(centre - 5 * sigma); v <= static_cast<int>(centre + 5 * sigma) + 1; ++v) {
-      if (v < 0 || v >= image.height) continue;
-      const double z = (v - centre) / sigma;
-      sum += image.stripe(u, v) * (1 - z * z) * std::exp(-0.5 * z * z);
-    }
-    return sum;
-  });
-}
-
-// Least squares of height * off * bell, weighted by the noise of both pictures.
-double product_centre(const FormedImage& image, int u, double start, double sigma) {
-  const int middle = static_cast<int>(std::lround(start)), half = static_cast<int>(std::ceil(2.5 * sigma + 2));
-  return largest(start, 2 * sigma, [&](double centre) {
-    double with_itself = 0, with_data = 0;
-    for (int v = std::max(0, middle - half); v <= std::min(image.height - 1, middle + half); ++v) {
-      const double off = std::max(1.0, image.at(image.off, u, v)), stripe = image.stripe(u, v);
-      const double model = off * std::exp(-0.5 * std::pow((v - centre) / sigma, 2));
-      const double lit = std::max(0.0, stripe);
-      const double variance = 2 * 1.5 * 1.5 + (2 * off + lit) / 40 + 1.0 / 6 + lit * lit / (off * off) * (1.5 * 1.5 + off / 40 + 1.0 / 12);
-      with_itself += model * model / variance;
-      with_data += model * stripe / variance;
-    }
-    return with_data > 0 ? with_data * with_data / with_itself : 0;
-  });
 }
 
 using Estimate = std::function<double(const FormedImage&, int column, double start)>;

@@ -50,10 +50,10 @@ TEST(StripeChain, PartsAreAsWideInAngleForEveryCamera) {
   const ChainConfig config;
   EXPECT_EQ(config.part_columns(361.7), 5);
   EXPECT_EQ(config.panel_columns(361.7), 24);
-  EXPECT_EQ(config.part_columns(180.9), 2) << "binned";
-  EXPECT_EQ(config.part_columns(1085), 15);
+  EXPECT_EQ(config.part_columns(180.9), 4) << "binned";
+  EXPECT_EQ(config.part_columns(1085), 11);
   EXPECT_EQ(config.panel_columns(1e9), 255);
-  EXPECT_EQ(config.part_columns(0), 2);
+  EXPECT_EQ(config.part_columns(0), 4);
 }
 
 // Against all chains, searched one by one.
