@@ -18,14 +18,14 @@ using ::testing::HasSubstr;
 class Doubts : public Program {
  protected:
   // A Gaussian stripe at v = 80.3 + 0.02 u over a grey of 20, with noise.
-  std::string stripe(const std::string& name, double sigma_px, double height_grey, double noise_grey) const {
+  std::string stripe(const std::string& name, double sigma_px, double height_grey, double noise_grey, double lower_px = 0) const {
     constexpr int width = 300, height = 200;
     std::mt19937 random(5);
     std::normal_distribution<double> noise(0, noise_grey);
     std::vector<std::uint8_t> pixels(static_cast<std::size_t>(width) * height);
     for (int v = 0; v < height; ++v) {
       for (int u = 0; u < width; ++u) {
-        const double off = (v - 80.3 - 0.02 * u) / sigma_px;
+        const double off = (v - 80.3 - lower_px - 0.02 * u) / sigma_px;
         const double grey = 20 + height_grey * std::exp(-0.5 * off * off) + (noise_grey > 0 ? noise(random) : 0);
         pixels[static_cast<std::size_t>(v) * width + static_cast<std::size_t>(u)] =
             static_cast<std::uint8_t>(std::lround(std::min(255.0, std::max(0.0, grey))));
@@ -68,6 +68,15 @@ TEST_F(Doubts, AStripeThatIsTooWideForItsPeaks) {
     EXPECT_NEAR(answer["stripe_width_px"], 2.355 * sigma_px, 0.1 * 2.355 * sigma_px + 0.2) << sigma_px;
     EXPECT_TRUE(answer["doubts"].empty());
   }
+}
+
+// A picture of the laser given as the one without it: its stripe is dark, and as deep.
+TEST_F(Doubts, AnOffPictureThatHasTheLaserToo) {
+  const std::string on = stripe("on.png", 2, 120, 1);
+  const std::string off = stripe("off.png", 2, 120, 1, 40);
+  expect_doubt("peaks " + on + " --off " + off, "--off seems to have the laser, too");
+  EXPECT_EQ(run("peaks " + on + " --off " + stripe("dark.png", 2, 0, 1)).status, 0);
+  expect_doubt("peaks " + on + " --off " + on, "peaks in 0 of 300 lines");
 }
 
 TEST_F(Doubts, PeaksThatNoiseHasScattered) {

@@ -124,11 +124,10 @@ TEST_F(RunFolder, HasAReportWithTheNumbersOfTheRecord) {
 
   std::map<std::string, Json> charts;
   for (const Json& chart : shown["charts"]) charts[chart["title"]] = chart;
-  for (const char* title :
-       {"Joint positions, measured and asked", "Motor torques at the joints, measured", "Joint speeds, truth",
-        "Tool's place in the base frame, truth, and asked", "Tool's distance from where it is asked to be, truth", "Valve's angle, truth",
-        "Contact force, truth", "Peaks of each laser picture", "Recall of each laser picture, truth", "Bus load, stuff bits included",
-        "Core's tick, the longest of ten, CPU time on this host"})
+  for (const char* title : {"Joint positions, measured and asked", "Motor torques at the joints, measured", "Joint speeds, truth",
+                            "Tool's place in the base frame, truth, and asked", "Tool's distance from where it is asked to be, truth",
+                            "Valve's angle, truth", "Contact force, truth", "Each stripe of the sweeps", "Recall of each stripe, truth",
+                            "Bus load, stuff bits included", "Core's tick, the longest of ten, CPU time on this host"})
     EXPECT_EQ(charts.count(title), 1u) << title;
 
   // joints.csv: t_s, then of each joint its angle, target and torque.
