@@ -242,6 +242,14 @@ TEST_F(Commands, AFaultThatEndedTheMissionHappened) {
   EXPECT_EQ(result["faults_not_made"], Json::parse(R"(["estop, at step press"])"));
 }
 
+// The mission did its tasks and says so: the scenario was wrong, and the mission claimed nothing that is not so.
+TEST_F(Commands, AnExpectedFailureThatDoesNotComeIsNoFalseSuccess) {
+  const Json result = json_of("run turn_only --no-outside --out r --set expect.failure=aborted", 1);
+  EXPECT_EQ(result["success"], false);
+  EXPECT_EQ(result["false_success"], false) << result.dump(2);
+  EXPECT_NE(result["failure"].dump().find("expected was the failure 'aborted'"), std::string::npos);
+}
+
 // A share of the whole matrix, which `lanternfish campaign default --faults` flies.
 TEST_F(Commands, AShareOfTheFaultMatrixIsSafe) {
   const Said said = run("campaign default --faults --one-in 60 --out m --json");

@@ -48,6 +48,14 @@ TEST(PeakScore, APeakOnAnotherPieceIsNeitherFalseNorTheOneThatCounts) {
   EXPECT_EQ(beside.recall(), 0);
 }
 
+// A lens's light from beside excuses nothing where the column has a stripe of its own.
+TEST(PeakScore, ASteepStripesNeighboursExcuseNoWrongPick) {
+  const StripeTruth truth = stripe_truth(frame_of(8, 100, {{0, 3, 40, 100}, {0, 5, 43.4f, 100}}));
+  PeakScore score;
+  score.add(truth, Peaks{{3, 44}});
+  EXPECT_EQ(score.false_peaks(), 1u);
+}
+
 TEST(PeakScore, WhatLiesOnTheArmIsNotLookedFor) {
   optics::Frame frame = frame_of(2, 100, {{0, 0, 40, 100}, {0, 1, 40, 100}, {0, 1, 70, 200}});
   frame.object.assign(200, 9);
