@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Builds the fuzz targets of tests/fuzz with Clang's libFuzzer and sanitizers, runs them one after the other, and prints a table.
 # Usage: tests/fuzz.sh [--seconds N | --runs N | --wanted] [--seed N] [--keep] [TARGET...]     default: 60 seconds each of all targets
-#   --wanted  as many runs of each as the nightly shard wants (the table `wanted` below)
+#   --wanted  as many runs of each as the nightly shard wants (the table `wanted` below), without sanitizers, which are several times as slow, but with the
+#             library's assertions; the sanitizers then get every input that was kept for reaching something new, and a minute of changes of their own
 #   --seed    of the changes (default 1): shards of one target take different ones
 #   --keep    add to tests/fuzz/corpus up to 12 inputs of at most 400 bytes that reach code which the kept ones do not, 4 KB a target in all
 # What is found stays in build/fuzz/corpus/TARGET from call to call; an input that ends a target in build/fuzz/crashes/TARGET-*.
@@ -28,10 +29,15 @@ done
 [ ${#targets[@]} -gt 0 ] || mapfile -t targets < <(printf '%s\n' "${!wanted[@]}" | sort)
 command -v clang++-14 >/dev/null || { echo "fuzz: skipped, there is no clang++-14 (toolchain/setup.sh --tests)" >&2; exit 77; }
 
-build=build/fuzz
+build=build/fuzz plain=build/fuzz-plain
 mkdir -p "$build/crashes"
-toolchain/configure.sh fuzz >"$build/configure.log" 2>&1 && cmake --build --preset fuzz --target "${targets[@]/#/fuzz_}" -- --quiet >"$build/build.log" 2>&1 ||
-  { tail -n 40 "$build"/configure.log "$build"/build.log >&2; exit 1; }
+# build_targets PRESET
+build_targets() {
+  local log=$build/build-$1.log
+  { toolchain/configure.sh "$1" && cmake --build --preset "$1" --target "${targets[@]/#/fuzz_}" -- --quiet; } >"$log" 2>&1 || { tail -n 40 "$log" >&2; exit 1; }
+}
+build_targets fuzz
+[ -z "$by_table" ] || build_targets fuzz-plain
 
 # The libraries of Debian are not instrumented: containers that cross to them look overflowed when they are not. The JSON and YAML libraries keep what
 # they need until the end.
@@ -46,13 +52,28 @@ make_dictionary() {
 # last_number LOG WORD: the number after the word's last occurrence.
 last_number() { grep -aoE "$2 *[0-9]+" "$1" | tail -n 1 | grep -oE '[0-9]+$' || echo '?'; }
 
+# runs_of LOG
+runs_of() {
+  local runs
+  runs=$(last_number "$1" 'stat::number_of_executed_units:')
+  [ "$runs" != '?' ] || runs=$(grep -aoE '^#[0-9]+' "$1" | tail -n 1 | tr -d '#' || true)
+  echo "${runs:-0}"
+}
+
+# fuzz FOLDER LOG arguments...: changes of the corpus by the target's program in FOLDER.
+fuzz() {
+  local folder=$1 log=$2
+  shift 2
+  "$folder/tests/fuzz_$target" "$@" -seed="$seed" -max_len="$length" "${dictionary[@]}" -timeout=25 -rss_limit_mb=4096 -print_final_stats=1 \
+    -artifact_prefix="$build/crashes/$target-" "$found" "$kept" "$build/tests/fuzz/seeds/$target" >"$log" 2>&1 </dev/null || status=1
+}
+
 status=0
 echo "| target | runs | seconds | runs/s | edges | corpus | ended by |"
 echo "|---|---|---|---|---|---|---|"
 for target in "${targets[@]}"; do
   log=$build/$target.log found=$build/corpus/$target kept=tests/fuzz/corpus/$target
   mkdir -p "$found" "$kept"
-  [ -z "$by_table" ] || limit=("-runs=${wanted[$target]}")
   make_dictionary "$target"
   dictionary=()
   [ ! -s "$build/$target.dict" ] || dictionary=("-dict=$build/$target.dict")  # an empty one is refused
@@ -61,13 +82,15 @@ for target in "${targets[@]}"; do
   [[ $target != can_* && $target != frame_ring ]] || length=1024
   before=$(find "$build/crashes" -name "$target-*" | wc -l)
   begin=$SECONDS
-  "$build/tests/fuzz_$target" "${limit[@]}" -seed="$seed" -max_len="$length" "${dictionary[@]}" -timeout=25 -rss_limit_mb=4096 -print_final_stats=1 -use_value_profile=1 \
-    -artifact_prefix="$build/crashes/$target-" "$found" "$kept" "$build/tests/fuzz/seeds/$target" >"$log" 2>&1 </dev/null || status=1
+  runs=0
+  if [ -n "$by_table" ]; then
+    fuzz "$plain" "$build/$target-plain.log" "-runs=${wanted[$target]}"
+    runs=$(runs_of "$build/$target-plain.log")
+  fi
+  fuzz "$build" "$log" "${limit[@]}" -use_value_profile=1
+  runs=$((runs + $(runs_of "$log")))
   crashes=$(($(find "$build/crashes" -name "$target-*" | wc -l) - before))
   seconds=$((SECONDS - begin))
-  runs=$(last_number "$log" 'stat::number_of_executed_units:')
-  [ "$runs" != '?' ] || runs=$(grep -aoE '^#[0-9]+' "$log" | tail -n 1 | tr -d '#' || true)
-  runs=${runs:-0}
   echo "| $target | $runs | $seconds | $((runs / (seconds > 0 ? seconds : 1))) | $(last_number "$log" 'cov:') | $(find "$found" -type f | wc -l) | $crashes inputs |"
   if [ -n "$keep" ] && [ "$crashes" -eq 0 ]; then
     # Of the inputs that together cover all, longer ones do more.
