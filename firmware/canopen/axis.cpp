@@ -306,7 +306,8 @@ void Axis::choose_reset_word(Time now) {
     return set_controlword(word_of(Command::disable_voltage));
   }
   if (high) return set_controlword(word_of(Command::disable_voltage));
-  if (drive == DriveState::fault_reaction || !handshake_over()) return;
+  // Until the edge may come, no word of before stays on the bus: it may be the one that enables.
+  if (drive == DriveState::fault_reaction || !handshake_over()) return set_controlword(word_of(Command::disable_voltage));
   set_controlword(word_of(command_for(drive, DriveGoal::fault_reset)));
   ++reset_edges_sent_;
 }

@@ -19,8 +19,7 @@ struct PlaneFitter::Hypothesis {
 
 namespace {
 
-constexpr std::size_t block = 16;    // floats that GCC keeps in two AVX registers
-constexpr float far_away_m = 1e15f;  // no inlier of any plane, and its square is still a float
+constexpr std::size_t block = 16;  // floats that GCC keeps in two AVX registers
 // The refits reach this much beyond the inliers. To cut the noise off at the threshold itself locks on to a part of the points where the noise is not
 // small against it: the stripes of a real laser, 0.9 mm rms, gave a plane 0.31 degrees off at 2 mm, 0.0 at twice that.
 constexpr double window_thresholds = 2.0;
@@ -56,6 +55,7 @@ constexpr std::size_t chunk = 64;
 using Coordinates = std::array<double, chunk>;
 struct Chunk {
   alignas(64) Coordinates x, y, z;
+  alignas(64) Coordinates counts;  // 1; 0 of a point that is not finite: there is no place that is far from every plane
 };
 
 // A value, or zero where `keep` is false. A conditional would be control flow to GCC 12, since a comparison may trap; a mask is not.
@@ -63,16 +63,16 @@ double keep_if(bool keep, double value) {
   return std::bit_cast<double>(std::bit_cast<std::int64_t>(value) & -static_cast<std::int64_t>(keep));
 }
 
-// Copies a chunk of points about the centre; what is not finite is put far away.
+// Copies a chunk of points about the centre; what is not finite is put there, and does not count.
 [[gnu::noinline]] void load(const CloudPoint* __restrict points, const Vec3& centre_m, Chunk& __restrict out) {
   const double cx = centre_m.x(), cy = centre_m.y(), cz = centre_m.z();
   for (std::size_t i = 0; i < chunk; ++i) {
     const double x = points[i].p_m.x(), y = points[i].p_m.y(), z = points[i].p_m.z();
     const bool good = finite(points[i]);
-    const double far_m = keep_if(!good, far_away_m);
-    out.x[i] = keep_if(good, x - cx) + far_m;
-    out.y[i] = keep_if(good, y - cy) + far_m;
-    out.z[i] = keep_if(good, z - cz) + far_m;
+    out.x[i] = keep_if(good, x - cx);
+    out.y[i] = keep_if(good, y - cy);
+    out.z[i] = keep_if(good, z - cz);
+    out.counts[i] = keep_if(good, 1.0);
   }
 }
 
@@ -108,7 +108,7 @@ template <class Window>
   const double a = normal.x(), b = normal.y(), c = normal.z();
   alignas(64) Coordinates ones, weight, x, y, z;
   for (std::size_t i = 0; i < chunk; ++i) {
-    const double w = window.weight(a * p.x[i] + b * p.y[i] + c * p.z[i] + offset_m);
+    const double w = p.counts[i] * window.weight(a * p.x[i] + b * p.y[i] + c * p.z[i] + offset_m);
     ones[i] = 1.0;
     weight[i] = w;
     x[i] = w * p.x[i];
@@ -162,6 +162,7 @@ double robust_sigma(std::span<const CloudPoint> points, const Vec3& centre_m, co
   std::array<std::uint32_t, bins> histogram{};
   std::uint32_t total = 0;
   for (const CloudPoint& point : points) {
+    if (!finite(point)) continue;
     const double distance = std::abs(normal.dot(point.p_m.cast<double>() - centre_m) + offset_m);
     if (!(distance < threshold_m)) continue;
     ++histogram[std::min(bins - 1, static_cast<std::size_t>(distance / threshold_m * bins))];
@@ -204,20 +205,22 @@ void PlaneFitter::gather(std::span<const CloudPoint> points, std::size_t finite_
     y_[i] = static_cast<float>(p.y());
     z_[i] = static_cast<float>(p.z());
   }
-  for (std::size_t i = size_; i < subset_capacity && i % block != 0; ++i) x_[i] = y_[i] = z_[i] = far_away_m;
 }
 
 // The MSAC cost: squared distances, each at most the squared threshold.
 double PlaneFitter::score(const Hypothesis& h, float threshold_m) const {
   const float a = static_cast<float>(h.normal.x()), b = static_cast<float>(h.normal.y()), c = static_cast<float>(h.normal.z());
   const float d = static_cast<float>(h.offset_m), most = threshold_m * threshold_m;
+  const auto cost = [&](std::size_t i) {
+    const float distance = a * x_[i] + b * y_[i] + c * z_[i] + d;
+    const float square = distance * distance;
+    return square < most ? square : most;
+  };
   alignas(64) std::array<float, block> sums{};
-  for (std::size_t i = 0; i < size_; i += block)
-    for (std::size_t j = 0; j < block; ++j) {
-      const float distance = a * x_[i + j] + b * y_[i + j] + c * z_[i + j] + d;
-      const float square = distance * distance;
-      sums[j] += square < most ? square : most;
-    }
+  std::size_t i = 0;
+  for (; i + block <= size_; i += block)
+    for (std::size_t j = 0; j < block; ++j) sums[j] += cost(i + j);
+  for (std::size_t j = 0; i + j < size_; ++j) sums[j] += cost(i + j);
   double total = 0;
   for (float s : sums) total += static_cast<double>(s);
   return total;

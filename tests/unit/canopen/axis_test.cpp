@@ -267,6 +267,22 @@ TEST_F(AxisTest, BitSevenWasLowForAHandshakeBeforeItRises) {
   EXPECT_EQ(drive().drive_state_bits(), 0x40);
 }
 
+// Found by fuzz_can_core: the drive was told to run for as long as it said that it reacts to its fault.
+TEST_F(AxisTest, AResetOrderedInADrivesFaultReactionTakesTheEnablingWordAway) {
+  ASSERT_TRUE(enable(axis()));
+  CanFrame tpdo = empty_frame(0x181, 8);
+  put<std::uint16_t>(tpdo, 0, 0x0F);  // fault reaction active
+  put<std::int32_t>(tpdo, 2, 1000);
+  drive().mute_tpdo = true;
+  axis().request(AxisRequest::reset_fault);
+  for (int i = 0; i < 20; ++i) {
+    bus.network.on_frame(tpdo, bus.now);
+    bus.step();
+    ASSERT_EQ(get<std::uint16_t>(last_rpdo(), 0) & 0x0F, 0) << "SYNC " << i;
+  }
+  EXPECT_EQ(axis().state(), AxisState::resetting);
+}
+
 TEST_F(AxisTest, AFaultThatDoesNotClearIsTriedThreeTimesThenReported) {
   drive().refuses_reset = true;
   drive().enter_fault(0x2310);

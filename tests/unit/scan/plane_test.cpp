@@ -46,6 +46,27 @@ class PlaneFitting : public testing::Test {
   std::unique_ptr<PlaneFitter> fitter_ = std::make_unique<PlaneFitter>();
 };
 
+// Found by fuzz_cloud: what is no point was put far away on the diagonal, which lies in the plane x = y.
+TEST_F(PlaneFitting, WhatIsNoPointIsNoInlierOfAnyPlane) {
+  std::uniform_real_distribution<double> unit(-0.5, 0.5);
+  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    std::mt19937_64 random(seed);
+    std::vector<CloudPoint> points;
+    for (int i = 0; i < 100; ++i) {
+      const double along = unit(random);
+      points.push_back(point(Vec3(along, along, unit(random))));
+      if (i % 3 == 0) points.push_back(point(Vec3::Constant(std::numeric_limits<double>::quiet_NaN())));
+    }
+    const PlaneFit result = fit(points, {.tight_sigmas = 3.0});
+    ASSERT_TRUE(result.valid);
+    ASSERT_EQ(result.points, 100u);
+    ASSERT_EQ(result.inliers, 100u);
+    const double apart_deg = angle_deg(result.plane.normal, Vec3(1, -1, 0));
+    ASSERT_LT(std::min(apart_deg, 180 - apart_deg), 1e-3);
+  }
+}
+
 TEST_F(PlaneFitting, HoldsAtEveryShareOfOutliersInSweepOrder) {
   const std::pair<double, double> rows[] = {{0.0, 0.005}, {0.3, 0.01}, {0.6, 0.02}, {0.85, 0.05}};  // share, worst angle in degrees
   for (const auto& [outliers, worst_deg] : rows) {
