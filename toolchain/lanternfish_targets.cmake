@@ -35,6 +35,8 @@ target_link_libraries(lanternfish_flags INTERFACE Eigen3::Eigen)
 target_compile_definitions(lanternfish_flags INTERFACE EIGEN_MAX_ALIGN_BYTES=16 EIGEN_MALLOC_ALREADY_ALIGNED=1)
 if(LANTERNFISH_MARCH AND CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64")
   target_compile_options(lanternfish_flags INTERFACE -march=${LANTERNFISH_MARCH})
+elseif(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  target_compile_options(lanternfish_flags INTERFACE -Wno-psabi)  # remarks on how vectors are passed where a processor has no registers of their width
 endif()
 if(LANTERNFISH_SANITIZE)
   target_compile_options(lanternfish_flags INTERFACE
