@@ -38,6 +38,9 @@ void load_words(void* to, const std::byte* from, std::size_t bytes) {
   }
 }
 
+// A ring that lies about its records counts up to the end, not over it.
+void count(std::uint64_t& counter, std::uint64_t more) { counter += std::min(more, ~counter); }
+
 bool aligned(const void* address) { return reinterpret_cast<std::uintptr_t>(address) % 64 == 0; }
 
 }  // namespace
@@ -156,14 +159,14 @@ FrameRingReader::Answer FrameRingReader::take(RecordInfo& info, std::span<std::b
   Head head;
   if (const Answer answer = attach(head); answer != Answer::record) return answer;
   if (head.published > next_ && head.published - next_ > head.slots) {
-    stats_.missed += head.published - head.slots - next_;
+    count(stats_.missed, head.published - head.slots - next_);
     next_ = head.published - head.slots;
   }
   while (next_ < head.published) {
     RecordInfo read;
     if (!copy_record(next_++, head, read, payload)) {
       ++stats_.torn;
-      ++stats_.missed;
+      count(stats_.missed, 1);
       continue;
     }
     if (read.bytes > head.slot_bytes - record_header_bytes) {
