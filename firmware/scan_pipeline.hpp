@@ -132,6 +132,7 @@ class BasicScanPipeline {
   bool match(const Image& image, Exposure& exposure);
   ImageView background_of(const Exposure& exposure) const;
   void measure(const Image& image, const Exposure& exposure);
+  StripeForm learned() const;
   void add_points(bool final);
   bool add_points(const Stripe& stripe, bool final);
   bool behind_arm(const Vec3& point_m) const;
