@@ -73,6 +73,7 @@ void BasicScanPipeline<capacity>::begin_sweep(std::uint32_t sweep) {
   request_ready_ = false;
   request_.id = sweep;
   stripes_seen_ = 0;
+  shape_doubts_px_ = 0;
   sweeping_ = true;
 }
 
@@ -231,13 +232,14 @@ void BasicScanPipeline<capacity>::measure(const Image& image, const Exposure& ex
   stats_.peaks_saturated = static_cast<std::uint32_t>(counters.saturated);
   stats_.peaks_unfitted = static_cast<std::uint32_t>(refiner_.counters().not_fitted);
   stats_.peaks_misfit = static_cast<std::uint32_t>(refiner_.counters().misfits);
-  stats_.stripe = learned();
   if (!exposure.in_sweep) return;
   ++stats_.stripes;
   if (stripes_.full()) add_points(true);
   Stripe& stripe = *stripes_.extend();
   stripe.start = exposure.start;
   stripe.mid_exposure = image.mid_exposure();
+  stripe.form = learned();
+  stripe.shape_doubt_px = refiner_.shape_doubt_px();
   stripe.count = last_peaks_count_;
   std::copy_n(last_peaks_.begin(), last_peaks_count_, stripe.peaks.begin());
 }
@@ -283,6 +285,9 @@ bool BasicScanPipeline<capacity>::add_points(const Stripe& stripe, bool final) {
     stats_.peaks_apart += static_cast<std::uint32_t>(peaks.size());
     return true;
   }
+  // Beyond the panel there are specks and edges, whose shape is no stripe's.
+  stats_.stripe = stripe.form;
+  const std::size_t points_before = cloud_.points().size();
   const std::uint32_t apart = std::max<std::uint32_t>(config_.columns_apart, 1u);
   const std::uint32_t shift = stripes_seen_++ % apart;
   for (std::size_t begin = 0; begin < peaks.size();) {
@@ -292,6 +297,7 @@ bool BasicScanPipeline<capacity>::add_points(const Stripe& stripe, bool final) {
     if (column % apart == shift) add_column(peaks.subspan(begin, end - begin), chains.subspan(begin, end - begin), base_from_laser);
     begin = end;
   }
+  shape_doubts_px_ += static_cast<double>(stripe.shape_doubt_px) * static_cast<double>(cloud_.points().size() - points_before);
   return true;
 }
 
@@ -339,7 +345,8 @@ void BasicScanPipeline<capacity>::analyse(std::uint32_t sweep) {
   sweeping_ = false;
   request_.id = sweep;
   request_.fit = fitter_.fit(cloud_.points(), config_.plane);
-  request_.fit.shape_doubt_px = refiner_.shape_doubt_px();
+  if (!cloud_.points().empty())
+    request_.fit.shape_doubt_px = static_cast<float>(shape_doubts_px_ / static_cast<double>(cloud_.points().size()));
   request_.has_still = still_.present;
   request_.still_time = still_.mid_exposure;
   request_ready_ = true;

@@ -116,6 +116,8 @@ class BasicScanPipeline {
   struct Stripe {
     Time start;
     Time mid_exposure;
+    StripeForm form;
+    float shape_doubt_px = 0;
     std::size_t count = 0;
     std::array<scan::Peak, max_peaks> peaks{};
   };
@@ -155,6 +157,7 @@ class BasicScanPipeline {
   std::uint32_t frames_ordered_ = 0;
   bool any_order_ = false;
   std::uint32_t stripes_seen_ = 0;  // of this sweep
+  double shape_doubts_px_ = 0;      // of its points, summed
   bool sweeping_ = false;
   std::uint64_t last_pixels_ = 0;  // what repeats() made of the image before
   StoredImage background_;

@@ -50,7 +50,7 @@ struct PictureLight {
   float white_share = 0;  // of the pixels at full scale, 0..1
 };
 
-// The laser's stripe as the pictures since the sweep's begin have told it; all 0 before the first.
+// The laser's stripe as the pictures since the sweep's begin have told it, up to the newest that shows the panel; all 0 before the first.
 struct StripeForm {
   float width_px = 0;  // in the picture, as a standard deviation
   float lens_px = 0;   // the part of it that is the lens'

@@ -262,6 +262,7 @@ TEST_F(ScanOrders, TheStripesFormIsOfItsSweep) {
     const int sync = 10 * (sweep + 1);
     bench_->order(ScanBench::time(sync), ExposureKind::laser_on);
     bench_->send(ScanBench::time(sync), stripe_);
+    joints_until(sync + 8);
     EXPECT_GT(stats().stripe.width_px, 0.5) << "sweep " << sweep;
     EXPECT_LT(stats().stripe.width_px, 4) << "sweep " << sweep;
     EXPECT_GE(stats().stripe.model_share, scan::least_model_share);
