@@ -64,12 +64,16 @@ void BasicScanPipeline<capacity>::begin_sweep(std::uint32_t sweep) {
   forget_exposures(exposures_.size());
   stripes_.clear();
   cloud_.clear();
+  // What a sweep has learned of the stripe's shape is not another one's, whose light and water may be others.
+  refiner_.begin_anew();
+  stats_.stripe = {};
   // Between sweeps the arm, its shadow and what it turned have moved.
   background_.present = false;
   still_.present = false;
   request_ready_ = false;
   request_.id = sweep;
   stripes_seen_ = 0;
+  shape_doubts_px_ = 0;
   sweeping_ = true;
 }
 
@@ -226,14 +230,25 @@ void BasicScanPipeline<capacity>::measure(const Image& image, const Exposure& ex
   stats_.peaks = static_cast<std::uint32_t>(refiner_.counters().refined);
   stats_.peaks_weak = static_cast<std::uint32_t>(counters.weak);
   stats_.peaks_saturated = static_cast<std::uint32_t>(counters.saturated);
+  stats_.peaks_unfitted = static_cast<std::uint32_t>(refiner_.counters().not_fitted);
+  stats_.peaks_misfit = static_cast<std::uint32_t>(refiner_.counters().misfits);
   if (!exposure.in_sweep) return;
   ++stats_.stripes;
   if (stripes_.full()) add_points(true);
   Stripe& stripe = *stripes_.extend();
   stripe.start = exposure.start;
   stripe.mid_exposure = image.mid_exposure();
+  stripe.form = learned();
+  stripe.shape_doubt_px = refiner_.shape_doubt_px();
   stripe.count = last_peaks_count_;
   std::copy_n(last_peaks_.begin(), last_peaks_count_, stripe.peaks.begin());
+}
+
+template <ScanCapacity capacity>
+StripeForm BasicScanPipeline<capacity>::learned() const {
+  if (!refiner_.begun()) return {};
+  const scan::StripeOptics& optics = refiner_.optics();
+  return {scan::width_in_picture_px(optics), optics.lens_px, optics.scatter, optics.skew, refiner_.noise().speckle, refiner_.noise().model};
 }
 
 // Stripes whose joints are known become points, oldest first; `final` leaves none waiting.
@@ -266,7 +281,13 @@ bool BasicScanPipeline<capacity>::add_points(const Stripe& stripe, bool final) {
   const std::span<const scan::Peak> peaks = std::span(stripe.peaks).first(stripe.count);
   const std::span<std::uint8_t> chains = std::span(chains_).first(peaks.size());
   scan::measure_chains(peaks, config_.chain.step_px, chains);
-  if (*std::max_element(chains.begin(), chains.end()) < config_.chain.panel_columns(config_.camera.intrinsics.fx)) return true;
+  if (*std::max_element(chains.begin(), chains.end()) < config_.chain.panel_columns(config_.camera.intrinsics.fx)) {
+    stats_.peaks_apart += static_cast<std::uint32_t>(peaks.size());
+    return true;
+  }
+  // Beyond the panel there are specks and edges, whose shape is no stripe's.
+  stats_.stripe = stripe.form;
+  const std::size_t points_before = cloud_.points().size();
   const std::uint32_t apart = std::max<std::uint32_t>(config_.columns_apart, 1u);
   const std::uint32_t shift = stripes_seen_++ % apart;
   for (std::size_t begin = 0; begin < peaks.size();) {
@@ -276,6 +297,7 @@ bool BasicScanPipeline<capacity>::add_points(const Stripe& stripe, bool final) {
     if (column % apart == shift) add_column(peaks.subspan(begin, end - begin), chains.subspan(begin, end - begin), base_from_laser);
     begin = end;
   }
+  shape_doubts_px_ += static_cast<double>(stripe.shape_doubt_px) * static_cast<double>(cloud_.points().size() - points_before);
   return true;
 }
 
@@ -297,7 +319,10 @@ void BasicScanPipeline<capacity>::add_column(std::span<const scan::Peak> peaks, 
   StaticVector<Eigen::Vector2f, scan::max_peaks_per_line> seen;
   for (std::size_t i = 0; i < peaks.size(); ++i) {
     const scan::Peak& peak = peaks[i];
-    if (chains[i] < part_columns) continue;
+    if (chains[i] < part_columns) {
+      ++stats_.peaks_apart;
+      continue;
+    }
     const std::optional<Vec3> point_m = triangulator_.point(Vec2(peak.u_px, peak.v_px), base_from_laser);
     if (!point_m || behind_arm(*point_m)) continue;
     (void)points.push_back({.p_m = point_m->cast<float>(), .amplitude = peak.amplitude});
@@ -320,6 +345,8 @@ void BasicScanPipeline<capacity>::analyse(std::uint32_t sweep) {
   sweeping_ = false;
   request_.id = sweep;
   request_.fit = fitter_.fit(cloud_.points(), config_.plane);
+  if (!cloud_.points().empty())
+    request_.fit.shape_doubt_px = static_cast<float>(shape_doubts_px_ / static_cast<double>(cloud_.points().size()));
   request_.has_still = still_.present;
   request_.still_time = still_.mid_exposure;
   request_ready_ = true;

@@ -116,6 +116,8 @@ class BasicScanPipeline {
   struct Stripe {
     Time start;
     Time mid_exposure;
+    StripeForm form;
+    float shape_doubt_px = 0;
     std::size_t count = 0;
     std::array<scan::Peak, max_peaks> peaks{};
   };
@@ -132,6 +134,7 @@ class BasicScanPipeline {
   bool match(const Image& image, Exposure& exposure);
   ImageView background_of(const Exposure& exposure) const;
   void measure(const Image& image, const Exposure& exposure);
+  StripeForm learned() const;
   void add_points(bool final);
   bool add_points(const Stripe& stripe, bool final);
   bool behind_arm(const Vec3& point_m) const;
@@ -154,6 +157,7 @@ class BasicScanPipeline {
   std::uint32_t frames_ordered_ = 0;
   bool any_order_ = false;
   std::uint32_t stripes_seen_ = 0;  // of this sweep
+  double shape_doubts_px_ = 0;      // of its points, summed
   bool sweeping_ = false;
   std::uint64_t last_pixels_ = 0;  // what repeats() made of the image before
   StoredImage background_;

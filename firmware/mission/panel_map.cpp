@@ -27,12 +27,22 @@ constexpr double way_margin_rad = 0.2;
 constexpr double calibration_shift_m = 0.0021;
 constexpr double calibration_turn_rad = 0.0021;
 
+// A point moves along its ray by a pixel's width at its distance over the sine of the angle between ray and laser's plane: 20 degrees in a sweep, at least.
+constexpr double along_ray = 3.0;
+// Of the panel's distance; a grip bears half of it.
+constexpr double largest_shape_shift_m = 0.008;
+
 }  // namespace
+
+double PanelMap::shape_shift_m(const PlaneFit& fit) const {
+  const double distance_m = std::abs(fit.plane.signed_distance_m(camera_.base_from_camera.translation()));
+  return along_ray * static_cast<double>(fit.shape_doubt_px) * distance_m / camera_.intrinsics.fy;
+}
 
 // The mean of thousands of points is far better than one of them; what bends the plane as a whole shows in their scatter, and is no larger.
 arm::PanelDoubt PanelMap::doubt() const {
   const Vec2 size = layout_.plate_max_m - layout_.plate_min_m;
-  return {calibration_shift_m + 2 * plane_.rms_m, calibration_turn_rad + 2 * plane_.rms_m / size.minCoeff()};
+  return {calibration_shift_m + 2 * plane_.rms_m + shape_shift_m(plane_), calibration_turn_rad + 2 * plane_.rms_m / size.minCoeff()};
 }
 
 void PanelMap::expect_handle(double rad) {
@@ -71,6 +81,7 @@ StepFailure PanelMap::judge(const PanelResult& result, const scan::ValveFrame& f
     case scan::ValveFrameOutcome::not_a_number: return StepFailure::no_panel;
   }
   if (result.fit.inliers < min_inlier_ratio * result.fit.points) return StepFailure::plane_unsure;
+  if (!(shape_shift_m(result.fit) <= largest_shape_shift_m)) return StepFailure::line_misshapen;
   // The frame of the first look is what later ones are held against: a shift does not become the truth by being seen twice.
   if (known_ && (frame.base_from_panel.translation() - frame_.base_from_panel.translation()).norm() > max_panel_shift_m)
     return StepFailure::panel_moved;

@@ -30,7 +30,8 @@ class PanelMap {
 
   bool known() const { return known_; }
   const Pose& base_from_panel() const { return frame_.base_from_panel; }
-  // By how much that may be wrong, once it is known: what the calibration errs by, and the scatter of the points about the plane.
+  // By how much that may be wrong, once it is known: what the calibration errs by, the scatter of the points about the plane, and what
+  // the laser line's shape leaves in doubt.
   arm::PanelDoubt doubt() const;
   double handle_rad() const { return handle_rad_; }
   // The jaw has the handle here, if it holds it: until the next look the handle is on the way from where it was seen to here.
@@ -53,6 +54,8 @@ class PanelMap {
     double low_rad, high_rad;
   };
   bool has_pointer() const { return layout_.pointer != PanelLayout::Pointer::none; }
+  // Of all points alike, toward the camera or away from it, by what the stripe's shape leaves in doubt.
+  double shape_shift_m(const PlaneFit& fit) const;
   StepFailure judge(const PanelResult& result, const scan::ValveFrame& frame, const scan::HandleObservation& handle) const;
   StepFailure settle(const PanelResult& result, const scan::ValveFrame& frame, const scan::HandleObservation& handle,
                      double& angle_rad) const;

@@ -47,6 +47,9 @@ Sight sight_of(const PanelResult& result, const ScanStats& before, const ScanSta
   sight.columns_found = now.peaks - before.peaks;
   sight.columns_weak = now.peaks_weak - before.peaks_weak;
   sight.columns_saturated = now.peaks_saturated - before.peaks_saturated;
+  sight.columns_misfit =
+      (now.peaks_misfit - before.peaks_misfit) + (now.peaks_unfitted - before.peaks_unfitted) + (now.peaks_apart - before.peaks_apart);
+  if (sight.stripes > 0) sight.stripe = now.stripe;
   sight.points = result.fit.points;
   hold_plane(result.fit, base_from_panel, sight);
   sight.still_taken = now.stills != before.stills;

@@ -18,6 +18,8 @@ struct Sight {
   std::uint32_t columns_found = 0;      // peaks in these images
   std::uint32_t columns_weak = 0;       // columns whose brightest place is no stripe
   std::uint32_t columns_saturated = 0;  // columns that are white over more than a stripe's width
+  std::uint32_t columns_misfit = 0;     // peaks that have no stripe's shape, or stand where no part of a line goes on
+  StripeForm stripe;                    // as its sweep has learned it
   std::uint32_t points = 0;             // of the cloud
   // Of its plane. `off` and `tilt` hold it against the panel where the vehicle is docked exactly, and count from there.
   bool plane_found = false;

@@ -50,6 +50,11 @@ Words words(StepFailure failure) {
               "Check the calibration of camera and laser, and that the marker lies flat."};
     case StepFailure::plane_unsure:
       return {"too many of the laser's points lie off the panel", "The water is turbid, or something drifts before the panel: scan again."};
+    case StepFailure::line_misshapen:
+      return {"the laser's line is misshapen",
+              "It has a second line or a tail beside it: clean the laser's window and the camera's, check the laser's focus, and that no "
+              "reflection or other laser "
+              "shines beside it."};
     case StepFailure::handle_unsure:
       return {"too few points on the handle for its angle", "Sweep slower: check mission.sweep_speed_rad_s; clean the handle."};
     case StepFailure::pointer_unsure:

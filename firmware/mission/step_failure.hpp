@@ -39,6 +39,7 @@ enum class StepFailure : std::int32_t {
   button_missing = 29,  // nothing there, or only what lies behind it
   button_yields = 30,   // it goes in without bottoming
   jaw_not_closed = 31,  // a press needs closed fingers with nothing between them
+  line_misshapen = 32,  // the laser's line is no bell across: where its middle is cannot be told well enough
 };
 
 // What is wrong, in a few words; and what a user can do about it, one sentence, empty where the words say it all.

@@ -60,7 +60,8 @@ void OpticsEstimate::add(const StripeWindows& windows, const PixelNoise& noise, 
   about.start = select(fits.found, fits.centre, windows.start);
   const LaneMask among = fits.found & (fits.misfit < worst_misfit);
   if (!any(among)) return;
-  const LaneMask on_marks = among & ~fits.plain;
+  // Of thousands of plain columns some look like marks by their noise, and that noise would be taken for a wide lens.
+  const LaneMask on_marks = among & fits.painted;
   if (any(on_marks)) add_lens(about, noise, on_marks);
   leave_out_clipped(about);
   add_shape(about, noise, among);

@@ -41,20 +41,24 @@ struct RefinerCounters {
 template <class Pixel, std::int32_t MaxWidth, std::int32_t MaxHeight>
 class BasicPeakRefiner {
  public:
-  explicit BasicPeakRefiner(const RefinerConfig& config = {}) : config_(config), estimate_(config.optics), noise_(config.noise) {
-    noise_.model = std::max(noise_.model, least_model_share);
-  }
+  explicit BasicPeakRefiner(const RefinerConfig& config = {}) : config_(config), estimate_(config.optics) { begin_anew(); }
 
   // Moves each of `peaks`, which a detector found in `image` less `background`, to its fit's centre. Drops, and counts, those without one; the others move up.
   // Returns how many are left. Without a background (an invalid view) the paint is taken to be plain. Returns 0 for an invalid image, one that is too large, and
   // a background of another size. O(peaks + width * height), no allocation.
   std::size_t refine(const PixelView<Pixel>& image, const PixelView<Pixel>& background, std::span<Peak> peaks);
 
+  // Forgets what the pictures have told: of another scene, another arm's pose or another light. The counters go on.
+  void begin_anew();
+
   // What the pictures have told so far.
+  bool begun() const { return begun_; }
   const StripeOptics& optics() const { return estimate_.optics(); }
   float gain() const { return gain_; }                // of the newest picture over its background
   const PixelNoise& noise() const { return noise_; }  // the configured one, with speckle and the model's share as they were learned
   const RefinerCounters& counters() const { return counters_; }
+  // By how much the centres of all columns may be off alike, because the stripe is not shaped as the fit takes it to be.
+  float shape_doubt_px() const;
 
  private:
   struct Pair {

@@ -23,6 +23,7 @@ constexpr float longest_step = 0.5f;         // stripe widths
 constexpr float farthest = 3.0f;             // stripe widths from the start: beyond it, another stripe
 constexpr float least_determinant = 1e-5f;   // of stripe and offset, relative: below it they cannot be told apart
 constexpr float plain_sigmas = 3.0f;         // by which the squares about a line may exceed the noise's
+constexpr float painted_squares = 6.0f;      // over the noise's: at an edge of 10:1 a hundred times as much, by noise once in 10^6 columns
 constexpr float faintest = 0.1f;             // variance of a speckle of 0.3: columns whose other noise is more tell nothing of it
 constexpr float median_of_square = 0.455f;   // of a normal deviate
 constexpr float least_variance = 1e-3f;      // grey levels^2: of a picture without noise
@@ -61,8 +62,12 @@ void clear_haze(const StripeWindows& windows, float scatter, Model& m) {
   }
 }
 
+struct Paint {
+  LaneMask plain, painted;  // as in StripeFits
+};
+
 // A column whose paint lies on a line as far as its noise tells is given the line: the stripe is then not multiplied by that noise.
-LaneMask straighten_plain_paint(const StripeWindows& windows, const PixelNoise& noise, float near, Rows& paint) {
+Paint straighten_plain_paint(const StripeWindows& windows, const PixelNoise& noise, float near, Rows& paint) {
   const auto rows = static_cast<float>(windows.count);
   const float middle = 0.5f * (rows - 1);
   const float squares = rows * (rows * rows - 1) / 12;  // of the distances from the middle
@@ -81,16 +86,15 @@ LaneMask straighten_plain_paint(const StripeWindows& windows, const PixelNoise& 
     const Lanes line = mean + slope * (static_cast<float>(i) - middle);
     paint[i] = plain ? max(line, all_lanes(1)) : paint[i];
   }
-  return plain;
+  return {plain, left > painted_squares * (rows - 2)};
 }
 
-// Returns the columns whose paint is plain.
-LaneMask make_model(const StripeWindows& windows, const StripeOptics& optics, const PixelNoise& noise, Model& m) {
+Paint make_model(const StripeWindows& windows, const StripeOptics& optics, const PixelNoise& noise, Model& m) {
   const float blur = square(optics.lens_px) + pixel_variance, beam = square(optics.beam_px);
   const std::int32_t last = windows.count - 1;
   const float near = 1 + near_share * optics.scatter;
   clear_haze(windows, optics.scatter, m);
-  const LaneMask plain = straighten_plain_paint(windows, noise, near, m.paint);
+  const Paint paint = straighten_plain_paint(windows, noise, near, m.paint);
   m.highest_level = Lanes{};
   m.skew = optics.skew;
   Lanes before = log(m.paint[0]), here = before;
@@ -105,13 +109,13 @@ LaneMask make_model(const StripeWindows& windows, const StripeOptics& optics, co
     const Lanes off = variance_of(noise, windows.ambient[i], near);
     const LaneMask differenced = windows.ambient[i] > 0;
     m.still_variance[i] = differenced ? off + off : off;
-    const Lanes shared = differenced & ~plain ? off / m.paint[i] : Lanes{};
+    const Lanes shared = differenced & ~paint.plain ? off / m.paint[i] : Lanes{};
     m.shared_noise[i] = shared + shared;
     m.paint_variance[i] = shared / m.paint[i];
     before = here;
     here = after;
   }
-  return plain;
+  return paint;
 }
 
 // Of a pixel in which the stripe is expected to be `light`: read and shot noise, speckle, and the noise of the paint that the stripe is a multiple of.
@@ -331,7 +335,9 @@ StripeFits fit_stripes(const StripeWindows& windows, const StripeOptics& optics,
 
   const float width = width_in_picture_px(optics);
   Model m;
-  fits.plain = make_model(windows, optics, noise, m);
+  const Paint paint = make_model(windows, optics, noise, m);
+  fits.plain = paint.plain;
+  fits.painted = paint.painted;
   Lanes highest{};
   for (std::int32_t i = 0; i < windows.count; ++i) highest = max(highest, m.data[i]);
   // Where the stripe is, its brightest pixels tell, speckled or not.

@@ -65,6 +65,7 @@ std::int32_t reach_of_window(const StripeOptics& optics, bool with_background = 
 struct StripeFits {
   LaneMask found{};      // the rest holds for these columns
   LaneMask plain{};      // the paint is a straight line as far as its noise tells: no edges
+  LaneMask painted{};    // edges that no noise makes: they tell of the lens
   Lanes centre{};        // rows from the window's first
   Lanes variance_px2{};  // of the centre, from the noise
   Lanes height{};        // of the beam over the paint: the stripe's grey levels on paint of 1

@@ -156,6 +156,10 @@ std::string sight_text(const Sight& sight) {
       formatted("%.0f images of the laser", sight.stripes) + formatted(", peaks in %.0f %% of their columns", 100 * stripe_share(sight));
   if (sight.images_missing > 0) text += formatted(", %.0f images missing", sight.images_missing);
   if (sight.images_refused > 0) text += formatted(", %.0f images refused", sight.images_refused);
+  if (sight.stripe.width_px > 0) {
+    text += formatted("; stripe %.2f px wide", sight.stripe.width_px) +
+            formatted(", %.1f %% of its shape unexplained", 100 * sight.stripe.model_share);
+  }
   text += formatted("; %.0f points", sight.points);
   if (sight.plane_found) {
     text += formatted(", %.0f on a plane", sight.inliers) + formatted(" %+.0f mm", 1e3 * sight.plane_off_m) +

@@ -74,6 +74,8 @@ Json scan_counters(const ScanStats& s) {
   count(json, "repeated", s.images_repeated);
   count(json, "refused", s.images_refused);
   count(json, "missing", s.images_missing);
+  count(json, "peaks without a stripe's shape", s.peaks_unfitted + s.peaks_misfit);
+  count(json, "peaks of no line", s.peaks_apart);
   count(json, "points", s.points);
   count(json, "points without joints", s.points_no_joints);
   return json;

@@ -23,6 +23,8 @@ struct PlaneFit {
   std::uint32_t points = 0;
   std::uint32_t inliers = 0;
   double rms_m = 0;  // of the inliers
+  // By how much the stripe's shape may have shifted all points alike, pixels: no scatter tells of it. 0 where no stripe was seen.
+  float shape_doubt_px = 0;
 };
 
 // From the scan pipeline to the worker. The platform adds copies of the still image and of the cloud.

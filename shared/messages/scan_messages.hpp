@@ -50,6 +50,16 @@ struct PictureLight {
   float white_share = 0;  // of the pixels at full scale, 0..1
 };
 
+// The laser's stripe as the pictures since the sweep's begin have told it, up to the newest that shows the panel; all 0 before the first.
+struct StripeForm {
+  float width_px = 0;  // in the picture, as a standard deviation
+  float lens_px = 0;   // the part of it that is the lens'
+  float scatter = 0;   // once-scattered light over direct light
+  float skew = 0;
+  float speckle = 0;      // standard deviation of the light over its mean
+  float model_share = 0;  // what its shape leaves unexplained, over its peak
+};
+
 // Counters of the vision side, never reset.
 struct ScanStats {
   std::uint32_t images = 0;             // measured: a stripe, a background or a still was taken from them
@@ -63,11 +73,15 @@ struct ScanStats {
   std::uint32_t peaks_weak = 0;
   std::uint32_t peaks_saturated = 0;
   std::uint32_t peaks_ambiguous = 0;
+  std::uint32_t peaks_unfitted = 0;  // no stripe could be fitted there
+  std::uint32_t peaks_misfit = 0;    // what is there has no stripe's shape
+  std::uint32_t peaks_apart = 0;     // too few columns in a row: no part of a line
   std::uint32_t points = 0;
   std::uint32_t points_overflowed = 0;  // the cloud was full
   std::uint32_t points_no_joints = 0;   // no joint samples around mid-exposure
   std::uint32_t commands_refused = 0;   // out of order, or not a number
   PictureLight still;                   // of the newest still
+  StripeForm stripe;                    // as far as it is learned
   Time newest_exposure;                 // as ordered, of the newest image that came and was no repetition
 };
 

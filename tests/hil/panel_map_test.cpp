@@ -99,35 +99,49 @@ TEST_P(PoorVision, IsNamedByItsCauseAndChangesNothing) {
   EXPECT_STRNE(remedy(GetParam().why), "");
 }
 
-INSTANTIATE_TEST_SUITE_P(Causes, PoorVision,
-                         testing::Values(Poor{"NoPlane", [](PanelResult& r) { r.fit.valid = false; }, StepFailure::no_panel},
-                                         Poor{"FewPoints", [](PanelResult& r) { r.fit.points = 100; }, StepFailure::too_few_points},
-                                         Poor{"CloudOffThePlane", [](PanelResult& r) { r.fit.inliers = r.fit.points / 5; },
-                                              StepFailure::plane_unsure},
-                                         Poor{"NoMarker", [](PanelResult& r) { r.marker.found = false; }, StepFailure::no_marker},
-                                         Poor{"MarkerTooSmall",
-                                              [](PanelResult& r) {
-                                                for (Vec2& c : r.marker.corners_px) c = r.marker.centre_px + 0.7 * (c - r.marker.centre_px);
-                                              },
-                                              StepFailure::marker_wrong},
-                                         Poor{"MarkerElsewhere", [](PanelResult& r) { r.marker.camera_from_tag.translation().z() += 0.1; },
-                                              StepFailure::marker_disagrees},
-                                         Poor{"MarkerTilted",
-                                              [](PanelResult& r) {
-                                                r.marker.camera_from_tag.linear() =
-                                                    r.marker.camera_from_tag.linear() * Eigen::AngleAxisd(0.7, Vec3::UnitX());
-                                              },
-                                              StepFailure::marker_disagrees},
-                                         Poor{"NoHandle", [](PanelResult& r) { r.clusters.clear(); }, StepFailure::no_handle},
-                                         Poor{"HandleOfFewPoints",
-                                              [](PanelResult& r) {
-                                                r.clusters[0].points = 25;
-                                                r.clusters[0].length_m = 0.06;
-                                                r.clusters[0].width_m = 0.012;
-                                              },
-                                              StepFailure::handle_unsure},
-                                         Poor{"NoConfidence", [](PanelResult& r) { r.confidence = 0; }, StepFailure::vision_failed}),
-                         [](const auto& cause) { return cause.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Causes, PoorVision,
+    testing::Values(Poor{"NoPlane", [](PanelResult& r) { r.fit.valid = false; }, StepFailure::no_panel},
+                    Poor{"FewPoints", [](PanelResult& r) { r.fit.points = 100; }, StepFailure::too_few_points},
+                    Poor{"CloudOffThePlane", [](PanelResult& r) { r.fit.inliers = r.fit.points / 5; }, StepFailure::plane_unsure},
+                    Poor{"LineMisshapen", [](PanelResult& r) { r.fit.shape_doubt_px = 4; }, StepFailure::line_misshapen},
+                    Poor{"LineOfNoShape", [](PanelResult& r) { r.fit.shape_doubt_px = std::numeric_limits<float>::quiet_NaN(); },
+                         StepFailure::line_misshapen},
+                    Poor{"NoMarker", [](PanelResult& r) { r.marker.found = false; }, StepFailure::no_marker},
+                    Poor{"MarkerTooSmall",
+                         [](PanelResult& r) {
+                           for (Vec2& c : r.marker.corners_px) c = r.marker.centre_px + 0.7 * (c - r.marker.centre_px);
+                         },
+                         StepFailure::marker_wrong},
+                    Poor{"MarkerElsewhere", [](PanelResult& r) { r.marker.camera_from_tag.translation().z() += 0.1; },
+                         StepFailure::marker_disagrees},
+                    Poor{"MarkerTilted",
+                         [](PanelResult& r) {
+                           r.marker.camera_from_tag.linear() = r.marker.camera_from_tag.linear() * Eigen::AngleAxisd(0.7, Vec3::UnitX());
+                         },
+                         StepFailure::marker_disagrees},
+                    Poor{"NoHandle", [](PanelResult& r) { r.clusters.clear(); }, StepFailure::no_handle},
+                    Poor{"HandleOfFewPoints",
+                         [](PanelResult& r) {
+                           r.clusters[0].points = 25;
+                           r.clusters[0].length_m = 0.06;
+                           r.clusters[0].width_m = 0.012;
+                         },
+                         StepFailure::handle_unsure},
+                    Poor{"NoConfidence", [](PanelResult& r) { r.confidence = 0; }, StepFailure::vision_failed}),
+    [](const auto& cause) { return cause.param.name; });
+
+TEST(PanelMap, DoubtsThePanelsPlaceByTheLinesShape) {
+  const Panel panel;
+  PanelMap plain = panel.map(), skewed = panel.map();
+  PanelResult result = panel.seen(10);
+  ASSERT_EQ(plain.update(result), StepFailure::none);
+  result.fit.shape_doubt_px = 1;
+  ASSERT_EQ(skewed.update(result), StepFailure::none);
+  // A pixel of the default camera is 1.3 to 1.6 mm wide on the panel.
+  EXPECT_GT(skewed.doubt().shift_m - plain.doubt().shift_m, 0.003);
+  EXPECT_LT(skewed.doubt().shift_m - plain.doubt().shift_m, 0.006);
+}
 
 TEST(PanelMap, NamesAPointerThatItDidNotRecogniseWhereTheStopsLeaveItOpen) {
   const Panel panel;

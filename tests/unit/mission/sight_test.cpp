@@ -84,6 +84,10 @@ TEST(Sight, CountsFromTheBeginningOfItsSweep) {
   now.peaks = 5600;
   now.peaks_weak = 40;
   now.peaks_saturated = 7;
+  now.peaks_misfit = 20;
+  now.peaks_unfitted = 3;
+  now.peaks_apart = 100;
+  now.stripe.width_px = 1.6f;
   now.images_missing = 2;
   now.images_refused = 3;
   Sight sight = sight_of({}, before, now, {}, Pose::Identity());
@@ -91,6 +95,8 @@ TEST(Sight, CountsFromTheBeginningOfItsSweep) {
   EXPECT_EQ(sight.columns_found, 600u);
   EXPECT_EQ(sight.columns_weak, 40u);
   EXPECT_EQ(sight.columns_saturated, 7u);
+  EXPECT_EQ(sight.columns_misfit, 123u);
+  EXPECT_EQ(sight.stripe.width_px, 1.6f);
   EXPECT_EQ(sight.images_missing, 2u);
   EXPECT_EQ(sight.images_refused, 3u);
   EXPECT_FALSE(sight.still_taken);

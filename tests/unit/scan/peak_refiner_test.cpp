@@ -156,7 +156,9 @@ TEST(PeakRefiner, LearnsTheSpeckle) {
         (void)refiner->refine({on.data(), width, height, width}, {off.data(), width, height, width}, peaks);
       }
       EXPECT_NEAR(refiner->noise().speckle, contrast, 0.3 * contrast + 0.05) << "beam " << beam << " px, seeds 1 to 3";
-      EXPECT_NEAR(width_in_picture_px(refiner->optics()), width_px(s), 0.05 * width_px(s))
+      // Beyond what water and lens leave of it, 0.25, the brightest grains are clipped, and a narrow stripe comes out 6 to 11 % too narrow.
+      const double width_error = contrast > 0.3 ? 0.12 : 0.05;
+      EXPECT_NEAR(width_in_picture_px(refiner->optics()), width_px(s), width_error * width_px(s))
           << "beam " << beam << " px, contrast " << contrast;
       EXPECT_NEAR(refiner->optics().skew, 0, 0.05) << "beam " << beam << " px, contrast " << contrast;
     }
@@ -193,6 +195,77 @@ TEST(PeakRefiner, AwayFromMarksItReachesTheBound) {
       }
     }
   }
+}
+
+// Six sigmas of the difference's noise, speckled. What looked like marks in plain columns' noise was taken for a lens of 2 px and more, and the centres erred by 0.755 px.
+TEST(PeakRefiner, AFaintPairTellsNothingOfTheLens) {
+  for (const double beam : {0.8, 1.6}) {
+    FormedStripe s = scene(beam);
+    s.bars.contrast = 1;
+    const double read = s.read_noise_grey * s.read_noise_grey + 1.0 / 12;
+    s.peak_grey = 6 * std::sqrt(2 * read + 2 * s.ambient_grey / s.electrons_per_grey) * width_px(s) / s.beam_sigma_px;
+    const auto refiner = std::make_unique<PeakRefiner>();
+    const float told = refiner->optics().lens_px;
+    Errors errors;
+    for (s.seed = 1; s.seed <= 6; ++s.seed) {
+      const FormedImage image = form(s);
+      const auto on = pixels<std::uint8_t>(image.on), off = pixels<std::uint8_t>(image.off);
+      std::vector<Peak> peaks = coarse(on, off, 1, 255);
+      peaks.resize(refiner->refine({on.data(), width, height, width}, {off.data(), width, height, width}, peaks));
+      compare(s, image, peaks, errors);
+    }
+    EXPECT_EQ(refiner->optics().lens_px, told) << "beam " << beam << " px, seeds 1 to 6";
+    const double over_bound = Errors::rms(errors.elsewhere) / test::bound_px(s, true);
+    std::printf("faint, beam %.1f px: %.3f px, %.2f of the bound, %zu of %d columns\n", beam, Errors::rms(errors.elsewhere), over_bound,
+                errors.elsewhere.size(), errors.columns);
+    EXPECT_LT(over_bound, 1.25);
+  }
+}
+
+// A lobe on one side is followed by the widths and the skew, in all columns alike: no scatter tells of it.
+TEST(PeakRefiner, DoubtsTheCentresOfAStripeWithALobe) {
+  for (const double beam : {1.2, 2.4}) {
+    for (const double lobe : {0.0, 0.1, 0.2, 0.3}) {
+      FormedStripe s = scene(beam);
+      s.bars.contrast = 1;
+      s.peak_grey = 90;
+      const double apart_px = 2.3 * width_px(s);
+      const auto refiner = std::make_unique<PeakRefiner>();
+      Errors errors;
+      for (s.seed = 1; s.seed <= 6; ++s.seed) {
+        FormedImage image = form(s);
+        FormedStripe second = s;
+        second.noise = false;
+        second.middle_px += apart_px;
+        const FormedImage other = form(second);
+        for (std::size_t i = 0; i < image.on.size(); ++i) image.on[i] += lobe * (other.on[i] - other.off[i]);
+        const auto on = pixels<std::uint8_t>(image.on), off = pixels<std::uint8_t>(image.off);
+        std::vector<Peak> peaks = coarse(on, off, 1, 255);
+        peaks.resize(refiner->refine({on.data(), width, height, width}, {off.data(), width, height, width}, peaks));
+        compare(s, image, peaks, errors);
+      }
+      const double error_px = Errors::rms(errors.elsewhere), doubt_px = refiner->shape_doubt_px();
+      std::printf("beam %.1f px, lobe of %.1f: %.2f px off, doubt %.2f px\n", beam, lobe, error_px, doubt_px);
+      EXPECT_GT(doubt_px, lobe > 0 ? 0.8 * error_px : 0) << "beam " << beam << " px, lobe " << lobe << ", seeds 1 to 6";
+      EXPECT_LT(doubt_px, lobe > 0 ? 3 * error_px : 0.1) << "beam " << beam << " px, lobe " << lobe << ", seeds 1 to 6";
+    }
+  }
+}
+
+TEST(PeakRefiner, BegunAnewItIsAsNew) {
+  FormedStripe wide = scene(5.0), s = scene(1.2);
+  wide.speckle = 0.4;
+  const auto used = std::make_unique<PeakRefiner>(), fresh = std::make_unique<PeakRefiner>();
+  (void)over_angles(wide, *used);
+  used->begin_anew();
+  EXPECT_FALSE(used->begun());
+  EXPECT_EQ(used->noise().speckle, fresh->noise().speckle);
+  (void)over_angles(s, *used);
+  (void)over_angles(s, *fresh);
+  EXPECT_EQ(width_in_picture_px(used->optics()), width_in_picture_px(fresh->optics()));
+  EXPECT_EQ(used->optics().lens_px, fresh->optics().lens_px);
+  EXPECT_EQ(used->noise().model, fresh->noise().model);
+  EXPECT_TRUE(used->begun());
 }
 
 // Asked for: 0.07 px. The window's ends, where the stripe had not ended, bent it by 0.08 px.

@@ -253,6 +253,27 @@ TEST_F(ScanOrders, ABackgroundServesForTwoRoundsAndNoLonger) {
   }
 }
 
+// What one sweep has learned of the stripe is told with its answer, and forgotten at the next one's begin.
+TEST_F(ScanOrders, TheStripesFormIsOfItsSweep) {
+  EXPECT_EQ(stats().stripe.width_px, 0);
+  for (int sweep = 0; sweep < 2; ++sweep) {
+    begin();
+    EXPECT_EQ(stats().stripe.width_px, 0) << "sweep " << sweep;
+    const int sync = 10 * (sweep + 1);
+    bench_->order(ScanBench::time(sync), ExposureKind::laser_on);
+    bench_->send(ScanBench::time(sync), stripe_);
+    joints_until(sync + 8);
+    EXPECT_GT(stats().stripe.width_px, 0.5) << "sweep " << sweep;
+    EXPECT_LT(stats().stripe.width_px, 4) << "sweep " << sweep;
+    EXPECT_GE(stats().stripe.model_share, scan::least_model_share);
+    bench_->command(ScanCommand::Kind::analyse);
+    PanelRequest request;
+    ASSERT_TRUE(bench_->pipeline().take_request(request));
+    EXPECT_GE(request.fit.shape_doubt_px, 0);
+    EXPECT_LT(request.fit.shape_doubt_px, 0.3);
+  }
+}
+
 TEST_F(ScanOrders, AStripeWaitsForTheJointsAfterIt) {
   begin();
   joints_until(10);
