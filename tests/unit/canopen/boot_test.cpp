@@ -313,6 +313,7 @@ TEST(Boot, ADeadNodeIsGivenUpAfterTheAllowedTriesAndTheOthersAreNotStarted) {
   bus.nodes[elbow].dead = true;
   EXPECT_FALSE(bus.boot());
   const BootReport report = bus.network.boot();
+  EXPECT_EQ(report.first_failed(), 2);
   EXPECT_EQ(report.failed()->node, 3);
   EXPECT_EQ(report.failed()->failure, BootFailure::no_boot_up);
   EXPECT_EQ(report.failed()->retries, 2);
