@@ -221,16 +221,21 @@ void pass(S& s, ControllerConfig& v) {
 
 // What comes from the vision side.
 template <class S>
+void pass(S& s, StripeForm& v) {
+  auto& [width, lens, scatter, skew, speckle, model_share] = v;
+  pass_all(s, width, lens, scatter, skew, speckle, model_share);
+}
+template <class S>
 void pass(S& s, ScanStats& v) {
-  auto& [images, stripes, stills, unexpected, refused, missing, repeated, peaks, weak, saturated, ambiguous, points, overflowed, no_joints,
-         commands, still, newest] = v;
-  pass_all(s, images, stripes, stills, unexpected, refused, missing, repeated, peaks, weak, saturated, ambiguous, points, overflowed,
-           no_joints, commands, still.mean_grey, still.contrast_grey, still.white_share, newest);
+  auto& [images, stripes, stills, unexpected, refused, missing, repeated, peaks, weak, saturated, ambiguous, unfitted, misfit, lone, points,
+         overflowed, no_joints, commands, still, stripe, newest] = v;
+  pass_all(s, images, stripes, stills, unexpected, refused, missing, repeated, peaks, weak, saturated, ambiguous, unfitted, misfit, lone,
+           points, overflowed, no_joints, commands, still.mean_grey, still.contrast_grey, still.white_share, stripe, newest);
 }
 template <class S>
 void pass(S& s, PlaneFit& v) {
-  auto& [valid, plane, points, inliers, rms_m] = v;
-  pass_all(s, valid, plane.normal, plane.offset_m, points, inliers, rms_m);
+  auto& [valid, plane, points, inliers, rms_m, shape_doubt_px] = v;
+  pass_all(s, valid, plane.normal, plane.offset_m, points, inliers, rms_m, shape_doubt_px);
 }
 template <class S>
 void pass(S& s, MarkerObservation& v) {
