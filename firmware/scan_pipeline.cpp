@@ -282,7 +282,7 @@ bool BasicScanPipeline<capacity>::add_points(const Stripe& stripe, bool final) {
   const std::span<std::uint8_t> chains = std::span(chains_).first(peaks.size());
   scan::measure_chains(peaks, config_.chain.step_px, chains);
   if (*std::max_element(chains.begin(), chains.end()) < config_.chain.panel_columns(config_.camera.intrinsics.fx)) {
-    stats_.peaks_apart += static_cast<std::uint32_t>(peaks.size());
+    stats_.peaks_apart += static_cast<std::uint32_t>(peaks.size()) / std::max<std::uint32_t>(config_.columns_apart, 1u);
     return true;
   }
   // Beyond the panel there are specks and edges, whose shape is no stripe's.

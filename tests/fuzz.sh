@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Builds the fuzz targets of tests/fuzz with Clang's libFuzzer and sanitizers, runs them one after the other, and prints a table.
 # Usage: tests/fuzz.sh [--seconds N | --runs N | --wanted] [--seed N] [--keep] [TARGET...]     default: 60 seconds each of all targets
-#   --wanted  as many runs of each as the nightly shard wants (the table `wanted` below), without sanitizers, which are several times as slow, but with the
-#             library's assertions; the sanitizers then get every input that was kept for reaching something new, and a minute of changes of their own
+#   --wanted  as many runs of each as the nightly shard wants (the table `wanted` below), without sanitizers and value profile, which are several times as slow, but
+#             with the library's assertions; the sanitizers then get every input that was kept for reaching something new, and a minute of changes of their own
 #   --seed    of the changes (default 1): shards of one target take different ones
 #   --keep    add to tests/fuzz/corpus up to 12 inputs of at most 400 bytes that reach code which the kept ones do not, 4 KB a target in all
 # What is found stays in build/fuzz/corpus/TARGET from call to call; an input that ends a target in build/fuzz/crashes/TARGET-*.
@@ -69,7 +69,7 @@ fuzz() {
 }
 
 status=0
-echo "| target | runs | seconds | runs/s | edges | corpus | ended by |"
+echo "| target | runs | of them sanitized | seconds | edges | corpus | ended by |"
 echo "|---|---|---|---|---|---|---|"
 for target in "${targets[@]}"; do
   log=$build/$target.log found=$build/corpus/$target kept=tests/fuzz/corpus/$target
@@ -86,12 +86,16 @@ for target in "${targets[@]}"; do
   if [ -n "$by_table" ]; then
     fuzz "$plain" "$build/$target-plain.log" "-runs=${wanted[$target]}"
     runs=$(runs_of "$build/$target-plain.log")
+    [ "$runs" -ge "${wanted[$target]}" ] || status=1
+    # What was kept, so that the minute is for changes.
+    fuzz "$build" "$build/$target-kept.log" -runs=0
   fi
   fuzz "$build" "$log" "${limit[@]}" -use_value_profile=1
-  runs=$((runs + $(runs_of "$log")))
+  sanitized=$(runs_of "$log")
+  runs=$((runs + sanitized))
   crashes=$(($(find "$build/crashes" -name "$target-*" | wc -l) - before))
   seconds=$((SECONDS - begin))
-  echo "| $target | $runs | $seconds | $((runs / (seconds > 0 ? seconds : 1))) | $(last_number "$log" 'cov:') | $(find "$found" -type f | wc -l) | $crashes inputs |"
+  echo "| $target | $runs | $sanitized | $seconds | $(last_number "$log" 'cov:') | $(find "$found" -type f | wc -l) | $crashes inputs |"
   if [ -n "$keep" ] && [ "$crashes" -eq 0 ]; then
     # Of the inputs that together cover all, longer ones do more.
     work=$(mktemp -d)

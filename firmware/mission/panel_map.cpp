@@ -27,10 +27,11 @@ constexpr double way_margin_rad = 0.2;
 constexpr double calibration_shift_m = 0.0021;
 constexpr double calibration_turn_rad = 0.0021;
 
-// A point moves along its ray by a pixel's width at its distance over the sine of the angle between ray and laser's plane: 20 degrees in a sweep, at least.
-constexpr double along_ray = 3.0;
-// Of the panel's distance; a grip bears half of it.
-constexpr double largest_shape_shift_m = 0.008;
+// A point moves along its ray by a pixel's width at its distance over the sine of the angle between ray and laser's plane: 20 degrees in the default sweep. The distance is
+// measured square to the panel: a ray to its border is a third longer.
+constexpr double along_ray = 4.0;
+// What the valve's base is asked to be known to.
+constexpr double largest_shape_shift_m = 0.003;
 
 }  // namespace
 
@@ -39,10 +40,11 @@ double PanelMap::shape_shift_m(const PlaneFit& fit) const {
   return along_ray * static_cast<double>(fit.shape_doubt_px) * distance_m / camera_.intrinsics.fy;
 }
 
+// A shift by pixels is not the same all over the sweep, and so a turn, too: at most from none at one border to the whole of it at the other.
 // The mean of thousands of points is far better than one of them; what bends the plane as a whole shows in their scatter, and is no larger.
 arm::PanelDoubt PanelMap::doubt() const {
-  const Vec2 size = layout_.plate_max_m - layout_.plate_min_m;
-  return {calibration_shift_m + 2 * plane_.rms_m + shape_shift_m(plane_), calibration_turn_rad + 2 * plane_.rms_m / size.minCoeff()};
+  const double across_m = (layout_.plate_max_m - layout_.plate_min_m).minCoeff(), shape_m = shape_shift_m(plane_);
+  return {calibration_shift_m + 2 * plane_.rms_m + shape_m, calibration_turn_rad + (2 * plane_.rms_m + shape_m) / across_m};
 }
 
 void PanelMap::expect_handle(double rad) {

@@ -23,8 +23,8 @@ constexpr float half_height_to_sigma = 1 / 2.355f;
 constexpr std::int32_t inside_border = 3, least_border = 3;
 constexpr float border_widths = 5.0f;
 
-// Of the width, by which a stripe's centre moves. A second lobe beside the stripe, 1.5 to 3 widths off and 5 to 30 % as high, shifts it by 2.0 to 2.9 widths times the
-// skew that is found; a nearer one by more, but so do all methods that know no other beam. What is left of a shape and is all slope, of a bell's rms of 0.42 in the
+// Of the width, by which a stripe's centre moves. A second lobe beside the stripe, 1.9 to 2.6 widths off and 5 to 30 % as high, shifts it by 2 to 4 widths times the
+// skew that is found. A nearer one makes the stripe wider and hardly skewed: no picture tells it from a beam that is so, and the laser's calibration takes it in. What is left of a shape and is all slope, of a bell's rms of 0.42 in the
 // window, shifts it by 2.4 widths times the share.
 constexpr float shift_by_skew = 3.0f, shift_by_share = 2.4f;
 

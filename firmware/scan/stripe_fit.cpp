@@ -23,10 +23,11 @@ constexpr float longest_step = 0.5f;         // stripe widths
 constexpr float farthest = 3.0f;             // stripe widths from the start: beyond it, another stripe
 constexpr float least_determinant = 1e-5f;   // of stripe and offset, relative: below it they cannot be told apart
 constexpr float plain_sigmas = 3.0f;         // by which the squares about a line may exceed the noise's
-constexpr float painted_squares = 6.0f;      // over the noise's: at an edge of 10:1 a hundred times as much, by noise once in 10^6 columns
-constexpr float faintest = 0.1f;             // variance of a speckle of 0.3: columns whose other noise is more tell nothing of it
-constexpr float median_of_square = 0.455f;   // of a normal deviate
-constexpr float least_variance = 1e-3f;      // grey levels^2: of a picture without noise
+constexpr float painted_squares =
+    6.0f;  // over the noise's: at an edge of 10:1 on paint of 110 grey levels a hundred times, by noise once in 10^6 columns
+constexpr float faintest = 0.1f;            // variance of a speckle of 0.3: columns whose other noise is more tell nothing of it
+constexpr float median_of_square = 0.455f;  // of a normal deviate
+constexpr float least_variance = 1e-3f;     // grey levels^2: of a picture without noise
 
 Lanes square(Lanes x) { return x * x; }
 float square(float x) { return x * x; }

@@ -157,7 +157,7 @@ std::string sight_text(const Sight& sight) {
   if (sight.images_missing > 0) text += formatted(", %.0f images missing", sight.images_missing);
   if (sight.images_refused > 0) text += formatted(", %.0f images refused", sight.images_refused);
   if (sight.stripe.width_px > 0) {
-    text += formatted("; stripe %.2f px wide", sight.stripe.width_px) +
+    text += formatted("; stripe %.2f px wide", sight.stripe.width_px) + formatted(", skew %+.2f", sight.stripe.skew) +
             formatted(", %.1f %% of its shape unexplained", 100 * sight.stripe.model_share);
   }
   text += formatted("; %.0f points", sight.points);

@@ -60,7 +60,7 @@ struct StripeForm {
   float model_share = 0;  // what its shape leaves unexplained, over its peak
 };
 
-// Counters of the vision side, never reset.
+// Counters of the vision side, never reset, and what it saw last.
 struct ScanStats {
   std::uint32_t images = 0;             // measured: a stripe, a background or a still was taken from them
   std::uint32_t stripes = 0;            // of these, images of the laser in a sweep

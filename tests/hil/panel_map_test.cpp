@@ -104,7 +104,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Poor{"NoPlane", [](PanelResult& r) { r.fit.valid = false; }, StepFailure::no_panel},
                     Poor{"FewPoints", [](PanelResult& r) { r.fit.points = 100; }, StepFailure::too_few_points},
                     Poor{"CloudOffThePlane", [](PanelResult& r) { r.fit.inliers = r.fit.points / 5; }, StepFailure::plane_unsure},
-                    Poor{"LineMisshapen", [](PanelResult& r) { r.fit.shape_doubt_px = 4; }, StepFailure::line_misshapen},
+                    Poor{"LineMisshapen", [](PanelResult& r) { r.fit.shape_doubt_px = 1; }, StepFailure::line_misshapen},
                     Poor{"LineOfNoShape", [](PanelResult& r) { r.fit.shape_doubt_px = std::numeric_limits<float>::quiet_NaN(); },
                          StepFailure::line_misshapen},
                     Poor{"NoMarker", [](PanelResult& r) { r.marker.found = false; }, StepFailure::no_marker},
@@ -136,11 +136,11 @@ TEST(PanelMap, DoubtsThePanelsPlaceByTheLinesShape) {
   PanelMap plain = panel.map(), skewed = panel.map();
   PanelResult result = panel.seen(10);
   ASSERT_EQ(plain.update(result), StepFailure::none);
-  result.fit.shape_doubt_px = 1;
+  result.fit.shape_doubt_px = 0.5f;
   ASSERT_EQ(skewed.update(result), StepFailure::none);
-  // A pixel of the default camera is 1.3 to 1.6 mm wide on the panel.
-  EXPECT_GT(skewed.doubt().shift_m - plain.doubt().shift_m, 0.003);
-  EXPECT_LT(skewed.doubt().shift_m - plain.doubt().shift_m, 0.006);
+  // A pixel of the default camera is 1.2 mm wide at the panel's 0.43 m.
+  EXPECT_NEAR(skewed.doubt().shift_m - plain.doubt().shift_m, 4 * 0.5 * 0.0012, 0.0003);
+  EXPECT_GT(skewed.doubt().turn_rad, plain.doubt().turn_rad + 0.002);
 }
 
 TEST(PanelMap, NamesAPointerThatItDidNotRecogniseWhereTheStopsLeaveItOpen) {

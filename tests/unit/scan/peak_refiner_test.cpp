@@ -156,8 +156,8 @@ TEST(PeakRefiner, LearnsTheSpeckle) {
         (void)refiner->refine({on.data(), width, height, width}, {off.data(), width, height, width}, peaks);
       }
       EXPECT_NEAR(refiner->noise().speckle, contrast, 0.3 * contrast + 0.05) << "beam " << beam << " px, seeds 1 to 3";
-      // Beyond what water and lens leave of it, 0.25, the brightest grains are clipped, and a narrow stripe comes out 6 to 11 % too narrow.
-      const double width_error = contrast > 0.3 ? 0.12 : 0.05;
+      // A narrow stripe of the coarsest grain comes out 11 % too narrow, with its lens held. With a lens that followed the grain it was 7 % too wide at first.
+      const double width_error = contrast == 0.5 && beam == 1.2 ? 0.12 : 0.05;
       EXPECT_NEAR(width_in_picture_px(refiner->optics()), width_px(s), width_error * width_px(s))
           << "beam " << beam << " px, contrast " << contrast;
       EXPECT_NEAR(refiner->optics().skew, 0, 0.05) << "beam " << beam << " px, contrast " << contrast;
@@ -219,17 +219,19 @@ TEST(PeakRefiner, AFaintPairTellsNothingOfTheLens) {
     std::printf("faint, beam %.1f px: %.3f px, %.2f of the bound, %zu of %d columns\n", beam, Errors::rms(errors.elsewhere), over_bound,
                 errors.elsewhere.size(), errors.columns);
     EXPECT_LT(over_bound, 1.25);
+    EXPECT_GE(static_cast<double>(errors.elsewhere.size()), 0.97 * errors.columns);
+    EXPECT_LE(errors.far, 0.002 * errors.columns);
   }
 }
 
 // A lobe on one side is followed by the widths and the skew, in all columns alike: no scatter tells of it.
 TEST(PeakRefiner, DoubtsTheCentresOfAStripeWithALobe) {
   for (const double beam : {1.2, 2.4}) {
-    for (const double lobe : {0.0, 0.1, 0.2, 0.3}) {
+    for (const auto& [lobe, widths] : {std::pair{0.0, 2.3}, {0.1, 2.3}, {0.2, 2.3}, {0.3, 2.3}, {0.1, 1.9}, {0.2, 1.9}, {0.3, 2.6}}) {
       FormedStripe s = scene(beam);
       s.bars.contrast = 1;
       s.peak_grey = 90;
-      const double apart_px = 2.3 * width_px(s);
+      const double apart_px = widths * width_px(s);
       const auto refiner = std::make_unique<PeakRefiner>();
       Errors errors;
       for (s.seed = 1; s.seed <= 6; ++s.seed) {
@@ -245,8 +247,9 @@ TEST(PeakRefiner, DoubtsTheCentresOfAStripeWithALobe) {
         compare(s, image, peaks, errors);
       }
       const double error_px = Errors::rms(errors.elsewhere), doubt_px = refiner->shape_doubt_px();
-      std::printf("beam %.1f px, lobe of %.1f: %.2f px off, doubt %.2f px\n", beam, lobe, error_px, doubt_px);
-      EXPECT_GT(doubt_px, lobe > 0 ? 0.8 * error_px : 0) << "beam " << beam << " px, lobe " << lobe << ", seeds 1 to 6";
+      std::printf("beam %.1f px, lobe of %.1f at %.1f widths: %.2f px off, doubt %.2f px\n", beam, lobe, widths, error_px, doubt_px);
+      EXPECT_GE(static_cast<double>(errors.elsewhere.size()), 0.97 * errors.columns);
+      EXPECT_GT(doubt_px, lobe > 0 ? 0.7 * error_px : 0) << "beam " << beam << " px, lobe " << lobe << ", seeds 1 to 6";
       EXPECT_LT(doubt_px, lobe > 0 ? 3 * error_px : 0.1) << "beam " << beam << " px, lobe " << lobe << ", seeds 1 to 6";
     }
   }

@@ -57,6 +57,7 @@ TEST_F(PlaneFitting, WhatIsNoPointIsNoInlierOfAnyPlane) {
       const double along = unit(random);
       points.push_back(point(Vec3(along, along, unit(random))));
       if (i % 3 == 0) points.push_back(point(Vec3::Constant(std::numeric_limits<double>::quiet_NaN())));
+      if (i % 5 == 0) points.push_back(point(Vec3::Constant(std::numeric_limits<double>::infinity())));
     }
     const PlaneFit result = fit(points, {.tight_sigmas = 3.0});
     ASSERT_TRUE(result.valid);
