@@ -45,7 +45,7 @@ class PlaneFitter {
   void refine_on_subset(Hypothesis& h, float threshold_m) const;
   bool best_hypothesis(const Config& config, std::uint64_t& random, Hypothesis& best) const;
 
-  // Structure of arrays, about the cloud's centre; with points far off any plane.
+  // Structure of arrays, about the cloud's centre.
   alignas(64) std::array<float, subset_capacity> x_{}, y_{}, z_{};
   std::size_t size_ = 0;
 };
