@@ -129,5 +129,17 @@ TEST_F(PowerOff, ComesBeforeTheNodesAreStopped) {
   for (const ScriptedNode& node : bus.nodes) EXPECT_EQ(node.nmt(), 4);
 }
 
+// Found by fuzz_can_core: an order that came after it, and before the nodes were stopped, left a drive with power for ever.
+TEST_F(PowerOff, OfAShutDownIsNotTurnedByALaterOrder) {
+  ASSERT_TRUE(enable());
+  bus.network.shut_down();
+  for (int i = 0; i < 10; ++i) {
+    axis().request(AxisRequest::hold_enabled);
+    bus.step();
+    EXPECT_FALSE(axis().enabled()) << "SYNC " << i;
+  }
+  EXPECT_EQ(drive().drive_state_bits(), switch_on_disabled);
+}
+
 }  // namespace
 }  // namespace lf::canopen
