@@ -64,7 +64,7 @@ void BasicScanPipeline<capacity>::begin_sweep(std::uint32_t sweep) {
   forget_exposures(exposures_.size());
   stripes_.clear();
   cloud_.clear();
-  // What a sweep has learned of the stripe's shape is not another one's, whose light and water may be others.
+  // Light and water may have changed: the stripe is learned anew.
   refiner_.begin_anew();
   stats_.stripe = {};
   // Between sweeps the arm, its shadow and what it turned have moved.
@@ -281,14 +281,14 @@ bool BasicScanPipeline<capacity>::add_points(const Stripe& stripe, bool final) {
   const std::span<const scan::Peak> peaks = std::span(stripe.peaks).first(stripe.count);
   const std::span<std::uint8_t> chains = std::span(chains_).first(peaks.size());
   scan::measure_chains(peaks, config_.chain.step_px, chains);
+  const std::uint32_t apart = std::max<std::uint32_t>(config_.columns_apart, 1u);
   if (*std::max_element(chains.begin(), chains.end()) < config_.chain.panel_columns(config_.camera.intrinsics.fx)) {
-    stats_.peaks_apart += static_cast<std::uint32_t>(peaks.size()) / std::max<std::uint32_t>(config_.columns_apart, 1u);
+    stats_.peaks_apart += static_cast<std::uint32_t>(peaks.size()) / apart;
     return true;
   }
   // Beyond the panel there are specks and edges, whose shape is no stripe's.
   stats_.stripe = stripe.form;
   const std::size_t points_before = cloud_.points().size();
-  const std::uint32_t apart = std::max<std::uint32_t>(config_.columns_apart, 1u);
   const std::uint32_t shift = stripes_seen_++ % apart;
   for (std::size_t begin = 0; begin < peaks.size();) {
     std::size_t end = begin + 1;

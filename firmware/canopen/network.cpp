@@ -235,7 +235,7 @@ void Network::tick(Time now, Outbox& outbox) {
     if (nodes_[i].take_restart() && i < joint_count) axes_[i].forget_home();
   }
   if (boot_ == BootState::running) step_boot(now);
-  // An order in between does not turn it.
+  // Until the nodes are stopped, no later order gives power back.
   if (shut_down_syncs_ > 0) remove_power();
   if (shut_down_syncs_ > 0 && --shut_down_syncs_ == 0) stop_nodes();
   step_axes(now);

@@ -40,8 +40,8 @@ double PanelMap::shape_shift_m(const PlaneFit& fit) const {
   return along_ray * static_cast<double>(fit.shape_doubt_px) * distance_m / camera_.intrinsics.fy;
 }
 
-// A shift by pixels is not the same all over the sweep, and so a turn, too: at most from none at one border to the whole of it at the other.
-// The mean of thousands of points is far better than one of them; what bends the plane as a whole shows in their scatter, and is no larger.
+// The mean of thousands of points is far better than one of them; what bends the plane as a whole shows in their scatter, and is no larger. What the line's shape shifts,
+// it shifts unevenly over the sweep: at most from nothing at one border to the whole of it at the other, which is a turn.
 arm::PanelDoubt PanelMap::doubt() const {
   const double across_m = (layout_.plate_max_m - layout_.plate_min_m).minCoeff(), shape_m = shape_shift_m(plane_);
   return {calibration_shift_m + 2 * plane_.rms_m + shape_m, calibration_turn_rad + (2 * plane_.rms_m + shape_m) / across_m};

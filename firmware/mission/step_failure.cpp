@@ -53,8 +53,7 @@ Words words(StepFailure failure) {
     case StepFailure::line_misshapen:
       return {"the laser's line is misshapen",
               "It has a second line or a tail beside it: clean the laser's window and the camera's, check the laser's focus, and that no "
-              "reflection or other laser "
-              "shines beside it."};
+              "reflection or other laser shines beside it."};
     case StepFailure::handle_unsure:
       return {"too few points on the handle for its angle", "Sweep slower: check mission.sweep_speed_rad_s; clean the handle."};
     case StepFailure::pointer_unsure:

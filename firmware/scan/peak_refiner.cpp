@@ -23,9 +23,9 @@ constexpr float half_height_to_sigma = 1 / 2.355f;
 constexpr std::int32_t inside_border = 3, least_border = 3;
 constexpr float border_widths = 5.0f;
 
-// Of the width, by which a stripe's centre moves. A second lobe beside the stripe, 1.9 to 2.6 widths off and 5 to 30 % as high, shifts it by 2 to 4 widths times the
-// skew that is found. A nearer one makes the stripe wider and hardly skewed: no picture tells it from a beam that is so, and the laser's calibration takes it in. What is left of a shape and is all slope, of a bell's rms of 0.42 in the
-// window, shifts it by 2.4 widths times the share.
+// By how much a shape that is no bell moves the centre, over width times skew and over width times share. A second lobe, 1.9 to 2.6 widths beside the stripe and 5 to 30 %
+// as high, moves it by 2 to 4 times the skew that is found. A nearer lobe makes the stripe wider and hardly skewed: no picture tells it from a wider beam, and the laser's
+// calibration takes it in. What is left over moves it most where it looks like a bell's slope, whose rms in the window is 0.42: by 1 / 0.42 times the share.
 constexpr float shift_by_skew = 3.0f, shift_by_share = 2.4f;
 
 // The model's share goes half of the way, as a factor, to where the median of the misfits is between these. Haze that is not learned yet makes 1.2, a camera that
