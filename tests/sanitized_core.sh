@@ -19,8 +19,8 @@ if [ "${1:-}" = --fuzz ]; then
 fi
 programs=("$@")
 [ $# -gt 0 ] || programs=(test_canopen test_safety test_arm test_mission test_scan test_hil_daemon)
-# Of the daemon's clock: its programs are some three times slower than without. At 8 it keeps time beside a campaign on both cores (255 s).
-export LANTERNFISH_SLOWDOWN=${LANTERNFISH_SLOWDOWN:-8}
+# Of the daemon's clock: its programs are some three times slower than without.
+export LANTERNFISH_SLOWDOWN=${LANTERNFISH_SLOWDOWN:-4}
 build=build/$preset
 mkdir -p "$build"
 exec 9>"$build/lock"

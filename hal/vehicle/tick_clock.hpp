@@ -17,8 +17,11 @@ Time thread_time_now();
 void sleep_until(Time t);
 
 // For tests on machines that do not keep time: from now on both of the above go `factor` times slower than the clock, and none reads more than `longest_step`
-// after the one before it, on any thread: while the machine stands still, time does. Duration(): as the clock goes. Before threads are started.
+// after the one before it, on any thread: while the machine stands still, time does. Nor does time go on by more than `longest_step` past the end of a thread's
+// sleep, or past its hold_time_for_me(), before the thread had its turn. Duration(): as the clock goes. Before threads are started.
 void slow_time_down(int factor, Duration longest_step = {});
+// The calling thread is due at `due`, and again whenever it calls this or sleep_until(), up to its end: it must, or time stands still for all.
+void hold_time_for_me(Time due);
 
 class TickClock {
  public:

@@ -1,8 +1,9 @@
 // lanternfishd, all of it but main(), on a bus of the test's making: its threads, its socket, its log, and the served drives in real time on the other end.
 // No kernel's CAN, no rights and no real time are needed, so that it runs under the sanitizers as well.
 //
-// Time passes four times slower than the clock, for a machine that has other work; LANTERNFISH_SLOWDOWN=N has it pass N times slower, for a sanitizer. Where the
-// whole machine stands still, as a shared one does, so does this time: a stop of 100 ms is no three SYNCs without an answer.
+// Time passes half as fast as the clock, for a machine that has other work; LANTERNFISH_SLOWDOWN=N has it pass N times slower, for a sanitizer. Where the
+// whole machine stands still, as a shared one does, so does this time, and it waits for the control thread and for the drives: one that gets no processor for
+// 100 ms is no three SYNCs without an answer.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -42,7 +43,12 @@ class PairLink : public serve::CanLink {
  public:
   explicit PairLink(hal::LinuxCalls& calls) : can_(hal::SocketCan::Config{}, calls) { (void)can_.open(); }
   Time now() override { return hal::monotonic_now(); }
-  bool wait(Time until) override { return can_.wait_readable(until); }
+  bool wait(Time until) override {
+    hal::hold_time_for_me(until);
+    bool readable = can_.wait_readable(until);
+    while (!readable && now() < until) readable = can_.wait_readable(until);  // time was held up for another thread
+    return readable;
+  }
   void sleep(Time until) override { hal::sleep_until(until); }
   hal::PortStatus receive(hal::ReceivedFrame& received) override {
     hal::PortStatus status = can_.receive(received);

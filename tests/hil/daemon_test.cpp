@@ -68,7 +68,7 @@ TEST_F(AssembledDaemon, StopsByAnOrderAndByTheInput) {
   folder.write("estop", "0\n");
   ASSERT_TRUE(wait_standing("ended", 5));
   order("reset");
-  ASSERT_TRUE(wait_unpowered(5));
+  ASSERT_TRUE(wait_standing("idle", 5));
   order("home");  // taken, and stopped within 100 ms: before anything has power
   ASSERT_TRUE(wait_standing("ended", 5));
   EXPECT_FALSE(sea->any_powered());

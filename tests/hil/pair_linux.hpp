@@ -18,7 +18,7 @@ namespace lf::test {
 // How many times slower than the machine's the test's clock goes.
 inline int slowdown() {
   const char* set = std::getenv("LANTERNFISH_SLOWDOWN");
-  return set != nullptr ? std::max(1, std::atoi(set)) : 4;
+  return set != nullptr ? std::max(1, std::atoi(set)) : 2;
 }
 
 class PairLinux : public hal::LinuxCalls {

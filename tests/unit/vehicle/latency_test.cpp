@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <random>
@@ -125,6 +126,27 @@ TEST(SlowTime, StandsStillWithTheMachine) {
   const auto took = std::chrono::steady_clock::now() - begun;
   EXPECT_GE(monotonic_now() - after, Duration::from_ms(100));
   EXPECT_GE(took, std::chrono::milliseconds(200 + factor * 100));
+  slow_time_down(1);
+}
+
+// Nor of the time in which another of its threads got no processor.
+TEST(SlowTime, WaitsForAThreadThatIsDue) {
+  slow_time_down(1, Duration::from_ms(10));
+  std::atomic<bool> had_its_turn{false};
+  const Time due = monotonic_now() + Duration::from_ms(50);
+  std::thread late([&] {
+    hold_time_for_me(due);
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    EXPECT_LE(monotonic_now(), due + Duration::from_ms(10));
+    had_its_turn = true;
+  });
+  sleep_until(due + Duration::from_ms(20));
+  EXPECT_TRUE(had_its_turn);
+  late.join();
+  // At its end it is no longer waited for.
+  const Time after = monotonic_now();
+  sleep_until(after + Duration::from_ms(100));
+  EXPECT_GE(monotonic_now(), after + Duration::from_ms(100));
   slow_time_down(1);
 }
 
