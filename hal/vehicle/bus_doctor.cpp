@@ -75,6 +75,16 @@ std::string number_text(const FoundNode& node, std::uint16_t index, std::uint8_t
   return object != nullptr && object->there() ? std::to_string(object->number()) : "?";
 }
 
+// Encoder resolution, gear ratio, feed, position and velocity unit: with these the drive says in which units it counts.
+constexpr std::array<Place, 8> unit_places{
+    {{0x608F, 1}, {0x608F, 2}, {0x6091, 1}, {0x6091, 2}, {0x6092, 1}, {0x6092, 2}, {0x60A8, 0}, {0x60A9, 0}}};
+
+bool units_confirmed(const config::DriveKind& kind) {
+  return std::any_of(kind.objects.begin(), kind.objects.end(), [](const config::ProfileObject& object) {
+    return std::any_of(unit_places.begin(), unit_places.end(), [&](const Place& place) { return place.index == object.index; });
+  });
+}
+
 const char* type_of(std::size_t bytes) { return bytes == 1 ? "u8" : bytes == 2 ? "u16" : "u32"; }
 
 }  // namespace
@@ -214,6 +224,16 @@ std::vector<std::string> differences(const FoundNode& node, const config::DriveK
   return all;
 }
 
+namespace {
+
+// As it stands under `check`.
+std::string check_row(const Place& place, const ReadObject& read) {
+  return "- {object: \"" + config::object_text(place.index, place.sub) + "\", type: " + type_of(read.bytes.size()) +
+         ", value: " + hex(read.number()) + "}";
+}
+
+}  // namespace
+
 std::string draft_profile(const FoundNode& node) {
   const auto identity = [&](std::uint8_t sub) {
     const ReadObject* read = node.find(0x1018, sub);
@@ -234,9 +254,7 @@ std::string draft_profile(const FoundNode& node) {
   for (const Place& place : places) {
     const bool factor = (place.index >= 0x608F && place.index <= 0x6097) || (place.index >= 0x60A8 && place.index <= 0x60AA);
     const ReadObject* read = node.find(place.index, place.sub);
-    if (!factor || read == nullptr || !read->there()) continue;
-    checks += "  - {object: \"" + config::object_text(place.index, place.sub) + "\", type: " + type_of(read->bytes.size()) +
-              ", value: " + hex(read->number()) + "}\n";
+    if (factor && read != nullptr && read->there()) checks += "  " + check_row(place, *read) + "\n";
   }
   for (const Place& place : replaceable) {
     const ReadObject* read = node.find(place.index, place.sub);
@@ -271,6 +289,26 @@ std::string habits_text(const config::DriveKind& kind) {
   return text + line;
 }
 
+std::vector<std::string> unit_rows(const FoundNode& node) {
+  std::vector<std::string> rows;
+  for (const Place& place : unit_places) {
+    const ReadObject* read = node.find(place.index, place.sub);
+    if (read != nullptr && read->there()) rows.push_back(check_row(place, *read));
+  }
+  return rows;
+}
+
+// A profile with a wrong scale boots, and the joint then moves too far or not far enough.
+std::string units_text(const FoundNode& node, const config::DriveKind& kind) {
+  if (units_confirmed(kind)) return "";
+  const std::vector<std::string> rows = unit_rows(node);
+  const std::string head = "  note: its units are confirmed by no object: ";
+  if (rows.empty()) return head + "it has none of 608F, 6091, 6092, 60A8, 60A9. Measure a short jog before it carries the arm\n";
+  std::string text = head + "the profile checks none of these. Where they are right, state them under 'check'\n";
+  for (const std::string& row : rows) text += "    " + row + "\n";
+  return text;
+}
+
 }  // namespace
 
 nlohmann::ordered_json doctor_json(const std::vector<FoundNode>& nodes, const std::vector<config::DriveKind>& kinds,
@@ -292,6 +330,8 @@ nlohmann::ordered_json doctor_json(const std::vector<FoundNode>& nodes, const st
     if (node.drive() && kind != nullptr) {
       one["differences"] = differences(node, *kind);
       one["unconfirmed"] = kind->unconfirmed;
+      one["units_confirmed"] = units_confirmed(*kind);
+      if (!units_confirmed(*kind)) one["unit_objects"] = unit_rows(node);
     }
     if (node.drive() && kind == nullptr) one["draft"] = draft_profile(node);
     const bool as_told = one.contains("differences") && one["differences"].empty();
@@ -330,6 +370,7 @@ std::string doctor_text(const std::vector<FoundNode>& nodes, const std::vector<c
     const std::string whose = told != configured.end() ? ", " + told->second.joint + ", configured as " : ", profile ";
     text += whose + kind->name + " (" + kind->title + ")" + (all.empty() ? ": agrees with its profile\n" : ":\n");
     for (const std::string& one : all) text += "  " + one + "\n";
+    text += units_text(node, *kind);
     text += others_text(*kind, fit, told != configured.end());
     text += habits_text(*kind);
     const ReadObject* error = node.find(0x603F, 0);

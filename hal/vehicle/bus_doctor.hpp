@@ -80,7 +80,7 @@ std::string draft_profile(const FoundNode& node);
 nlohmann::ordered_json doctor_json(const std::vector<FoundNode>& nodes, const std::vector<config::DriveKind>& kinds,
                                    const ConfiguredDrives& configured = {});
 
-// All of it, for people. A node that is `configured` is held against that profile, whatever it says it is.
+// All of it, for people, with a note where a profile checks no object of the drive's units. A node that is `configured` is held against that profile, whatever it says it is.
 std::string doctor_text(const std::vector<FoundNode>& nodes, const std::vector<config::DriveKind>& kinds,
                         const ConfiguredDrives& configured = {});
 

@@ -114,6 +114,26 @@ TEST(BusDoctor, DraftsAProfileThatIsReadOnceItsQuestionsAreAnswered) {
   EXPECT_TRUE(hal::differences(nodes[2], kind).empty());
 }
 
+// It said no more than that the drive agrees, whatever its factor group held.
+TEST(BusDoctor, NotesUnitsThatNoObjectConfirmsWithWhatTheDriveHolds) {
+  config::DriveKind unchecked = config::find_drive_kind("lmdrive", "");
+  unchecked.objects.clear();
+  DriveBench lmdrive({"", "lmdrive"}), copley({"", "copley"});
+  const std::vector<hal::FoundNode> nodes = examine(lmdrive), others = examine(copley);
+  const std::string text = hal::doctor_text({nodes.at(2)}, {unchecked});
+  EXPECT_NE(text.find("agrees with its profile\n  note: its units are confirmed by no object"), std::string::npos) << text;
+  EXPECT_NE(text.find("\n    - {object: \"608F:01\", type: u32, value: 0x00000FA0}\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("\n    - {object: \"6092:01\", type: u32, value: 0x0000C800}\n"), std::string::npos) << text;
+  EXPECT_EQ(text.find("\"6091:01\""), std::string::npos) << "it has none\n" << text;
+  const auto document = hal::doctor_json({nodes.at(2)}, {unchecked});
+  EXPECT_EQ(document["nodes"][0]["units_confirmed"], false);
+  EXPECT_EQ(document["nodes"][0]["unit_objects"].size(), 4u);
+  EXPECT_EQ(hal::doctor_text({nodes[2]}, all_kinds()).find("confirmed by no object"), std::string::npos);
+  EXPECT_EQ(hal::doctor_json({nodes[2]}, all_kinds())["nodes"][0]["units_confirmed"], true);
+  const std::string none = hal::doctor_text({others.at(2)}, all_kinds());
+  EXPECT_NE(none.find("it has none of 608F, 6091, 6092, 60A8, 60A9. Measure a short jog"), std::string::npos) << none;
+}
+
 // It agreed with the profile that fits the drive, and the boot then failed by the one that the machine's file names.
 TEST(BusDoctor, HoldsADriveAgainstTheProfileThatItsJointIsConfiguredWith) {
   DriveBench bench({"", "lmdrive"});
