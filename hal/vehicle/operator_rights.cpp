@@ -16,18 +16,20 @@ const char* name(Role role) {
 
 const std::vector<Right>& operator_rights() {
   static const std::vector<Right> rights{
-      {"status", Role::watcher, "how things stand"},
-      {"estop", Role::watcher, "emergency stop: whoever sees the need may press it"},
-      {"start", Role::op, "the job, from power-on if need be"},
-      {"home", Role::op, "power up, boot, home, and wait"},
-      {"hold", Role::op, "halt the arm on its way"},
-      {"resume", Role::op, "go on from there"},
-      {"abort", Role::op, "let go, go back, stow"},
-      {"task", Role::op, "another job"},
-      {"reset", Role::op, "forget how the last mission ended"},
-      {"jog", Role::engineer, "one joint by a small angle"},
-      {"commission", Role::engineer, "find and store the zeros of the joints' absolute encoders"},
-      {"restart-bus", Role::engineer, "bring a CAN controller back that went bus-off"},
+      {"status", Role::watcher, "how things stand", R"({"do": "status"})"},
+      {"estop", Role::watcher, "emergency stop: whoever sees the need may press it", R"({"do": "estop"})"},
+      {"start", Role::op, "the job, from power-on if need be", R"({"do": "start"})"},
+      {"home", Role::op, "power up, boot, home, and wait", R"({"do": "home"})"},
+      {"hold", Role::op, "halt the arm on its way", R"({"do": "hold"})"},
+      {"resume", Role::op, "go on from there", R"({"do": "resume"})"},
+      {"abort", Role::op, "let go, go back, stow", R"({"do": "abort"})"},
+      {"task", Role::op, "another job",
+       R"({"do": "task", "tasks": [{"turn_valve": {"to_deg": 45}}, {"press_buttons": {"order": ["left", "centre"]}}]})"},
+      {"reset", Role::op, "forget how the last mission ended", R"({"do": "reset"})"},
+      {"jog", Role::engineer, "one joint by a small angle", R"({"do": "jog", "joint": "elbow", "by_deg": -5})"},
+      {"commission", Role::engineer, "find and store the zeros of the joints' absolute encoders",
+       R"({"do": "commission", "joints": ["elbow"], "clear": true})"},
+      {"restart-bus", Role::engineer, "bring a CAN controller back that went bus-off", R"({"do": "restart-bus"})"},
   };
   return rights;
 }

@@ -24,6 +24,7 @@ struct Right {
   const char* request;
   Role least;  // who may, and everyone above
   const char* does;
+  const char* line;  // that asks for it
 };
 
 const std::vector<Right>& operator_rights();

@@ -186,6 +186,14 @@ void OperatorServer::send_line(Client& client, const std::string& answer) {
   let_go(client);
 }
 
+// Its line goes on, and nothing behind it can be told from it.
+void OperatorServer::refuse_length(Client& client) {
+  send_line(client, R"({"ok":false,"why":"a line has at most )" + std::to_string(limits_.longest_line) + R"( bytes"})");
+  if (client.fd < 0) return;
+  ++stats_.let_go;
+  let_go(client);
+}
+
 // What stands before a stop would be done after it, or keep it waiting: it is answered and dropped.
 void OperatorServer::overtake(Client& client, Time now) {
   for (std::size_t end = client.text.find('\n', client.searched); end != std::string::npos; end = client.text.find('\n', client.searched)) {
@@ -256,9 +264,9 @@ void OperatorServer::serve(Duration how_long, int wake) {
     if (client.fd < 0) continue;
     const bool endless = client.text.size() > limits_.longest_line && client.text.find('\n') == std::string::npos;
     const bool idle = client.waits_for == 0 && now - client.heard > limits_.idle;
-    stats_.let_go += endless ? 1 : 0;
     stats_.idle += !endless && idle ? 1 : 0;
-    if (endless || idle) let_go(client);
+    if (endless) refuse_length(client);
+    if (idle && client.fd >= 0) let_go(client);
   }
   forget_gone();
   if (ready > 0 && polled[1].revents != 0) accept_new(now);

@@ -83,6 +83,7 @@ class OperatorServer {
   void accept_new(Time now);
   bool make_room(unsigned user);
   void let_go(Client& client);
+  void refuse_length(Client& client);
   void forget_gone();
   void read(Client& client);
   void overtake(Client& client, Time now);

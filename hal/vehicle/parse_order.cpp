@@ -9,6 +9,7 @@
 
 #include "hal/config/homing_file.hpp"
 #include "hal/config/machine.hpp"
+#include "hal/config/nearest.hpp"
 #include "shared/input_error.hpp"
 
 namespace lf::hal {
@@ -50,11 +51,28 @@ std::string quoted(const std::string& text) {
   return "'" + shown + "'";
 }
 
+// "do" is in every request.
+std::string takes(std::initializer_list<const char*> names) {
+  std::string list;
+  for (const char* name : names) {
+    if (std::string_view(name) != "do") list += (list.empty() ? ": it takes \"" : ", \"") + std::string(name) + "\"";
+  }
+  return list.empty() ? ": it takes nothing but \"do\"" : list;
+}
+
+// Of a name that is short enough to be a misspelt one.
+std::string nearest_request(const std::string& name) {
+  if (name.size() > longest_quote) return "";
+  std::vector<std::string> known;
+  for (const Right& right : operator_rights()) known.emplace_back(right.request);
+  return config::suggestion(name, known);
+}
+
 void allow_only(const Value& object, const char* what, std::initializer_list<const char*> names) {
   for (const auto& [member, value] : object.items()) {
     bool known = false;
     for (const char* name : names) known = known || member == name;
-    if (!known) refuse(std::string(what) + " takes no " + quoted(member));
+    if (!known) refuse(std::string(what) + " takes no " + quoted(member) + takes(names));
   }
 }
 
@@ -171,7 +189,7 @@ OperatorRequest read_request(std::string_view line) {
   const auto& name = what.get_ref<const std::string&>();
   OperatorRequest read;
   read.right = right_of(name);
-  if (read.right == nullptr) refuse("no request " + quoted(name));
+  if (read.right == nullptr) refuse("no request " + quoted(name) + nearest_request(name));
   const std::optional<Command> command = command_of(name);
   read.for_the_core = command.has_value();
   if (command) read.order.command = *command;

@@ -199,6 +199,18 @@ TEST_F(Server, LetsGoOfWhoSendsNoEndOfLine) {
   EXPECT_EQ(server->stats().let_go, 1u);
 }
 
+// The connection ended without a word.
+TEST_F(Server, SaysHowLongALineMayBeBeforeItLetsGo) {
+  OperatorServer::Limits limits;
+  limits.longest_line = 1000;
+  open(limits);
+  Client endless(path);
+  turn();
+  EXPECT_TRUE(endless.say(std::string(1001, 'x')));
+  turn();
+  EXPECT_THAT(endless.hear(), ElementsAre(R"({"ok":false,"why":"a line has at most 1000 bytes"})", "gone"));
+}
+
 TEST_F(Server, LetsGoOfWhoDoesNotRead) {
   open();
   Client deaf(path);

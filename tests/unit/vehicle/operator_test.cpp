@@ -31,11 +31,11 @@ using testing::HasSubstr;
 std::string rights_table() {
   std::ostringstream out;
   out << "| request | " << name(Role::watcher) << " | " << name(Role::op) << " | " << name(Role::engineer)
-      << " | does |\n|---|---|---|---|---|\n";
+      << " | does | a line |\n|---|---|---|---|---|---|\n";
   for (const Right& right : operator_rights()) {
     out << "| `" << right.request << "` |";
     for (std::size_t r = 0; r < role_count; ++r) out << (static_cast<Role>(r) >= right.least ? " yes |" : " |");
-    out << " " << right.does << " |\n";
+    out << " " << right.does << " | `" << right.line << "` |\n";
   }
   return out.str();
 }
