@@ -74,13 +74,17 @@ std::string hex(std::uint32_t value) {
   return text;
 }
 
+// 1018 is hex in profiles and in makers' documents.
+std::string value_text(std::uint16_t index, std::uint32_t value) { return index == 0x1018 ? "0x" + hex(value) : std::to_string(value); }
+
 std::string named(std::uint16_t index, std::uint8_t sub) {
   const std::string name = object_name(index);
   return object_text(index, sub) + (name.empty() ? "" : " " + name);
 }
 
 std::string what_happened(const canopen::NodeBoot& boot, const std::string& object) {
-  const std::string numbers = " (holds " + std::to_string(boot.read) + ", has to hold " + std::to_string(boot.expected) + ")";
+  const std::string numbers =
+      " (holds " + value_text(boot.index, boot.read) + ", has to hold " + value_text(boot.index, boot.expected) + ")";
   const bool absent = boot.abort_code == canopen::sdo_abort::no_object || boot.abort_code == canopen::sdo_abort::no_sub_index;
   switch (boot.failure) {
     case BootFailure::sdo_aborted:

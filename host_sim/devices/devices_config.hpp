@@ -42,9 +42,10 @@ struct DriveConfig {
   const DriveHabit* habit = nullptr;
   std::shared_ptr<const std::vector<DictionaryRow>> dictionary;
   DriveSwitches switches;
-  double counts_per_rev = 64;      // of the motor's encoder
-  double rated_current_a = 1.333;  // at the rated torque
-  bool reversed = false;           // it counts against the joint
+  std::uint32_t vendor = 0, product = 0;  // 1018; 0: the make's own
+  double counts_per_rev = 64;             // of the motor's encoder
+  double rated_current_a = 1.333;         // at the rated torque
+  bool reversed = false;                  // it counts against the joint
 };
 
 // The motor's figures and its nominal friction, for an encoder with so many counts in a revolution of the motor.

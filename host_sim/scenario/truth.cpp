@@ -238,7 +238,10 @@ void set_make(const config::Drives& drives, std::size_t joint, const std::filesy
   const config::JointDriveChoice choice = config::drive_of(drives, joint);
   drive.node = static_cast<std::uint8_t>(choice.node);
   devices::set_motor(arm_joint, choice.counts_per_rev, drive);
-  check_rating(choice, config::find_drive_kind(choice.profile, folder), joint, drive);
+  const config::DriveKind kind = config::find_drive_kind(choice.profile, folder);
+  check_rating(choice, kind, joint, drive);
+  drive.vendor = kind.identity.vendor;
+  drive.product = kind.identity.product;
   drive.rated_current_a = choice.rated_current_a;
   drive.reversed = choice.polarity == "reversed";
   // The profile's own make, or the nearest of those that it is like.
@@ -252,9 +255,9 @@ void set_make(const config::Drives& drives, std::size_t joint, const std::filesy
   }
   // A dictionary of which no profile is shipped can be named by nobody.
   std::string list;
-  for (const std::string& kind : config::shipped_drive_kinds()) {
-    const bool simulated = kind == "lanternfish" || kind.starts_with("cia402") || devices::find_habit(kind) != nullptr;
-    if (simulated) list += (list.empty() ? "" : ", ") + kind;
+  for (const std::string& shipped : config::shipped_drive_kinds()) {
+    const bool simulated = shipped == "lanternfish" || shipped.starts_with("cia402") || devices::find_habit(shipped) != nullptr;
+    if (simulated) list += (list.empty() ? "" : ", ") + shipped;
   }
   throw InputError(std::string("drives.") + config::joint_name(joint) + ": there is no simulated drive '" + choice.profile +
                    "': a profile of your own is simulated as the one that it is 'like', and that takes " + list);

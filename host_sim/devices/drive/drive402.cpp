@@ -28,7 +28,13 @@ PositionLoop::Config loop_config(const DriveConfig& config) {
 }
 
 std::vector<Object> node_objects_of(const DriveConfig& config) {
-  return config.habit != nullptr ? strict_objects(config, drive_objects(config)) : drive_objects(config);
+  std::vector<Object> objects = config.habit != nullptr ? strict_objects(config, drive_objects(config)) : drive_objects(config);
+  for (Object& object : objects) {
+    if (object.index != 0x1018) continue;
+    if (object.sub == 1 && config.vendor != 0) object.value = config.vendor;
+    if (object.sub == 2 && config.product != 0) object.value = config.product;
+  }
+  return objects;
 }
 
 std::optional<ObjectDictionary> native_objects_of(const DriveConfig& config) {

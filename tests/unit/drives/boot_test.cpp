@@ -101,6 +101,25 @@ TEST(DriveBoot, WithoutAProfileTheDeliveredDrivesAreRefused) {
   }
 }
 
+// 1018 is told as it stands in the profile, in hex. A drive of a profile of one's own answers with that profile's identity.
+TEST(DriveBoot, ADriveIsKnownByTheIdentityThatItIsConfiguredWith) {
+  for (const char* make : {"epos4", "lanternfish"}) {
+    const auto booted = [&](std::uint32_t product, bool wrong) {
+      DriveBench bench({make, make}, [&](canopen::NetworkConfig& config, devices::DevicesConfig& devices) {
+        config.drives[2].identity = {0x00001234, 0x00005678};
+        devices.drives[2].vendor = 0x00001234;
+        devices.drives[2].product = product;
+        if (wrong) devices.faults.push_back({0, devices::DeviceFaultKind::wrong_identity, devices.drives[2].node});
+      });
+      (void)bench.boot();
+      return bench.sentence();
+    };
+    EXPECT_EQ(booted(0x5678, false), "") << make;
+    EXPECT_NE(booted(0x5679, false).find("(holds 0x00005679, has to hold 0x00005678)"), std::string::npos) << booted(0x5679, false);
+    EXPECT_NE(booted(0x5678, true).find("1018:02"), std::string::npos) << make;
+  }
+}
+
 // It has the object, and takes another value: "absent" in its profile ended at the same sentence.
 TEST(DriveBoot, AnOptionThatTheDriveDoesNotTakeIsToldWithTheKeyThatStatesIt) {
   const auto said = [](const std::function<void(canopen::DriveSetup&)>& change) {

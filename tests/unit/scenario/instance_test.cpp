@@ -44,6 +44,19 @@ TEST(Truth, AProfileOfTheUsersOwnIsSimulatedAsTheOneItIsLike) {
   }
 }
 
+// It answered with its make's own numbers, and the boot refused the wrong device.
+TEST(Truth, ASimulatedDriveHasTheIdentityOfItsProfile) {
+  const test::TemporaryFolder folder;
+  folder.write("ours.yaml", "title: ours\nlike: epos4\nidentity: {vendor: \"0x00001234\", product: \"0x00005678\"}\n");
+  folder.write("plain.yaml", "title: plain\nlike: cia402\nidentity: {vendor: \"0x00001234\", product: \"0x00005678\"}\n");
+  for (const std::string name : {"ours.yaml", "plain.yaml"}) {
+    const Scenario scenario = load_scenario(folder.write("s.yaml", "drives: {profile: " + name + "}\n"));
+    const hal::SimConfig config = make_truth(scenario, draw(scenario, 1), make_nominal(scenario, true), 1);
+    EXPECT_EQ(config.devices.drives[2].vendor, 0x1234u) << name;
+    EXPECT_EQ(config.devices.drives[2].product, 0x5678u) << name;
+  }
+}
+
 // A shipped profile that is like another had no simulated drive, and its copy in a file had one.
 TEST(Truth, AShippedProfileIsSimulatedAsTheOneItIsLike) {
   const Scenario scenario = load_scenario("default", {"drives.profile=ipos4808"});
