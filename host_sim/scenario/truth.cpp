@@ -306,7 +306,10 @@ void check_overheard(const config::Drives& drives, std::size_t joint) {
   const bool plain = drive.profile == "lanternfish" || drive.profile == "cia402";
   if (drive.node == can_map::drive_nodes[joint] && plain && drive.polarity == "forward") return;
   throw InputError(std::string("drives.") + config::joint_name(joint) +
-                   ": a drive that is not served is overheard only at its node of the CAN map, in encoder counts and forward");
+                   ": a drive that is not served is overheard only at its node of the CAN map, in encoder counts and forward. One that "
+                   "reports encoder counts is followed under that node with 'drives." +
+                   config::joint_name(joint) +
+                   ".profile' cia402; of another, serve the node (`--nodes`) and leave the real drive off this bus");
 }
 
 hal::SimFault sim_fault(const Fault& fault, const config::Drives& drives) {

@@ -57,6 +57,14 @@ TEST(Truth, ASimulatedDriveHasTheIdentityOfItsProfile) {
   }
 }
 
+TEST(Overheard, ADriveOfAnotherMakeIsRefusedWithWhatToDo) {
+  const Scenario scenario = load_scenario("default", {"drives.elbow.profile=c5e"});
+  EXPECT_NO_THROW(check_overheard(scenario.drives, 1));
+  const std::string said = test::message_of<InputError>([&] { check_overheard(scenario.drives, 2); });
+  EXPECT_THAT(said, testing::HasSubstr("'drives.elbow.profile' cia402"));
+  EXPECT_THAT(said, testing::HasSubstr("serve the node (`--nodes`)"));
+}
+
 // A shipped profile that is like another had no simulated drive, and its copy in a file had one.
 TEST(Truth, AShippedProfileIsSimulatedAsTheOneItIsLike) {
   const Scenario scenario = load_scenario("default", {"drives.profile=ipos4808"});
