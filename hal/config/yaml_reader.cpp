@@ -179,22 +179,25 @@ void ValueReader::operator()(std::vector<std::string>* value) const {
 
 void ValueReader::operator()(std::vector<Task>* value) const {
   if (!node_.IsSequence()) wrong_type(node_);
-  value->clear();
+  std::vector<Task> read;  // with a mistake in it, the key's value stays: no list is empty for that
   for (std::size_t i = 0; i < node_.size(); ++i) {
     const YAML::Node item = node_[i];
     const std::string shown = path_ + "[" + std::to_string(i) + "]";
     if (!item.IsMap() || item.size() != 1)
       source_.refuse(item.Mark(), "'" + shown + "' takes one task, turn_valve or press_buttons, not " + shape_of(item));
     Task task;
+    const std::size_t told = source_.problems() != nullptr ? source_.problems()->size() : 0;
     read_map(item, "", shown + ".", keys(task), source_);
+    const bool whole = source_.problems() == nullptr || source_.problems()->size() == told;
     const YAML::Node turn = item["turn_valve"];
     task.kind = turn ? Task::Kind::turn_valve : Task::Kind::press_buttons;
-    if (turn && !(turn.IsMap() && turn["to_deg"]))
+    if (whole && turn && !(turn.IsMap() && turn["to_deg"]))
       source_.refuse(item.Mark(), "'" + shown + ".turn_valve.to_deg' is missing: to which angle?");
-    if (task.kind == Task::Kind::press_buttons && task.order.empty())
+    if (whole && task.kind == Task::Kind::press_buttons && task.order.empty())
       source_.refuse(item.Mark(), "'" + shown + ".press_buttons.order' names no button");
-    value->push_back(task);
+    read.push_back(task);
   }
+  *value = std::move(read);
 }
 
 // What is wrong between the keys of a fault: at which of them, and what. Nothing when it can happen.
@@ -226,9 +229,9 @@ void ValueReader::operator()(std::vector<Fault>* value) const {
     Fault fault;
     const std::size_t told = source_.problems() != nullptr ? source_.problems()->size() : 0;
     read_map(item, "", shown + ".", keys(fault), source_);
-    const bool read = source_.problems() == nullptr || source_.problems()->size() == told;
+    const bool whole = source_.problems() == nullptr || source_.problems()->size() == told;
     if (!item["kind"]) source_.refuse(item.Mark(), "'" + shown + "' has no kind");
-    if (const auto problem = problem_of(fault, item["at_s"] || item["at_step"]); read && problem)
+    if (const auto problem = problem_of(fault, item["at_s"] || item["at_step"]); whole && problem)
       source_.refuse(item.Mark(), "'" + shown + "." + problem->first + "': " + problem->second);
     value->push_back(fault);
   }

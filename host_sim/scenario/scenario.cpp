@@ -95,13 +95,21 @@ void check_buttons(const Scenario& s, const std::function<void(const std::string
   }
 }
 
+std::string beyond_stops(const Scenario& s) {
+  const config::Spread& start = s.valve.start_deg;
+  char text[160], spread[64];
+  std::snprintf(spread, sizeof spread, start.min == start.max ? "%.4g" : "%.4g to %.4g", start.min, start.max);
+  std::snprintf(text, sizeof text, "'valve.start_deg' is %s, beyond the valve's stops at %.4g and %.4g", spread, s.valve.stop_min_deg,
+                s.valve.stop_max_deg);
+  return text;
+}
+
 // What no single key can tell.
 void check_together(const Scenario& s, const std::string& where, std::vector<std::string>& problems) {
   const auto refuse = [&](const std::string& message) { problems.push_back(where + ": " + message); };
   for (const std::string& problem : config::handle_problems(s.panel, s.valve, s.tasks)) refuse(problem);
   for (const std::string& problem : config::panel_problems(s.panel)) refuse(problem);
-  if (s.valve.start_deg.min < s.valve.stop_min_deg || s.valve.start_deg.max > s.valve.stop_max_deg)
-    refuse("'valve.start_deg' lies beyond the valve's stops");
+  if (s.valve.start_deg.min < s.valve.stop_min_deg || s.valve.start_deg.max > s.valve.stop_max_deg) refuse(beyond_stops(s));
   check_buttons(s, refuse);
   if (s.buttons.release_depth_m >= s.buttons.click_depth_m) refuse("'buttons.release_depth_m' is not below 'buttons.click_depth_m'");
   if (s.buttons.click_drop_n >= returning_force_n(s)) {

@@ -120,7 +120,7 @@ const BadText bad_texts[] = {
     {"TabIndented", "valve:\n\tstart_deg: 3\n", ":2: not YAML"},
     {"AList", "- 1\n", ":1: a scenario is a group of keys"},
     {"KeyThatIsAList", "[1]: 3\n", ":1: a key must be a word"},
-    {"StartBeyondTheStop", "valve: {start_deg: 120}\n", ": 'valve.start_deg' lies beyond the valve's stops"},
+    {"StartBeyondTheStop", "valve: {start_deg: 120}\n", ": 'valve.start_deg' is 120, beyond the valve's stops at -105 and 105"},
     {"FramesTooFast", "mission: {camera_syncs: 1}\n", ":1: 'mission.camera_syncs' is 1, out of its range 2 to 20"},
     {"FramesTooSlow", "mission: {camera_syncs: 21}\n", ":1: 'mission.camera_syncs' is 21, out of its range 2 to 20"},
     {"CapsuleOfSixNumbers", "vehicle: {capsules_m: [[0, 0, 0, 1, 0, 1]]}\n", ":1: 'vehicle.capsules_m' takes a list of lists of 7 numbers"},
@@ -161,6 +161,13 @@ TEST(Load, AButtonThatThePressDoesNotMoveIsRefusedWithTheTorqueThatItTakes) {
   EXPECT_THAT(complaint("buttons: {spring_n_m: 9000}\n"), ::testing::HasSubstr("would take the button for stuck. It takes 9.62 N m"));
   EXPECT_EQ(complaint("buttons: {preload_n: 15}\n"), "");
   EXPECT_EQ(complaint("buttons: {preload_n: 25}\nmission: {press_torque_nm: 14}\n"), "");
+}
+
+// It went on that the list was empty, and that the angle was missing.
+TEST(Load, AMistakeInATaskIsToldOnce) {
+  const std::string said = complaint("tasks:\n  - turn_valve: 90\n");
+  EXPECT_THAT(said, StartsWith(":2: 'tasks[0].turn_valve' takes a group of keys, not '90'"));
+  EXPECT_EQ(said.find('\n'), std::string::npos) << said;
 }
 
 TEST(Load, AFaultHappensAtATimeOrAtAStep) {
