@@ -57,6 +57,7 @@ fs::path named_file(const std::string& told_in, const char* key, const std::stri
   const fs::path folder = fs::path(told_in).parent_path();
   fs::path found = find_file(name, folder);
   std::error_code ignored;
+  if (fs::is_directory(found, ignored)) throw InputError(told_in + ": '" + key + "': " + found.string() + " is a folder, not a file");
   if (fs::exists(found, ignored)) return found;
   std::string places;
   if (!fs::path(name).is_absolute())

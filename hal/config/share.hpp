@@ -17,7 +17,7 @@ std::filesystem::path share_beside(const std::filesystem::path& program);
 // `name` as a path: itself when absolute, else in `folder` if it is there, else in the share folder if it is there, else in `folder`.
 std::filesystem::path find_file(const std::string& name, const std::filesystem::path& folder);
 
-// The file that a key of `told_in`, a file itself, names. Throws InputError with the key and the folders that were searched when it is nowhere.
+// The file that a key of `told_in`, a file itself, names. Throws InputError with the key and the folders that were searched when it is nowhere, and when it is a folder.
 std::filesystem::path named_file(const std::string& told_in, const char* key, const std::string& name);
 
 }  // namespace lf::config

@@ -117,8 +117,13 @@ void find_homing(config::Machine& machine, std::vector<std::string>& problems) {
   const std::filesystem::path found = config::find_file(machine.homing_file, folder);
   std::error_code error;  // a name that is no file's, too long for instance, is not there
   const std::filesystem::path place = std::filesystem::canonical(found, error);
-  if (!error) {
+  if (!error && !std::filesystem::is_directory(place, error)) {
     machine.homing_file = place.string();
+    return;
+  }
+  if (!error) {
+    problems.push_back(machine.file + ": 'homing.file': " + place.string() + " is a folder, not a file");
+    machine.homing_file.clear();
     return;
   }
   problems.push_back(

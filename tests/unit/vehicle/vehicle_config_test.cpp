@@ -263,6 +263,14 @@ TEST(VehicleConfig, AHomingFileThatIsNotThereIsRefused) {
   EXPECT_THAT(problems_of(folder.write("v.yaml", "homing: {file: hoaming.yaml}\n")), ElementsAre(HasSubstr("there is no hoaming.yaml")));
 }
 
+TEST(VehicleConfig, AFolderInAFilesPlaceIsNamedWithItsKey) {
+  const TemporaryFolder folder;
+  const std::string place = std::filesystem::canonical(folder.path()).string();
+  for (const std::string key : {"arm.urdf", "safety.limits", "homing.file"})
+    EXPECT_THAT(problems_of(folder.write("v.yaml", key + ": " + place + "\n")),
+                ElementsAre(HasSubstr("v.yaml: '" + key + "': " + place + " is a folder, not a file")));
+}
+
 // The C++ library throws where the name of a file is too long to be one.
 TEST(VehicleConfig, AHomingFileWhoseNameIsNoneIsRefused) {
   const TemporaryFolder folder;
