@@ -25,14 +25,18 @@ fs::path standing_folder(const fs::path& folder) {
   return at;
 }
 
+// /proc and its like: nothing is made there.
+bool is_pseudo(const fs::path& folder) {
+  struct statvfs volume {};
+  return statvfs(folder.c_str(), &volume) == 0 && volume.f_blocks == 0;
+}
+
 void examine_folder(const char* subject, const char* key, const std::string& folder, Grade grade, Examinations& found) {
   const fs::path at = standing_folder(folder);
   std::error_code ignored;
-  struct statvfs volume {};
-  const bool pseudo = statvfs(at.c_str(), &volume) == 0 && volume.f_blocks == 0;  // /proc and its like
   if (!fs::is_directory(at, ignored)) {
     found.push_back({subject, key, grade, at.string() + " is no folder", "name another place"});
-  } else if (pseudo || access(at.c_str(), W_OK | X_OK) != 0) {
+  } else if (is_pseudo(at) || access(at.c_str(), W_OK | X_OK) != 0) {
     found.push_back(
         {subject, key, grade, folder + ": nothing can be written in " + at.string(), "give this user the right, or name another place"});
   } else {
@@ -60,9 +64,10 @@ void examine_lock(const VehicleConfig& config, Examinations& found) {
   std::error_code ignored;
   if (!fs::exists(config.lock_folder, ignored)) {
     const bool usual = config.lock_folder == VehicleConfig().lock_folder;
-    found.push_back(
-        {subject, key, Grade::bad, config.lock_folder + " is not there",
-         (usual ? "the service makes it; for a start by hand " : "") + ("`mkdir " + config.lock_folder + "`, or name another place")});
+    const bool makeable = !is_pseudo(standing_folder(config.lock_folder));
+    const std::string make = (usual ? "the service makes it; for a start by hand " : "") + ("`mkdir " + config.lock_folder + "`, or ");
+    found.push_back({subject, key, Grade::bad, config.lock_folder + " is not there",
+                     (makeable ? make : "it cannot be made there: ") + "name another place"});
     return;
   }
   const std::string file = InstanceLock::file_of(config.lock_folder, config.interface);
