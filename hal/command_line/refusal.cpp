@@ -18,8 +18,28 @@ std::vector<const CLI::App*> chosen_of(const CLI::App& app) {
   return chosen;
 }
 
+bool has_option(const CLI::App& app, const std::string& name) {
+  const auto options = options_of(app);
+  return std::any_of(options.begin(), options.end(),
+                     [&](const CLI::Option* option) { return "--" + option->get_lnames().front() == name; });
+}
+
+// An option stands behind the command that takes it. Empty for one that none of the chosen takes.
+std::string misplaced_option(const std::string& name, const std::vector<const CLI::App*>& chosen) {
+  std::string command;
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    command += (i == 0 ? "" : " ") + chosen[i]->get_name();
+    if (!has_option(*chosen[i], name)) continue;
+    const std::string where =
+        i + 1 < chosen.size() ? "before `" + chosen[i + 1]->get_name() + "`" : "behind `" + chosen[i]->get_name() + "`";
+    return "'" + name + "' is an option of `" + command + "`: write it " + where;
+  }
+  return "";
+}
+
 std::string unknown_option(const std::string& word, const std::vector<const CLI::App*>& chosen) {
   const std::string name = word.substr(0, word.find('='));
+  if (const std::string misplaced = misplaced_option(name, chosen); !misplaced.empty()) return misplaced;
   std::vector<std::string> known;
   std::string command;
   for (auto one = chosen.rbegin(); one != chosen.rend(); ++one) {

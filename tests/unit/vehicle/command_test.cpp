@@ -122,6 +122,12 @@ TEST_F(Daemon, AMisspeltOptionOrOrderIsAnsweredWithTheNearest) {
   EXPECT_EQ(run("statsu").status, 2);
 }
 
+// "no option '--bus'; did you mean '--bus'?"
+TEST_F(Daemon, AnOptionBeforeItsOrderIsAnsweredWithItsPlace) {
+  EXPECT_EQ(run("--config v.yaml --bus doctor").err,
+            "lanternfishd: '--bus' is an option of `lanternfishd doctor`: write it behind `doctor`\n");
+}
+
 // --check reported a document only where the file was sound.
 TEST_F(Daemon, WhatIsRefusedIsADocumentWhereJsonWasAskedFor) {
   for (const char* arguments : {"--confg x --json", "--config missing.yaml --check --json", "--config missing.yaml doctor --json",
