@@ -173,9 +173,7 @@ void set_torque(const DriveKind& kind, const DriveMotor& motor, const std::strin
 void set_absences(const DriveKind& kind, const std::string& where, canopen::DriveProfile& profile) {
   for (const ProfileAbsence& absence : kind.absences) {
     const Row* row = row_of(absence.index, absence.sub);
-    if (row == nullptr)
-      throw InputError(kind.file + ": 'absent' names " + object_text(absence.index, absence.sub) +
-                       ", which the boot does not write and cannot do without");
+    if (row == nullptr) throw InputError(where + ": nothing takes the place of " + object_text(absence.index, absence.sub));
     canopen::Absence core{row->value, absence.by, 0, 0};
     if (absence.by == Substitute::other_object) {
       core.index = static_cast<std::uint16_t>(std::stoul(absence.use.substr(0, 4), nullptr, 16));

@@ -175,12 +175,16 @@ class Reader {
         source_.refuse(root.Mark(), "'check' and 'write' have more objects than the core holds, " +
                                         std::to_string(canopen::DriveProfile::max_objects - 3));
     });
-    for (const std::string& text : kind.position_lost) {
+    const YAML::Node codes = root["position_lost"];  // unless they are those of the file that this one is like
+    for (std::size_t i = 0; i < kind.position_lost.size(); ++i) {
       attempt([&] {
+        const std::string& text = kind.position_lost[i];
         std::uint16_t code = 0;
         std::uint8_t none = 0;
+        const bool own = codes && codes.IsSequence() && i < codes.size();
         if (text.size() != 4 || !object_number(text, code, none) || code == 0)
-          source_.refuse(root.Mark(), "'position_lost' takes EMCY codes of 4 hex digits in quotes, not '" + text + "'");
+          source_.refuse(own ? codes[i].Mark() : root.Mark(),
+                         "'position_lost' takes EMCY codes of 4 hex digits in quotes, not '" + text + "'");
       });
     }
     attempt([&] {
@@ -220,7 +224,7 @@ class Reader {
     std::int64_t value = 0;
     const YAML::Node node = root["identity"][name];
     if (!whole_number(text, value) || value < 0)
-      source_.refuse(node.Mark(), std::string("'identity.") + name + "' takes a number, not '" + text + "'");
+      source_.refuse(node.Mark(), std::string("'identity.") + name + "' takes a number from 0 to 0xFFFFFFFF, not '" + text + "'");
     id = static_cast<std::uint32_t>(value);
   }
 
@@ -282,10 +286,21 @@ class Reader {
     kind.absences.push_back(absence);
   }
 
+  // "1016" is short for 1016:00, and the boot writes 1016:01.
+  static std::string nearest_sub(const ProfileAbsence& absence) {
+    for (const std::uint8_t sub : {std::uint8_t{0}, std::uint8_t{1}}) {
+      if (substitutes_of(absence.index, sub).front() != Substitute::none)
+        return "; did you mean \"" + object_text(absence.index, sub) + "\"?";
+    }
+    return "";
+  }
+
   // A word that does nothing in this object's place would leave its work undone: a drive without 1016 and without guarding runs on when its master dies.
   void check_substitute(const YAML::Node& item, const std::string& number, const ProfileAbsence& absence) const {
     const Substitutes allowed = substitutes_of(absence.index, absence.sub);
-    if (allowed.front() == Substitute::none) return;  // apply() refuses the object itself
+    if (allowed.front() == Substitute::none)
+      source_.refuse(item.Mark(), "'absent' names " + object_text(absence.index, absence.sub) +
+                                      ", which the boot does not write and cannot do without" + nearest_sub(absence));
     if (std::find(allowed.begin(), allowed.end(), absence.by) != allowed.end()) return;
     std::string list;
     for (const auto& [word, substitute] : substitute_words) {
@@ -315,7 +330,7 @@ class Reader {
 std::string like_forms(const std::filesystem::path& file) {
   std::string list;
   for (const std::string& name : shipped_drive_kinds()) list += (list.empty() ? "" : ", ") + name;
-  return ". It takes the name of a shipped profile (" + list + "), or the name without .yaml of a file in " +
+  return "It takes the name of a shipped profile (" + list + "), or the name without .yaml of a file in " +
          std::filesystem::absolute(file).parent_path().string();
 }
 
@@ -326,16 +341,18 @@ DriveKind read_with_base(const std::filesystem::path& file, std::vector<std::str
   if (!root.IsMap()) reader.source().refuse(root.Mark(), "a drive's profile is a group of keys");
   DriveKind kind;
   const YAML::Node like = root["like"];
-  if (like && !like.IsScalar()) reader.source().refuse(like.Mark(), "'like' takes one name" + like_forms(file));
+  if (like && !like.IsScalar()) reader.source().refuse(like.Mark(), "'like' takes one name. " + like_forms(file));
   if (like) {
     if (depth >= 4) reader.source().refuse(like.Mark(), "'like' leads in a circle");
     const std::filesystem::path beside = file.parent_path() / (like.Scalar() + ".yaml");
     const std::filesystem::path shipped = share_folder() / "drives" / (like.Scalar() + ".yaml");
     std::error_code ignored;  // a name that is no file's, too long for instance, is not there
     const std::filesystem::path& base = std::filesystem::exists(beside, ignored) ? beside : shipped;
-    if (!std::filesystem::exists(base, ignored))
-      reader.source().refuse(like.Mark(), "no profile '" + like.Scalar() + "' for 'like'" +
-                                              suggestion(like.Scalar(), shipped_drive_kinds()) + like_forms(file));
+    if (!std::filesystem::exists(base, ignored)) {
+      const std::string nearest = suggestion(like.Scalar(), shipped_drive_kinds());
+      reader.source().refuse(like.Mark(),
+                             "no profile '" + like.Scalar() + "' for 'like'" + (nearest.empty() ? ". " : nearest + " ") + like_forms(file));
+    }
     kind = read_with_base(base, problems, depth + 1);
     kind.like.insert(kind.like.begin(), kind.file);
   }

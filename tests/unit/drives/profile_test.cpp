@@ -147,6 +147,22 @@ TEST(DriveProfileFile, ALikenessThatIsNoFilesNameIsRefusedInWords) {
   EXPECT_NE(problems_of("title: mine\nlike: " + std::string(300, 'x') + "\n").find("mine.yaml:2: no profile 'xxx"), std::string::npos);
 }
 
+TEST(DriveProfileFile, AWrongNumberOrNameIsToldWithItsLineAndWhatItTakes) {
+  const auto said = [](const std::string& line) { return problems_of(std::string(whole) + line + "\n"); };
+  const auto expect = [&](const std::string& line, const std::string& part) {
+    EXPECT_NE(said(line).find("mine.yaml:6: " + part), std::string::npos) << said(line);
+  };
+  expect("identity: {vendor: 99999999999}", "'identity.vendor' takes a number from 0 to 0xFFFFFFFF, not '99999999999'");
+  expect("identity: {product: -1}", "'identity.product' takes a number from 0 to 0xFFFFFFFF");
+  expect("position_lost: [7320, \"xyz\"]", "'position_lost' takes EMCY codes of 4 hex digits in quotes, not 'xyz'");
+  expect("absent: [{object: 1016, by: node_guarding}]",
+         "'absent' names 1016:00, which the boot does not write and cannot do without; did you mean \"1016:01\"?");
+  expect("absent: [{object: \"6041:00\", by: fixed_by_maker}]",
+         "'absent' names 6041:00, which the boot does not write and cannot do without");
+  expect("like: cia403", "no profile 'cia403' for 'like'; did you mean 'cia402'? It takes the name of a shipped profile");
+  expect("like: nothing_like_it", "no profile 'nothing_like_it' for 'like'. It takes the name of a shipped profile");
+}
+
 TEST(DriveProfileFile, AScaleIsNeverAssumed) {
   EXPECT_EQ(problems_of(whole), "");
   for (const char* key : {"position", "speed", "acceleration", "torque"}) {
