@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <set>
 
@@ -62,6 +63,16 @@ errors: {"86": short}
         "an error code is 4 hex digits"}) {
     EXPECT_NE(problems.find(part), std::string::npos) << part << "\nin\n" << problems;
   }
+}
+
+TEST(DriveProfileFile, TheUsersPageHasAWholeOne) {
+  std::ifstream file(std::string(LANTERNFISH_SOURCE_DIR) + "/docs/canopen.md");
+  const std::string page((std::istreambuf_iterator<char>(file)), {});
+  const std::string open = "<!-- profile: a test reads it -->\n```yaml\n";
+  const std::size_t begin = page.find(open);
+  ASSERT_NE(begin, std::string::npos);
+  const std::size_t from = begin + open.size();
+  EXPECT_EQ(problems_of(page.substr(from, page.find("```", from) - from)), "");
 }
 
 // Every pair of an object and a `by` is held against the users' page: a drive without 1016 and with another word than node_guarding would run on when its
