@@ -4,11 +4,14 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <functional>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -52,6 +55,15 @@ void complain(const std::string& message) {
     std::fprintf(stderr, "lanternfishd: %s\n", message.substr(at, end - at).c_str());
     at = end + 1;
   }
+}
+
+// A text that nobody can have read is no success. A reader that went away (`| head`) has had enough.
+int print(const std::string& text) {
+  errno = 0;
+  std::fputs(text.c_str(), stdout);
+  if ((std::fflush(stdout) != 0 || std::ferror(stdout) != 0) && errno != EPIPE)
+    throw EnvironmentLacks(std::string("standard output: ") + std::strerror(errno));
+  return done;
 }
 
 // Of what ends the program: a script that asked for JSON reads why from stdout, as a person does from stderr.
@@ -114,10 +126,8 @@ int check(const Options& options) {
 }
 
 int run_daemon(const Options& options) {
-  if (options.print_schema || options.print_config) {
-    std::fputs((options.print_schema ? vehicle_schema() : print_vehicle_config(options.config)).c_str(), stdout);
-    return done;
-  }
+  if (options.print_schema) return print(vehicle_schema());
+  if (options.print_config) return print(print_vehicle_config(options.config));
   if (options.config.empty()) throw InputError("--config FILE is needed; `lanternfishd --help` has more");
   if (options.check) return check(options);
   const VehicleConfig config = load_vehicle_config(options.config);
@@ -287,12 +297,14 @@ int run(int argc, char** argv) {
   add_task(app, options, action);
   add_commission(app, options, action);
   add_doctor(app, options, action);
-  command_line::add_help_commands(app, action, manual_of(app), word_sources(),
-                                  [](const std::string& text) { std::fputs(text.c_str(), stdout); });
+  command_line::add_help_commands(app, action, manual_of(app), word_sources(), [](const std::string& text) { print(text); });
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {
-    return app.exit(help);
+    std::ostringstream text;
+    const int status = app.exit(help, text, text);
+    print(text.str());
+    return status;
   } catch (const CLI::ParseError& error) {
     return refuse(command_line::refusal(app, error), bad_input);
   }

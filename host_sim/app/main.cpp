@@ -85,7 +85,10 @@ int run_command(int argc, char** argv) {
     app.parse(argc, argv);
     return action();
   } catch (const CLI::Success& help) {  // --help and its like
-    return app.exit(help);
+    std::ostringstream text;
+    const int status = app.exit(help, text, text);
+    print("%s", text.str().c_str());
+    return status;
   } catch (const CLI::ParseError& error) {
     return complain(command_line::refusal(app, error), bad_input);
   }

@@ -217,10 +217,12 @@ TEST_F(BadInput, AShareFolderWithoutScenarios) {
 
 TEST_F(BadInput, AFullDiskBehindTheOutputIsNoCrash) {
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP();
-  const std::string command = "cd '" + folder().string() + "' && " LANTERNFISH_PROGRAM " scenarios default >/dev/full 2>.stderr";
-  const int status = std::system(command.c_str());
-  EXPECT_EQ(WEXITSTATUS(status), 3);
-  EXPECT_THAT(text_of(folder() / ".stderr"), HasSubstr("No space left on device"));
+  for (const std::string arguments : {"scenarios default", "--help", "run --help", "--version"}) {
+    const std::string command = "cd '" + folder().string() + "' && " LANTERNFISH_PROGRAM " " + arguments + " >/dev/full 2>.stderr";
+    const int status = std::system(command.c_str());
+    EXPECT_EQ(WEXITSTATUS(status), 3) << arguments;
+    EXPECT_THAT(text_of(folder() / ".stderr"), HasSubstr("No space left on device")) << arguments;
+  }
 }
 
 // In a file system of its own, which a user namespace may mount without being root.

@@ -128,6 +128,15 @@ TEST_F(Daemon, AnOptionBeforeItsOrderIsAnsweredWithItsPlace) {
             "lanternfishd: '--bus' is an option of `lanternfishd doctor`: write it behind `doctor`\n");
 }
 
+TEST_F(Daemon, AFullDiskBehindTheOutputIsNoSuccess) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP();
+  for (const char* arguments : {"--help", "help", "doctor --help", "--version", "--print-config", "--print-schema"}) {
+    const std::string command = "cd '" + folder().string() + "' && " LANTERNFISH_PROGRAM " " + arguments + " >/dev/full 2>.stderr";
+    EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 3) << arguments;
+    EXPECT_EQ(text_of(folder() / ".stderr"), "lanternfishd: standard output: No space left on device\n") << arguments;
+  }
+}
+
 // --check reported a document only where the file was sound.
 TEST_F(Daemon, WhatIsRefusedIsADocumentWhereJsonWasAskedFor) {
   for (const char* arguments : {"--confg x --json", "--config missing.yaml --check --json", "--config missing.yaml doctor --json",
