@@ -38,11 +38,14 @@ void tell(const serve::ServeResult& result) {
       print("press %s button: %s\n", task.button.c_str(), task.done ? "done" : "not done");
     }
   }
-  print(
-      "bus: %llu frames received, %llu sent, %.1f %% load with their stuff bits; a SYNC answered after %.0f us (p50), %.0f us (p99), %.0f "
-      "us at most\n",
-      static_cast<unsigned long long>(result.frames_received), static_cast<unsigned long long>(result.frames_sent), result.load_percent,
-      result.answer_us.p50, result.answer_us.p99, result.answer_us.max);
+  print("bus: %llu frames received, %llu sent, %.1f %% load with their stuff bits; ",
+        static_cast<unsigned long long>(result.frames_received), static_cast<unsigned long long>(result.frames_sent), result.load_percent);
+  if (std::isfinite(result.answer_us.max)) {
+    print("a SYNC answered after %.0f us (p50), %.0f us (p99), %.0f us at most\n", result.answer_us.p50, result.answer_us.p99,
+          result.answer_us.max);
+  } else {
+    print("no SYNC came\n");
+  }
   if (result.camera) {
     print("camera: %llu exposures, %llu frames, %llu of them late\n", static_cast<unsigned long long>(result.camera->exposures),
           static_cast<unsigned long long>(result.camera->frames), static_cast<unsigned long long>(result.camera->late));

@@ -4,7 +4,9 @@
 #include <cstdio>
 
 #include "hal/config/drive_kind.hpp"
+#include "hal/config/fault_kinds.hpp"
 #include "hal/config/homing_file.hpp"
+#include "hal/config/nearest.hpp"
 #include "hal/config/share.hpp"
 #include "host_sim/devices/drive/drive_dictionary.hpp"
 #include "host_sim/optics/formation/gaussian_taps.hpp"
@@ -328,6 +330,11 @@ hal::SimFault sim_fault(const Fault& fault, const config::Drives& drives) {
 }
 
 devices::DeviceFault device_fault(const Fault& fault, const config::Drives& drives) {
+  if (!fault.node.empty() && node_number(fault.node, drives) == 0) {
+    const std::vector<std::string> nodes = config::fault_nodes(config::FaultPlace::node_or_master);
+    const std::string nearest = config::suggestion(fault.node, nodes);
+    throw InputError("no node '" + fault.node + "'" + (nearest.empty() ? "; there are the joints, io and master" : nearest));
+  }
   for (const auto& [name, kind] : device_kinds) {
     if (fault.kind == name)
       return {fault.at_s, kind, node_number(fault.node, drives), fault.duration_s, static_cast<std::uint32_t>(fault.can_id)};

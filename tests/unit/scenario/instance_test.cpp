@@ -57,6 +57,24 @@ TEST(Truth, ASimulatedDriveHasTheIdentityOfItsProfile) {
   }
 }
 
+TEST(Faults, ANodeThatIsNoneIsNamedWithTheNearest) {
+  const config::Drives drives;
+  Fault fault;
+  fault.kind = "wrong_identity";
+  const auto said = [&](const std::string& node) -> std::string {
+    fault.node = node;
+    try {
+      (void)device_fault(fault, drives);
+      return "";
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  };
+  EXPECT_EQ(said("elbow"), "");
+  EXPECT_EQ(said("elbw"), "no node 'elbw'; did you mean 'elbow'?");
+  EXPECT_EQ(said("propeller"), "no node 'propeller'; there are the joints, io and master");
+}
+
 TEST(Overheard, ADriveOfAnotherMakeIsRefusedWithWhatToDo) {
   const Scenario scenario = load_scenario("default", {"drives.elbow.profile=c5e"});
   EXPECT_NO_THROW(check_overheard(scenario.drives, 1));
