@@ -110,8 +110,9 @@ std::optional<Experiment> read_experiment(const fs::path& folder) {
 
 void refuse_other(const fs::path& folder, const Experiment& ours) {
   std::error_code ignored;
-  if (!fs::exists(folder, ignored) || fs::is_empty(folder, ignored)) return;
+  if (!fs::exists(folder, ignored)) return;
   if (!fs::is_directory(folder, ignored)) throw InputError(folder.string(), 0, "is a file, not a folder");
+  if (fs::is_empty(folder, ignored)) return;
   const std::optional<Experiment> theirs = read_experiment(folder);
   if (!theirs) throw InputError(folder.string(), 0, std::string("is not empty and has no ") + experiment_file + ": give another folder");
   const std::string differs = difference(*theirs, ours);

@@ -4,6 +4,9 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <string>
 #include <system_error>
 
 #include "shared/input_error.hpp"
@@ -19,11 +22,41 @@ fs::path beside(fs::path place, const char* ending) {
   return place;
 }
 
+constexpr std::array<const char*, 9> run_files{"can0.log",         "cloud.pcd",   "experiment.json", "joints.csv",   "log.jsonl",
+                                               "raw/images.jsonl", "report.html", "result.json",     "scenario.yaml"};
+
+// Pictures by their folder and ending. A file that the scenario uses is copied to where it stands from the scenario, with its name.
+bool a_run_writes(const fs::path& file, const Experiment& experiment) {
+  if (std::find(run_files.begin(), run_files.end(), file.generic_string()) != run_files.end()) return true;
+  const fs::path folder = file.parent_path();
+  if (file.extension() == ".png" && (folder == "images" || folder == "raw")) return true;
+  return std::any_of(experiment.begin(), experiment.end(), [&](const auto& entry) {
+    return entry.first.starts_with("file ") && fs::path(entry.first.substr(5)).filename() == file.filename();
+  });
+}
+
+// What would be lost with the earlier run: its user's own notes beside it.
+void refuse_own_files(const fs::path& place, const Experiment& experiment) {
+  std::error_code ignored;
+  if (!fs::is_directory(place, ignored)) return;
+  for (const auto& entry : fs::recursive_directory_iterator(place)) {
+    const bool folder = entry.is_directory(ignored) && !entry.is_symlink(ignored);
+    if (folder && !fs::is_empty(entry.path(), ignored)) continue;
+    const fs::path file = entry.path().lexically_relative(place);
+    if (folder && (file == "images" || file == "raw")) continue;
+    if (folder || !a_run_writes(file, experiment))
+      throw InputError(
+          place.string(), 0,
+          "holds " + file.string() + ", which no run writes: it would be removed with the earlier run. Move it, or give another folder");
+  }
+}
+
 }  // namespace
 
 FolderInWriting::FolderInWriting(const fs::path& place, const Experiment& experiment)
     : place_(beside(place, "")), aside_(beside(place, ".writing")) {
   refuse_other(place_, experiment);
+  refuse_own_files(place_, experiment);
   folder_.emplace(aside_);
   lock_ = ::open(aside_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (lock_ < 0 || ::flock(lock_, LOCK_EX | LOCK_NB) != 0) {

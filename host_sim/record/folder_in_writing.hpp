@@ -11,7 +11,7 @@ namespace lf::record {
 
 class FolderInWriting {
  public:
-  // Writes into "PLACE.writing" first. Throws InputError when `place` holds another experiment, when another run writes there now, or when nothing can
+  // Writes into "PLACE.writing" first. Throws InputError when `place` holds another experiment or files that no run writes, when another run writes there now, or when nothing can
   // be written there; RecordError when the disk is full.
   FolderInWriting(const std::filesystem::path& place, const Experiment& experiment);
   // What was not published is removed.

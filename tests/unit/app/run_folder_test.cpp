@@ -64,6 +64,20 @@ TEST_F(RunFolder, RunsAgainFromItsOwnResolvedScenario) {
   EXPECT_NE(result_of("other")["provenance"]["experiment"], result_of("moved")["provenance"]["experiment"]);
 }
 
+// A run knows its own files again, and its user's are left.
+TEST_F(RunFolder, IsWrittenAgainUnlessItHoldsFilesOfItsUser) {
+  file("our.urdf", text_of(std::string(LANTERNFISH_SOURCE_DIR) + "/shared/arm/arm5e.urdf"));
+  file("my.yaml", "time_limit_s: 2\narm: {urdf: our.urdf}\n");
+  const std::string again = "run ./my.yaml --record-images --out r";
+  EXPECT_EQ(run(again).status, 1);
+  EXPECT_EQ(run(again).status, 1) << "the same files are written";
+  file("r/notes.txt", "mine");
+  const Said said = run(again);
+  EXPECT_EQ(said.status, 2);
+  EXPECT_THAT(said.err, HasSubstr("holds notes.txt, which no run writes"));
+  EXPECT_EQ(text_of(folder() / "r" / "notes.txt"), "mine");
+}
+
 // What lies above the scenario's folder is found from the run's folder, too.
 TEST_F(RunFolder, NamesFilesAboveTheScenarioByTheirWholePath) {
   std::filesystem::create_directory(folder() / "below");

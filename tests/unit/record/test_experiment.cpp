@@ -66,6 +66,41 @@ TEST(FolderInWriting, TakesItsPlaceAsAWholeAndLeavesNothingOfAnEarlierRun) {
   EXPECT_EQ(std::distance(fs::directory_iterator(temporary.path()), {}), 1) << "nothing beside it";
 }
 
+// They were removed with the earlier run.
+TEST(FolderInWriting, FilesThatNoRunWritesAreRefused) {
+  const TemporaryFolder temporary;
+  const fs::path place = temporary.path() / "run";
+  Experiment with_file = ours;
+  with_file["file ../our.urdf"] = "abc";
+  const auto refusal = [&] { return message_of<InputError>([&] { FolderInWriting(place, with_file); }); };
+  {
+    FolderInWriting first(place, with_file);
+    for (const char* name : {"our.urdf", "drives/our.urdf", "scenario.yaml", "images/still_001.00s.png", "raw/000001_on.png"})
+      first.folder().write(name, std::string_view("x"));
+    first.publish();
+  }
+  fs::create_directories(place / "raw");
+  EXPECT_NO_THROW(FolderInWriting(place, with_file));
+  temporary.write("run/notes.txt", "mine");
+  EXPECT_THAT(refusal(), HasSubstr("holds notes.txt, which no run writes"));
+  fs::remove(place / "notes.txt");
+  fs::create_directories(place / "mine");
+  EXPECT_THAT(refusal(), HasSubstr("holds mine, which no run writes"));
+  temporary.write("run/mine/plot.png", "mine");
+  EXPECT_THAT(refusal(), HasSubstr("holds mine/plot.png, which no run writes"));
+  EXPECT_EQ(temporary.read("run/mine/plot.png"), "mine");
+}
+
+// An empty one was replaced by the folder.
+TEST(FolderInWriting, AFileInItsPlaceIsRefused) {
+  const TemporaryFolder temporary;
+  for (const char* text : {"", "x"}) {
+    temporary.write("run", text);
+    EXPECT_THAT(message_of<InputError>([&] { FolderInWriting(temporary.path() / "run", ours); }), HasSubstr("is a file, not a folder"));
+    EXPECT_EQ(temporary.read("run"), text);
+  }
+}
+
 TEST(FolderInWriting, WhatIsNotPublishedIsGoneAndTheEarlierRunStays) {
   const TemporaryFolder temporary;
   const fs::path place = temporary.path() / "run";
