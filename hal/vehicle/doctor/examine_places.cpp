@@ -66,8 +66,7 @@ void examine_lock(const VehicleConfig& config, Examinations& found) {
     const bool usual = config.lock_folder == VehicleConfig().lock_folder;
     const bool makeable = !is_pseudo(standing_folder(config.lock_folder));
     const std::string make = (usual ? "the service makes it; for a start by hand " : "") + ("`mkdir " + config.lock_folder + "`, or ");
-    found.push_back({subject, key, Grade::bad, config.lock_folder + " is not there",
-                     (makeable ? make : "it cannot be made there: ") + "name another place"});
+    found.push_back({subject, key, Grade::bad, config.lock_folder + " is not there", (makeable ? make : "") + "name another place"});
     return;
   }
   const std::string file = InstanceLock::file_of(config.lock_folder, config.interface);

@@ -52,7 +52,7 @@ TEST(Doctor, NamesWhatIsNotThere) {
 TEST(Doctor, ALockFolderThatCannotBeMadeIsNotToBeMade) {
   const test::TemporaryFolder folder;
   const VehicleConfig config = load_vehicle_config(folder.write("v.yaml", "lock_folder: /proc/x\n"));
-  EXPECT_EQ(said_of(bad_of(config), "lock_folder"), "/proc/x is not there; it cannot be made there: name another place");
+  EXPECT_EQ(said_of(bad_of(config), "lock_folder"), "/proc/x is not there; name another place");
 }
 
 // A file that can be read and says nothing of the chain was taken for one that does.
