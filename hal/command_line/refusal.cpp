@@ -39,7 +39,7 @@ std::string misplaced_option(const std::string& name, const std::vector<const CL
 
 std::string unknown_option(const std::string& word, const std::vector<const CLI::App*>& chosen) {
   const std::string name = word.substr(0, word.find('='));
-  if (const std::string misplaced = misplaced_option(name, chosen); !misplaced.empty()) return misplaced;
+  if (std::string misplaced = misplaced_option(name, chosen); !misplaced.empty()) return misplaced;
   std::vector<std::string> known;
   std::string command;
   for (auto one = chosen.rbegin(); one != chosen.rend(); ++one) {
