@@ -45,6 +45,9 @@ class Controller {
   bool on_order(const mission::Order& order, Time t);
   bool on_command(Command command, Time t);  // an order without arguments
 
+  // Its drive was heard to lose its position while another program had the bus: no power before it has a zero again.
+  void lose_zero(Joint joint) { network_.axis(joint).lose_zero(); }
+
   // One control period. `out` is cleared by the caller; what does not fit into it is counted, never lost silently.
   void tick(Time t, TickOutput& out);
 

@@ -181,9 +181,14 @@ void Axis::forget_home() { homed_ = setup_.homing_method == 0 && setup_.zero_kno
 
 void Axis::on_emcy(std::uint16_t code) {
   if (!setup_.profile.loses_position(code)) return;
+  lose_zero();
+  if (online_ && seen_) latch(AxisFault::drive_fault);
+}
+
+void Axis::lose_zero() {
   zero_lost_ = true;
   homed_ = false;
-  if (online_ && seen_) latch(AxisFault::drive_fault);
+  ++stats_.zeros_lost;
 }
 
 void Axis::on_tpdo(const CanFrame& frame, Time sync) {

@@ -76,6 +76,7 @@ class Axis {
     std::uint32_t targets_refused = 0;  // outside the position limits, or while not enabled
     std::uint32_t targets_limited = 0;  // cycles in which the target ran ahead of the maximum speed and was held back
     std::uint32_t unknown_states = 0;   // statuswords with a pattern the standard does not have
+    std::uint32_t zeros_lost = 0;
   };
 
   Axis() = default;
@@ -105,6 +106,7 @@ class Axis {
   bool homed() const { return homed_; }  // true from boot for absolute encoders
   // The drive has said that its position is lost. Outlives faults, resets and boots: it ends with a homing, or with the axis.
   bool zero_lost() const { return zero_lost_; }
+  void lose_zero();  // told by somebody else who has heard its drive
   bool may_have_power() const { return setup_.may_have_power() && !(zero_lost_ && setup_.homing_method == 0); }
   AxisFault fault() const { return fault_; }
   // The latest values, those of the SYNC at `actual_time()`.

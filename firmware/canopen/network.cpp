@@ -105,9 +105,9 @@ void Network::remove_power() {
   for (Axis& axis : axes_) axis.request(AxisRequest::remove_power);
 }
 
-void Network::reset_node(std::size_t node) {
+void Network::reset_node(std::size_t node, Time now) {
   nmt_due_[node] = NmtCommand::reset_node;
-  nodes_[node].expect_restart();
+  nodes_[node].expect_restart(!foreign_nmt_since(now, longest_restart));
 }
 
 void Network::shut_down() {
@@ -175,7 +175,7 @@ void Network::dispatch(const CanFrame& frame, Time now) {
 
 void Network::refuse_foreign_master(std::uint32_t id) {
   foreign_.add(id);
-  for (Node& node : nodes_) node.doubt_restart();
+  for (Node& node : nodes_) node.doubt_restart(id == cob_id::nmt);
   refuse(Refusal::foreign_master);
 }
 

@@ -70,8 +70,8 @@ bool Node::take_guard_request(Time now, CanFrame& frame) {
   return true;
 }
 
-void Node::expect_restart() {
-  restart_expected_ = true;
+void Node::expect_restart(bool proves) {
+  restart_expected_ = proves;
   restarted_as_told_ = false;
 }
 

@@ -46,11 +46,14 @@ class Node {
   // The node restarted, or may have: what it keeps without power is not known. True once.
   bool take_restart();
   // NMT reset node is on its way to it: the next boot-up that no reset of the boot has caused is the answer.
-  void expect_restart();
+  void expect_restart(bool proves);  // `proves`: the boot-up that follows can only be this one's
   // It has answered `expect_restart`, and nobody has started it since: it has no power.
   bool restarted_as_told() const { return restarted_as_told_; }
   // Another master spoke, and may have started it.
-  void doubt_restart() { restarted_as_told_ = false; }
+  void doubt_restart(bool by_nmt) {
+    restarted_as_told_ = false;
+    restart_expected_ = restart_expected_ && !by_nmt;
+  }
   // A heartbeat, or a guarded node's answer, whose bit 7 alternates. False when `state` is not one of CiA 301's.
   bool on_heartbeat(std::uint8_t state, Time now);
   void on_emcy(const Emcy& emcy);

@@ -15,9 +15,9 @@ void Mission::tick(Time now, canopen::Network& network, ScanOrders& orders, Tele
   arbiter_.clear();
   faults_recorded_ = 0;
   bench_.mailbox.drop_expired(now);
+  take_reset(tick);  // before the joints are observed: the watch begins anew with it, and a joint that it has not observed counts as silent
   observe(tick);
   limit_axes(network);
-  take_reset(tick);
   take_shut_down(tick);
   sources_.collect(tick, vigilance(network));
   watch_grip(tick);

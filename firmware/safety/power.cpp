@@ -19,7 +19,7 @@ bool never_heard(const canopen::Network& network, std::size_t joint) {
 void Power::stop(Time now, canopen::Network& network) {
   if (state_ == State::stopping || state_ == State::removing) return;
   network.quick_stop_all();
-  restart_unheard(network);
+  restart_unheard(now, network);
   state_ = State::stopping;
   told_by_nmt_.fill(false);
   insist_at_ = now + heed_time;
@@ -31,11 +31,12 @@ void Power::stop(Time now, canopen::Network& network) {
 void Power::remove(Time now, canopen::Network& network) {
   network.remove_power();
   if (state_ == State::removing) return;
-  restart_unheard(network);
+  restart_unheard(now, network);
   if (state_ != State::stopping) told_by_nmt_.fill(false);
   state_ = State::removing;
   since_ = now;
-  insist_at_ = now + heed_time;
+  // What another master has taken out of operation takes no process data.
+  insist_at_ = network.foreign_nmt_since(now, insist_period) ? now : now + heed_time;
 }
 
 Duration Power::longest_lowering(const canopen::NetworkConfig& config) {
@@ -55,23 +56,23 @@ void Power::lower(Time now, canopen::Network& network) {
 // stay powered after their quick stop, and deaf to process data once they are stopped.
 void Power::insist(Time now, canopen::Network& network) {
   if (now < insist_at_) return;
-  insist_at_ = now + insist_period;
-  restart_unheard(network);
+  insist_at_ = now + (network.foreign_nmt_since(now, insist_period) ? insist_period_beside : insist_period);
+  restart_unheard(now, network);
   for (std::size_t i = 0; i < joint_count; ++i) {
     if (never_heard(network, i) || heeds(i, now, network)) continue;
     if (state_ == State::stopping) {
       network.stop_node(i);
       told_by_nmt_[i] = true;
-    } else if (!network.fault(i).rebooted) {
-      network.reset_node(i);
+    } else if (!network.restarted_as_told(i)) {
+      network.reset_node(i, now);
     }
   }
 }
 
 // One that has restarted already stays so: nothing but a boot or another master gives it power.
-void Power::restart_unheard(canopen::Network& network) {
+void Power::restart_unheard(Time now, canopen::Network& network) {
   for (std::size_t i = 0; i < joint_count; ++i) {
-    if (never_heard(network, i) && !network.restarted_as_told(i)) network.reset_node(i);
+    if (never_heard(network, i) && !network.restarted_as_told(i)) network.reset_node(i, now);
   }
 }
 
@@ -130,7 +131,9 @@ bool Power::standing(const JointStates& joints, Time now, const canopen::Network
   bool all = true;
   for (std::size_t i = 0; i < joint_count; ++i) {
     if (!joints.fresh[i]) {
-      all = all && now - since_ >= ramp(joints, i, network) + silent_margin;
+      // What NMT took out of operation brakes since then, before this stop.
+      const canopen::NodeFault& fault = network.fault(i);
+      all = all && now - since_ >= ramp(joints, i, network) + (fault.rebooted || fault.left_operational ? heed_time : silent_margin);
       continue;
     }
     const double rad = joints.position_rad[i];
@@ -152,9 +155,8 @@ bool Power::confirmed(Time now, const canopen::Network& network) const {
   if (now - since_ < network.config().sync_period * (canopen::Axis::handshake_syncs + 1)) return false;
   for (std::size_t i = 0; i < joint_count; ++i) {
     const canopen::Axis& axis = network.axis(static_cast<Joint>(i));
-    // A node that has restarted has no power; one that was never heard, was lost, or was taken out of operation may have it.
-    const bool restarted = network.fault(i).rebooted || (never_heard(network, i) && network.restarted_as_told(i));
-    if (restarted || axis.confirmed_unpowered(now)) continue;
+    // A node that this master has restarted has no power. One that booted up by itself may have it: NMT reset communication leaves some drives theirs.
+    if (network.restarted_as_told(i) || axis.confirmed_unpowered(now)) continue;
     const bool given_time = state_ == State::removing && now - since_ >= blind_time;
     if (axis.fresh(now) || !given_time) return false;
   }

@@ -122,6 +122,16 @@ void Commissioning::fail_joint(const char* why, Time now) {
   std::snprintf(failure_.data(), failure_.size(), "%s: %s", config::joint_name(joint_), why);
 }
 
+// What a failed one has found is not kept.
+std::array<bool, joint_count> Commissioning::zeros_lost() const {
+  std::array<bool, joint_count> lost{};
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    const canopen::Axis& one = network_.axis(static_cast<Joint>(i));
+    lost[i] = one.zero_lost() && !(state_ == State::done && found_[i] && one.stats().zeros_lost == losses_when_found_[i]);
+  }
+  return lost;
+}
+
 bool Commissioning::without_power() const {
   return std::none_of(powered_.begin(), powered_.end(), [](bool powered) { return powered; });
 }
@@ -145,7 +155,7 @@ void Commissioning::note_power(Time now) {
     const canopen::Axis& one = network_.axis(static_cast<Joint>(i));
     const bool off = one.confirmed_unpowered(now) && one.requested() != canopen::AxisRequest::hold_enabled;
     if (one.fresh(now) && one.powered()) powered_[i] = true;
-    if (off || network_.fault(i).rebooted) powered_[i] = false;
+    if (off || network_.restarted_as_told(i)) powered_[i] = false;
   }
 }
 
@@ -245,6 +255,7 @@ void Commissioning::take_here(Time now) {
     if (!config_.joints[i]) continue;
     zero_counts_[i] = network_.axis(static_cast<Joint>(i)).actual_counts() - arm::counts_from_rad(static_cast<Joint>(i), 0);
     found_[i] = true;
+    losses_when_found_[i] = network_.axis(static_cast<Joint>(i)).stats().zeros_lost;
   }
   joint_ = joint_count;
   next_joint(now);
@@ -319,6 +330,7 @@ void Commissioning::ease(Time now) {
   zero_counts_[joint_] =
       static_cast<std::int32_t>(std::lround(stop_counts_ - arm::exact_counts_from_rad(static_cast<Joint>(joint_), touching_rad)));
   found_[joint_] = true;
+  losses_when_found_[joint_] = axis().stats().zeros_lost;
   target_ = actual;
   begin_rubbing(now);
 }

@@ -75,6 +75,8 @@ class Commissioning {
   std::size_t joint() const { return joint_; }  // under work
   const std::array<std::int32_t, joint_count>& zero_counts() const { return zero_counts_; }
   const std::array<bool, joint_count>& found() const { return found_; }
+  // Joints whose drive said that it has lost its position, less those that were found after it.
+  std::array<bool, joint_count> zeros_lost() const;
   // Where each zero is found: the joint's stop, in a jig 0.
   std::array<double, joint_count> places_rad() const;
   // Not found for a joint that had too little way to its stop, or whose torques make no sense.
@@ -115,6 +117,7 @@ class Commissioning {
   std::size_t joint_ = 0;
   std::array<std::int32_t, joint_count> zero_counts_{};
   std::array<bool, joint_count> found_{};
+  std::array<std::uint32_t, joint_count> losses_when_found_{};  // of each zero
   std::array<bool, joint_count> friction_found_{};
   std::array<config::JointFriction, joint_count> friction_{};
   Time since_;        // in this state

@@ -67,8 +67,7 @@ class ControlLoop {
       const CoreSection guarded;  // the whole of the turn, not only the core in it
       for (PortFault fault; rings_.vision_faults.pop(fault);) controller_->on_port_error(fault.port, fault.code, now_);
       take_loans();
-      const bool shut_down =
-          commissioning_ != nullptr ? commissioning_turn() : control_turn(platform_, *controller_, rings_.core, out_, now_, probe_);
+      const bool shut_down = commissioning_ != nullptr ? commissioning_turn() : core_turn();
       stopping_ = stopping_ || shut_down;
       if (ticks_++ % ticks_a_report == 0 || ended_now()) report(fill);
     }
@@ -89,6 +88,11 @@ class ControlLoop {
   }
 
  private:
+  bool core_turn() {
+    core_has_turned_ = true;
+    return control_turn(platform_, *controller_, rings_.core, out_, now_, probe_);
+  }
+
   // Nothing has power: the bus may be handed over, and the core exchanged.
   bool at_rest() const {
     const mission::Standing standing = controller_->mission().standing();
@@ -110,8 +114,10 @@ class ControlLoop {
 
   // The core first: a commissioning that is lent while another one's zeros wait would find the old ones.
   void take_loans() {
-    if (commissioning_ == nullptr && at_rest() && !has_to_be_reset()) {
+    // Not in the turn after a commissioning: a stop that came at its end is in the core's mailbox, and still has to end the mission.
+    if (commissioning_ == nullptr && core_has_turned_ && at_rest() && !has_to_be_reset()) {
       if (Controller* next = nullptr; rings_.cores.pop(next)) {
+        hand_over(*controller_, *next);
         (void)rings_.old_cores.push(controller_.release());
         controller_.reset(next);
       }
@@ -122,6 +128,31 @@ class ControlLoop {
       } else {
         (void)rings_.commissioned.push({next, false});
       }
+    }
+  }
+
+  // What the core before was told since it began, and what it has heard of its drives: a zero that was lost after it was found is lost.
+  void hand_over(const Controller& before, Controller& next) {
+    mission::Order order;
+    order.command = Command::set_tasks;
+    for (const mission::TaskResult& result : before.mission().tasks()) (void)order.tasks.push_back(result.task);
+    (void)next.on_order(order, now_);
+    for (std::size_t i = 0; i < joint_count; ++i) {
+      const auto joint = static_cast<Joint>(i);
+      const canopen::Axis& axis = before.network().axis(joint);
+      if (axis.zero_lost() && !(found_[i] && axis.stats().zeros_lost == losses_when_found_[i])) next.lose_zero(joint);
+    }
+    found_.fill(false);
+  }
+
+  // The core was not told what its drives said meanwhile.
+  void note_zeros(const Commissioning& ended) {
+    const std::array<bool, joint_count> lost = ended.zeros_lost();
+    for (std::size_t i = 0; i < joint_count; ++i) {
+      const auto joint = static_cast<Joint>(i);
+      if (lost[i]) controller_->lose_zero(joint);
+      found_[i] = ended.state() == Commissioning::State::done && ended.found()[i] && !lost[i];
+      losses_when_found_[i] = controller_->network().axis(joint).stats().zeros_lost;
     }
   }
 
@@ -144,6 +175,8 @@ class ControlLoop {
     if (commissioning_->ended()) {
       // The core latches it, and wants its reset.
       if (commissioning_->emergency_stopped()) (void)controller_->on_command(Command::emergency_stop, now_);
+      note_zeros(*commissioning_);
+      core_has_turned_ = false;
       (void)rings_.commissioned.push({std::exchange(commissioning_, nullptr), true});
       if (stopping_) (void)controller_->on_command(Command::shut_down, now_);
     }
@@ -218,6 +251,10 @@ class ControlLoop {
   LoopRings& rings_;
   std::unique_ptr<Controller> controller_;
   Commissioning* commissioning_ = nullptr;  // lent
+  bool core_has_turned_ = true;             // since the last one
+  // Of the last one, for the core that brings its zeros; and how often each had been lost by then.
+  std::array<bool, joint_count> found_{};
+  std::array<std::uint32_t, joint_count> losses_when_found_{};
   TickOutput out_;
   ControlReport report_;
   Probe probe_;

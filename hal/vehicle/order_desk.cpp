@@ -103,6 +103,7 @@ std::optional<std::string> OrderDesk::take(const std::string& line, unsigned use
   one.line = line;
   one.user = user;
   one.since = monotonic_now();
+  one.stops_before = stops_given_;
   ParsedOrder parsed = parse_order(line);
   if (const auto* why = std::get_if<std::string>(&parsed)) return finish(one, refused(*why));
   one.request = std::get<OperatorRequest>(parsed);
@@ -167,6 +168,7 @@ std::optional<Json> OrderDesk::give(Waiting& one) {
   if (!stop) one.request.order.expires = monotonic_now() + take_within;  // the core refuses what it meets later
   one.number = ++orders_given_;
   if (!stop) rings_.gate.offer(one.number);
+  if (stop) ++stops_given_;
   const bool handed = (stop ? rings_.stops : rings_.orders).push({one.number, one.request.order});
   if (!handed && !stop) return refused("too many orders at once");
   if (!handed) return Json{{"ok", true}, {"standing", "stops before this one are still to be taken"}};
@@ -194,6 +196,8 @@ std::optional<Json> OrderDesk::look_again(Waiting& one) {
   if (one.waits == Waits::for_control) return await_control(one);
   if (one.waits == Waits::for_bus) return await_bus(one);
   if (one.waits == Waits::for_commissioner) return ways_.commissioner->answer();
+  // A reset that was given before a stop would take it back, and power could follow.
+  if (stops_given_ != one.stops_before) return refused("an emergency stop came behind it: it was not carried out");
   if (const std::optional<User> user = users_.find(one.user, monotonic_now())) return begin(one, *user);
   if (monotonic_now() - one.since < look_up_within) return std::nullopt;
   return refused("this machine does not say in time who user " + std::to_string(one.user) + " is: ask again");

@@ -61,6 +61,7 @@ class OrderDesk {
     Time since;
     std::uint64_t number = 0;                 // of the order, for_control
     bool taken = false;                       // the control thread has it, but has not answered
+    std::uint64_t stops_before = 0;           // given when it came
     std::shared_ptr<std::optional<int>> bus;  // the restart's result, guarded by `bus_mutex_`
   };
 
@@ -82,6 +83,7 @@ class OrderDesk {
   std::vector<Waiting> waiting_;
   std::vector<OrderAnswer> answers_;  // of the control thread, not yet looked at
   std::uint64_t orders_given_ = 0;
+  std::uint64_t stops_given_ = 0;
 };
 
 }  // namespace lf::hal

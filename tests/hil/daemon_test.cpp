@@ -186,6 +186,21 @@ TEST_F(AssembledDaemon, TakesTheZeroOfADriveThatLostItsPosition) {
   EXPECT_FALSE(sea->any_powered());
 }
 
+TEST_F(AssembledDaemon, TakesTheZeroOfADriveThatLostItsPositionWhileAnotherWasCommissioned) {
+  folder.write("mine.yaml", "title: mine\nlike: lanternfish\nposition_lost: [\"7320\"]\n");
+  begin(false, silent_camera(), "drives: {jaw: {profile: " + (folder / "mine.yaml") + "}}\n");
+  order(commission_elbow);
+  ASSERT_TRUE(wait_until(
+      "power", [&] { return sea->any_powered(); }, 10));
+  sea->report_error(4, 0x7320);
+  ASSERT_TRUE(wait_standing("idle", 10));
+  EXPECT_EQ(ask("status")["commissioning"]["state"], "failed");
+  wait_until(
+      "the lost zero", [&] { return ask("status").value("without a zero", "") == "jaw"; }, 5);
+  for (const char* request : {"start", "home"}) expect_refused(request, "jaw");
+  EXPECT_FALSE(sea->any_powered());
+}
+
 TEST_F(AssembledDaemon, CommissionsAJointAndUsesItsZero) {
   config::HomingOffsets offsets;
   const auto ended = [&] { return ask("status")["standing"] != "commissioning" && ask("status")["commissioning"]["state"] != "under way"; };

@@ -104,7 +104,7 @@ void ScriptedNode::on_nmt(std::uint8_t command) {
   if (command == 1 && !ignores_start) nmt_ = 5;
   if (command == 2) nmt_ = 4;
   if (command == 128) nmt_ = 127;
-  if (command == 129) state_ = 0x40;  // switch on disabled
+  if (command == 129) state_ = 0x40;  // switch on disabled; NMT reset communication leaves the drive as it is
   if (command == 129 || command == 130) reboot();
 }
 

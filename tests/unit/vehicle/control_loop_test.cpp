@@ -243,5 +243,85 @@ TEST_F(Loop, ACoreThatWasStoppedIsExchangedOnlyAfterItsReset) {
   EXPECT_TRUE(give(Command::home).taken);
 }
 
+// The stop is in the mailbox of the core before, which has not turned since.
+TEST_F(Loop, AStopAtACommissioningsEndIsNotLostWithTheCoreBefore) {
+  Commissioning::Config setup;
+  setup.network = config.network;
+  Commissioning commissioning(setup);
+  ASSERT_TRUE(rings->commissionings.push(&commissioning));
+  turn();
+  EXPECT_TRUE(give(Command::emergency_stop).taken);
+  rings->cores.push(new Controller(config));
+  CommissioningResult result;
+  for (int i = 0; i < 2000 && !rings->commissioned.pop(result); ++i) turn();
+  ASSERT_EQ(result.commissioning, &commissioning);
+  for (int i = 0; i < stop_turns; ++i) turn();
+  Controller* old = nullptr;
+  EXPECT_FALSE(rings->old_cores.pop(old));
+  EXPECT_EQ(loop->controller().mission().standing(), mission::Standing::ended);
+}
+
+TEST_F(Loop, ANewCoreHasTheJobThatWasOrdered) {
+  mission::Order order;
+  order.command = Command::set_tasks;
+  mission::Task turn_to;
+  turn_to.to_rad = 0.25;
+  ASSERT_TRUE(order.tasks.push_back(turn_to));
+  platform.script_order({++number, order});
+  turn();
+  ASSERT_TRUE(platform.order_answers().front().taken);
+  rings->cores.push(new Controller(config));
+  turn();
+  Controller* old = nullptr;
+  ASSERT_TRUE(rings->old_cores.pop(old));
+  delete old;
+  ASSERT_EQ(loop->controller().mission().tasks().size(), 1u);
+  EXPECT_EQ(loop->controller().mission().tasks()[0].task.to_rad, 0.25);
+}
+
+// The core that comes was made before the drive said so.
+TEST_F(Loop, ANewCoreKnowsWhichZerosWereLostMeanwhile) {
+  constexpr std::size_t jaw = 4;
+  for (canopen::DriveSetup& drive : config.network.drives) ASSERT_TRUE(drive.profile.position_lost.push_back(0x7320));
+  loop = std::make_unique<ControlLoop<FailingPlatform<ScriptedPlatform>>>(failing, config, *rings);
+  CanFrame emcy;
+  emcy.id = 0x80u + can_map::drive_nodes[jaw];
+  emcy.length = 8;
+  emcy.data = {0x20, 0x73, 0x20};
+  platform.script_frame(emcy, Time{});
+  turn();
+  rings->cores.push(new Controller(config));
+  turn();
+  Controller* old = nullptr;
+  ASSERT_TRUE(rings->old_cores.pop(old));
+  delete old;
+  for (std::size_t i = 0; i < joint_count; ++i)
+    EXPECT_EQ(loop->controller().network().axis(static_cast<Joint>(i)).zero_lost(), i == jaw) << i;
+}
+
+// A commissioning has the bus: the core does not hear what is said meanwhile.
+TEST_F(Loop, TheCoreIsToldWhichZerosWereLostWhileAJointWasCommissioned) {
+  constexpr std::size_t elbow = 2;
+  for (canopen::DriveSetup& drive : config.network.drives) ASSERT_TRUE(drive.profile.position_lost.push_back(0x7320));
+  loop = std::make_unique<ControlLoop<FailingPlatform<ScriptedPlatform>>>(failing, config, *rings);
+  Commissioning::Config setup;
+  setup.network = config.network;
+  Commissioning commissioning(setup);
+  ASSERT_TRUE(rings->commissionings.push(&commissioning));
+  turn();
+  CanFrame emcy;
+  emcy.id = 0x80u + can_map::drive_nodes[elbow];
+  emcy.length = 8;
+  emcy.data = {0x20, 0x73, 0x20};
+  platform.script_frame(emcy, Time{});
+  turn();
+  EXPECT_TRUE(give(Command::abort).taken);
+  CommissioningResult result;
+  for (int i = 0; i < 2000 && !rings->commissioned.pop(result); ++i) turn();
+  ASSERT_EQ(result.commissioning, &commissioning);
+  EXPECT_TRUE(loop->controller().network().axis(Joint::elbow).zero_lost());
+  EXPECT_FALSE(loop->controller().network().axis(Joint::slew).zero_lost());
+}
+
 }  // namespace
 }  // namespace lf::hal

@@ -171,6 +171,23 @@ TEST_F(Desk, AnOrderWaitsForTheUsersNameAndNoOneElse) {
   EXPECT_TRUE(done.empty());
 }
 
+// Else a reset would take back the stop that was given after it.
+TEST_F(Desk, AnOrderThatAStopHasOvertakenIsNotCarriedOut) {
+  *directory_blocked = true;
+  constexpr OrderDesk::Ticket reset = 1000, stop = 1001;
+  (void)desk->take(R"({"do":"reset"})", slow, reset);
+  (void)desk->take(R"({"do":"estop"})", bob, stop);
+  *directory_blocked = false;
+  std::map<OrderDesk::Ticket, std::string> answers;
+  for (int i = 0; i < 2000 && answers.size() < 2; ++i) {
+    run_control();
+    desk->settle([&](OrderDesk::Ticket of, const std::string& text) { answers[of] = text; });
+    sleep_until(monotonic_now() + Duration::from_ms(1));
+  }
+  EXPECT_THAT(answers[reset], HasSubstr("emergency stop came behind it"));
+  EXPECT_THAT(done, testing::ElementsAre(Command::emergency_stop));
+}
+
 TEST_F(Desk, RestartsTheBusBesideItsOtherWork) {
   *bus_blocked = true;
   EXPECT_EQ(ask(R"({"do":"restart-bus"})", alice, true, Duration::from_ms(50)), Json("no answer"));
