@@ -31,6 +31,7 @@ constexpr std::array kinds{
     FaultKind{"foreign_sdo", node, "a second master reads an object of the node every 50 ms"},
     FaultKind{"foreign_sync", bus, "a second master sends SYNC every 50 ms"},
     FaultKind{"foreign_nmt", bus, "a second master sends NMT enter pre-operational to all, every 50 ms"},
+    FaultKind{"foreign_reset", bus, "a second master sends NMT reset communication to all, every 50 ms"},
     FaultKind{"foreign_heartbeat", bus, "a second master's heartbeat, with the master's own node number, every 50 ms"},
     FaultKind{"foreign_master", bus, "a second master runs the arm: every 4 ms SYNC, an RPDO for each drive, and its heartbeat"},
     FaultKind{"clock_lost", port, "the platform's clock fails"},

@@ -65,9 +65,10 @@ CanFrame foreign_frame(const DeviceFault& fault) {
       return frame;
     case DeviceFaultKind::foreign_sync: frame.id = 0x080; return frame;
     case DeviceFaultKind::foreign_nmt:
+    case DeviceFaultKind::foreign_reset:
       frame.id = 0x000;
       frame.length = 2;
-      frame.data = {0x80, 0};
+      frame.data = {fault.kind == DeviceFaultKind::foreign_nmt ? std::uint8_t{0x80} : std::uint8_t{0x82}, 0};
       return frame;
     default:
       frame.id = 0x700u + can_map::master_node;

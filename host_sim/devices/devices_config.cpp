@@ -54,6 +54,7 @@ bool of_one_node(DeviceFaultKind kind) {
     case error_frames:
     case foreign_sync:
     case foreign_nmt:
+    case foreign_reset:
     case foreign_heartbeat:
     case foreign_master: return false;
     default: return true;
@@ -90,8 +91,8 @@ void check_fault(const DeviceFault& fault, const DevicesConfig& config) {
 
 bool of_a_second_master(DeviceFaultKind kind) {
   using enum DeviceFaultKind;
-  return kind == foreign_rpdo || kind == foreign_sdo || kind == foreign_sync || kind == foreign_nmt || kind == foreign_heartbeat ||
-         kind == foreign_master;
+  return kind == foreign_rpdo || kind == foreign_sdo || kind == foreign_sync || kind == foreign_nmt || kind == foreign_reset ||
+         kind == foreign_heartbeat || kind == foreign_master;
 }
 
 bool of_the_bus(DeviceFaultKind kind) {

@@ -89,6 +89,7 @@ enum class DeviceFaultKind : std::uint8_t {
   foreign_sdo,        // an SDO upload request to the node
   foreign_sync,       // a SYNC
   foreign_nmt,        // NMT "enter pre-operational", to all nodes
+  foreign_reset,      // NMT "reset communication", to all nodes: some drives keep their state through it
   foreign_heartbeat,  // a heartbeat with the master's own node number
   foreign_master,     // every SYNC period SYNC, the RPDO of each drive and a heartbeat, as a master that runs the arm
 };

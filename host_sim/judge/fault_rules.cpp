@@ -65,6 +65,7 @@ const std::vector<FaultRule>& rules() {
       {"foreign_sdo", stop, Report::second_master, 0, other_master, {}},
       {"foreign_sync", stop, Report::second_master, 0, other_master, {}},
       {"foreign_nmt", stop, Report::second_master, 0, other_master, {}},
+      {"foreign_reset", stop, Report::second_master, 0, other_master, {}},
       {"foreign_heartbeat", stop, Report::second_master, 0, other_master, {}},
       {"foreign_master", stop, Report::second_master, 0, other_master, {}},
       {"clock_lost", stop, Report::at_once, 0, {"clock lost"}, {}},

@@ -155,7 +155,7 @@ optics::OpticsConfig optics_config(const Scenario& scenario, const Sample& sampl
 }
 
 // The names of config::fault_kinds() that the devices make; a test holds the tables against each other.
-constexpr std::array<std::pair<const char*, DeviceFaultKind>, 22> device_kinds{{{"overcurrent", DeviceFaultKind::overcurrent},
+constexpr std::array<std::pair<const char*, DeviceFaultKind>, 23> device_kinds{{{"overcurrent", DeviceFaultKind::overcurrent},
                                                                                 {"hot", DeviceFaultKind::hot},
                                                                                 {"following", DeviceFaultKind::following},
                                                                                 {"stuck_encoder", DeviceFaultKind::stuck_encoder},
@@ -175,6 +175,7 @@ constexpr std::array<std::pair<const char*, DeviceFaultKind>, 22> device_kinds{{
                                                                                 {"foreign_sdo", DeviceFaultKind::foreign_sdo},
                                                                                 {"foreign_sync", DeviceFaultKind::foreign_sync},
                                                                                 {"foreign_nmt", DeviceFaultKind::foreign_nmt},
+                                                                                {"foreign_reset", DeviceFaultKind::foreign_reset},
                                                                                 {"foreign_heartbeat", DeviceFaultKind::foreign_heartbeat},
                                                                                 {"foreign_master", DeviceFaultKind::foreign_master}}};
 

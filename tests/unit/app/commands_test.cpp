@@ -319,6 +319,14 @@ TEST_F(Commands, EachFaultOfTheCoreIsReportedInARow) {
   }
 }
 
+// EPOS4 keeps its power through NMT reset communication, and hears no reset while it boots for another master's.
+TEST_F(Commands, ADriveThatKeepsItsPowerThroughAnotherMastersResetsLosesIt) {
+  const Said said =
+      run("campaign default --faults --kinds foreign_reset --set drives.profile=epos4 --steps 'deploy;grip;press' --out m --json");
+  EXPECT_EQ(said.status, 0) << said.out;
+  EXPECT_EQ(Json::parse(said.out)["unsafe"], 0);
+}
+
 // It flew none of no rows, and that was a success.
 TEST_F(Commands, AKeyThatThereIsNotIsRefusedByARangeCampaign) {
   const Said said = run("campaign default --ranges --draws 1 --many 0 --kinds valve.friction --out m");
