@@ -118,7 +118,6 @@ judge::Ending ending_of(const Flight& flight, const Watched& watched, const Matr
 
 // An arm may be pushed where none of its drives can feel it. That it calls a success then is no lie, but the row says so.
 bool unfelt_push(const Flight& flight, const Watched& watched, const MatrixRow& row, const world::World& world) {
-  constexpr double doubt = 1.3;  // of a torque that is told by current and friction
   const bool pushed =
       std::any_of(row.causes.begin(), row.causes.end(), [](const judge::Cause& cause) { return cause.rule->kind == "obstacle"; });
   if (!pushed) return false;
@@ -126,9 +125,7 @@ bool unfelt_push(const Flight& flight, const Watched& watched, const MatrixRow& 
   world::ContactReport contacts = world.contacts();
   contacts.unintended.clear();
   if (judge::contradiction({results.data(), results.size()}, watched.truth.tasks(), judge::task_truth(world), contacts)) return false;
-  std::array<double, arm_joint_count> push_nm = flight.contact_torque_nm();
-  for (double& nm : push_nm) nm *= doubt;
-  return !judge::felt_a_push(watched.safety.seen(), push_nm);
+  return !judge::felt_a_push(watched.safety.seen());
 }
 
 // Makes the row's faults and flies on to the end.

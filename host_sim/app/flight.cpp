@@ -1,7 +1,5 @@
 #include "host_sim/app/flight.hpp"
 
-#include "firmware/mission/workbench.hpp"
-
 namespace lf::app {
 
 Flight::Flight(const scenario::Scenario& scenario, std::uint64_t seed, hal::SimObserver& observer, Sight sight) {
@@ -15,8 +13,6 @@ Flight::Flight(const scenario::Scenario& scenario, std::uint64_t seed, hal::SimO
     const ArmJoint& joint = sim.world.arm.joints[i];
     gear_gives_rad_[i] = 0.5 * joint.backlash_rad + joint.rated_torque_nm / sim.world.drive_stiffness_nm_rad[i];
   }
-  const arm::JointVector contact_nm = mission::free_motion_guard(nominal.controller.mission_limits).contact_torque_nm;
-  for (std::size_t i = 0; i < arm_joint_count; ++i) contact_torque_nm_[i] = contact_nm[static_cast<Eigen::Index>(i)];
   platform_ = std::make_unique<hal::SimPlatform>(sim, observer);
   controller_ = std::make_unique<Controller>(nominal.controller);
   pipeline_ = std::make_unique<ScanPipeline>(nominal.scan);

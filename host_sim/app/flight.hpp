@@ -40,11 +40,8 @@ class Flight {
   const std::array<double, joint_count>& deceleration_rad_s2() const { return deceleration_rad_s2_; }
   // Of the joints, by which one may be off its motor: half of its gear's play, and the wind-up under the motor's rated torque.
   const std::array<double, joint_count>& gear_gives_rad() const { return gear_gives_rad_; }
-  // Over free motion's, from which on the core takes it for a contact.
-  std::array<double, arm_joint_count> contact_torque_nm() const { return contact_torque_nm_; }
 
  private:
-  std::array<double, arm_joint_count> contact_torque_nm_{};
   std::array<double, joint_count> deceleration_rad_s2_{}, gear_gives_rad_{};
   config::ErrorTexts error_texts_;
   std::unique_ptr<hal::SimPlatform> platform_;

@@ -71,7 +71,7 @@ const std::vector<Group>& groups() {
       {"mission.valve_tolerance_rad", {"angle"}},
       {"mission.approach_", {"in the way", "out of reach", "touched something", "button", "handle"}},
       {"mission.move_speed_fraction", load()},
-      {"mission.tries", {"step failed", "panel vision"}},
+      {"mission.tries", {"panel vision"}},
   };
   return all;
 }

@@ -54,6 +54,8 @@ bool misleads(const Cause& cause) {
   return kind == "stuck_encoder" || kind == "encoder_jump" || kind == "runaway" || kind == "following";
 }
 
+bool misleads_its_joint(const Cause& cause) { return cause.rule->kind == "runaway" || cause.rule->kind == "stuck_encoder"; }
+
 bool is_a_drives_fault(const Cause& cause) { return cause.rule->kind == "overcurrent" || cause.rule->kind == "hot"; }
 
 // Until an order acts: up to a SYNC period until the SYNC, one that is interpolated, and the arm's own compliance.
@@ -112,6 +114,7 @@ class Judge {
 
   Verdict verdict() {
     forces();
+    if (!situation_.powering_up) goes_not_far();
     if (const auto deadline = strictest(); deadline && !taken_over()) {
       // What is reported before any drive runs is no stop: powering up has to end.
       situation_.powering_up && !runs_at(deadline->at_s) ? nothing_moves() : stop(*deadline);
@@ -227,6 +230,26 @@ class Judge {
   void forces() {
     for (const Moment& moment : moments_) verdict_.force_n = std::max(verdict_.force_n, double(moment.force_n));
     if (verdict_.force_n > figures_.force_n) wrong(formatted("%.0f N of contact", verdict_.force_n));
+  }
+
+  // A drive that runs off and an encoder that stands report nothing: the core has to see that the joint is not where it should be. Of the joints that move the arm:
+  // roll and jaw turn in their place, between their stops.
+  void goes_not_far() {
+    const std::uint8_t misled = joints_that(misleads_its_joint);
+    for (std::size_t joint = 0; joint < static_cast<std::size_t>(Joint::roll) && !moments_.empty(); ++joint) {
+      if ((misled >> joint & 1u) == 0) continue;
+      double begin_s = HUGE_VAL;
+      for (std::size_t i = 0; i < situation_.causes.size(); ++i) {
+        const Cause& cause = situation_.causes[i];
+        if (node_index(cause.node) == joint && misleads_its_joint(cause)) begin_s = std::min(begin_s, situation_.begins_s[i]);
+      }
+      const auto from = std::min(static_cast<std::size_t>(begin_s / ms), moments_.size() - 1);
+      const auto by_angle = [joint](const Moment& a, const Moment& b) { return a.angle_rad[joint] < b.angle_rad[joint]; };
+      const auto [low, high] = std::minmax_element(moments_.begin() + std::ptrdiff_t(from), moments_.end(), by_angle);
+      const double gone_rad = double(high->angle_rad[joint]) - double(low->angle_rad[joint]);
+      if (gone_rad > figures_.misled_rad)
+        wrong(std::string(joint_names[joint]) + formatted(" goes %.2f rad while its drive misleads", gone_rad));
+    }
   }
 
   void stop(const Deadline& deadline) {
@@ -476,7 +499,7 @@ class Judge {
 
 }  // namespace
 
-bool felt_a_push(const Seen& seen, const std::array<double, arm_joint_count>& push_nm) {
+bool felt_a_push(const Seen& seen, const SafetyFigures& figures) {
   constexpr std::size_t before_ms = 20, judged_ms = 50;
   for (std::size_t joint = 0; joint < arm_joint_count; ++joint) {
     double free_nm = 0;
@@ -484,7 +507,7 @@ bool felt_a_push(const Seen& seen, const std::array<double, arm_joint_count>& pu
       free_nm += double(seen.moments[t].works_nm[joint]) / before_ms;
     std::size_t run = 0;
     for (const Moment& moment : seen.moments) {
-      run = double(moment.works_nm[joint]) - free_nm > push_nm[joint] ? run + 1 : 0;
+      run = double(moment.works_nm[joint]) - free_nm > figures.felt_nm[joint] ? run + 1 : 0;
       if (run >= judged_ms) return true;
     }
   }

@@ -30,7 +30,11 @@ struct SafetyFigures {
   // restarted when the arm's ramp and a brake would be over.
   double unreached_off_s = 0.44;  // over the longest ramp
   double quivers_rad = 0.001;     // by which a joint whose motor stands may quiver under a load: half a millimetre at the tool
-  double unwinding_s = 0.5;       // in which a joint whose motor stands may still unwind its gear
+  // What an arm has to feel, at each joint: 33 N at the tool, and a third of it for what current and friction leave in doubt. Not the core's own limits: one that
+  // feels less than this has missed it.
+  std::array<double, arm_joint_count> felt_nm{17, 17, 17, 4.3};
+  double misled_rad = 0.5;   // by which slew, shoulder and elbow may go while its drive, or its encoder, misleads
+  double unwinding_s = 0.5;  // in which a joint whose motor stands may still unwind its gear
 };
 
 // What the core says, and what is true, at the end.
@@ -68,9 +72,9 @@ struct Verdict {
   double force_n = 0;
 };
 
-// Whether a joint that moved worked against a push of more than `push_nm` over what it took when watching began, for the time over which a force is judged.
+// Whether a joint that moved worked against a push of more than `felt_nm` over what it took when watching began, for the time over which a force is judged.
 // Torques of the drives are all by which an arm can feel: a push on a screw that stands, or along its way, is not felt.
-bool felt_a_push(const Seen& seen, const std::array<double, arm_joint_count>& push_nm);
+bool felt_a_push(const Seen& seen, const SafetyFigures& figures = {});
 
 Verdict judge(const Seen& seen, const Situation& situation, const Ending& ending, const SafetyFigures& figures = {});
 

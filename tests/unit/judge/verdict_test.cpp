@@ -83,13 +83,29 @@ TEST(Verdict, AScrewUnderALoadMaySettleWhenItsPowerGoesAndAtNoOtherTime) {
   EXPECT_THAT(wrong(400, 0.0038f), testing::Contains(testing::HasSubstr("shoulder moves"))) << "long after";
 }
 
+// Nothing reports it: it may last, and not lead far.
+TEST(Verdict, AJointThatRunsOffIsStoppedBeforeItHasGoneFar) {
+  const auto wrong = [](const std::string& cause, float rad) {
+    Seen seen;
+    seen.moments.resize(3000);
+    for (std::size_t t = 1000; t < 3000; ++t) seen.moments[t].angle_rad[1] = seen.moments[t].motor_rad[1] = rad;
+    return judge(seen, situation_of(cause_of(cause)), failed("following error: shoulder")).wrong;
+  };
+  EXPECT_THAT(wrong("runaway shoulder", 0.45f), IsEmpty());
+  EXPECT_THAT(wrong("runaway shoulder", 0.55f), testing::Contains(testing::HasSubstr("shoulder goes 0.55 rad")));
+  EXPECT_THAT(wrong("stuck_encoder shoulder", -0.55f), testing::Contains(testing::HasSubstr("shoulder goes 0.55 rad")));
+  EXPECT_THAT(wrong("runaway elbow", 0.55f), IsEmpty()) << "another joint";
+}
+
 // The shoulder goes at 0.1 rad/s, and its drive gives 2 N m for it; then 14 N m for a time.
 TEST(Verdict, APushIsFeltByAJointThatWorksAgainstItForAsLongAsAForceIsJudged) {
   const auto felt = [](float nm, std::size_t for_ms) {
     Seen seen;
     seen.moments.resize(1000);
     for (std::size_t t = 0; t < 1000; ++t) seen.moments[t].works_nm[1] = t >= 300 && t < 300 + for_ms ? nm : 2;
-    return felt_a_push(seen, {13, 13, 13, 5});
+    SafetyFigures figures;
+    figures.felt_nm = {13, 13, 13, 5};
+    return felt_a_push(seen, figures);
   };
   EXPECT_FALSE(felt(14, 500)) << "12 more than before";
   EXPECT_TRUE(felt(16, 60));
