@@ -27,7 +27,23 @@ bool inside_plate(const PanelLayout& panel, const Vec2& centre, double half) {
   return (low.array() >= panel.plate_min_m.array()).all() && (high.array() <= panel.plate_max_m.array()).all();
 }
 
+bool plate_fits(const PanelLayout& panel, double side) {
+  const bool free = std::all_of(panel.buttons_m.begin(), panel.buttons_m.end(), [&](const Vec2& button) {
+    return distance_to_square(button - panel.marker_centre_m, side) >= panel.button_width_m / 2;
+  });
+  return free && inside_plate(panel, panel.marker_centre_m, side / 2);
+}
+
 }  // namespace
+
+double largest_marker_plate_m(const PanelLayout& panel) {
+  double fits = 0, does_not = 10;
+  for (int i = 0; i < 50; ++i) {
+    const double side = (fits + does_not) / 2;
+    (plate_fits(panel, side) ? fits : does_not) = side;
+  }
+  return fits;
+}
 
 std::vector<std::string> panel_problems(const PanelLayout& panel) {
   std::vector<std::string> problems;

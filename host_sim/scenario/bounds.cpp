@@ -6,6 +6,7 @@
 #include "firmware/arm/gripper.hpp"
 #include "hal/config/handle_check.hpp"
 #include "hal/config/homing_file.hpp"
+#include "hal/config/panel_check.hpp"
 #include "shared/arm/motor.hpp"
 
 namespace lf::scenario {
@@ -14,9 +15,6 @@ namespace {
 
 // Force at which a press ends, over the torque that says bottom. A button of 20 N at half its stroke is pressed with 7 N m, one of 25 N is not; 30 N with 14.
 constexpr double force_of_press_n_nm = 20.0 / 7;
-// With the default layout, up to where a way to each button was found past the handle: with a bar 0.117 m long or 0.041 m thick, a cap 0.057 m wide, or a marker's
-// plate of 0.158 m none was. Buttons farther away leave more room, so that the keys' own ranges are wider.
-constexpr double longest_bar_m = 0.11, thickest_bar_before_buttons_m = 0.04, widest_cap_m = 0.055, largest_plate_m = 0.155;
 // A bound that must not be met is missed by this share of itself, or of the range.
 constexpr double clearly = 0.01;
 
@@ -54,11 +52,9 @@ Bounds of_panel(const config::Key& key, const Scenario& s) {
   if (key.path == "panel.button_stroke_m")
     return within(key, s.buttons.click_depth_m, 2 * (pressed_force_n(s) - s.buttons.preload_n) / s.buttons.spring_n_m);
   if (key.path == "panel.marker_size_m") return within(key, key.min, panel.marker_plate_m * (1 - clearly));
-  if (key.path == "panel.marker_plate_m") return within(key, panel.marker_size_m * (1 + clearly), largest_plate_m);
-  if (key.path == "panel.handle_thickness_m")
-    return within(key, arm::thinnest_bar_m, std::min(thickest_bar_before_buttons_m, config::thickest_bar_m(panel)));
-  if (key.path == "panel.handle_length_m") return within(key, key.min, longest_bar_m);
-  if (key.path == "panel.button_width_m") return within(key, key.min, widest_cap_m);
+  if (key.path == "panel.marker_plate_m")
+    return within(key, panel.marker_size_m * (1 + clearly), config::largest_marker_plate_m(panel) * (1 - clearly));
+  if (key.path == "panel.handle_thickness_m") return within(key, arm::thinnest_bar_m, config::thickest_bar_m(panel));
   if (key.path == "panel.pointer_length_m") return within(key, key.min, config::longest_mark_m(panel));
   return {key.min, key.max};
 }

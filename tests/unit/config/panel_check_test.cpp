@@ -38,5 +38,13 @@ TEST(PanelCheck, OverlappingButtonsAndWhatHangsBeyondThePlateAreNamed) {
   EXPECT_THAT(panel_problems(panel), ElementsAre(HasSubstr("the marker's plate hangs beyond")));
 }
 
+TEST(PanelCheck, TheLargestPlateIsTheLastThatIsAccepted) {
+  PanelLayout panel;
+  panel.marker_plate_m = largest_marker_plate_m(panel) - 1e-6;
+  EXPECT_TRUE(panel_problems(panel).empty());
+  panel.marker_plate_m += 2e-6;
+  EXPECT_FALSE(panel_problems(panel).empty());
+}
+
 }  // namespace
 }  // namespace lf::config
