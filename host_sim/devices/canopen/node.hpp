@@ -67,6 +67,7 @@ class Node : private SdoTarget {
   std::uint8_t id() const { return id_; }
   NmtState state() const { return state_; }
   ObjectDictionary& objects() { return objects_; }
+  const ObjectDictionary& objects() const { return objects_; }
 
   // An error appears or is gone: 1001, 1003 and an EMCY message. Each code is active once.
   void raise(std::uint16_t code, Time now);

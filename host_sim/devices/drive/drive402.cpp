@@ -337,7 +337,9 @@ bool Drive402::without_sync(Time now) const {
   // EPOS4 misses its target, whichever of SYNC and RPDO was lost.
   const Time last = config_.habit->misses_targets ? std::min(last_sync_, last_target_) : last_sync_;
   const Time since = std::max(last, enabled_at_);
-  return (now - since).s() > (2.5 + config_.habit->sync_losses_bridged) * period_s;
+  const Object* bridged = node_.objects().find(config_.habit->sync_losses_bridged_by, 0);
+  const double cycles = bridged != nullptr ? static_cast<double>(bridged->value) : config_.habit->sync_losses_bridged;
+  return (now - since).s() > (2.5 + cycles) * period_s;
 }
 
 bool Drive402::brake_closed(Time now) const {

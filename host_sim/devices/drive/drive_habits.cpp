@@ -28,7 +28,7 @@ constexpr DriveHabit epos4(const char* name, const char* dictionary) {
 constexpr DriveHabit elmo(const char* name, const char* dictionary) {
   DriveHabit h{name, dictionary, 0x9A, 0x00030923};
   h.sync_loss = SyncLoss::faults;
-  h.sync_losses_bridged = 5;   // 2F75
+  h.sync_losses_bridged_by = 0x2F75;
   h.quick_stop_values = 0xEF;  // 0..3, 5..7
   return h;
 }

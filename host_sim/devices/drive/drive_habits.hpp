@@ -38,10 +38,11 @@ struct DriveHabit {
   TorqueUnit torque = TorqueUnit::permille;
   Rating rating = Rating::as_listed;
   SyncLoss sync_loss = SyncLoss::holds;
-  unsigned sync_losses_bridged = 0;        // cycles that it goes on without a SYNC
-  bool misses_targets = false;             // without an RPDO, too
-  std::uint32_t quick_stop_values = 0xFF;  // bit n: 605A takes n
-  std::uint32_t abort_values = 0x0F;       // the same of 6007
+  unsigned sync_losses_bridged = 0;          // cycles that it goes on without a SYNC
+  std::uint16_t sync_losses_bridged_by = 0;  // the object that says so instead, as it stands
+  bool misses_targets = false;               // without an RPDO, too
+  std::uint32_t quick_stop_values = 0xFF;    // bit n: 605A takes n
+  std::uint32_t abort_values = 0x0F;         // the same of 6007
   int brake_opens_ms = 0;
   bool cyclic_position = true;  // it has mode 8
   bool limits_fault = false;    // a target outside of 607D is a fault 8A82, not a clamped target

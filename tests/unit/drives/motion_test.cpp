@@ -205,6 +205,48 @@ TEST(UnconfirmedDrive, AnLmdriveWithSpeedsInRpmMovesTheSame) {
   }
 }
 
+// Its 6085 is in the unit of the switch: the ramp that was asked for where its profile is right, a shorter one where the drive counts in turns a minute.
+TEST(UnconfirmedDrive, AnLmdriveStopsWithinItsRampInEitherUnit) {
+  double gone_counts[2] = {};
+  for (const bool rpm : {false, true}) {
+    Make make{"", "lmdrive"};
+    make.switches.speeds_in_rpm = rpm;
+    DriveBench bench(make);
+    ASSERT_TRUE(bench.boot()) << bench.sentence();
+    ASSERT_TRUE(enable(bench));
+    (void)set_off(bench);
+    const double before = bench.joint_counts();
+    bench.elbow().request(AxisRequest::quick_stop);
+    EXPECT_TRUE(bench.run_until([&] { return bench.elbow().state() == AxisState::stopped; }, Duration::from_s(2)));
+    bench.run(Duration::from_ms(500));
+    gone_counts[rpm] = std::abs(bench.joint_counts() - before);
+    std::printf("QS %d %.1f\n", rpm, gone_counts[rpm]);
+  }
+  EXPECT_LE(gone_counts[true], gone_counts[false] + 5);
+}
+
+// Without a word of ours the object has the maker's 1, and a drive that is told 5 goes on for that long.
+TEST(ElmoGold, BridgesAsManyLostSyncsAsItsObjectSays) {
+  double complained_s[2] = {};
+  for (const bool told : {false, true}) {
+    DriveBench bench({"", "elmo_gold"}, [&](canopen::NetworkConfig& config, devices::DevicesConfig&) {
+      if (!told) config.drives[2].profile.objects.clear();
+    });
+    ASSERT_TRUE(bench.boot()) << bench.sentence();
+    ASSERT_TRUE(enable(bench));
+    (void)set_off(bench);
+    Time complained;
+    watch_emcy(bench, 0x8250, complained);
+    const Time gone = bench.now;
+    bench.master_alive = false;
+    bench.run(Duration::from_ms(150));
+    ASSERT_NE(complained, Time{}) << told;
+    complained_s[told] = (complained - gone).s();
+    std::printf("2F75 %d %.4f\n", told, complained_s[told]);
+  }
+  EXPECT_NEAR(complained_s[true] - complained_s[false], 4 * 0.004, 0.002);
+}
+
 TEST(UnconfirmedDrive, AnEyouThatIgnoresALostMasterStandsAtItsLastTarget) {
   Make make{"", "eyou"};
   make.switches.ignores_lost_master = true;
