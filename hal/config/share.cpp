@@ -53,6 +53,13 @@ fs::path find_file(const std::string& name, const fs::path& folder) {
   return fs::exists(shipped, ignored) ? shipped : folder / path;  // what is nowhere is missed where its user put it
 }
 
+bool is_shipped(const fs::path& file) {
+  std::error_code ignored;
+  const fs::path under =
+      fs::weakly_canonical(fs::absolute(file), ignored).lexically_relative(fs::weakly_canonical(share_folder(), ignored));
+  return !under.empty() && *under.begin() != "..";
+}
+
 fs::path named_file(const std::string& told_in, const char* key, const std::string& name) {
   const fs::path folder = fs::path(told_in).parent_path();
   fs::path found = find_file(name, folder);

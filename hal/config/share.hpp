@@ -14,6 +14,9 @@ std::filesystem::path share_folder();
 // copied or moved uses its own files. Empty when neither holds arm/arm5e.urdf.
 std::filesystem::path share_beside(const std::filesystem::path& program);
 
+// Whether a file is one of those, whatever links lead to it: many configurations name it, and it is nobody's to write into.
+bool is_shipped(const std::filesystem::path& file);
+
 // `name` as a path: itself when absolute, else in `folder` if it is there, else in the share folder if it is there, else in `folder`.
 std::filesystem::path find_file(const std::string& name, const std::filesystem::path& folder);
 

@@ -143,6 +143,7 @@ std::string Commissioner::unknown_joints() const {
 std::optional<std::string> Commissioner::begin(const CommissionOrder& order) {
   if (stage_ != Stage::idle) return "a commissioning is under way";
   if (file_.empty()) return "'homing.file' names no file to write the zeros to";
+  if (config::is_shipped(file_)) return "'homing.file' is the shipped " + file_ + ": copy it, and name the copy";
   order_ = order;
   answer_.reset();
   prepared_ = std::make_shared<Prepared>();
