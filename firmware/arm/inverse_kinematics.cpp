@@ -69,7 +69,7 @@ const char* name(IkOutcome outcome) {
     case IkOutcome::elbow_limit: return "elbow limit";
     case IkOutcome::roll_limit: return "roll limit";
   }
-  return "?";
+  return "unknown";
 }
 
 IkResult inverse_kinematics(const Vec3& tool_m, double roll_rad, double limit_margin_rad) {

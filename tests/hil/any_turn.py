@@ -4,7 +4,7 @@
     any_turn.py build/release/bin/lanternfish --draws 50 [--seed N] [--out FILE.csv] [--set key=value ...]
 
 Draw number I of seed N gives the same start, target and scenario seed wherever it runs. With --out, draws that the file already holds are kept, so that a
-run that was stopped goes on where it was. Exit status 1 when a run was a false success, in which the core claimed an angle at which the valve does not stand, or when fewer than --at-least are right.
+run that was stopped goes on where it was. Exit status 1 when a run was a false success, by whatever contradicts the core's account, or when fewer than --at-least are right.
 """
 import argparse
 import collections
@@ -35,14 +35,14 @@ def fly(program, sets, start, target, scenario_seed):
             command += ["--set", each]
         done = subprocess.run(command, capture_output=True, text=True)
         if done.returncode not in (0, 1):
-            return "refused before the start", float("nan"), done.stderr.strip().splitlines()[-1]
+            return "refused before the start", float("nan"), (done.stderr.strip().splitlines() or ["nothing was said"])[-1]
         result = json.loads(pathlib.Path(folder + "/run/result.json").read_text())
     task = result["tasks"][0]
     reason = result["failure"]["reason"] if result.get("failure") else ""
+    if result["false_success"]:
+        return "FALSE SUCCESS", task["reached_deg"], reason
     if result["success"]:
         return "right", task["reached_deg"], ""
-    if "against the core's account" in reason:
-        return "FALSE SUCCESS", task["reached_deg"], reason
     verdict = "refused by name" if any(words in reason for words in REFUSALS) else "failed"
     return verdict, task["reached_deg"], reason
 

@@ -4,7 +4,7 @@ set -euo pipefail
 nightly=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)/nightly.sh
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-export LANTERNFISH_NIGHTLY_SHARDS=$work/shards
+export LANTERNFISH_NIGHTLY_SHARDS=$work/shards LANTERNFISH_NIGHTLY_MINUTE_S=3
 fail() { echo "$*" >&2; cat "$work/said" >&2; exit 1; }
 # ends STATUS ARGUMENT...
 ends() {
@@ -35,6 +35,14 @@ ends 0 --table
 ends 0 good
 ! grep -q second "$work/said" || fail "another shard than the one that was asked for"
 
+# One that takes more than its time goes on with the next call.
+echo "long 1 mkdir -p {out}; [ -e {out}/again ] || { touch {out}/again; sleep 60; }; echo whole" >>"$work/shards"
+ends 1 long
+grep -q '^| long | not done' "$work/said" || fail "a shard over its time is told as done"
+ends 0 long
+grep -q '^| long | passed' "$work/said" || fail "a shard over its time is not gone on with"
+
+sed -i /^long/d "$work/shards"
 echo "0000" >"$work/state/revision"
 ends 2
 ends 0 --fresh

@@ -79,7 +79,7 @@ Row row(const std::string& name, double aim, Run run) {
 
 std::vector<Row> run_world_bench() {
   const ArmDescription arm = load_arm_urdf(LANTERNFISH_SOURCE_DIR "/shared/arm/arm5e.urdf");
-  return {row("world_free", 30, [&] { return free_speed(arm); }), row("world_turning", 15, [&] { return turning_speed(arm); })};
+  return {row("world_free", 60, [&] { return free_speed(arm); }), row("world_turning", 15, [&] { return turning_speed(arm); })};
 }
 
 }  // namespace lf::bench

@@ -4,12 +4,17 @@
 #include <limits>
 
 #include "firmware/arm/inverse_kinematics.hpp"
+#include "tests/unit/all_named.hpp"
 #include "tests/unit/arm/random_joints.hpp"
 
 namespace lf::arm {
 namespace {
 
 constexpr std::uint64_t seed = 20132;
+
+TEST(InverseKinematicsNames, OfEachOutcome) {
+  test::expect_all_named<IkOutcome>(8, [](IkOutcome o) { return name(o); });
+}
 
 TEST(InverseKinematics, HitsEveryOfAMillionReachableTargetsToANanometre) {
   SCOPED_TRACE(testing::Message() << "seed " << seed);
