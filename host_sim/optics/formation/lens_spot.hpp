@@ -25,10 +25,13 @@ class LensSpot {
 
  private:
   static constexpr int steps = 32;  // of the variance, from the centre to the corners
-  const GaussianTaps& taps_of(int u, int v) const;
+  // One a packet of eight pixels.
+  const std::uint8_t* step_row(int v) const { return step_.data() + static_cast<std::size_t>(v) * packets_a_row_; }
 
   double centre_u_, centre_v_, per_corner2_, variance_, growth_;
   std::array<GaussianTaps, steps + 1> taps_;
+  std::size_t packets_a_row_;
+  std::vector<std::uint8_t> step_;  // of each packet's middle
 };
 
 }  // namespace lf::optics
