@@ -434,6 +434,8 @@ class Judge {
       const double moved_s = last_s(moments_, 0, moves);
       if (moved_s == 0) continue;
       const double since_s = time_s(*std::find_if(moments_.begin(), moments_.end(), moves));
+      // It was enabled while the fault was still on its way to the core.
+      if (ends_s && since_s < *ends_s && moved_s <= *ends_s + figures_.settling_s) continue;
       if ((runs_off >> joint & 1u) != 0 && moved_s - since_s <= figures_.off_after_stop_s) continue;
       wrong(std::string(joint_names[joint]) + formatted(" moves from %.2f to %.2f s although powering up had to end", since_s, moved_s));
     }

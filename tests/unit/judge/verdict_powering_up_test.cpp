@@ -50,6 +50,13 @@ TEST(VerdictPoweringUp, AFaultThatComesWhenTheDrivesRunAlreadyStopsThem) {
   EXPECT_THAT(powering_up("estop", 150, 1.09), ElementsAre("still told to run 50 ms after the report"));
 }
 
+// The report came at 0.993 s, and has 12 ms: enabling was on its way, and no farther.
+TEST(VerdictPoweringUp, WhatIsEnabledBeforeTheReportIsDueMayStop) {
+  EXPECT_THAT(powering_up("estop", 40, 0.983), IsEmpty());
+  EXPECT_THAT(powering_up("estop", 200, 0.983), testing::Contains("jaw moves from 1.00 to 1.20 s although powering up had to end"));
+  EXPECT_THAT(powering_up("estop", 40, 0.970), testing::Contains("jaw moves from 1.00 to 1.04 s although powering up had to end"));
+}
+
 // Its drives get power at 1 s.
 TEST(VerdictPoweringUp, AChainThatOpensBeforePowerLeavesEveryDriveWithoutIt) {
   const auto wrong = [](const std::string& cause, bool powered) {
