@@ -84,8 +84,8 @@ void LensSpot::show(PlaneView<const float> from, int v, const std::uint8_t* want
   };
   const auto here = [&](int packet) { return wanted == nullptr || wanted[packet] != 0; };
   std::array<const float*, 2 * GaussianTaps::most + 1> rows;
-  for (int k = -GaussianTaps::most; k <= GaussianTaps::most; ++k)
-    rows[static_cast<std::size_t>(k + GaussianTaps::most)] = from.row(std::clamp(v + k, 0, from.height - 1));
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    rows[i] = from.row(std::clamp(v - GaussianTaps::most + static_cast<int>(i), 0, from.height - 1));
 
   // Neighbours with one spot are filtered together.
   const auto runs = [&](const auto& is_wanted, float* onto, const auto& filter) {
