@@ -33,6 +33,18 @@ float background_beside(const optics::Frame& frame, const optics::StripePiece& p
   return std::min(at(v - off), at(v + off));
 }
 
+// Of what a piece lies on. At a border its centre may fall on the pixel beside, in which there is nothing: the nearest thing up or down has its light.
+std::uint16_t object_about(const optics::Frame& frame, std::int32_t u, std::int32_t v) {
+  constexpr std::int32_t reach_px = 2;
+  for (std::int32_t off = 0; off <= reach_px; ++off) {
+    for (const std::int32_t at : {v - off, v + off}) {
+      const std::uint16_t object = frame.object[index(frame, u, std::clamp(at, 0, frame.height - 1))];
+      if (object != 0) return object;
+    }
+  }
+  return 0;
+}
+
 }  // namespace
 
 StripeTruth stripe_truth(const optics::Frame& frame, const std::function<bool(std::uint16_t)>& looked_for) {
@@ -42,9 +54,9 @@ StripeTruth stripe_truth(const optics::Frame& frame, const std::function<bool(st
   truth.columns.resize(static_cast<std::size_t>(frame.width));
   for (const optics::StripePiece& piece : frame.pieces) {
     const auto v = std::clamp(static_cast<std::int32_t>(std::lround(piece.v)), 0, frame.height - 1);
-    truth.columns[static_cast<std::size_t>(piece.u)].push_back(
-        {piece.v, piece.grey, piece.sigma_px, background_beside(frame, piece), has_depth && on_smooth_surface(frame, piece.u, v),
-         piece.part, looked_for && has_objects && !looked_for(frame.object[index(frame, piece.u, v)])});
+    truth.columns[static_cast<std::size_t>(piece.u)].push_back({piece.v, piece.grey, piece.sigma_px, background_beside(frame, piece),
+                                                                has_depth && on_smooth_surface(frame, piece.u, v), piece.part,
+                                                                looked_for && has_objects && !looked_for(object_about(frame, piece.u, v))});
   }
   return truth;
 }

@@ -70,6 +70,22 @@ TEST(PeakScore, WhatLiesOnTheArmIsNotLookedFor) {
   EXPECT_EQ(score.recall(), 0.75);
 }
 
+// The plate ends at row 60: the flank's middle lies one pixel beyond it, where there is nothing, and farther down on the arm.
+TEST(PeakScore, AFlankAtThePlatesEdgeIsOfThePlate) {
+  optics::StripePiece part{0, 0, 61, 100};
+  part.part = true;
+  optics::Frame frame = frame_of(1, 100, {part, {0, 0, 90, 100}});
+  frame.object.assign(100, 0);
+  std::fill_n(frame.object.begin(), 61, std::uint16_t{9});
+  frame.object[90] = 4;
+  const StripeTruth truth = stripe_truth(frame, [](std::uint16_t object) { return object > 7; });
+  PeakScore score;
+  score.add(truth, Peaks{{0, 61.5f}});
+  EXPECT_EQ(score.false_peaks(), 0u);
+  score.add(truth, Peaks{{0, 90}});
+  EXPECT_EQ(score.false_peaks(), 1u) << "on the arm";
+}
+
 // At a border the beam's flank is light of the stripe, without a centre.
 TEST(PeakScore, APartOfAStripeIsNoFalsePeakAndNoneThatHasToBeFound) {
   optics::StripePiece part{0, 0, 40, 100};
