@@ -105,7 +105,7 @@ class Network {
   void stop_node(std::size_t node) { nmt_due_[node] = NmtCommand::stop; }
   // NMT reset node, also before the first boot: whatever its make, a drive restarts without power.
   void reset_node(std::size_t node, Time now);
-  static constexpr Duration longest_restart = Duration::from_ms(1000);  // from NMT to the boot-up
+  static constexpr Duration longest_restart = Duration::from_ms(1000);  // from NMT to the boot-up; an assumption: makers do not say
   // It said so since `reset_node`, and neither this master nor another one has started it after that. Where another master has sent NMT, a boot-up may be its doing:
   // a node that resets its communication hears nothing meanwhile, and its drive may keep its power.
   bool restarted_as_told(std::size_t node) const { return nodes_[node].restarted_as_told(); }

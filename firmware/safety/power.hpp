@@ -35,7 +35,7 @@ class Power {
   // the order acts with the next SYNC, and the answer comes with the one after.
   static constexpr Duration heed_time = Duration::from_ms(16);
   static constexpr Duration insist_period = Duration::from_ms(100);
-  // Beside another master's NMT: a node that boots for it hears nothing, and an even beat might always meet it there.
+  // Beside another master's NMT: a node that boots for it hears nothing, and an even beat might always meet it there. Two SYNC periods.
   static constexpr Duration insist_period_beside = Duration::from_ms(8);
   // A drive that is not heard is told by process data for so long before it is restarted by NMT. Where no drive is heard it is this master that is deaf: then
   // each is told twice, by process data and by NMT.

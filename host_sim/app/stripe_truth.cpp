@@ -35,7 +35,7 @@ float background_beside(const optics::Frame& frame, const optics::StripePiece& p
 
 // Of what a piece lies on. At a border its centre may fall on the pixel beside, in which there is nothing: the nearest thing up or down has its light.
 std::uint16_t object_about(const optics::Frame& frame, std::int32_t u, std::int32_t v) {
-  constexpr std::int32_t reach_px = 2;
+  constexpr std::int32_t reach_px = 2;  // as far as a peak is matched with a piece
   for (std::int32_t off = 0; off <= reach_px; ++off) {
     for (const std::int32_t at : {v - off, v + off}) {
       const std::uint16_t object = frame.object[index(frame, u, std::clamp(at, 0, frame.height - 1))];

@@ -33,7 +33,9 @@ struct SafetyFigures {
   // What an arm has to feel, at each joint: 33 N at the tool, and a third of it for what current and friction leave in doubt. Not the core's own limits: one that
   // feels less than this has missed it.
   std::array<double, arm_joint_count> felt_nm{17, 17, 17, 4.3};
-  double misled_rad = 0.5;   // by which slew, shoulder and elbow may go while its drive, or its encoder, misleads
+  // By which slew, shoulder and elbow may go while their drive, or their encoder, misleads: the core's window of 0.15 rad, the 0.2 s that it gives, and the ramp, at
+  // the slew's 0.42 rad/s and half as much again.
+  double misled_rad = 0.5;
   double unwinding_s = 0.5;  // in which a joint whose motor stands may still unwind its gear
 };
 

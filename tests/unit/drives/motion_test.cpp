@@ -220,7 +220,6 @@ TEST(UnconfirmedDrive, AnLmdriveStopsWithinItsRampInEitherUnit) {
     EXPECT_TRUE(bench.run_until([&] { return bench.elbow().state() == AxisState::stopped; }, Duration::from_s(2)));
     bench.run(Duration::from_ms(500));
     gone_counts[rpm] = std::abs(bench.joint_counts() - before);
-    std::printf("QS %d %.1f\n", rpm, gone_counts[rpm]);
   }
   EXPECT_LE(gone_counts[true], gone_counts[false] + 5);
 }
@@ -242,7 +241,6 @@ TEST(ElmoGold, BridgesAsManyLostSyncsAsItsObjectSays) {
     bench.run(Duration::from_ms(150));
     ASSERT_NE(complained, Time{}) << told;
     complained_s[told] = (complained - gone).s();
-    std::printf("2F75 %d %.4f\n", told, complained_s[told]);
   }
   EXPECT_NEAR(complained_s[true] - complained_s[false], 4 * 0.004, 0.002);
 }

@@ -67,6 +67,19 @@ class Loop : public testing::Test {
     platform.script_frame(sync, Time{});
     turn();
   }
+  static constexpr std::uint16_t position_lost = 0x7320;
+  void begin_with_drives_that_tell_a_lost_position() {
+    for (canopen::DriveSetup& drive : config.network.drives) ASSERT_TRUE(drive.profile.position_lost.push_back(position_lost));
+    loop = std::make_unique<ControlLoop<FailingPlatform<ScriptedPlatform>>>(failing, config, *rings);
+  }
+  void lose_position(std::size_t joint) {
+    CanFrame emcy;
+    emcy.id = 0x80u + can_map::drive_nodes[joint];
+    emcy.length = 8;
+    emcy.data = {position_lost & 0xFF, position_lost >> 8, 0x20};
+    platform.script_frame(emcy, Time{});
+    turn();
+  }
   const std::set<int> all_drives{can_map::drive_nodes.begin(), can_map::drive_nodes.end()};
 
   ControllerConfig config;
@@ -282,14 +295,8 @@ TEST_F(Loop, ANewCoreHasTheJobThatWasOrdered) {
 // The core that comes was made before the drive said so.
 TEST_F(Loop, ANewCoreKnowsWhichZerosWereLostMeanwhile) {
   constexpr std::size_t jaw = 4;
-  for (canopen::DriveSetup& drive : config.network.drives) ASSERT_TRUE(drive.profile.position_lost.push_back(0x7320));
-  loop = std::make_unique<ControlLoop<FailingPlatform<ScriptedPlatform>>>(failing, config, *rings);
-  CanFrame emcy;
-  emcy.id = 0x80u + can_map::drive_nodes[jaw];
-  emcy.length = 8;
-  emcy.data = {0x20, 0x73, 0x20};
-  platform.script_frame(emcy, Time{});
-  turn();
+  begin_with_drives_that_tell_a_lost_position();
+  lose_position(jaw);
   rings->cores.push(new Controller(config));
   turn();
   Controller* old = nullptr;
@@ -302,19 +309,13 @@ TEST_F(Loop, ANewCoreKnowsWhichZerosWereLostMeanwhile) {
 // A commissioning has the bus: the core does not hear what is said meanwhile.
 TEST_F(Loop, TheCoreIsToldWhichZerosWereLostWhileAJointWasCommissioned) {
   constexpr std::size_t elbow = 2;
-  for (canopen::DriveSetup& drive : config.network.drives) ASSERT_TRUE(drive.profile.position_lost.push_back(0x7320));
-  loop = std::make_unique<ControlLoop<FailingPlatform<ScriptedPlatform>>>(failing, config, *rings);
+  begin_with_drives_that_tell_a_lost_position();
   Commissioning::Config setup;
   setup.network = config.network;
   Commissioning commissioning(setup);
   ASSERT_TRUE(rings->commissionings.push(&commissioning));
   turn();
-  CanFrame emcy;
-  emcy.id = 0x80u + can_map::drive_nodes[elbow];
-  emcy.length = 8;
-  emcy.data = {0x20, 0x73, 0x20};
-  platform.script_frame(emcy, Time{});
-  turn();
+  lose_position(elbow);
   EXPECT_TRUE(give(Command::abort).taken);
   CommissioningResult result;
   for (int i = 0; i < 2000 && !rings->commissioned.pop(result); ++i) turn();
