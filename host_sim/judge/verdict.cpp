@@ -5,13 +5,12 @@
 #include <cmath>
 #include <cstdio>
 
+#include "host_sim/judge/report_deadline.hpp"
 #include "shared/messages/joint_names.hpp"
 
 namespace lf::judge {
 
 namespace {
-
-constexpr double ms = 1e-3;  // a moment
 
 std::string formatted(const char* format, double a, double b = 0) {
   char text[160];
@@ -30,82 +29,8 @@ double last_s(const std::vector<Moment>& moments, double from_s, Is is) {
   return from_s;
 }
 
-std::size_t node_index(const std::string& node) {
-  const std::string name = node.substr(node.find_last_of(' ') + 1);  // "slew" of "tpdo slew"
-  return static_cast<std::size_t>(std::find(node_names.begin(), node_names.end(), name) - node_names.begin());
-}
-
-// A drive that hears nothing of the master any more.
-bool cut_off(const Cause& cause) { return cause.rule->kind == "silent" || cause.rule->kind == "bus_off"; }
-
-bool loses_for_good(const Cause& cause, const char* frames) {
-  return cause.rule->kind == "drop_frames" && cause.rule->duration_s == 0 && cause.node.starts_with(frames);
-}
-
-// A drive that hears NMT commands, and no process data.
-bool loses_process_data(const Cause& cause) { return loses_for_good(cause, "rpdo "); }
-
-// A node whose process data the master does not hear: its times count from the last that arrived, like a silent node's.
-bool is_unheard(const Cause& cause) { return loses_for_good(cause, "tpdo "); }
-
-// Its drive's reading, or its motion, is not what the core takes it for.
-bool misleads(const Cause& cause) {
-  const std::string& kind = cause.rule->kind;
-  return kind == "stuck_encoder" || kind == "encoder_jump" || kind == "runaway" || kind == "following";
-}
-
-bool misleads_its_joint(const Cause& cause) { return cause.rule->kind == "runaway" || cause.rule->kind == "stuck_encoder"; }
-
-bool is_a_drives_fault(const Cause& cause) { return cause.rule->kind == "overcurrent" || cause.rule->kind == "hot"; }
-
 // Until an order acts: up to a SYNC period until the SYNC, one that is interpolated, and the arm's own compliance.
 constexpr std::size_t takes_effect_ms = 20;
-constexpr double sync_s = 0.004;
-
-// A master that nobody hears: the drives stop by themselves when its heartbeat is missing.
-bool cuts_off_the_master(const Cause& cause) { return cause.rule->report == Report::unheard || cause.node == "master"; }
-
-// A master that hears nothing.
-bool deafens_the_master(const Cause& cause) { return cause.rule->kind == "can_receive_fails" || cause.node == "master"; }
-
-struct Deadline {
-  const Cause* cause = nullptr;
-  double at_s = 0;       // from when on time counts
-  double allowed_s = 0;  // until the stop is on the bus
-
-  double end_s() const { return at_s + allowed_s; }
-};
-
-// When a frame told the core of a cause; nothing for one that no frame tells, or that none has told.
-std::optional<double> told_by_a_frame_s(const Seen& seen, const Cause& cause, double begins_s) {
-  if (cause.rule->report == Report::second_master) return seen.second_master_s;
-  if (cause.rule->report != Report::frame) return std::nullopt;
-  const std::optional<double> said_s = cause.rule->kind == "estop" ? seen.chain_open_s : seen.fault_reported_s;
-  return said_s ? std::optional(std::max(begins_s, *said_s)) : std::nullopt;
-}
-
-bool told_by_a_frame(const Cause& cause) { return cause.rule->report == Report::frame || cause.rule->report == Report::second_master; }
-
-Deadline report_of(const Seen& seen, const Cause& cause, double begins_s, const SafetyFigures& figures) {
-  const double stop_s = figures.stop_ms * ms, unread_s = figures.unread_ms * ms, self_stop_s = figures.self_stop_s;
-  switch (cause.rule->report) {
-    case Report::frame:
-    case Report::second_master: return {&cause, told_by_a_frame_s(seen, cause, begins_s).value_or(begins_s), stop_s};
-    case Report::silence: {
-      const std::size_t node = node_index(cause.node);
-      const bool known = (cut_off(cause) || is_unheard(cause)) && node < seen.last_heard_s.size();
-      const double heard_s = known ? seen.last_heard_s[node] : begins_s;
-      return {&cause, std::max(heard_s, begins_s - sync_s), cuts_off_the_master(cause) ? self_stop_s : unread_s};
-    }
-    case Report::unheard: return {&cause, begins_s, self_stop_s};
-    // The arm halts on its own path first, then each drive goes down through every state.
-    case Report::halt: return {&cause, begins_s + sync_s, figures.halt_s};
-    // Three ticks without a time are a lost clock; an order is read with the next tick.
-    case Report::at_once: return {&cause, begins_s + (cause.rule->kind == "clock_lost" ? 3 : 1) * sync_s, stop_s};
-    case Report::none: break;
-  }
-  return {&cause, begins_s, stop_s};
-}
 
 class Judge {
  public:
