@@ -91,6 +91,7 @@ constexpr std::array drive_plan{
     setting(rpdo_map, 3, 4, V::rpdo1_torque_offset),
     setting(rpdo_map, 0, 1, V::rpdo1_entries),
     literal(rpdo(1), 2, 1, every_sync),
+    optional(setting(rpdo(1), 5, 2, V::process_data_deadline)),
     setting(rpdo(1), 1, 4, V::rpdo1_cob_id, id_and_valid),
     // TPDO1: statusword, actual position, actual torque. Drives come with inhibit times of 1 to 100 ms, which would hold back answers.
     invalidate(tpdo(1)),
@@ -138,6 +139,7 @@ constexpr std::array io_plan{
     literal(rpdo_map, 3, 4, can_map::io_rpdo1::entries[2]),
     literal(rpdo_map, 0, 1, 3),
     literal(rpdo(1), 2, 1, every_sync),
+    optional(setting(rpdo(1), 5, 2, V::process_data_deadline)),
     setting(rpdo(1), 1, 4, V::rpdo1_cob_id, id_and_valid),
     // TPDO1: inputs, outputs as they are, last trigger counter, last exposure.
     invalidate(tpdo(1)),
@@ -182,6 +184,7 @@ Number bus_value(V value, const BootContext& context) {
     // Guard time and life factor together are the time after which a silent master is missed, as long as by heartbeat.
     case V::life_factor:
       return guarded ? Number{milliseconds(can_map::master_heartbeat_timeout) / milliseconds(can_map::master_heartbeat)} : Number{};
+    case V::process_data_deadline: return milliseconds(can_map::process_data_deadline);
     case V::sync_period_us: return static_cast<std::uint32_t>(context.config->sync_period.ns() / 1000);
     case V::interpolation_value: return period;
     case V::interpolation_exponent: return static_cast<std::uint8_t>(exponent);

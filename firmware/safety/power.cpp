@@ -97,7 +97,9 @@ void Power::tick(const JointStates& joints, Time now, canopen::Network& network)
   deaf_ticks_ = hears_none(now, network) ? std::min(deaf_ticks_ + 1, deaf_ticks) : 0;
   if (state_ == State::stopping || state_ == State::removing) insist(now, network);
   if (state_ == State::stopping) {
-    if (confirmed(now, network) || standing(joints, now, network) || now - since_ >= longest_stop) remove(now, network);
+    const Standing stands = standing(joints, now, network);
+    if (confirmed(now, network) || stands.all || now - since_ >= longest_stop) remove(now, network);
+    if (state_ == State::stopping && stands.heard) take_heard(now, network);
   } else if (state_ == State::lowering) {
     if (confirmed(now, network)) state_ = State::off;
     if (state_ != State::off && now - since_ >= longest_lowering(network.config())) remove(now, network);
@@ -127,13 +129,14 @@ Duration Power::ramp(const JointStates& joints, std::size_t joint, const canopen
   return by_6085 && joints.speed_known[joint] ? ramp : std::max(ramp, unknown_ramp);
 }
 
-bool Power::standing(const JointStates& joints, Time now, const canopen::Network& network) {
-  bool all = true;
+Power::Standing Power::standing(const JointStates& joints, Time now, const canopen::Network& network) {
+  Standing stands;
   for (std::size_t i = 0; i < joint_count; ++i) {
     if (!joints.fresh[i]) {
       // What NMT took out of operation brakes since then, before this stop.
       const canopen::NodeFault& fault = network.fault(i);
-      all = all && now - since_ >= ramp(joints, i, network) + (fault.rebooted || fault.left_operational ? heed_time : silent_margin);
+      const Duration margin = fault.rebooted || fault.left_operational ? heed_time : silent_margin;
+      stands.all = stands.all && now - since_ >= ramp(joints, i, network) + margin;
       continue;
     }
     const double rad = joints.position_rad[i];
@@ -145,9 +148,18 @@ bool Power::standing(const JointStates& joints, Time now, const canopen::Network
       rest_counts_[i] = counts;
       rest_since_[i] = now;
     }
-    all = all && now - rest_since_[i] >= still_time;
+    stands.heard = stands.heard && now - rest_since_[i] >= still_time;
   }
-  return all;
+  stands.all = stands.all && stands.heard;
+  return stands;
+}
+
+// What stands does not wait under power for the ramp of a joint that nobody hears.
+void Power::take_heard(Time now, canopen::Network& network) {
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    canopen::Axis& axis = network.axis(static_cast<Joint>(i));
+    if (axis.fresh(now)) axis.request(canopen::AxisRequest::remove_power);
+  }
 }
 
 // A statusword that was sent before the drive heard the order says nothing of it: a drive on its way up would be taken for down.

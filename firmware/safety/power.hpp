@@ -47,7 +47,7 @@ class Power {
   // A joint stands when it has moved by no more than `still_rad`, or by one count of its encoder, for so long: 0.02 rad/s.
   static constexpr Duration still_time = Duration::from_ms(50);
   static constexpr double still_rad = 0.001;
-  // A joint whose drive is silent is taken for standing when the ramp from its last known speed is over, and this: the order's way, and `still_time`.
+  // The joints that are heard lose their power when they stand. One that is not is told to stop meanwhile, and taken for standing when the ramp from its last known speed is over, and this: the order's way, and `still_time`.
   static constexpr Duration silent_margin = heed_time + still_time;
   // Its ramp where its speed or the drive's own deceleration is not known, at least.
   static constexpr Duration unknown_ramp = Duration::from_ms(250);
@@ -75,7 +75,13 @@ class Power {
   bool off() const { return state_ == State::off; }
 
  private:
-  bool standing(const JointStates& joints, Time now, const canopen::Network& network);
+  // What stands as far as can be known: the joints that are heard, and all, those too that are not.
+  struct Standing {
+    bool heard = true;
+    bool all = true;
+  };
+  Standing standing(const JointStates& joints, Time now, const canopen::Network& network);
+  static void take_heard(Time now, canopen::Network& network);
   static Duration ramp(const JointStates& joints, std::size_t joint, const canopen::Network& network);
   bool confirmed(Time now, const canopen::Network& network) const;
   // Stops or restarts by NMT what does not heed its process data.

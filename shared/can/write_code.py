@@ -33,7 +33,7 @@ def header(table):
              f"inline constexpr std::uint32_t bitrate = {bus['bitrate']};",
              f"inline constexpr Duration sync_period = Duration::from_ms({bus['sync_period_ms']});", "",
              f"inline constexpr std::uint8_t master_node = 0x{bus['master_node']:02X};"]
-    for key in ("master_heartbeat", "master_heartbeat_timeout", "node_heartbeat", "node_heartbeat_timeout"):
+    for key in ("master_heartbeat", "master_heartbeat_timeout", "node_heartbeat", "node_heartbeat_timeout", "process_data_deadline"):
         lines.append(f"inline constexpr Duration {key} = Duration::from_ms({bus[key + '_ms']});")
     lines += ["", "// Drives in the order of `Joint`.", f"inline constexpr std::array<std::uint8_t, joint_count> drive_nodes{{{', '.join(drives)}}};"]
     lines += [f"inline constexpr std::uint8_t {n.device.code}_node = {n.number};" for n in table.nodes if not n.joint]

@@ -76,6 +76,7 @@ TEST(Boot, EveryObjectHoldsItsConfiguredValue) {
 
   EXPECT_EQ(drive.object(0x1400, 1), 0x203u);
   EXPECT_EQ(drive.object(0x1400, 2), 1u);
+  EXPECT_EQ(drive.object(0x1400, 5), 100u) << "process data are missed before the heartbeat";
   EXPECT_EQ(drive.object(0x1600, 0), 3u);
   EXPECT_EQ(drive.object(0x1600, 1), 0x60400010u);
   EXPECT_EQ(drive.object(0x1600, 2), 0x607A0020u);
@@ -91,6 +92,7 @@ TEST(Boot, EveryObjectHoldsItsConfiguredValue) {
   }
 
   const ScriptedNode& outputs = bus.nodes[io];
+  EXPECT_EQ(outputs.object(0x1400, 5), 100u);
   EXPECT_EQ(outputs.object(0x1029, 1), 2u);
   EXPECT_EQ(outputs.object(0x6206, 1), 0xFFu);
   EXPECT_EQ(outputs.object(0x6207, 1), 0u);
@@ -113,7 +115,7 @@ TEST(Boot, PdosAreMappedInTheOrderOfTheStandardWithEveryWriteReadBack) {
   ASSERT_TRUE(bus.boot());
   const auto& log = bus.nodes[elbow].sdo_log;
   std::vector<std::string> expected;
-  for (const char* object : {"1400:01", "1600:00", "1600:01", "1600:02", "1600:03", "1600:00", "1400:02", "1400:01"}) {
+  for (const char* object : {"1400:01", "1600:00", "1600:01", "1600:02", "1600:03", "1600:00", "1400:02", "1400:05", "1400:01"}) {
     for (const char* access : {"r ", "w ", "r "}) expected.push_back(std::string(access) + object);
   }
   EXPECT_NE(std::search(log.begin(), log.end(), expected.begin(), expected.end()), log.end());

@@ -54,6 +54,7 @@ void ScriptedNode::make_dictionary() {
   for (std::uint16_t pdo = 0; pdo < 4; ++pdo) {
     add(static_cast<std::uint16_t>(0x1400 + pdo), 1, 0x200u + 0x100u * pdo + id_, 4);
     add(static_cast<std::uint16_t>(0x1400 + pdo), 2, 255, 1);
+    add(static_cast<std::uint16_t>(0x1400 + pdo), 5, 0, 2);
     add(static_cast<std::uint16_t>(0x1800 + pdo), 1, 0x40000180u + 0x100u * pdo + id_, 4);
     add(static_cast<std::uint16_t>(0x1800 + pdo), 2, 255, 1);
   }

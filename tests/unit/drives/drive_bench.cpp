@@ -80,7 +80,9 @@ void DriveBench::step() {
   if (ms_ % 4 != 0 || !master_alive) return;
   canopen::Outbox outbox;
   network.tick(now, outbox);
-  for (const CanFrame& sent : outbox) devices.master_sends(sent, now);
+  for (const CanFrame& sent : outbox) {
+    if (orders_arrive || sent.id == 0x700u + can_map::master_node) devices.master_sends(sent, now);
+  }
 }
 
 void DriveBench::run(Duration time) {

@@ -179,7 +179,7 @@ TEST(UnconfirmedDrive, ADriveThatFaultsWithoutSyncSaysSoAndGoesNoFartherThanItsR
       watch_emcy(bench, 0x8250, complained);
       const double before = bench.joint_counts();
       bench.master_alive = false;
-      bench.run(Duration::from_ms(100));  // shorter than the heartbeat's time-out
+      bench.run(Duration::from_ms(60));  // shorter than the deadlines of its process data and of the heartbeat
       EXPECT_EQ(complained != Time{}, faults) << name << " and its EMCY 8250";
       gone_counts[faults] = bench.joint_counts() - before;
       bench.master_alive = true;
@@ -222,6 +222,24 @@ TEST(UnconfirmedDrive, AnLmdriveStopsWithinItsRampInEitherUnit) {
     gone_counts[rpm] = std::abs(bench.joint_counts() - before);
   }
   EXPECT_LE(gone_counts[true], gone_counts[false] + 5);
+}
+
+// The master's heartbeat goes on: another device may send it.
+TEST(Deadline, ADriveWhoseOrdersAreLostStopsByItself) {
+  DriveBench bench({"", "lanternfish"});
+  ASSERT_TRUE(bench.boot()) << bench.sentence();
+  ASSERT_TRUE(enable(bench));
+  (void)set_off(bench);
+  Time complained;
+  watch_emcy(bench, 0x8250, complained);
+  const Time gone = bench.now;
+  bench.orders_arrive = false;
+  EXPECT_TRUE(bench.run_until([&] { return bench.devices.drives()[2].released; }, Duration::from_ms(1000)));
+  EXPECT_NE(complained, Time{});
+  EXPECT_NEAR((complained - gone).s(), 0.1, 0.005);
+  const double stands = bench.joint_counts();
+  bench.run(Duration::from_ms(200));
+  EXPECT_NEAR(bench.joint_counts(), stands, 0.5);
 }
 
 // Without a word of ours the object has the maker's 1, and a drive that is told 5 goes on for that long.

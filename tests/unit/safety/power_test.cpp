@@ -124,6 +124,36 @@ TEST_F(PowerTest, ADriveThatWasSilencedUnderWayKeepsItsPowerUntilItsRampIsOver) 
   EXPECT_LT(lost_s, ramp_s + 0.1);
 }
 
+// They stand, and do not wait under power for a ramp that nobody sees. The silent one is told to stop until it is over.
+TEST_F(PowerTest, WhatIsHeardAndStandsDoesNotWaitForTheRampOfASilentDrive) {
+  const double ramp_s = 0.3;
+  speed_rad_s[2] = ramp_s * deceleration_rad_s2;
+  for (int i = 0; i < 6; ++i) step();
+  bus.nodes[2].mute_tpdo = true;
+  for (int i = 0; i < 6; ++i) step();
+  speed_rad_s[2] = 0;
+  power.stop(bus.now, bus.network);
+  const auto others_off = [this] {
+    for (const std::size_t i : {0, 1, 3, 4}) {
+      if (bus.nodes[i].drive_state_bits() != unpowered) return false;
+    }
+    return true;
+  };
+  EXPECT_LT(until(others_off), 0.1);
+  EXPECT_EQ(bus.nodes[2].drive_state_bits(), holding) << "it may be on its ramp";
+  EXPECT_GT(until([this] { return all_in(unpowered); }), 0.15);
+}
+
+// One that is heard and moves keeps the others waiting: the arm stands when each of its joints does.
+TEST_F(PowerTest, WhatIsHeardAndMovesKeepsThePowerOfTheOthers) {
+  speed_rad_s[1] = 0.2;
+  bus.nodes[2].mute_tpdo = true;
+  for (int i = 0; i < 6; ++i) step();
+  power.stop(bus.now, bus.network);
+  for (int i = 0; i < 100; ++i) step();
+  for (std::size_t i = 0; i < joint_count; ++i) EXPECT_EQ(bus.nodes[i].drive_state_bits(), holding) << i;
+}
+
 // As in a commissioning: where no speed is observed, nor where the drive homes by itself, it may be braking for as long as any.
 TEST_F(PowerTest, ASilentDriveOfUnknownSpeedIsGivenTheLongestRamp) {
   speeds_known = false;
