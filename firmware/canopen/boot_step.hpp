@@ -30,7 +30,7 @@ enum class BootValue : std::uint8_t {
   interpolation_exponent,
   rpdo1_cob_id,
   process_data_deadline,  // 1400:05, milliseconds
-  rpdo1_torque_offset,  // the third entry of RPDO1
+  rpdo1_torque_offset,    // the third entry of RPDO1
   rpdo1_entries,
   tpdo1_cob_id,
   abort_option,

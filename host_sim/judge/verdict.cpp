@@ -239,9 +239,10 @@ class Judge {
   // pushed winds it up by as much as the push.
   bool joint_moves(const Moment& moment, std::size_t joint, double unwound_s) const {
     if (motor_moves(moment, joint) && !settles_without_power(moment, joint)) return true;
-    if (moment.speed_rad_s[joint] < figures_.standing_rad_s || pushed_at(moment)) return false;
+    if (moment.speed_rad_s[joint] < figures_.standing_rad_s || pushed_at(moment) || !travels_in_a_moment(moment, &Moment::angle_rad, joint))
+      return false;
     if (std::abs(moment.angle_rad[joint] - moment.motor_rad[joint]) > situation_.gear_gives_rad[joint]) return true;
-    if (time_s(moment) <= unwound_s || !travels_in_a_moment(moment, &Moment::angle_rad, joint)) return false;
+    if (time_s(moment) <= unwound_s) return false;
     // Bodies that press on each other quiver where they are.
     const double stood_rad = moments_[std::min(static_cast<std::size_t>(unwound_s / ms), moments_.size() - 1)].angle_rad[joint];
     return std::abs(moment.angle_rad[joint] - stood_rad) > figures_.quivers_rad;
@@ -300,7 +301,9 @@ class Judge {
     const auto powered_s = [&](std::uint8_t joints) {
       return last_s(moments_, from_s, [&](const Moment& m) { return (m.power & joints) != 0; });
     };
-    const double reached_off_s = powered_s(reachable);
+    const std::uint8_t unheard = joints_not_seen_standing(standing_s);
+    const double heard_off_s = powered_s(reachable & static_cast<std::uint8_t>(~unheard));
+    const double unheard_off_s = powered_s(reachable & unheard);
     const std::uint8_t unreached = joints_unreached();
     if (!master_is_cut_off() && powered_s(unreached) - from_s > unreached_off_s(from_s) + ms)
       wrong(formatted("power is off %.2f s after the stop of a drive that nothing reaches", powered_s(unreached) - from_s));
@@ -309,12 +312,43 @@ class Judge {
     if (!master_is_cut_off() && powered_s(untold) - standing_s > figures_.off_after_standing_s + late_s + ms)
       wrong(formatted("power is off %.2f s after standing without process data", powered_s(untold) - standing_s));
     const double off_s = last_s(moments_, from_s, [](const Moment& m) { return m.power != 0; });
-    verdict_.power_off_s = std::max(0.0, reached_off_s - standing_s);
+    verdict_.power_off_s =
+        std::max({0.0, heard_off_s - standing_s, unheard_off_s - std::max(standing_s, from_s + ramp_s(unheard, from_s))});
     verdict_.stop_to_off_s = off_s - from_s;
     if (*verdict_.power_off_s > figures_.off_after_standing_s + ms)
       wrong(formatted("power is off %.2f s after standing", *verdict_.power_off_s));
     if (*verdict_.stop_to_off_s > figures_.off_after_stop_s + ms)
       wrong(formatted("power is off %.2f s after the stop", *verdict_.stop_to_off_s));
+  }
+
+  // The newest process data that the master had of a joint.
+  double heard_s(std::size_t joint) const {
+    double heard_s = seen_.last_heard_s[joint];
+    for (const Cause& cause : situation_.causes) {
+      if (cause.rule->kind == "can_receive_fails") heard_s = std::min(heard_s, begins_s(cause));
+    }
+    return heard_s;
+  }
+
+  std::uint8_t joints_not_seen_standing(double standing_s) const {
+    std::uint8_t unseen = 0;
+    for (std::size_t joint = 0; joint < joint_count; ++joint) {
+      if (heard_s(joint) < standing_s) unseen = static_cast<std::uint8_t>(unseen | (1U << joint));
+    }
+    return unseen;
+  }
+
+  // The longest of their ramps, from the speeds that the master heard last: when it may take them for standing.
+  double ramp_s(std::uint8_t joints, double stop_s) const {
+    constexpr double speed_over_s = 0.02;  // the master's speed is that of its last positions
+    double longest_s = 0;
+    for (std::size_t joint = 0; joint < joint_count; ++joint) {
+      if ((joints >> joint & 1U) == 0) continue;
+      const double since_s = std::clamp(heard_s(joint) - speed_over_s, 0.0, stop_s);
+      for (auto i = static_cast<std::size_t>(since_s / ms); i < moments_.size() && double(i) * ms <= stop_s; ++i)
+        longest_s = std::max(longest_s, double(moments_[i].speed_rad_s[joint]) / situation_.deceleration_rad_s2[joint]);
+    }
+    return longest_s;
   }
 
   bool swings(const Moment& moment) const {

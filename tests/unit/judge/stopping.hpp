@@ -31,6 +31,7 @@ struct Stopping {
   Seen seen() const {
     Seen seen;
     seen.fault_reported_s = 0.100;
+    seen.last_heard_s.fill(3);
     double angle_rad = 0, motor_rad = 0;
     for (int t = 0; t < 3000; ++t) {
       Moment moment;

@@ -212,6 +212,7 @@ TEST(VerdictOfSeveral, ADriveWhoseProcessDataAreLostBothWaysIsRestartedInItsTime
     const Situation situation = situation_of(cause_of("drop_frames rpdo elbow"), cause_of("drop_frames tpdo elbow"));
     Stopping stopping{.stop_ms = 32};
     Seen seen = stopping.seen();
+    seen.last_heard_s[2] = 0;
     const auto elbow = static_cast<std::uint8_t>(1u << 2);
     for (std::size_t i = 0; i < seen.moments.size(); ++i) {
       const bool before = static_cast<int>(i) < off_ms;

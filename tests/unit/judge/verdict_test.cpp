@@ -51,6 +51,21 @@ TEST(Verdict, PowerIsCountedFromTheLastSwingUnderPower) {
   EXPECT_THAT(wrong(), ElementsAre("power is off 0.15 s after standing"));
 }
 
+// The elbow was heard last at 0.6 rad/s, which at 2 rad/s^2 is a ramp of 0.3 s, and stands after 0.14 s. Its power goes 0.29 s after the stop.
+TEST(Verdict, TheMasterMayTakeAJointThatItDoesNotHearForMovingUntilItsRampIsOver) {
+  const auto wrong = [](std::uint8_t powered, double elbow_heard_s) {
+    Seen seen = Stopping{.off_ms = 150}.seen();
+    for (std::size_t t = 70; t < 80; ++t) seen.moments[t].speed_rad_s[2] = 0.6f;
+    for (std::size_t t = 300; t < seen.moments.size(); ++t) seen.moments[t].power &= powered;
+    seen.last_heard_s[2] = elbow_heard_s;
+    return judge(seen, situation_of(cause_of("overcurrent elbow")), failed("drive fault: elbow")).wrong;
+  };
+  constexpr std::uint8_t elbow = 1 << 2;
+  EXPECT_THAT(wrong(elbow, 0.085), IsEmpty());
+  EXPECT_THAT(wrong(elbow, 2), ElementsAre("power is off 0.15 s after standing")) << "it is heard";
+  EXPECT_THAT(wrong(elbow | 1, 0.085), ElementsAre("power is off 0.15 s after standing")) << "the slew is heard";
+}
+
 TEST(Verdict, AJointThatCreepsOnIsNotStopped) {
   const std::vector<std::string> wrong = judged({.stands_at_rad_s = 0.03}).wrong;
   ASSERT_FALSE(wrong.empty());
@@ -64,6 +79,20 @@ TEST(Verdict, AJointWhoseMotorStandsMayBePulledThroughItsPlayForATimeAndNoFarthe
   EXPECT_THAT(judged({.pulled_rad = 0.0039, .pulled_ms = 800}).wrong, IsEmpty());
   EXPECT_THAT(judged({.pulled_rad = 0.0039, .pulled_ms = 1100}).wrong,
               ElementsAre(testing::HasSubstr("elbow moves 1.04 s after the stop")));
+}
+
+// It is pulled further than its gear gives, and quivers there at 0.1 rad/s by 0.1 mrad.
+TEST(Verdict, AJointThatQuiversInItsWoundUpGearStands) {
+  const auto wrong = [](float by_rad) {
+    Seen seen = Stopping().seen();
+    for (std::size_t t = 0; t < seen.moments.size(); ++t) {
+      seen.moments[t].angle_rad[4] = 0.0048f + (t % 2 == 0 ? by_rad : 0);
+      seen.moments[t].speed_rad_s[4] = t < 600 ? 0.1f : 0;
+    }
+    return judge(seen, situation_of(cause_of("overcurrent elbow")), failed("drive fault: elbow")).wrong;
+  };
+  EXPECT_THAT(wrong(0.0001f), IsEmpty());
+  EXPECT_THAT(wrong(0.0005f), testing::Contains(testing::HasSubstr("jaw moves")));
 }
 
 // The shoulder's motor stood from the beginning. At 298 ms the power goes; the gear gives 4 mrad.
