@@ -32,7 +32,22 @@ class Coverage(unittest.TestCase):
         exceptions = {("firmware/canopen/a.cpp", "two"): "cannot happen", ("firmware/safety/b.cpp", "x"): "old"}
         folders, missing, useless = coverage.judge(sources, texts, exceptions)
         self.assertEqual((missing, useless), ([], [("firmware/safety/b.cpp", "x")]))
+        self.assertEqual([line for line in coverage.bounds_missed(folders) if not line.startswith("all")], [])
+
+    def test_what_is_excepted_is_not_executed(self):
+        texts = {"firmware/canopen/a.cpp": ["x"] * 100, "firmware/safety/b.cpp": ["x"]}
+        sources = {"firmware/canopen/a.cpp": source([1] * 90 + [0] * 10), "firmware/safety/b.cpp": source([1])}
+        folders, _, _ = coverage.judge(sources, texts, {("firmware/canopen/a.cpp", "x"): "cannot happen"})
+        self.assertEqual(coverage.bounds_missed(folders), ["all: 90.1 % of 101 lines, 95 are wanted"])
+
+    def test_of_the_whole_every_line_counts(self):
+        texts = {"firmware/canopen/c.cpp": ["x"], "firmware/safety/s.cpp": ["x"], "firmware/arm/a.cpp": [str(i) for i in range(100)]}
+        sources = {"firmware/canopen/c.cpp": source([1]), "firmware/safety/s.cpp": source([1]), "firmware/arm/a.cpp": source([1] * 99 + [0])}
+        folders, _, _ = coverage.judge(sources, texts, {})
         self.assertEqual(coverage.bounds_missed(folders), [])
+        self.assertEqual(coverage.bounds_missed(folders, folders), ["arm/: 1 of 100 lines are not executed"])
+        folders, _, _ = coverage.judge(sources, texts, {("firmware/arm/a.cpp", "99"): "cannot happen"})
+        self.assertEqual(coverage.bounds_missed(folders, folders), [])
 
     def test_over_all_nineteen_in_twenty_are_enough_and_fewer_are_not(self):
         texts = {"firmware/arm/a.cpp": [str(i) for i in range(100)], "firmware/canopen/c.cpp": ["x"], "firmware/safety/s.cpp": ["x"]}

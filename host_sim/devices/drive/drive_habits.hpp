@@ -57,6 +57,8 @@ struct DriveSwitches {
   bool faults_without_sync = false;   // iPOS, Ingenia, LMDrive
   bool speeds_in_rpm = false;         // LMDrive
   bool ignores_lost_master = false;   // Eyou, which has no 6007
+  bool ignores_deadline = false;      // Ingenia, LMDrive: 1400:05 is there, and does nothing
+  double torque_basis = 1;            // Ingenia, LMDrive, Eyou: 6077 counts thousandths of so many ratings
   bool holds_without_master = false;  // EPOS4: no fault, and power after its quick stop
   bool ramps_from_demand = false;     // of every make: its stop makes up for the following error
 };

@@ -43,6 +43,7 @@ DriveUnits::DriveUnits(const DriveConfig& config, ObjectDictionary& native, Obje
   acceleration_ = speed_ * habit.acceleration_factor;
   if (speed == SpeedUnit::fixed_16_16_per_ms) acceleration_ *= 1e-3;
   if (habit.torque == TorqueUnit::raw_current) torque_ = 1e-3 * config.rated_current_a * ipos_units_per_a;
+  torque_ /= config.switches.torque_basis;
   sign_ = config.reversed ? -1 : 1;
 
   using K = Kind;

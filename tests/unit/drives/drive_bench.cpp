@@ -81,7 +81,8 @@ void DriveBench::step() {
   canopen::Outbox outbox;
   network.tick(now, outbox);
   for (const CanFrame& sent : outbox) {
-    if (orders_arrive || sent.id == 0x700u + can_map::master_node) devices.master_sends(sent, now);
+    const bool keeps_alive = (sent.id & 0x780u) == 0x700u;
+    if (orders_arrive || keeps_alive) devices.master_sends(sent, now);
   }
 }
 

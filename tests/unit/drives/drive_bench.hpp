@@ -37,7 +37,7 @@ class DriveBench {
   JointReadings joints{};
   Time now;
   bool master_alive = true;
-  bool orders_arrive = true;         // else nothing of the master's arrives but its heartbeat, which may be another's
+  bool orders_arrive = true;         // else nothing of the master's arrives but its heartbeat and guard requests, as another sends them
   double load_nm = 0;                // that the elbow's drive holds
   bool powered_before_done = false;  // a joint was not released while the boot ran
 

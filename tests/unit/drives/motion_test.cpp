@@ -1,4 +1,5 @@
 // Each drive that boots moves its joint in its own units, stops when it must, and says what went wrong.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -240,6 +241,78 @@ TEST(Deadline, ADriveWhoseOrdersAreLostStopsByItself) {
   const double stands = bench.joint_counts();
   bench.run(Duration::from_ms(200));
   EXPECT_NEAR(bench.joint_counts(), stands, 0.5);
+}
+
+// Where the object does nothing, the drive stays where it was last told to be.
+TEST(UnconfirmedDrive, ADeadlineThatDoesNothingLeavesADriveWithAForeignHeartbeatUnderPower) {
+  for (const char* name : {"ingenia", "lmdrive"}) {
+    for (const bool ignores : {false, true}) {
+      Make make{"", name};
+      make.switches.ignores_deadline = ignores;
+      DriveBench bench(make);
+      ASSERT_TRUE(bench.boot()) << bench.sentence();
+      ASSERT_TRUE(enable(bench));
+      (void)set_off(bench);
+      const std::int32_t target = bench.elbow().target_counts();
+      bench.orders_arrive = false;
+      bench.run(Duration::from_ms(1500));
+      EXPECT_EQ(bench.devices.drives()[2].released, !ignores) << name;
+      EXPECT_NEAR(bench.joint_counts(), target, ignores ? 15 : 3000) << name;
+    }
+  }
+}
+
+// A profile that says so reads it right.
+TEST(UnconfirmedDrive, ATorqueOfAnotherBasisIsReadByItsProfile) {
+  for (const char* name : {"ingenia", "lmdrive", "eyou"}) {
+    for (const bool told : {false, true}) {
+      Make make{"", name};
+      make.switches.torque_basis = 2;
+      DriveBench bench(make, [told](canopen::NetworkConfig& config, devices::DevicesConfig& devices) {
+        devices.drives[2].friction = {};
+        if (told) config.drives[2].profile.scale.torque = {1, 2};
+      });
+      ASSERT_TRUE(bench.boot()) << bench.sentence();
+      ASSERT_TRUE(enable(bench));
+      const devices::DriveConfig& drive = bench.devices_config.drives[2];
+      bench.load_nm = 0.5 * drive.rated_torque_nm * motor_ratio(drive.actuator, bench.joints[2].position_rad, drive.counts_per_rev);
+      bench.run(Duration::from_ms(100));
+      EXPECT_NEAR(bench.elbow().torque_permille(), told ? 500 : 250, 30) << name;
+    }
+  }
+}
+
+// Which values of 605A and 6007 a make takes is known of EPOS4 and Elmo alone: one that takes a single value stops by it, or is refused before it has power.
+TEST_P(FlyingDrive, WithASingleOptionCodeStopsOrIsRefusedByName) {
+  const devices::DriveHabit* habit = devices::find_habit(GetParam());
+  if (habit == nullptr) return;  // the simulator's own takes every value
+  for (const std::uint16_t object : {0x605A, 0x6007}) {
+    int flown = 0;
+    for (unsigned value = 0; value < 8; ++value) {
+      SCOPED_TRACE(std::to_string(object) + " takes " + std::to_string(value));
+      devices::DriveHabit changed = *habit;
+      (object == 0x605A ? changed.quick_stop_values : changed.abort_values) = 1U << value;
+      DriveBench bench({"", GetParam()},
+                       [&](canopen::NetworkConfig&, devices::DevicesConfig& devices) { devices.drives[2].habit = &changed; });
+      if (!bench.boot()) {
+        EXPECT_THAT(bench.sentence(), testing::HasSubstr(object == 0x605A ? "605A" : "6007"));
+        EXPECT_FALSE(bench.powered_before_done);
+        continue;
+      }
+      ++flown;
+      ASSERT_TRUE(enable(bench));
+      (void)set_off(bench);
+      bench.elbow().request(AxisRequest::quick_stop);
+      EXPECT_TRUE(bench.run_until([&] { return bench.elbow().state() == AxisState::stopped; }, Duration::from_s(2)));
+      bench.run(Duration::from_ms(500));
+      const double stands = bench.joint_counts();
+      bench.elbow().request(AxisRequest::remove_power);
+      bench.run(Duration::from_ms(200));
+      EXPECT_NEAR(bench.joint_counts(), stands, 0.5);
+      EXPECT_EQ(bench.devices.power(2), devices::DrivePower::off);
+    }
+    EXPECT_GE(flown, 1) << object;
+  }
 }
 
 // Without a word of ours the object has the maker's 1, and a drive that is told 5 goes on for that long.
