@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "firmware/arm/actuator.hpp"
+#include "firmware/arm/kinematics.hpp"
 #include "firmware/canopen/network.hpp"
 #include "firmware/safety/watch.hpp"
 #include "hal/sim/sim_platform.hpp"
@@ -66,7 +67,9 @@ class JointBench {
       rad[i] = arm::rad_from_counts(static_cast<Joint>(i), network->axis(static_cast<Joint>(i)).actual_counts());
     watch->observe(*network, rad, now);
     safety::FaultArbiter began;
-    watch->check(*network, Vec3(0.2, 0, 0.5), safety::Vigilance::joints, now, began);
+    const Vec3 tool_m =
+        watches_tool ? arm::base_from_tool(arm::JointVector(rad[0], rad[1], rad[2], rad[3])).translation() : Vec3(0.2, 0, 0.5);
+    watch->check(*network, tool_m, safety::Vigilance::joints, now, began);
     for (const safety::FaultReport& report : began.reports()) {
       if (report.fault == safety::Fault::overload) overloaded = static_cast<std::size_t>(report.code);
       found.emplace_back(report.fault, report.code);
@@ -81,6 +84,7 @@ class JointBench {
   std::unique_ptr<canopen::Network> network;
   std::unique_ptr<safety::Watch> watch;
   Time now;
+  bool watches_tool = false;  // else the tool is taken for inside its workspace
   std::size_t overloaded = joint_count;
   std::vector<std::pair<safety::Fault, std::int32_t>> found;  // every fault that began, with its code
 
