@@ -44,10 +44,24 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& kn
   return "; did you mean '" + *nearest + "'?";
 }
 
+namespace {
+
+// What there is, where nothing is near and the list is short.
+std::string choices(const std::vector<std::string>& known) {
+  constexpr std::size_t most = 12;
+  if (known.empty() || known.size() > most) return "";
+  std::string text = "; there is ";
+  for (std::size_t i = 0; i < known.size(); ++i) text += (i == 0 ? "" : i + 1 == known.size() ? " and " : ", ") + known[i];
+  return text;
+}
+
+}  // namespace
+
 void check_names(const std::vector<std::string>& given, const std::vector<std::string>& known, const std::string& option) {
   for (const std::string& name : given) {
-    if (std::find(known.begin(), known.end(), name) == known.end())
-      throw InputError(option + ": there is no '" + name + "'" + suggestion(name, known));
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    const std::string near = suggestion(name, known);
+    throw InputError(option + ": there is no '" + name + "'" + (near.empty() ? choices(known) : near));
   }
 }
 

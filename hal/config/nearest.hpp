@@ -15,7 +15,7 @@ int edit_distance(std::string_view a, std::string_view b);
 // Equal distances go to the one that comes first.
 std::string suggestion(std::string_view word, const std::vector<std::string>& known);
 
-// Throws InputError, beginning with `option`, for the first of `given` that is not among `known`: with the nearest name.
+// Throws InputError, beginning with `option`, for the first of `given` that is not among `known`: with the nearest name, or with all of a few.
 void check_names(const std::vector<std::string>& given, const std::vector<std::string>& known, const std::string& option);
 
 }  // namespace lf::config

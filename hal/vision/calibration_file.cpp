@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "shared/input_error.hpp"
+#include "shared/unreadable_file.hpp"
 
 namespace lf::vision {
 namespace {
@@ -17,7 +18,7 @@ namespace {
 // OpenCV writes "%YAML:1.0" where YAML has "%YAML 1.0"; the line stays so that line numbers hold.
 std::string read_text(const std::string& path) {
   std::ifstream file(path);
-  if (!file || std::filesystem::is_directory(path)) throw InputError(path, 0, "cannot be read");
+  if (!file || std::filesystem::is_directory(path)) throw unreadable(path);
   std::string content{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   if (content.starts_with("%YAML:")) content[5] = ' ';
   return content;

@@ -12,6 +12,7 @@
 
 #include "hal/vision/pixels.hpp"
 #include "shared/input_error.hpp"
+#include "shared/unreadable_file.hpp"
 
 namespace lf::vision {
 namespace {
@@ -19,7 +20,7 @@ namespace {
 std::vector<char> read_bytes(const std::string& path) {
   if (std::filesystem::is_directory(path)) throw InputError(path, 0, "is a folder, not an image");
   std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError(path, 0, "cannot be read");
+  if (!file) throw unreadable(path);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 

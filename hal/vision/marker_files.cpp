@@ -10,6 +10,7 @@
 
 #include "hal/vision/pixels.hpp"
 #include "shared/input_error.hpp"
+#include "shared/unreadable_file.hpp"
 
 namespace lf::vision {
 namespace {
@@ -134,7 +135,7 @@ std::vector<MarkerFrame> find_markers_in_files(const std::vector<std::string>& p
   silence_decoders();
   MarkerFinder finder(options);
   for (const std::string& path : paths) {
-    if (!std::filesystem::exists(path)) throw InputError(path, 0, "cannot be read");
+    if (!std::filesystem::exists(path)) throw unreadable(path);
     if (std::filesystem::is_directory(path)) throw InputError(path, 0, "is a folder, not an image or a video");
     finder.look_in(path);
   }

@@ -4,6 +4,7 @@
 #include "host_sim/campaign/campaign_file.hpp"
 #include "host_sim/campaign/figures.hpp"
 #include "shared/input_error.hpp"
+#include "shared/unreadable_file.hpp"
 
 namespace lf::campaign {
 namespace {
@@ -86,7 +87,7 @@ Campaign read_campaign(const fs::path& path) {
   const fs::path file_path = is_folder ? path / campaign_file : path;
   std::ifstream file(file_path);
   if (is_folder && !file) throw InputError(path.string(), 0, instead(path));
-  if (!file) throw InputError(path.string(), 0, "cannot be read");
+  if (!file) throw unreadable(path);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   try {
     return campaign_from(Json::parse(text));

@@ -10,6 +10,7 @@
 
 #include "host_sim/record/cloud_reading.hpp"
 #include "shared/input_error.hpp"
+#include "shared/unreadable_file.hpp"
 
 namespace lf::record {
 namespace {
@@ -127,7 +128,7 @@ CloudFile read_cloud_file(const std::filesystem::path& path) {
   const bool known = ending == ".pcd" || ending == ".ply" || ending == ".csv" || ending == ".xyz";
   if (!known) throw InputError(name, 0, "is not a cloud: .pcd, .ply, .csv or .xyz is read");
   std::ifstream file(path, std::ios::binary);
-  if (!file || std::filesystem::is_directory(path)) throw InputError(name, 0, "cannot be read");
+  if (!file || std::filesystem::is_directory(path)) throw unreadable(path);
   const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   if (ending == ".pcd") return read_pcd(name, bytes);
   if (ending == ".ply") return read_ply(name, bytes);

@@ -9,6 +9,7 @@
 
 #include "host_sim/record/digest.hpp"
 #include "shared/input_error.hpp"
+#include "shared/unreadable_file.hpp"
 
 namespace lf::record {
 namespace {
@@ -20,7 +21,7 @@ constexpr std::size_t most_clauses = 6;  // of a message
 
 std::string bytes_of(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
-  if (!file || fs::is_directory(path)) throw InputError(path.string(), 0, "cannot be read");
+  if (!file || fs::is_directory(path)) throw unreadable(path);
   return {std::istreambuf_iterator<char>(file), {}};
 }
 

@@ -4,6 +4,7 @@
 
 #include "host_sim/record/result.hpp"
 #include "shared/input_error.hpp"
+#include "shared/unreadable_file.hpp"
 
 namespace lf::record {
 namespace {
@@ -194,7 +195,7 @@ RunResult parse_result_json(const std::string& text, const std::string& name_for
 
 RunResult read_result_file(const std::filesystem::path& path) {
   std::ifstream file(path);
-  if (!file || std::filesystem::is_directory(path)) throw InputError(path.string(), 0, "cannot be read");
+  if (!file || std::filesystem::is_directory(path)) throw unreadable(path);
   const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   return parse_result_json(text, path.string());
 }

@@ -7,6 +7,7 @@
 
 #include "host_sim/devices/drive/drive_habits.hpp"
 #include "shared/input_error.hpp"
+#include "shared/unreadable_file.hpp"
 
 namespace lf::devices {
 namespace {
@@ -95,7 +96,7 @@ void fill(Object& object, const DictionaryRow& row, const DriveConfig& config) {
 
 std::shared_ptr<const DriveDictionary> read_dictionary(const std::filesystem::path& file, const std::string& drive) {
   std::ifstream in(file);
-  if (!in) throw InputError(file.string() + ": cannot be read");
+  if (!in) throw unreadable(file);
   auto rows = std::make_shared<DriveDictionary>();
   std::string line;
   int count = 0;

@@ -171,7 +171,7 @@ TEST(CloudFile, RefusesBadFilesInOneLineWithTheLineWhereThereIsOne) {
     EXPECT_THAT(message, HasSubstr(file.message)) << file.name;
     EXPECT_EQ(message.find('\n'), std::string::npos) << file.name;
   }
-  EXPECT_THAT(message_of<InputError>([&] { read_cloud_file(folder.path() / "missing.pcd"); }), HasSubstr("cannot be read"));
+  EXPECT_THAT(message_of<InputError>([&] { read_cloud_file(folder.path() / "missing.pcd"); }), HasSubstr("there is no such file"));
 }
 
 // Every prefix of a file, and every byte of it changed, is either read or refused: nothing else happens.

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "shared/input_error.hpp"
+
 namespace lf::config {
 
 TEST(Nearest, CountsEditsAsDamerauLevenshtein) {
@@ -32,6 +34,22 @@ TEST(Nearest, SuggestsWhatWasProbablyMeantAndNothingElse) {
   EXPECT_EQ(suggestion("lazer", names), "; did you mean 'laser'?");
   EXPECT_EQ(suggestion("hydraulics", names), "");
   EXPECT_EQ(suggestion("x", {}), "");
+}
+
+TEST(Nearest, ARefusalNamesTheNearestOrTheFewThatThereAre) {
+  const auto refusal = [](const std::string& given, const std::vector<std::string>& known) -> std::string {
+    try {
+      check_names({given}, known, "--channel");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::vector<std::string> few{"grey", "red", "green"};
+  EXPECT_EQ(refusal("red", few), "");
+  EXPECT_EQ(refusal("gren", few), "--channel: there is no 'gren'; did you mean 'green'?");
+  EXPECT_EQ(refusal("purple", few), "--channel: there is no 'purple'; there is grey, red and green");
+  EXPECT_EQ(refusal("purple", std::vector<std::string>(40, "something")), "--channel: there is no 'purple'");
 }
 
 }  // namespace lf::config

@@ -82,7 +82,7 @@ TEST_F(CalibrationFile, BadOnesAreRefusedWithTheirLine) {
   for (const auto& [text, message] : texts) {
     EXPECT_THAT(refusal([&] { read_camera_calibration(write("c.yaml", text)); }), HasSubstr(message)) << text;
   }
-  EXPECT_THAT(refusal([&] { read_camera_calibration(path("missing.yaml")); }), HasSubstr("cannot be read"));
+  EXPECT_THAT(refusal([&] { read_camera_calibration(path("missing.yaml")); }), HasSubstr("there is no such file"));
 }
 
 }  // namespace

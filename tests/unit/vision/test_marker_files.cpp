@@ -89,7 +89,7 @@ TEST_F(MarkerFiles, BadImagesAndVideosAreRefusedInOneLine) {
       {write("text.png", "not an image"), "neither an image nor a video"},
       {write("empty.png", ""), "neither an image nor a video"},
       {write("half.mp4", video.substr(0, video.size() / 2)), "truncated"},
-      {path("missing.png"), "cannot be read"},
+      {path("missing.png"), "there is no such file"},
       {folder_.path().string(), "is a folder"},
   };
   for (const auto& [file, message] : files) {
