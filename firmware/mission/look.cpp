@@ -116,8 +116,7 @@ bool Look::answered(const StepTick& tick) {
   tick.clock.expect(timeout);
   const bool late = tick.clock.elapsed(tick.now) > timeout;
   if (!panel_arrived_ && late) tick.faults.report(safety::Fault::vision_late);
-  if (panel_arrived_)
-    sight_ = sight_of(panel_, before_sweep_, stats_, tick.bench.mission().layout, tick.bench.config.camera.base_from_camera);
+  if (panel_arrived_) sight_ = sight_of(panel_, before_sweep_, stats_, tick.bench.mission().layout, tick.bench.config.camera);
   return panel_arrived_;
 }
 

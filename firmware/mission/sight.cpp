@@ -37,7 +37,7 @@ void hold_handle(const PanelResult& result, const PanelLayout& layout, const Pos
 }  // namespace
 
 Sight sight_of(const PanelResult& result, const ScanStats& before, const ScanStats& now, const PanelLayout& layout,
-               const Pose& base_from_camera) {
+               const CameraCalibration& camera) {
   const Pose base_from_panel = layout.nominal_base_from_panel();
   Sight sight;
   sight.look = result.id;
@@ -54,11 +54,15 @@ Sight sight_of(const PanelResult& result, const ScanStats& before, const ScanSta
   hold_plane(result.fit, base_from_panel, sight);
   sight.still_taken = now.stills != before.stills;
   if (sight.still_taken) sight.still = now.still;
-  const Vec3 seen_m = (base_from_camera * result.marker.camera_from_tag).translation();
+  constexpr double cells = 8;  // of an AprilTag 36h11, its black border included
+  const Vec3 nominal_tag_m = base_from_panel * layout.panel_from_tag().translation();
+  const double ahead_m = (camera.base_from_camera.inverse() * nominal_tag_m).z();
+  if (ahead_m > 0) sight.marker_cell_px = static_cast<float>(camera.intrinsics.fx * layout.marker_size_m / (cells * ahead_m));
+  const Vec3 seen_m = (camera.base_from_camera * result.marker.camera_from_tag).translation();
   sight.marker_found = result.marker.found && seen_m.allFinite();
   if (sight.marker_found) {
     sight.marker_margin_grey = static_cast<float>(result.marker.margin);
-    sight.marker_off_m = static_cast<float>((seen_m - (base_from_panel * layout.panel_from_tag()).translation()).norm());
+    sight.marker_off_m = static_cast<float>((seen_m - nominal_tag_m).norm());
   }
   hold_handle(result, layout, base_from_panel, sight);
   sight.proud_clusters = static_cast<std::uint32_t>(result.clusters.size()) + result.clusters_dropped;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "shared/calibration/calibration.hpp"
 #include "shared/messages/panel_vision.hpp"
 #include "shared/messages/scan_messages.hpp"
 #include "shared/panel/panel_layout.hpp"
@@ -31,6 +32,7 @@ struct Sight {
   bool still_taken = false;
   PictureLight still;
   bool marker_found = false;
+  float marker_cell_px = 0;  // side of one square of the marker's code in the picture, where the vehicle is docked exactly
   float marker_margin_grey = 0;
   // From the nominal marker's centre to the seen one's, by the marker's own pose; 0 without a marker.
   float marker_off_m = 0;
@@ -43,6 +45,6 @@ struct Sight {
 
 // `before`: as the sweep began. `now`: as its answer came.
 Sight sight_of(const PanelResult& result, const ScanStats& before, const ScanStats& now, const PanelLayout& layout,
-               const Pose& base_from_camera);
+               const CameraCalibration& camera);
 
 }  // namespace lf::mission

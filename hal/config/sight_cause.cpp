@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -17,6 +18,12 @@ constexpr float white_share = 0.5f;
 // PictureLight::contrast_grey of the default panel under its lamps, in the simulator: 9.0 at an attenuation of 4 per m, where the marker is still found and the pointer
 // is not, and 5.8 at 5, where no marker is found.
 constexpr float no_contrast_grey = 6;
+// PictureLight::noise_grey: at 20 the default panel's handle is lost in its cloud, at 12 the mission succeeds.
+constexpr float noisy_grey = 15;
+// PictureLight::contrast_grey that noise of 1 grey level makes: the step between the means of two squares of 64 pixels that one in a hundred exceeds.
+constexpr float contrast_of_noise = 2.58f * 1.414f / 8;
+// Sight::marker_cell_px: an AprilTag is found down to 2.0 to 2.3 px a square.
+constexpr float small_cell_px = 2.2f;
 // Of the cloud's points: a sweep over a panel has 80,000, and PanelMap takes less for no scan. Peaks alone tell nothing: edges of the arm's moving shadow are some.
 constexpr std::uint32_t fewest_points = 2000;
 // A panel beyond what docking allows: 20 mm and 2 degrees, seen through the tilt of PnP and of a plane's edge.
@@ -55,6 +62,17 @@ Cause pictures_dark() {
 Cause pictures_white() {
   return {"the pictures are white", "The exposure is too long: lower camera.exposure_us or the gain, or dim the lamps."};
 }
+Cause pictures_noisy(double noise_grey) {
+  return {formatted("the pictures are noisy: %.0f grey levels", noise_grey),
+          "Give them more light in place of gain: raise camera.exposure_us or the lamps; check the camera's cable and its shield."};
+}
+// What noise does not make.
+float contrast_of(const PictureLight& still) {
+  const float by_noise = contrast_of_noise * still.noise_grey;
+  return std::sqrt(std::max(0.0f, still.contrast_grey * still.contrast_grey - by_noise * by_noise));
+}
+bool without_contrast(const PictureLight& still) { return contrast_of(still) < no_contrast_grey; }
+
 Cause turbid() {
   return {
       "the water is too turbid",
@@ -72,6 +90,10 @@ Cause marker_hidden() {
           "Panel and handle are at their place and the picture has contrast: look at the still picture for what covers the marker; check "
           "panel.marker_id "
           "and panel.marker_centre_m."};
+}
+Cause marker_small(double cell_px) {
+  return {formatted("the marker is too small in the picture: %.1f px a square of its code", cell_px),
+          "Use a larger one (panel.marker_size_m), a camera with more pixels a degree, or dock nearer."};
 }
 Cause docked_off(double off_m) {
   return {formatted("the panel stands %.0f mm off its nominal place", 1e3 * off_m),
@@ -105,12 +127,13 @@ Cause light_of(const Sight& sight) {
   if (sight.stripes == 0 && !sight.still_taken) return sight.images_refused > 0 ? pictures_refused() : pictures_missing();
   if (!sight.still_taken) return {};
   if (sight.still.white_share > white_share) return pictures_white();
-  if (sight.still.mean_grey < dark_grey && sight.still.contrast_grey < no_contrast_grey) return pictures_dark();
+  if (sight.still.mean_grey < dark_grey && without_contrast(sight.still)) return pictures_dark();
+  if (sight.still.noise_grey > noisy_grey) return pictures_noisy(sight.still.noise_grey);
   return {};
 }
 
 Cause cause_of_poor_plane(const Sight& sight) {
-  if (sight.still_taken && sight.still.contrast_grey < no_contrast_grey) return turbid();
+  if (sight.still_taken && without_contrast(sight.still)) return turbid();
   if (white_stripe_share(sight) > 0.5) return line_saturated();
   if (sight.points >= fewest_points || !sight.still_taken) return {};
   return sight.marker_found ? no_line() : panel_elsewhere();
@@ -118,8 +141,9 @@ Cause cause_of_poor_plane(const Sight& sight) {
 
 Cause cause_without_marker(const Sight& sight) {
   if (!sight.still_taken) return {"no still picture came", "Check the camera's cable and trigger."};
-  if (sight.still.contrast_grey < no_contrast_grey) return turbid();
-  return sight.handle_found ? marker_hidden() : panel_elsewhere();
+  if (without_contrast(sight.still)) return turbid();
+  if (!sight.handle_found) return panel_elsewhere();
+  return sight.marker_cell_px > 0 && sight.marker_cell_px < small_cell_px ? marker_small(sight.marker_cell_px) : marker_hidden();
 }
 
 }  // namespace
@@ -169,7 +193,7 @@ std::string sight_text(const Sight& sight) {
   }
   if (!sight.still_taken) return text + "; no still";
   text += formatted("; still: mean %.0f grey", sight.still.mean_grey) + formatted(", contrast %.1f", sight.still.contrast_grey) +
-          formatted(", %.0f %% white", 100 * sight.still.white_share);
+          formatted(", noise %.1f", sight.still.noise_grey) + formatted(", %.0f %% white", 100 * sight.still.white_share);
   text += sight.marker_found ? formatted(", marker %.0f mm off its nominal place", 1e3 * sight.marker_off_m) : ", no marker";
   return text + (sight.handle_found ? formatted(", handle %.0f mm", 1e3 * sight.handle_off_m) : ", no handle");
 }

@@ -48,6 +48,7 @@ struct PictureLight {
   // turbid water hides the edges.
   float contrast_grey = 0;
   float white_share = 0;  // of the pixels at full scale, 0..1
+  float noise_grey = 0;   // standard deviation from pixel to pixel beside one another, where most of the picture is even
 };
 
 // The laser's stripe as the pictures since the sweep's begin have told it, up to the newest that shows the panel; all 0 before the first.

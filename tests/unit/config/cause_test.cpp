@@ -28,6 +28,7 @@ Sight good_look() {
   sight.still_taken = true;
   sight.still = {90, 30, 0};
   sight.marker_found = true;
+  sight.marker_cell_px = 4;
   sight.marker_off_m = 0.012f;
   sight.proud_clusters = 4;
   sight.handle_found = true;
@@ -60,6 +61,19 @@ TEST(SightCause, NamesWhatAFailedLookSaw) {
   EXPECT_EQ(cause(StepFailure::no_marker, hidden), "the marker is hidden or another one");
   hidden.handle_found = false;
   EXPECT_EQ(cause(StepFailure::no_marker, hidden), "neither marker nor handle is at its place");
+
+  Sight small = good_look();
+  small.marker_found = false;
+  small.marker_cell_px = 1.7f;
+  EXPECT_EQ(cause(StepFailure::no_marker, small), "the marker is too small in the picture: 1.7 px a square of its code");
+
+  Sight noisy = good_look();
+  noisy.marker_found = noisy.handle_found = false;
+  noisy.still = {55, 30, 0, 30};
+  for (const StepFailure failure : {StepFailure::no_panel, StepFailure::no_marker, StepFailure::no_handle})
+    EXPECT_EQ(cause(failure, noisy), "the pictures are noisy: 30 grey levels");
+  noisy.still = {55, 5, 0, 12};
+  EXPECT_EQ(cause(StepFailure::no_marker, noisy), "the water is too turbid") << "what looks like contrast is noise";
 
   Sight without_line = good_look();
   without_line.plane_found = without_line.handle_found = false;
@@ -133,7 +147,8 @@ TEST(SightText, HasTheNumbersThatTheCauseIsToldBy) {
   const std::string text = sight_text(good_look());
   EXPECT_THAT(text, HasSubstr("200 images of the laser, peaks in 66 % of their columns"));
   EXPECT_THAT(text, HasSubstr("80000 points, 70000 on a plane +8 mm"));
-  EXPECT_THAT(text, HasSubstr("still: mean 90 grey, contrast 30.0, 0 % white, marker 12 mm off its nominal place, handle 10 mm"));
+  EXPECT_THAT(text,
+              HasSubstr("still: mean 90 grey, contrast 30.0, noise 0.0, 0 % white, marker 12 mm off its nominal place, handle 10 mm"));
   EXPECT_THAT(text, Not(HasSubstr("missing")));
 }
 

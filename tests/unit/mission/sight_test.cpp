@@ -23,32 +23,46 @@ TEST(Sight, HoldsThePlaneAgainstTheNominalPanel) {
   PanelResult result;
   result.id = 3;
   result.fit = plane(layout, 0.25, 0.1);
-  const Sight sight = sight_of(result, {}, {}, layout, Pose::Identity());
+  const Sight sight = sight_of(result, {}, {}, layout, CameraCalibration{});
   EXPECT_EQ(sight.look, 3u);
   EXPECT_TRUE(sight.plane_found);
   EXPECT_EQ(sight.inliers, 900u);
   EXPECT_NEAR(sight.plane_off_m, 0.25 * std::cos(0.1), 1e-6);
   EXPECT_NEAR(sight.plane_tilt_rad, 0.1, 1e-6);
   result.fit = plane(layout, -0.02, 0);
-  EXPECT_NEAR(sight_of(result, {}, {}, layout, Pose::Identity()).plane_off_m, -0.02, 1e-6);
+  EXPECT_NEAR(sight_of(result, {}, {}, layout, CameraCalibration{}).plane_off_m, -0.02, 1e-6);
   result.fit.plane.offset_m = std::nan("");
-  EXPECT_FALSE(sight_of(result, {}, {}, layout, Pose::Identity()).plane_found);
+  EXPECT_FALSE(sight_of(result, {}, {}, layout, CameraCalibration{}).plane_found);
 }
 
 TEST(Sight, HoldsTheMarkerAgainstItsNominalPlace) {
   const PanelLayout layout;
-  const Pose base_from_camera(Eigen::Translation3d(0.1, -0.2, 0.05) * Eigen::AngleAxisd(0.7, Vec3::UnitY()));
+  CameraCalibration camera;
+  camera.base_from_camera = Pose(Eigen::Translation3d(0.1, -0.2, 0.05) * Eigen::AngleAxisd(0.7, Vec3::UnitY()));
   PanelResult result;
   result.marker.found = true;
   result.marker.margin = 55;
   const Vec3 seen_m = (layout.nominal_base_from_panel() * layout.panel_from_tag()).translation() + Vec3(0.03, 0, -0.04);
-  result.marker.camera_from_tag.translation() = base_from_camera.inverse() * seen_m;
-  const Sight sight = sight_of(result, {}, {}, layout, base_from_camera);
+  result.marker.camera_from_tag.translation() = camera.base_from_camera.inverse() * seen_m;
+  const Sight sight = sight_of(result, {}, {}, layout, camera);
   EXPECT_TRUE(sight.marker_found);
   EXPECT_NEAR(sight.marker_off_m, 0.05, 1e-6);
   EXPECT_EQ(sight.marker_margin_grey, 55);
   result.marker.found = false;
-  EXPECT_EQ(sight_of(result, {}, {}, layout, base_from_camera).marker_off_m, 0);
+  EXPECT_EQ(sight_of(result, {}, {}, layout, camera).marker_off_m, 0);
+}
+
+// 8 mm of the marker's 64 at 500 px, 1.25 m ahead: 3.2 px.
+TEST(Sight, SaysHowLargeASquareOfTheMarkersCodeIsInThePicture) {
+  PanelLayout layout;
+  layout.marker_size_m = 0.064;
+  CameraCalibration camera;
+  camera.intrinsics.fx = 500;
+  const Vec3 tag_m = (layout.nominal_base_from_panel() * layout.panel_from_tag()).translation();
+  camera.base_from_camera.translation() = tag_m - Vec3(0.3, 0.1, 1.25);
+  EXPECT_NEAR(sight_of({}, {}, {}, layout, camera).marker_cell_px, 3.2, 1e-5);
+  camera.base_from_camera.translation() = tag_m + Vec3(0, 0, 1);
+  EXPECT_EQ(sight_of({}, {}, {}, layout, camera).marker_cell_px, 0) << "behind the camera";
 }
 
 TEST(Sight, TakesForTheHandleWhatHasItsHeightAndLength) {
@@ -63,10 +77,10 @@ TEST(Sight, TakesForTheHandleWhatHasItsHeightAndLength) {
   near.centroid_m += Vec3(0, 0.03, 0.04);
   far.centroid_m = near.centroid_m + Vec3(0, 0.5, 0);
   (void)result.clusters.push_back(button);
-  EXPECT_FALSE(sight_of(result, {}, {}, layout, Pose::Identity()).handle_found);
+  EXPECT_FALSE(sight_of(result, {}, {}, layout, CameraCalibration{}).handle_found);
   (void)result.clusters.push_back(far);
   (void)result.clusters.push_back(near);
-  const Sight sight = sight_of(result, {}, {}, layout, Pose::Identity());
+  const Sight sight = sight_of(result, {}, {}, layout, CameraCalibration{});
   EXPECT_TRUE(sight.handle_found);
   EXPECT_NEAR(sight.handle_off_m, 0.05, 1e-6);
   EXPECT_EQ(sight.proud_clusters, 3u);
@@ -90,7 +104,7 @@ TEST(Sight, CountsFromTheBeginningOfItsSweep) {
   now.stripe.width_px = 1.6f;
   now.images_missing = 2;
   now.images_refused = 3;
-  Sight sight = sight_of({}, before, now, {}, Pose::Identity());
+  Sight sight = sight_of({}, before, now, {}, CameraCalibration{});
   EXPECT_EQ(sight.stripes, 30u);
   EXPECT_EQ(sight.columns_found, 600u);
   EXPECT_EQ(sight.columns_weak, 40u);
@@ -103,7 +117,7 @@ TEST(Sight, CountsFromTheBeginningOfItsSweep) {
   EXPECT_EQ(sight.still.mean_grey, 0) << "the still of the look before is not this one's";
   now.stills = 2;
   now.still = {90, 30, 0};
-  sight = sight_of({}, before, now, {}, Pose::Identity());
+  sight = sight_of({}, before, now, {}, CameraCalibration{});
   EXPECT_TRUE(sight.still_taken);
   EXPECT_EQ(sight.still.contrast_grey, 30);
 }
