@@ -28,6 +28,10 @@ constexpr BootStep optional(BootStep step) {
   step.optional = true;
   return step;
 }
+constexpr BootStep best_effort(BootStep step) {
+  step.optional = step.best_effort = true;
+  return step;
+}
 constexpr BootStep check(std::uint16_t index, std::uint8_t sub, V value, std::uint32_t number, std::uint32_t mask) {
   return {index, sub, 4, A::check, value, number, mask, false};
 }
@@ -91,7 +95,7 @@ constexpr std::array drive_plan{
     setting(rpdo_map, 3, 4, V::rpdo1_torque_offset),
     setting(rpdo_map, 0, 1, V::rpdo1_entries),
     literal(rpdo(1), 2, 1, every_sync),
-    optional(setting(rpdo(1), 5, 2, V::process_data_deadline)),
+    best_effort(setting(rpdo(1), 5, 2, V::process_data_deadline)),
     setting(rpdo(1), 1, 4, V::rpdo1_cob_id, id_and_valid),
     // TPDO1: statusword, actual position, actual torque. Drives come with inhibit times of 1 to 100 ms, which would hold back answers.
     invalidate(tpdo(1)),
@@ -139,7 +143,7 @@ constexpr std::array io_plan{
     literal(rpdo_map, 3, 4, can_map::io_rpdo1::entries[2]),
     literal(rpdo_map, 0, 1, 3),
     literal(rpdo(1), 2, 1, every_sync),
-    optional(setting(rpdo(1), 5, 2, V::process_data_deadline)),
+    best_effort(setting(rpdo(1), 5, 2, V::process_data_deadline)),
     setting(rpdo(1), 1, 4, V::rpdo1_cob_id, id_and_valid),
     // TPDO1: inputs, outputs as they are, last trigger counter, last exposure.
     invalidate(tpdo(1)),

@@ -171,6 +171,10 @@ void BootSequence::take_sdo_failure(SdoClient& sdo, const BootContext& context) 
     return;
   }
   if (exchange_ == Exchange::writing && write_fallback(code, sdo, context)) return;
+  if (step_.best_effort && sdo.aborted_by_server()) {
+    report_.abort_code = 0;
+    return next_step();
+  }
   if (exchange_ == Exchange::writing) report_.expected = written_;
   if (code == sdo_abort::read_only) return fail(BootFailure::read_only);
   fail(code == sdo_abort::timeout && !sdo.aborted_by_server() ? BootFailure::sdo_timeout : BootFailure::sdo_aborted);
@@ -203,7 +207,7 @@ bool BootSequence::write_fallback(std::uint32_t code, SdoClient& sdo, const Boot
 void BootSequence::take_read(SdoClient& sdo, const BootContext& context) {
   const std::size_t bytes = sdo.value().size();
   const bool length_fits = step_.width == 0 || bytes == step_.width || (!sdo.size_known() && bytes > step_.width);
-  if (!length_fits) return fail(BootFailure::wrong_length);
+  if (!length_fits) return step_.best_effort ? next_step() : fail(BootFailure::wrong_length);
   const std::uint32_t width_mask = step_.width >= 4 || step_.width == 0 ? 0xFFFFFFFFu : (1u << (8 * step_.width)) - 1u;
   const std::uint32_t read = sdo.number() & width_mask;
   report_.read = read;
@@ -227,6 +231,7 @@ void BootSequence::take_read(SdoClient& sdo, const BootContext& context) {
     sdo.download(step_.index, step_.sub, written_, step_.width);
     return;
   }
+  if (step_.best_effort) return next_step();
   report_.expected = written_ & mask;
   const bool identity = step_.value == BootValue::vendor || step_.value == BootValue::product || step_.index == 0x1000;
   if (step_.action != BootAction::check) return fail(BootFailure::wrong_readback);

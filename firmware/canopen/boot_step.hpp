@@ -58,7 +58,8 @@ struct BootStep {
   BootValue value = BootValue::literal;
   std::uint32_t literal = 0;
   std::uint32_t mask = 0xFFFFFFFFu;
-  bool optional = false;  // a node without the object (06020000, 06090011) is accepted
+  bool optional = false;     // a node without the object (06020000, 06090011) is accepted
+  bool best_effort = false;  // and one that refuses the value, or has another: nothing is built on it
 };
 
 }  // namespace lf::canopen

@@ -94,6 +94,8 @@ class Network {
   // What is wrong with a node's link, latched until acknowledged. Acknowledging does not repair: a node that rebooted needs `start_boot`.
   const NodeFault& fault(std::size_t node) const { return nodes_[node].fault(); }
   bool any_fault() const;
+  // When a heartbeat said last that the node is operational.
+  Time operational_at(std::size_t node) const { return nodes_[node].operational_at(); }
   void acknowledge(std::size_t node) { nodes_[node].acknowledge(); }
   // EMCY messages in the order of their arrival, the last 16.
   std::optional<Emcy> take_emcy();

@@ -38,7 +38,10 @@ bool Node::on_heartbeat(std::uint8_t state, Time now) {
       restarted_as_told_ = restarted_as_told_ || std::exchange(restart_expected_, false);
     }
   }
-  if (nmt == NmtState::operational) boot_.on_operational(now);
+  if (nmt == NmtState::operational) {
+    operational_at_ = now;
+    boot_.on_operational(now);
+  }
   if (boot_.done() && (nmt == NmtState::stopped || nmt == NmtState::pre_operational)) fault_.left_operational = true;
   return true;
 }

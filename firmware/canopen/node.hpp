@@ -33,6 +33,7 @@ class Node {
   std::uint8_t id() const { return id_; }
   NmtState nmt() const { return nmt_; }
   const NodeFault& fault() const { return fault_; }
+  Time operational_at() const { return operational_at_; }  // by its newest heartbeat that said so
   void acknowledge() { fault_ = NodeFault{}; }
   SdoClient& sdo() { return sdo_; }
   const SdoClient& sdo() const { return sdo_; }
@@ -71,6 +72,7 @@ class Node {
   bool restarted_as_told_ = false;
   Time next_guard_;
   Time last_heartbeat_;
+  Time operational_at_;
   NodeFault fault_;
   SdoClient sdo_;
   BootSequence boot_;

@@ -22,6 +22,11 @@ void Power::stop(Time now, canopen::Network& network) {
   restart_unheard(now, network);
   state_ = State::stopping;
   told_by_nmt_.fill(false);
+  left_.fill(false);
+  taken_.fill(std::nullopt);
+  brakes_since_.fill(now);
+  note_what_left(now, network);
+  outputs_off_since_ = now;
   insist_at_ = now + heed_time;
   since_ = now;
   rest_since_.fill(now);
@@ -32,10 +37,17 @@ void Power::remove(Time now, canopen::Network& network) {
   network.remove_power();
   if (state_ == State::removing) return;
   restart_unheard(now, network);
-  if (state_ != State::stopping) told_by_nmt_.fill(false);
+  if (state_ != State::stopping) {
+    told_by_nmt_.fill(false);
+    taken_.fill(std::nullopt);
+    outputs_off_since_ = now;
+  }
   state_ = State::removing;
   since_ = now;
-  // What another master has taken out of operation takes no process data.
+  // What NMT has taken out of operation takes no process data.
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    if (told_by_nmt_[i] && !network.restarted_as_told(i)) network.reset_node(i, now);
+  }
   insist_at_ = network.foreign_nmt_since(now, insist_period) ? now : now + heed_time;
 }
 
@@ -60,8 +72,10 @@ void Power::insist(Time now, canopen::Network& network) {
   restart_unheard(now, network);
   for (std::size_t i = 0; i < joint_count; ++i) {
     if (never_heard(network, i) || heeds(i, now, network)) continue;
-    if (state_ == State::stopping) {
+    if (state_ == State::stopping && !taken_[i]) {
       network.stop_node(i);
+      // The first that it hears: one that is repeated finds it braking.
+      if (!told_by_nmt_[i]) brakes_since_[i] = now;
       told_by_nmt_[i] = true;
     } else if (!network.restarted_as_told(i)) {
       network.reset_node(i, now);
@@ -80,6 +94,7 @@ void Power::restart_unheard(Time now, canopen::Network& network) {
 // knows which of them hear.
 bool Power::heeds(std::size_t joint, Time now, const canopen::Network& network) const {
   const canopen::Axis& axis = network.axis(static_cast<Joint>(joint));
+  if (axis.fresh(now) && taken_[joint]) return !axis.powered() || now - *taken_[joint] < heed_time;
   if (axis.fresh(now)) return state_ == State::stopping ? !axis.runs() : !axis.powered();
   if (network.fault(joint).left_operational || network.foreign_nmt_since(now, insist_period)) return false;
   if (state_ == State::stopping) return deaf_ticks_ < deaf_ticks;
@@ -95,11 +110,15 @@ bool Power::hears_none(Time now, const canopen::Network& network) {
 
 void Power::tick(const JointStates& joints, Time now, canopen::Network& network) {
   deaf_ticks_ = hears_none(now, network) ? std::min(deaf_ticks_ + 1, deaf_ticks) : 0;
-  if (state_ == State::stopping || state_ == State::removing) insist(now, network);
+  if (state_ == State::stopping || state_ == State::removing) {
+    note_what_left(now, network);
+    insist(now, network);
+    insist_on_outputs(now, network);
+  }
   if (state_ == State::stopping) {
     const Standing stands = standing(joints, now, network);
     if (confirmed(now, network) || stands.all || now - since_ >= longest_stop) remove(now, network);
-    if (state_ == State::stopping && stands.heard) take_heard(now, network);
+    if (state_ == State::stopping && stands.heard) take_heard(joints, now, network);
   } else if (state_ == State::lowering) {
     if (confirmed(now, network)) state_ = State::off;
     if (state_ != State::off && now - since_ >= longest_lowering(network.config())) remove(now, network);
@@ -132,15 +151,18 @@ Duration Power::ramp(const JointStates& joints, std::size_t joint, const canopen
 Power::Standing Power::standing(const JointStates& joints, Time now, const canopen::Network& network) {
   Standing stands;
   for (std::size_t i = 0; i < joint_count; ++i) {
+    const canopen::Axis& axis = network.axis(static_cast<Joint>(i));
+    // What has no power is not waited for: a screw may be driven back.
+    if (axis.confirmed_unpowered(now) && now - since_ >= heed_time) continue;
     if (!joints.fresh[i]) {
-      // What NMT took out of operation brakes since then, before this stop.
-      const canopen::NodeFault& fault = network.fault(i);
-      const Duration margin = fault.rebooted || fault.left_operational ? heed_time : silent_margin;
-      stands.all = stands.all && now - since_ >= ramp(joints, i, network) + margin;
+      // On its ramp since it was told, from the speed that it had when it was heard last, which may be later.
+      const Time began = std::max(brakes_since_[i], axis.seen() ? axis.actual_time() : since_);
+      const Duration margin = left_[i] ? heed_time : told_by_nmt_[i] ? still_time : silent_margin;
+      stands.all = stands.all && now - began >= ramp(joints, i, network) + margin;
       continue;
     }
     const double rad = joints.position_rad[i];
-    const std::int32_t counts = network.axis(static_cast<Joint>(i)).actual_counts();
+    const std::int32_t counts = axis.actual_counts();
     const bool one_count = std::abs(std::int64_t{counts} - rest_counts_[i]) <= 1;
     const bool known = std::isfinite(rest_rad_[i]);
     if (!known || (std::abs(rad - rest_rad_[i]) > still_rad && !one_count)) {
@@ -155,11 +177,35 @@ Power::Standing Power::standing(const JointStates& joints, Time now, const canop
 }
 
 // What stands does not wait under power for the ramp of a joint that nobody hears.
-void Power::take_heard(Time now, canopen::Network& network) {
+void Power::take_heard(const JointStates& joints, Time now, canopen::Network& network) {
   for (std::size_t i = 0; i < joint_count; ++i) {
-    canopen::Axis& axis = network.axis(static_cast<Joint>(i));
-    if (axis.fresh(now)) axis.request(canopen::AxisRequest::remove_power);
+    if (!joints.fresh[i] || taken_[i]) continue;
+    network.axis(static_cast<Joint>(i)).request(canopen::AxisRequest::remove_power);
+    taken_[i] = now;
   }
+}
+
+// By another master's NMT, a restart, or a deadline of its own. What has left operation sends nothing, so that it brakes since it was heard last; one that was silent
+// while it was in operation brakes since it was found to have left.
+void Power::note_what_left(Time now, const canopen::Network& network) {
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    const canopen::NodeFault& fault = network.fault(i);
+    if (left_[i] || !(fault.rebooted || fault.left_operational)) continue;
+    left_[i] = true;
+    const canopen::Axis& axis = network.axis(static_cast<Joint>(i));
+    const bool was_silent = axis.seen() && network.operational_at(i) - axis.actual_time() > heed_time;
+    if (was_silent && !told_by_nmt_[i]) brakes_since_[i] = now;
+  }
+}
+
+// Its process data are lost: stopped by NMT, every output takes its error value, off.
+void Power::insist_on_outputs(Time now, canopen::Network& network) {
+  const canopen::IoModule& io = network.io();
+  const bool known_off = io.fresh(now) && io.outputs() == 0;
+  if (known_off || io.wanted_outputs() != 0 || !io.seen()) outputs_off_since_ = now;
+  if (now - outputs_off_since_ < heed_time) return;
+  network.stop_node(canopen::Network::io_index);
+  outputs_off_since_ = now + (insist_period - heed_time);
 }
 
 // A statusword that was sent before the drive heard the order says nothing of it: a drive on its way up would be taken for down.

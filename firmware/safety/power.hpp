@@ -13,6 +13,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "firmware/canopen/network.hpp"
 #include "firmware/safety/watch.hpp"
@@ -81,13 +82,16 @@ class Power {
     bool all = true;
   };
   Standing standing(const JointStates& joints, Time now, const canopen::Network& network);
-  static void take_heard(Time now, canopen::Network& network);
+  void take_heard(const JointStates& joints, Time now, canopen::Network& network);
   static Duration ramp(const JointStates& joints, std::size_t joint, const canopen::Network& network);
   bool confirmed(Time now, const canopen::Network& network) const;
   // Stops or restarts by NMT what does not heed its process data.
   void insist(Time now, canopen::Network& network);
   static void restart_unheard(Time now, canopen::Network& network);
   bool heeds(std::size_t joint, Time now, const canopen::Network& network) const;
+  // Outputs, the laser's among them, that stay on though they were told to go off.
+  void insist_on_outputs(Time now, canopen::Network& network);
+  void note_what_left(Time now, const canopen::Network& network);
   static bool hears_none(Time now, const canopen::Network& network);
 
   State state_ = State::off;
@@ -97,7 +101,11 @@ class Power {
   std::array<std::int32_t, joint_count> rest_counts_{};
   std::array<Time, joint_count> rest_since_{};
   std::array<bool, joint_count> told_by_nmt_{};  // since the stop began: deaf to process data
-  int deaf_ticks_ = 0;                           // in a row
+  std::array<bool, joint_count> left_{};         // out of operation, or booted anew: brakes without being told
+  std::array<Time, joint_count> brakes_since_{};
+  std::array<std::optional<Time>, joint_count> taken_{};  // its power, since it stood
+  Time outputs_off_since_;                                // heard to be off, or not wanted to be
+  int deaf_ticks_ = 0;                                    // in a row
 };
 
 const char* name(Power::State state);

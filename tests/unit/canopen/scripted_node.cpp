@@ -157,7 +157,7 @@ void ScriptedNode::on_sync() {
   if (!rpdo_) return;
   const CanFrame rpdo = *rpdo_;
   if (kind_ == Kind::io) {
-    outputs = rpdo.data[0];
+    if (!ignores_outputs) outputs = rpdo.data[0];
     if (rpdo.data[1] != trigger_counter) {
       ++exposures;
       last_exposure_us = u16_at(rpdo, 2);
@@ -265,7 +265,8 @@ void ScriptedNode::on_sdo(const CanFrame& request) {
   const std::uint16_t index = initiates ? u16_at(request, 1) : static_cast<std::uint16_t>(segment_object_ >> 8);
   const bool writes = (request.data[0] >> 5) == 1;
   const bool applies = trick && trick->times > 0 && (writes || trick->what != Trick::What::ignore_write);
-  const bool tricked = applies && (trick->request < 0 || trick->request == n) && (trick->index == 0 || trick->index == index);
+  const bool tricked = applies && (trick->request < 0 || trick->request == n) && (trick->index == 0 || trick->index == index) &&
+                       (trick->sub < 0 || trick->sub == request.data[3]);
   if (tricked) {
     --trick->times;
     if (!apply_trick(request, answer)) return;
@@ -351,7 +352,8 @@ CanFrame ScriptedNode::initiate_download(const CanFrame& request, std::uint16_t 
   if (parameters && sub == 1 && ((old | value) & 0x80000000u) == 0 && ((old ^ value) & 0x7FF) != 0) return abort(index, sub, 0x06090030);
   if (mapping && (object(static_cast<std::uint16_t>(index - 0x200), 1) & 0x80000000u) == 0) return abort(index, sub, 0x06010000);
   if (mapping && sub > 0 && object(index, 0) != 0) return abort(index, sub, 0x06010000);
-  const bool ignored = trick && trick->times > 0 && trick->what == Trick::What::ignore_write && trick->index == index;
+  const bool ignored = trick && trick->times > 0 && trick->what == Trick::What::ignore_write && trick->index == index &&
+                       (trick->sub < 0 || trick->sub == sub);
   if (!ignored) write(key(index, sub), Bytes(request.data.begin() + 4, request.data.begin() + 4 + static_cast<long>(n)));
   return sdo_answer(id_, 0x60, index, sub);
 }

@@ -26,6 +26,7 @@ class ScriptedNode {
     std::uint16_t index = 0;  // 0: any object
     std::uint32_t code = 0;   // of an abort
     int times = 1;
+    int sub = -1;  // -1: any
   };
 
   ScriptedNode(std::uint8_t id, Kind kind);
@@ -52,6 +53,7 @@ class ScriptedNode {
   bool silent_boot = false;  // no boot-up message
   int boot_ups_to_lose = 0;  // that many are lost first
   bool ignores_controlword = false;
+  bool ignores_outputs = false;
   bool ignores_mode = false;  // 6061 does not follow
   bool refuses_reset = false;
   bool jammed = false;    // does not follow its targets

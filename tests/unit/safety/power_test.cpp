@@ -37,7 +37,7 @@ class PowerTest : public testing::Test {
 
   void step() {
     for (std::size_t i = 0; i < joint_count; ++i) {
-      joints.fresh[i] = bus.network.axis(static_cast<Joint>(i)).fresh(bus.now);
+      joints.fresh[i] = bus.network.axis(static_cast<Joint>(i)).fresh(bus.now) && !taken_for_stale[i];
       joints.position_rad[i] += speed_rad_s[i] * 0.004;
       if (joints.fresh[i]) joints.velocity_rad_s[i] = speed_rad_s[i];
       joints.speed_known[i] = speeds_known;
@@ -74,6 +74,7 @@ class PowerTest : public testing::Test {
   Power power;
   JointStates joints;
   bool speeds_known = true;
+  std::array<bool, joint_count> taken_for_stale{};  // by limits that are tighter than an axis'
   std::array<double, joint_count> speed_rad_s{};
 };
 
@@ -141,7 +142,96 @@ TEST_F(PowerTest, WhatIsHeardAndStandsDoesNotWaitForTheRampOfASilentDrive) {
   };
   EXPECT_LT(until(others_off), 0.1);
   EXPECT_EQ(bus.nodes[2].drive_state_bits(), holding) << "it may be on its ramp";
-  EXPECT_GT(until([this] { return all_in(unpowered); }), 0.15);
+  const double lost_s = until([this] { return all_in(unpowered); });
+  EXPECT_GT(lost_s, 0.15);
+  EXPECT_LT(lost_s, ramp_s + 0.1);
+}
+
+// A screw without power may be driven back, and a brake takes its time.
+TEST_F(PowerTest, ASilentDriveDoesNotWaitForAJointThatSagsWithoutPower) {
+  bus.nodes[2].mute_tpdo = true;
+  for (int i = 0; i < 6; ++i) step();
+  power.stop(bus.now, bus.network);
+  ASSERT_LT(until([this] { return bus.nodes[1].drive_state_bits() == unpowered; }), 0.1);
+  speed_rad_s[1] = 0.2;
+  EXPECT_LT(until([this] { return all_in(unpowered); }), 0.1);
+}
+
+// One that is too old for the limits, but not for its axis, may be on its ramp: it is not among those that stand.
+TEST_F(PowerTest, WhatIsTooOldForTheLimitsIsNotTakenWithThoseThatStand) {
+  speed_rad_s[0] = 0.2;
+  for (int i = 0; i < 6; ++i) step();
+  power.stop(bus.now, bus.network);
+  for (int i = 0; i < 20; ++i) step();
+  taken_for_stale[0] = true;
+  for (int i = 0; i < 4; ++i) step();
+  EXPECT_EQ(bus.nodes[0].drive_state_bits(), holding);
+}
+
+// No position is fresh for one tick in the middle of the ramp: what was left of it then is left still.
+TEST_F(PowerTest, ALateTickInMidRampTakesNoPower) {
+  const double began_rad_s = 0.2;
+  for (int tick = 0; tick < 90; ++tick) {
+    if (tick == 6) power.stop(bus.now, bus.network);
+    speed_rad_s[1] = std::max(0.0, began_rad_s - deceleration_rad_s2 * std::max(0, tick - 8) * 0.004);
+    for (ScriptedNode& node : bus.nodes) node.mute_tpdo = tick >= 70 && tick < 74;
+    step();
+    ASSERT_EQ(bus.nodes[1].drive_state_bits(), tick < 9 ? bus.nodes[1].drive_state_bits() : holding) << tick;
+  }
+}
+
+// Its process data are lost both ways, and its own deadline takes it out of operation 100 ms after the stop: its ramp begins there.
+TEST_F(PowerTest, ADriveThatLeavesOperationByItsDeadlineIsNotRestartedOnItsRamp) {
+  const double ramp_s = 0.4;
+  speed_rad_s[3] = ramp_s * deceleration_rad_s2;
+  for (int i = 0; i < 6; ++i) step();
+  bus.nodes[3].mute_tpdo = bus.nodes[3].ignores_controlword = true;
+  power.stop(bus.now, bus.network);
+  for (int i = 0; i < 25; ++i) step();
+  const std::uint8_t id = bus.network.config().drives[3].node;
+  CanFrame leave;
+  leave.length = 2;
+  leave.data = {128, id};
+  bus.nodes[3].receive(leave, bus.now);
+  const double restarted_s = until([this] { return bus.nodes[3].drive_state_bits() == unpowered; });
+  EXPECT_GT(restarted_s, ramp_s);
+  EXPECT_LT(restarted_s, ramp_s + 0.25);
+}
+
+// The laser's order to go off is lost: stopped by NMT, the node switches its outputs off by itself (6206, 6207).
+TEST_F(PowerTest, OutputsThatStayOnAreStoppedByNmt) {
+  ScriptedNode& outputs = bus.nodes[canopen::Network::io_index];
+  bus.network.io().set_outputs(can_map::output_laser);
+  for (int i = 0; i < 6; ++i) step();
+  ASSERT_EQ(outputs.outputs, can_map::output_laser);
+  outputs.ignores_outputs = true;
+  bus.network.io().set_outputs(0);
+  power.stop(bus.now, bus.network);
+  EXPECT_LT(until([&] { return outputs.nmt() == 4; }), 0.03);
+}
+
+TEST_F(PowerTest, OutputsThatGoOffAreLeftInOperation) {
+  ScriptedNode& outputs = bus.nodes[canopen::Network::io_index];
+  bus.network.io().set_outputs(can_map::output_laser);
+  for (int i = 0; i < 6; ++i) step();
+  bus.network.io().set_outputs(0);
+  power.stop(bus.now, bus.network);
+  EXPECT_LT(until([this] { return power.off(); }), 0.2);
+  EXPECT_EQ(outputs.nmt(), 5);
+}
+
+// It stands and is told to go down, and stays in quick stop.
+TEST_F(PowerTest, ADriveThatIsTakenAndKeepsItsPowerIsRestartedWhileASilentOneBrakes) {
+  speed_rad_s[2] = 0.2;
+  for (int i = 0; i < 6; ++i) step();
+  bus.nodes[2].mute_tpdo = true;
+  for (int i = 0; i < 6; ++i) step();
+  speed_rad_s[2] = 0;
+  power.stop(bus.now, bus.network);
+  ASSERT_TRUE(bus.run_until([this] { return bus.nodes[0].drive_state_bits() == holding; }, Duration::from_ms(20)));
+  bus.nodes[0].ignores_controlword = true;
+  EXPECT_LT(until([this] { return bus.nodes[0].drive_state_bits() == unpowered; }), 0.25);
+  EXPECT_EQ(bus.nodes[2].drive_state_bits(), holding);
 }
 
 // One that is heard and moves keeps the others waiting: the arm stands when each of its joints does.
