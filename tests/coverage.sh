@@ -7,6 +7,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 build=build/coverage
 programs=(test_canopen test_safety test_arm test_mission)
 missions=()
+failed=()
 if [ "${1:-}" != --core ]; then
   programs+=(test_scan test_hil_mission test_hil_orders test_hil_valve test_hil_safety test_hil_settings test_hil_start_up_faults)
   missions=(lanternfish)
@@ -15,16 +16,18 @@ toolchain/configure.sh coverage >/dev/null
 cmake --build --preset coverage --target "${programs[@]}" "${missions[@]}" -- --quiet
 find "$build" -name '*.gcda' -delete
 for program in "${programs[@]}"; do
-  # A failing test is for ./test.sh to tell: here it executes lines all the same.
-  "$build/tests/$program" --gtest_brief=1 >"$build/$program.log" 2>&1 || echo "coverage: $program failed, see $build/$program.log"
+  # A failing program executes lines all the same: they are counted, and the run fails at its end.
+  "$build/tests/$program" --gtest_brief=1 >"$build/$program.log" 2>&1 || failed+=("$program, see $build/$program.log")
 done
 fly() {
   rm -rf "$build/flown"
-  "$build/bin/lanternfish" campaign default --out "$build/flown" "$@" >"$build/flown.log" 2>&1 || echo "coverage: a campaign failed, see $build/flown.log"
+  "$build/bin/lanternfish" campaign default --out "$build/flown" "$@" >"$build/flown.log" 2>&1 || failed+=("a campaign, see $build/flown.log")
 }
 if [ ${#missions[@]} -gt 0 ]; then
   fly --faults --one-in 20
   fly --faults --pairs --one-in 100
   fly --seeds 1-4
 fi
+[ ${#failed[@]} -eq 0 ] || printf 'coverage: failed: %s\n' "${failed[@]}"
 tests/coverage.py . "$build" tests/coverage_exceptions.txt --json "$build/coverage.json" ${missions:+--whole}
+[ ${#failed[@]} -eq 0 ]

@@ -53,6 +53,7 @@ if(LANTERNFISH_COVERAGE)
   # What is inlined before it is counted has no lines of its own. Without that GCC 12 takes what Eigen fills by a call for uninitialised.
   target_compile_options(lanternfish_flags INTERFACE --coverage -fno-early-inlining -Wno-maybe-uninitialized)
   target_link_options(lanternfish_flags INTERFACE --coverage)
+  target_compile_definitions(lanternfish_flags INTERFACE LANTERNFISH_COUNTS_LINES)
 endif()
 if(LANTERNFISH_FUZZ)
   # Clang 14 cannot look for wrong object types (vptr) in the core, which has no RTTI. It warns of other things than GCC, by which the code is held.

@@ -143,7 +143,8 @@ Duration Power::ramp(const JointStates& joints, std::size_t joint, const canopen
   Duration ramp;
   if (joints.speed_known[joint] && setup.quick_stop_counts_s2 != 0) {
     const double counts_per_rad = 1 / std::abs(arm::rad_per_count(which, joints.position_rad[joint]));
-    ramp = Duration::from_s(std::abs(joints.velocity_rad_s[joint]) * counts_per_rad / setup.quick_stop_counts_s2);
+    const double to_still_rad_s = std::max(0.0, std::abs(joints.velocity_rad_s[joint]) - still_rad / still_time.s());
+    ramp = Duration::from_s(to_still_rad_s * counts_per_rad / setup.quick_stop_counts_s2);
   }
   return by_6085 && joints.speed_known[joint] ? ramp : std::max(ramp, unknown_ramp);
 }

@@ -168,7 +168,9 @@ RowResult fly_row(const config::Drives& drives, Flight& flight, Watched& watched
   judge::Ending ending = ending_of(flight, watched, row, flight.platform().world(), begin, situation.over);
   const bool unfelt = !ending.contradicted.empty() && unfelt_push(flight, watched, row, flight.platform().world());
   if (unfelt) ending.contradicted.clear();
-  const judge::Verdict verdict = judge::judge(watched.safety.seen(), situation, ending);
+  judge::SafetyFigures figures;
+  if (flight.has_own_drives()) figures.self_stop_s = judge::by_deadline_s;
+  const judge::Verdict verdict = judge::judge(watched.safety.seen(), situation, ending, figures);
   RowResult result;
   result.wrong = verdict.wrong;
   result.unclear = verdict.unclear;

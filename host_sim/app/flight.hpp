@@ -38,11 +38,14 @@ class Flight {
   const config::ErrorTexts& error_texts() const { return error_texts_; }
   // Of the joints, by their drives' best: what a stop may take.
   const std::array<double, joint_count>& deceleration_rad_s2() const { return deceleration_rad_s2_; }
+  // Every drive is the simulator's own, which keeps its deadline for process data.
+  bool has_own_drives() const { return has_own_drives_; }
   // Of the joints, by which one may be off its motor: half of its gear's play, and the wind-up under the motor's rated torque.
   const std::array<double, joint_count>& gear_gives_rad() const { return gear_gives_rad_; }
 
  private:
   std::array<double, joint_count> deceleration_rad_s2_{}, gear_gives_rad_{};
+  bool has_own_drives_ = true;
   config::ErrorTexts error_texts_;
   std::unique_ptr<hal::SimPlatform> platform_;
   std::unique_ptr<Controller> controller_;

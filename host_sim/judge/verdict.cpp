@@ -32,6 +32,8 @@ double last_s(const std::vector<Moment>& moments, double from_s, Is is) {
 // Until an order acts: up to a SYNC period until the SYNC, one that is interpolated, and the arm's own compliance.
 constexpr std::size_t takes_effect_ms = 20;
 
+constexpr auto all_joints = static_cast<std::uint8_t>((1U << joint_count) - 1);
+
 class Judge {
  public:
   Judge(const Seen& seen, const Situation& situation, const Ending& ending, const SafetyFigures& figures)
@@ -228,6 +230,7 @@ class Judge {
       const double allowed_s = speed / situation_.deceleration_rad_s2[joint] + figures_.settling_s + late_s;
       const double unwound_s = from_s + allowed_s + figures_.unwinding_s;
       const double moved_s = last_s(moments_, from_s, [&](const Moment& m) { return joint_moves(m, joint, unwound_s); });
+      stood_s_[joint] = moved_s;
       standing_s = std::max(standing_s, moved_s);
       if (moved_s - from_s > allowed_s)
         wrong(std::string(joint_names[joint]) + formatted(" moves %.2f s after the stop, %.2f s are allowed", moved_s - from_s, allowed_s));
@@ -292,18 +295,12 @@ class Judge {
   }
 
   void loses_power(double from_s, bool halts) {
-    // A drive holds a joint that swings in its gear until its ramp has ended.
-    const double swung_s = last_s(moments_, from_s, [this](const Moment& m) { return m.power != 0 && swings(m); });
-    const double stood_s = from_s + verdict_.standing_s.value_or(0);
-    const double standing_s = std::clamp(swung_s, stood_s, stood_s + figures_.settling_s);
+    const double standing_s = stood_s(all_joints, from_s);
     auto untold = static_cast<std::uint8_t>(joints_that(loses_process_data) & ~joints_that(cut_off));
     const auto reachable = static_cast<std::uint8_t>(master_is_cut_off() ? 0 : ~(joints_that(cut_off) | untold));
     const auto powered_s = [&](std::uint8_t joints) {
       return last_s(moments_, from_s, [&](const Moment& m) { return (m.power & joints) != 0; });
     };
-    const std::uint8_t unheard = joints_not_seen_standing(standing_s);
-    const double heard_off_s = powered_s(reachable & static_cast<std::uint8_t>(~unheard));
-    const double unheard_off_s = powered_s(reachable & unheard);
     const std::uint8_t unreached = joints_unreached();
     if (!master_is_cut_off() && powered_s(unreached) - from_s > unreached_off_s(from_s) + ms)
       wrong(formatted("power is off %.2f s after the stop of a drive that nothing reaches", powered_s(unreached) - from_s));
@@ -312,47 +309,67 @@ class Judge {
     if (!master_is_cut_off() && powered_s(untold) - standing_s > figures_.off_after_standing_s + late_s + ms)
       wrong(formatted("power is off %.2f s after standing without process data", powered_s(untold) - standing_s));
     const double off_s = last_s(moments_, from_s, [](const Moment& m) { return m.power != 0; });
-    verdict_.power_off_s =
-        std::max({0.0, heard_off_s - standing_s, unheard_off_s - std::max(standing_s, from_s + ramp_s(unheard, from_s))});
     verdict_.stop_to_off_s = off_s - from_s;
-    if (*verdict_.power_off_s > figures_.off_after_standing_s + ms)
-      wrong(formatted("power is off %.2f s after standing", *verdict_.power_off_s));
+    verdict_.power_off_s = 0;
+    const std::uint8_t silenced = joints_silenced();
+    const auto heard = static_cast<std::uint8_t>(all_joints & ~silenced);
+    double late_off_s = loses_power_standing(reachable & heard, stood_s(heard, from_s), 0);
+    for (std::size_t joint = 0; joint < joint_count; ++joint) {
+      const auto bit = static_cast<std::uint8_t>(1U << joint);
+      if ((reachable & silenced & bit) != 0)
+        late_off_s = std::max(late_off_s, loses_power_standing(bit, standing_s, from_s + ramp_s(joint)));
+    }
+    if (late_off_s > 0) wrong(formatted("power is off %.2f s after standing", late_off_s));
     if (*verdict_.stop_to_off_s > figures_.off_after_stop_s + ms)
       wrong(formatted("power is off %.2f s after the stop", *verdict_.stop_to_off_s));
   }
 
-  // The newest process data that the master had of a joint.
-  double heard_s(std::size_t joint) const {
+  // They stand since `stood_s`, and the master could not take them for standing before `ramp_over_s`. How long they keep their power, if that is too long; else 0.
+  double loses_power_standing(std::uint8_t joints, double stood_s, double ramp_over_s) {
+    if (joints == 0) return 0;
+    const double off_s = last_s(moments_, stood_s, [joints](const Moment& m) { return (m.power & joints) != 0; });
+    verdict_.power_off_s = std::max(verdict_.power_off_s.value_or(0), off_s - stood_s);
+    return off_s - std::max(stood_s, ramp_over_s) > figures_.off_after_standing_s + ms ? off_s - stood_s : 0;
+  }
+
+  // A drive holds a joint that swings in its gear until its ramp has ended.
+  double stood_s(std::uint8_t joints, double from_s) const {
+    double stood_s = from_s;
+    for (std::size_t joint = 0; joint < joint_count; ++joint) {
+      if ((joints >> joint & 1U) != 0) stood_s = std::max(stood_s, stood_s_[joint]);
+    }
+    const double swung_s = last_s(moments_, from_s, [this, joints](const Moment& m) { return m.power != 0 && swings(m, joints); });
+    return std::clamp(swung_s, stood_s, stood_s + figures_.settling_s);
+  }
+
+  // The master does not hear them, by what happened and not by what it did itself.
+  std::uint8_t joints_silenced() const {
+    const auto silences_all = [](const Cause& cause) {
+      return cause.rule->kind == "can_receive_fails" || cause.rule->kind == "foreign_nmt" || cause.rule->kind == "foreign_reset";
+    };
+    return has(silences_all) ? all_joints : joints_that(is_unheard);
+  }
+
+  // From the speed at which it was heard last, until it stands.
+  double ramp_s(std::size_t joint) const {
+    constexpr double speed_over_s = 0.02;  // the master's speed is that of its last positions
     double heard_s = seen_.last_heard_s[joint];
     for (const Cause& cause : situation_.causes) {
       if (cause.rule->kind == "can_receive_fails") heard_s = std::min(heard_s, begins_s(cause));
     }
-    return heard_s;
+    const auto first = static_cast<std::size_t>(std::max(0.0, heard_s - speed_over_s) / ms);
+    const auto last = static_cast<std::size_t>(std::max(heard_s, ms) / ms);
+    double speed = 0;
+    for (std::size_t i = first; i <= last && i < moments_.size(); ++i) speed = std::max(speed, double(moments_[i].speed_rad_s[joint]));
+    return std::max(0.0, speed - figures_.standing_rad_s) / situation_.deceleration_rad_s2[joint];
   }
 
-  std::uint8_t joints_not_seen_standing(double standing_s) const {
-    std::uint8_t unseen = 0;
+  bool swings(const Moment& moment, std::uint8_t joints) const {
     for (std::size_t joint = 0; joint < joint_count; ++joint) {
-      if (heard_s(joint) < standing_s) unseen = static_cast<std::uint8_t>(unseen | (1U << joint));
+      const bool fast = (joints >> joint & 1U) != 0 && moment.speed_rad_s[joint] >= figures_.standing_rad_s;
+      if (fast && travels_in_a_moment(moment, &Moment::angle_rad, joint)) return true;
     }
-    return unseen;
-  }
-
-  // The longest of their ramps, from the speeds that the master heard last: when it may take them for standing.
-  double ramp_s(std::uint8_t joints, double stop_s) const {
-    constexpr double speed_over_s = 0.02;  // the master's speed is that of its last positions
-    double longest_s = 0;
-    for (std::size_t joint = 0; joint < joint_count; ++joint) {
-      if ((joints >> joint & 1U) == 0) continue;
-      const double since_s = std::clamp(heard_s(joint) - speed_over_s, 0.0, stop_s);
-      for (auto i = static_cast<std::size_t>(since_s / ms); i < moments_.size() && double(i) * ms <= stop_s; ++i)
-        longest_s = std::max(longest_s, double(moments_[i].speed_rad_s[joint]) / situation_.deceleration_rad_s2[joint]);
-    }
-    return longest_s;
-  }
-
-  bool swings(const Moment& moment) const {
-    return std::any_of(moment.speed_rad_s.begin(), moment.speed_rad_s.end(), [this](float v) { return v >= figures_.standing_rad_s; });
+    return false;
   }
 
   bool runs_at(double t_s) const {
@@ -456,6 +473,7 @@ class Judge {
   const Ending& ending_;
   const SafetyFigures& figures_;
   Verdict verdict_;
+  std::array<double, joint_count> stood_s_{};  // since when each does
 };
 
 }  // namespace

@@ -39,6 +39,9 @@ struct SafetyFigures {
   double unwinding_s = 0.5;  // in which a joint whose motor stands may still unwind its gear
 };
 
+// `self_stop_s` of a drive that has a deadline for its process data: 100 ms, a SYNC period, and the tick in which it is found.
+inline constexpr double by_deadline_s = 0.106;
+
 // What the core says, and what is true, at the end.
 struct Ending {
   bool ended = false;

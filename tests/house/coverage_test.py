@@ -2,6 +2,7 @@
 """The judge of coverage.py on counts of this test's making."""
 import pathlib
 import sys
+import tempfile
 import unittest
 
 sys.dont_write_bytecode = True
@@ -29,7 +30,7 @@ class Coverage(unittest.TestCase):
     def test_an_exception_stands_in_and_is_refused_when_it_is_not_needed(self):
         texts = {"firmware/canopen/a.cpp": ["one", "  two"], "firmware/safety/b.cpp": ["x"]}
         sources = {"firmware/canopen/a.cpp": source([3, 0]), "firmware/safety/b.cpp": source([1])}
-        exceptions = {("firmware/canopen/a.cpp", "two"): "cannot happen", ("firmware/safety/b.cpp", "x"): "old"}
+        exceptions = {("firmware/canopen/a.cpp", "two"): 1, ("firmware/safety/b.cpp", "x"): 1}
         folders, missing, useless = coverage.judge(sources, texts, exceptions)
         self.assertEqual((missing, useless), ([], [("firmware/safety/b.cpp", "x")]))
         self.assertEqual([line for line in coverage.bounds_missed(folders) if not line.startswith("all")], [])
@@ -37,8 +38,21 @@ class Coverage(unittest.TestCase):
     def test_what_is_excepted_is_not_executed(self):
         texts = {"firmware/canopen/a.cpp": ["x"] * 100, "firmware/safety/b.cpp": ["x"]}
         sources = {"firmware/canopen/a.cpp": source([1] * 90 + [0] * 10), "firmware/safety/b.cpp": source([1])}
-        folders, _, _ = coverage.judge(sources, texts, {("firmware/canopen/a.cpp", "x"): "cannot happen"})
+        folders, _, _ = coverage.judge(sources, texts, {("firmware/canopen/a.cpp", "x"): 10})
         self.assertEqual(coverage.bounds_missed(folders), ["all: 90.1 % of 101 lines, 95 are wanted"])
+
+    def test_an_exception_is_of_one_line(self):
+        texts = {"firmware/canopen/a.cpp": ["return;", "return;"]}
+        _, missing, useless = coverage.judge({"firmware/canopen/a.cpp": source([0, 0])}, texts, {("firmware/canopen/a.cpp", "return;"): 1})
+        self.assertEqual((len(missing), useless), (1, []))
+
+    def test_a_file_that_no_program_links_is_told(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            (root / "firmware/arm").mkdir(parents=True)
+            for name in ("a.cpp", "b.cpp", "b.hpp"):
+                (root / "firmware/arm" / name).touch()
+            self.assertEqual(coverage.not_linked(root, {"firmware/arm/a.cpp": None}), ["firmware/arm/b.cpp"])
 
     def test_of_the_whole_every_line_counts(self):
         texts = {"firmware/canopen/c.cpp": ["x"], "firmware/safety/s.cpp": ["x"], "firmware/arm/a.cpp": [str(i) for i in range(100)]}
@@ -46,7 +60,7 @@ class Coverage(unittest.TestCase):
         folders, _, _ = coverage.judge(sources, texts, {})
         self.assertEqual(coverage.bounds_missed(folders), [])
         self.assertEqual(coverage.bounds_missed(folders, folders), ["arm/: 1 of 100 lines are not executed"])
-        folders, _, _ = coverage.judge(sources, texts, {("firmware/arm/a.cpp", "99"): "cannot happen"})
+        folders, _, _ = coverage.judge(sources, texts, {("firmware/arm/a.cpp", "99"): 1})
         self.assertEqual(coverage.bounds_missed(folders, folders), [])
 
     def test_over_all_nineteen_in_twenty_are_enough_and_fewer_are_not(self):

@@ -96,8 +96,8 @@ void pass(S& s, canopen::DriveScale& v) {
 }
 template <class S>
 void pass(S& s, canopen::BootStep& v) {
-  auto& [index, sub, width, action, value, literal, mask, optional] = v;
-  pass_all(s, index, sub, width, action, value, literal, mask, optional);
+  auto& [index, sub, width, action, value, literal, mask, optional, best_effort] = v;
+  pass_all(s, index, sub, width, action, value, literal, mask, optional, best_effort);
 }
 template <class S>
 void pass(S& s, canopen::Absence& v) {

@@ -170,7 +170,9 @@ TEST(VerdictOfSeveral, ADriveThatIsRestartedLosesItsPowerALittleLater) {
     for (int t = 0; t < 3000; ++t) {
       std::uint8_t& power = seen.moments[static_cast<std::size_t>(t)].power;
       power = static_cast<std::uint8_t>((power & ~0x04) | (t < 108 + 140 + off_ms ? 0x04 : 0));
+      if (lost == "drop_frames tpdo elbow" && t >= 200) power &= 0x04;  // the others are heard, and stand
     }
+    if (lost == "drop_frames tpdo elbow") seen.last_heard_s[2] = 0.19;
     return judge(seen, situation_of(cause_of("overcurrent slew"), cause_of(lost)), failed("drive fault: slew")).wrong;
   };
   EXPECT_THAT(wrong(210, "drop_frames rpdo elbow"), IsEmpty());
@@ -216,8 +218,13 @@ TEST(VerdictOfSeveral, ADriveWhoseProcessDataAreLostBothWaysIsRestartedInItsTime
     const auto elbow = static_cast<std::uint8_t>(1u << 2);
     for (std::size_t i = 0; i < seen.moments.size(); ++i) {
       const bool before = static_cast<int>(i) < off_ms;
-      seen.moments[i].power = static_cast<std::uint8_t>(before ? seen.moments[i].power | elbow : seen.moments[i].power & ~elbow);
-      if (elbow_stands) std::swap(seen.moments[i].speed_rad_s[1], seen.moments[i].speed_rad_s[2]);
+      const bool others = i < (elbow_stands ? 330 : 225);  // they are heard, and stand
+      const auto powered = static_cast<std::uint8_t>(others ? seen.moments[i].power : 0);
+      seen.moments[i].power = static_cast<std::uint8_t>(before ? powered | elbow : powered & ~elbow);
+      if (!elbow_stands) continue;
+      std::swap(seen.moments[i].speed_rad_s[1], seen.moments[i].speed_rad_s[2]);
+      std::swap(seen.moments[i].angle_rad[1], seen.moments[i].angle_rad[2]);
+      std::swap(seen.moments[i].motor_rad[1], seen.moments[i].motor_rad[2]);
     }
     return judge(seen, situation, failed("stale position: elbow")).wrong;
   };
