@@ -104,10 +104,17 @@ TEST(ALimit, OfTheWorkspaceActsBeyondEveryFace) {
   };
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     for (const bool upper : {false, true}) {
+      // Beyond this face, and within the others.
       const auto out_m = [&](const arm::JointVector& q) {
-        const double tool_m = arm::base_from_tool(q).translation()[axis];
-        const auto face = static_cast<std::size_t>(axis);
-        return upper ? tool_m - limits.workspace_max_m[face] : limits.workspace_min_m[face] - tool_m;
+        const Vec3 tool_m = arm::base_from_tool(q).translation();
+        double beyond_m = -HUGE_VAL, others_m = -HUGE_VAL;
+        for (Eigen::Index other = 0; other < 3; ++other) {
+          const auto i = static_cast<std::size_t>(other);
+          const double above_m = tool_m[other] - limits.workspace_max_m[i], below_m = limits.workspace_min_m[i] - tool_m[other];
+          (other == axis && upper ? beyond_m : others_m) = std::max(other == axis && upper ? beyond_m : others_m, above_m);
+          (other == axis && !upper ? beyond_m : others_m) = std::max(other == axis && !upper ? beyond_m : others_m, below_m);
+        }
+        return std::min(beyond_m, -others_m);
       };
       // Some faces are passed by millimetres only: the farthest of many, and of those around it.
       arm::JointVector q = draw();

@@ -75,6 +75,8 @@ class Node : private SdoTarget {
   bool active(std::uint16_t code) const;
   // Whether inhibit times hold back synchronous PDOs, too: CiA 301 leaves it to the maker.
   void set_inhibits_synchronous(bool inhibits) { inhibits_synchronous_ = inhibits; }
+  // The event timers of RPDOs are objects without an effect.
+  void set_ignores_deadlines(bool ignores) { ignores_deadlines_ = ignores; }
   void bus_off(Time now);        // the controller lost the bus: 6007's case
   void bus_recovered(Time now);  // and has it again: EMCY 8140
 
@@ -126,6 +128,7 @@ class Node : private SdoTarget {
   NmtState state_ = NmtState::booting;
   bool powered_ = false;
   bool inhibits_synchronous_ = false;
+  bool ignores_deadlines_ = false;
   // Node guarding (100C, 100D): watched from the first request on.
   bool guarded_ = false;
   bool guard_toggle_ = false;

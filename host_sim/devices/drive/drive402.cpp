@@ -64,6 +64,7 @@ Drive402::Drive402(const DriveConfig& config, Duration boot_time, std::uint64_t 
       winding_(config.water_celsius, config.rise_at_rated_celsius) {
   if (native_) units_.emplace(config, *native_, node_.objects());
   node_.set_inhibits_synchronous(config.switches.inhibits_synchronous);
+  node_.set_ignores_deadlines(config.switches.ignores_deadline);
 }
 
 void Drive402::power_on(Time now, const JointReading& reading) {
@@ -297,7 +298,6 @@ void Drive402::fault(std::uint16_t code, std::int64_t option, Time now) {
 
 void Drive402::connection_lost(std::uint16_t code, Time now) {
   if (config_.switches.ignores_lost_master && code == emcy::heartbeat) return;
-  if (config_.switches.ignores_deadline && code == emcy::pdo_timeout) return;
   const bool by_master = code == emcy::stopped_by_master;
   if (by_master && state_ != DriveState::operation_enabled) return;
   const bool faults = config_.habit != nullptr && config_.habit->lost_master_faults && !config_.switches.holds_without_master && !by_master;
