@@ -22,8 +22,8 @@ constexpr float no_contrast_grey = 6;
 constexpr float noisy_grey = 15;
 // PictureLight::contrast_grey that noise of 1 grey level makes: the step between the means of two squares of 64 pixels that one in a hundred exceeds.
 constexpr float contrast_of_noise = 2.58f * 1.414f / 8;
-// Sight::marker_cell_px: an AprilTag is found down to 2.0 to 2.3 px a square.
-constexpr float small_cell_px = 2.2f;
+// Sight::marker_cell_px: an AprilTag is found down to 2.2 to 2.5 px a square.
+constexpr float small_cell_px = 2.4f;
 // Of the cloud's points: a sweep over a panel has 80,000, and PanelMap takes less for no scan. Peaks alone tell nothing: edges of the arm's moving shadow are some.
 constexpr std::uint32_t fewest_points = 2000;
 // A panel beyond what docking allows: 20 mm and 2 degrees, seen through the tilt of PnP and of a plane's edge.
