@@ -319,21 +319,36 @@ TEST(SecondMaster, ThatRunsTheArmIsToldWithEachIdentifierAndMovesNothing) {
   EXPECT_EQ(rig.outcome().fault, Fault::second_master);
 }
 
-// A joint that hears no targets stays behind without a load: that is no contact, wherever the arm is on its way.
-TEST(LostTargets, NameTheJointThatStaysBehindOnTheWayOutOfAContact) {
+// The shoulder hears no targets on its way out of a contact.
+Rig without_targets(const std::string& make) {
+  std::vector<std::string> overrides = turn_only();
+  overrides.push_back("drives.shoulder.profile=" + make);
   double at_s = 0;
   {
-    Rig rehearsal(turn_only());
-    ASSERT_TRUE(reach(rehearsal, {Step::back_off, 0.1, ""})) << rehearsal.story();
+    Rig rehearsal(overrides);
+    EXPECT_TRUE(reach(rehearsal, {Step::back_off, 0.1, ""})) << rehearsal.story();
     at_s = rehearsal.now().s();
   }
-  std::vector<std::string> overrides = turn_only();
   overrides.push_back("faults=[{at_s: " + std::to_string(at_s) + ", kind: drop_frames, can_id: 514}]");
-  Rig rig(overrides);
+  return Rig(overrides);
+}
+
+// That is no contact, wherever the arm is on its way: a joint that stays behind without a load is named.
+TEST(LostTargets, NameTheJointThatStaysBehindWhereItsDriveHasNoDeadline) {
+  Rig rig = without_targets("copley");
   rig.start();
   ASSERT_TRUE(rig.run_to_end(60)) << rig.story();
   EXPECT_EQ(rig.outcome().fault, Fault::following_error) << rig.story();
   EXPECT_EQ(rig.outcome().code, 1) << "the shoulder";
+}
+
+TEST(LostTargets, AreToldByADriveThatHasADeadline) {
+  Rig rig = without_targets("lanternfish");
+  rig.start();
+  ASSERT_TRUE(rig.run_to_end(60)) << rig.story();
+  EXPECT_EQ(rig.outcome().fault, Fault::drive_fault) << rig.story();
+  EXPECT_EQ(rig.outcome().code, 1) << "the shoulder";
+  EXPECT_EQ(rig.outcome().emcy, 0x8250);
 }
 
 TEST(DriveFault, NamesTheJointAndItsComplaint) {
