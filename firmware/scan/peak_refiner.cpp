@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "firmware/scan/exposure_gain.hpp"
+#include "firmware/scan/pixel_noise.hpp"
 
 namespace lf::scan {
 namespace {
@@ -13,6 +14,7 @@ constexpr std::size_t blocks_later = 2;
 constexpr std::uint32_t first_pictures = 8;        // with as many blocks as the very first
 constexpr float clear_water = 0.01f;               // of the scatter: below it the haze is a grey level at most
 constexpr std::uint32_t look_for_haze = 8;         // pictures
+constexpr float least_read_grey = 0.35f;           // rounding alone is 0.29
 constexpr int first_rounds = 12;                   // of learning, in the first picture
 constexpr float settled = 0.02f;                   // change of a round: what 64 columns can tell
 constexpr float most_model_share = 0.3f;           // of the stripe's peak: beyond it no column is a misfit
@@ -59,6 +61,7 @@ std::size_t BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::refine(const PixelView
     haze_on_.compute(image, config_.haze_near_px);
     haze_off_.compute(background, config_.haze_near_px);
   }
+  if (pictures_ % look_for_haze == 0) learn_read_noise(pair);
   learn(pair, peaks);
 
   std::size_t kept = 0;
@@ -101,6 +104,15 @@ void BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::begin_anew() {
   speckle_ = {};
   begun_ = false;
   pictures_ = 0;
+}
+
+// What the pixels' noise is more than that of their light. A picture alone does not tell it from fine paint: there it stays as configured.
+template <class Pixel, std::int32_t MaxWidth, std::int32_t MaxHeight>
+void BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::learn_read_noise(const Pair& pair) {
+  const NoiseAlong along = config_.axis == PeakAxis::column ? NoiseAlong::columns : NoiseAlong::rows;
+  if (!pair.off.valid()) return;
+  const float seen_grey = read_noise_grey(pair.on, pair.off, gain_, noise_.electrons_per_grey, config_.full_scale, along);
+  if (seen_grey > 0) noise_.read_grey = std::max(seen_grey, least_read_grey);
 }
 
 template <class Pixel, std::int32_t MaxWidth, std::int32_t MaxHeight>

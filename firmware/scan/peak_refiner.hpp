@@ -54,8 +54,10 @@ class BasicPeakRefiner {
   // What the pictures have told so far.
   bool begun() const { return begun_; }
   const StripeOptics& optics() const { return estimate_.optics(); }
-  float gain() const { return gain_; }                // of the newest picture over its background
-  const PixelNoise& noise() const { return noise_; }  // the configured one, with speckle and the model's share as they were learned
+  float gain() const { return gain_; }  // of the newest picture over its background
+  const PixelNoise& noise() const {
+    return noise_;
+  }  // the configured one, with read noise, speckle and the model's share as they were learned
   const RefinerCounters& counters() const { return counters_; }
   // By how much the centres of all columns may be off alike, because the stripe is not shaped as the fit takes it to be.
   float shape_doubt_px() const;
@@ -82,6 +84,7 @@ class BasicPeakRefiner {
   float haze(const BasicHaze<Pixel, MaxWidth, MaxHeight>& of, std::int32_t line, std::int32_t place) const;
 
   void begin_with_width(const Pair& pair, std::span<Peak> peaks);
+  void learn_read_noise(const Pair& pair);
   void learn(const Pair& pair, std::span<Peak> peaks);
   // The windows of up to eight peaks; of fewer, the last is repeated.
   Firsts gather(const Pair& pair, std::span<Peak> peaks, StripeWindows& windows);

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
+
+#include "firmware/scan/pixel_noise.hpp"
 
 namespace lf::scan {
 namespace {
@@ -47,30 +48,6 @@ class Steps {
   std::uint32_t all_ = 0;
 };
 
-// From the median of second differences along some rows, which slopes leave alone and shapes' edges hardly move: those of noise have sqrt(6) of its standard
-// deviation, and half of them are below 0.6745 of that. Resolution 0.6 grey levels. Clipped pixels tell nothing.
-float noise_of(ImageView image) {
-  constexpr std::int32_t row_step = 4, column_step = 3;
-  constexpr float median_of_sigma = 0.6745f * 2.4495f;
-  std::array<std::uint32_t, 2 * white + 1> count{};
-  std::uint32_t all = 0;
-  for (std::int32_t v = 0; v < image.height; v += row_step) {
-    const std::uint8_t* row = image.row(v);
-    for (std::int32_t u = 1; u + 1 < image.width; u += column_step) {
-      const std::int32_t a = row[u - 1], b = row[u], c = row[u + 1];
-      if (std::min({a, b, c}) == 0 || std::max({a, b, c}) == white) continue;
-      ++count[static_cast<std::size_t>(std::abs(a - 2 * b + c))];
-      ++all;
-    }
-  }
-  std::uint32_t below = 0;
-  for (std::size_t size = 0; size < count.size(); ++size) {
-    below += count[size];
-    if (2 * below > all) return static_cast<float>(size) / median_of_sigma;
-  }
-  return 0;
-}
-
 }  // namespace
 
 PictureLight picture_light(ImageView image) {
@@ -98,7 +75,7 @@ PictureLight picture_light(ImageView image) {
   light.mean_grey = static_cast<float>(sum) / pixels;
   light.white_share = static_cast<float>(whites) / pixels;
   light.contrast_grey = steps.rare();
-  light.noise_grey = noise_of(image);
+  light.noise_grey = pixel_noise_grey(PixelView<std::uint8_t>(image), white, NoiseAlong::rows);
   return light;
 }
 
