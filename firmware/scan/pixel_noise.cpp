@@ -28,7 +28,8 @@ class Differences {
     for (std::int32_t bin = 0; bin < bins; ++bin) {
       const std::uint32_t here = count_[static_cast<std::size_t>(bin)];
       if (4 * (below + here) >= all_ && here > 0) {
-        const float first = std::max(0.0f, static_cast<float>(bin * bin_width) - 0.5f), end = static_cast<float>((bin + 1) * bin_width) - 0.5f;
+        const float first = std::max(0.0f, static_cast<float>(bin * bin_width) - 0.5f),
+                    end = static_cast<float>((bin + 1) * bin_width) - 0.5f;
         const float part = (0.25f * static_cast<float>(all_) - static_cast<float>(below)) / static_cast<float>(here);
         return first + part * (end - first);
       }
@@ -50,7 +51,7 @@ struct Brightness {
 // What the places of a picture, or of a difference of two, say.
 class Places {
  public:
-  explicit Places(std::int32_t full_scale) : full_scale_(full_scale), bin_width_(std::max(1, full_scale / (2 * bins))) {}
+  explicit Places(std::int32_t full_scale) : full_scale_(full_scale), bin_width_(std::max<std::int32_t>(1, full_scale / (2 * bins))) {}
 
   void add(std::int32_t brightness, std::int32_t difference) {
     Brightness& of = of_[static_cast<std::size_t>(brightness * brightnesses / (full_scale_ + 1))];
@@ -80,7 +81,8 @@ class Places {
 // Calls `take` with each place's row and column.
 template <class Pixel, class Take>
 void at_places(const PixelView<Pixel>& picture, Take take) {
-  const std::int32_t column_step = std::max(1, picture.width / across), row_step = std::max(1, picture.height / down);
+  const std::int32_t column_step = std::max<std::int32_t>(1, picture.width / across),
+                     row_step = std::max<std::int32_t>(1, picture.height / down);
   for (std::int32_t v = 1; v + 1 < picture.height; v += row_step) {
     for (std::int32_t u = 1; u + 1 < picture.width; u += column_step) take(v, u);
   }
@@ -119,8 +121,8 @@ float pixel_noise_grey(const PixelView<Pixel>& picture, std::int32_t full_scale,
 }
 
 template <class Pixel>
-float read_noise_grey(const PixelView<Pixel>& on, const PixelView<Pixel>& off, float gain, float electrons_per_grey, std::int32_t full_scale,
-                      NoiseAlong along) {
+float read_noise_grey(const PixelView<Pixel>& on, const PixelView<Pixel>& off, float gain, float electrons_per_grey,
+                      std::int32_t full_scale, NoiseAlong along) {
   if (!large_enough(on) || !off.valid() || off.width != on.width || off.height != on.height) return 0;
   Places places(full_scale);
   // The sum of three neighbours tells nothing of their second difference: places are left out by it without a bias.

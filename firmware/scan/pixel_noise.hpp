@@ -18,6 +18,7 @@ float pixel_noise_grey(const PixelView<Pixel>& picture, std::int32_t full_scale,
 
 // The same without the shot noise, from two pictures of a scene, `on` brighter by the factor `gain`: their difference has no paint, and no fixed pattern.
 template <class Pixel>
-float read_noise_grey(const PixelView<Pixel>& on, const PixelView<Pixel>& off, float gain, float electrons_per_grey, std::int32_t full_scale, NoiseAlong along);
+float read_noise_grey(const PixelView<Pixel>& on, const PixelView<Pixel>& off, float gain, float electrons_per_grey,
+                      std::int32_t full_scale, NoiseAlong along);
 
 }  // namespace lf::scan

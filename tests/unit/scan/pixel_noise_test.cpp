@@ -33,7 +33,8 @@ TEST(PixelNoise, IsThatOfThePixelsOverSlopesAndShapes) {
       const auto grey = [&](int u, int v) { return 100 + 0.05 * u - 0.03 * v + (((u / 32 + v / 32) % 2) != 0 ? 20 : 0) + noise(random); };
       const double rounded = std::hypot(sigma, 255.0 / full_scale / std::sqrt(12.0));
       for (const NoiseAlong along : {NoiseAlong::rows, NoiseAlong::columns}) {
-        const float seen = full_scale == 255 ? noise_of<std::uint8_t>(full_scale, along, grey) : noise_of<std::uint16_t>(full_scale, along, grey);
+        const float seen =
+            full_scale == 255 ? noise_of<std::uint8_t>(full_scale, along, grey) : noise_of<std::uint16_t>(full_scale, along, grey);
         EXPECT_NEAR(seen, rounded, 0.06 * rounded + 0.02) << sigma << " of " << full_scale;
       }
     }
@@ -62,14 +63,16 @@ TEST(ReadNoise, IsToldFromPaintAndFromTheNoiseOfTheLight) {
           for (int u = 0; u < width; ++u) {
             const double paint = brighter * (((u + 2 * v) / 10) % 2 == 0 ? 20 : 150);
             const double grey = paint + std::sqrt(sigma * sigma + paint / 40) * noise(random);
-            pixels[static_cast<std::size_t>(v) * width + static_cast<std::size_t>(u)] = static_cast<std::uint8_t>(std::clamp(std::round(grey), 0.0, 255.0));
+            pixels[static_cast<std::size_t>(v) * width + static_cast<std::size_t>(u)] =
+                static_cast<std::uint8_t>(std::clamp(std::round(grey), 0.0, 255.0));
           }
         }
         return pixels;
       };
       const std::vector<std::uint8_t> on = picture(gain), off = picture(1);
-      const float seen = read_noise_grey(PixelView<std::uint8_t>(on.data(), width, height, width), PixelView<std::uint8_t>(off.data(), width, height, width),
-                                         static_cast<float>(gain), 40, 255, NoiseAlong::columns);
+      const float seen = read_noise_grey(PixelView<std::uint8_t>(on.data(), width, height, width),
+                                         PixelView<std::uint8_t>(off.data(), width, height, width), static_cast<float>(gain), 40, 255,
+                                         NoiseAlong::columns);
       EXPECT_NEAR(seen, std::hypot(sigma, 0.29), 0.08 * sigma) << sigma << " " << gain;
     }
   }
