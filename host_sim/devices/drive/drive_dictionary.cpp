@@ -135,6 +135,7 @@ std::vector<Object> strict_objects(const DriveConfig& config, const std::vector<
     all[key(row.index, row.sub)] = object;
   }
   std::vector<Object> objects;
+  objects.reserve(all.size());
   for (auto& [place, object] : all) objects.push_back(std::move(object));
   return objects;
 }
