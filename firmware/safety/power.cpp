@@ -74,7 +74,7 @@ void Power::insist(Time now, canopen::Network& network) {
     if (never_heard(network, i) || heeds(i, now, network)) continue;
     if (state_ == State::stopping && !taken_[i]) {
       network.stop_node(i);
-      // The first that it hears: one that is repeated finds it braking.
+      // Since the first order: a repeated one finds it braking.
       if (!told_by_nmt_[i]) brakes_since_[i] = now;
       told_by_nmt_[i] = true;
     } else if (!network.restarted_as_told(i)) {
@@ -156,7 +156,7 @@ Power::Standing Power::standing(const JointStates& joints, Time now, const canop
     // What has no power is not waited for: a screw may be driven back.
     if (axis.confirmed_unpowered(now) && now - since_ >= heed_time) continue;
     if (!joints.fresh[i]) {
-      // On its ramp since it was told, from the speed that it had when it was heard last, which may be later.
+      // Its ramp counts from when it was told, or from when it was heard last, whichever is later: the speed is of that moment.
       const Time began = std::max(brakes_since_[i], axis.seen() ? axis.actual_time() : since_);
       const Duration margin = left_[i] ? heed_time : told_by_nmt_[i] ? still_time : silent_margin;
       stands.all = stands.all && now - began >= ramp(joints, i, network) + margin;

@@ -106,11 +106,11 @@ void BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::begin_anew() {
   pictures_ = 0;
 }
 
-// What the pixels' noise is more than that of their light. A picture alone does not tell it from fine paint: there it stays as configured.
+// The pixels' noise beyond that of their light. A picture alone does not tell it from fine paint: then it stays as configured.
 template <class Pixel, std::int32_t MaxWidth, std::int32_t MaxHeight>
 void BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::learn_read_noise(const Pair& pair) {
-  const NoiseAlong along = config_.axis == PeakAxis::column ? NoiseAlong::columns : NoiseAlong::rows;
   if (!pair.off.valid()) return;
+  const NoiseAlong along = config_.axis == PeakAxis::column ? NoiseAlong::columns : NoiseAlong::rows;
   const float seen_grey = read_noise_grey(pair.on, pair.off, gain_, noise_.electrons_per_grey, config_.full_scale, along);
   if (seen_grey > 0) noise_.read_grey = std::max(seen_grey, least_read_grey);
 }

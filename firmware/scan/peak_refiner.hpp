@@ -55,9 +55,8 @@ class BasicPeakRefiner {
   bool begun() const { return begun_; }
   const StripeOptics& optics() const { return estimate_.optics(); }
   float gain() const { return gain_; }  // of the newest picture over its background
-  const PixelNoise& noise() const {
-    return noise_;
-  }  // the configured one, with read noise, speckle and the model's share as they were learned
+  // The configured one, with read noise, speckle and the model's share as they were learned.
+  const PixelNoise& noise() const { return noise_; }
   const RefinerCounters& counters() const { return counters_; }
   // By how much the centres of all columns may be off alike, because the stripe is not shaped as the fit takes it to be.
   float shape_doubt_px() const;

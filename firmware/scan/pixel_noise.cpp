@@ -8,7 +8,7 @@
 namespace lf::scan {
 namespace {
 
-constexpr std::int32_t across = 160, down = 120;  // places
+constexpr std::int32_t across = 160, down = 120;  // places at most, so that 16 bits count them
 constexpr std::uint32_t fewest = 200;             // of a brightness
 constexpr std::int32_t brightnesses = 8;
 constexpr std::int32_t bins = 512;
@@ -81,8 +81,7 @@ class Places {
 // Calls `take` with each place's row and column.
 template <class Pixel, class Take>
 void at_places(const PixelView<Pixel>& picture, Take take) {
-  const std::int32_t column_step = std::max<std::int32_t>(1, picture.width / across),
-                     row_step = std::max<std::int32_t>(1, picture.height / down);
+  const std::int32_t column_step = (picture.width + across - 1) / across, row_step = (picture.height + down - 1) / down;
   for (std::int32_t v = 1; v + 1 < picture.height; v += row_step) {
     for (std::int32_t u = 1; u + 1 < picture.width; u += column_step) take(v, u);
   }

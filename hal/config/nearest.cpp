@@ -50,8 +50,8 @@ namespace {
 std::string choices(const std::vector<std::string>& known) {
   constexpr std::size_t most = 12;
   if (known.empty() || known.size() > most) return "";
-  std::string text = "; there is ";
-  for (std::size_t i = 0; i < known.size(); ++i) text += (i == 0 ? "" : i + 1 == known.size() ? " and " : ", ") + known[i];
+  std::string text = "; it is one of ";
+  for (std::size_t i = 0; i < known.size(); ++i) text += (i == 0 ? "" : i + 1 == known.size() ? " or " : ", ") + known[i];
   return text;
 }
 

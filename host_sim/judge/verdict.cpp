@@ -345,7 +345,7 @@ class Judge {
   // The master does not hear them, by what happened and not by what it did itself.
   std::uint8_t joints_silenced() const {
     const auto silences_all = [](const Cause& cause) {
-      return cause.rule->kind == "can_receive_fails" || cause.rule->kind == "foreign_nmt" || cause.rule->kind == "foreign_reset";
+      return deafens_the_master(cause) || cause.rule->kind == "foreign_nmt" || cause.rule->kind == "foreign_reset";
     };
     return has(silences_all) ? all_joints : joints_that(is_unheard);
   }
@@ -355,7 +355,7 @@ class Judge {
     constexpr double speed_over_s = 0.02;  // the master's speed is that of its last positions
     double heard_s = seen_.last_heard_s[joint];
     for (const Cause& cause : situation_.causes) {
-      if (cause.rule->kind == "can_receive_fails") heard_s = std::min(heard_s, begins_s(cause));
+      if (deafens_the_master(cause)) heard_s = std::min(heard_s, begins_s(cause));
     }
     const auto first = static_cast<std::size_t>(std::max(0.0, heard_s - speed_over_s) / ms);
     const auto last = static_cast<std::size_t>(std::max(heard_s, ms) / ms);

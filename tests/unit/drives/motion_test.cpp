@@ -48,6 +48,13 @@ std::int32_t set_off(DriveBench& bench) {
   return far;
 }
 
+// Booted, enabled, and on its way.
+bool under_way(DriveBench& bench) {
+  if (!bench.boot() || !enable(bench)) return false;
+  (void)set_off(bench);
+  return true;
+}
+
 // Remembers whether the elbow's drive sends an emergency message with this code.
 void watch_emcy(DriveBench& bench, int code, Time& seen) {
   bench.devices.set_tap([&bench, &seen, code](const devices::BusRecord& record) {
@@ -107,9 +114,7 @@ TEST_P(FlyingDrive, AFaultStopsItAndIsResetAndTheDriveMovesAgain) {
 
 TEST_P(FlyingDrive, StopsWhenTheMasterIsGone) {
   DriveBench bench({"", GetParam()});
-  ASSERT_TRUE(bench.boot()) << bench.sentence();
-  ASSERT_TRUE(enable(bench));
-  (void)set_off(bench);
+  ASSERT_TRUE(under_way(bench)) << bench.sentence();
   Time complained;
   watch_emcy(bench, 0x8130, complained);
   const Time gone = bench.now;
@@ -173,9 +178,7 @@ TEST(UnconfirmedDrive, ADriveThatFaultsWithoutSyncSaysSoAndGoesNoFartherThanItsR
       Make make{"", name};
       make.switches.faults_without_sync = faults;
       DriveBench bench(make);
-      ASSERT_TRUE(bench.boot()) << bench.sentence();
-      ASSERT_TRUE(enable(bench)) << name;
-      (void)set_off(bench);
+      ASSERT_TRUE(under_way(bench)) << bench.sentence();
       Time complained;
       watch_emcy(bench, 0x8250, complained);
       const double before = bench.joint_counts();
@@ -213,9 +216,7 @@ TEST(UnconfirmedDrive, AnLmdriveStopsWithinItsRampInEitherUnit) {
     Make make{"", "lmdrive"};
     make.switches.speeds_in_rpm = rpm;
     DriveBench bench(make);
-    ASSERT_TRUE(bench.boot()) << bench.sentence();
-    ASSERT_TRUE(enable(bench));
-    (void)set_off(bench);
+    ASSERT_TRUE(under_way(bench)) << bench.sentence();
     const double before = bench.joint_counts();
     bench.elbow().request(AxisRequest::quick_stop);
     EXPECT_TRUE(bench.run_until([&] { return bench.elbow().state() == AxisState::stopped; }, Duration::from_s(2)));
@@ -228,9 +229,7 @@ TEST(UnconfirmedDrive, AnLmdriveStopsWithinItsRampInEitherUnit) {
 // The master's heartbeat goes on: another device may send it.
 TEST(Deadline, ADriveWhoseOrdersAreLostStopsByItself) {
   DriveBench bench({"", "lanternfish"});
-  ASSERT_TRUE(bench.boot()) << bench.sentence();
-  ASSERT_TRUE(enable(bench));
-  (void)set_off(bench);
+  ASSERT_TRUE(under_way(bench)) << bench.sentence();
   Time complained;
   watch_emcy(bench, 0x8250, complained);
   const Time gone = bench.now;
@@ -250,9 +249,7 @@ TEST(UnconfirmedDrive, ADeadlineThatDoesNothingLeavesADriveWithAForeignHeartbeat
       Make make{"", name};
       make.switches.ignores_deadline = ignores;
       DriveBench bench(make);
-      ASSERT_TRUE(bench.boot()) << bench.sentence();
-      ASSERT_TRUE(enable(bench));
-      (void)set_off(bench);
+      ASSERT_TRUE(under_way(bench)) << bench.sentence();
       const std::int32_t target = bench.elbow().target_counts();
       bench.orders_arrive = false;
       bench.run(Duration::from_ms(1500));
@@ -332,9 +329,7 @@ TEST(ElmoGold, BridgesAsManyLostSyncsAsItsObjectSays) {
     DriveBench bench({"", "elmo_gold"}, [&](canopen::NetworkConfig& config, devices::DevicesConfig&) {
       if (!told) config.drives[2].profile.objects.clear();
     });
-    ASSERT_TRUE(bench.boot()) << bench.sentence();
-    ASSERT_TRUE(enable(bench));
-    (void)set_off(bench);
+    ASSERT_TRUE(under_way(bench)) << bench.sentence();
     Time complained;
     watch_emcy(bench, 0x8250, complained);
     const Time gone = bench.now;
@@ -350,9 +345,7 @@ TEST(UnconfirmedDrive, AnEyouThatIgnoresALostMasterStandsAtItsLastTarget) {
   Make make{"", "eyou"};
   make.switches.ignores_lost_master = true;
   DriveBench bench(make);
-  ASSERT_TRUE(bench.boot()) << bench.sentence();
-  ASSERT_TRUE(enable(bench));
-  (void)set_off(bench);
+  ASSERT_TRUE(under_way(bench)) << bench.sentence();
   const std::int32_t target = bench.elbow().target_counts();
   bench.master_alive = false;
   bench.run(Duration::from_ms(1000));
@@ -369,9 +362,7 @@ TEST(UnconfirmedDrive, AnEpos4ThatHoldsWithoutItsMasterStandsUnderPower) {
     Make make{"", "epos4"};
     make.switches.holds_without_master = holds;
     DriveBench bench(make);
-    ASSERT_TRUE(bench.boot()) << bench.sentence();
-    ASSERT_TRUE(enable(bench));
-    (void)set_off(bench);
+    ASSERT_TRUE(under_way(bench)) << bench.sentence();
     const double before = bench.joint_counts();
     bench.master_alive = false;
     bench.run(Duration::from_ms(1200));

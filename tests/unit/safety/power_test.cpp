@@ -54,6 +54,16 @@ class PowerTest : public testing::Test {
     return (bus.now - began).s();
   }
 
+  // The elbow falls silent under way, with a ramp of so long before it. The others stand.
+  void stop_with_the_elbow_silent(double ramp_s) {
+    speed_rad_s[2] = ramp_s * deceleration_rad_s2;
+    for (int i = 0; i < 6; ++i) step();
+    bus.nodes[2].mute_tpdo = true;
+    for (int i = 0; i < 6; ++i) step();
+    speed_rad_s[2] = 0;
+    power.stop(bus.now, bus.network);
+  }
+
   static Limits limits() {
     Limits limits;
     limits.stale_position_s = 0.012;
@@ -114,12 +124,7 @@ TEST_F(PowerTest, AStopReachesADriveThatIsSilentAndTheOthersDoNotWaitForIt) {
 // Its speed over its deceleration, from where it was heard last. The others have stood for long.
 TEST_F(PowerTest, ADriveThatWasSilencedUnderWayKeepsItsPowerUntilItsRampIsOver) {
   const double ramp_s = 0.3;
-  speed_rad_s[2] = ramp_s * deceleration_rad_s2;
-  for (int i = 0; i < 6; ++i) step();
-  bus.nodes[2].mute_tpdo = true;
-  for (int i = 0; i < 6; ++i) step();
-  speed_rad_s[2] = 0;
-  power.stop(bus.now, bus.network);
+  stop_with_the_elbow_silent(ramp_s);
   const double lost_s = until([this] { return all_in(unpowered); });
   EXPECT_GT(lost_s, ramp_s - 0.01);
   EXPECT_LT(lost_s, ramp_s + 0.1);
@@ -128,12 +133,7 @@ TEST_F(PowerTest, ADriveThatWasSilencedUnderWayKeepsItsPowerUntilItsRampIsOver) 
 // They stand, and do not wait under power for a ramp that nobody sees. The silent one is told to stop until it is over.
 TEST_F(PowerTest, WhatIsHeardAndStandsDoesNotWaitForTheRampOfASilentDrive) {
   const double ramp_s = 0.3;
-  speed_rad_s[2] = ramp_s * deceleration_rad_s2;
-  for (int i = 0; i < 6; ++i) step();
-  bus.nodes[2].mute_tpdo = true;
-  for (int i = 0; i < 6; ++i) step();
-  speed_rad_s[2] = 0;
-  power.stop(bus.now, bus.network);
+  stop_with_the_elbow_silent(ramp_s);
   const auto others_off = [this] {
     for (const std::size_t i : {0, 1, 3, 4}) {
       if (bus.nodes[i].drive_state_bits() != unpowered) return false;
@@ -222,12 +222,7 @@ TEST_F(PowerTest, OutputsThatGoOffAreLeftInOperation) {
 
 // It stands and is told to go down, and stays in quick stop.
 TEST_F(PowerTest, ADriveThatIsTakenAndKeepsItsPowerIsRestartedWhileASilentOneBrakes) {
-  speed_rad_s[2] = 0.2;
-  for (int i = 0; i < 6; ++i) step();
-  bus.nodes[2].mute_tpdo = true;
-  for (int i = 0; i < 6; ++i) step();
-  speed_rad_s[2] = 0;
-  power.stop(bus.now, bus.network);
+  stop_with_the_elbow_silent(0.4);
   ASSERT_TRUE(bus.run_until([this] { return bus.nodes[0].drive_state_bits() == holding; }, Duration::from_ms(20)));
   bus.nodes[0].ignores_controlword = true;
   EXPECT_LT(until([this] { return bus.nodes[0].drive_state_bits() == unpowered; }), 0.25);
