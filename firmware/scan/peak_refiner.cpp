@@ -12,6 +12,7 @@ namespace {
 constexpr std::size_t blocks_at_first = 8;  // of eight peaks: 64 of them tell the stripe's width within 2 %
 constexpr std::size_t blocks_later = 2;
 constexpr std::uint32_t first_pictures = 8;        // with as many blocks as the very first
+constexpr std::size_t far_more = 2;                // times as many peaks as learning began with: it begins anew
 constexpr float clear_water = 0.01f;               // of the scatter: below it the haze is a grey level at most
 constexpr std::uint32_t look_for_haze = 8;         // pictures
 constexpr float least_read_grey = 0.35f;           // rounding alone is 0.29
@@ -61,6 +62,8 @@ std::size_t BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::refine(const PixelView
     haze_on_.compute(image, config_.haze_near_px);
     haze_off_.compute(background, config_.haze_near_px);
   }
+  // What a few columns told, of a hand's edge perhaps, does not outlive the picture that shows the stripe.
+  if (begun_ && peaks.size() >= far_more * begun_with_) begin_anew();
   if (pictures_ % look_for_haze == 0) learn_read_noise(pair);
   learn(pair, peaks);
 
@@ -139,6 +142,7 @@ void BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::learn(const Pair& pair, std::
     const bool fits_well = follow_misfits(misfits, noise_.model);
     if (estimate_.update() < settled && fits_well) break;
   }
+  if (!begun_) begun_with_ = peaks.size();
   begun_ = begun_ || taken > 0;
 }
 

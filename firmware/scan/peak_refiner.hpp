@@ -95,8 +95,9 @@ class BasicPeakRefiner {
   PixelNoise noise_;
   SpeckleEstimate speckle_;
   float gain_ = 1;
-  bool begun_ = false;  // a picture has told the stripe's width
-  bool hazy_ = false;   // the haze of the present pictures was computed
+  bool begun_ = false;          // a picture has told the stripe's width
+  std::size_t begun_with_ = 0;  // peaks
+  bool hazy_ = false;           // the haze of the present pictures was computed
   std::uint32_t pictures_ = 0;
   BasicHaze<Pixel, MaxWidth, MaxHeight> haze_on_, haze_off_;
 };
