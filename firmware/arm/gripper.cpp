@@ -13,6 +13,8 @@ constexpr double upper_rad = arm_geometry::joints[4].upper_rad;
 // The handle is known to 4 mm and the tool comes to 2 mm of where it is sent; a tool 14 degrees aslant has its finger tips, 25 mm before and behind the
 // bar, 6 mm off to the side. Twice that, since a finger that meets the bar's edge pushes instead of reaching around.
 constexpr double reaching_room_m = 0.024;
+// A jaw that was opened stands this much short of its goal: 4 mrad at rest, and the play of a drive that was stopped there.
+constexpr double short_of_open_m = 0.002;
 
 }  // namespace
 
@@ -58,6 +60,14 @@ GripperState Gripper::state() const {
     case Order::close: return GripperState::closing;
     default: return state_;
   }
+}
+
+bool Gripper::may_hold(double jaw_rad) const {
+  if (state() == GripperState::jammed) return true;
+  const double gap_m = gap_from_jaw(jaw_rad);
+  const bool closed = gap_m < config_.bar_m - config_.bar_tolerance_m;
+  const bool open = gap_m > jaw_opening_m(config_.bar_m) - short_of_open_m;
+  return !closed && !open;
 }
 
 void Gripper::wait(Duration d) {

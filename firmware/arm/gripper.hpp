@@ -81,6 +81,9 @@ class Gripper {
 
   // An order that waits for its update() counts as begun: who asks in between must not take the last one's end for its own.
   GripperState state() const;
+  // The bar, or something else, may be between the pads: the jaw is jammed, or its angle is neither closed past the bar nor open for reaching it. By this
+  // alone a jaw is judged that has not moved since its power came back.
+  bool may_hold(double jaw_rad) const;
   double target_rad() const { return target_rad_; }
   double grip_gap_m() const { return grip_gap_m_; }  // at which it stalled; 0 before
   std::uint32_t refused() const { return refused_; }

@@ -19,8 +19,8 @@ class Manual {
   bool jaw_waits_ = false;  // until it is known to have room
 };
 
-// Where a jog that is ordered now would end, or nothing when its numbers, the joint's limits or the tool's workspace do not allow it. What
-// stands outside may only come closer.
+// Where a jog that is ordered now would end. Nothing when its numbers, the joint's limits or the tool's workspace do not allow it, and for an arm joint
+// while the jaw may hold something. What stands outside may only come closer.
 std::optional<double> jog_goal_rad(const Order& order, const Workbench& bench);
 
 }  // namespace lf::mission

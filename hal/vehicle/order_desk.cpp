@@ -26,7 +26,8 @@ Json refused(const std::string& why) { return {{"ok", false}, {"why", why}}; }
 std::string why_not(Command command) {
   switch (command) {
     case Command::start: return "a joint stands outside its limits: jog it back first";
-    case Command::jog: return "it leads out of the joint's limits, or another order is being taken";
+    case Command::jog:
+      return "it leads out of the joint's limits, the jaw may hold something (open or close it first), or another order is being taken";
     default: return "it came too late, or another order is being taken";
   }
 }

@@ -243,6 +243,8 @@ TEST(AnArmOutsideItsWorkspace, IsStoppedAndJoggedBack) {
   ASSERT_TRUE(home(rig)) << rig.story();
   rig.run_for(0.1);
   EXPECT_FALSE(give(rig, Command::start)) << "a job out of there";
+  ASSERT_TRUE(jog(rig, Joint::jaw, 0.3)) << "the stop came while the jaw closed";
+  ASSERT_TRUE(finish_jog(rig)) << rig.story();
   EXPECT_FALSE(jog(rig, Joint::slew, -0.05)) << "farther out";
   for (int i = 0; i < 4 && out_to_the_left_m(rig) > 0; ++i) {
     const double before_m = out_to_the_left_m(rig);

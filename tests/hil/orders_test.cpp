@@ -279,6 +279,43 @@ TEST(Reset, AfterAStopInTheTurnGetsFreeOfTheHandleFirst) {
   }
 }
 
+// By hand nobody has looked yet what the jaw holds, and a jog moves no joint but its own. So the operator opens the jaw first.
+TEST(Reset, AfterAStopInTheTurnNoArmJointIsJoggedBeforeTheJawIsOpen) {
+  Rig rig(turn_only());
+  ASSERT_TRUE(reach(rig, {Step::turn, 1.0, "turning"})) << rig.story();
+  ASSERT_TRUE(give(rig, Command::emergency_stop));
+  rig.run_for(1.5);
+  ASSERT_TRUE(give(rig, Command::reset));
+  rig.run_for(0.5);
+  ASSERT_TRUE(home(rig)) << rig.story();
+  ASSERT_GT(rig.world().contacts().grip_force_n, 10) << "the handle is held";
+  const double valve_rad = rig.world().valve_angle_rad();
+  double pulled_n = 0;
+  const auto finish = [&] {
+    for (int i = 0; i < 1500; ++i) {
+      rig.step();
+      pulled_n = std::max(pulled_n, rig.world().contacts().base_wrench.force_n.norm());
+    }
+  };
+  for (const double by_rad : {0.3, -0.3, 0.01}) {
+    for (const Joint joint : {Joint::slew, Joint::shoulder, Joint::elbow, Joint::roll}) {
+      EXPECT_FALSE(jog(rig, joint, by_rad)) << static_cast<int>(joint);
+      finish();
+    }
+  }
+  EXPECT_LT(pulled_n, 60) << rig.story();
+  EXPECT_NEAR(rig.world().valve_angle_rad(), valve_rad, 0.02);
+  ASSERT_TRUE(jog(rig, Joint::jaw, 0.1));
+  ASSERT_TRUE(finish_jog(rig)) << rig.story();
+  EXPECT_FALSE(jog(rig, Joint::slew, -0.1)) << "the bar is still between the fingers";
+  ASSERT_TRUE(jog(rig, Joint::jaw, 0.2));
+  finish();
+  EXPECT_LT(rig.world().contacts().grip_force_n, 1) << "it is let go";
+  EXPECT_TRUE(jog(rig, Joint::slew, -0.05)) << rig.story();
+  finish();
+  EXPECT_LT(pulled_n, 60) << rig.story();
+}
+
 TEST(Reset, AfterAnEndIsAsNew) {
   Rig rig(press_only());
   rig.start();

@@ -117,6 +117,18 @@ TEST(Gripper, IsJammedBySomethingThickerThanTheBar) {
   EXPECT_EQ(run.run(5), GripperState::jammed);
 }
 
+TEST(Gripper, MayHoldWhatFitsBetweenClosedAndOpen) {
+  for (const double bar_m : {0.008, 0.0126, 0.040}) {
+    GripperConfig config;
+    config.bar_m = bar_m;
+    const Gripper gripper(config);
+    EXPECT_FALSE(gripper.may_hold(jaw_from_gap(0.0013))) << "closed to its stop";
+    EXPECT_TRUE(gripper.may_hold(jaw_from_gap(bar_m))) << bar_m;
+    EXPECT_TRUE(gripper.may_hold(jaw_from_gap(bar_m + 0.040))) << bar_m;
+    EXPECT_FALSE(gripper.may_hold(jaw_from_gap(jaw_opening_m(bar_m)))) << bar_m;
+  }
+}
+
 TEST(Gripper, NoticesThatTheBarSlippedOut) {
   GripperRun run;
   run.jaw.stop_closing_rad = 0.0;
