@@ -205,6 +205,17 @@ def error_frames(programs):
     trial.end()
 
 
+def foreign(programs):
+    """Set points of another master. The drive that they order obeys them; the other four are this master's to stop."""
+    trial = Trial(programs)
+    since = time.time()
+    shell("cansend vcan1 201#0000000000000000")
+    trial.listen(1.0)
+    trial.judge("set points of another master", since, STALE_S + GUEST_S, [], "another master on the bus", nodes=(2, 3, 4, 5))
+    expect(trial.bench.watch.without_torque(since) is not None, "another master's set points leave power on")
+    trial.end()
+
+
 def flooded(programs):
     """Frames of others fill what the bus leaves free; then garbage under every identifier."""
     trial = Trial(programs)
@@ -288,7 +299,7 @@ def started(programs):
     bench.sea.stop()
 
 
-FAULTS = (started, terminated, killed, dropped, changed, rebooted, taken_down, removed, jammed, error_frames, flooded, emergency_stop)
+FAULTS = (started, terminated, killed, dropped, changed, rebooted, taken_down, removed, jammed, error_frames, foreign, flooded, emergency_stop)
 
 
 def break_everything(programs):
