@@ -178,5 +178,23 @@ TEST_F(Log, SaysThatItIsNotWrittenForAsLongAsThatIsSo) {
   EXPECT_EQ(writer.trouble(), "");
 }
 
+TEST_F(Log, OnAFullDiskSaysSoForAsLongAsWritesFail) {
+  const std::string frames = folder / "can0.log";
+  ASSERT_EQ(symlink("/dev/full", frames.c_str()), 0);
+  LogWriter writer(*rings, {.folder = folder.path().string(), .interface = "can0"});
+  ASSERT_EQ(writer.open(), 0);
+  writer.start();
+  ASSERT_TRUE(rings->frames.push(LogFrame{}));
+  const auto wait_until = [&](bool trouble) {
+    const Time limit = monotonic_now() + Duration::from_s(10);
+    while (writer.trouble().empty() == trouble && monotonic_now() < limit) sleep_until(monotonic_now() + Duration::from_ms(10));
+  };
+  wait_until(true);
+  EXPECT_THAT(writer.trouble(), testing::AllOf(HasSubstr("the log is not written"), HasSubstr("No space left")));
+  wait_until(false);
+  EXPECT_EQ(writer.trouble(), "") << "nothing more had to be written";
+  writer.stop();
+}
+
 }  // namespace
 }  // namespace lf::hal
