@@ -15,10 +15,10 @@ void Controller::on_can(std::uint8_t bus, const CanFrame& frame, Time t) {
 }
 
 void Controller::on_panel(const PanelResult& result, Time t) {
-  const bool sound = result.fit.plane.normal.allFinite() && std::isfinite(result.fit.plane.offset_m) && std::isfinite(result.confidence) &&
+  const bool valid = result.fit.plane.normal.allFinite() && std::isfinite(result.fit.plane.offset_m) && std::isfinite(result.confidence) &&
                      result.marker.camera_from_tag.matrix().allFinite() && result.measured <= t &&
                      result.clusters.size() <= PanelResult::max_clusters;
-  if (!sound) {
+  if (!valid) {
     ++rejected_inputs_;
     return;
   }

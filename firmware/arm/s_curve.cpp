@@ -15,9 +15,9 @@ PathState advance(const PathState& from, double jerk, double t_s) {
 
 bool SCurve::plan(double distance, double max_velocity, double max_acceleration, double max_jerk) {
   *this = SCurve();
-  const bool sound = std::isfinite(distance + max_velocity + max_acceleration + max_jerk) && distance >= 0 && max_velocity > 0 &&
+  const bool valid = std::isfinite(distance + max_velocity + max_acceleration + max_jerk) && distance >= 0 && max_velocity > 0 &&
                      max_acceleration > 0 && max_jerk > 0;
-  if (!sound) return false;
+  if (!valid) return false;
   if (distance == 0) return true;
   // Shapes from the longest motion to the shortest: with cruise; without it but at full acceleration; at full jerk only.
   double velocity = max_velocity;

@@ -21,7 +21,7 @@ bool plan_fraction(const JointVector& way_rad, const JointLimits& limits, SCurve
   return curve.plan(1, velocity / longest, acceleration / longest, jerk / longest);
 }
 
-bool sound(const JointLimits& limits) {
+bool valid(const JointLimits& limits) {
   return limits.velocity_rad_s.allFinite() && limits.acceleration_rad_s2.allFinite() && limits.jerk_rad_s3.allFinite() &&
          limits.velocity_rad_s.minCoeff() > 0 && limits.acceleration_rad_s2.minCoeff() > 0 && limits.jerk_rad_s3.minCoeff() > 0 &&
          limits.lower_rad.allFinite() && limits.upper_rad.allFinite();
@@ -37,7 +37,7 @@ bool inside(const JointVector& q_rad, const JointLimits& limits, double toleranc
 PlanOutcome JointTrajectory::plan(const JointVector& start_rad, const JointVector& goal_rad, const JointLimits& limits) {
   start_rad_ = goal_rad_ = start_rad;
   curve_ = SCurve();
-  if (!start_rad.allFinite() || !goal_rad.allFinite() || !sound(limits)) return PlanOutcome::not_a_number;
+  if (!start_rad.allFinite() || !goal_rad.allFinite() || !valid(limits)) return PlanOutcome::not_a_number;
   if (!inside(goal_rad, limits)) return PlanOutcome::outside;
   if (!plan_fraction(goal_rad - start_rad, limits, curve_)) return PlanOutcome::not_a_number;
   goal_rad_ = goal_rad;
@@ -90,7 +90,7 @@ JointState JointPath::sample(double t_s) const {
 PlanOutcome ConstantSpeedSweep::plan(const JointVector& from_rad, const JointVector& to_rad, double cruise_s, const JointLimits& limits) {
   from_rad_ = to_rad_ = from_rad;
   cruise_s_ = ramp_s_ = jerk_time_s_ = 0;
-  if (!from_rad.allFinite() || !to_rad.allFinite() || !std::isfinite(cruise_s) || cruise_s <= 0 || !sound(limits))
+  if (!from_rad.allFinite() || !to_rad.allFinite() || !std::isfinite(cruise_s) || cruise_s <= 0 || !valid(limits))
     return PlanOutcome::not_a_number;
   const JointVector speed = (to_rad - from_rad).cwiseAbs() / cruise_s;
   if (((limits.velocity_rad_s - speed).array() < 0).any()) return PlanOutcome::outside;

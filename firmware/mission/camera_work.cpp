@@ -24,12 +24,12 @@ void CameraWork::set_mode(Mode mode, Time now) {
 void CameraWork::on_image(Time exposure_start) {
   if (exposure_start <= newest_image_) return;
   newest_image_ = exposure_start;
-  std::size_t come = 0;
-  while (come < awaited_.size() && awaited_[come] <= exposure_start) {
-    images_lost_ += awaited_[come] < exposure_start ? 1 : 0;
-    ++come;
+  std::size_t arrived = 0;
+  while (arrived < awaited_.size() && awaited_[arrived] <= exposure_start) {
+    images_lost_ += awaited_[arrived] < exposure_start ? 1 : 0;
+    ++arrived;
   }
-  forget(come);
+  forget(arrived);
 }
 
 void CameraWork::forget(std::size_t count) {

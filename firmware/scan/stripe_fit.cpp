@@ -220,13 +220,13 @@ LaneMask refine(const StripeWindows& windows, const PixelNoise& noise, float wid
   const Lanes move = clamp(whole, -longest_step * width, longest_step * width);
   const Lanes height_with = fits.height + (pp * (sr - gs * move) - sp * (pr - gp * move)) / determinant;
   const Lanes height = with_offset ? height_with : fits.height + (sr_without - gs * move) / safe_ss;
-  const LaneMask sound = (height > 0) & (information > 0);
-  fits.centre = sound ? fits.centre + move : fits.centre;
-  fits.height = sound ? height : fits.height;
+  const LaneMask valid = (height > 0) & (information > 0);
+  fits.centre = valid ? fits.centre + move : fits.centre;
+  fits.height = valid ? height : fits.height;
   fits.offset = with_offset ? offset_with : Lanes{};
   fits.variance_px2 = 1 / information;
   fits.misfit = rr;
-  return sound;
+  return valid;
 }
 
 }  // namespace

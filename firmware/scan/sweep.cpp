@@ -18,7 +18,7 @@ constexpr double fan_spare_rad = 0.005;  // the line fades at its ends
 constexpr double shoulder_first_rad = 0.75, shoulder_step_rad = 0.10;
 constexpr int way_samples = 8;
 
-bool sound(const SweepRequest& r, const LaserCalibration& laser) {
+bool valid(const SweepRequest& r, const LaserCalibration& laser) {
   const std::array values{
       r.top_m,           r.bottom_m,        r.left_m,           r.right_m,        r.margin_m,      r.handle_radius_m,
       r.handle_height_m, r.docking_shift_m, r.docking_turn_rad, r.line_spacing_m, r.slowest_rad_s, laser.fan_half_angle_rad};
@@ -169,7 +169,7 @@ void SweepPlanner::consider(std::size_t from, std::size_t to) {
 void SweepPlanner::begin(const SweepRequest& request, const LaserCalibration& laser) {
   best_ = SweepPlan{};
   next_ = 0;
-  planned_ = !sound(request, laser);
+  planned_ = !valid(request, laser);
   if (planned_) return;
   request_ = request;
   laser_ = laser;

@@ -188,12 +188,12 @@ void ValueReader::operator()(std::vector<Task>* value) const {
     Task task;
     const std::size_t told = source_.problems() != nullptr ? source_.problems()->size() : 0;
     read_map(item, "", shown + ".", keys(task), source_);
-    const bool whole = source_.problems() == nullptr || source_.problems()->size() == told;
+    const bool complete = source_.problems() == nullptr || source_.problems()->size() == told;
     const YAML::Node turn = item["turn_valve"];
     task.kind = turn ? Task::Kind::turn_valve : Task::Kind::press_buttons;
-    if (whole && turn && !(turn.IsMap() && turn["to_deg"]))
+    if (complete && turn && !(turn.IsMap() && turn["to_deg"]))
       source_.refuse(item.Mark(), "'" + shown + ".turn_valve.to_deg' is missing: to which angle?");
-    if (whole && task.kind == Task::Kind::press_buttons && task.order.empty())
+    if (complete && task.kind == Task::Kind::press_buttons && task.order.empty())
       source_.refuse(item.Mark(), "'" + shown + ".press_buttons.order' names no button");
     read.push_back(task);
   }
@@ -229,9 +229,9 @@ void ValueReader::operator()(std::vector<Fault>* value) const {
     Fault fault;
     const std::size_t told = source_.problems() != nullptr ? source_.problems()->size() : 0;
     read_map(item, "", shown + ".", keys(fault), source_);
-    const bool whole = source_.problems() == nullptr || source_.problems()->size() == told;
+    const bool complete = source_.problems() == nullptr || source_.problems()->size() == told;
     if (!item["kind"]) source_.refuse(item.Mark(), "'" + shown + "' has no kind");
-    if (const auto problem = problem_of(fault, item["at_s"] || item["at_step"]); whole && problem)
+    if (const auto problem = problem_of(fault, item["at_s"] || item["at_step"]); complete && problem)
       source_.refuse(item.Mark(), "'" + shown + "." + problem->first + "': " + problem->second);
     value->push_back(fault);
   }

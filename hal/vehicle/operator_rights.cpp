@@ -18,14 +18,14 @@ const std::vector<Right>& operator_rights() {
   static const std::vector<Right> rights{
       {"status", Role::watcher, "how things stand", R"({"do": "status"})"},
       {"estop", Role::watcher, "emergency stop: whoever sees the need may press it", R"({"do": "estop"})"},
-      {"start", Role::op, "the job, from power-on if need be", R"({"do": "start"})"},
-      {"home", Role::op, "power up, boot, home, and wait", R"({"do": "home"})"},
-      {"hold", Role::op, "halt the arm on its way", R"({"do": "hold"})"},
-      {"resume", Role::op, "go on from there", R"({"do": "resume"})"},
-      {"abort", Role::op, "let go, go back, stow", R"({"do": "abort"})"},
-      {"task", Role::op, "another job",
+      {"start", Role::pilot, "the job, from power-on if need be", R"({"do": "start"})"},
+      {"home", Role::pilot, "power up, boot, home, and wait", R"({"do": "home"})"},
+      {"hold", Role::pilot, "halt the arm on its way", R"({"do": "hold"})"},
+      {"resume", Role::pilot, "go on from there", R"({"do": "resume"})"},
+      {"abort", Role::pilot, "let go, go back, stow", R"({"do": "abort"})"},
+      {"task", Role::pilot, "another job",
        R"({"do": "task", "tasks": [{"turn_valve": {"to_deg": 45}}, {"press_buttons": {"order": ["left", "centre"]}}]})"},
-      {"reset", Role::op, "forget how the last mission ended", R"({"do": "reset"})"},
+      {"reset", Role::pilot, "forget how the last mission ended", R"({"do": "reset"})"},
       {"jog", Role::engineer, "one joint by a small angle", R"({"do": "jog", "joint": "elbow", "by_deg": -5})"},
       {"commission", Role::engineer, "find and store the zeros of the joints' absolute encoders",
        R"({"do": "commission", "joints": ["elbow"], "clear": true})"},
@@ -66,7 +66,7 @@ Role role_of_user(unsigned user, const std::vector<std::string>& operators, cons
                        [&](const std::string& n) { return std::find(list.begin(), list.end(), n) != list.end(); });
   };
   if (among(engineers)) return Role::engineer;
-  return among(operators) ? Role::op : Role::watcher;
+  return among(operators) ? Role::pilot : Role::watcher;
 }
 
 }  // namespace lf::hal

@@ -14,7 +14,7 @@ namespace lf::hal {
 
 enum class Role : std::uint8_t {
   watcher,   // everyone who can open the socket
-  op,        // runs missions
+  pilot,     // runs missions; `operator` to the user, a word that C++ keeps for itself
   engineer,  // the daemon's own user, root, and who is named so
 };
 inline constexpr std::size_t role_count = 3;

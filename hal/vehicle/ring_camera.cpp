@@ -36,9 +36,9 @@ PortStatus RingCamera::receive(Image& image) {
   any_ = true;
   last_sequence_ = info_.sequence;
   const std::int64_t needed = static_cast<std::int64_t>(info_.stride) * info_.height;
-  const bool whole = info_.kind == 0 && info_.width > 0 && info_.height > 0 && info_.stride >= info_.width &&
-                     needed <= static_cast<std::int64_t>(info_.bytes) && needed <= static_cast<std::int64_t>(pixels_.size());
-  if (!whole) {
+  const bool complete = info_.kind == 0 && info_.width > 0 && info_.height > 0 && info_.stride >= info_.width &&
+                        needed <= static_cast<std::int64_t>(info_.bytes) && needed <= static_cast<std::int64_t>(pixels_.size());
+  if (!complete) {
     ++broken_;
     return port_empty;
   }

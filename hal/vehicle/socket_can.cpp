@@ -343,8 +343,8 @@ PortStatus SocketCan::receive(ReceivedFrame& received) {
       if (const PortStatus status = own.fill(); status != port_ok) return status;
     }
     const unsigned i = own.inbox.next++;
-    const bool whole = own.inbox.messages[i].msg_len == sizeof(can_frame) && own.inbox.frames[i].len <= 8;
-    if (!whole) {
+    const bool complete = own.inbox.messages[i].msg_len == sizeof(can_frame) && own.inbox.frames[i].len <= 8;
+    if (!complete) {
       ++own.stats.malformed;
       continue;
     }

@@ -198,12 +198,12 @@ bool V4l2Camera::State::usable(const v4l2_buffer& buffer) {
   }
   last_sequence = buffer.sequence;
   any = true;
-  const bool whole = buffer.index < buffers.size() && (buffer.flags & V4L2_BUF_FLAG_ERROR) == 0 &&
-                     buffer.bytesused >= stride * static_cast<std::uint32_t>(config.height) &&
-                     buffer.bytesused <= buffers[buffer.index].bytes;
+  const bool complete = buffer.index < buffers.size() && (buffer.flags & V4L2_BUF_FLAG_ERROR) == 0 &&
+                        buffer.bytesused >= stride * static_cast<std::uint32_t>(config.height) &&
+                        buffer.bytesused <= buffers[buffer.index].bytes;
   stats.repeated += repeated ? 1 : 0;
-  stats.broken += !repeated && !whole ? 1 : 0;
-  return whole && !repeated;
+  stats.broken += !repeated && !complete ? 1 : 0;
+  return complete && !repeated;
 }
 
 // A copied stamp is the writer's of a loopback device; both kinds are CLOCK_MONOTONIC. So is that of v4l2loopback 0.12, which leaves the kind open: such a

@@ -13,9 +13,9 @@ namespace {
 
 // Invalid where the size and the pixels do not go together.
 ImageView view_of(const PanelJob& job) {
-  const bool whole =
+  const bool complete =
       job.width > 0 && job.height > 0 && job.still.size() == static_cast<std::size_t>(job.width) * static_cast<std::size_t>(job.height);
-  return whole ? ImageView{job.still.data(), job.width, job.height, job.width} : ImageView{};
+  return complete ? ImageView{job.still.data(), job.width, job.height, job.width} : ImageView{};
 }
 
 }  // namespace

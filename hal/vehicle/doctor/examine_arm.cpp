@@ -23,9 +23,9 @@ void examine_estop(const VehicleConfig& config, Examinations& found) {
   if (std::filesystem::is_directory(config.estop_input, ignored)) return bad(" is a folder");
   const std::string text = first_line(config.estop_input);
   if (text.empty() || (text.front() != '0' && text.front() != '1')) return bad(" reads neither 0 nor 1");
-  const bool whole = text.front() == '1';
-  found.push_back({"emergency stop", key, whole ? Grade::good : Grade::note,
-                   whole ? "the chain is whole" : "the chain is open: the arm takes no power", whole ? "" : "close it before `home`"});
+  const bool closed = text.front() == '1';
+  found.push_back({"emergency stop", key, closed ? Grade::good : Grade::note,
+                   closed ? "the chain is whole" : "the chain is open: the arm takes no power", closed ? "" : "close it before `home`"});
 }
 
 void examine_zeros(const VehicleConfig& config, Examinations& found) {

@@ -30,7 +30,7 @@ using testing::HasSubstr;
 
 std::string rights_table() {
   std::ostringstream out;
-  out << "| request | " << name(Role::watcher) << " | " << name(Role::op) << " | " << name(Role::engineer)
+  out << "| request | " << name(Role::watcher) << " | " << name(Role::pilot) << " | " << name(Role::engineer)
       << " | does | a line |\n|---|---|---|---|---|---|\n";
   for (const Right& right : operator_rights()) {
     out << "| `" << right.request << "` |";
@@ -77,8 +77,8 @@ TEST(Rights, RolesFollowTheUserAndItsGroups) {
   EXPECT_EQ(role_of_user(geteuid(), {}, {}), Role::engineer);
   constexpr unsigned nobody = 65534;
   EXPECT_EQ(role_of_user(nobody, {}, {}), Role::watcher);
-  EXPECT_EQ(role_of_user(nobody, {"nobody"}, {}), Role::op);
-  EXPECT_EQ(role_of_user(nobody, {"@nogroup"}, {}), Role::op);
+  EXPECT_EQ(role_of_user(nobody, {"nobody"}, {}), Role::pilot);
+  EXPECT_EQ(role_of_user(nobody, {"@nogroup"}, {}), Role::pilot);
   EXPECT_EQ(role_of_user(nobody, {"@nogroup"}, {"nobody"}), Role::engineer);
   EXPECT_EQ(role_of_user(4'000'000, {"nobody"}, {}), Role::watcher);  // a number without a name
 }
