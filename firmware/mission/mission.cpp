@@ -311,8 +311,9 @@ void Mission::drive(const StepTick& tick) {
   tick.network.axis(Joint::jaw).set_target_counts(arm::counts_from_rad(Joint::jaw, jaw_rad));
 }
 
-// A slew that runs off squeezes the bar against the jaw long before it is an overload, which friction hides from its motor.
-// What it lags by at the beginning of a step is that of the contact with which the last one ended. Until the arm has come to rest its lag falls off.
+// A slew that runs off squeezes the bar against the jaw. The friction of its gear hides that from its motor long before it is an overload, so the lag tells it.
+// At the beginning of a step the arm may already lag behind its target, from the contact with which the last step ended. This lag is no sign of a drive that
+// runs off, and is subtracted. While the arm comes to rest its lag still falls, so the watch begins afterwards.
 void Mission::watch_grip(const StepTick& tick) {
   const bool stays = yielding() || step_ == Step::held;
   if (!stays || stage_ != Stage::under_way || !bench_.powered || !joints().valid) return;

@@ -237,7 +237,6 @@ TEST(JammedDrive, InFreeMotionDoesNotFollow) {
   EXPECT_LT(rig.fastest_joint_rad_s(), standing_rad_s);
 }
 
-// Two SYNC cycles are less than the three after which a position is stale.
 // A drive has one following window and one speed for all poses, in counts. The master keeps the joint's own, in angles, at each.
 TEST(EveryPose, HasTheSpeedAndTheFollowingWindowOfItsJoints) {
   constexpr double window_rad = 0.15;
@@ -264,6 +263,7 @@ TEST(EveryPose, HasTheSpeedAndTheFollowingWindowOfItsJoints) {
     EXPECT_GT(least_rad[i], 0.8 * window_rad) << rig.arm().joints[i].name << ": needlessly narrow";
 }
 
+// A position is stale after three SYNC cycles without one. Two cycles are fewer.
 TEST(LostFrames, OfTwoCyclesChangeNothing) {
   std::vector<std::string> overrides = press_only();
   overrides.push_back("faults=[{at_s: 2.001, kind: drop_frames, can_id: 386, duration_s: 0.007}]");
