@@ -99,6 +99,20 @@ TEST(InstanceLock, OneMasterABus) {
   EXPECT_NE(nowhere.take("/no/such/folder", "can0").find("lock_folder"), std::string::npos);
 }
 
+// One that root has made by hand would keep the service out.
+TEST(InstanceLock, OfRootBelongsToTheFoldersOwner) {
+  if (geteuid() != 0) GTEST_SKIP() << "not root";
+  const TemporaryFolder folder;
+  constexpr uid_t user = 4321, group = 8765;
+  ASSERT_EQ(chown(folder.path().c_str(), user, group), 0);
+  InstanceLock lock;
+  ASSERT_EQ(lock.take(folder.path(), "can0"), "");
+  struct stat file {};
+  ASSERT_EQ(stat(lock.path().c_str(), &file), 0);
+  EXPECT_EQ(file.st_uid, user);
+  EXPECT_EQ(file.st_gid, group);
+}
+
 TEST(InstanceLock, TellsWhoHoldsItAndTakesNothing) {
   const TemporaryFolder folder;
   EXPECT_EQ(locked_by_another(folder.path(), "can0"), std::nullopt);
