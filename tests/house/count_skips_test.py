@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """count_skips.py on reports of this test's making, in ctest's form."""
+import json
 import pathlib
 import subprocess
 import sys
@@ -37,6 +38,17 @@ class CountSkips(unittest.TestCase):
     def test_more_than_the_limit_fail(self):
         for skips, status in ((0, 0), (2, 0), (3, 1)):
             self.assertEqual(counted(["skipped: here"] * skips, "--at-most", "2")[0], status)
+
+    def test_what_was_left_out_is_counted_by_label(self):
+        def listed(name, *labels):
+            return {"name": name, "properties": [{"name": "LABELS", "value": list(labels)}] if labels else []}
+
+        tests = [listed("arm.moves", "unit"), listed("test0", "unit"), listed("a", "vcan"), listed("b", "vcan"), listed("c", "qemu", "timed"), listed("d")]
+        with tempfile.NamedTemporaryFile("w", suffix=".json") as file:
+            json.dump({"tests": tests}, file)
+            file.flush()
+            status, said = counted(["skipped: here"], "--all", file.name)
+        self.assertEqual((status, said[-1]), (0, "4 tests left out: 2 vcan, 1 qemu+timed, 1 no label"))
 
     def test_a_report_without_tests_fails(self):
         with tempfile.NamedTemporaryFile("w", suffix=".xml") as file:
