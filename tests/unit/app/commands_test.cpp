@@ -220,6 +220,13 @@ TEST_F(Commands, DefaultFoldersOfDifferentExperimentsDoNotMeet) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder() / "runs"), {}), 2);
 }
 
+TEST_F(Commands, DefaultFoldersOfDifferentCampaignsDoNotMeet) {
+  EXPECT_EQ(run("campaign turn_only --seeds 1 --jobs 1 --set time_limit_s=1").status, 1);
+  EXPECT_EQ(run("campaign turn_only --seeds 1 --jobs 1 --set time_limit_s=1.5").status, 1);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder() / "runs"), {}), 2);
+  EXPECT_FALSE(std::filesystem::exists(folder() / "runs/turn_only-campaign")) << "that is the scenario's as it stands";
+}
+
 TEST_F(Commands, AnExpectedSafeFailureIsSuccessAndEndsWithoutPower) {
   const Json result = json_of("run drive_fault --no-outside --out r --set 'faults=[{at_s: 3, kind: overcurrent, node: elbow}]'");
   EXPECT_EQ(result["success"], true) << result.dump(2);
