@@ -209,7 +209,7 @@ def foreign(programs):
     """Set points of another master. The drive that they order obeys them; the other four are this master's to stop."""
     trial = Trial(programs)
     since = time.time()
-    shell("cansend vcan1 201#0000000000000000")
+    bus_watch.Ear("vcan1", []).send(0x201, bytes(8))
     trial.listen(1.0)
     trial.judge("set points of another master", since, STALE_S + GUEST_S, [], "another master on the bus", nodes=(2, 3, 4, 5))
     expect(trial.bench.watch.without_torque(since) is not None, "another master's set points leave power on")
