@@ -29,8 +29,8 @@ struct DriveConfig {
   GearFriction friction;                // between motor and joint
   double max_velocity_rad_s = 0;
   double max_acceleration_rad_s2 = 0;
-  double stiction_rad_s = 0;             // the joint stands still below it; the drive pulses instead of creeping
-  double encoder_offset_rad = 0;         // the encoder says motor angle + offset: an assembly error that nobody measures
+  double stiction_rad_s = 0;      // asked of a joint that stands, it breaks the gear away within GearTrain::winding_s; less takes longer
+  double encoder_offset_rad = 0;  // the encoder says motor angle + offset: an assembly error that nobody measures
   std::int32_t encoder_zero_counts = 0;  // what an absolute encoder counts where the motor stands at 0: commissioning finds it
   bool absolute_encoder = true;          // else the position reads 0 at power-on until homed
   double torque_noise_ratio = 0.004;     // 1 sigma of the torque reading over the rated torque: 12-bit current sensing

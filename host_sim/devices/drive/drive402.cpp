@@ -10,6 +10,7 @@ namespace lf::devices {
 namespace {
 
 constexpr double step_s = 1e-3;
+constexpr double still_of_stiction = 0.02;
 constexpr double torque_filter_s = 0.002;
 constexpr double velocity_filter_s = 0.008;
 constexpr double ramp_filter_s = 0.016;      // the position loop's of its feed-forward: a count an 8 ms is a speed to it, too
@@ -21,7 +22,7 @@ constexpr std::uint16_t bit_fault_reset = 0x80, bit_4 = 0x10;
 
 PositionLoop::Config loop_config(const DriveConfig& config) {
   PositionLoop::Config loop;
-  loop.stiction_rad_s = config.stiction_rad_s;
+  loop.still_rad_s = still_of_stiction * config.stiction_rad_s;
   loop.max_velocity_rad_s = config.max_velocity_rad_s;
   loop.max_acceleration_rad_s2 = config.max_acceleration_rad_s2;
   return loop;
@@ -125,6 +126,11 @@ double Drive402::torque_limit_nm() const {
 
 double Drive402::ratio() const { return 2 * std::numbers::pi / (config_.counts_per_rev * std::abs(rad_per_count_)); }
 
+double Drive402::asked_of_stiction() const {
+  if (config_.stiction_rad_s > 0) return loop_.asked_rad_s() / config_.stiction_rad_s;
+  return loop_.asked_rad_s() == 0 ? 0 : std::copysign(1.0, loop_.asked_rad_s());
+}
+
 // What the motor needs for what the joint was given. Without power there is no current to measure.
 void Drive402::measure_torque(const JointReading& reading) {
   const double turned_rad = reading.motor_position_rad - motor_rad_;
@@ -136,8 +142,8 @@ void Drive402::measure_torque(const JointReading& reading) {
     return;
   }
   const double direction = rad_per_count_ < 0 ? -1 : 1;
-  const double motor_nm =
-      gear_.step(direction * reading.torque_nm, direction * turned_rad * ratio() / step_s, ratio(), step_s, direction * output_rad_s_);
+  const double motor_nm = gear_.step(direction * reading.torque_nm, direction * turned_rad * ratio() / step_s, ratio(), step_s,
+                                     direction * asked_of_stiction());
   const double limit_nm = torque_limit_nm();
   const double high_nm = faults_.high_torque ? torque_high_of_peak * config_.peak_torque_nm : 0;
   torque_ratio_ += ((std::clamp(motor_nm, -limit_nm, limit_nm) + high_nm) / config_.rated_torque_nm + noise - torque_ratio_) *

@@ -65,7 +65,8 @@ class Drive402 : private Application {
   void measure(const JointReading& reading);
   void measure_torque(const JointReading& reading);
   double torque_limit_nm() const;
-  double ratio() const;  // turns of the motor per turn of the joint
+  double ratio() const;              // turns of the motor per turn of the joint
+  double asked_of_stiction() const;  // the speed that the loop asks for, over the joint's stiction speed
   void on_controlword(Time now);
   void reset_fault(Time now);
   void begin_ramp();

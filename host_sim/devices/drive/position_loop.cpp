@@ -6,15 +6,13 @@
 namespace lf::devices {
 namespace {
 
-constexpr double over_stiction = 1.05;   // a pulse must move the joint for certain
-constexpr double still = 0.02;           // of the stiction speed: a filtered feed-forward below it is none
 constexpr double ramp_reserve = 1.25;    // a drive's torque beyond what its own ramp takes: it catches up with it
 constexpr double braking_reserve = 0.7;  // of the acceleration is planned with, the rest is the loop's
 
 }  // namespace
 
 void PositionLoop::reset() {
-  feed_forward_rad_s_ = velocity_rad_s_ = owed_rad_ = 0;
+  feed_forward_rad_s_ = velocity_rad_s_ = asked_rad_s_ = 0;
   awake_ = saturated_ = false;
 }
 
@@ -22,42 +20,27 @@ double PositionLoop::step(double demand, double demand_velocity, double actual, 
   const double error_counts = demand - actual;
   const double share = smooth ? 1.0 : std::min(1.0, dt_s / config_.feed_forward_filter_s);
   feed_forward_rad_s_ += (demand_velocity * rad_per_count - feed_forward_rad_s_) * share;
-  const bool moving = std::abs(feed_forward_rad_s_) > still * config_.stiction_rad_s;
+  const bool moving = std::abs(feed_forward_rad_s_) > config_.still_rad_s;
   if (moving || std::abs(error_counts) > config_.wake_counts) awake_ = true;
   if (!moving && std::abs(error_counts) < config_.sleep_counts) awake_ = false;
   if (!moving) feed_forward_rad_s_ = 0;
   if (!awake_) {
-    velocity_rad_s_ = owed_rad_ = 0;
+    velocity_rad_s_ = asked_rad_s_ = 0;
     saturated_ = false;
     return 0;
   }
-  return pulse(wanted(error_counts * rad_per_count, error_counts, (smooth ? ramp_reserve : 1) * config_.max_acceleration_rad_s2 * dt_s),
-               dt_s);
+  return wanted(error_counts * rad_per_count, error_counts, (smooth ? ramp_reserve : 1) * config_.max_acceleration_rad_s2 * dt_s);
 }
 
 // Proportional near the target; far from it no faster than the acceleration can brake.
 double PositionLoop::wanted(double error_rad, double error_counts, double step) {
   const double braking = std::sqrt(2 * braking_reserve * config_.max_acceleration_rad_s2 * std::abs(error_rad));
   const double correction = std::copysign(std::min(config_.gain_per_s * std::abs(error_rad), braking), error_rad);
-  const double asked = feed_forward_rad_s_ + (error_counts == 0 ? 0 : correction);
-  const double limited = std::clamp(asked, -config_.max_velocity_rad_s, config_.max_velocity_rad_s);
+  asked_rad_s_ = feed_forward_rad_s_ + (error_counts == 0 ? 0 : correction);
+  const double limited = std::clamp(asked_rad_s_, -config_.max_velocity_rad_s, config_.max_velocity_rad_s);
   velocity_rad_s_ = std::clamp(limited, velocity_rad_s_ - step, velocity_rad_s_ + step);
-  saturated_ = velocity_rad_s_ != asked;
+  saturated_ = velocity_rad_s_ != asked_rad_s_;
   return velocity_rad_s_;
-}
-
-double PositionLoop::pulse(double wanted_rad_s, double dt_s) {
-  const double slowest = over_stiction * config_.stiction_rad_s;
-  if (std::abs(wanted_rad_s) >= slowest) {
-    owed_rad_ = 0;
-    return wanted_rad_s;
-  }
-  const double pulse_rad = slowest * dt_s;
-  owed_rad_ = std::clamp(owed_rad_ + wanted_rad_s * dt_s, -2 * pulse_rad, 2 * pulse_rad);
-  if (pulse_rad == 0 || std::abs(owed_rad_) < pulse_rad) return 0;
-  const double direction = std::copysign(1.0, owed_rad_);
-  owed_rad_ -= direction * pulse_rad;
-  return direction * slowest;
 }
 
 }  // namespace lf::devices

@@ -1,20 +1,17 @@
-// A drive's position loop on a joint that stands still below a minimum speed.
+// A drive's position loop: the speed that it asks of its motor.
 //
-// The joint's dead band (stiction, 0.06 to 0.2 rad/s) makes a plain proportional loop stop short of its target, or hunt around it with an integrator.
-// Here any speed below the dead band is made of single milliseconds at the minimum speed, as many as sigma-delta modulation of the wanted speed gives:
-// the mean speed is right, and one pulse moves the joint 0.06 mrad, a third of an encoder count. At rest the loop wakes at an error of 1.5 counts and
-// sleeps again at the first reading within 0.75: no hunting, and a target is held within 2 counts.
+// Whether a motor that stands follows is the gear's matter: it winds up until friction breaks (gear_train.hpp). An integrator would hunt around a target on such a joint.
+// At rest the loop wakes at an error of 1.5 counts and sleeps again at the first reading within 0.75: no hunting, and a target is held within 2 counts.
 #pragma once
 
 #include <cmath>
-#include <cstdint>
 
 namespace lf::devices {
 
 class PositionLoop {
  public:
   struct Config {
-    double stiction_rad_s = 0;
+    double still_rad_s = 0;  // a filtered feed-forward below it is none
     double max_velocity_rad_s = 1;
     double max_acceleration_rad_s2 = 1;
     double gain_per_s = 20;                // 50 ms: a count's quantisation makes 0.004 rad/s, 6 % of the slowest speed
@@ -29,11 +26,15 @@ class PositionLoop {
   // Goes on from a joint that moves so, whatever the loop has asked for.
   void take_up(double velocity_rad_s) { feed_forward_rad_s_ = velocity_rad_s_ = velocity_rad_s; }
 
+  // The motor has not broken away: the speed begins at 0 when it does.
+  void stand() { velocity_rad_s_ = 0; }
+
   // Joint velocity for the next `dt_s`. `demand` and its velocity are in counts and counts/s, `rad_per_count` is the geometry's at this place.
   // `smooth`: the drive's own ramp, whose velocity needs no filter.
   double step(double demand, double demand_velocity, double actual, double rad_per_count, double dt_s, bool smooth = false);
 
   double demand_velocity_rad_s() const { return feed_forward_rad_s_; }  // filtered
+  double asked_rad_s() const { return asked_rad_s_; }                   // before acceleration and top speed limit it
   // By which a joint lags at most that follows: where its error alone would ask for the speed.
   double lag_counts(double counts_s) const { return std::abs(counts_s) / config_.gain_per_s + 2 * config_.wake_counts; }
   bool saturated() const { return saturated_; }  // the last step asked for more than the top speed or acceleration
@@ -41,12 +42,11 @@ class PositionLoop {
  private:
   // `step`: by which the speed may change.
   double wanted(double error_rad, double error_counts, double step);
-  double pulse(double wanted_rad_s, double dt_s);
 
   Config config_;
   double feed_forward_rad_s_ = 0;
-  double velocity_rad_s_ = 0;  // wanted, before the pulses
-  double owed_rad_ = 0;        // sigma-delta's remainder
+  double velocity_rad_s_ = 0;
+  double asked_rad_s_ = 0;
   bool awake_ = false;
   bool saturated_ = false;
 };

@@ -21,7 +21,6 @@ class Bench {
  public:
   explicit Bench(const DevicesConfig& config = bench_config()) : devices(config) {
     for (std::size_t i = 0; i < joint_count; ++i) {
-      joints[i].stiction_rad_s = config.drives[i].stiction_rad_s;
       joints[i].lower_rad = config.drives[i].lower_rad;
       joints[i].upper_rad = config.drives[i].upper_rad;
       joints[i].q_rad = 0.5 * (config.drives[i].lower_rad + config.drives[i].upper_rad);

@@ -37,8 +37,17 @@ TEST(DriveMotion, an_encoder_offset_reads_too_much_by_itself) {
 }
 
 // Moves to targets all over the stroke, one SYNC at a time at 500 counts/s, and waits half a second.
-TEST(DriveMotion, targets_are_reached_within_two_counts_despite_the_dead_band) {
-  DriveRig rig;
+// A twentieth of the rated torque, a third more to break it away, and a load's share.
+DriveConfig rubbing_elbow() {
+  DriveConfig c = elbow();
+  c.torque_noise_ratio = 0;
+  c.friction = {0.05 * c.rated_torque_nm, 0, 0.8, 0.75};
+  c.friction.breakaway = 1.3;
+  return c;
+}
+
+TEST(DriveMotion, targets_are_reached_within_two_counts_despite_friction) {
+  DriveRig rig(rubbing_elbow());
   rig.enable();
   for (const double q : {1.0005, 0.9, 1.5, 0.4, 1.97, 1.9703, 1.97}) {
     const auto target = static_cast<std::int32_t>(std::lround(elbow_counts(q)));
@@ -59,7 +68,7 @@ TEST(DriveMotion, targets_are_reached_within_two_counts_despite_the_dead_band) {
 
 // The sweep's speed, hardly above the stiction of 0.06 rad/s, where a count is 0.1 to 0.37 mrad.
 TEST(DriveMotion, the_sweeps_speed_is_tracked_smoothly) {
-  DriveRig rig(elbow(), 2.05);
+  DriveRig rig(rubbing_elbow(), 2.05);
   rig.enable();
   const double speed = 0.065;
   double worst_error = 0, slowest = 1e9, fastest = 0;
@@ -85,8 +94,38 @@ TEST(DriveMotion, the_sweeps_speed_is_tracked_smoothly) {
   EXPECT_LT(fastest, 1.05 * speed);
 }
 
-TEST(DriveMotion, a_speed_below_the_dead_band_is_kept_in_the_mean) {
-  DriveRig rig(elbow(), 1.6);
+// Single milliseconds at the stiction speed were 126 times the drive's acceleration.
+TEST(DriveMotion, a_motor_that_stands_turns_when_its_torque_breaks_friction) {
+  for (const double load_nm : {0.0, 12.0, -12.0}) {
+    const DriveConfig config = rubbing_elbow();
+    DriveRig rig(config, 1.6);
+    rig.joint.load_nm = load_nm;
+    rig.enable();
+    rig.run_ms(300);
+    const double here = Actuator(config.actuator).counts_per_rad(1.6), at_1_rad = Actuator(config.actuator).counts_per_rad(1);
+    const double load = load_nm / 30 * at_1_rad / here;  // over the rated torque
+    // Towards smaller angles.
+    const double breaking = -0.05 * 1.3 + load * (load <= 0 ? 1 / 0.8 : 0.75);
+    double last_rad_s = 0, hardest_rad_s2 = 0, torque = 0;
+    bool moved = false;
+    for (int ms = 0; ms < 4000; ++ms) {
+      if (ms % 4 == 0) rig.target = static_cast<std::int32_t>(std::lround(elbow_counts(1.6 - 0.01 * 1e-3 * ms)));
+      rig.run_ms(1);
+      if (!moved && rig.output.velocity_rad_s != 0) {
+        moved = true;
+        torque = 1e-3 * static_cast<std::int16_t>(rig.client.read(0x6077, 0));
+      }
+      hardest_rad_s2 = std::max(hardest_rad_s2, std::abs(rig.output.velocity_rad_s - last_rad_s) / 1e-3);
+      last_rad_s = rig.output.velocity_rad_s;
+    }
+    EXPECT_TRUE(moved) << load_nm;
+    EXPECT_NEAR(torque, breaking, 0.012) << load_nm << ": the reading's filter is 2 ms";
+    EXPECT_LE(hardest_rad_s2, 1.001 * config.max_acceleration_rad_s2) << load_nm;
+  }
+}
+
+TEST(DriveMotion, a_speed_below_the_stiction_is_kept_in_the_mean) {
+  DriveRig rig(rubbing_elbow(), 1.6);
   rig.enable();
   const double begin = rig.joint.q_rad;
   for (int ms = 0; ms < 10000; ms += 4) {

@@ -27,10 +27,9 @@ inline DriveConfig elbow() {
   return c;
 }
 
-// A joint that does what it is told, but not below its stiction speed and not past its stops.
+// A joint that does what it is told, but not past its stops.
 struct ScriptedJoint {
   double q_rad = 1.0;
-  double stiction_rad_s = 0.06;
   double lower_rad = 0, upper_rad = 2.15294;
   double load_nm = 0;
   double moved_rad_s = 0;
@@ -38,7 +37,7 @@ struct ScriptedJoint {
   double runs_off_rad_s = 0;  // whatever it is told
 
   void step(const JointDrive& drive) {
-    double v = drive.released || std::abs(drive.velocity_rad_s) < stiction_rad_s ? 0 : drive.velocity_rad_s;
+    double v = drive.released ? 0 : drive.velocity_rad_s;
     if (runs_off_rad_s != 0) v = runs_off_rad_s;
     const double next = q_rad + 1e-3 * v;
     at_stop = next <= lower_rad || next >= upper_rad;
@@ -56,7 +55,6 @@ class DriveRig {
   explicit DriveRig(const DriveConfig& config = elbow(), double q_rad = 1.0)
       : drive(config, Duration::from_ms(5), 7), client(drive.node()) {
     joint.q_rad = q_rad;
-    joint.stiction_rad_s = config.stiction_rad_s;
     drive.power_on(client.now, joint.reading());
     run_ms(10);
   }
