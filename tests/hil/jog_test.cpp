@@ -23,7 +23,7 @@ TEST_P(Jog, MovesItsJointThereAndBackAndNoOther) {
   ASSERT_TRUE(home(rig)) << rig.story();
   const auto before = angles_rad(rig);
   const auto moved = static_cast<std::size_t>(GetParam());
-  // A quarter of the joint's own speed, or what a drive pulses with below the joint's stiction; the jaw opens and closes as fast as ever.
+  // A quarter of the joint's own speed, or the joint's stiction speed; the jaw opens and closes as fast as ever.
   const ArmJoint& joint = rig.arm().joints[moved];
   const double part = GetParam() == Joint::jaw ? 1 : mission::jog_speed_fraction;
   const double fast_rad_s = 1.4 * std::max(part * joint.velocity_rad_s, joint.stiction_rad_s);
