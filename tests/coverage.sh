@@ -9,7 +9,8 @@ programs=(test_canopen test_safety test_arm test_mission)
 missions=()
 failed=()
 if [ "${1:-}" != --core ]; then
-  programs+=(test_scan test_hil_mission test_hil_orders test_hil_valve test_hil_safety test_hil_settings test_hil_start_up_faults)
+  programs+=(test_scan)
+  for part in buttons drives looks mission orders phases safety settings start_up_faults stop torque valve way_home; do programs+=("test_hil_$part"); done
   missions=(lanternfish)
 fi
 toolchain/configure.sh coverage >/dev/null

@@ -1,4 +1,5 @@
 // What people read of the bus: in logs, in the status, in reports.
+#include "firmware/canopen/boot_report.hpp"
 #include "firmware/canopen/network.hpp"
 #include "tests/unit/all_named.hpp"
 
@@ -18,6 +19,13 @@ TEST(Names, OfEachCause) {
   EXPECT_STREQ(name(AxisFault::node_lost), "node lost");
   EXPECT_STREQ(name(Refusal::heartbeat_state), "heartbeat with an unknown state");
   EXPECT_STREQ(name(ConfigError::timeout), "a time-out is not positive");
+}
+
+TEST(Names, OfWhatStoppedTheBootAndOfWhatTakesAnObjectsPlace) {
+  test::expect_all_named<BootFailure>(16, [](BootFailure f) { return name(f); });
+  test::expect_all_named<Substitute>(10, [](Substitute s) { return name(s); });
+  EXPECT_STREQ(name(BootFailure::no_rating), "rated torque 6076 is 0");
+  EXPECT_STREQ(name(Substitute::node_guarding), "node guarding");
 }
 
 }  // namespace

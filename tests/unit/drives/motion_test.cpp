@@ -34,7 +34,8 @@ bool move_by(DriveBench& bench, std::int32_t counts, double counts_s) {
     bench.run(Duration::from_ms(4));
     if (bench.elbow().fault() != AxisFault::none) return false;
   }
-  bench.run(Duration::from_ms(500));
+  // The end of the speed is a step: a drive goes past it within its acceleration, and comes back as its loop does, by a factor of e in 50 ms.
+  bench.run(Duration::from_s(1));
   return bench.elbow().fault() == AxisFault::none;
 }
 
