@@ -62,14 +62,14 @@ TEST(CommissionedArm, HasItsFrictionFound) {
     ASSERT_TRUE(commissioning.friction_found()[i]) << config::joint_name(i);
     const config::JointFriction& found = commissioning.friction()[i];
     const devices::DriveConfig& drive = bench.drive(i);
-    // The roll creeps below its stiction speed of 0.2 rad/s: its drive pulses, and its gear breaks away again and again.
-    const bool pulses = i == 3;
-    EXPECT_NEAR(1e-3 * found.coulomb_mnm, drive.friction.coulomb_nm, (pulses ? 0.3 : 0.1) * drive.friction.coulomb_nm)
+    // A count of the roll is 3 mrad: at a creep it stands between counts, and its gear breaks away again and again.
+    const bool stops = i == 3;
+    EXPECT_NEAR(1e-3 * found.coulomb_mnm, drive.friction.coulomb_nm, (stops ? 0.3 : 0.1) * drive.friction.coulomb_nm)
         << config::joint_name(i);
     // At the top speed the viscous friction that the core believes in is 4 % of the rated torque; the true one, 12 % or 0.8 %, is found to 2 %, the roll's to 4 %.
     const double top_rad_s = 0.04 * drive.rated_torque_nm / bench.nominal().controller.transmissions[i].friction.viscous_nm_s;
     EXPECT_NEAR(1e-3 * found.viscous_mnm_s * top_rad_s, drive.friction.viscous_nm_s * top_rad_s,
-                (pulses ? 0.04 : 0.02) * drive.rated_torque_nm)
+                (stops ? 0.04 : 0.02) * drive.rated_torque_nm)
         << config::joint_name(i);
     EXPECT_LT(found.rms_mnm, 20 * drive.rated_torque_nm) << config::joint_name(i) << ": 2 % of the rated torque";
     // The doubt shrinks to what the fit left, and a twentieth for another day.
