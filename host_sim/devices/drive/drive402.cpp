@@ -10,7 +10,7 @@ namespace lf::devices {
 namespace {
 
 constexpr double step_s = 1e-3;
-constexpr double still_of_stiction = 0.02;
+constexpr double still_of_stiction = 0.02;  // what the filter leaves of a feed-forward that has ended
 constexpr double torque_filter_s = 0.002;
 constexpr double velocity_filter_s = 0.008;
 constexpr double ramp_filter_s = 0.016;      // the position loop's of its feed-forward: a count an 8 ms is a speed to it, too

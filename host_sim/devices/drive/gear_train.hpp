@@ -26,7 +26,7 @@ class GearTrain {
  public:
   // Rotor and gear smooth what comes in shorter than this.
   static constexpr double smoothing_s = 0.016;
-  // A weak velocity loop: a servo of 50 Hz has it at once. At 16 ms a quarter-speed jog overshot its speed by a half.
+  // Chosen: with 16 ms a jog at a quarter of the speed overshot it by a half while it caught up.
   static constexpr double winding_s = 0.004;
   // Slower than this the motor stands, rad/s: an eighth of a turn a second, 0.7 mrad/s at a joint.
   static constexpr double standing_rad_s = 0.5;

@@ -1,6 +1,6 @@
 // A drive's position loop: the speed that it asks of its motor.
 //
-// Whether a motor that stands follows is the gear's matter: it winds up until friction breaks (gear_train.hpp). An integrator would hunt around a target on such a joint.
+// A motor that stands follows when the gear's friction breaks (gear_train.hpp). The loop has no integrator: on a joint that sticks it would hunt around its target.
 // At rest the loop wakes at an error of 1.5 counts and sleeps again at the first reading within 0.75: no hunting, and a target is held within 2 counts.
 #pragma once
 

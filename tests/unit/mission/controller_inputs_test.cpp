@@ -10,7 +10,7 @@
 namespace lf {
 namespace {
 
-PanelResult sound_result(Time measured) {
+PanelResult finite_result(Time measured) {
   PanelResult result;
   result.fit.plane.normal = Vec3::UnitZ();
   result.measured = measured;
@@ -30,11 +30,11 @@ TEST(ControllerInputs, ThatAreNoNumbersAreCounted) {
   const auto core = std::make_unique<Controller>(ControllerConfig{});
   const Time now = Time{} + Duration::from_s(1);
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  core->on_panel(sound_result(now), now);
+  core->on_panel(finite_result(now), now);
   EXPECT_EQ(core->rejected_inputs(), 0u);
   std::uint32_t wrong = 0;
   const auto refused = [&](const auto& change) {
-    PanelResult result = sound_result(now);
+    PanelResult result = finite_result(now);
     change(result);
     core->on_panel(result, now);
     EXPECT_EQ(core->rejected_inputs(), ++wrong);

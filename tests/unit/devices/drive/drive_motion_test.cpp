@@ -36,7 +36,6 @@ TEST(DriveMotion, an_encoder_offset_reads_too_much_by_itself) {
   EXPECT_EQ(rig.actual(), std::lround(elbow_counts(1.0 + config.encoder_offset_rad)));
 }
 
-// Moves to targets all over the stroke, one SYNC at a time at 500 counts/s, and waits half a second.
 // A twentieth of the rated torque, a third more to break it away, and a load's share.
 DriveConfig rubbing_elbow() {
   DriveConfig c = elbow();
@@ -46,6 +45,7 @@ DriveConfig rubbing_elbow() {
   return c;
 }
 
+// Moves to targets all over the stroke, one SYNC at a time at 500 counts/s, and waits half a second.
 TEST(DriveMotion, targets_are_reached_within_two_counts_despite_friction) {
   DriveRig rig(rubbing_elbow());
   rig.enable();
@@ -94,7 +94,7 @@ TEST(DriveMotion, the_sweeps_speed_is_tracked_smoothly) {
   EXPECT_LT(fastest, 1.05 * speed);
 }
 
-// Single milliseconds at the stiction speed were 126 times the drive's acceleration.
+// Towards smaller angles, with a load that helps, one that resists, and none. Single milliseconds at the stiction speed were 126 times the drive's acceleration.
 TEST(DriveMotion, a_motor_that_stands_turns_when_its_torque_breaks_friction) {
   for (const double load_nm : {0.0, 12.0, -12.0}) {
     const DriveConfig config = rubbing_elbow();
@@ -104,7 +104,6 @@ TEST(DriveMotion, a_motor_that_stands_turns_when_its_torque_breaks_friction) {
     rig.run_ms(300);
     const double here = Actuator(config.actuator).counts_per_rad(1.6), at_1_rad = Actuator(config.actuator).counts_per_rad(1);
     const double load = load_nm / 30 * at_1_rad / here;  // over the rated torque
-    // Towards smaller angles.
     const double breaking = -0.05 * 1.3 + load * (load <= 0 ? 1 / 0.8 : 0.75);
     double last_rad_s = 0, hardest_rad_s2 = 0, torque = 0;
     bool moved = false;
