@@ -5,6 +5,8 @@
 namespace lf::arm {
 namespace {
 
+constexpr double hardly_there = 0.25;  // of the contact's torque
+
 // Counts samples in a row for which `says_so`; true once there are `wanted` of them.
 bool run_of(bool says_so, std::uint32_t wanted, std::uint32_t& run) {
   run = says_so ? run + 1 : 0;
@@ -53,6 +55,7 @@ GuardState GuardedMotion::update(Time t, const JointVector& command_rad, const J
   if (learning) baseline_nm_ += (torque.nm - baseline_nm_) / samples_;
   excess_nm_ = filtered_.nm - baseline_nm_;
   error_rad_ = command_rad - position_rad;
+  position_rad_ = position_rad;
   observe(command_rad, dt_s);
   velocity_rad_s_ = velocity_rad_s;
 
@@ -64,6 +67,10 @@ GuardState GuardedMotion::update(Time t, const JointVector& command_rad, const J
     if (run_of(over, config_.debounce, overload_run_[i])) latch(GuardState::overload, GuardCause::torque, i);
     if (run_of(pushed, config_.debounce, torque_run_[i])) latch(GuardState::contact, GuardCause::torque, i);
     if (run_of(behind, config_.debounce, following_run_[i])) latch(GuardState::contact, GuardCause::following_error, i);
+    if (samples_ == 1 || std::abs(excess_nm_[i]) < hardly_there * config_.contact_torque_nm[i]) {
+      free_position_rad_[i] = position_rad[i];
+      free_command_rad_[i] = command_rad[i];
+    }
     // A joint that is being pushed teaches nothing about free motion.
     if (!learning && std::abs(excess_nm_[i]) < 0.5 * config_.contact_torque_nm[i])
       baseline_nm_[i] += excess_nm_[i] * (dt_s / (dt_s + config_.baseline_s));

@@ -51,9 +51,13 @@ class GuardedMotion {
   const JointVector& excess_torque_nm() const { return excess_nm_; }  // filtered torque less baseline
   const JointVector& baseline_nm() const { return baseline_nm_; }     // of free motion, as far as it is learned
   const JointVector& error_rad() const { return error_rad_; }         // command less position
+  const JointVector& position_rad() const { return position_rad_; }
   const JointVector& velocity_rad_s() const { return velocity_rad_s_; }
   // Observed as a joint's speed is (joint_observer.hpp), and late by as much: 0 with the first sample.
   const JointVector& command_rad_s() const { return command_rad_s_; }
+  // How far each joint went, and was to go, since its excess torque was last hardly there. What touches something winds up its gear on the way there.
+  JointVector travelled_rad() const { return (position_rad_ - free_position_rad_).cwiseAbs(); }
+  JointVector to_travel_rad() const { return (position_rad_ + error_rad_ - free_command_rad_).cwiseAbs(); }
   std::uint32_t refused() const { return refused_; }
 
  private:
@@ -71,6 +75,8 @@ class GuardedMotion {
   JointVector baseline_nm_ = JointVector::Zero();
   JointVector excess_nm_ = JointVector::Zero();
   JointVector error_rad_ = JointVector::Zero();
+  JointVector position_rad_ = JointVector::Zero();
+  JointVector free_position_rad_ = JointVector::Zero(), free_command_rad_ = JointVector::Zero();  // when the excess was hardly there
   std::array<JointObserver, arm_joint_count> commands_{};
   JointVector command_rad_s_ = JointVector::Zero();
   JointVector velocity_rad_s_ = JointVector::Zero();

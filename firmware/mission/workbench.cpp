@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware/arm/actuator.hpp"
+
 namespace lf::mission {
 
 namespace {
@@ -86,7 +88,20 @@ bool drives_itself_off(const arm::GuardedMotion& guard) {
   return by_its_motor || away;
 }
 
-bool does_not_follow(const arm::GuardedMotion& guard) { return lags_without_load(guard) || runs_off(guard) || drives_itself_off(guard); }
+bool has_seized(const arm::GuardedMotion& guard) {
+  // Gear and links of the stiffest joint give way by 2.4 mrad before they carry a contact's torque: the motor goes so far, seven counts of a screw. A
+  // count is what an encoder that stands may waver by.
+  constexpr double stands_counts = 1.5, wavers_counts = 1;
+  if (!guard.touched() || guard.cause() != arm::GuardCause::torque) return false;
+  const auto joint = static_cast<Eigen::Index>(guard.joint());
+  const double count_rad = arm::rad_per_count(guard.joint(), guard.position_rad()[joint]);
+  const double travelled = guard.travelled_rad()[joint] / count_rad, to_travel = guard.to_travel_rad()[joint] / count_rad;
+  return travelled < stands_counts && to_travel > 2 * travelled + wavers_counts;
+}
+
+bool does_not_follow(const arm::GuardedMotion& guard) {
+  return lags_without_load(guard) || runs_off(guard) || drives_itself_off(guard) || has_seized(guard);
+}
 
 void report_touch(const arm::GuardedMotion& guard, safety::FaultArbiter& faults) {
   if (!guard.touched()) return;

@@ -39,6 +39,8 @@ bool runs_off(const arm::GuardedMotion& guard);
 // Its motor's torque is what moves it otherwise than its set-point: what is touched pushes against the motor. Or it leaves its set-point at a speed to which
 // no contact drives a joint: a contact stops it.
 bool drives_itself_off(const arm::GuardedMotion& guard);
+// Its torque rises while it stands where it should go: the motor or its gear has seized. A joint that meets something winds up its gear on the way.
+bool has_seized(const arm::GuardedMotion& guard);
 // One of them: what was felt is the drive's own doing, and no contact.
 bool does_not_follow(const arm::GuardedMotion& guard);
 

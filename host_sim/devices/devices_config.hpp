@@ -29,7 +29,7 @@ struct DriveConfig {
   GearFriction friction;                // between motor and joint
   double max_velocity_rad_s = 0;
   double max_acceleration_rad_s2 = 0;
-  double stiction_rad_s = 0;      // asked of a joint that stands, it breaks the gear away within GearTrain::winding_s; less takes longer
+  double stiction_rad_s = 0;      // asked of a joint that stands, it winds the motor up within Drive402::winding_s; less takes longer
   double encoder_offset_rad = 0;  // the encoder says motor angle + offset: an assembly error that nobody measures
   std::int32_t encoder_zero_counts = 0;  // what an absolute encoder counts where the motor stands at 0: commissioning finds it
   bool absolute_encoder = true;          // else the position reads 0 at power-on until homed

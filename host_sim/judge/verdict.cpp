@@ -242,7 +242,8 @@ class Judge {
   // pushed winds it up by as much as the push.
   bool joint_moves(const Moment& moment, std::size_t joint, double unwound_s) const {
     if (motor_moves(moment, joint) && !settles_without_power(moment, joint)) return true;
-    if (moment.speed_rad_s[joint] < figures_.standing_rad_s || pushed_at(moment) || !travels_in_a_moment(moment, &Moment::angle_rad, joint))
+    if (moment.speed_rad_s[joint] < figures_.standing_rad_s || pushed_at(moment) ||
+        !travels_in(moment, quiver_ms, &Moment::angle_rad, joint))
       return false;
     if (std::abs(moment.angle_rad[joint] - moment.motor_rad[joint]) > situation_.gear_gives_rad[joint]) return true;
     if (time_s(moment) <= unwound_s) return false;
@@ -253,9 +254,12 @@ class Judge {
 
   double time_s(const Moment& moment) const { return static_cast<double>(&moment - moments_.data()) * ms; }
 
-  // By more than what stands, in the 20 ms around it: a drive turns slowly by pulses.
-  bool travels_in_a_moment(const Moment& moment, const std::array<float, joint_count> Moment::*rad, std::size_t joint) const {
-    constexpr std::ptrdiff_t around_ms = 10;
+  // Bodies that press on each other quiver to and fro, by less than 0.4 mrad.
+  static constexpr std::ptrdiff_t quiver_ms = 10;
+
+  // By more than what stands, in so many milliseconds to either side of it.
+  bool travels_in(const Moment& moment, std::ptrdiff_t around_ms, const std::array<float, joint_count> Moment::*rad,
+                  std::size_t joint) const {
     const std::ptrdiff_t index = &moment - moments_.data(), size = std::ssize(moments_);
     const auto by_angle = [&](const Moment& a, const Moment& b) { return (a.*rad)[joint] < (b.*rad)[joint]; };
     const auto [low, high] = std::minmax_element(moments_.begin() + std::max<std::ptrdiff_t>(0, index - around_ms),
@@ -286,7 +290,7 @@ class Judge {
     return std::abs(double(moments_[index].motor_rad[joint]) - double(moments_[index - over_ms].motor_rad[joint])) / (over_ms * ms);
   }
 
-  bool motor_moves(const Moment& moment, std::size_t joint) const { return travels_in_a_moment(moment, &Moment::motor_rad, joint); }
+  bool motor_moves(const Moment& moment, std::size_t joint) const { return travels_in(moment, 1, &Moment::motor_rad, joint); }
 
   // The obstacle is there, and the arm touches it, or something else.
   bool pushed_at(const Moment& moment) const {
@@ -367,7 +371,7 @@ class Judge {
   bool swings(const Moment& moment, std::uint8_t joints) const {
     for (std::size_t joint = 0; joint < joint_count; ++joint) {
       const bool fast = (joints >> joint & 1U) != 0 && moment.speed_rad_s[joint] >= figures_.standing_rad_s;
-      if (fast && travels_in_a_moment(moment, &Moment::angle_rad, joint)) return true;
+      if (fast && travels_in(moment, quiver_ms, &Moment::angle_rad, joint)) return true;
     }
     return false;
   }

@@ -51,7 +51,7 @@ struct ArmJoint {
   double rated_torque_nm = 0;  // the same of its rated torque
   double velocity_rad_s = 0;   // the drive's top speed
   double acceleration_rad_s2 = 0;
-  double stiction_rad_s = 0;     // asked of a joint that stands, it breaks the gear's friction away at once; slower speeds take longer
+  double stiction_rad_s = 0;     // asked of a joint that stands, it soon breaks the gear's friction; slower speeds take longer
   double backlash_rad = 0;       // total play
   double holding_torque_nm = 0;  // of the self-locking gear without power
   ArmActuator actuator;

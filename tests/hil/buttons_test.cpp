@@ -112,16 +112,17 @@ TEST(AValve, IsNoSuccessWithSomethingBetweenTheFingers) {
   EXPECT_GT(arm::gap_from_jaw(angle_rad(rig, Joint::jaw)), 0.04) << "it still holds it";
 }
 
-// The jaw's motor stands still before the second look: the fingers stay open.
-TEST(APress, IsNotBegunWithAJammedJaw) {
+// The jaw's motor seizes before the second look: its torque rises while it stands.
+TEST(APress, IsNotBegunWithAJawThatHasSeized) {
   Rig rig({"tasks=[{turn_valve: {to_deg: 90}}, {press_buttons: {order: [left]}}]"});
   rig.start();
   ASSERT_TRUE(rig.run_to(Step::back_off)) << rig.story();
   rig.devices().add_fault({0, devices::DeviceFaultKind::following, 5}, rig.now());
   ASSERT_TRUE(rig.run_to_end()) << rig.story();
   EXPECT_FALSE(rig.outcome().success) << rig.story();
-  EXPECT_EQ(rig.outcome().code, static_cast<std::int32_t>(StepFailure::jaw_not_closed)) << rig.story();
-  EXPECT_GT(arm::gap_from_jaw(angle_rad(rig, Joint::jaw)), 0.02) << "the jaw is not jammed";
+  EXPECT_EQ(rig.outcome().fault, safety::Fault::following_error) << rig.story();
+  EXPECT_EQ(rig.outcome().code, static_cast<std::int32_t>(Joint::jaw)) << rig.story();
+  EXPECT_GT(arm::gap_from_jaw(angle_rad(rig, Joint::jaw)), 0.02) << "it has not closed";
   EXPECT_EQ(rig.world().button(0).presses, 0u);
   EXPECT_EQ(rig.world().button(0).depth_m, 0) << "it was touched";
 }

@@ -138,13 +138,16 @@ void Drive402::measure_torque(const JointReading& reading) {
   const double noise = config_.torque_noise_ratio * noise_.next();
   if (!powered()) {
     gear_.reset();
-    torque_ratio_ = 0;
+    torque_ratio_ = jammed_nm_ = 0;
     return;
   }
   const double direction = rad_per_count_ < 0 ? -1 : 1;
-  const double motor_nm = gear_.step(direction * reading.torque_nm, direction * turned_rad * ratio() / step_s, ratio(), step_s,
-                                     direction * asked_of_stiction());
+  const double wound_nm = direction * asked_of_stiction() * config_.rated_torque_nm * step_s / winding_s;
+  double motor_nm = gear_.step(direction * reading.torque_nm, direction * turned_rad * ratio() / step_s, ratio(), step_s, wound_nm);
   const double limit_nm = torque_limit_nm();
+  // What has seized stands however much the controller winds up.
+  jammed_nm_ = faults_.jammed ? std::clamp(jammed_nm_ + wound_nm, -limit_nm, limit_nm) : 0;
+  if (faults_.jammed) motor_nm = jammed_nm_;
   const double high_nm = faults_.high_torque ? torque_high_of_peak * config_.peak_torque_nm : 0;
   torque_ratio_ += ((std::clamp(motor_nm, -limit_nm, limit_nm) + high_nm) / config_.rated_torque_nm + noise - torque_ratio_) *
                    (step_s / torque_filter_s);

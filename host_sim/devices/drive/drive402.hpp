@@ -37,6 +37,10 @@ struct DriveFaults {
 
 class Drive402 : private Application {
  public:
+  // Asked for the joint's stiction speed, the controller winds a standing motor's torque up to the rated one in this time: a gain of its own, which knows
+  // no gear. A gear with usual friction breaks away after a SYNC. Chosen: real drives have gains of their own, and say none.
+  static constexpr double winding_s = 0.05;
+
   Drive402(const DriveConfig& config, Duration boot_time, std::uint64_t seed);
 
   Node& node() { return node_; }
@@ -122,6 +126,7 @@ class Drive402 : private Application {
   std::int64_t zero_ = 0;     // position actual = encoder + zero
   double rad_per_count_ = 1e-4;
   double motor_rad_ = 0;     // as the joint's angle
+  double jammed_nm_ = 0;     // of a motor that has seized
   double torque_ratio_ = 0;  // of the motor's rated torque, positive in the direction of counts, filtered
   double velocity_counts_s_ = 0;
   double ramp_counts_s_ = 0;  // that a stop's ramp may begin with: no jump of the encoder is in it

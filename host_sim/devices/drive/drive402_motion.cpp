@@ -108,7 +108,7 @@ JointDrive Drive402::actuate() {
   const bool own_ramp = state_ != DriveState::operation_enabled;
   const double wanted_rad_s =
       loop_.step(profile_.position(), profile_.velocity(), static_cast<double>(o_.position_actual.value), rad_per_count_, step_s, own_ramp);
-  const bool turns = wanted_rad_s * output_rad_s_ > 0 || gear_.breaks_away(wanted_rad_s * rad_per_count_ < 0 ? -1 : 1);
+  const bool turns = wanted_rad_s * output_rad_s_ > 0 || gear_.breaks_away(wanted_rad_s * rad_per_count_ < 0 ? -1 : 1, motor_nm);
   if (!turns) loop_.stand();
   output_rad_s_ = turns ? wanted_rad_s : 0;
   const double top_rad_s = top_speed() * std::abs(rad_per_count_);

@@ -23,7 +23,7 @@ double GearTrain::turning_nm(double way, double load_nm) const {
   return way * coulomb_nm(way, speed_rad_s_) + load_nm * (raises ? 1 / friction_.efficiency : friction_.back_efficiency);
 }
 
-double GearTrain::step(double joint_nm, double motor_rad_s, double ratio, double dt_s, double asked) {
+double GearTrain::step(double joint_nm, double motor_rad_s, double ratio, double dt_s, double wound_nm) {
   const double share = std::min(1.0, dt_s / smoothing_s);
   load_nm_ += (joint_nm / ratio - load_nm_) * share;
   speed_rad_s_ += (motor_rad_s - speed_rad_s_) * share;
@@ -31,21 +31,15 @@ double GearTrain::step(double joint_nm, double motor_rad_s, double ratio, double
   if (std::abs(speed_rad_s_) >= standing_rad_s) {
     held_nm_ = speed_rad_s_ > 0 ? forward_nm : backward_nm;
   } else {
-    if (asked != 0) wind_up(asked, dt_s);
     // A gear without friction has both equal, but for rounding.
-    held_nm_ = std::max(std::min(held_nm_, std::max(forward_nm, backward_nm)), std::min(forward_nm, backward_nm));
+    held_nm_ = std::max(std::min(held_nm_ + wound_nm, std::max(forward_nm, backward_nm)), std::min(forward_nm, backward_nm));
   }
   return held_nm_ + friction_.viscous_nm_s * speed_rad_s_;
 }
 
-void GearTrain::wind_up(double asked, double dt_s) {
-  const double way = asked < 0 ? -1 : 1, rubbing_nm = coulomb_nm(way, 0);
-  held_nm_ = rubbing_nm > 0 ? held_nm_ + rubbing_nm * asked * dt_s / winding_s : turning_nm(way, load_nm_);
-}
-
-bool GearTrain::breaks_away(double way) const {
+bool GearTrain::breaks_away(double way, double limit_nm) const {
   const double turning = turning_nm(way, load_nm_);
-  return way * held_nm_ >= way * turning - rounding * (std::abs(turning) + friction_.coulomb_nm);
+  return std::abs(turning) <= limit_nm && way * held_nm_ >= way * turning - rounding * (std::abs(turning) + friction_.coulomb_nm);
 }
 
 double GearTrain::push_nm(double motor_nm, double motor_rad_s, double ratio) const {

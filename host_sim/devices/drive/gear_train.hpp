@@ -7,8 +7,8 @@
 // The core knows Coulomb's and viscous friction and the efficiencies only. Here a gear also takes more to break away than to keep moving, falling off with the
 // speed as Stribeck found, and rubs more one way than the other.
 //
-// A motor that stands does not turn before its torque breaks friction and load. Its controller winds the torque up by the speed that is asked of it: within
-// `winding_s` to what breaks the gear without load away, where the joint's stiction speed is asked. A slower speed, a load, or a torque that still points the other way take longer.
+// A motor that stands does not turn before its torque breaks friction and load. How fast its controller winds the torque up is the controller's (drive402.hpp):
+// it knows neither. A gear that rubs more, a load, or a torque that still points the other way take longer.
 #pragma once
 
 namespace lf::devices {
@@ -26,8 +26,6 @@ class GearTrain {
  public:
   // Rotor and gear smooth what comes in shorter than this.
   static constexpr double smoothing_s = 0.016;
-  // Chosen: with 16 ms a jog at a quarter of the speed overshot it by a half while it caught up.
-  static constexpr double winding_s = 0.004;
   // Slower than this the motor stands, rad/s: an eighth of a turn a second, 0.7 mrad/s at a joint.
   static constexpr double standing_rad_s = 0.5;
   // The speed of the motor over which the greater friction of standing falls off: boundary lubrication ends at some turns a second.
@@ -40,18 +38,17 @@ class GearTrain {
   // The motor has no current.
   void reset();
   // The motor's torque after `dt_s` in which the gear gave `joint_nm` to the joint. `ratio`: turns of the motor per turn of the joint, here; positive.
-  // `asked`: the speed that the drive asks for, over the joint's stiction speed.
-  double step(double joint_nm, double motor_rad_s, double ratio, double dt_s, double asked = 0);
+  // `wound_nm`: by how much the controller raises the torque of a motor that stands, meanwhile.
+  double step(double joint_nm, double motor_rad_s, double ratio, double dt_s, double wound_nm = 0);
 
-  // Whether the motor's torque turns a motor that stands, `way` 1 or -1.
-  bool breaks_away(double way) const;
+  // Whether the motor's torque turns a motor that stands, `way` 1 or -1, and is not more than the motor may have.
+  bool breaks_away(double way, double limit_nm) const;
 
   // What the joint gets at most from a motor with this torque, at this speed of the motor's: pushing a load, and holding against one that pushes back.
   double push_nm(double motor_nm, double motor_rad_s, double ratio) const;
   double hold_nm(double motor_nm, double ratio) const;
 
  private:
-  void wind_up(double asked, double dt_s);
   double coulomb_nm(double way, double motor_rad_s) const;
   double turning_nm(double way,
                     double load_nm) const;  // at the motor, less viscous friction: what turns it this way against or with this load

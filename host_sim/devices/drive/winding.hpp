@@ -8,7 +8,7 @@ class Winding {
   // The reference arm's own drivers stop at 2 A for 1.5 s. With the rated torque at 1.33 A that is 1.5 times the rated torque,
   // an excess of (1.5^2 - 1) 1.5 s.
   static constexpr double trip_excess_s = (1.5 * 1.5 - 1) * 1.5;
-  static constexpr double smoothing_s = 0.05;  // single-millisecond pulses do not heat, nor trip
+  static constexpr double smoothing_s = 0.05;  // of the current: a drive's reading is filtered, and a contact of a moment does not trip
   static constexpr double thermal_time_s = 300;
 
   Winding(double water_celsius, double rise_at_rated_celsius);

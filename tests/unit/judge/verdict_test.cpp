@@ -117,6 +117,18 @@ TEST(Verdict, AJointThatQuiversInItsWoundUpGearStands) {
   EXPECT_THAT(wrong(0.00041f), testing::Contains(testing::HasSubstr("jaw moves")));
 }
 
+// For ten milliseconds, long after it had to stand: a quiver of the joint is excused, a motor that turns is not.
+TEST(Verdict, AMotorThatTurnsForSomeMillisecondsMoves) {
+  const auto wrong = [](float rad_s) {
+    Seen seen = Stopping().seen();
+    for (std::size_t t = 500; t < seen.moments.size(); ++t)
+      seen.moments[t].motor_rad[3] += rad_s * 0.001f * static_cast<float>(std::min<std::size_t>(t - 500, 10));
+    return judge(seen, situation_of(cause_of("overcurrent elbow")), failed("drive fault: elbow")).wrong;
+  };
+  EXPECT_THAT(wrong(0.019f), IsEmpty());
+  EXPECT_THAT(wrong(0.025f), testing::Contains(testing::HasSubstr("roll moves")));
+}
+
 // The shoulder's motor stood from the beginning. At 298 ms the power goes; the gear gives 4 mrad.
 TEST(Verdict, AScrewUnderALoadMaySettleWhenItsPowerGoesAndAtNoOtherTime) {
   const auto wrong = [](std::size_t moves_at_ms, float by_rad) {

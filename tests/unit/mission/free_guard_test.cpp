@@ -1,6 +1,8 @@
 // What the arm takes for a contact where nothing may be touched, and what for a drive that does not do as told.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "firmware/mission/workbench.hpp"
 
 namespace lf::mission {
@@ -113,6 +115,46 @@ TEST(DrivesItselfOff, IsAJointThatLeavesItsSetPointAtASpeedToWhichNothingPushesA
     EXPECT_TRUE(drives_itself_off(moving(0, way * 0.3, way * -10)));
     EXPECT_FALSE(drives_itself_off(moving(0, way * 0.08, way * -10)));
   }
+}
+
+// A guard that has met a contact with the elbow at 1.2 rad, on its way at `rad_s`. The motor goes on against a spring of `stiffness_nm_rad`, or stands
+// where it was while its torque rises by `winds_nm_s`.
+arm::GuardedMotion met(double rad_s, double stiffness_nm_rad, double winds_nm_s) {
+  arm::GuardedMotion guard(free_motion_guard(limits_of(25)));
+  constexpr double period_s = 0.004, count_rad = 2.2e-4;
+  arm::JointVector command_rad = arm::JointVector::Zero(), position_rad = command_rad, velocity_rad_s = command_rad,
+                   torque_nm = command_rad;
+  command_rad[2] = 1.2;
+  double motor_rad = 1.2, t_s = 0;
+  for (int i = 0; i < 2000 && !guard.touched(); ++i) {
+    const bool seized = winds_nm_s > 0, met = i >= 50;
+    command_rad[2] += rad_s * period_s;
+    if (!met || !seized) motor_rad += rad_s * period_s;
+    if (met) torque_nm[2] += seized ? winds_nm_s * period_s : stiffness_nm_rad * rad_s * period_s;
+    position_rad[2] = count_rad * std::floor(motor_rad / count_rad);
+    guard.update(Time::from_s(t_s += period_s), command_rad, position_rad, velocity_rad_s, torque_nm);
+  }
+  EXPECT_TRUE(guard.touched());
+  return guard;
+}
+
+TEST(HasSeized, IsAMotorThatStandsWhileItsTorqueRises) {
+  for (const double rad_s : {0.01, 0.05, 0.3}) {
+    SCOPED_TRACE(rad_s);
+    // A controller that asks for more speed winds up faster: at 0.06 rad/s to 30 N m in 50 ms.
+    EXPECT_TRUE(has_seized(met(rad_s, 0, 600 * rad_s / 0.06)));
+    EXPECT_TRUE(does_not_follow(met(rad_s, 0, 600 * rad_s / 0.06)));
+    for (const double stiffness_nm_rad : {1500.0, 4000.0}) EXPECT_FALSE(has_seized(met(rad_s, stiffness_nm_rad, 0))) << stiffness_nm_rad;
+  }
+}
+
+// Somebody leans on an arm that stands.
+TEST(HasSeized, IsNoMotorThatHoldsWhatPushesAtIt) {
+  arm::GuardedMotion guard(free_motion_guard(limits_of(25)));
+  double t_s = 0, nm = 0;
+  ASSERT_FALSE(touches(guard, t_s, nm, 0, 1));
+  ASSERT_TRUE(touches(guard, t_s, nm, 40, 1));
+  EXPECT_FALSE(has_seized(guard));
 }
 
 TEST(DrivesItselfOff, CountsAsAJointThatDoesNotFollow) { EXPECT_TRUE(does_not_follow(moving(0.05, -0.05, -10))); }

@@ -36,18 +36,18 @@ TEST(DriveMotion, an_encoder_offset_reads_too_much_by_itself) {
   EXPECT_EQ(rig.actual(), std::lround(elbow_counts(1.0 + config.encoder_offset_rad)));
 }
 
-// A twentieth of the rated torque, a third more to break it away, and a load's share.
-DriveConfig rubbing_elbow() {
+// A share of the rated torque, a third more to break it away, and a load's share.
+DriveConfig rubbing_elbow(double share = 0.05) {
   DriveConfig c = elbow();
   c.torque_noise_ratio = 0;
-  c.friction = {0.05 * c.rated_torque_nm, 0, 0.8, 0.75};
+  c.friction = {share * c.rated_torque_nm, 0, 0.8, 0.75};
   c.friction.breakaway = 1.3;
   return c;
 }
 
 // Moves to targets all over the stroke, one SYNC at a time at 500 counts/s, and waits half a second.
 TEST(DriveMotion, targets_are_reached_within_two_counts_despite_friction) {
-  DriveRig rig(rubbing_elbow());
+  DriveRig rig(rubbing_elbow(0.3));
   rig.enable();
   for (const double q : {1.0005, 0.9, 1.5, 0.4, 1.97, 1.9703, 1.97}) {
     const auto target = static_cast<std::int32_t>(std::lround(elbow_counts(q)));
@@ -120,6 +120,39 @@ TEST(DriveMotion, a_motor_that_stands_turns_when_its_torque_breaks_friction) {
     EXPECT_TRUE(moved) << load_nm;
     EXPECT_NEAR(torque, breaking, 0.012) << load_nm << ": the reading's filter is 2 ms";
     EXPECT_LE(hardest_rad_s2, 1.001 * config.max_acceleration_rad_s2) << load_nm;
+  }
+}
+
+// From rest to 0.01 rad/s. The controller winds up by the speed that is asked: the target's, through its filter of 16 ms, and 20 /s of what the joint lags.
+TEST(DriveMotion, a_gear_that_rubs_more_takes_longer_to_break_away) {
+  constexpr double speed = 0.01, filter_s = 0.016, gain_per_s = 20;
+  for (const double share : {0.05, 0.2, 0.4}) {
+    const DriveConfig config = rubbing_elbow(share);
+    const double wanted = 1.3 * share * 0.05 * config.stiction_rad_s;
+    double due_s = 0;
+    for (double wound = 0; wound < wanted; due_s += 1e-5) wound += 1e-5 * speed * (1 - std::exp(-due_s / filter_s) + gain_per_s * due_s);
+    DriveRig rig(config, 1.6);
+    rig.enable();
+    rig.run_ms(300);
+    int ms = 0;
+    do {
+      if (ms % 4 == 0) rig.target = static_cast<std::int32_t>(std::lround(elbow_counts(1.6 - speed * 1e-3 * ms)));
+      rig.run_ms(1);
+      ++ms;
+    } while (rig.output.velocity_rad_s == 0 && ms < 1000);
+    EXPECT_NEAR(1e-3 * ms, due_s, 0.012) << share << ": counts of 0.1 mrad, and a SYNC";
+  }
+}
+
+TEST(DriveMotion, a_gear_that_rubs_more_than_6072_allows_stands) {
+  for (const int thousandths : {60, 70}) {
+    DriveRig rig(rubbing_elbow(), 1.6);
+    rig.client.write(0x6065, 0, 0xFFFFFFFF, 4);
+    rig.client.write(0x6072, 0, thousandths, 2);
+    rig.enable();
+    rig.target -= 50;
+    rig.run_ms(2000);
+    EXPECT_EQ(rig.joint.q_rad == 1.6, thousandths < 65) << thousandths << " of the rated torque, where 65 break it away";
   }
 }
 

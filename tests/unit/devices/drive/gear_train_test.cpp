@@ -78,8 +78,11 @@ TEST(GearTrain, takes_more_to_break_away_than_to_keep_moving) {
   EXPECT_NEAR(moving(-10 * GearTrain::stribeck_rad_s), -0.003, 1e-9);
   GearTrain at_rest(friction);
   double motor_nm = 0;
-  for (int i = 0; i < 500; ++i) motor_nm = at_rest.step(0, 0, ratio, 1e-3, 1);
+  for (int i = 0; i < 500; ++i) motor_nm = at_rest.step(0, 0, ratio, 1e-3, 2e-5);
   EXPECT_NEAR(motor_nm, 0.004, 1e-9) << "what it winds up to before it moves";
+  EXPECT_TRUE(at_rest.breaks_away(1, 0.0041));
+  EXPECT_FALSE(at_rest.breaks_away(1, 0.0039)) << "the motor may not have that much";
+  EXPECT_FALSE(at_rest.breaks_away(-1, 1));
   EXPECT_NEAR(at_rest.push_nm(0.014, 0, ratio), ratio * 0.010, 1e-9);
 }
 
