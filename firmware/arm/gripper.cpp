@@ -15,6 +15,10 @@ constexpr double upper_rad = arm_geometry::joints[4].upper_rad;
 constexpr double reaching_room_m = 0.024;
 // A jaw that was opened stands this much short of its goal: 4 mrad at rest, and the play of a drive that was stopped there.
 constexpr double short_of_open_m = 0.002;
+// Within this of its stop it is closed: it counts as empty from 4 mrad on, and its zero may be 5 mrad off. The pads are then 3 mm apart.
+constexpr double closed_rad = 0.01;
+// An encoder that has moved so far is not stuck, and what jammed the jaw has let it go.
+constexpr double free_rad = 0.05;
 
 }  // namespace
 
@@ -29,6 +33,12 @@ double jaw_from_gap(double gap_m) {
 }
 
 double pad_force_n(double jaw_torque_nm) { return jaw_torque_nm / 2 / jaw.face_z_m; }
+
+bool stands_empty(double jaw_rad, double bar_m) {
+  const bool closed = jaw_rad <= lower_rad + closed_rad;
+  const bool open = gap_from_jaw(jaw_rad) > jaw_opening_m(bar_m) - short_of_open_m;
+  return closed || open;  // what is not a number is neither
+}
 
 double jaw_opening_m(double bar_m) { return std::min(bar_m + 2 * reaching_room_m, gap_from_jaw(upper_rad)); }
 
@@ -62,13 +72,17 @@ GripperState Gripper::state() const {
   }
 }
 
-bool Gripper::may_hold(double jaw_rad) const {
-  if (state() == GripperState::jammed) return true;
-  const double gap_m = gap_from_jaw(jaw_rad);
-  const bool closed = gap_m < config_.bar_m - config_.bar_tolerance_m;
-  const bool open = gap_m > jaw_opening_m(config_.bar_m) - short_of_open_m;
-  return !closed && !open;
+bool Gripper::doubted() const {
+  switch (state()) {
+    case GripperState::held:
+    case GripperState::dropped:
+    case GripperState::jammed:
+    case GripperState::lost: return true;
+    default: return doubted_;
+  }
 }
+
+bool Gripper::may_hold(double jaw_rad) const { return doubted() || !stands_empty(jaw_rad, config_.bar_m); }
 
 void Gripper::wait(Duration d) {
   still_since_ = still_since_ + d;
@@ -95,6 +109,8 @@ double Gripper::update(Time t, double jaw_rad, const TorqueEstimate& torque) {
     return target_rad_;
   }
   const double dt_s = started_ ? (t - last_).s() : 0;
+  if (!started_) doubted_rad_ = jaw_rad;
+  if (std::abs(jaw_rad - doubted_rad_) > free_rad) doubted_ = false;
   last_ = t;
   started_ = true;
   if (order_ != Order::none) begin(t, jaw_rad);

@@ -20,6 +20,8 @@ double tip_beyond_tool_m(double jaw_rad);
 
 // The thinnest bar that a closed jaw is told from: at its stop 1.3 mm stay open, and a stall within `bar_tolerance_m` of the bar counts as a grip.
 inline constexpr double thinnest_bar_m = 0.008;
+// Nothing is between the fingers of a jaw that stands so: closed to its stop, which leaves no more than some millimetres, or open for reaching for such a bar.
+bool stands_empty(double jaw_rad, double bar_m);
 // How far the jaw opens to reach for a bar: to either side `reaching_room_m` more than the bar is thick.
 double jaw_opening_m(double bar_m);
 // The thickest bar that the jaw opens for.
@@ -53,7 +55,7 @@ enum class GripperState : std::uint8_t {
   open,     // at the wanted opening
   closing,
   held,     // stalled on something as thick as the bar
-  empty,    // closed past the bar, nothing between the pads
+  empty,    // closed to its stop, nothing between the pads
   dropped,  // was held, and is no more
   jammed,   // stalled where it should not, or took too long
   // Its encoder or its drive is not to be trusted. Told to move, it stands without a load, pushes the other way, or goes the other way; or it presses though
@@ -81,9 +83,11 @@ class Gripper {
 
   // An order that waits for its update() counts as begun: who asks in between must not take the last one's end for its own.
   GripperState state() const;
-  // The bar, or something else, may be between the pads: the jaw is jammed, or its angle is neither closed past the bar nor open for reaching it. By this
-  // alone a jaw is judged that has not moved since its power came back.
+  // Something may be between the pads: by the jaw's angle, by what became of its last order, or since its angle is in doubt.
   bool may_hold(double jaw_rad) const;
+  // The one before this did not end open or empty: its encoder or what it holds may still be so. The doubt ends when the jaw is seen to move.
+  void doubt() { doubted_ = true; }
+  bool doubted() const;
   double target_rad() const { return target_rad_; }
   double grip_gap_m() const { return grip_gap_m_; }  // at which it stalled; 0 before
   std::uint32_t refused() const { return refused_; }
@@ -109,6 +113,8 @@ class Gripper {
   double still_rad_ = 0;                        // where the jaw was when it last moved
   Time still_since_, began_, last_, unloaded_;  // the last: when nothing pressed on the open jaw
   bool started_ = false;
+  bool doubted_ = false;
+  double doubted_rad_ = 0;  // where the jaw was first seen in doubt
   std::uint32_t low_torque_run_ = 0;
   std::uint32_t refused_ = 0;
 };

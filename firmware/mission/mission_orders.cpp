@@ -71,7 +71,9 @@ void Mission::forget(const StepTick& tick) {
   if (shut_down) bench_.mailbox.put(*shut_down);
   const ControllerConfig& config = bench_.config;
   bench_.watch = safety::Watch(config.mission_limits, config.transmissions, tick.network.foreign());
+  const bool doubtful_jaw = bench_.gripper.doubted();
   bench_.gripper = bench_.new_gripper();
+  if (doubtful_jaw) bench_.gripper.doubt();
   bench_.compliance.reset();
   bench_.map = PanelMap(config.mission.layout, config.marker, config.camera);
   bench_.motion.freeze();

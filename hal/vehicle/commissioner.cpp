@@ -128,7 +128,48 @@ Commissioner::~Commissioner() {
 }
 
 void Commissioner::lose_zeros(const std::array<bool, joint_count>& lost) {
-  if (!busy()) zero_lost_ = lost;
+  if (busy()) return;
+  zero_lost_ = lost;
+  if (file_.empty() || config::is_shipped(file_) || forgetting_ != nullptr) return;
+  std::array<bool, joint_count> to_forget{};
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    to_forget[i] = lost[i] && !forgotten_[i];
+    forgotten_[i] = lost[i];
+  }
+  if (std::none_of(to_forget.begin(), to_forget.end(), [](bool one) { return one; })) return;
+  auto forgetting = std::make_shared<Forgetting>();
+  forgetting->joints = to_forget;
+  const bool posted = worker_.post([forgetting, file = file_] {
+    std::string problem;
+    try {
+      config::HomingOffsets offsets = read_and_check(file);
+      for (std::size_t i = 0; i < joint_count; ++i) offsets.known[i] = offsets.known[i] && !forgetting->joints[i];
+      config::write_homing_file(file, offsets);
+    } catch (const InputError& error) {
+      problem = error.what();
+    }
+    const std::lock_guard lock(forgetting->mutex);
+    forgetting->problem = problem;
+    forgetting->done = true;
+  });
+  if (posted) forgetting_ = forgetting;
+  if (!posted) forgotten_ = {};  // the next report says it again
+}
+
+// A zero that was lost is no longer in the file: a daemon that is started anew must not trust it.
+void Commissioner::note_forgotten() {
+  const std::shared_ptr<Forgetting> forgetting = forgetting_;
+  if (forgetting == nullptr) return;
+  const std::lock_guard lock(forgetting->mutex);
+  if (!forgetting->done) return;
+  forgetting_ = nullptr;
+  Json names = Json::array();
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    if (forgetting->joints[i]) names.push_back(config::joint_name(i));
+  }
+  Json line{{"t_s", monotonic_now().s()}, {"kind", "zeros_lost"}, {"joints", names}, {"file", file_}};
+  if (!forgetting->problem.empty()) line["why"] = forgetting->problem + ": commission them before the daemon is started anew";
+  log_(line);
 }
 
 std::string Commissioner::unknown_joints() const {
@@ -155,6 +196,9 @@ std::optional<std::string> Commissioner::begin(const CommissionOrder& order) {
   setup.joints = order.joints;
   setup.backlash_rad = backlash_rad_;
   setup.here = order.here;
+  setup.bar_m = core_.mission.layout.handle_thickness_m;
+  constexpr auto jaw = static_cast<std::size_t>(Joint::jaw);
+  setup.jaw_known = core_.network.drives[jaw].zero_known && !zero_lost_[jaw];
   const bool posted = worker_.post([prepared = prepared_, setup, file = file_] {
     std::string problem;
     try {
@@ -184,6 +228,7 @@ std::optional<std::string> Commissioner::why_no_power() const {
 std::optional<Json> Commissioner::answer() { return std::exchange(answer_, std::nullopt); }
 
 void Commissioner::step() {
+  note_forgotten();
   for (Controller* old = nullptr; rings_.old_cores.pop(old);) {
     delete old;
     (void)core_given_.release();  // in the control loop now
@@ -270,10 +315,15 @@ void Commissioner::store(const Commissioning& ended) {
       try {
         config::write_homing_file(file, offsets);
       } catch (const InputError& error) {
-        // What was found is lost; that a joint must not have power is not.
+        // What was found is lost; that a joint must not have power is not. Nor that its old zero is wrong.
         problem = error.what();
-        for (std::size_t i = 0; i < joint_count; ++i)
+        for (std::size_t i = 0; i < joint_count; ++i) {
+          if (taken.moved_rad[i] > 0) {
+            taken.left_out.push_back(std::string("the ") + config::joint_name(i) + "'s zero has moved, and the new one was not written");
+            offsets.known[i] = false;
+          }
           core.network.drives[i].zero_known = core.network.drives[i].zero_known && offsets.known[i] && !lost[i];
+        }
         with_zeros = std::make_unique<Controller>(core);
       }
       if (!problem.empty()) return give(*prepared, problem, taken, offsets, std::move(with_zeros));
@@ -287,7 +337,14 @@ void Commissioner::store(const Commissioning& ended) {
       }
       with_zeros = std::make_unique<Controller>(core);
     } catch (const InputError& error) {
+      // Whether the zeros that were found are the old ones cannot be told: there is nothing to hold them against.
       problem = error.what();
+      for (std::size_t i = 0; i < joint_count; ++i) {
+        bool& known = core.network.drives[i].zero_known;
+        known = known && !commissioned.found[i] && !lost[i];
+        offsets.known[i] = known;
+      }
+      with_zeros = std::make_unique<Controller>(core);
     }
     give(*prepared, problem, taken, offsets, std::move(with_zeros));
   });

@@ -66,7 +66,7 @@ class Commissioner {
   // One look at what has come back.
   void step();
 
-  // What the control loop says of the core at work: joints whose drive has lost its position. They need a zero until they are commissioned.
+  // What the control loop says of the core at work: joints whose drive has lost its position. They need a zero until they are commissioned, by the file, too.
   void lose_zeros(const std::array<bool, joint_count>& lost);
   // Joints that take no power since their zero is not known: "slew, elbow"; empty when there is none.
   std::string unknown_joints() const;
@@ -84,8 +84,16 @@ class Commissioner {
     std::unique_ptr<Controller> core;
     config::HomingOffsets offsets;
   };
+  // The joints whose zeros a worker takes out of the file; `done` and `problem` are guarded.
+  struct Forgetting {
+    std::array<bool, joint_count> joints{};
+    std::mutex mutex;
+    bool done = false;
+    std::string problem;
+  };
   enum class Stage { idle, preparing, lending, running, storing, installing };
 
+  void note_forgotten();
   void lend();
   void take_back(const CommissioningResult& result);
   void store(const Commissioning& ended);
@@ -100,6 +108,8 @@ class Commissioner {
   ControllerConfig core_;
   std::array<bool, joint_count> zero_lost_{};   // of the core at work
   std::array<bool, joint_count> still_lost_{};  // those of them that the commissioning under way has not found
+  std::array<bool, joint_count> forgotten_{};   // those that the file has no more
+  std::shared_ptr<Forgetting> forgetting_;
   std::string file_;
   std::array<double, joint_count> backlash_rad_{};
   std::array<Motor, joint_count> motors_;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "firmware/arm/actuator.hpp"
+#include "firmware/arm/gripper.hpp"
 #include "shared/arm/arm_geometry.hpp"
 
 namespace lf::hal {
@@ -38,6 +39,9 @@ constexpr double least_back_efficiency = 0.3;
 constexpr double least_rub_windows = 1, most_rub_windows = 4;
 // Of the drives' best: a third of the torque has to do.
 constexpr double rub_acceleration = 0.25;
+
+// The jaw first: what it held has then been let go of.
+constexpr std::array<std::size_t, joint_count> order{4, 0, 1, 2, 3};
 
 // The jaw's tips meet before its lower stop is reached.
 double direction(std::size_t joint) { return static_cast<Joint>(joint) == Joint::jaw ? 1 : -1; }
@@ -207,8 +211,7 @@ void Commissioning::step(Time now) {
       }
       if (network_.boot().state != canopen::BootState::done || !network_.operational()) return;
       if (config_.here) return take_here(now);
-      joint_ = 0;
-      return next_joint(now);
+      return begin_work(now);
     case State::enabling:
       power_.switch_on();
       if (power_.state() != safety::Power::State::on) return;  // a drive that had power before is being told off
@@ -225,7 +228,7 @@ void Commissioning::step(Time now) {
     case State::backing_off: return back_off(now);
     case State::releasing:
       if (axis().state() != canopen::AxisState::disabled) return;
-      ++joint_;
+      ++turn_;
       return next_joint(now);
     case State::halting:
       if (power_.state() != safety::Power::State::stopping) go(State::powering_off, now);
@@ -242,10 +245,30 @@ void Commissioning::step(Time now) {
   }
 }
 
+const char* Commissioning::why_not() const {
+  constexpr auto jaw = static_cast<std::size_t>(Joint::jaw);
+  const bool arm_moves = std::any_of(config_.joints.begin(), config_.joints.begin() + arm_joint_count, [](bool one) { return one; });
+  if (!arm_moves || config_.joints[jaw]) return nullptr;
+  if (!config_.jaw_known || network_.axis(Joint::jaw).zero_lost()) return "nobody knows whether the jaw is empty: commission it, too";
+  const std::int32_t counts = network_.axis(Joint::jaw).actual_counts() - config_.network.drives[jaw].encoder_zero_counts;
+  if (arm::stands_empty(arm::rad_from_counts(Joint::jaw, counts), config_.bar_m)) return nullptr;
+  return "the jaw may hold something, which the arm would drag along: commission the jaw, too, which opens it";
+}
+
+void Commissioning::begin_work(Time now) {
+  if (const char* why = why_not()) return fail(why, now);
+  turn_ = 0;
+  next_joint(now);
+}
+
 void Commissioning::next_joint(Time now) {
-  while (joint_ < joint_count && !config_.joints[joint_]) ++joint_;
+  while (turn_ < joint_count && !config_.joints[order[turn_]]) ++turn_;
   joint_since_ = now;
-  if (joint_ < joint_count) return go(State::enabling, now);
+  if (turn_ < joint_count) {
+    joint_ = order[turn_];
+    return go(State::enabling, now);
+  }
+  joint_ = joint_count;
   network_.shut_down();
   go(State::stopping, now);
 }
@@ -257,7 +280,7 @@ void Commissioning::take_here(Time now) {
     found_[i] = true;
     losses_when_found_[i] = network_.axis(static_cast<Joint>(i)).stats().zeros_lost;
   }
-  joint_ = joint_count;
+  turn_ = joint_count;
   next_joint(now);
 }
 
@@ -339,15 +362,17 @@ double Commissioning::off_stop_counts() const {
   return stop_counts_ - direction(joint_) * back_off_windows * config_.network.drives[joint_].following_window_counts;
 }
 
-double Commissioning::goal_counts() const {
+double Commissioning::started_off_stop() const {
   const double off_stop = off_stop_counts();
   return direction(joint_) < 0 ? std::max<double>(started_counts_, off_stop) : std::min<double>(started_counts_, off_stop);
 }
 
+double Commissioning::goal_counts() const { return static_cast<Joint>(joint_) == Joint::jaw ? off_stop_counts() : started_off_stop(); }
+
 // The stretch begins off the stop and goes where the joint has just come from: there is nothing on it.
 void Commissioning::begin_rubbing(Time now) {
   const double window = config_.network.drives[joint_].following_window_counts;
-  const double length = std::min(std::abs(goal_counts() - off_stop_counts()), most_rub_windows * window);
+  const double length = std::min(std::abs(started_off_stop() - off_stop_counts()), most_rub_windows * window);
   if (length < least_rub_windows * window) return go(State::backing_off, now);
   rub_from_ = off_stop_counts();
   rub_to_ = rub_from_ - direction(joint_) * length;
@@ -389,7 +414,7 @@ void Commissioning::end_rubbing() {
   friction_[joint_] = {found.coulomb * mnm, found.viscous * mnm / motor_rad_s, found.rms * mnm};
 }
 
-// To where it was: an arm that is left unfolded stands outside of its workspace, and no order leads it back. From a stop, off it.
+// To where it was: an arm that is left unfolded stands outside of its workspace, and no order leads it back. From a stop, off it. The jaw stays open.
 void Commissioning::back_off(Time now) {
   const canopen::DriveSetup& drive = config_.network.drives[joint_];
   const double window = drive.following_window_counts;

@@ -1,7 +1,8 @@
 // Commissioning: what each drive's absolute encoder counts where the arm's own count is 0, and how its motor and gear rub.
 //
 // One joint after the other is powered, moved slowly against a stop with a third of its rated torque (a screw: two thirds), eased off until it only touches, read there, moved
-// both ways at two speeds over a stretch that it has just passed, from which friction_fit.hpp has its friction, moved back to where it was, and released: the stop's angle is known from the arm's description. A joint that presses has wound up its gear: read under that torque the slew would be 0.4 deg off.
+// both ways at two speeds over a stretch that it has just passed, from which friction_fit.hpp has its friction, moved back to where it was, and released: the stop's angle is known from the arm's description.
+// The jaw comes first and stays open: the arm would drag along what it holds. Without it the arm's joints are moved only where the jaw is known to stand empty. A joint that presses has wound up its gear: read under that torque the slew would be 0.4 deg off.
 // The drives' own references are not touched. A plain object like the core, run by the control thread in the core's place: frames and the time in, frames
 // out, no heap. It stands on the core's own network and axes.
 //
@@ -32,6 +33,8 @@ class Commissioning {
         backlash_rad{};  // of each gear, as the arm's description has it: the motor touches half of it beyond the stop
     std::array<arm::TransmissionSetup, joint_count> transmissions;  // their friction, as far as it is known before
     bool here = false;                                              // the arm stands at its zero, in a jig: nothing is moved
+    double bar_m = 0;                                               // what the jaw is opened for: its thickness
+    bool jaw_known = false;                                         // its zero in `network` is true
     double speed_fraction = 0.3;  // of each drive's maximum: 0.13 rad/s of the slew, above its stiction of 0.06
     // Of the rated torque: free motion under water takes less than a fifth. At a stroke's end a screw has a third of its lever left: with less than two
     // thirds of the torque the arm's weight stops the shoulder short.
@@ -93,6 +96,9 @@ class Commissioning {
   bool hear_set_points();
   bool presses_too_hard();
   void step(Time now);
+  // Before the first: why none may be moved, if so.
+  const char* why_not() const;
+  void begin_work(Time now);
   void next_joint(Time now);
   void take_here(Time now);
   void seek(Time now);
@@ -103,7 +109,8 @@ class Commissioning {
   void end_rubbing();
   void back_off(Time now);
   double off_stop_counts() const;
-  double goal_counts() const;  // where it is left: where it was, off the stop
+  double started_off_stop() const;  // where it was, off the stop
+  double goal_counts() const;       // where it is left
 
   Config config_;
   canopen::Network network_;
@@ -114,6 +121,7 @@ class Commissioning {
   bool emergency_stopped_ = false;
   std::array<bool, joint_count> powered_{};  // asked to take power, and not heard to be without it since
   std::array<char, 160> failure_{};
+  std::size_t turn_ = 0;  // of the joints, in their order
   std::size_t joint_ = 0;
   std::array<std::int32_t, joint_count> zero_counts_{};
   std::array<bool, joint_count> found_{};

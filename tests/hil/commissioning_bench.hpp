@@ -53,6 +53,10 @@ class CommissioningBench {
     config.network = nominal_.controller.network;
     config.backlash_rad = backlash_rad_;
     config.transmissions = nominal_.controller.transmissions;
+    // The jaw's zero is an old one.
+    config.network.drives[4].encoder_zero_counts = zeros_[4];
+    config.jaw_known = true;
+    config.bar_m = nominal_.controller.mission.layout.handle_thickness_m;
     return config;
   }
 

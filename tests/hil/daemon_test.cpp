@@ -184,6 +184,12 @@ TEST_F(AssembledDaemon, TakesTheZeroOfADriveThatLostItsPosition) {
       "the lost zero", [&] { return ask("status").value("without a zero", "") == "jaw"; }, 5);
   for (const char* request : {"start", "home"}) expect_refused(request, "jaw");
   EXPECT_FALSE(sea->any_powered());
+  // Nor does a daemon that is started anew.
+  wait_until(
+      "the file", [&] { return !config::read_homing_file(folder / "homing.yaml").known[4]; }, 5);
+  EXPECT_TRUE(config::read_homing_file(folder / "homing.yaml").known[3]);
+  wait_until(
+      "the log", [&] { return events().find("\"kind\":\"zeros_lost\"") != std::string::npos; }, 5);
 }
 
 TEST_F(AssembledDaemon, TakesTheZeroOfADriveThatLostItsPositionWhileAnotherWasCommissioned) {

@@ -306,7 +306,7 @@ TEST(Reset, AfterAStopInTheTurnNoArmJointIsJoggedBeforeTheJawIsOpen) {
   EXPECT_LT(pulled_n, 60) << rig.story();
   EXPECT_NEAR(rig.world().valve_angle_rad(), valve_rad, 0.02);
   ASSERT_TRUE(jog(rig, Joint::jaw, 0.1));
-  ASSERT_TRUE(finish_jog(rig)) << rig.story();
+  finish();
   EXPECT_FALSE(jog(rig, Joint::slew, -0.1)) << "the bar is still between the fingers";
   ASSERT_TRUE(jog(rig, Joint::jaw, 0.2));
   finish();
@@ -314,6 +314,20 @@ TEST(Reset, AfterAStopInTheTurnNoArmJointIsJoggedBeforeTheJawIsOpen) {
   EXPECT_TRUE(jog(rig, Joint::slew, -0.05)) << rig.story();
   finish();
   EXPECT_LT(pulled_n, 60) << rig.story();
+}
+
+// The jaw's encoder says "open" while the jaw closes on the bar. A reset makes it no more trustworthy.
+TEST(Reset, OfAJawWhoseEncoderStoodStillLetsNoArmJointBeJogged) {
+  Rig rig(turn_only());
+  ASSERT_TRUE(reach(rig, {Step::grip, 0.0, "gripping"})) << rig.story();
+  rig.devices().add_fault({0, devices::DeviceFaultKind::stuck_encoder, 5}, rig.now());
+  rig.run_for(1);
+  ASSERT_TRUE(give(rig, Command::emergency_stop));
+  rig.run_for(1.5);
+  ASSERT_TRUE(give(rig, Command::reset));
+  rig.run_for(0.5);
+  ASSERT_TRUE(home(rig)) << rig.story();
+  for (const Joint joint : {Joint::slew, Joint::shoulder, Joint::elbow, Joint::roll}) EXPECT_FALSE(jog(rig, joint, 0.05));
 }
 
 TEST(Reset, AfterAnEndIsAsNew) {

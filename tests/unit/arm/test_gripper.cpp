@@ -117,16 +117,51 @@ TEST(Gripper, IsJammedBySomethingThickerThanTheBar) {
   EXPECT_EQ(run.run(5), GripperState::jammed);
 }
 
+// Closed is closed, however thick the bar: a hose of 20 mm in a jaw for bars of 40 mm is something that is held.
 TEST(Gripper, MayHoldWhatFitsBetweenClosedAndOpen) {
-  for (const double bar_m : {0.008, 0.0126, 0.040}) {
+  const double stop_rad = arm_geometry::joints[4].lower_rad;
+  for (const double bar_m : {thinnest_bar_m, 0.0126, 0.040, thickest_bar_m()}) {
     GripperConfig config;
     config.bar_m = bar_m;
     const Gripper gripper(config);
-    EXPECT_FALSE(gripper.may_hold(jaw_from_gap(0.0013))) << "closed to its stop";
-    EXPECT_TRUE(gripper.may_hold(jaw_from_gap(bar_m))) << bar_m;
-    EXPECT_TRUE(gripper.may_hold(jaw_from_gap(bar_m + 0.040))) << bar_m;
+    EXPECT_FALSE(gripper.may_hold(stop_rad)) << "closed to its stop";
+    EXPECT_FALSE(gripper.may_hold(stop_rad + 2 * config.stall_rad)) << "as far as it counts as empty";
+    for (const double gap_m : {0.004, 0.005, 0.020, bar_m - 0.004, bar_m, bar_m + 0.040})
+      EXPECT_TRUE(gripper.may_hold(jaw_from_gap(gap_m))) << bar_m << ", " << gap_m;
     EXPECT_FALSE(gripper.may_hold(jaw_from_gap(jaw_opening_m(bar_m)))) << bar_m;
+    EXPECT_TRUE(gripper.may_hold(std::nan("")));
   }
+}
+
+TEST(Gripper, MayHoldWhatItsLastOrderEndedAt) {
+  const double open_rad = jaw_from_gap(jaw_opening_m(GripperConfig().bar_m));
+  GripperRun jammed;
+  jammed.jaw.stop_closing_rad = jaw_from_gap(0.030);
+  jammed.gripper.close();
+  ASSERT_EQ(jammed.run(5), GripperState::jammed);
+  EXPECT_TRUE(jammed.gripper.may_hold(open_rad)) << "wherever it is said to stand";
+  GripperRun dropped;
+  dropped.jaw.stop_closing_rad = 0;
+  dropped.gripper.close();
+  ASSERT_EQ(dropped.run(4), GripperState::held);
+  EXPECT_TRUE(dropped.gripper.may_hold(open_rad));
+  dropped.jaw.stop_closing_rad = -0.0555;
+  ASSERT_EQ(dropped.run(0.5), GripperState::dropped);
+  EXPECT_TRUE(dropped.gripper.may_hold(open_rad));
+}
+
+// After a reset the gripper is a new one.
+TEST(Gripper, IsInDoubtUntilItsJawIsSeenToMove) {
+  GripperRun run;
+  run.gripper.doubt();
+  EXPECT_EQ(run.run(0.1), GripperState::idle);
+  EXPECT_TRUE(run.gripper.may_hold(jaw_from_gap(jaw_opening_m(GripperConfig().bar_m))));
+  run.gripper.turn_to(run.jaw.q_rad + 0.04);
+  run.run(2);
+  EXPECT_TRUE(run.gripper.doubted());
+  run.gripper.turn_to(run.jaw.q_rad + 0.02);
+  run.run(2);
+  EXPECT_FALSE(run.gripper.doubted());
 }
 
 TEST(Gripper, NoticesThatTheBarSlippedOut) {
