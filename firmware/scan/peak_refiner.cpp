@@ -55,6 +55,8 @@ std::size_t BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::refine(const PixelView
   if (background.valid() && (background.width != image.width || background.height != image.height)) return 0;
   if (peaks.empty()) return 0;
   const Pair pair{image, background};
+  // What a few columns told, of a hand's edge perhaps, does not outlive the picture that shows the stripe.
+  if (begun_ && peaks.size() >= far_more * begun_with_) begin_anew();
   gain_ = background.valid() ? gain_between(image, background, config_.full_scale) : 1;
   // In clear water the haze is looked at now and then.
   hazy_ = background.valid() && (optics().scatter > clear_water || pictures_ % look_for_haze == 0);
@@ -62,8 +64,6 @@ std::size_t BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::refine(const PixelView
     haze_on_.compute(image, config_.haze_near_px);
     haze_off_.compute(background, config_.haze_near_px);
   }
-  // What a few columns told, of a hand's edge perhaps, does not outlive the picture that shows the stripe.
-  if (begun_ && peaks.size() >= far_more * begun_with_) begin_anew();
   if (pictures_ % look_for_haze == 0) learn_read_noise(pair);
   learn(pair, peaks);
 

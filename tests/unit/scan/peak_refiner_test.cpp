@@ -272,9 +272,14 @@ TEST(PeakRefiner, BegunAnewItIsAsNew) {
 }
 
 // The first pictures of a sweep show a few columns of the hand's edge, out of focus. A lens of 2.5 px that they told held for the panel's first hundred pictures.
-TEST(PeakRefiner, AFewColumnsTellNothingOfTheNextPicture) {
+class AFewColumns : public testing::TestWithParam<double> {};  // the scatter
+
+// On plain paint, which tells nothing of the haze to who does not look for it.
+TEST_P(AFewColumns, TellNothingOfTheNextPicture) {
   FormedStripe edge = scene(2.0), s = scene(1.2);
   edge.lens_sigma_px = 3.0;
+  edge.bars.contrast = 1;
+  s.scatter_to_camera = GetParam();
   const auto used = std::make_unique<PeakRefiner>(), fresh = std::make_unique<PeakRefiner>();
   for (edge.seed = 1; edge.seed <= 4; ++edge.seed) {
     const FormedImage image = form(edge);
@@ -288,8 +293,11 @@ TEST(PeakRefiner, AFewColumnsTellNothingOfTheNextPicture) {
   (void)over_angles(s, *fresh);
   EXPECT_EQ(width_in_picture_px(used->optics()), width_in_picture_px(fresh->optics()));
   EXPECT_EQ(used->optics().lens_px, fresh->optics().lens_px);
+  EXPECT_EQ(used->optics().scatter, fresh->optics().scatter);
   EXPECT_EQ(used->noise().model, fresh->noise().model);
 }
+
+INSTANTIATE_TEST_SUITE_P(InClearAndTurbidWater, AFewColumns, testing::Values(0.0, 0.35));
 
 // Asked for: 0.07 px. The window's ends, where the stripe had not ended, bent it by 0.08 px.
 TEST(PeakRefiner, WithoutNoiseAPictureAloneHasNoBias) {
