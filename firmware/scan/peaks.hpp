@@ -76,7 +76,6 @@ class BasicPeakDetector {
   std::size_t detect(const PixelView<Pixel>& image, const PixelView<Pixel>& background, std::span<Peak> peaks);
 
   const PeakCounters& counters() const { return counters_; }
-  const Config& config() const { return config_; }
 
  private:
   // 64 lines at a time: their rows, sums and maxima stay in the first-level cache.

@@ -30,8 +30,8 @@ hal::PortStatus KnownSight::receive_image(std::uint8_t camera, Image& image) {
 hal::PortStatus KnownSight::submit_panel(const PanelRequest& request, ImageView, std::span<const CloudPoint>) {
   ++questions_;
   if (!answers_) return hal::port_ok;
-  answer_ =
-      hal::panel_as_it_is(base_from_panel_ * Eigen::Translation3d(shift_m_), inner_.world().valve_angle_rad(), layout_, marker_, camera_);
+  answer_ = hal::panel_as_it_is(base_from_panel_ * Eigen::Translation3d(shift_m_), inner_.world().valve_angle_rad() + handle_rad_, layout_,
+                                marker_, camera_);
   answer_->id = request.id;
   answer_->measured = inner_.now();
   answer_due_ = inner_.now() + answer_time;

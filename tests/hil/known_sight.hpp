@@ -24,6 +24,8 @@ class KnownSight : public hal::Unattended {
   void answer(bool answers) { answers_ = answers; }
   // From now on the panel is seen shifted by so much, in its own axes.
   void mistake(const Vec3& shift_m) { shift_m_ = shift_m; }
+  // From now on the handle is seen turned by so much.
+  void mistake_handle(double rad) { handle_rad_ = rad; }
   // So many of the pictures that come from now on get lost.
   void lose_images(std::uint32_t count) { images_to_lose_ = count; }
   // From now on the camera hands out the same picture: with its old number and stamp, or, when it is only the sensor that hangs, with new ones.
@@ -48,6 +50,7 @@ class KnownSight : public hal::Unattended {
   Pose base_from_panel_;
   bool answers_ = true;
   Vec3 shift_m_ = Vec3::Zero();
+  double handle_rad_ = 0;
   std::uint32_t images_to_lose_ = 0;
   Frozen frozen_ = Frozen::no;
   std::optional<Image> last_image_;

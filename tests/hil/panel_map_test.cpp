@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 
 #include "tests/hil/known_sight.hpp"
@@ -39,6 +40,15 @@ TEST(PanelMap, TellsEveryAngleBetweenTheStopsByItsPointer) {
     ASSERT_EQ(map.update(panel.seen(degrees)), StepFailure::none) << degrees;
     EXPECT_NEAR(deg_from_rad(map.handle_rad()), degrees, a_tenth_deg);
   }
+}
+
+TEST(PanelMap, APlaneThatIsNoNumberIsNoPanel) {
+  const Panel panel;
+  PanelMap map = panel.map();
+  PanelResult result = panel.seen(20);
+  result.fit.plane.offset_m = std::nan("");
+  EXPECT_EQ(map.update(result), StepFailure::no_panel);
+  EXPECT_FALSE(map.known());
 }
 
 TEST(PanelMap, WithoutAPointerTakesWhatTheStopsMakeUniqueAndRefusesTheRestByName) {

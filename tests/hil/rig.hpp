@@ -49,6 +49,13 @@ class Rig {
     fault.at_s = now().s();
     platform_->add_fault(fault);
   }
+  // From now on the handle is gone.
+  void break_handle() {
+    hal::SimFault fault;
+    fault.kind = hal::SimFaultKind::handle_breaks;
+    fault.at_s = now().s();
+    platform_->add_fault(fault);
+  }
   devices::Devices& devices() { return platform_->devices(); }
   const world::World& world() const { return platform_->world(); }
   const ScanPipeline& pipeline() const { return lockstep_->pipeline(); }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "firmware/arm/gripper.hpp"
 #include "tests/hil/rig.hpp"
 
 namespace lf::test {
@@ -41,6 +42,47 @@ TEST(Turn, ThatStallsIsLetGoLookedAtAndTakenUpAgain) {
   EXPECT_EQ(times_begun(rig, Step::turn), 2) << rig.story();
   EXPECT_EQ(rig.count(Fault::step_failed), 1u) << rig.story();
   EXPECT_TRUE(rig.world().contacts().unintended.empty());
+}
+
+// Something thicker than the bar is between the fingers: they are not closed on it again.
+TEST(AGrip, OfWhatIsNoBarIsGivenUpAtOnce) {
+  Rig rig(turn_only());
+  rig.start();
+  ASSERT_TRUE(rig.run_to(Step::grip)) << rig.story();
+  rig.block_jaw(arm::jaw_from_gap(0.030), arm_geometry::joints[4].upper_rad);
+  ASSERT_TRUE(rig.run_to_end()) << rig.story();
+  EXPECT_EQ(rig.outcome().fault, Fault::step_failed) << rig.story();
+  EXPECT_EQ(rig.outcome().code, static_cast<std::int32_t>(StepFailure::not_gripped)) << rig.story();
+  EXPECT_EQ(times_begun(rig, Step::grip), 1) << rig.story();
+  EXPECT_EQ(times_begun(rig, Step::turn), 0) << rig.story();
+}
+
+// The handle breaks off in the jaw, which closes on nothing.
+TEST(Turn, ThatLosesItsHandleSaysSoAndLooksAgain) {
+  Rig rig(turn_only());
+  rig.start();
+  ASSERT_TRUE(rig.run_to(Step::turn)) << rig.story();
+  rig.run_for(1);
+  rig.break_handle();
+  ASSERT_TRUE(rig.run_to_end()) << rig.story();
+  EXPECT_EQ(rig.count(Fault::grip_lost), 1u) << rig.story();
+  EXPECT_FALSE(rig.outcome().success);
+  EXPECT_EQ(rig.outcome().code, static_cast<std::int32_t>(StepFailure::not_gripped)) << "there is nothing any more: " << rig.story();
+  EXPECT_EQ(times_begun(rig, Step::turn), 1) << rig.story();
+}
+
+// The handle has followed, and both looks after it see it elsewhere.
+TEST(Turn, WhoseHandleIsSeenElsewhereIsTriedAsOftenAsMayBeAndFails) {
+  Rig rig(turn_only());
+  rig.start();
+  ASSERT_TRUE(rig.run_to(Step::turn)) << rig.story();
+  rig.sight().mistake_handle(rad_from_deg(-25));
+  ASSERT_TRUE(rig.run_to_end()) << rig.story();
+  EXPECT_FALSE(rig.outcome().success);
+  EXPECT_EQ(rig.outcome().fault, Fault::step_failed) << rig.story();
+  const auto why = static_cast<StepFailure>(rig.outcome().code);
+  EXPECT_TRUE(why == StepFailure::slipped || why == StepFailure::wrong_angle || why == StepFailure::not_gripped) << rig.story();
+  EXPECT_EQ(times_begun(rig, Step::turn), 3) << rig.story();
 }
 
 TEST(Turn, OfAHandleThatIsStuckIsTriedThreeTimesAndEndsStowed) {

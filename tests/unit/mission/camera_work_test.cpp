@@ -24,7 +24,10 @@ class Bench {
     now_ = now_ + period;
     report();  // the answer to the last SYNC
     ScanOrders orders;
+    while (orders_full && orders.push_back({})) {
+    }
     work.tick(now_, io_, orders);
+    if (orders_full) orders.clear();
     for (const ScanCommand& order : orders) {
       all.push_back(order);
       if (order.kind == ScanCommand::Kind::exposure) coming_.push_back(order.exposure_start);
@@ -52,6 +55,7 @@ class Bench {
   std::vector<ScanCommand> all;
   int break_at_cycle = -1;
   int images_to_lose = 0;
+  bool orders_full = false;
   int silences = 0;
   Time now() const { return now_; }
   const canopen::IoModule& io() const { return io_; }
@@ -170,6 +174,33 @@ TEST(CameraWork, ACameraWithoutImagesIsSilentAfterTheStaleTime) {
   bench.images_to_lose = 0;
   bench.run(100);
   EXPECT_EQ(bench.silences, 1) << "it is back";
+}
+
+// The vision thread is told of no exposure: its picture would be one without an order.
+TEST(CameraWork, AnExposureThatCannotBeOrderedIsDropped) {
+  Bench bench({});
+  bench.work.set_mode(CameraWork::Mode::sweep, bench.now());
+  bench.orders_full = true;
+  bench.run(100);
+  EXPECT_EQ(bench.work.dropped(), bench.work.exposures());
+  EXPECT_GT(bench.work.dropped(), 5u);
+  EXPECT_EQ(bench.work.images_lost(), 0u) << "nothing is waited for";
+  bench.orders_full = false;
+  bench.run(100);
+  EXPECT_LT(bench.work.dropped(), bench.work.exposures());
+}
+
+// 32 exposures are waited for. Of a camera that is as slow as this the oldest is given up, and counted.
+TEST(CameraWork, OfMorePicturesThanAreWaitedForTheOldestIsLost) {
+  CameraWork::Config config;
+  config.camera_syncs = 2;
+  config.stale_image = Duration::from_ms(2000);
+  Bench bench(config);
+  bench.work.set_mode(CameraWork::Mode::sweep, bench.now());
+  bench.images_to_lose = 1000;
+  bench.run(2 * 42);
+  EXPECT_EQ(bench.work.exposures(), 42u);
+  EXPECT_EQ(bench.work.images_lost(), 10u);
 }
 
 TEST(CameraWork, TheLastImageOfASweepMayBeLost) {

@@ -146,6 +146,23 @@ TEST(Motion, TheSweepIsStrictlyAtConstantSpeedBetweenRunUpAndRunOut) {
   EXPECT_NEAR(cruising * period_s, plan.duration.s(), 0.02);
 }
 
+// The sweep's speed is the mission's; the elbow may not go as fast.
+TEST(Motion, ASweepFasterThanItsJointMayGoIsRefused) {
+  const PanelLayout layout;
+  scan::SweepRequest request;
+  request.base_from_panel = layout.nominal_base_from_panel();
+  LaserCalibration laser;
+  laser.tool_from_laser.translation() = Vec3(-0.090, 0, -0.365);
+  safety::Limits slow = limits();
+  slow.joints[2].max_speed_rad_s = 0.5 * request.slowest_rad_s;
+  Motion motion(slow, layout, {}, park);
+  motion.start_at(park);
+  motion.go_to_sweep(request, laser, closed_before(request.base_from_panel), 0, 0.6);
+  EXPECT_FALSE(planned(motion));
+  EXPECT_EQ(motion.failure(), StepFailure::unreachable);
+  EXPECT_EQ(motion.target(), park);
+}
+
 // A board of 100 x 400 mm stands in the arm's space: nothing else of the panel is anywhere near.
 PanelLayout board() {
   PanelLayout layout;
@@ -186,6 +203,13 @@ double straight_s() {
   motion.start_at(behind_board);
   motion.go(std::array{past_board}, 0.6);
   return motion.duration_s();
+}
+
+TEST(MotionPastThePanel, SaysWhatBarsIt) {
+  EXPECT_EQ(failure_of(arm::Barrier::panel), StepFailure::panel_in_the_way);
+  EXPECT_EQ(failure_of(arm::Barrier::vehicle), StepFailure::vehicle_in_the_way);
+  EXPECT_EQ(failure_of(arm::Barrier::itself), StepFailure::arm_in_its_own_way);
+  EXPECT_EQ(failure_of(arm::Barrier::none), StepFailure::no_motion);
 }
 
 TEST(MotionPastThePanel, IsStraightWhereThatIsClear) {

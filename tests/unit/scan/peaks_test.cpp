@@ -196,6 +196,11 @@ TEST(Peaks, AWidePlateauIsSaturatedNotAStripe) {
   std::vector<Peak> peaks(width);
   EXPECT_EQ(detector->detect(ImageView{image.data(), width, height, width}, {}, peaks), 0u);
   EXPECT_EQ(detector->counters().saturated, 64u);
+  // Two more of them: none is a stripe's.
+  std::fill(image.begin() + 8 * width, image.begin() + 24 * width, 255);
+  std::fill(image.begin() + 76 * width, image.begin() + 94 * width, 255);
+  EXPECT_EQ(detector->detect(ImageView{image.data(), width, height, width}, {}, peaks), 0u);
+  EXPECT_EQ(detector->counters().saturated, 128u);
 }
 
 // Its outer flank is beyond the image: the peak was given beyond it, too.

@@ -450,6 +450,29 @@ TEST_F(ScanOrders, StripesWithoutJointsAboutThemGiveNoPoints) {
   EXPECT_EQ(stats().points_no_joints, stats().peaks);
 }
 
+// A laser makes one stripe, and a second one on a part before the panel. Of three in a column none is believed.
+TEST_F(ScanOrders, OfThreeStripesInAColumnNoneIsBelieved) {
+  std::vector<std::uint8_t> three = stripe_;
+  for (const double elbow_rad : {1.4, 1.6}) {
+    const std::vector<std::uint8_t> other = bench_->picture({0, 0.95, elbow_rad, 0}, true);
+    std::transform(three.begin(), three.end(), other.begin(), three.begin(), [](std::uint8_t a, std::uint8_t b) { return std::max(a, b); });
+  }
+  std::vector<std::size_t> points_of;
+  for (const auto* picture : {&stripe_, &three}) {
+    begin();
+    const int sync = next_;
+    bench_->order(ScanBench::time(sync + 10), ExposureKind::background);
+    bench_->send(ScanBench::time(sync + 10), dark_);
+    bench_->order(ScanBench::time(sync + 20), ExposureKind::laser_on);
+    bench_->send(ScanBench::time(sync + 20), *picture);
+    joints_until(sync + 40);
+    points_of.push_back(points());
+  }
+  EXPECT_GT(points_of[0], 300u);
+  EXPECT_GT(stats().peaks_ambiguous, 100u);
+  EXPECT_LT(points_of[1], points_of[0] / 2);
+}
+
 TEST_F(ScanOrders, AFullCloudCountsWhatItLoses) {
   begin();
   for (int i = 0; i < 600; ++i) {
