@@ -26,14 +26,18 @@ struct Samples {
 };
 
 template <class Pixel>
-void take(const PixelView<Pixel>& on, const PixelView<Pixel>& off, std::int32_t full_scale, Samples& samples) {
+void take(const PixelView<Pixel>& on, const PixelView<Pixel>& off, std::int32_t full_scale, bool on_its_side, Samples& samples) {
   const float least = dark * static_cast<float>(full_scale), most = nearly_white * static_cast<float>(full_scale);
+  const std::int32_t width = on_its_side ? on.height : on.width, height = on_its_side ? on.width : on.height;
+  const auto pixel = [on_its_side](const PixelView<Pixel>& image, std::int32_t u, std::int32_t v) {
+    return static_cast<float>(on_its_side ? image.row(u)[v] : image.row(v)[u]);
+  };
   for (std::int32_t row = 0; row < down; ++row) {
-    const std::int32_t v = (2 * row + 1) * on.height / (2 * down);
+    const std::int32_t v = (2 * row + 1) * height / (2 * down);
     for (std::int32_t column = 0; column < across; ++column) {
       const std::int32_t u =
-          (4 * column + 1 + 2 * (row % 2)) * on.width / (4 * across);  // every other row between the columns of the one before
-      const auto a = static_cast<float>(on.row(v)[u]), b = static_cast<float>(off.row(v)[u]);
+          (4 * column + 1 + 2 * (row % 2)) * width / (4 * across);  // every other row between the columns of the one before
+      const float a = pixel(on, u, v), b = pixel(off, u, v);
       if (!(a > least && b > least && a < most && b < most)) continue;
       const auto i = static_cast<std::size_t>(samples.count++);
       samples.on[i] = a;
@@ -77,10 +81,10 @@ std::int32_t commonest(const Samples& samples) {
 }  // namespace
 
 template <class Pixel>
-float gain_between(const PixelView<Pixel>& on, const PixelView<Pixel>& off, std::int32_t full_scale) {
+float gain_between(const PixelView<Pixel>& on, const PixelView<Pixel>& off, std::int32_t full_scale, bool on_its_side) {
   if (!on.valid() || !off.valid() || on.width != off.width || on.height != off.height) return 1;
   Samples samples;
-  take(on, off, full_scale, samples);
+  take(on, off, full_scale, on_its_side, samples);
   if (samples.count < least_samples) return 1;
   sort_into_bins(samples);
   const std::int32_t best = commonest(samples);
@@ -94,7 +98,7 @@ float gain_between(const PixelView<Pixel>& on, const PixelView<Pixel>& off, std:
   return sum_on / sum_off;
 }
 
-template float gain_between(const PixelView<std::uint8_t>&, const PixelView<std::uint8_t>&, std::int32_t);
-template float gain_between(const PixelView<std::uint16_t>&, const PixelView<std::uint16_t>&, std::int32_t);
+template float gain_between(const PixelView<std::uint8_t>&, const PixelView<std::uint8_t>&, std::int32_t, bool);
+template float gain_between(const PixelView<std::uint16_t>&, const PixelView<std::uint16_t>&, std::int32_t, bool);
 
 }  // namespace lf::scan

@@ -57,7 +57,7 @@ std::size_t BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::refine(const PixelView
   const Pair pair{image, background};
   // What a few columns told, of a hand's edge perhaps, does not outlive the picture that shows the stripe.
   if (begun_ && peaks.size() >= far_more * begun_with_) begin_anew();
-  gain_ = background.valid() ? gain_between(image, background, config_.full_scale) : 1;
+  gain_ = background.valid() ? gain_between(image, background, config_.full_scale, config_.axis == PeakAxis::row) : 1;
   // In clear water the haze is looked at now and then.
   hazy_ = background.valid() && (optics().scatter > clear_water || pictures_ % look_for_haze == 0);
   if (hazy_) {

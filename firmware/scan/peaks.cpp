@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "firmware/scan/exposure_gain.hpp"
+
 namespace lf::scan {
 namespace {
 
@@ -12,6 +14,9 @@ constexpr std::int32_t delay = 9;                // rows from the filter's newes
 constexpr float positive_lobe = 34.0f;           // sum of the filter's positive taps 1 4 7 10 7 4 1
 constexpr std::int32_t exclusion = 8;            // px about a peak in which a second maximum is the same stripe's
 constexpr std::int32_t background_distance = 9;  // px from the peak, where the filter's negative lobe ends
+
+constexpr std::int32_t gain_one = 256;       // a gain of 1 in fixed point
+constexpr std::int32_t gain_told_apart = 3;  // from it: a hundredth, what the pictures tell of it
 
 constexpr std::int32_t few_clipped = 3;  // px at full scale that the filter does not mind
 // Curvature over height of the response: 0.2225..0.227 for a stripe of sigma 1.7 px, more for a narrower one.
@@ -56,6 +61,16 @@ float narrow_peak_about(float centre, const Value& value) {
 template <class Pixel, class Sum>
 [[gnu::noinline]] void subtract(const Pixel* __restrict on, const Pixel* __restrict off, Sum* __restrict out) {
   for (std::int32_t i = 0; i < lanes; ++i) out[i] = static_cast<Sum>(on[i] - off[i]);
+}
+
+// What the background would be with the picture's exposure. Where it is clipped nobody knows: there is no difference.
+template <class Pixel, class Sum>
+[[gnu::noinline]] void subtract_scaled(const Pixel* __restrict on, const Pixel* __restrict off, std::int32_t gain, std::int32_t full_scale,
+                                       Sum* __restrict out) {
+  for (std::int32_t i = 0; i < lanes; ++i) {
+    const std::int32_t scaled = std::min((off[i] * gain + gain_one / 2) / gain_one, full_scale);
+    out[i] = static_cast<Sum>(off[i] < full_scale ? on[i] - scaled : 0);
+  }
 }
 
 // One step of -(1 - z^5)^4 / (1 - z)^2: `x5` is the row five before `x0`, and so on.
@@ -105,6 +120,10 @@ std::size_t BasicPeakDetector<Pixel, MaxLength>::detect(const PixelView<Pixel>& 
     return 0;
 
   if (!background.valid()) off_block_ = {};
+  gain_ = gain_one;
+  if (background.valid())
+    gain_ = static_cast<std::int32_t>(std::lround(gain_one * gain_between(image, background, config_.full_scale, !columns)));
+  if (std::abs(gain_ - gain_one) <= gain_told_apart) gain_ = gain_one;
   std::size_t count = 0;
   for (std::int32_t first = 0; first < lines; first += strip) {
     const Strip s{image, background, first, std::min(strip, lines - first), length};
@@ -130,14 +149,22 @@ void BasicPeakDetector<Pixel, MaxLength>::load_row(const Strip& s, std::int32_t 
       __builtin_prefetch(s.off.row(ahead) + s.first + strip - 1);
     }
     const Pixel* off = s.off.valid() ? s.off.row(row) + s.first : off_block_[0].data();
-    subtract(s.on.row(row) + s.first, off, out);
+    take_difference(s.on.row(row) + s.first, off, out);
     return;
   }
   if (row % strip == 0) {
     load_block(s.on, s, row, on_block_);
     if (s.off.valid()) load_block(s.off, s, row, off_block_);
   }
-  subtract(on_block_[row % strip].data(), off_block_[row % strip].data(), out);
+  take_difference(on_block_[row % strip].data(), off_block_[row % strip].data(), out);
+}
+
+template <class Pixel, std::int32_t MaxLength>
+void BasicPeakDetector<Pixel, MaxLength>::take_difference(const Pixel* on, const Pixel* off, Sum* out) const {
+  if (gain_ == gain_one)
+    subtract(on, off, out);
+  else
+    subtract_scaled(on, off, gain_, config_.full_scale, out);
 }
 
 // Rows `begin` to `begin` + 63 of a strip that is not 64 columns of the image: turned, or narrower.
@@ -295,7 +322,11 @@ std::int32_t BasicPeakDetector<Pixel, MaxLength>::pixel(const PixelView<Pixel>& 
 template <class Pixel, std::int32_t MaxLength>
 std::int32_t BasicPeakDetector<Pixel, MaxLength>::difference(const Strip& s, std::int32_t line, std::int32_t row) const {
   const std::int32_t inside = std::clamp<std::int32_t>(row, 0, s.length - 1);
-  return pixel(s.on, line, inside) - (s.off.valid() ? pixel(s.off, line, inside) : 0);
+  const std::int32_t on = pixel(s.on, line, inside);
+  if (!s.off.valid()) return on;
+  const std::int32_t off = pixel(s.off, line, inside);
+  if (gain_ == gain_one) return on - off;
+  return off < config_.full_scale ? on - std::min((off * gain_ + gain_one / 2) / gain_one, config_.full_scale) : 0;
 }
 
 // The run of full-scale pixels at the peak; empty when none of the three about it is at full scale.

@@ -69,7 +69,7 @@ class BasicPeakDetector {
 
   // Finds at most `peaks_per_line` peaks in each column (row) of `image` less `background`, and writes them to `peaks` in the order of columns
   // (rows), within one the strongest first.
-  // `background`: the same scene with the laser off, the same size; an invalid (empty) view leaves the differencing out.
+  // `background`: the same scene with the laser off, the same size, of the same exposure or another; an invalid (empty) view leaves the differencing out.
   // Returns the number written; columns without a good peak are counted in `counters()`. Writes nothing when the image is not valid, of
   // another size than the background, shorter than `min_length`, longer than `max_length`, or when `peaks` has less than `peaks_per_line` places a column.
   // O(width * height), no allocation.
@@ -98,6 +98,7 @@ class BasicPeakDetector {
   };
 
   void load_row(const Strip& s, std::int32_t row);
+  void take_difference(const Pixel* on, const Pixel* off, Sum* out) const;
   void load_block(const PixelView<Pixel>& image, const Strip& s, std::int32_t begin, std::array<Lanes<Pixel>, strip>& block) const;
   void sweep(const Strip& s);
   struct Maximum {
@@ -121,6 +122,7 @@ class BasicPeakDetector {
 
   Config config_;
   PeakCounters counters_;
+  std::int32_t gain_ = 256;  // of the picture's exposure over the background's, in 256ths
   alignas(64) std::array<Lanes<Pixel>, strip> on_block_{}, off_block_{};
   alignas(64) std::array<Lanes<Sum>, 32> rows_{};               // the newest rows of the difference; the filter looks back 20
   alignas(64) Lanes<Sum> sum_{}, sum_of_sums_{};                // the filter's two integrators

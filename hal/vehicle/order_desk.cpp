@@ -27,7 +27,8 @@ std::string why_not(Command command) {
   switch (command) {
     case Command::start: return "a joint stands outside its limits: jog it back first";
     case Command::jog:
-      return "it leads out of the joint's limits, the jaw may hold something (open or close it first), or another order is being taken";
+      return "it leads out of the joint's limits or the tool out of its workspace, the jaw may hold something (open it, or close it to its "
+             "stop, first), or another order is being taken";
     default: return "it came too late, or another order is being taken";
   }
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -123,10 +124,10 @@ Pull pull(const Vec3& mistake_m) {
 
 class MisplacedHandle : public testing::TestWithParam<Vec3> {};
 
-// Rigid, the drives would pull with 130 to 160 N. Compliant, they end anywhere from 12 to 67 N: 0.01 mm of the mistake, or another build's rounding, moves it by 30.
-// The bound lies midway between the two.
+// They pull with 17 to 43 N: 0.01 mm of the mistake, or another build's rounding, moves that by 30. The bound is midway to what a rigid arm was seen to pull with.
 TEST_P(MisplacedHandle, IsTurnedWithoutForcingIt) {
   const Pull pulled = pull(GetParam());
+  std::printf("it pulls with %.0f N\n", pulled.settled_n);
   EXPECT_LT(pulled.settled_n, 95) << pulled.story;
   EXPECT_EQ(pulled.end, Step::done) << pulled.story;
 }
