@@ -62,9 +62,9 @@ TEST(CommissionedArm, HasItsFrictionFound) {
     ASSERT_TRUE(commissioning.friction_found()[i]) << config::joint_name(i);
     const config::JointFriction& found = commissioning.friction()[i];
     const devices::DriveConfig& drive = bench.drive(i);
-    // A count of the roll is 3 mrad: at a creep it stands between counts, and its gear breaks away again and again.
+    // A count of the roll is 3 mrad: at a creep it stands between counts, and its gear breaks away again and again. It is found 24 % too large, the others to 1.5 %.
     const bool stops = i == 3;
-    EXPECT_NEAR(1e-3 * found.coulomb_mnm, drive.friction.coulomb_nm, (stops ? 0.3 : 0.1) * drive.friction.coulomb_nm)
+    EXPECT_NEAR(1e-3 * found.coulomb_mnm, drive.friction.coulomb_nm, (stops ? 0.3 : 0.03) * drive.friction.coulomb_nm)
         << config::joint_name(i);
     // At the top speed the viscous friction that the core believes in is 4 % of the rated torque; the true one, 12 % or 0.8 %, is found to 2 %, the roll's to 4 %.
     const double top_rad_s = 0.04 * drive.rated_torque_nm / bench.nominal().controller.transmissions[i].friction.viscous_nm_s;
