@@ -29,9 +29,10 @@ void check_torques(const safety::Limits& limits, const ArmDescription& arm, std:
     const bool by_joint = told_nm < limits.max_contact_torque_nm;
     const std::string entry = by_joint ? std::string("joints.") + joint_names[i] + ".max_torque_nm" : "max_contact_torque_nm";
     const double stated_nm = by_joint ? limits.joints[i].max_torque_nm : limits.max_contact_torque_nm;
-    problems.push_back(formatted("'%s' is %.4g: a rise of %.3g N m would count as a contact of the %s, and its free motion takes up to %.3g N "
-                                 "m by itself. It takes more than %.4g N m",
-                                 entry.c_str(), stated_nm, told_nm, joint_names[i], free_nm, free_nm * stated_nm / told_nm));
+    problems.push_back(
+        formatted("'%s' is %.4g: a rise of %.3g N m would count as a contact of the %s, and its free motion takes up to %.3g N "
+                  "m by itself. It takes more than %.4g N m",
+                  entry.c_str(), stated_nm, told_nm, joint_names[i], free_nm, free_nm * stated_nm / told_nm));
   }
 }
 
