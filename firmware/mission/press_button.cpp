@@ -5,10 +5,7 @@ namespace lf::mission {
 namespace {
 
 constexpr double limit_margin_rad = 0.01;
-// The face is where the look says to 3 mm, and the tip where the joints say to 2: what is touched farther out is something else, and what is touched so much
-// deeper than its bottom is not the button.
-constexpr double face_m = 0.008;
-// A stuck cap ends a press no deeper than this below where its face is believed to be, and a tenth of its stroke: the two doubts above, added in squares.
+// A stuck cap ends a press no deeper than this below where its face is believed to be, and a tenth of its stroke: the doubts of press_face_m, added in squares.
 constexpr double deepest_stuck_m = 0.0036;
 constexpr double stuck_share = 0.1;
 // Of a press, until it goes at its speed.
@@ -179,7 +176,7 @@ void PressButton::feel(const StepTick& tick) {
   const double depth_m = (tip - bench.map.button_m(bench.job.task().button)).dot(inward);
   bottom_m_ = depth_m;
   // Far from the face a small force is the friction of the way, which the guard still learns; a large one is the guard's to notice.
-  if (depth_m < -face_m) return;
+  if (depth_m < -press_face_m) return;
   feel_.update(tick.network.config().sync_period.s(), force_n, depth_m);
 }
 
@@ -187,8 +184,8 @@ StepFailure PressButton::judge(const Workbench& bench) const {
   if (pushed_under_way_) return StepFailure::early_contact;
   const double stroke_m = bench.mission().layout.button_stroke_m;
   if (!feel_.touched()) return guard_.touched() ? StepFailure::early_contact : StepFailure::button_missing;
-  if (feel_.touch_depth_m() < -face_m) return StepFailure::early_contact;
-  if (feel_.touch_depth_m() > stroke_m + face_m) return StepFailure::button_missing;
+  if (feel_.touch_depth_m() < -press_face_m) return StepFailure::early_contact;
+  if (feel_.touch_depth_m() > stroke_m + press_face_m) return StepFailure::button_missing;
   const bool moved = feel_.travel_m() >= least_travel * stroke_m;
   // Where the torque that says bottom is set high, a stuck cap holds the press up to the end of its way. The arm gives way by millimetres then: how deep its
   // joints say the tip is tells nothing, only the travel does.

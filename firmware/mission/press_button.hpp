@@ -10,6 +10,10 @@
 
 namespace lf::mission {
 
+// The face is where the look says to 3 mm, and the tip where the joints say to 2: what is touched farther out is something else, and what is touched so much
+// deeper than its bottom is not the button.
+inline constexpr double press_face_m = 0.008;
+
 class PressButton {
  public:
   Progress begin(const StepTick& tick);

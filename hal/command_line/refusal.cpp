@@ -50,6 +50,21 @@ std::string unknown_option(const std::string& word, const std::vector<const CLI:
   return command + " has no option '" + name + "'" + (near.empty() ? "; `" + command + " --help` lists those it has" : near);
 }
 
+// CLI11 says "Could not convert: --x = 0,44".
+std::string wrong_value(const CLI::ConversionError& error, const CLI::App& command) {
+  const std::string said = error.what();
+  const std::size_t name = said.find("--"), equals = said.find(" = ");
+  if (name == std::string::npos || equals == std::string::npos || equals < name) return said;
+  const std::string option = said.substr(name, equals - name), value = said.substr(equals + 3);
+  const CLI::Option* found = command.get_option_no_throw(option);
+  const std::string type = found != nullptr ? found->get_type_name() : "";
+  const std::string takes = type.starts_with("FLOAT")                             ? " takes a number"
+                            : type.starts_with("INT") || type.starts_with("UINT") ? " takes a whole number"
+                                                                                  : " takes another value";
+  const bool comma = type.starts_with("FLOAT") && value.find(',') != std::string::npos;
+  return "'" + option + "'" + takes + ", not '" + value + "'" + (comma ? ": its decimals stand behind a point" : "");
+}
+
 }  // namespace
 
 std::string refusal(const CLI::App& app, const CLI::ParseError& error) {
@@ -58,6 +73,7 @@ std::string refusal(const CLI::App& app, const CLI::ParseError& error) {
   const auto option =
       std::find_if(extras.begin(), extras.end(), [](const std::string& word) { return word.starts_with("-") && word.size() > 1; });
   if (option != extras.end()) return unknown_option(*option, chosen);
+  if (const auto* conversion = dynamic_cast<const CLI::ConversionError*>(&error)) return wrong_value(*conversion, *chosen.back());
   if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr || extras.empty()) return error.what();
   std::vector<std::string> names;
   for (const CLI::App* command : commands_of(*chosen.back())) names.push_back(command->get_name());

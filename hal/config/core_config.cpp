@@ -14,6 +14,7 @@
 #include "firmware/scan/camera_model.hpp"
 #include "hal/config/drive_kind.hpp"
 #include "hal/config/homing_file.hpp"
+#include "hal/config/limits_check.hpp"
 #include "hal/config/limits_file.hpp"
 #include "hal/config/machine.hpp"
 #include "hal/config/motor_check.hpp"
@@ -252,23 +253,67 @@ std::string excess_text(const arm::IkResult& ik) {
   return text;
 }
 
-void check_reach(const Machine& machine, const std::string& what, const Vec3& panel_point_m) {
-  const arm::IkResult ik = arm::inverse_kinematics(machine.panel.nominal_base_from_panel() * panel_point_m, 0);
-  if (!ik.ok()) refuse(machine, what + " is out of the arm's reach at its nominal place: " + excess_text(ik));
-}
+// Where a task takes the tool, or with `tip_m` the tips of the closed fingers, so far beyond it.
+struct Place {
+  std::string what;
+  Vec3 in_panel_m = Vec3::Zero();
+  double tip_m = 0;
+};
 
-void check_reach_of_tasks(const Machine& machine) {
+// Of all tasks, each once.
+std::vector<Place> places_of_tasks(const Machine& machine) {
   const PanelLayout& panel = machine.panel;
+  std::vector<Place> places;
+  const auto add = [&](const Place& place) {
+    if (std::none_of(places.begin(), places.end(), [&](const Place& other) { return other.what == place.what; })) places.push_back(place);
+  };
   for (const Task& task : machine.tasks) {
     if (task.kind == Task::Kind::turn_valve) {
-      check_reach(machine, "the valve", Vec3(0, 0, panel.handle_height_m));
+      add({"the valve", Vec3(0, 0, panel.handle_height_m), 0});
       continue;
     }
     for (const std::string& name : task.order) {
       const Vec2& centre = panel.buttons_m[button_index(name)];
-      check_reach(machine, "the " + name + " button", Vec3(centre.x(), centre.y(), panel.button_height_m));
+      add({"the " + name + " button", Vec3(centre.x(), centre.y(), panel.button_height_m), arm::tip_beyond_tool_m(arm::jaw_from_gap(0))});
     }
   }
+  return places;
+}
+
+// The pose at the panel's nominal place, found as a press finds it (firmware/mission/press_button.cpp): the approach axis depends on the place itself.
+arm::IkResult pose_at(const PanelLayout& panel, const Place& place) {
+  const Vec3 tip_m = panel.nominal_base_from_panel() * place.in_panel_m;
+  arm::IkResult ik = arm::inverse_kinematics(tip_m, 0);
+  for (int round = 0; round < 3 && place.tip_m > 0; ++round) {
+    if (ik.outcome == arm::IkOutcome::not_a_number || ik.outcome == arm::IkOutcome::too_far) break;
+    ik = arm::inverse_kinematics(tip_m - place.tip_m * arm::approach_axis(ik.q_rad), 0);
+  }
+  return ik;
+}
+
+bool check_reach_of_tasks(const Machine& machine, const Steps& steps) {
+  bool all = true;
+  for (const Place& place : places_of_tasks(machine)) {
+    const arm::IkResult ik = pose_at(machine.panel, place);
+    const bool reached = steps.take([&] {
+      if (!ik.ok()) refuse(machine, place.what + " is out of the arm's reach at its nominal place: " + excess_text(ik));
+    });
+    all = all && reached;
+  }
+  return all;
+}
+
+// The entry of a limits file that keeps the arm from its work, before anything moves.
+bool check_limits(const Machine& machine, const std::string& file, const safety::Limits& limits, const ControllerConfig& controller,
+                  const ArmDescription& description, const Steps& steps) {
+  std::vector<std::string> problems = limits_problems(limits, controller, description);
+  for (const Place& place : places_of_tasks(machine)) {
+    const arm::IkResult ik = pose_at(machine.panel, place);
+    if (!ik.ok()) continue;
+    for (const std::string& problem : pose_problems(limits, ik.q_rad, place.what)) problems.push_back(problem);
+  }
+  for (const std::string& problem : problems) steps.take([&] { throw InputError(file + ": " + problem); });
+  return problems.empty();
 }
 
 // What a sweep at 25 Hz gives, 232,000 points, fills the cloud to nine tenths. At more frames a second the points are taken of fewer columns. Backgrounds that
@@ -315,15 +360,18 @@ void check_seen(const Machine& machine, const CameraCalibration& camera, const s
   refuse(machine, what + text);
 }
 
-void check_view(const Machine& machine, const CameraCalibration& camera) {
+void check_view(const Machine& machine, const CameraCalibration& camera, const Steps& steps) {
   const PanelLayout& panel = machine.panel;
   const Vec2 low = panel.plate_min_m, high = panel.plate_max_m;
-  check_seen(machine, camera, "the panel's upper left corner", Vec3(low.x(), high.y(), 0));
-  check_seen(machine, camera, "the panel's upper right corner", Vec3(high.x(), high.y(), 0));
-  check_seen(machine, camera, "the panel's lower right corner", Vec3(high.x(), low.y(), 0));
-  check_seen(machine, camera, "the panel's lower left corner", Vec3(low.x(), low.y(), 0));
-  check_seen(machine, camera, "the marker", Vec3(panel.marker_centre_m.x(), panel.marker_centre_m.y(), 0));
-  check_seen(machine, camera, "the valve", Vec3(0, 0, panel.handle_height_m));
+  const std::array<std::pair<const char*, Vec3>, 6> places{{
+      {"the panel's upper left corner", Vec3(low.x(), high.y(), 0)},
+      {"the panel's upper right corner", Vec3(high.x(), high.y(), 0)},
+      {"the panel's lower right corner", Vec3(high.x(), low.y(), 0)},
+      {"the panel's lower left corner", Vec3(low.x(), low.y(), 0)},
+      {"the marker", Vec3(panel.marker_centre_m.x(), panel.marker_centre_m.y(), 0)},
+      {"the valve", Vec3(0, 0, panel.handle_height_m)},
+  }};
+  for (const auto& [what, place_m] : places) steps.take([&, name = what, &place = place_m] { check_seen(machine, camera, name, place); });
 }
 
 // Where the panel and what stands proud of it can be: the worst docking error moves a corner of the plate by 20 mm and, over half a metre, by
@@ -452,10 +500,18 @@ Core assemble(const Machine& machine, const Steps& steps) {
   set_region(machine.panel, core.scan.triangulation);
   set_frame_rate(machine.mission, core.scan);
   steps.take([&] { check_exposure(machine); });
-  const bool reach = steps.take([&] { check_reach_of_tasks(machine); });
-  if (arm && limits) steps.take([&] { check_turn_speed(machine, description, controller.limits); });
-  if (camera) steps.take([&] { check_view(machine, controller.camera); });
-  if (limits && mission && reach) {
+  const bool reach = check_reach_of_tasks(machine, steps);
+  if (arm && limits) steps.take([&] { check_turn_speed(machine, description, controller.mission_limits); });
+  bool workable = true;
+  if (arm && limits && mission) {
+    workable = check_limits(machine, named_file(machine.file, "safety.limits", machine.safety_limits), controller.limits, controller,
+                            description, steps);
+    if (workable && !machine.mission_limits.empty())
+      workable = check_limits(machine, named_file(machine.file, "safety.mission_limits", machine.mission_limits), controller.mission_limits,
+                              controller, description, steps);
+  }
+  if (camera) check_view(machine, controller.camera, steps);
+  if (limits && mission && reach && workable) {
     steps.take([&] {
       if (const std::optional<std::string> problem = sweep_problem(controller)) refuse(machine, *problem);
     });

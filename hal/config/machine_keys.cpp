@@ -20,7 +20,8 @@ void add_panel(Keys& all, PanelLayout& p) {
   all.push_back(key("panel.pointer_length_m", "m", 0.015, 0.06, &p.pointer_length_m, "how much of the bar the mark covers, from its end"));
   all.push_back(key("panel.buttons_m", "m", -0.4, 0.4, &p.buttons_m, "left, centre and right button's [right, up] from the valve"));
   all.push_back(key("panel.button_width_m", "m", 0.005, 0.06, &p.button_width_m, "diameter of a button's cap"));
-  all.push_back(key("panel.button_height_m", "m", 0.005, 0.07, &p.button_height_m, "its height over the panel"));
+  all.push_back(key("panel.button_height_m", "m", 0.005, 0.07, &p.button_height_m,
+                    "its height over the panel: its stroke, the press's overtravel up to 8 mm, and 12.3 mm more, where one is pressed"));
   all.push_back(key("panel.button_stroke_m", "m", 0.001, 0.02, &p.button_stroke_m, "how far it goes in"));
   all.push_back(key("panel.marker_id", "", 0, 586, &p.marker_id, "the AprilTag 36h11 beside the valve"));
   all.push_back(key("panel.marker_size_m", "m", 0.02, 0.16, &p.marker_size_m, "side of its black square"));
@@ -116,9 +117,10 @@ void add_mission(Keys& all, mission::MissionConfig& m) {
   all.push_back(key("mission.press_torque_nm", "N m", 2, 20, &m.press_torque_nm,
                     "rise of a joint's torque that says the button has bottomed; the drives give 26 N m, and at 25 no press is told"));
   all.push_back(key("mission.turn_speed_rad_s", "rad/s", 0.01, 1, &m.turn_speed_rad_s, "of the handle; no faster than the wrist"));
-  all.push_back(
-      key("mission.valve_tolerance_rad", "rad", 0.015, 0.045, &m.valve_tolerance_rad,
-          "what the second look accepts without turning again: more than its own error of 0.6 degrees, less than 3 degrees with it"));
+  all.push_back(key("mission.valve_tolerance_rad", "rad", 0.015, 0.045, &m.valve_tolerance_rad,
+                    "what the second look accepts without turning again. Its own error is 0.6 degrees as a rule and 1.15 at worst: below "
+                    "0.02 rad a handle "
+                    "that stands right may be turned again"));
   all.push_back(key("mission.tries", "", 1, 20, &m.tries, "of a step that may be taken again"));
 }
 

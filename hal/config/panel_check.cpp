@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdio>
 
+#include "firmware/mission/press_button.hpp"
+
 namespace lf::config {
 
 namespace {
@@ -43,6 +45,29 @@ double largest_marker_plate_m(const PanelLayout& panel) {
     (plate_fits(panel, side) ? fits : does_not) = side;
   }
   return fits;
+}
+
+// In simulation caps of 5 to 6 mm with a stroke of 5 mm let the fingers meet the panel beside them, and of 12 mm a broken-off one was told as pressed.
+double lowest_button_m(const PanelLayout& panel, double overtravel_m) {
+  constexpr double corner_m = 0.028;     // from the middle of the closed fingers' tips to a corner: pads of 40 mm, 40 mm thick together
+  constexpr double sine_of_tilt = 0.31;  // 18 degrees, the most that the reach survey found
+  constexpr double doubt_m = 0.0036;     // of the face by the look, 3 mm, and of the tip by the joints, 2 mm, added in squares
+  return panel.button_stroke_m + std::min(overtravel_m, mission::press_face_m) + corner_m * sine_of_tilt + doubt_m;
+}
+
+bool presses(const std::vector<Task>& tasks) {
+  return std::any_of(tasks.begin(), tasks.end(), [](const Task& task) { return task.kind == Task::Kind::press_buttons; });
+}
+
+std::vector<std::string> low_button_problems(const PanelLayout& panel, double overtravel_m, const std::vector<Task>& tasks) {
+  const double lowest_m = lowest_button_m(panel, overtravel_m);
+  if (!presses(tasks) || panel.button_height_m >= lowest_m) return {};
+  std::array<char, 400> text;
+  (void)std::snprintf(text.data(), text.size(),
+                      "'panel.button_height_m' is %.4g: with 'panel.button_stroke_m' at %.4g and 'mission.press_overtravel_m' at %.4g the "
+                      "fingers could press the panel instead of the button, and take it for the button. A cap of this stroke needs %.4f m",
+                      panel.button_height_m, panel.button_stroke_m, overtravel_m, lowest_m);
+  return {text.data()};
 }
 
 std::vector<std::string> panel_problems(const PanelLayout& panel) {

@@ -4,12 +4,22 @@
 #include <string>
 #include <vector>
 
+#include "hal/config/key.hpp"
 #include "shared/panel/panel_layout.hpp"
 
 namespace lf::config {
 
 // A sentence a problem, without the file's name: a button that covers the marker or another button, a part that hangs beyond the plate.
 std::vector<std::string> panel_problems(const PanelLayout& panel);
+
+// The height that a cap needs over the panel, m. A press ends `overtravel_m` below the cap's bottom at the latest. Where the cap broke off, the fingers must not
+// meet the panel at a depth that would pass for the button's.
+double lowest_button_m(const PanelLayout& panel, double overtravel_m);
+
+// Buttons that are lower though a task presses one: a sentence, without the file's name.
+std::vector<std::string> low_button_problems(const PanelLayout& panel, double overtravel_m, const std::vector<Task>& tasks);
+
+bool presses(const std::vector<Task>& tasks);
 
 // The side up to which the marker's plate leaves the buttons free and lies on the panel.
 double largest_marker_plate_m(const PanelLayout& panel);

@@ -6,6 +6,7 @@
 #include "firmware/arm/gripper.hpp"
 #include "firmware/mission/look.hpp"
 #include "firmware/mission/motion.hpp"
+#include "hal/config/limits_check.hpp"
 
 namespace lf::config {
 
@@ -94,6 +95,15 @@ std::string too_near(const char* when, const Nearest& nearest) {
 
 JointVector vector_of(const std::array<double, arm_joint_count>& q) { return {q[0], q[1], q[2], q[3]}; }
 
+// With what of the limits keeps the arm from it, where that is seen at the sweep's ends.
+std::string unreachable_text(const safety::Limits& limits, const scan::SweepPlan& plan) {
+  std::string text = "the arm does not reach the poses from which the laser is swept over the panel";
+  std::vector<std::string> problems = pose_problems(limits, vector_of(plan.start_rad), "the sweep's start");
+  for (const std::string& problem : pose_problems(limits, vector_of(plan.end_rad), "the sweep's end")) problems.push_back(problem);
+  for (const std::string& problem : problems) text += "; in the safety limits " + problem;
+  return text;
+}
+
 }  // namespace
 
 std::optional<std::string> sweep_problem(const ControllerConfig& controller) {
@@ -115,13 +125,13 @@ std::optional<std::string> sweep_problem(const ControllerConfig& controller) {
            formatted(" and 'mission.sweep_speed_rad_s' at %.3g: no more than %.1f mm show a handle of this thickness",
                      mission.sweep_speed_rad_s, 1e3 * widest_of_bar * mission.layout.handle_thickness_m);
   }
-  mission::Motion motion(controller.limits, mission.layout, mission.vehicle, mission.park_rad);
+  mission::Motion motion(controller.mission_limits, mission.layout, mission.vehicle, mission.park_rad);
   motion.start_at(mission.park_rad);
   const arm::Room room{request.base_from_panel, mission.docking, {jaw_rad, jaw_rad}, 0};
   motion.go_to_sweep(request, controller.laser, room, jaw_rad, mission.move_speed_fraction);
   while (motion.planning()) motion.step(can_map::sync_period.s());
   if (motion.failure() == StepFailure::none) return std::nullopt;
-  if (motion.failure() == StepFailure::unreachable) return "the arm does not reach the poses from which the laser is swept over the panel";
+  if (motion.failure() == StepFailure::unreachable) return unreachable_text(controller.mission_limits, plan);
 
   // The sweep, and the straight way to it: the core looks at more poses, and stops at the first that is too near.
   constexpr int poses = 200;

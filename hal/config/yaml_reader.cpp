@@ -96,6 +96,7 @@ class ValueReader {
     return {read[0], read[1]};
   }
   std::string text(const YAML::Node& node) const;
+  Fault fault(const YAML::Node& item, const std::string& shown) const;
 
   const YAML::Node& node_;
   const std::string& path_;
@@ -223,18 +224,25 @@ void ValueReader::operator()(std::vector<Fault>* value) const {
   if (!node_.IsSequence()) wrong_type(node_);
   value->clear();
   for (std::size_t i = 0; i < node_.size(); ++i) {
-    const YAML::Node item = node_[i];
-    const std::string shown = path_ + "[" + std::to_string(i) + "]";
-    if (!item.IsMap()) source_.refuse(item.Mark(), "'" + shown + "' takes a group of keys, not " + shape_of(item));
-    Fault fault;
-    const std::size_t told = source_.problems() != nullptr ? source_.problems()->size() : 0;
-    read_map(item, "", shown + ".", keys(fault), source_);
-    const bool complete = source_.problems() == nullptr || source_.problems()->size() == told;
-    if (!item["kind"]) source_.refuse(item.Mark(), "'" + shown + "' has no kind");
-    if (const auto problem = problem_of(fault, item["at_s"] || item["at_step"]); complete && problem)
-      source_.refuse(item.Mark(), "'" + shown + "." + problem->first + "': " + problem->second);
-    value->push_back(fault);
+    try {
+      value->push_back(fault(node_[i], path_ + "[" + std::to_string(i) + "]"));
+    } catch (const InputError& problem) {
+      if (source_.problems() == nullptr) throw;
+      source_.problems()->emplace_back(problem.what());
+    }
   }
+}
+
+Fault ValueReader::fault(const YAML::Node& item, const std::string& shown) const {
+  if (!item.IsMap()) source_.refuse(item.Mark(), "'" + shown + "' takes a group of keys, not " + shape_of(item));
+  Fault fault;
+  const std::size_t told = source_.problems() != nullptr ? source_.problems()->size() : 0;
+  read_map(item, "", shown + ".", keys(fault), source_);
+  const bool complete = source_.problems() == nullptr || source_.problems()->size() == told;
+  if (!item["kind"]) source_.refuse(item.Mark(), "'" + shown + "' has no kind");
+  if (const auto problem = problem_of(fault, item["at_s"] || item["at_step"]); complete && problem)
+    source_.refuse(item.Mark(), "'" + shown + "." + problem->first + "': " + problem->second);
+  return fault;
 }
 
 }  // namespace

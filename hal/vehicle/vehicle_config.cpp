@@ -105,6 +105,8 @@ void check_together(const VehicleConfig& c, const std::string& file, std::vector
   if (panel.marker_plate_m <= panel.marker_size_m) refuse("'panel.marker_plate_m' is not larger than 'panel.marker_size_m'");
   for (const std::string& problem : config::handle_problems(panel, c.machine.valve, c.machine.tasks)) refuse(problem);
   for (const std::string& problem : config::panel_problems(panel)) refuse(problem);
+  for (const std::string& problem : config::low_button_problems(panel, c.machine.mission.press_overtravel_m, c.machine.tasks))
+    refuse(problem);
   const double between_ms = c.machine.mission.camera_syncs * can_map::sync_period.s() * 1e3;
   if (c.match_window_us * 1e-3 >= between_ms / 2)
     refuse("'camera.match_window_us' is half the time between two exposures or more: an image could belong to either");

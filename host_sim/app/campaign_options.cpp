@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "host_sim/app/run_experiment.hpp"
+#include "host_sim/app/tell_arm.hpp"
 #include "host_sim/record/run_folder.hpp"
 #include "shared/input_error.hpp"
 
@@ -37,6 +38,7 @@ int jobs_of(const CampaignOptions& options) {
 
 CampaignFolder::CampaignFolder(const CampaignOptions& options, const scenario::Scenario& scenario, const std::string& kind,
                                const std::vector<std::string>& grid) {
+  tell_arm_notes(scenario);
   record::Experiment experiment = experiment_of(scenario);
   experiment["campaign"] = kind;
   // The values are no part of it: each cell has a folder of its own, and a grid may be extended.

@@ -1,9 +1,11 @@
 #include "host_sim/app/checks.hpp"
 
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <filesystem>
 #include <optional>
 #include <system_error>
 
@@ -34,6 +36,12 @@ std::string check_seed(const std::string& text) {
 std::string check_positive(const std::string& text) {
   const std::optional<double> number = finite(text);
   return number && *number > 0 ? "" : "takes a number above 0, not " + text;
+}
+
+std::string check_png(const std::string& text) {
+  std::string ending = std::filesystem::path(text).extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return ending.empty() || ending == ".png" ? "" : "takes the name of a .png, not " + text;
 }
 
 std::function<std::string(const std::string&)> within(double low, double high) {

@@ -12,6 +12,8 @@ namespace lf::app {
 std::string check_seed(const std::string& text);
 // A finite number above 0.
 std::string check_positive(const std::string& text);
+// A file's name that ends in .png, or has no ending.
+std::string check_png(const std::string& text);
 // A finite number from `low` to `high`.
 std::function<std::string(const std::string&)> within(double low, double high);
 

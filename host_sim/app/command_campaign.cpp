@@ -36,7 +36,7 @@ void add_campaign(CLI::App& app, Action& action) {
   command->add_option("--many", options->many, "--ranges: runs with eight keys at once")->check(CLI::Range(0, 100000))->needs(ranges);
   command->add_option("--kinds", options->kinds, "--faults: these kinds only; --ranges: these keys only")->delimiter(',');
   command->add_option("--steps", options->steps, "--faults: these steps only")->delimiter(';')->needs(faults);
-  command->add_option("--rows", options->rows, "--faults: these rows only, by name, as 'turn: overcurrent elbow'")
+  command->add_option("--rows", options->rows, "These rows of the matrix only, by name, as 'turn: overcurrent elbow'")
       ->delimiter(';')
       ->needs(faults);
   command->add_flag("--rendered", options->rendered, "--faults: camera and vision see what is drawn, instead of being given the true pose")

@@ -185,7 +185,7 @@ int range_campaign(const CampaignOptions& options) {
     }
     mine.push_back(found->second);
     ++counts[found->second.verdict];
-    if (row.key != "many") ++single[found->second.verdict];
+    if (row.key != "many" && !is_of_an_end(row.name)) ++single[found->second.verdict];
   }
   const record::RunFolder out(folder.path());
   out.write("ranges.md", markdown_of(mine));

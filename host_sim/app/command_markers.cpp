@@ -1,3 +1,4 @@
+#include <cstdio>
 #include <memory>
 
 #include "hal/config/nearest.hpp"
@@ -52,15 +53,20 @@ int markers(const Options& options) {
   if (options.camera.empty() && options.size_m > 0) throw InputError("--size-m needs --camera, a calibration file");
   if (!options.camera.empty()) asked.camera = vision::read_camera_calibration(options.camera);
   const std::vector<vision::MarkerFrame> frames = vision::find_markers_in_files(options.files, asked);
+  std::size_t found = 0;
+  for (const vision::MarkerFrame& frame : frames) found += frame.markers.size();
   if (options.json) {
     print("%s\n", vision::marker_frames_json(frames).c_str());
   } else {
     tell(frames);
-    std::size_t found = 0;
-    for (const vision::MarkerFrame& frame : frames) found += frame.markers.size();
     print("%s in %s\n", count_of(found, "marker").c_str(), count_of(frames.size(), "frame").c_str());
   }
-  return done;
+  if (found > 0) return done;
+  std::fprintf(stderr,
+               "lanternfish: no marker of family %s with a margin of %g or more. Check --family, lower --margin, and search small markers "
+               "with --decimate 1 (now %g)\n",
+               options.family.c_str(), options.min_margin, options.decimate);
+  return failed;
 }
 
 }  // namespace
@@ -75,7 +81,7 @@ void add_markers(CLI::App& app, Action& action) {
   command->add_option("--size-m", options->size_m, "Side of the black square, m")->check(within(1e-4, 100));
   command->add_option("--decimate", options->decimate, "Search on an image so many times smaller")->capture_default_str();
   command->add_option("--margin", options->min_margin, "Smallest decision margin")->capture_default_str();
-  command->add_option("--overlay", options->overlay, "Write the first frame with a marker to this PNG, markers drawn in");
+  command->add_option("--overlay", options->overlay, "Write the first frame with a marker to this PNG, markers drawn in")->check(check_png);
   command->add_flag("--json", options->json, "Print JSON");
   command->callback([options, &action] { action = [options] { return markers(*options); }; });
 }

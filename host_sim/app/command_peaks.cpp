@@ -8,6 +8,7 @@
 #include "firmware/scan/peaks.hpp"
 #include "hal/config/nearest.hpp"
 #include "hal/vision/image_file.hpp"
+#include "host_sim/app/checks.hpp"
 #include "host_sim/app/command.hpp"
 #include "host_sim/app/peak_doubt.hpp"
 #include "host_sim/record/file_sink.hpp"
@@ -147,7 +148,8 @@ int peaks(const Options& options) {
   config.axis = options.axis == "column" ? scan::PeakAxis::column : scan::PeakAxis::row;
   const Found found = detect(image, off, config);
   if (!options.overlay.empty()) write_overlay(options, found);
-  const StripeLook look = look_at_stripe(picture_of(image, off, config.axis), found.detected, config.axis);
+  StripeLook look = look_at_stripe(picture_of(image, off, config.axis), found.detected, config.axis);
+  look.off_given = off.has_value();
   const std::vector<std::string> doubts = peak_doubts(look);
   tell_doubts(options.image, doubts);
   tell(options, image, found, look, doubts);
@@ -165,7 +167,7 @@ void add_peaks(CLI::App& app, Action& action) {
       ->check(CLI::IsMember({"column", "row"}))
       ->capture_default_str();
   command->add_option("--channel", options->channel, vision::channel_names)->capture_default_str();
-  command->add_option("--overlay", options->overlay, "Write the image with its peaks in red to this PNG");
+  command->add_option("--overlay", options->overlay, "Write the image with its peaks in red to this PNG")->check(check_png);
   CLI::Option* csv = command->add_flag("--csv", options->csv, "Print CSV");
   command->add_flag("--json", options->json, "Print JSON")->excludes(csv);
   command->callback([options, &action] { action = [options] { return peaks(*options); }; });

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <cstdio>
 #include <memory>
 
 #include "hal/config/arm_match.hpp"
@@ -63,6 +64,22 @@ void check_arm(const scenario::Scenario& scenario) {
                    ". `reach` surveys the core's own arm: put this URDF in place of shared/arm/arm5e.urdf and build again");
 }
 
+// Why a mission may fail at a place that is within reach where the panel should stand.
+std::vector<std::string> doubts_of(const std::vector<ReachTarget>& targets) {
+  std::vector<std::string> doubts;
+  for (const ReachTarget& target : targets) {
+    if (target.nominal.outcome != arm::IkOutcome::ok) continue;
+    if (target.reached < target.draws)
+      doubts.push_back("the " + target.name + " is out of reach at " + std::to_string(target.draws - target.reached) + " of " +
+                       std::to_string(target.draws) + " docking errors");
+    if (target.handle_clearance_m >= 0) continue;
+    char text[64];
+    (void)std::snprintf(text, sizeof text, "%.1f mm into the handle's circle", -1e3 * target.handle_clearance_m);
+    doubts.push_back("a press of the " + target.name + " comes " + text + ": at some angles of the handle the arm touches it");
+  }
+  return doubts;
+}
+
 int reach(const Options& options) {
   const std::string format = picture_format(options.out);
   const scenario::Scenario scenario = scenario::load_scenario(options.scenario, options.set);
@@ -74,10 +91,13 @@ int reach(const Options& options) {
   record::write_file_atomically(options.out, {reinterpret_cast<const char*>(picture.data()), picture.size()});
   bool all = true;
   for (const ReachTarget& target : targets) all = all && target.nominal.outcome == arm::IkOutcome::ok;
+  const std::vector<std::string> doubts = doubts_of(targets);
+  tell_doubts(scenario.file, doubts);
   if (options.json) {
     Json json{{"scenario", scenario.name}, {"image", options.out}, {"targets", Json::array()}, {"heights", Json::array()}};
     for (const ReachTarget& target : targets) json["targets"].push_back(json_of(target));
     for (const ReachGrid& grid : grids) json["heights"].push_back(json_of(grid));
+    json["doubts"] = doubts;
     print_json(json);
   } else {
     for (const ReachTarget& target : targets) tell(target);
@@ -88,7 +108,7 @@ int reach(const Options& options) {
     }
     print("%s\n", options.out.c_str());
   }
-  return all ? done : failed;
+  return all && doubts.empty() ? done : failed;
 }
 
 }  // namespace

@@ -5,14 +5,13 @@
 #include <memory>
 #include <thread>
 
-#include "hal/config/arm_notes.hpp"
-#include "hal/config/share.hpp"
 #include "host_sim/app/checks.hpp"
 #include "host_sim/app/command.hpp"
 #include "host_sim/app/interrupt.hpp"
 #include "host_sim/app/run_experiment.hpp"
 #include "host_sim/app/run_session.hpp"
 #include "host_sim/app/shell_word.hpp"
+#include "host_sim/app/tell_arm.hpp"
 #include "host_sim/scenario/instance.hpp"
 #include "shared/input_error.hpp"
 
@@ -103,8 +102,7 @@ int run(const Options& options) {
   RunRequest request;
   request.scenario = scenario::load_scenario(options.scenario, options.set);
   scenario::check_runnable(request.scenario);
-  const std::string urdf = config::find_file(request.scenario.arm.urdf, std::filesystem::path(request.scenario.file).parent_path());
-  for (const std::string& note : config::arm_notes(urdf)) std::fprintf(stderr, "note: %s\n", note.c_str());
+  tell_arm_notes(request.scenario);
   request.seed = options.seed;
   request.realtime = options.realtime;
   request.outside = options.outside;

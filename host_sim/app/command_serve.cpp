@@ -8,6 +8,7 @@
 #include "host_sim/app/checks.hpp"
 #include "host_sim/app/command.hpp"
 #include "host_sim/app/interrupt.hpp"
+#include "host_sim/app/tell_arm.hpp"
 #include "host_sim/record/run_folder.hpp"
 #include "host_sim/serve/serve_session.hpp"
 #include "shared/input_error.hpp"
@@ -71,6 +72,7 @@ serve::ServeResult serve_or_say_what_lacks(const serve::ServeRequest& request) {
 int run(const Options& options) {
   serve::ServeRequest request;
   request.scenario = scenario::load_scenario(options.scenario, options.set);
+  tell_arm_notes(request.scenario);
   request.seed = options.seed;
   request.can = options.can;
   request.nodes = serve::NodeSet::parse(options.nodes);

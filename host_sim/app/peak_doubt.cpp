@@ -127,9 +127,11 @@ std::vector<std::string> peak_doubts(const StripeLook& look) {
   std::vector<std::string> doubts;
   if (look.found < least_share * look.lines)
     doubts.push_back(formatted(
-        "peaks in %.0f of %.0f lines alone: is the laser in this picture and in this channel, and is --off the same scene without it?",
+        look.off_given
+            ? "peaks in %.0f of %.0f lines alone: is the laser in this picture and in this channel, and is --off the same scene without it?"
+            : "peaks in %.0f of %.0f lines alone: is the laser in this picture and in this channel?",
         look.found, look.lines));
-  if (look.dark_share > most_dark_share)
+  if (look.off_given && look.dark_share > most_dark_share)
     doubts.push_back(
         formatted("beside %.0f %% of the peaks stands a dark line: --off seems to have the laser, too", 100 * look.dark_share, 0));
   if (look.found < static_cast<std::int32_t>(fewest_peaks)) return doubts;

@@ -148,6 +148,23 @@ std::vector<std::string> drawn_keys() {
   return paths;
 }
 
+std::vector<std::string> end_values(const std::string& path) {
+  scenario::Scenario scenario;
+  for (const Key& key : scenario::keys(scenario)) {
+    if (key.path != path) continue;
+    const bool number = std::holds_alternative<double*>(key.value) || std::holds_alternative<config::Spread*>(key.value);
+    const bool whole = std::holds_alternative<std::int64_t*>(key.value) || std::holds_alternative<std::int32_t*>(key.value) ||
+                       std::holds_alternative<std::uint32_t*>(key.value);
+    if (!number && !whole) return {};
+    const auto [min, max] = scenario::bounds_of(key, scenario, arm_of(scenario));
+    if (whole) return {text_of(std::ceil(min)), text_of(std::floor(max))};
+    // A bound that other keys make is computed: just inside of it.
+    const double inside = 1e-4 * (max - min);
+    return {text_of(min > key.min ? min + inside : min), text_of(max < key.max ? max - inside : max)};
+  }
+  return {};
+}
+
 std::string drawn_value(const std::string& path, std::uint64_t draw) {
   scenario::Scenario scenario;
   for (const Key& key : scenario::keys(scenario)) {
@@ -177,6 +194,10 @@ std::vector<RangeRow> range_rows(std::size_t draws, std::size_t many) {
       const std::string value = drawn_value(path, draw);
       rows.push_back({path + " " + value + " #" + std::to_string(draw), path, {path + "=" + value}, draw, is_seen(path)});
     }
+    if (draws == 0) continue;
+    const std::vector<std::string> ends = end_values(path);
+    for (std::size_t i = 0; i < ends.size(); ++i)
+      rows.push_back({path + " " + ends[i] + (i == 0 ? lower_end : upper_end), path, {path + "=" + ends[i]}, i + 1, is_seen(path)});
   }
   for (std::uint64_t i = 1; i <= many; ++i) rows.push_back(many_row(i, 1));
   return rows;

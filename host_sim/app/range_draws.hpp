@@ -27,10 +27,17 @@ std::vector<std::string> drawn_keys();
 // spans more than a factor of a hundred above 0, even in the logarithm.
 std::string drawn_value(const std::string& key, std::uint64_t draw);
 
+// The ends of a number's range as YAML, lower end first, as far as the default scenario's other keys let them be; none for what is no single number.
+std::vector<std::string> end_values(const std::string& key);
+
+// What the name of a row ends with that sets a key to an end of its range.
+inline constexpr const char *lower_end = " (lower end)", *upper_end = " (upper end)";
+inline bool is_of_an_end(const std::string& row) { return row.ends_with(lower_end) || row.ends_with(upper_end); }
+
 // Row `index` (from 1) of those with eight keys at once; `combination`: from 1.
 RangeRow many_row(std::uint64_t index, std::uint64_t combination);
 
-// `draws` rows a key, one key at a time; then `many` rows with eight keys at once.
+// `draws` rows a key, one key at a time, and where there are any one at each end of its range; then `many` rows with eight keys at once.
 std::vector<RangeRow> range_rows(std::size_t draws, std::size_t many);
 
 }  // namespace lf::app

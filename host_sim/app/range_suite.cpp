@@ -1,5 +1,7 @@
 #include "host_sim/app/range_suite.hpp"
 
+#include "host_sim/app/range_draws.hpp"
+
 namespace lf::app {
 
 namespace {
@@ -30,8 +32,9 @@ campaign::TestSuite range_suite(const std::string& scenario, const std::vector<R
   std::size_t singles = 0, successes = 0;
   for (const RangeResult& result : results) {
     suite.cases.push_back(case_of(scenario, result));
-    singles += result.key != "many" ? 1 : 0;
-    successes += result.key != "many" && result.verdict == "success" ? 1 : 0;
+    const bool single = result.key != "many" && !is_of_an_end(result.name);
+    singles += single ? 1 : 0;
+    successes += single && result.verdict == "success" ? 1 : 0;
   }
   for (const std::string& name : not_flown)
     suite.cases.push_back({suite.name, name, TestCase::End::skipped, "", "not flown: the campaign was interrupted", record::unknown});

@@ -14,7 +14,7 @@ RunFolder::RunFolder(const fs::path& directory) : directory_(directory) {
     throw InputError(directory.string(), 0, "is a file, not a folder");
   fs::create_directories(directory, error);
   if (error == std::errc::no_space_on_device) throw RecordError(directory.string() + ": " + error.message());
-  if (error) throw InputError(directory.string(), 0, "cannot be made a folder: " + error.message());
+  if (error) throw InputError(directory.string(), 0, "cannot be made a folder: " + error.message() + "; --out names another");
   const fs::path probe = directory / ".writable";
   try {
     const FileSink opened(probe);

@@ -6,7 +6,9 @@
 #include "firmware/arm/gripper.hpp"
 #include "hal/config/handle_check.hpp"
 #include "hal/config/homing_file.hpp"
+#include "hal/config/limits_file.hpp"
 #include "hal/config/panel_check.hpp"
+#include "hal/config/share.hpp"
 #include "shared/arm/motor.hpp"
 
 namespace lf::scenario {
@@ -17,6 +19,8 @@ namespace {
 constexpr double force_of_press_n_nm = 20.0 / 7;
 // A bound that must not be met is missed by this share of itself, or of the range.
 constexpr double clearly = 0.01;
+// What comes on top of a latency, at most: the SYNC that looks for an image, and the frames of a question and its answer.
+constexpr double image_reserve_s = 0.004, vision_reserve_s = 0.02;
 
 Bounds within(const config::Key& key, double min, double max) {
   const double least = std::clamp(min, key.min, key.max);
@@ -49,14 +53,23 @@ Bounds of_buttons(const config::Key& key, const Scenario& s) {
 
 Bounds of_panel(const config::Key& key, const Scenario& s) {
   const PanelLayout& panel = s.panel;
+  const double lowest_m = config::lowest_button_m(panel, s.mission.press_overtravel_m);
   if (key.path == "panel.button_stroke_m")
-    return within(key, s.buttons.click_depth_m, 2 * (pressed_force_n(s) - s.buttons.preload_n) / s.buttons.spring_n_m);
+    return within(key, s.buttons.click_depth_m,
+                  std::min(2 * (pressed_force_n(s) - s.buttons.preload_n) / s.buttons.spring_n_m,
+                           panel.button_stroke_m + panel.button_height_m - lowest_m));
+  if (key.path == "panel.button_height_m") return within(key, lowest_m, key.max);
   if (key.path == "panel.marker_size_m") return within(key, key.min, panel.marker_plate_m * (1 - clearly));
   if (key.path == "panel.marker_plate_m")
     return within(key, panel.marker_size_m * (1 + clearly), config::largest_marker_plate_m(panel) * (1 - clearly));
   if (key.path == "panel.handle_thickness_m") return within(key, arm::thinnest_bar_m, config::thickest_bar_m(panel));
   if (key.path == "panel.pointer_length_m") return within(key, key.min, config::longest_mark_m(panel));
   return {key.min, key.max};
+}
+
+Bounds of_latency(const config::Key& key, const Scenario& s) {
+  const LongestLatencies longest = longest_latencies(s);
+  return within(key, key.min, key.path == "latency.image_ms" ? longest.image_ms : longest.panel_vision_ms);
 }
 
 // Of a joint's motor, or of all of them.
@@ -82,6 +95,15 @@ double pressed_force_n(const Scenario& s) { return force_of_press_n_nm * s.missi
 
 double returning_force_n(const Scenario& s) { return s.buttons.preload_n + s.buttons.spring_n_m * s.buttons.release_depth_m; }
 
+LongestLatencies longest_latencies(const Scenario& s) {
+  const bool own = !s.safety.mission_limits.empty();
+  const std::string file =
+      config::named_file(s.file, own ? "safety.mission_limits" : "safety.limits", own ? s.safety.mission_limits : s.safety.limits);
+  const safety::Limits limits = config::read_limits(file);
+  return {std::max(0.0, 1e3 * (limits.stale_image_s - image_reserve_s)), std::max(0.0, 1e3 * (limits.vision_timeout_s - vision_reserve_s)),
+          file};
+}
+
 Bounds bounds_of(const config::Key& key, const Scenario& scenario, const ArmDescription& arm) {
   if (key.path == "tasks" || key.path == "valve.start_deg" || key.path.starts_with("valve.stop_")) return of_stops(key, scenario);
   if (key.path == "mission.press_torque_nm") {
@@ -90,6 +112,8 @@ Bounds bounds_of(const config::Key& key, const Scenario& scenario, const ArmDesc
   }
   if (key.path.starts_with("buttons.")) return of_buttons(key, scenario);
   if (key.path.starts_with("panel.")) return of_panel(key, scenario);
+  if (key.path == "jaw.torque_nm") return within(key, arm.joints[static_cast<std::size_t>(Joint::jaw)].rated_torque_nm, key.max);
+  if (key.path.starts_with("latency.")) return of_latency(key, scenario);
   if (key.path.starts_with("drives.")) return of_drives(key, scenario, arm);
   return {key.min, key.max};
 }

@@ -90,7 +90,8 @@ void add_calibration(Keys& all, Scenario& s) {
 void add_machine(Keys& all, Scenario& s) {
   config::add_vehicle(all, s.vehicle);
   all.push_back(key("arm.urdf", "", 0, 0, &s.arm.urdf, "the arm; relative to the scenario's folder, then to the shipped files"));
-  all.push_back(key("jaw.torque_nm", "N m", 0, 200, &s.jaw.torque_nm, "closing torque at each finger; 0: as the URDF says"));
+  all.push_back(key("jaw.torque_nm", "N m", 0, 200, &s.jaw.torque_nm,
+                    "closing torque at each finger, no less than the rated one; 0: as the URDF says"));
   all.push_back(key("jaw.pad_friction", "", 0, 1.2, &s.jaw.pad_friction, "friction of the finger pads; 0: as the URDF says"));
   all.push_back(key("physics.restitution", "", 0, 0.02, &s.physics.restitution, "of every contact"));
   all.push_back(key("physics.joint_drag_nm_s", "N m s/rad", 0, 5, &s.physics.joint_drag_nm_s, "drag of the water on each joint"));
@@ -114,9 +115,10 @@ void add_machine(Keys& all, Scenario& s) {
   all.push_back(key("friction.one_way", "", -0.5, 0.5, &s.friction.one_way, "share by which it is more forward and less backward"));
   all.push_back(key("friction.pivot_m", "m", -0.0005, 0.0005, &s.friction.pivot_m,
                     "how much longer the true linkage of each screw is from its joint to its far pivot than the core takes it for"));
-  all.push_back(key("latency.image_ms", "ms", 0, 250, &s.latency.image_ms, "from the start of an exposure until the core has its image"));
+  all.push_back(key("latency.image_ms", "ms", 0, 250, &s.latency.image_ms,
+                    "from the start of an exposure until the core has its image; less than stale_image_s of the safety limits"));
   all.push_back(key("latency.panel_vision_ms", "ms", 0, 4000, &s.latency.panel_vision_ms,
-                    "from the question until the core has the panel vision's answer"));
+                    "from the question until the core has the panel vision's answer; less than vision_timeout_s of the safety limits"));
   all.push_back(key("sensors.seed", "", 0, huge, &s.sensors.seed, "of camera and drive noise; 0: from the run's seed"));
   all.push_back(key("safety.limits", "", 0, 0, &s.safety.limits, "the checksummed file of limits; found as arm.urdf is"));
   all.push_back(key("safety.mission_limits", "", 0, 0, &s.safety.mission_limits,

@@ -1,4 +1,10 @@
+#include <array>
+#include <cstdio>
+
+#include "hal/config/share.hpp"
+#include "host_sim/scenario/bounds.hpp"
 #include "host_sim/scenario/instance.hpp"
+#include "shared/arm/arm_description.hpp"
 #include "shared/input_error.hpp"
 
 namespace lf::scenario {
@@ -25,6 +31,48 @@ config::Machine machine_of(const Scenario& scenario, bool lamps_lit) {
   return machine;
 }
 
+template <class... Values>
+std::string formatted(const char* form, Values... values) {
+  std::array<char, 320> text;
+  (void)std::snprintf(text.data(), text.size(), form, values...);
+  return text.data();
+}
+
+// A scenario that is to end by a fault may make it so.
+void check_latencies(const Scenario& scenario, std::vector<std::string>& problems) {
+  if (scenario.expect.failure != Expect::nothing) return;
+  const LongestLatencies longest = longest_latencies(scenario);
+  const auto refuse = [&](const std::string& text) { problems.push_back(scenario.file + ": " + text); };
+  const Latency& latency = scenario.latency;
+  if (latency.image_ms > longest.image_ms)
+    refuse(formatted("'latency.image_ms' is %.6g: by 'stale_image_s' in %s every image later than %.6g ms counts as lost", latency.image_ms,
+                     longest.limits_file.c_str(), longest.image_ms));
+  if (latency.panel_vision_ms > longest.panel_vision_ms)
+    refuse(formatted("'latency.panel_vision_ms' is %.6g: by 'vision_timeout_s' in %s no answer is waited for longer than %.6g ms",
+                     latency.panel_vision_ms, longest.limits_file.c_str(), longest.panel_vision_ms));
+}
+
+void check_jaw(const Scenario& scenario, std::vector<std::string>& problems) {
+  const std::string file = config::named_file(scenario.file, "arm.urdf", scenario.arm.urdf);
+  const double rated_nm = load_arm_urdf(file).joints[static_cast<std::size_t>(Joint::jaw)].rated_torque_nm;
+  if (scenario.jaw.torque_nm == 0 || scenario.jaw.torque_nm >= rated_nm) return;
+  problems.push_back(
+      scenario.file + ": " +
+      formatted("'jaw.torque_nm' is %.4g, below the rated torque of %.4g N m that %s states for the jaw: the jaw closes with "
+                "its motor's peak torque. 0 takes the URDF's",
+                scenario.jaw.torque_nm, rated_nm, file.c_str()));
+}
+
+// With what of the simulation does not go with the core's limits and arm.
+Nominal make_core(const Scenario& scenario, bool lamps_lit, std::vector<std::string>& problems) {
+  const std::size_t told = problems.size();
+  Nominal core = config::make_core(machine_of(scenario, lamps_lit), problems);
+  if (problems.size() > told) return core;  // a file that cannot be read is told once
+  check_latencies(scenario, problems);
+  check_jaw(scenario, problems);
+  return core;
+}
+
 }  // namespace
 
 std::string joined(const std::vector<std::string>& problems) {
@@ -33,13 +81,11 @@ std::string joined(const std::vector<std::string>& problems) {
   return text;
 }
 
-void add_job_problems(const Scenario& scenario, std::vector<std::string>& problems) {
-  (void)config::make_core(machine_of(scenario, true), problems);
-}
+void add_job_problems(const Scenario& scenario, std::vector<std::string>& problems) { (void)make_core(scenario, true, problems); }
 
 Nominal make_nominal(const Scenario& scenario, bool lamps_lit) {
   std::vector<std::string> problems;
-  Nominal nominal = config::make_core(machine_of(scenario, lamps_lit), problems);
+  Nominal nominal = make_core(scenario, lamps_lit, problems);
   if (!problems.empty()) throw InputError(joined(problems));
   for (const Fault& fault : scenario.faults) {
     if (fault.kind == "limits_refused") nominal.controller.limits.checksum ^= 1u;  // a bit of the file that turned over on the way

@@ -82,6 +82,7 @@ void check_buttons(const Scenario& s, const std::function<void(const std::string
     if (std::find(s.buttons.missing.begin(), s.buttons.missing.end(), name) != s.buttons.missing.end())
       refuse("'buttons.stuck' and 'buttons.missing' both name " + name + ": a button that broke off cannot be stuck");
   }
+  if (!config::presses(s.tasks)) return;
   const double half_way_n = s.buttons.preload_n + s.buttons.spring_n_m * s.panel.button_stroke_m / 2;
   const double pressed_n = pressed_force_n(s);
   if (half_way_n > pressed_n * 1.001) {
@@ -109,6 +110,7 @@ void check_together(const Scenario& s, const std::string& where, std::vector<std
   const auto refuse = [&](const std::string& message) { problems.push_back(where + ": " + message); };
   for (const std::string& problem : config::handle_problems(s.panel, s.valve, s.tasks)) refuse(problem);
   for (const std::string& problem : config::panel_problems(s.panel)) refuse(problem);
+  for (const std::string& problem : config::low_button_problems(s.panel, s.mission.press_overtravel_m, s.tasks)) refuse(problem);
   if (s.valve.start_deg.min < s.valve.stop_min_deg || s.valve.start_deg.max > s.valve.stop_max_deg) refuse(beyond_stops(s));
   check_buttons(s, refuse);
   if (s.buttons.release_depth_m >= s.buttons.click_depth_m) refuse("'buttons.release_depth_m' is not below 'buttons.click_depth_m'");

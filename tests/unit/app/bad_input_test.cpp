@@ -15,13 +15,13 @@ using ::testing::StartsWith;
 
 class BadInput : public Program {
  protected:
-  void expect_refused(const std::string& arguments, const std::string& why, int status = 2) const {
+  void expect_refused(const std::string& arguments, const std::string& why, int status = 2, int lines = 1) const {
     SCOPED_TRACE(arguments);
     const Said said = run(arguments);
     EXPECT_EQ(said.status, status) << said.err;
     EXPECT_THAT(said.err, StartsWith("lanternfish: "));
     EXPECT_THAT(said.err, HasSubstr(why));
-    EXPECT_EQ(std::count(said.err.begin(), said.err.end(), '\n'), 1) << said.err;
+    EXPECT_EQ(std::count(said.err.begin(), said.err.end(), '\n'), lines) << said.err;
     EXPECT_EQ(said.out, "");
   }
 };
@@ -33,6 +33,8 @@ TEST_F(BadInput, UnknownCommandsAndOptions) {
   expect_refused("plane", "CLOUD is required");
   expect_refused("ik --x 0.3 --y 0", "--z is required");
   expect_refused("ik --x far --y 0 --z 0", "--x");
+  expect_refused("ik --x 0,44 --y 0 --z 0.5", "'--x' takes a number, not '0,44': its decimals stand behind a point");
+  expect_refused("markers x.png --decimate much", "'--decimate' takes a number, not 'much'");
   expect_refused("ik --x nan --y 0 --z 0.5", "finite");
   expect_refused("run --seed -1", "--seed");
   expect_refused("run --render-threads 0", "--render-threads");
@@ -83,8 +85,8 @@ TEST_F(BadInput, ScenariosThatAreNotWhatTheyShouldBe) {
 }
 
 TEST_F(BadInput, JobsThatTheMachineCannotDo) {
-  expect_refused("run --set panel.ahead_m=0.69 --set \"camera.position_m=[0.2, -0.245, 0.06]\"", "out of the arm's reach");
-  expect_refused("run --set camera.down_deg=10", "out of the camera's view");
+  expect_refused("run --set panel.ahead_m=0.69 --set \"camera.position_m=[0.2, -0.245, 0.06]\"", "out of the arm's reach", 2, 4);
+  expect_refused("run --set camera.down_deg=10", "out of the camera's view", 2, 4);
   expect_refused("run --set arm.urdf=missing.urdf", "missing.urdf");
   file("jointless.urdf", "<robot name=\"none\">\n</robot>\n");
   expect_refused("run --set arm.urdf=" + (folder() / "jointless.urdf").string(), "jointless.urdf");
@@ -121,6 +123,18 @@ TEST_F(BadInput, AnArmWithoutFrictionIsToldOnceAtTheStart) {
   EXPECT_NE(at, std::string::npos) << bare.err;
   EXPECT_EQ(bare.err.find(note, at + 1), std::string::npos) << bare.err;
   EXPECT_EQ(run("run --no-outside --set time_limit_s=1 --out usual").err.find("note:"), std::string::npos);
+}
+
+// The core moves its own arm, whatever the simulated one is.
+TEST_F(BadInput, AnotherArmThanTheCoresIsToldAtTheStart) {
+  std::string urdf = text_of(std::string(LANTERNFISH_SOURCE_DIR) + "/shared/arm/arm5e.urdf");
+  const std::size_t at = urdf.find("upper=\"0.5488\"");
+  ASSERT_NE(at, std::string::npos);
+  const std::string arm = " --set arm.urdf=" + file("other.urdf", urdf.replace(at, 14, "upper=\"0.5588\"")) + " --set time_limit_s=1";
+  const std::string note = "other.urdf: another arm than the control core's: the limits of slew differ";
+  EXPECT_THAT(run("run default --no-outside --out r" + arm).err, HasSubstr(note));
+  EXPECT_THAT(run("campaign default --seeds 1 --out c" + arm).err, HasSubstr(note));
+  EXPECT_THAT(run("serve default --can no_such_can" + arm).err, HasSubstr(note));
 }
 
 TEST_F(BadInput, ABadUrdfIsRefusedWithItsLine) {
@@ -206,6 +220,16 @@ TEST_F(BadInput, FoldersThatCannotBeWritten) {
   expect_refused("reach --draws 1 --out nowhere/reach.png", "nowhere/reach.png: cannot be written: No such file");
   std::filesystem::create_directory(folder() / "a_folder");
   expect_refused("reach --draws 1 --out a_folder", "a_folder: is a folder, not a file");
+}
+
+TEST_F(BadInput, APictureOfAnotherKindThanItsNameSays) {
+  expect_refused("peaks missing.png --overlay o.jpg", "--overlay: takes the name of a .png, not o.jpg");
+  expect_refused("markers missing.png --overlay o.jpg", "--overlay: takes the name of a .png, not o.jpg");
+}
+
+TEST_F(BadInput, AFolderThatCannotBeMadeSaysWhichOptionNamesAnother) {
+  file("runs", "");
+  expect_refused("run default", "--out names another");
 }
 
 TEST_F(BadInput, AShareFolderWithoutScenarios) {

@@ -124,6 +124,35 @@ TEST_F(Doubts, AButtonOverTheMarkerIsRefusedByName) {
   }
 }
 
+TEST_F(Doubts, ReachTellsAButtonThatTheHandleIsInTheWayOf) {
+  expect_doubt("reach --draws 50 --set 'panel.buttons_m=[[-0.067, 0.141], [0, 0.095], [0.067, 0.141]]'",
+               "mm into the handle's circle: at some angles of the handle the arm touches it");
+  const Said plain = run("reach --draws 50");
+  EXPECT_EQ(plain.status, 0) << plain.err;
+  EXPECT_EQ(plain.err, "");
+}
+
+TEST_F(Doubts, ReachTellsAPlaceThatSomeDockingErrorsLeaveOutOfReach) {
+  expect_doubt("reach --draws 200 --set 'panel.buttons_m=[[-0.067, 0.141], [0, 0.186], [0.17, 0.141]]'",
+               "the right button is out of reach at ");
+}
+
+// Without a picture of the same scene nothing is said of one.
+TEST_F(Doubts, PeaksOfOnePictureSayNothingOfAnother) {
+  const Said said = run("peaks " + stripe("one.png", 2, 0, 1));
+  EXPECT_EQ(said.status, 1);
+  EXPECT_THAT(said.err, HasSubstr("is the laser in this picture and in this channel?"));
+  EXPECT_THAT(said.err, ::testing::Not(HasSubstr("--off")));
+}
+
+TEST_F(Doubts, NoMarkerIsAFailureWithItsReason) {
+  const Said said = run("markers " + stripe("bare.png", 2, 120, 1));
+  EXPECT_EQ(said.status, 1);
+  EXPECT_THAT(said.out, HasSubstr("0 markers in 1 frame"));
+  for (const char* word : {"no marker of family 36h11", "--family", "--margin", "--decimate 1 (now "})
+    EXPECT_THAT(said.err, HasSubstr(word));
+}
+
 }  // namespace
 
 }  // namespace lf::app

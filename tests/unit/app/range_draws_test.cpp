@@ -40,5 +40,24 @@ TEST(RangeDraws, EveryWordComesUp) {
   for (const char* make : {"lanternfish", "cia402", "epos4", "copley", "ipos"}) EXPECT_TRUE(profiles.contains(make)) << make;
 }
 
+TEST(RangeDraws, BothEndsOfANumbersRangeAreFlown) {
+  std::set<std::string> names;
+  for (const RangeRow& row : range_rows(1, 0)) names.insert(row.name);
+  EXPECT_TRUE(names.contains("docking.x_m -0.03 (lower end)"));
+  EXPECT_TRUE(names.contains("docking.x_m 0.03 (upper end)"));
+  EXPECT_TRUE(names.contains("mission.tries 1 (lower end)"));
+  EXPECT_TRUE(names.contains("mission.tries 20 (upper end)"));
+  EXPECT_TRUE(end_values("drives.profile").empty()) << "no number";
+  for (const RangeRow& row : range_rows(0, 3)) EXPECT_FALSE(is_of_an_end(row.name)) << "without draws there are no ends";
+}
+
+TEST(RangeDraws, TheEndsAreAcceptedByTheDefaultScenario) {
+  for (const RangeRow& row : range_rows(1, 0)) {
+    if (!is_of_an_end(row.name) || row.key.starts_with("drives.") || row.key == "outputs.node") continue;
+    if (!row.key.starts_with("panel.button_") && !row.key.starts_with("buttons.") && !row.key.starts_with("latency.")) continue;
+    EXPECT_NO_THROW((void)scenario::load_scenario("default", row.set)) << row.name;
+  }
+}
+
 }  // namespace
 }  // namespace lf::app

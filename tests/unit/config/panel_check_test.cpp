@@ -46,5 +46,27 @@ TEST(PanelCheck, TheLargestPlateIsTheLastThatIsAccepted) {
   EXPECT_FALSE(panel_problems(panel).empty());
 }
 
+TEST(PanelCheck, ALowCapIsRefusedByTheNamesOfHeightStrokeAndOvertravel) {
+  const std::vector<Task> press{Task{Task::Kind::press_buttons}};
+  PanelLayout panel;
+  EXPECT_THAT(low_button_problems(panel, 0.006, press), IsEmpty());
+  // The stroke of 5 mm, 6 mm of overtravel, a corner 28 mm from the middle at 18 degrees, and 3.6 mm of doubt.
+  EXPECT_NEAR(lowest_button_m(panel, 0.006), 0.005 + 0.006 + 0.00868 + 0.0036, 1e-9);
+  panel.button_height_m = 0.0232;
+  for (const char* part : {"'panel.button_height_m' is 0.0232", "'panel.button_stroke_m'", "'mission.press_overtravel_m'", "0.0233 m"})
+    EXPECT_THAT(low_button_problems(panel, 0.006, press), ElementsAre(HasSubstr(part)));
+  EXPECT_THAT(low_button_problems(panel, 0.006, {Task{}}), IsEmpty()) << "none is pressed";
+  panel.button_height_m = 0.0234;
+  EXPECT_THAT(low_button_problems(panel, 0.006, press), IsEmpty());
+  panel.button_stroke_m = 0.02;
+  EXPECT_THAT(low_button_problems(panel, 0.006, press), ElementsAre(HasSubstr("0.0383 m")));
+}
+
+// What is touched more than 8 mm below the bottom is not taken for the button, however far the press goes on.
+TEST(PanelCheck, ALongOvertravelAsksForNoMoreThanWhatPassesForTheButton) {
+  EXPECT_EQ(lowest_button_m({}, 0.008), lowest_button_m({}, 0.05));
+  EXPECT_LT(lowest_button_m({}, 0.002), lowest_button_m({}, 0.008));
+}
+
 }  // namespace
 }  // namespace lf::config

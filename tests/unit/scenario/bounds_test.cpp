@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "hal/config/share.hpp"
+#include "host_sim/scenario/instance.hpp"
 #include "host_sim/scenario/keys.hpp"
 #include "shared/input_error.hpp"
 
@@ -22,7 +23,7 @@ Bounds bounds_of(const std::string& path) {
 
 bool accepted(const std::string& path, double value) {
   try {
-    (void)load_scenario("default", {path + "=" + std::to_string(value)});
+    check_runnable(load_scenario("default", {path + "=" + std::to_string(value)}));
     return true;
   } catch (const InputError&) {
     return false;
@@ -55,7 +56,9 @@ INSTANTIATE_TEST_SUITE_P(Keys, BoundsTest,
                                          Case{"buttons.release_depth_m", false, true}, Case{"buttons.click_drop_n", false, true},
                                          Case{"panel.marker_size_m", false, true}, Case{"panel.marker_plate_m", true, false},
                                          Case{"panel.handle_thickness_m", true, false}, Case{"panel.pointer_length_m", false, true},
-                                         Case{"panel.button_stroke_m", true, true}, Case{"mission.press_torque_nm", true, false}),
+                                         Case{"panel.button_stroke_m", true, true}, Case{"panel.button_height_m", true, false},
+                                         Case{"latency.image_ms", false, true}, Case{"latency.panel_vision_ms", false, true},
+                                         Case{"jaw.torque_nm", true, false}, Case{"mission.press_torque_nm", true, false}),
                          [](const auto& each) {
                            std::string name = each.param.path;
                            for (char& letter : name) letter = letter == '.' ? '_' : letter;

@@ -277,4 +277,45 @@ TEST(Shipped, EveryScenarioLoadsAndSaysWhatItIs) {
               ::testing::IsSupersetOf({"default", "clear_water", "turbid", "turn_only", "buttons_only", "hard_valve", "drive_fault"}));
 }
 
+TEST(Load, ALatencyBeyondItsTimeOutIsRefusedByBothNames) {
+  EXPECT_THAT(complaint_before_a_run("latency: {image_ms: 220}"), HasSubstr("'latency.image_ms' is 220: by 'stale_image_s'"));
+  EXPECT_THAT(complaint_before_a_run("latency: {panel_vision_ms: 3000}"),
+              HasSubstr("'latency.panel_vision_ms' is 3000: by 'vision_timeout_s'"));
+  // A scenario that is to end so may make it so.
+  EXPECT_EQ(complaint_before_a_run("latency: {panel_vision_ms: 3000}\nexpect: {failure: panel vision late}"), "");
+}
+
+TEST(Load, AJawBelowItsMotorsRatingIsRefusedByItsKey) {
+  EXPECT_THAT(complaint_before_a_run("jaw: {torque_nm: 15}"), HasSubstr("'jaw.torque_nm' is 15, below the rated torque of 20 N m"));
+  EXPECT_EQ(complaint_before_a_run("jaw: {torque_nm: 20}"), "");
+  EXPECT_EQ(complaint_before_a_run("jaw: {torque_nm: 0}"), "");
+}
+
+TEST(Load, ButtonsAreCheckedWhereOneIsPressed) {
+  const std::string turn = "\ntasks: [{turn_valve: {to_deg: 90}}]";
+  EXPECT_THAT(complaint("mission: {press_torque_nm: 2}"), HasSubstr("'mission.press_torque_nm' at 2"));
+  EXPECT_EQ(complaint("mission: {press_torque_nm: 2}" + turn), "");
+  EXPECT_THAT(complaint("panel: {button_height_m: 0.005}"), HasSubstr("'panel.button_height_m' is 0.005: with 'panel.button_stroke_m'"));
+  EXPECT_EQ(complaint("panel: {button_height_m: 0.005}" + turn), "");
+}
+
+TEST(Load, EveryButtonOutOfReachIsTold) {
+  const std::string told = complaint_before_a_run("panel: {ahead_m: 0.7}");
+  for (const char* what : {"the valve is out", "the left button is out", "the centre button is out", "the right button is out"})
+    EXPECT_THAT(told, HasSubstr(what));
+}
+
+TEST(Load, AFaultWithAMistakeDoesNotHideTheNextOnes) {
+  const std::string told = complaint(
+      "faults:\n"
+      "  - {kind: overcurrent, at_s: 1}\n"
+      "  - {kind: drop_frames, at_s: 1}\n"
+      "  - 3\n"
+      "  - {kind: estop}\n");
+  EXPECT_THAT(told, StartsWith(":2: 'faults[0].node': overcurrent needs a node"));
+  EXPECT_THAT(told, HasSubstr(":3: 'faults[1].can_id': drop_frames needs a can_id"));
+  EXPECT_THAT(told, HasSubstr(":4: 'faults[2]' takes a group of keys"));
+  EXPECT_THAT(told, HasSubstr(":5: 'faults[3].at_s': estop needs a time"));
+}
+
 }  // namespace lf::scenario

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <string>
 
+#include "host_sim/scenario/instance.hpp"
 #include "host_sim/scenario/scenario.hpp"
 #include "shared/input_error.hpp"
 
@@ -31,11 +32,12 @@ class ScenarioFile {
   std::filesystem::path path_;
 };
 
-// What load_scenario says of a bad one, less the file's name; "" when it takes it.
-inline std::string complaint(const std::string& text, const std::vector<std::string>& overrides = {}) {
+// What load_scenario says of a bad one, or before a run check_runnable, less the file's name; "" when it is taken.
+inline std::string complaint(const std::string& text, const std::vector<std::string>& overrides = {}, bool before_a_run = false) {
   const ScenarioFile file(text);
   try {
-    load_scenario(file.path(), overrides);
+    const Scenario scenario = load_scenario(file.path(), overrides);
+    if (before_a_run) check_runnable(scenario);
     return "";
   } catch (const InputError& error) {
     std::string message = error.what();
@@ -43,5 +45,7 @@ inline std::string complaint(const std::string& text, const std::vector<std::str
     return message;
   }
 }
+
+inline std::string complaint_before_a_run(const std::string& text) { return complaint(text, {}, true); }
 
 }  // namespace lf::scenario

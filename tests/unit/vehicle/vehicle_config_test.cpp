@@ -77,6 +77,14 @@ TEST(VehicleConfig, EveryProblemIsListedWithItsLine) {
                   HasSubstr("out of the arm's reach")));
 }
 
+TEST(VehicleConfig, ACapThatIsTooLowToPressIsRefused) {
+  const TemporaryFolder folder;
+  const std::string low = "panel: {button_height_m: 0.012}\n";
+  const auto told = ::testing::Contains(HasSubstr("'panel.button_height_m' is 0.012: with 'panel.button_stroke_m' at 0.005"));
+  EXPECT_THAT(problems_of(folder.write("press.yaml", low + "tasks: [{press_buttons: {order: [left]}}]\n")), told);
+  EXPECT_THAT(problems_of(folder.write("turn.yaml", low + "tasks: [{turn_valve: {to_deg: 90}}]\n")), ::testing::Not(told));
+}
+
 TEST(VehicleConfig, TextThatIsNoYamlIsToldWithItsLine) {
   const TemporaryFolder folder;
   EXPECT_THAT(problems_of(folder.write("v.yaml", "can: [\n")), ElementsAre(HasSubstr("v.yaml:2: not YAML")));

@@ -1,0 +1,71 @@
+#include "hal/config/limits_check.hpp"
+
+#include <array>
+#include <cstdio>
+
+#include "firmware/arm/kinematics.hpp"
+#include "firmware/mission/workbench.hpp"
+#include "shared/messages/joint_names.hpp"
+
+namespace lf::config {
+
+namespace {
+
+// Of a joint's rated torque: a change that free motion makes by itself. At 9 N m of 30 a sweep after a turn was taken for a contact (seed 52).
+constexpr double free_motion_share = 0.3;
+
+template <class... Values>
+std::string formatted(const char* form, Values... values) {
+  std::array<char, 320> text;
+  (void)std::snprintf(text.data(), text.size(), form, values...);
+  return text.data();
+}
+
+void check_torques(const safety::Limits& limits, const ArmDescription& arm, std::vector<std::string>& problems) {
+  const arm::JointVector contact_nm = mission::free_motion_guard(limits).contact_torque_nm;
+  for (std::size_t i = 0; i < arm_joint_count; ++i) {
+    const double told_nm = contact_nm[static_cast<Eigen::Index>(i)], free_nm = free_motion_share * arm.joints[i].rated_torque_nm;
+    if (told_nm > free_nm) continue;
+    const bool by_joint = told_nm < limits.max_contact_torque_nm;
+    const std::string entry = by_joint ? std::string("joints.") + joint_names[i] + ".max_torque_nm" : "max_contact_torque_nm";
+    const double stated_nm = by_joint ? limits.joints[i].max_torque_nm : limits.max_contact_torque_nm;
+    problems.push_back(
+        formatted("'%s' is %.4g: a rise of %.3g N m would count as a contact of the %s, and its free motion takes up to %.3g N "
+                  "m by itself. It takes more than %.4g N m",
+                  entry.c_str(), stated_nm, told_nm, joint_names[i], free_nm, free_nm * stated_nm / told_nm));
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> pose_problems(const safety::Limits& limits, const arm::JointVector& q_rad, const std::string& what) {
+  std::vector<std::string> problems;
+  for (std::size_t i = 0; i < arm_joint_count; ++i) {
+    const double q = q_rad[static_cast<Eigen::Index>(i)];
+    const bool low = q < limits.joints[i].min_rad;
+    if (!low && q <= limits.joints[i].max_rad) continue;
+    problems.push_back(formatted("'joints.%s.%s' is %.5g: %s takes the %s to %.5g rad", joint_names[i], low ? "min_rad" : "max_rad",
+                                 low ? limits.joints[i].min_rad : limits.joints[i].max_rad, what.c_str(), joint_names[i], q));
+  }
+  const Vec3 tool_m = arm::base_from_tool(q_rad).translation();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double at_m = tool_m[static_cast<Eigen::Index>(axis)];
+    const bool low = at_m < limits.workspace_min_m[axis];
+    if (!low && at_m <= limits.workspace_max_m[axis]) continue;
+    problems.push_back(formatted("'workspace.%s' has %.4g for %c: %s takes the tool to %.4g m", low ? "min_m" : "max_m",
+                                 low ? limits.workspace_min_m[axis] : limits.workspace_max_m[axis], "xyz"[axis], what.c_str(), at_m));
+  }
+  return problems;
+}
+
+std::vector<std::string> limits_problems(const safety::Limits& limits, const ControllerConfig& controller, const ArmDescription& arm) {
+  std::vector<std::string> problems = pose_problems(limits, controller.mission.park_rad, "the arm's folded pose");
+  check_torques(limits, arm, problems);
+  const double exposure_s = controller.camera.exposure.s();
+  if (limits.stale_image_s <= exposure_s)
+    problems.push_back(formatted("'stale_image_s' is %.4g: an image cannot be there before its exposure has ended, after %.4g s",
+                                 limits.stale_image_s, exposure_s));
+  return problems;
+}
+
+}  // namespace lf::config
