@@ -251,7 +251,10 @@ void Workbench::watch_back_off_on_hold(const StepTick& tick) {
 Progress Workbench::follow_back_off(const StepTick& tick) {
   guard_back_off(tick.now);
   if (!back_guard.touched()) return follow_motion();
-  if (does_not_follow(back_guard)) {
+  // The roll was let off and the jaw is open: what a seized motor still pushes with is no contact.
+  const bool pushes_at_nothing =
+      back_guard.state() == arm::GuardState::overload && back_guard.joint() == Joint::roll && gripper.state() == arm::GripperState::open;
+  if (pushes_at_nothing || does_not_follow(back_guard)) {
     tick.faults.report(safety::Fault::following_error, static_cast<std::int32_t>(back_guard.joint()));
     return Progress::running();
   }

@@ -124,9 +124,9 @@ struct World::Impl {
 
   template <typename Mechanism>
   void enter_or_leave(Mechanism& mechanism) {
-    const bool near = arm_is_near(mechanism.part());
-    if (near && !mechanism.part().entered()) mechanism.part().enter(bullet.get());
-    if (!near && mechanism.part().entered() && mechanism.at_rest()) mechanism.part().leave(bullet.get());
+    const bool moves = arm_is_near(mechanism.part()) || !mechanism.at_rest();
+    if (moves && !mechanism.part().entered()) mechanism.part().enter(bullet.get());
+    if (!moves && mechanism.part().entered()) mechanism.part().leave(bullet.get());
   }
 
   void step() {

@@ -45,6 +45,22 @@ TEST(Turn, ThatStallsIsLetGoLookedAtAndTakenUpAgain) {
   EXPECT_TRUE(rig.world().contacts().unintended.empty());
 }
 
+// It stalls as a stuck handle would, and goes on pushing when the jaw has let go.
+TEST(Turn, WhoseRollHasSeizedNamesItAndLosesItsPower) {
+  for (const Step step : {Step::advance, Step::turn}) {
+    Rig rig(turn_only());
+    rig.start();
+    ASSERT_TRUE(rig.run_to(step)) << rig.story();
+    rig.run_for(0.5);
+    rig.devices().add_fault({0, devices::DeviceFaultKind::following, 4}, rig.now());
+    ASSERT_TRUE(rig.run_to_end()) << rig.story();
+    rig.run_for(2);
+    EXPECT_EQ(rig.outcome().fault, Fault::following_error) << rig.story();
+    EXPECT_EQ(rig.outcome().code, static_cast<std::int32_t>(Joint::roll)) << rig.story();
+    EXPECT_FALSE(rig.any_power()) << rig.story();
+  }
+}
+
 // Something thicker than the bar is between the fingers: they are not closed on it again.
 TEST(AGrip, OfWhatIsNoBarIsGivenUpAtOnce) {
   Rig rig(turn_only());

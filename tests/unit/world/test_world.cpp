@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <limits>
 
@@ -19,6 +20,24 @@ TEST(World, restsParkedWithoutAnyContact) {
   EXPECT_EQ(world.contacts().peak_force_n, 0);
   EXPECT_EQ(world.valve_angle_rad(), 0);
   EXPECT_NEAR(world.time_s(), 0.5, 1e-9);
+}
+
+// Half a detent's width beside it, where friction does not hold: with the arm parked it stood there until the hand came near.
+TEST(World, aHandleBesideItsDetentFallsInWithNoArmNear) {
+  WorldConfig config = nominal_config();
+  config.valve.friction_nm = 0.1;
+  config.valve.viscous_nm_s = 0.05;
+  config.valve.detents_rad = {0.5};
+  config.valve.detent_nm = 0.3;
+  config.valve.start_rad = 0.5 - 0.5 * config.valve.detent_width_rad;
+  World world(config);
+  Script script(world, config.start_rad);
+  script.run(2);
+  const double held_within_rad = std::asin(config.valve.friction_nm / config.valve.detent_nm) / pi * config.valve.detent_width_rad;
+  EXPECT_NEAR(world.valve_angle_rad(), 0.5, held_within_rad + 1e-6);
+  const double fallen_rad = world.valve_angle_rad();
+  script.run(1);
+  EXPECT_EQ(world.valve_angle_rad(), fallen_rad) << "and stays";
 }
 
 TEST(World, placesThePanelsBodiesAsTheLayoutSays) {
