@@ -57,6 +57,22 @@ ReportData small_run() {
   return data;
 }
 
+TEST(Report, NamesCountersThatAreZeroInOneRow) {
+  const std::string html = report_html(small_run());
+  EXPECT_THAT(html, HasSubstr("refused inputs: peaks_ambiguous"));
+  EXPECT_THAT(html, Not(HasSubstr("refused inputs: images_unexpected")));
+  EXPECT_THAT(html, HasSubstr("images_unexpected, can_unknown_node"));
+}
+
+TEST(Report, OfAValveThatNobodyTurnedSaysWhereItStands) {
+  ReportData data = small_run();
+  for (TaskRecord& task : data.result.tasks) task.done = false;
+  const std::string html = report_html(data);
+  EXPECT_THAT(html, HasSubstr("valve stands at, not turned to its target"));
+  EXPECT_THAT(html, Not(HasSubstr("valve turned to")));
+  for (const ReportError& error : report_errors(data.result, 0.8)) EXPECT_THAT(error.name, Not(HasSubstr("valve's final angle")));
+}
+
 TEST(Report, RefersToNothingOutsideOfItself) {
   const std::string html = report_html(small_run());
   for (const char* reference : {"http://", "src=\"/", "url(", "@import", "<link", "fetch(", "XMLHttpRequest"}) {
