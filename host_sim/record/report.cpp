@@ -185,7 +185,7 @@ std::string machine_table(const RunResult& result) {
     if (count == 0) none += (none.empty() ? "" : ", ") + name;
     if (count != 0) html += row("refused inputs: " + name, std::to_string(count));
   }
-  if (!none.empty()) html += row("refused inputs, none of", none);
+  if (!none.empty()) html += row("refused inputs, none of", none, "names");
   html += row("host", result.host.isa + ", " + std::to_string(result.host.threads) + " render threads, " + result.host.build);
   return html + row("digest", result.digest, "code") + "</table>";
 }
