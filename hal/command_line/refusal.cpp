@@ -52,7 +52,7 @@ std::string unknown_option(const std::string& word, const std::vector<const CLI:
 
 // CLI11 says "Could not convert: --x = 0,44".
 std::string wrong_value(const CLI::ConversionError& error, const CLI::App& command) {
-  const std::string said = error.what();
+  std::string said = error.what();
   const std::size_t name = said.find("--"), equals = said.find(" = ");
   if (name == std::string::npos || equals == std::string::npos || equals < name) return said;
   const std::string option = said.substr(name, equals - name), value = said.substr(equals + 3);
