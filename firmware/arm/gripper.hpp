@@ -83,11 +83,11 @@ class Gripper {
 
   // An order that waits for its update() counts as begun: who asks in between must not take the last one's end for its own.
   GripperState state() const;
-  // Something may be between the pads: by the jaw's angle, by what became of its last order, or since its angle is in doubt.
+  // Something may be between the pads: the jaw stands neither closed nor open, or it is in doubt.
   bool may_hold(double jaw_rad) const;
-  // The one before this did not end open or empty: its encoder or what it holds may still be so. The doubt ends when the jaw is seen to move.
+  // A reset makes a new gripper, and does not free the jaw: where the old one was in doubt the new one is, too, until the jaw is seen to move.
   void doubt() { doubted_ = true; }
-  bool doubted() const;
+  bool doubted() const;  // also where the last order ended held, dropped, jammed or lost
   double target_rad() const { return target_rad_; }
   double grip_gap_m() const { return grip_gap_m_; }  // at which it stalled; 0 before
   std::uint32_t refused() const { return refused_; }

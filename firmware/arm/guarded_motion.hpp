@@ -55,7 +55,7 @@ class GuardedMotion {
   const JointVector& velocity_rad_s() const { return velocity_rad_s_; }
   // Observed as a joint's speed is (joint_observer.hpp), and late by as much: 0 with the first sample.
   const JointVector& command_rad_s() const { return command_rad_s_; }
-  // How far each joint went, and was to go, since its excess torque was last hardly there. What touches something winds up its gear on the way there.
+  // How far each joint went, and was to go, since its excess torque was last below a quarter of a contact's.
   JointVector travelled_rad() const { return (position_rad_ - free_position_rad_).cwiseAbs(); }
   JointVector to_travel_rad() const { return (position_rad_ + error_rad_ - free_command_rad_).cwiseAbs(); }
   std::uint32_t refused() const { return refused_; }

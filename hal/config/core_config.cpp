@@ -20,6 +20,7 @@
 #include "hal/config/motor_check.hpp"
 #include "hal/config/share.hpp"
 #include "hal/config/sweep_check.hpp"
+#include "hal/config/task_reach.hpp"
 #include "hal/vision/calibration_file.hpp"
 #include "shared/arm/arm_description.hpp"
 #include "shared/arm/motor.hpp"
@@ -213,8 +214,6 @@ LaserCalibration laser_calibration(const Laser& laser) {
   return calibration;
 }
 
-std::uint8_t button_index(const std::string& name) { return name == "left" ? 0 : name == "centre" ? 1 : 2; }
-
 [[noreturn]] void refuse(const Machine& machine, const std::string& message) { throw InputError(machine.file + ": " + message); }
 
 arm::VehicleShape vehicle_shape(const Machine& machine) {
@@ -243,52 +242,6 @@ mission::MissionConfig mission_config(const Machine& machine) {
   config.camera_always_on = machine.camera_always_on;
   config.tasks = core_tasks(machine.tasks, machine.file);
   return config;
-}
-
-std::string excess_text(const arm::IkResult& ik) {
-  char text[48];
-  const bool length = ik.outcome == arm::IkOutcome::too_far || ik.outcome == arm::IkOutcome::too_near;
-  std::snprintf(text, sizeof text, length ? "%s by %.0f mm" : "%s by %.1f deg", arm::name(ik.outcome),
-                length ? 1e3 * ik.excess : deg_from_rad(ik.excess));
-  return text;
-}
-
-// Where a task takes the tool, or with `tip_m` the tips of the closed fingers, so far beyond it.
-struct Place {
-  std::string what;
-  Vec3 in_panel_m = Vec3::Zero();
-  double tip_m = 0;
-};
-
-// Of all tasks, each once.
-std::vector<Place> places_of_tasks(const Machine& machine) {
-  const PanelLayout& panel = machine.panel;
-  std::vector<Place> places;
-  const auto add = [&](const Place& place) {
-    if (std::none_of(places.begin(), places.end(), [&](const Place& other) { return other.what == place.what; })) places.push_back(place);
-  };
-  for (const Task& task : machine.tasks) {
-    if (task.kind == Task::Kind::turn_valve) {
-      add({"the valve", Vec3(0, 0, panel.handle_height_m), 0});
-      continue;
-    }
-    for (const std::string& name : task.order) {
-      const Vec2& centre = panel.buttons_m[button_index(name)];
-      add({"the " + name + " button", Vec3(centre.x(), centre.y(), panel.button_height_m), arm::tip_beyond_tool_m(arm::jaw_from_gap(0))});
-    }
-  }
-  return places;
-}
-
-// The pose at the panel's nominal place, found as a press finds it (firmware/mission/press_button.cpp): the approach axis depends on the place itself.
-arm::IkResult pose_at(const PanelLayout& panel, const Place& place) {
-  const Vec3 tip_m = panel.nominal_base_from_panel() * place.in_panel_m;
-  arm::IkResult ik = arm::inverse_kinematics(tip_m, 0);
-  for (int round = 0; round < 3 && place.tip_m > 0; ++round) {
-    if (ik.outcome == arm::IkOutcome::not_a_number || ik.outcome == arm::IkOutcome::too_far) break;
-    ik = arm::inverse_kinematics(tip_m - place.tip_m * arm::approach_axis(ik.q_rad), 0);
-  }
-  return ik;
 }
 
 bool check_reach_of_tasks(const Machine& machine, const Steps& steps) {

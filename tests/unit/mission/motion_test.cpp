@@ -44,6 +44,18 @@ Room far_away() {
   return closed_before(pose);
 }
 
+scan::SweepRequest sweep_over_the_panel() {
+  scan::SweepRequest request;
+  request.base_from_panel = PanelLayout{}.nominal_base_from_panel();
+  return request;
+}
+
+LaserCalibration forearm_laser() {
+  LaserCalibration laser;
+  laser.tool_from_laser.translation() = Vec3(-0.090, 0, -0.365);
+  return laser;
+}
+
 // Until the order is planned; false when it cannot be.
 bool planned(Motion& motion) {
   while (motion.planning()) motion.step(period_s);
@@ -120,13 +132,9 @@ TEST(Motion, AStopEndsAtRestWithoutAJump) {
 }
 
 TEST(Motion, TheSweepIsStrictlyAtConstantSpeedBetweenRunUpAndRunOut) {
-  const PanelLayout layout;
-  scan::SweepRequest request;
-  request.base_from_panel = layout.nominal_base_from_panel();
-  LaserCalibration laser;
-  laser.tool_from_laser.translation() = Vec3(-0.090, 0, -0.365);
+  const scan::SweepRequest request = sweep_over_the_panel();
   Motion motion = at_park();
-  motion.go_to_sweep(request, laser, closed_before(request.base_from_panel), 0, 0.6);
+  motion.go_to_sweep(request, forearm_laser(), closed_before(request.base_from_panel), 0, 0.6);
   ASSERT_TRUE(planned(motion));
   const scan::SweepPlan plan = motion.sweep_plan();
   ASSERT_EQ(plan.outcome, scan::SweepOutcome::ok);
@@ -148,16 +156,12 @@ TEST(Motion, TheSweepIsStrictlyAtConstantSpeedBetweenRunUpAndRunOut) {
 
 // The sweep's speed is the mission's; the elbow may not go as fast.
 TEST(Motion, ASweepFasterThanItsJointMayGoIsRefused) {
-  const PanelLayout layout;
-  scan::SweepRequest request;
-  request.base_from_panel = layout.nominal_base_from_panel();
-  LaserCalibration laser;
-  laser.tool_from_laser.translation() = Vec3(-0.090, 0, -0.365);
+  const scan::SweepRequest request = sweep_over_the_panel();
   safety::Limits slow = limits();
   slow.joints[2].max_speed_rad_s = 0.5 * request.slowest_rad_s;
-  Motion motion(slow, layout, {}, park);
+  Motion motion(slow, {}, {}, park);
   motion.start_at(park);
-  motion.go_to_sweep(request, laser, closed_before(request.base_from_panel), 0, 0.6);
+  motion.go_to_sweep(request, forearm_laser(), closed_before(request.base_from_panel), 0, 0.6);
   EXPECT_FALSE(planned(motion));
   EXPECT_EQ(motion.failure(), StepFailure::unreachable);
   EXPECT_EQ(motion.target(), park);

@@ -1,0 +1,50 @@
+#include "hal/config/task_reach.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "firmware/arm/gripper.hpp"
+#include "firmware/arm/reach.hpp"
+
+namespace lf::config {
+
+std::uint8_t button_index(const std::string& name) { return name == "left" ? 0 : name == "centre" ? 1 : 2; }
+
+std::vector<Place> places_of_tasks(const Machine& machine) {
+  const PanelLayout& panel = machine.panel;
+  std::vector<Place> places;
+  const auto add = [&](const Place& place) {
+    if (std::none_of(places.begin(), places.end(), [&](const Place& other) { return other.what == place.what; })) places.push_back(place);
+  };
+  for (const Task& task : machine.tasks) {
+    if (task.kind == Task::Kind::turn_valve) {
+      add({"the valve", Vec3(0, 0, panel.handle_height_m), 0});
+      continue;
+    }
+    for (const std::string& name : task.order) {
+      const Vec2& centre = panel.buttons_m[button_index(name)];
+      add({"the " + name + " button", Vec3(centre.x(), centre.y(), panel.button_height_m), arm::tip_beyond_tool_m(arm::jaw_from_gap(0))});
+    }
+  }
+  return places;
+}
+
+arm::IkResult pose_at(const PanelLayout& panel, const Place& place) {
+  const Vec3 tip_m = panel.nominal_base_from_panel() * place.in_panel_m;
+  arm::IkResult ik = arm::inverse_kinematics(tip_m, 0);
+  for (int round = 0; round < 3 && place.tip_m > 0; ++round) {
+    if (ik.outcome == arm::IkOutcome::not_a_number || ik.outcome == arm::IkOutcome::too_far) break;
+    ik = arm::inverse_kinematics(tip_m - place.tip_m * arm::approach_axis(ik.q_rad), 0);
+  }
+  return ik;
+}
+
+std::string excess_text(const arm::IkResult& ik) {
+  char text[48];
+  const bool length = ik.outcome == arm::IkOutcome::too_far || ik.outcome == arm::IkOutcome::too_near;
+  std::snprintf(text, sizeof text, length ? "%s by %.0f mm" : "%s by %.1f deg", arm::name(ik.outcome),
+                length ? 1e3 * ik.excess : deg_from_rad(ik.excess));
+  return text;
+}
+
+}  // namespace lf::config
