@@ -47,6 +47,8 @@ class Controller {
 
   // Its drive was heard to lose its position while another program had the bus: no power before it has a zero again.
   void lose_zero(Joint joint) { network_.axis(joint).lose_zero(); }
+  // What the core before this one did not know of its jaw, this one does not know.
+  void doubt_jaw() { mission_.doubt_jaw(); }
 
   // One control period. `out` is cleared by the caller; what does not fit into it is counted, never lost silently.
   void tick(Time t, TickOutput& out);

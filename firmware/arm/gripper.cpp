@@ -20,6 +20,16 @@ constexpr double closed_rad = 0.01;
 // An encoder that has moved so far is not stuck, and what jammed the jaw has let it go.
 constexpr double free_rad = 0.05;
 
+bool in_doubt(GripperState state) {
+  switch (state) {
+    case GripperState::held:
+    case GripperState::dropped:
+    case GripperState::jammed:
+    case GripperState::lost: return true;
+    default: return false;
+  }
+}
+
 }  // namespace
 
 double gap_from_jaw(double jaw_rad) { return -2 * (jaw.pivot_x_m + jaw.face_x_m * std::cos(jaw_rad) - jaw.face_z_m * std::sin(jaw_rad)); }
@@ -34,10 +44,11 @@ double jaw_from_gap(double gap_m) {
 
 double pad_force_n(double jaw_torque_nm) { return jaw_torque_nm / 2 / jaw.face_z_m; }
 
+bool stands_closed(double jaw_rad) { return std::abs(jaw_rad - lower_rad) <= closed_rad; }
+
 bool stands_empty(double jaw_rad, double bar_m) {
-  const bool closed = jaw_rad <= lower_rad + closed_rad;
-  const bool open = gap_from_jaw(jaw_rad) > jaw_opening_m(bar_m) - short_of_open_m;
-  return closed || open;  // what is not a number is neither
+  const bool open = jaw_rad <= upper_rad + closed_rad && gap_from_jaw(jaw_rad) > jaw_opening_m(bar_m) - short_of_open_m;
+  return stands_closed(jaw_rad) || open;  // what is not a number is neither
 }
 
 double jaw_opening_m(double bar_m) { return std::min(bar_m + 2 * reaching_room_m, gap_from_jaw(upper_rad)); }
@@ -72,15 +83,7 @@ GripperState Gripper::state() const {
   }
 }
 
-bool Gripper::doubted() const {
-  switch (state()) {
-    case GripperState::held:
-    case GripperState::dropped:
-    case GripperState::jammed:
-    case GripperState::lost: return true;
-    default: return doubted_;
-  }
-}
+bool Gripper::doubted() const { return doubted_ || in_doubt(state()); }
 
 bool Gripper::may_hold(double jaw_rad) const { return doubted() || !stands_empty(jaw_rad, config_.bar_m); }
 
@@ -117,6 +120,10 @@ double Gripper::update(Time t, double jaw_rad, const TorqueEstimate& torque) {
   if (state_ == GripperState::opening || state_ == GripperState::closing) move(t, jaw_rad, torque, dt_s);
   if (state_ == GripperState::held) hold(jaw_rad, torque, dt_s);
   if (state_ == GripperState::open) rest(t, jaw_rad, torque);
+  if (in_doubt(state_)) {
+    doubted_ = true;
+    doubted_rad_ = jaw_rad;
+  }
   return target_rad_;
 }
 
@@ -181,11 +188,9 @@ void Gripper::stalled(double jaw_rad, const TorqueEstimate& torque) {
   const double gap = gap_from_jaw(jaw_rad);
   grip_rad_ = crept_rad_ = jaw_rad;
   grip_gap_m_ = gap;
-  if (gap > config_.bar_m + config_.bar_tolerance_m) {
-    state_ = GripperState::jammed;
-    target_rad_ = jaw_rad;
-  } else if (gap < config_.bar_m - config_.bar_tolerance_m) {
-    state_ = GripperState::empty;
+  const bool bar = std::abs(gap - config_.bar_m) <= config_.bar_tolerance_m;
+  if (!bar || stands_closed(jaw_rad)) {
+    state_ = stands_closed(jaw_rad) ? GripperState::empty : GripperState::jammed;
     target_rad_ = jaw_rad;
   } else {
     state_ = GripperState::held;

@@ -20,7 +20,9 @@ double tip_beyond_tool_m(double jaw_rad);
 
 // The thinnest bar that a closed jaw is told from: at its stop 1.3 mm stay open, and a stall within `bar_tolerance_m` of the bar counts as a grip.
 inline constexpr double thinnest_bar_m = 0.008;
-// Nothing is between the fingers of a jaw that stands so: closed to its stop, which leaves no more than some millimetres, or open for reaching for such a bar.
+// Closed to its stop, which leaves no more than some millimetres. An angle beyond the stop is one of a false zero, and tells nothing.
+bool stands_closed(double jaw_rad);
+// The fingers hold nothing of a jaw that stands so: closed, or open for reaching for such a bar. Open, they may still stand around it.
 bool stands_empty(double jaw_rad, double bar_m);
 // How far the jaw opens to reach for a bar: to either side `reaching_room_m` more than the bar is thick.
 double jaw_opening_m(double bar_m);
@@ -57,7 +59,7 @@ enum class GripperState : std::uint8_t {
   held,     // stalled on something as thick as the bar
   empty,    // closed to its stop, nothing between the pads
   dropped,  // was held, and is no more
-  jammed,   // stalled where it should not, or took too long
+  jammed,   // stalled where it should not: on something thicker or thinner than the bar; or took too long
   // Its encoder or its drive is not to be trusted. Told to move, it stands without a load, pushes the other way, or goes the other way; or it presses though
   // it is open.
   lost,

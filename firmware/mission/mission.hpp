@@ -71,6 +71,9 @@ class Mission {
   const TaskResults& tasks() const { return bench_.job.results(); }
   const PanelMap& map() const { return bench_.map; }
   const safety::JointStates& joints() const { return bench_.watch.joints(); }
+  // Nobody knows what the jaw holds; an arm must not be moved with it.
+  bool jaw_doubted() const { return bench_.gripper.doubted(); }
+  void doubt_jaw() { bench_.gripper.doubt(); }
 
  private:
   bool on_hold() const { return hold_.has_value(); }

@@ -90,9 +90,10 @@ bool drives_itself_off(const arm::GuardedMotion& guard) {
 
 bool has_seized(const arm::GuardedMotion& guard) {
   // Gear and links of the stiffest joint give way by 2.4 mrad before they carry a contact's torque: the motor goes so far, seven counts of a screw. A
-  // count is what an encoder that stands may waver by.
+  // count is what an encoder that stands may waver by. The roll's is 3.1 mrad: what it meets hard, and what leans on an arm before it begins to move, look the
+  // same as a seized motor. Both lose their power, which is the safer answer.
   constexpr double stands_counts = 1.5, wavers_counts = 1;
-  if (!guard.touched() || guard.cause() != arm::GuardCause::torque) return false;
+  if (!guard.touched()) return false;
   const auto joint = static_cast<Eigen::Index>(guard.joint());
   const double count_rad = arm::rad_per_count(guard.joint(), guard.position_rad()[joint]);
   const double travelled = guard.travelled_rad()[joint] / count_rad, to_travel = guard.to_travel_rad()[joint] / count_rad;
@@ -243,18 +244,24 @@ void Workbench::guard_back_off(Time now) {
   if (!motion.planning() && watch.joints().valid) feel(back_guard, now);
 }
 
+bool Workbench::back_off_does_not_follow() const {
+  // The roll was let off and the jaw is open: what a seized motor still pushes with is no contact.
+  const bool pushes_at_nothing =
+      back_guard.state() == arm::GuardState::overload && back_guard.joint() == Joint::roll && gripper.state() == arm::GripperState::open;
+  return pushes_at_nothing || does_not_follow(back_guard);
+}
+
 void Workbench::watch_back_off_on_hold(const StepTick& tick) {
   guard_back_off(tick.now);
-  report_touch(back_guard, tick.faults);
+  if (!back_guard.touched()) return;
+  const safety::Fault fault = back_off_does_not_follow() ? safety::Fault::following_error : safety::Fault::unexpected_contact;
+  tick.faults.report(fault, static_cast<std::int32_t>(back_guard.joint()));
 }
 
 Progress Workbench::follow_back_off(const StepTick& tick) {
   guard_back_off(tick.now);
   if (!back_guard.touched()) return follow_motion();
-  // The roll was let off and the jaw is open: what a seized motor still pushes with is no contact.
-  const bool pushes_at_nothing =
-      back_guard.state() == arm::GuardState::overload && back_guard.joint() == Joint::roll && gripper.state() == arm::GripperState::open;
-  if (pushes_at_nothing || does_not_follow(back_guard)) {
+  if (back_off_does_not_follow()) {
     tick.faults.report(safety::Fault::following_error, static_cast<std::int32_t>(back_guard.joint()));
     return Progress::running();
   }

@@ -39,7 +39,8 @@ bool runs_off(const arm::GuardedMotion& guard);
 // Its motor's torque is what moves it otherwise than its set-point: what is touched pushes against the motor. Or it leaves its set-point at a speed to which
 // no contact drives a joint: a contact stops it.
 bool drives_itself_off(const arm::GuardedMotion& guard);
-// Its torque rises while it stands where it should go: the motor or its gear has seized. A joint that meets something winds up its gear on the way.
+// Its torque rises while it stands where it should go: the motor or its gear has seized, or something leans on it and keeps it from beginning. A joint that
+// meets something on its way winds up its gear.
 bool has_seized(const arm::GuardedMotion& guard);
 // One of them: what was felt is the drive's own doing, and no contact.
 bool does_not_follow(const arm::GuardedMotion& guard);
@@ -114,6 +115,7 @@ struct Workbench {
  private:
   Room room_on_the_way(double jaw_opening_m);
   void guard_back_off(Time now);
+  bool back_off_does_not_follow() const;
   Vec3 back_from_m_ = Vec3::Zero();
   std::optional<double> jaw_order_m_;  // what the jaw does once the way is clear
 };

@@ -17,7 +17,8 @@ const char* remedy_of(Fault fault) {
     case Fault::drive_fault:
       return "Look up the drive's error; let a hot motor cool down. Free a jammed joint with the emergency stop pressed: a load may hang "
              "on it. Then reset.";
-    case Fault::following_error: return "Press the emergency stop, then look for what blocks the joint, and whether its encoder counts.";
+    case Fault::following_error:
+      return "Press the emergency stop, then look for what blocks the joint or leans on the arm, and whether its encoder counts.";
     case Fault::stale_position: return "The drive sends no position: check the bus's load and errors, and the drive's TPDO.";
     case Fault::joint_limit:
       return "Hold the joint's zero against where the joint really stands before anything moves; then `jog` it back within its limits.";

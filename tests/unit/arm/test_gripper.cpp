@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "firmware/arm/gripper.hpp"
 #include "firmware/arm/kinematics.hpp"
@@ -115,6 +116,41 @@ TEST(Gripper, IsJammedBySomethingThickerThanTheBar) {
   run.jaw.stop_closing_rad = jaw_from_gap(0.030);
   run.gripper.close();
   EXPECT_EQ(run.run(5), GripperState::jammed);
+}
+
+// A hose of 20 mm in a jaw for bars of 40 mm, a cord of 5 mm in one for 12.6 mm: something is there, and the arm would drag it along.
+TEST(Gripper, IsJammedBySomethingThinnerThanTheBar) {
+  for (const auto& [bar_m, thing_m] : {std::pair(0.040, 0.020), std::pair(0.0126, 0.005), std::pair(0.022, 0.005)}) {
+    GripperConfig config;
+    config.bar_m = bar_m;
+    GripperRun run;
+    run.gripper = Gripper(config);
+    run.jaw.stop_closing_rad = jaw_from_gap(thing_m);
+    run.gripper.close();
+    EXPECT_EQ(run.run(5), GripperState::jammed) << bar_m;
+    EXPECT_TRUE(run.gripper.may_hold(run.jaw.q_rad));
+  }
+}
+
+// An angle beyond either stop is one of a false zero.
+TEST(Gripper, MayHoldAnythingWhereItsAngleCannotBe) {
+  const Gripper gripper;
+  for (const double rad : {arm_geometry::joints[4].lower_rad - 0.02, arm_geometry::joints[4].upper_rad + 0.02})
+    EXPECT_TRUE(gripper.may_hold(rad));
+}
+
+// Told to open by a hair it ends as open, and has let go of nothing.
+TEST(Gripper, StaysInDoubtWhenItsNextOrderMovesItByAHair) {
+  GripperRun run;
+  run.jaw.stop_closing_rad = jaw_from_gap(0.030);
+  run.gripper.close();
+  ASSERT_EQ(run.run(5), GripperState::jammed);
+  run.gripper.turn_to(run.jaw.q_rad + 0.001);
+  ASSERT_EQ(run.run(2), GripperState::open);
+  EXPECT_TRUE(run.gripper.doubted());
+  run.gripper.turn_to(run.jaw.q_rad + 0.06);
+  ASSERT_EQ(run.run(2), GripperState::open);
+  EXPECT_FALSE(run.gripper.doubted());
 }
 
 // Closed is closed, however thick the bar: a hose of 20 mm in a jaw for bars of 40 mm is something that is held.

@@ -144,6 +144,13 @@ TEST(HasSeized, IsAMotorThatStandsWhileItsTorqueRises) {
     // A controller that asks for more speed winds up faster: at 0.06 rad/s to 30 N m in 50 ms.
     EXPECT_TRUE(has_seized(met(rad_s, 0, 600 * rad_s / 0.06)));
     EXPECT_TRUE(does_not_follow(met(rad_s, 0, 600 * rad_s / 0.06)));
+    // One whose speed loop is slow lags by more than the guard allows before it has wound up: its torque is 5 N m then.
+    if (rad_s == 0.3) {
+      const arm::GuardedMotion slow = met(rad_s, 0, 50);
+      ASSERT_EQ(slow.cause(), arm::GuardCause::following_error);
+      ASSERT_FALSE(lags_without_load(slow));
+      EXPECT_TRUE(does_not_follow(slow));
+    }
     for (const double stiffness_nm_rad : {1500.0, 4000.0}) EXPECT_FALSE(has_seized(met(rad_s, stiffness_nm_rad, 0))) << stiffness_nm_rad;
   }
 }
