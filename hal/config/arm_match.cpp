@@ -36,6 +36,27 @@ arm::JointVector angles(int pick) {
   return q;
 }
 
+bool same(double a, double b) { return std::abs(a - b) <= 1e-6 * std::max(1.0, std::abs(b)); }
+
+bool same_actuator(const ArmActuator& a, const arm_geometry::JointNumbers& core) {
+  return same(a.pivot_a_m, core.pivot_a_m) && same(a.pivot_b_m, core.pivot_b_m) && same(a.offset_rad, core.offset_rad) &&
+         same(a.counts_per_m, core.counts_per_m) && same(a.counts_per_rad, core.counts_per_rad);
+}
+
+// Where a finger's joint is on the wrist.
+bool same_origin(const Pose& pose, const arm_geometry::Transform& core) {
+  double off = 0;
+  for (Eigen::Index row = 0; row < 3; ++row) {
+    const auto r = static_cast<std::size_t>(row);
+    off = std::max(off, std::abs(pose.translation()[row] - core.translation_m[r]));
+    for (Eigen::Index column = 0; column < 3; ++column)
+      off = std::max(off, std::abs(pose.linear()(row, column) - core.rotation[3 * r + static_cast<std::size_t>(column)]));
+  }
+  return off <= same_m;
+}
+
+std::string joined(const std::string& text, const std::string& more) { return text.empty() ? more : text + ", and " + more; }
+
 }  // namespace
 
 std::string difference_from_core(const ArmDescription& arm) {
@@ -61,7 +82,17 @@ std::string difference_from_core(const ArmDescription& arm) {
                       std::abs(arm.joints[i].upper_rad - numbers.upper_rad) <= same_rad;
     if (!same) limits += (limits.empty() ? "" : ", ") + std::string(joint_names[i]);
   }
-  if (!limits.empty()) text += (text.empty() ? "" : ", and ") + ("the limits of " + limits + " differ");
+  if (!limits.empty()) text = joined(text, "the limits of " + limits + " differ");
+  std::string actuators;
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    if (!same_actuator(arm.joints[i].actuator, arm_geometry::joints[i]))
+      actuators += (actuators.empty() ? "" : ", ") + std::string(joint_names[i]);
+  }
+  if (!actuators.empty()) text = joined(text, "the screw or gear of " + actuators + " differs");
+  constexpr auto jaw = static_cast<std::size_t>(Joint::jaw);
+  if (!same_origin(arm.joints[jaw].parent_from_joint, arm_geometry::joint_origins[jaw]) ||
+      !same_origin(arm.finger_b.parent_from_joint, arm_geometry::joint_origins[jaw + 1]))
+    text = joined(text, "its fingers are elsewhere on the wrist");
   return text;
 }
 

@@ -258,8 +258,8 @@ bool check_reach_of_tasks(const Machine& machine, const Steps& steps) {
 
 // The entry of a limits file that keeps the arm from its work, before anything moves.
 bool check_limits(const Machine& machine, const std::string& file, const safety::Limits& limits, const ControllerConfig& controller,
-                  const ArmDescription& description, const Steps& steps) {
-  std::vector<std::string> problems = limits_problems(limits, controller, description);
+                  const Steps& steps) {
+  std::vector<std::string> problems = limits_problems(limits, controller);
   for (const Place& place : places_of_tasks(machine)) {
     const arm::IkResult ik = pose_at(machine.panel, place);
     if (!ik.ok()) continue;
@@ -289,9 +289,10 @@ void check_exposure(const Machine& machine) {
                       std::to_string(static_cast<int>(longest_us)) + " us");
 }
 
-// The wrist turns about the tool axis, the bar about the panel's normal: 20 degrees apart at most, over which the wrist is faster than the bar by 1 / cos.
+// The wrist turns about the tool axis, the bar about the panel's normal: so far apart the wrist is faster than the bar by 1 / cos.
 void check_turn_speed(const Machine& machine, const ArmDescription& description, const safety::Limits& limits) {
-  constexpr double cosine_of_tilt = 0.94;
+  const double cosine_of_tilt =
+      std::cos(steepest_rad(machine.panel, {"the valve", Vec3(0, 0, machine.panel.handle_height_m), 0}, machine.mission.docking));
   const auto roll = static_cast<std::size_t>(Joint::roll);
   const double fastest = cosine_of_tilt * std::min(description.joints[roll].velocity_rad_s, limits.joints[roll].max_speed_rad_s);
   if (machine.mission.turn_speed_rad_s <= fastest) return;
@@ -418,7 +419,7 @@ Core assemble(const Machine& machine, const Steps& steps) {
   const bool limits =
       steps.take([&] { controller.limits = read_limits(named_file(machine.file, "safety.limits", machine.safety_limits)); });
   controller.mission_limits = controller.limits;
-  if (limits) steps.take([&] { tighten(machine, controller); });
+  const bool tightened = limits && steps.take([&] { tighten(machine, controller); });
   bool drives_known = false;
   const std::map<std::string, DriveKind> profiles = read_profiles(machine, steps);
   if (arm && limits) {
@@ -457,11 +458,11 @@ Core assemble(const Machine& machine, const Steps& steps) {
   if (arm && limits) steps.take([&] { check_turn_speed(machine, description, controller.mission_limits); });
   bool workable = true;
   if (arm && limits && mission) {
-    workable = check_limits(machine, named_file(machine.file, "safety.limits", machine.safety_limits), controller.limits, controller,
-                            description, steps);
-    if (workable && !machine.mission_limits.empty())
+    workable =
+        check_limits(machine, named_file(machine.file, "safety.limits", machine.safety_limits), controller.limits, controller, steps);
+    if (workable && tightened && !machine.mission_limits.empty())
       workable = check_limits(machine, named_file(machine.file, "safety.mission_limits", machine.mission_limits), controller.mission_limits,
-                              controller, description, steps);
+                              controller, steps);
   }
   if (camera) check_view(machine, controller.camera, steps);
   if (limits && mission && reach && workable) {

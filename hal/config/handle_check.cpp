@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 #include "firmware/arm/gripper.hpp"
+#include "hal/config/task_reach.hpp"
 
 namespace lf::config {
 
@@ -36,18 +38,19 @@ void check_stops(const ValveStops& stops, const std::vector<Task>& tasks, std::v
 }
 
 // The tips of an open jaw reach beyond the bar, and more so on the side to which the tool is tilted. Below them the panel keeps a centimetre.
-double lowest_bar_m(double thickness_m) {
-  constexpr double sine_of_tilt = 0.31;  // 18 degrees, the most that the reach survey found
+double lowest_bar_m(const PanelLayout& panel, const arm::PanelDoubt& docking) {
   constexpr double finger_m = 0.020;
   constexpr double clear_m = 0.010;
-  const double opening_m = arm::jaw_opening_m(thickness_m);
-  return arm::tip_beyond_tool_m(arm::jaw_from_gap(opening_m)) + (opening_m / 2 + finger_m) * sine_of_tilt + clear_m;
+  const double opening_m = arm::jaw_opening_m(panel.handle_thickness_m);
+  const double tilt_rad = steepest_rad(panel, {"the valve", Vec3(0, 0, panel.handle_height_m), 0}, docking);
+  return arm::tip_beyond_tool_m(arm::jaw_from_gap(opening_m)) + (opening_m / 2 + finger_m) * std::sin(tilt_rad) + clear_m;
 }
 
-void check_bar(const PanelLayout& panel, std::vector<std::string>& problems) {
-  if (panel.handle_height_m < lowest_bar_m(panel.handle_thickness_m))
+void check_bar(const PanelLayout& panel, const arm::PanelDoubt& docking, std::vector<std::string>& problems) {
+  const double lowest_m = lowest_bar_m(panel, docking);
+  if (panel.handle_height_m < lowest_m)
     problems.push_back("'panel.handle_height_m' is " + number(panel.handle_height_m) + ": the open jaw would touch the panel below " +
-                       number(lowest_bar_m(panel.handle_thickness_m)) + " m");
+                       number(lowest_m) + " m");
   const double thickest_m = thickest_bar_m(panel);
   if (panel.handle_thickness_m < arm::thinnest_bar_m)
     problems.push_back("'panel.handle_thickness_m' is " + number(panel.handle_thickness_m) + ": the jaw does not tell a bar thinner than " +
@@ -66,10 +69,10 @@ double thickest_bar_m(const PanelLayout& panel) { return std::min(arm::thickest_
 
 double longest_mark_m(const PanelLayout& panel) { return panel.handle_length_m / 2 - bare_beyond_middle_m; }
 
-std::vector<std::string> handle_problems(const PanelLayout& panel, const ValveStops& stops, const std::vector<Task>& tasks) {
+std::vector<std::string> handle_problems(const Machine& machine) {
   std::vector<std::string> problems;
-  check_stops(stops, tasks, problems);
-  check_bar(panel, problems);
+  check_stops(machine.valve, machine.tasks, problems);
+  check_bar(machine.panel, machine.mission.docking, problems);
   return problems;
 }
 

@@ -16,6 +16,6 @@ double thickest_bar_m(const PanelLayout& panel);
 double longest_mark_m(const PanelLayout& panel);
 
 // A sentence a problem, without the file's name: a target beyond the stops, a mark that covers too much of the bar, a bar that the jaw cannot hold.
-std::vector<std::string> handle_problems(const PanelLayout& panel, const ValveStops& stops, const std::vector<Task>& tasks);
+std::vector<std::string> handle_problems(const Machine& machine);
 
 }  // namespace lf::config

@@ -11,7 +11,8 @@ namespace lf::config {
 
 namespace {
 
-// Of a joint's rated torque: a change that free motion makes by itself. At 9 N m of 30 a sweep after a turn was taken for a contact (seed 52).
+// Of the rated torque of the arm that the core was built of: a change that its free motion makes by itself, with whatever motors. At 9 N m of 30 a sweep after
+// a turn was taken for a contact (seed 52).
 constexpr double free_motion_share = 0.3;
 
 template <class... Values>
@@ -21,10 +22,10 @@ std::string formatted(const char* form, Values... values) {
   return text.data();
 }
 
-void check_torques(const safety::Limits& limits, const ArmDescription& arm, std::vector<std::string>& problems) {
+void check_torques(const safety::Limits& limits, std::vector<std::string>& problems) {
   const arm::JointVector contact_nm = mission::free_motion_guard(limits).contact_torque_nm;
   for (std::size_t i = 0; i < arm_joint_count; ++i) {
-    const double told_nm = contact_nm[static_cast<Eigen::Index>(i)], free_nm = free_motion_share * arm.joints[i].rated_torque_nm;
+    const double told_nm = contact_nm[static_cast<Eigen::Index>(i)], free_nm = free_motion_share * arm_geometry::joints[i].rated_torque_nm;
     if (told_nm > free_nm) continue;
     const bool by_joint = told_nm < limits.max_contact_torque_nm;
     const std::string entry = by_joint ? std::string("joints.") + joint_names[i] + ".max_torque_nm" : "max_contact_torque_nm";
@@ -58,9 +59,9 @@ std::vector<std::string> pose_problems(const safety::Limits& limits, const arm::
   return problems;
 }
 
-std::vector<std::string> limits_problems(const safety::Limits& limits, const ControllerConfig& controller, const ArmDescription& arm) {
+std::vector<std::string> limits_problems(const safety::Limits& limits, const ControllerConfig& controller) {
   std::vector<std::string> problems = pose_problems(limits, controller.mission.park_rad, "the arm's folded pose");
-  check_torques(limits, arm, problems);
+  check_torques(limits, problems);
   const double exposure_s = controller.camera.exposure.s();
   if (limits.stale_image_s <= exposure_s)
     problems.push_back(formatted("'stale_image_s' is %.4g: an image cannot be there before its exposure has ended, after %.4g s",

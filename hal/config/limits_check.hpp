@@ -10,7 +10,7 @@
 namespace lf::config {
 
 // A sentence a problem, without the file's name; each begins with the entry at fault. `controller` gives the folded pose and the exposure.
-std::vector<std::string> limits_problems(const safety::Limits& limits, const ControllerConfig& controller, const ArmDescription& arm);
+std::vector<std::string> limits_problems(const safety::Limits& limits, const ControllerConfig& controller);
 
 // The same of one pose of the arm, for `what`, as "the valve": joints beyond their range, a tool outside of the workspace.
 std::vector<std::string> pose_problems(const safety::Limits& limits, const arm::JointVector& q_rad, const std::string& what);

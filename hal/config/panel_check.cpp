@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 
 #include "firmware/mission/press_button.hpp"
+#include "hal/config/task_reach.hpp"
 
 namespace lf::config {
 
@@ -48,20 +50,23 @@ double largest_marker_plate_m(const PanelLayout& panel) {
 }
 
 // In simulation caps of 5 to 6 mm with a stroke of 5 mm let the fingers meet the panel beside them, and of 12 mm a broken-off one was told as pressed.
-double lowest_button_m(const PanelLayout& panel, double overtravel_m) {
-  constexpr double corner_m = 0.028;     // from the middle of the closed fingers' tips to a corner: pads of 40 mm, 40 mm thick together
-  constexpr double sine_of_tilt = 0.31;  // 18 degrees, the most that the reach survey found
-  constexpr double doubt_m = 0.0036;     // of the face by the look, 3 mm, and of the tip by the joints, 2 mm, added in squares
-  return panel.button_stroke_m + std::min(overtravel_m, mission::press_face_m) + corner_m * sine_of_tilt + doubt_m;
+double lowest_button_m(const PanelLayout& panel, const mission::MissionConfig& mission) {
+  constexpr double corner_m = 0.028;  // from the middle of the closed fingers' tips to a corner: pads of 40 mm, 40 mm thick together
+  constexpr double doubt_m = 0.0036;  // of the face by the look, 3 mm, and of the tip by the joints, 2 mm, added in squares
+  double tilt_rad = 0;
+  for (std::uint8_t button = 0; button < PanelLayout::button_count; ++button)
+    tilt_rad = std::max(tilt_rad, steepest_rad(panel, place_of_button(panel, button), mission.docking));
+  return panel.button_stroke_m + std::min(mission.press_overtravel_m, mission::press_face_m) + corner_m * std::sin(tilt_rad) + doubt_m;
 }
 
 bool presses(const std::vector<Task>& tasks) {
   return std::any_of(tasks.begin(), tasks.end(), [](const Task& task) { return task.kind == Task::Kind::press_buttons; });
 }
 
-std::vector<std::string> low_button_problems(const PanelLayout& panel, double overtravel_m, const std::vector<Task>& tasks) {
-  const double lowest_m = lowest_button_m(panel, overtravel_m);
-  if (!presses(tasks) || panel.button_height_m >= lowest_m) return {};
+std::vector<std::string> low_button_problems(const Machine& machine) {
+  const PanelLayout& panel = machine.panel;
+  const double overtravel_m = machine.mission.press_overtravel_m, lowest_m = lowest_button_m(panel, machine.mission);
+  if (!presses(machine.tasks) || panel.button_height_m >= lowest_m) return {};
   std::array<char, 400> text;
   (void)std::snprintf(text.data(), text.size(),
                       "'panel.button_height_m' is %.4g: with 'panel.button_stroke_m' at %.4g and 'mission.press_overtravel_m' at %.4g the "

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "hal/config/key.hpp"
+#include "hal/config/machine.hpp"
 #include "shared/panel/panel_layout.hpp"
 
 namespace lf::config {
@@ -12,12 +12,12 @@ namespace lf::config {
 // A sentence a problem, without the file's name: a button that covers the marker or another button, a part that hangs beyond the plate.
 std::vector<std::string> panel_problems(const PanelLayout& panel);
 
-// The height that a cap needs over the panel, m. A press ends `overtravel_m` below the cap's bottom at the latest. Where the cap broke off, the fingers must not
-// meet the panel at a depth that would pass for the button's.
-double lowest_button_m(const PanelLayout& panel, double overtravel_m);
+// The height that the caps need over the panel, m. A press ends `press_overtravel_m` below a cap's bottom at the latest. Where the cap broke off, the fingers
+// must not meet the panel at a depth that would pass for the button's. They come the more aslant the farther off a button is: the steepest counts.
+double lowest_button_m(const PanelLayout& panel, const mission::MissionConfig& mission);
 
 // Buttons that are lower though a task presses one: a sentence, without the file's name.
-std::vector<std::string> low_button_problems(const PanelLayout& panel, double overtravel_m, const std::vector<Task>& tasks);
+std::vector<std::string> low_button_problems(const Machine& machine);
 
 bool presses(const std::vector<Task>& tasks);
 

@@ -1,7 +1,10 @@
 #include "hal/config/task_reach.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdio>
+#include <numbers>
 
 #include "firmware/arm/gripper.hpp"
 #include "firmware/arm/reach.hpp"
@@ -9,6 +12,12 @@
 namespace lf::config {
 
 std::uint8_t button_index(const std::string& name) { return name == "left" ? 0 : name == "centre" ? 1 : 2; }
+
+Place place_of_button(const PanelLayout& panel, std::uint8_t button) {
+  constexpr std::array<const char*, PanelLayout::button_count> names{"the left button", "the centre button", "the right button"};
+  const Vec2& centre = panel.buttons_m[button];
+  return {names[button], Vec3(centre.x(), centre.y(), panel.button_height_m), arm::tip_beyond_tool_m(arm::jaw_from_gap(0))};
+}
 
 std::vector<Place> places_of_tasks(const Machine& machine) {
   const PanelLayout& panel = machine.panel;
@@ -22,8 +31,7 @@ std::vector<Place> places_of_tasks(const Machine& machine) {
       continue;
     }
     for (const std::string& name : task.order) {
-      const Vec2& centre = panel.buttons_m[button_index(name)];
-      add({"the " + name + " button", Vec3(centre.x(), centre.y(), panel.button_height_m), arm::tip_beyond_tool_m(arm::jaw_from_gap(0))});
+      add(place_of_button(panel, button_index(name)));
     }
   }
   return places;
@@ -37,6 +45,16 @@ arm::IkResult pose_at(const PanelLayout& panel, const Place& place) {
     ik = arm::inverse_kinematics(tip_m - place.tip_m * arm::approach_axis(ik.q_rad), 0);
   }
   return ik;
+}
+
+double steepest_rad(const PanelLayout& panel, const Place& place, const arm::PanelDoubt& docking) {
+  constexpr double away_m = 0.5;
+  const arm::IkResult ik = pose_at(panel, place);
+  if (!ik.ok()) return 0;
+  const Vec3 inward = -panel.nominal_base_from_panel().linear().col(2);
+  const Vec3 axis = arm::approach_axis(ik.q_rad);
+  const double doubt_rad = std::numbers::sqrt3 * docking.turn_rad + std::numbers::sqrt2 * docking.shift_m / away_m;
+  return std::atan2(axis.cross(inward).norm(), axis.dot(inward)) + doubt_rad;
 }
 
 std::string excess_text(const arm::IkResult& ik) {

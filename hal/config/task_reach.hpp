@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "firmware/arm/collision.hpp"
 #include "firmware/arm/inverse_kinematics.hpp"
 #include "hal/config/machine.hpp"
 #include "shared/panel/panel_layout.hpp"
@@ -23,6 +24,12 @@ struct Place {
 
 // Of all tasks, each once.
 std::vector<Place> places_of_tasks(const Machine& machine);
+
+Place place_of_button(const PanelLayout& panel, std::uint8_t button);
+
+// How aslant the tool may stand to the panel there, rad: nominally, and by what the panel may be turned about all three axes and shifted along two, from half a
+// metre away. In the reach survey 2 degrees and 20 mm about each axis add up to 6.9 degrees; 6.7 by this. Where the arm does not reach, it does not work: 0.
+double steepest_rad(const PanelLayout& panel, const Place& place, const arm::PanelDoubt& docking);
 
 // The pose there, found as a press finds it (firmware/mission/press_button.cpp): the approach axis depends on the place itself.
 arm::IkResult pose_at(const PanelLayout& panel, const Place& place);

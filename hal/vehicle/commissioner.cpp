@@ -20,6 +20,8 @@ namespace lf::hal {
 
 namespace {
 
+// A file that could not be written, for a full disk for instance, is tried again so much later.
+constexpr Duration forget_again_after = Duration::from_ms(2000);
 // Of a control period, 4 ms, several: a commissioning that cannot begin comes back at once.
 constexpr Duration refused_within = Duration::from_ms(50);
 
@@ -55,22 +57,6 @@ Json friction_json(const config::HomingOffsets& offsets) {
   return all;
 }
 
-namespace {
-
-// What a joint at `place_rad` is off by when its zero is `moved_counts` off. At a stop one of the two ways leads out of the stroke: the other one tells.
-double moved_angle_rad(Joint joint, double place_rad, double moved_counts) {
-  const arm_geometry::JointNumbers& stroke = arm::numbers(joint);
-  const double counts = arm::exact_counts_from_rad(joint, place_rad);
-  double most_rad = 0;
-  for (const double way : {-1.0, 1.0}) {
-    const auto there = static_cast<std::int32_t>(std::lround(counts + way * moved_counts));
-    most_rad = std::max(most_rad, std::abs(std::clamp(arm::rad_from_counts(joint, there), stroke.lower_rad, stroke.upper_rad) - place_rad));
-  }
-  return most_rad;
-}
-
-}  // namespace
-
 TakenOver take_over(const Commissioned& commissioned, const std::array<Motor, joint_count>& motors, config::HomingOffsets& offsets) {
   TakenOver taken;
   for (std::size_t i = 0; i < joint_count; ++i) {
@@ -93,8 +79,8 @@ TakenOver take_over(const Commissioned& commissioned, const std::array<Motor, jo
       continue;
     }
     if (offsets.known[i]) {
-      const double moved_rad = moved_angle_rad(static_cast<Joint>(i), commissioned.place_rad[i],
-                                               static_cast<double>(commissioned.zero_counts[i]) - offsets.zero_counts[i]);
+      const double moved_rad = zero_moved_rad(static_cast<Joint>(i), commissioned.place_rad[i],
+                                              static_cast<double>(commissioned.zero_counts[i]) - offsets.zero_counts[i]);
       if (moved_rad > told_move_rad) taken.moved_rad[i] = moved_rad;
     }
     offsets.zero_counts[i] = commissioned.zero_counts[i];
@@ -130,12 +116,9 @@ Commissioner::~Commissioner() {
 void Commissioner::lose_zeros(const std::array<bool, joint_count>& lost) {
   if (busy()) return;
   zero_lost_ = lost;
-  if (file_.empty() || config::is_shipped(file_) || forgetting_ != nullptr) return;
+  if (file_.empty() || config::is_shipped(file_) || forgetting_ != nullptr || monotonic_now() < try_again_) return;
   std::array<bool, joint_count> to_forget{};
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    to_forget[i] = lost[i] && !forgotten_[i];
-    forgotten_[i] = lost[i];
-  }
+  for (std::size_t i = 0; i < joint_count; ++i) to_forget[i] = lost[i] && !forgotten_[i];
   if (std::none_of(to_forget.begin(), to_forget.end(), [](bool one) { return one; })) return;
   auto forgetting = std::make_shared<Forgetting>();
   forgetting->joints = to_forget;
@@ -152,8 +135,7 @@ void Commissioner::lose_zeros(const std::array<bool, joint_count>& lost) {
     forgetting->problem = problem;
     forgetting->done = true;
   });
-  if (posted) forgetting_ = forgetting;
-  if (!posted) forgotten_ = {};  // the next report says it again
+  if (posted) forgetting_ = forgetting;  // otherwise the next report says it again
 }
 
 // A zero that was lost is no longer in the file: a daemon that is started anew must not trust it.
@@ -163,12 +145,19 @@ void Commissioner::note_forgotten() {
   const std::lock_guard lock(forgetting->mutex);
   if (!forgetting->done) return;
   forgetting_ = nullptr;
+  const bool told = try_again_ != Time{};
+  const bool gone = forgetting->problem.empty();
+  try_again_ = gone ? Time{} : monotonic_now() + forget_again_after;
   Json names = Json::array();
   for (std::size_t i = 0; i < joint_count; ++i) {
-    if (forgetting->joints[i]) names.push_back(config::joint_name(i));
+    if (!forgetting->joints[i]) continue;
+    forgotten_[i] = gone;
+    names.push_back(config::joint_name(i));
   }
+  if (told && !gone) return;
   Json line{{"t_s", monotonic_now().s()}, {"kind", "zeros_lost"}, {"joints", names}, {"file", file_}};
-  if (!forgetting->problem.empty()) line["why"] = forgetting->problem + ": commission them before the daemon is started anew";
+  if (!forgetting->problem.empty())
+    line["why"] = forgetting->problem + ": commission them before the daemon is started anew; the file is tried again meanwhile";
   log_(line);
 }
 
@@ -196,9 +185,11 @@ std::optional<std::string> Commissioner::begin(const CommissionOrder& order) {
   setup.joints = order.joints;
   setup.backlash_rad = backlash_rad_;
   setup.here = order.here;
-  setup.bar_m = core_.mission.layout.handle_thickness_m;
-  constexpr auto jaw = static_cast<std::size_t>(Joint::jaw);
-  setup.jaw_known = core_.network.drives[jaw].zero_known && !zero_lost_[jaw];
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    bool& known = setup.network.drives[i].zero_known;
+    known = known && !zero_lost_[i];
+  }
+  setup.jaw_known = setup.network.drives[static_cast<std::size_t>(Joint::jaw)].zero_known && !jaw_doubted_;
   const bool posted = worker_.post([prepared = prepared_, setup, file = file_] {
     std::string problem;
     try {
@@ -268,9 +259,11 @@ void Commissioner::take_back(const CommissioningResult& result) {
     return;
   }
   if (last_.is_null()) answer_ = Json{{"ok", true}, {"standing", "commissioning"}};
-  if (ended->state() == Commissioning::State::done) return store(*ended);
-  end_with(
-      {{"state", "failed"}, {"why", "nothing was written: " + std::string(ended->failure())}, {"without_power", ended->without_power()}});
+  const std::string why = ended->state() == Commissioning::State::done ? "" : "nothing was written: " + std::string(ended->failure());
+  const bool moved = std::any_of(ended->moved_rad().begin(), ended->moved_rad().end(), [](double rad) { return rad > 0; });
+  without_power_ = ended->without_power();
+  if (why.empty() || moved) return store(*ended, why);
+  end_with({{"state", "failed"}, {"why", why}, {"without_power", without_power_}});
 }
 
 void Commissioner::end_with(const Json& outcome) {
@@ -295,24 +288,31 @@ void Commissioner::give(Prepared& prepared, const std::string& problem, const Ta
   prepared.done = true;
 }
 
-// The file is read again: it keeps what this commissioning has not found.
-void Commissioner::store(const Commissioning& ended) {
+// The file is read again: it keeps what this commissioning has not found. Of one that failed only the doubt is kept, in the zeros that it found elsewhere.
+void Commissioner::store(const Commissioning& ended, const std::string& failed) {
   stage_ = Stage::storing;
   last_ = {{"state", "under way"}};  // also of one that ended before its begin was told
   prepared_ = std::make_shared<Prepared>();
   const std::string how = (order_.here ? "in the jig, " : "at its stop, ") + now_text() + " UTC";
   const Commissioned commissioned{ended.found(), ended.zero_counts(), ended.friction_found(), ended.friction(), how, ended.places_rad()};
   for (std::size_t i = 0; i < joint_count; ++i) still_lost_[i] = zero_lost_[i] && !commissioned.found[i];
+  for (std::size_t i = 0; i < joint_count; ++i) forgotten_[i] = forgotten_[i] && !commissioned.found[i];
   const bool posted = worker_.post([prepared = prepared_, file = file_, commissioned, core = core_, motors = motors_, lost = zero_lost_,
-                                    still_lost = still_lost_]() mutable {
+                                    still_lost = still_lost_, failed]() mutable {
     std::string problem;
     TakenOver taken;
     config::HomingOffsets offsets;
     std::unique_ptr<Controller> with_zeros;
     try {
       offsets = read_and_check(file);
+      config::HomingOffsets before = offsets;
       taken = take_over(commissioned, motors, offsets);
       try {
+        if (!failed.empty()) {
+          for (std::size_t i = 0; i < joint_count; ++i) before.known[i] = before.known[i] && taken.moved_rad[i] <= 0;
+          config::write_homing_file(file, before);
+          throw InputError(failed);
+        }
         config::write_homing_file(file, offsets);
       } catch (const InputError& error) {
         // What was found is lost; that a joint must not have power is not. Nor that its old zero is wrong.
@@ -348,7 +348,8 @@ void Commissioner::store(const Commissioning& ended) {
     }
     give(*prepared, problem, taken, offsets, std::move(with_zeros));
   });
-  if (!posted) end_with({{"state", "failed"}, {"why", "nothing was written: too much is waiting to be done"}, {"without_power", true}});
+  if (!posted)
+    end_with({{"state", "failed"}, {"why", "nothing was written: too much is waiting to be done"}, {"without_power", without_power_}});
 }
 
 void Commissioner::give_core(std::unique_ptr<Controller> core, const Json& outcome) {
@@ -367,7 +368,8 @@ void Commissioner::install() {
   if (!prepared_->problem.empty()) {
     for (std::size_t i = 0; i < joint_count && prepared_->core; ++i)
       core_.network.drives[i].zero_known = core_.network.drives[i].zero_known && prepared_->offsets.known[i] && !zero_lost_[i];
-    const Json failed{{"state", "failed"}, {"why", prepared_->problem + (why.empty() ? "" : "; " + why)}, {"without_power", true}};
+    const Json failed{
+        {"state", "failed"}, {"why", prepared_->problem + (why.empty() ? "" : "; " + why)}, {"without_power", without_power_}};
     return prepared_->core ? give_core(std::move(prepared_->core), failed) : end_with(failed);
   }
   Json zeros = Json::object(), moved = Json::object();
@@ -380,7 +382,7 @@ void Commissioner::install() {
   }
   Json outcome{{"state", "done"}, {"zeros", zeros}, {"friction", friction_json(prepared_->offsets)}, {"file", file_}};
   if (!moved.empty()) outcome["moved_rad"] = moved;
-  if (!why.empty()) outcome.update({{"state", "failed"}, {"why", why}, {"without_power", true}});
+  if (!why.empty()) outcome.update({{"state", "failed"}, {"why", why}, {"without_power", without_power_}});
   give_core(std::move(prepared_->core), outcome);
 }
 

@@ -17,6 +17,7 @@
 #include "hal/vehicle/status_json.hpp"
 #include "hal/vehicle/vehicle_config.hpp"
 #include "hal/vehicle/worker.hpp"
+#include "hal/vehicle/zero_moved.hpp"
 
 namespace lf::hal {
 
@@ -39,9 +40,6 @@ struct TakenOver {
   // By how much each zero has moved against the file's earlier one, as the angle at its place; 0 where there was none, or it moved by less than what is told.
   std::array<double, joint_count> moved_rad{};
 };
-// A zero that moves by more is told. Two commissionings agree within 0.003 rad; a drive's encoder that was exchanged, or an obstacle that was taken for the
-// stop, is farther off.
-inline constexpr double told_move_rad = 0.03;
 // Takes it over into `offsets`. A joint whose friction cannot be is no longer known there, and stays out until a friction was measured that can be: a zero
 // alone does not show that what rubbed is gone.
 TakenOver take_over(const Commissioned& commissioned, const std::array<Motor, joint_count>& motors, config::HomingOffsets& offsets);
@@ -68,6 +66,8 @@ class Commissioner {
 
   // What the control loop says of the core at work: joints whose drive has lost its position. They need a zero until they are commissioned, by the file, too.
   void lose_zeros(const std::array<bool, joint_count>& lost);
+  // The core at work doubts what its jaw holds.
+  void doubt_jaw(bool doubted) { jaw_doubted_ = doubted; }
   // Joints that take no power since their zero is not known: "slew, elbow"; empty when there is none.
   std::string unknown_joints() const;
   // How the last one ended, once the core has what it found; null before the first.
@@ -96,7 +96,7 @@ class Commissioner {
   void note_forgotten();
   void lend();
   void take_back(const CommissioningResult& result);
-  void store(const Commissioning& ended);
+  void store(const Commissioning& ended, const std::string& failed);
   static void give(Prepared& prepared, const std::string& problem, const TakenOver& taken, const config::HomingOffsets& offsets,
                    std::unique_ptr<Controller> core);
   void install();
@@ -109,6 +109,9 @@ class Commissioner {
   std::array<bool, joint_count> zero_lost_{};   // of the core at work
   std::array<bool, joint_count> still_lost_{};  // those of them that the commissioning under way has not found
   std::array<bool, joint_count> forgotten_{};   // those that the file has no more
+  Time try_again_;                              // when the file could not be written; 0: it could
+  bool jaw_doubted_ = false;
+  bool without_power_ = true;  // after the last one
   std::shared_ptr<Forgetting> forgetting_;
   std::string file_;
   std::array<double, joint_count> backlash_rad_{};

@@ -9,6 +9,7 @@
 
 #include "firmware/arm/actuator.hpp"
 #include "firmware/arm/gripper.hpp"
+#include "hal/vehicle/zero_moved.hpp"
 #include "shared/arm/arm_geometry.hpp"
 
 namespace lf::hal {
@@ -43,7 +44,12 @@ constexpr double rub_acceleration = 0.25;
 // The jaw first: what it held has then been let go of.
 constexpr std::array<std::size_t, joint_count> order{4, 0, 1, 2, 3};
 
-// The jaw's tips meet before its lower stop is reached.
+// Of a target's lead over its joint: then it presses.
+constexpr double nearly_all = 0.9;
+// Where the jaw is left: closed, and not pressing on its stop.
+constexpr double shut_rad = arm_geometry::joints[static_cast<std::size_t>(Joint::jaw)].lower_rad + 0.005;
+
+// The jaw's lower stop may be met by what is between its fingers.
 double direction(std::size_t joint) { return static_cast<Joint>(joint) == Joint::jaw ? 1 : -1; }
 double stop_rad(std::size_t joint) {
   const arm_geometry::JointNumbers& stroke = arm_geometry::joints[joint];
@@ -102,7 +108,7 @@ std::array<double, joint_count> Commissioning::places_rad() const {
 
 void Commissioning::go(State state, Time now) {
   state_ = state;
-  since_ = now;
+  since_ = moved_ = now;
 }
 
 void Commissioning::stop(const char* why) {
@@ -221,6 +227,7 @@ void Commissioning::step(Time now) {
       target_ = last_counts_ = started_counts_ = axis().actual_counts();
       moved_ = now;
       too_hard_ticks_ = 0;
+      reopening_ = false;
       return go(State::seeking, now);
     case State::seeking: return seek(now);
     case State::easing: return ease(now);
@@ -228,8 +235,7 @@ void Commissioning::step(Time now) {
     case State::backing_off: return back_off(now);
     case State::releasing:
       if (axis().state() != canopen::AxisState::disabled) return;
-      ++turn_;
-      return next_joint(now);
+      return end_joint(now);
     case State::halting:
       if (power_.state() != safety::Power::State::stopping) go(State::powering_off, now);
       return;
@@ -251,8 +257,9 @@ const char* Commissioning::why_not() const {
   if (!arm_moves || config_.joints[jaw]) return nullptr;
   if (!config_.jaw_known || network_.axis(Joint::jaw).zero_lost()) return "nobody knows whether the jaw is empty: commission it, too";
   const std::int32_t counts = network_.axis(Joint::jaw).actual_counts() - config_.network.drives[jaw].encoder_zero_counts;
-  if (arm::stands_empty(arm::rad_from_counts(Joint::jaw, counts), config_.bar_m)) return nullptr;
-  return "the jaw may hold something, which the arm would drag along: commission the jaw, too, which opens it";
+  if (arm::stands_closed(arm::rad_from_counts(Joint::jaw, counts))) return nullptr;
+  return "the jaw is not closed: what is between its fingers would move with the arm, or be in its way. Commission the jaw, too, which "
+         "opens and closes it";
 }
 
 void Commissioning::begin_work(Time now) {
@@ -273,6 +280,20 @@ void Commissioning::next_joint(Time now) {
   go(State::stopping, now);
 }
 
+void Commissioning::end_joint(Time now) {
+  const bool last = std::none_of(order.begin() + static_cast<std::ptrdiff_t>(turn_) + 1, order.end(),
+                                 [&](std::size_t joint) { return config_.joints[joint]; });
+  if (moved_rad_[joint_] > 0 && !last) {
+    std::array<char, 140> why{};
+    std::snprintf(why.data(), why.size(),
+                  "its stop is %.2f rad from where it was: look for what it met. Where its encoder was exchanged, commission it alone",
+                  moved_rad_[joint_]);
+    return fail_joint(why.data(), now);
+  }
+  ++turn_;
+  next_joint(now);
+}
+
 void Commissioning::take_here(Time now) {
   for (std::size_t i = 0; i < joint_count; ++i) {
     if (!config_.joints[i]) continue;
@@ -290,16 +311,22 @@ bool Commissioning::presses_too_hard() {
   return too_hard_ticks_ > too_hard_ticks;
 }
 
-// The target creeps on, a lead ahead of the joint at most: at the stop the lead is what presses.
-void Commissioning::seek(Time now) {
-  const canopen::DriveSetup& drive = config_.network.drives[joint_];
-  const double way = direction(joint_), lead = drive.following_window_counts / 2.0;
+// Against what it presses on.
+bool Commissioning::stands(Time now, bool pressing) {
   const std::int32_t actual = axis().actual_counts();
   // A joint that presses between two counts wavers by one.
   if (std::abs(actual - last_counts_) > 1) {
     last_counts_ = actual;
     moved_ = now;
   }
+  return pressing && now - moved_ >= config_.stall;
+}
+
+// The target creeps on, a lead ahead of the joint at most: at the stop the lead is what presses.
+void Commissioning::seek(Time now) {
+  const canopen::DriveSetup& drive = config_.network.drives[joint_];
+  const double way = direction(joint_), lead = drive.following_window_counts / 2.0;
+  const std::int32_t actual = axis().actual_counts();
   if (presses_too_hard()) {
     std::array<char, 120> why{};
     std::snprintf(why.data(), why.size(), "it presses with %ld %% of its rated torque: limit it to %ld %% with its maker's tool",
@@ -309,8 +336,7 @@ void Commissioning::seek(Time now) {
   target_ += way * config_.speed_fraction * drive.max_speed_counts_s * network_.config().sync_period.s();
   target_ = std::clamp(target_, actual - lead, actual + lead);
   (void)axis().set_target_counts(static_cast<std::int32_t>(target_));
-  const bool pressing = std::abs(target_ - actual) >= 0.9 * lead;
-  if (!pressing || now - moved_ < config_.stall) return;
+  if (!stands(now, std::abs(target_ - actual) >= nearly_all * lead)) return;
   pressed_permille_ = std::abs(axis().torque_permille());
   if (pressed_permille_ < least_pressing * pressing_permille(config_, joint_)) {
     std::array<char, 120> why{};
@@ -354,6 +380,10 @@ void Commissioning::ease(Time now) {
       static_cast<std::int32_t>(std::lround(stop_counts_ - arm::exact_counts_from_rad(static_cast<Joint>(joint_), touching_rad)));
   found_[joint_] = true;
   losses_when_found_[joint_] = axis().stats().zeros_lost;
+  if (drive.zero_known && !axis().zero_lost()) {
+    const double moved_rad = zero_moved_rad(static_cast<Joint>(joint_), stop_rad(joint_), zero_counts_[joint_] - drive.encoder_zero_counts);
+    moved_rad_[joint_] = moved_rad > told_move_rad ? moved_rad : 0;
+  }
   target_ = actual;
   begin_rubbing(now);
 }
@@ -367,7 +397,10 @@ double Commissioning::started_off_stop() const {
   return direction(joint_) < 0 ? std::max<double>(started_counts_, off_stop) : std::min<double>(started_counts_, off_stop);
 }
 
-double Commissioning::goal_counts() const { return static_cast<Joint>(joint_) == Joint::jaw ? off_stop_counts() : started_off_stop(); }
+double Commissioning::goal_counts() const {
+  if (static_cast<Joint>(joint_) != Joint::jaw) return started_off_stop();
+  return reopening_ ? off_stop_counts() : zero_counts_[joint_] + arm::exact_counts_from_rad(Joint::jaw, shut_rad);
+}
 
 // The stretch begins off the stop and goes where the joint has just come from: there is nothing on it.
 void Commissioning::begin_rubbing(Time now) {
@@ -414,15 +447,26 @@ void Commissioning::end_rubbing() {
   friction_[joint_] = {found.coulomb * mnm, found.viscous * mnm / motor_rad_s, found.rms * mnm};
 }
 
-// To where it was: an arm that is left unfolded stands outside of its workspace, and no order leads it back. From a stop, off it. The jaw stays open.
+// To where it was: an arm that is left unfolded stands outside of its workspace, and no order leads it back. From a stop, off it. The jaw is closed, and opened
+// again where something keeps it from closing.
 void Commissioning::back_off(Time now) {
   const canopen::DriveSetup& drive = config_.network.drives[joint_];
-  const double window = drive.following_window_counts;
+  const double window = drive.following_window_counts, lead = window / 2;
   const double goal = goal_counts();
   const double step = config_.speed_fraction * drive.max_speed_counts_s * network_.config().sync_period.s();
-  target_ += std::clamp(goal - target_, -step, step);
+  const std::int32_t actual = axis().actual_counts();
+  target_ = std::clamp(target_ + std::clamp(goal - target_, -step, step), actual - lead, actual + lead);
   (void)axis().set_target_counts(static_cast<std::int32_t>(std::lround(target_)));
-  if (std::abs(axis().actual_counts() - goal) > std::max(3.0, arrived_windows * window)) return;  // drives hold within two counts
+  const bool closing = static_cast<Joint>(joint_) == Joint::jaw && !reopening_;
+  const bool arrived = std::abs(actual - goal) <= std::max(3.0, arrived_windows * window);  // drives hold within two counts
+  if (!arrived && stands(now, target_ == goal || std::abs(target_ - actual) >= nearly_all * lead)) {
+    if (!closing) return fail_joint("something is in its way back", now);
+    reopening_ = true;
+    moved_ = now;
+    return;
+  }
+  if (!arrived) return;
+  if (reopening_) return fail_joint("something is between its fingers: take it out, or move the arm away from it", now);
   axis().request(canopen::AxisRequest::disable);
   go(State::releasing, now);
 }

@@ -2,7 +2,9 @@
 //
 // One joint after the other is powered, moved slowly against a stop with a third of its rated torque (a screw: two thirds), eased off until it only touches, read there, moved
 // both ways at two speeds over a stretch that it has just passed, from which friction_fit.hpp has its friction, moved back to where it was, and released: the stop's angle is known from the arm's description.
-// The jaw comes first and stays open: the arm would drag along what it holds. Without it the arm's joints are moved only where the jaw is known to stand empty. A joint that presses has wound up its gear: read under that torque the slew would be 0.4 deg off.
+// The jaw comes first and is closed: what it held is let go of, and what is still between its fingers would be dragged along, or meets them when the arm moves.
+// Without it the arm's joints are moved only where the jaw is known to stand closed. No joint moves after one whose known zero was found elsewhere: its stop
+// may have been something else. A joint that presses has wound up its gear: read under that torque the slew would be 0.4 deg off.
 // The drives' own references are not touched. A plain object like the core, run by the control thread in the core's place: frames and the time in, frames
 // out, no heap. It stands on the core's own network and axes.
 //
@@ -33,8 +35,7 @@ class Commissioning {
         backlash_rad{};  // of each gear, as the arm's description has it: the motor touches half of it beyond the stop
     std::array<arm::TransmissionSetup, joint_count> transmissions;  // their friction, as far as it is known before
     bool here = false;                                              // the arm stands at its zero, in a jig: nothing is moved
-    double bar_m = 0;                                               // what the jaw is opened for: its thickness
-    bool jaw_known = false;                                         // its zero in `network` is true
+    bool jaw_known = false;                                         // its zero in `network` is true, and its encoder is believed
     double speed_fraction = 0.3;  // of each drive's maximum: 0.13 rad/s of the slew, above its stiction of 0.06
     // Of the rated torque: free motion under water takes less than a fifth. At a stroke's end a screw has a third of its lever left: with less than two
     // thirds of the torque the arm's weight stops the shoulder short.
@@ -51,7 +52,7 @@ class Commissioning {
     seeking,       // toward the stop
     easing,        // off it, until it only touches
     rubbing,       // both ways over a stretch, twice
-    backing_off,   // to where the joint was
+    backing_off,   // to where the joint was; the jaw: closed
     releasing,     // the joint loses power
     halting,       // ended early: quick stop
     powering_off,  // and without power, as soon as it stands
@@ -78,6 +79,8 @@ class Commissioning {
   std::size_t joint() const { return joint_; }  // under work
   const std::array<std::int32_t, joint_count>& zero_counts() const { return zero_counts_; }
   const std::array<bool, joint_count>& found() const { return found_; }
+  // By how much a zero that was known in `network` has moved, where it is more than told_move_rad; 0 otherwise.
+  const std::array<double, joint_count>& moved_rad() const { return moved_rad_; }
   // Joints whose drive said that it has lost its position, less those that were found after it.
   std::array<bool, joint_count> zeros_lost() const;
   // Where each zero is found: the joint's stop, in a jig 0.
@@ -107,7 +110,9 @@ class Commissioning {
   void begin_rubbing(Time now);
   void rub(Time now);
   void end_rubbing();
+  void end_joint(Time now);
   void back_off(Time now);
+  bool stands(Time now, bool pressing);
   double off_stop_counts() const;
   double started_off_stop() const;  // where it was, off the stop
   double goal_counts() const;       // where it is left
@@ -125,6 +130,7 @@ class Commissioning {
   std::size_t joint_ = 0;
   std::array<std::int32_t, joint_count> zero_counts_{};
   std::array<bool, joint_count> found_{};
+  std::array<double, joint_count> moved_rad_{};
   std::array<std::uint32_t, joint_count> losses_when_found_{};  // of each zero
   std::array<bool, joint_count> friction_found_{};
   std::array<config::JointFriction, joint_count> friction_{};
@@ -138,6 +144,7 @@ class Commissioning {
   std::int32_t started_counts_ = 0;   // where it was powered
   double pressed_permille_ = 0;       // torque when it stood at the stop
   std::int32_t pressed_counts_ = 0;
+  bool reopening_ = false;                     // the jaw met something on its way to being closed
   int too_hard_ticks_ = 0;                     // in a row
   double pressed_load_ = 0;                    // what of it the stop felt
   std::optional<std::int32_t> easing_counts_;  // where the load began to fall

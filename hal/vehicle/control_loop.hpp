@@ -142,6 +142,7 @@ class ControlLoop {
       const canopen::Axis& axis = before.network().axis(joint);
       if (axis.zero_lost() && !(found_[i] && axis.stats().zeros_lost == losses_when_found_[i])) next.lose_zero(joint);
     }
+    if (before.mission().jaw_doubted() && !found_[static_cast<std::size_t>(Joint::jaw)]) next.doubt_jaw();
     found_.fill(false);
   }
 
@@ -235,6 +236,7 @@ class ControlLoop {
       report_.zeros_lost[i] = network.axis(static_cast<Joint>(i)).zero_lost() && !network.axis(static_cast<Joint>(i)).may_have_power();
       report_.axis_faults[i] = network.axis(static_cast<Joint>(i)).fault();
     }
+    report_.jaw_doubted = mission.jaw_doubted();
     report_.inputs = network.io().inputs();
     report_.outputs = network.io().outputs();
     report_.boot = network.boot();

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "firmware/canopen/cob_id.hpp"
+#include "hal/config/task_check.hpp"
 #include "hal/heap_guard/heap_guard.hpp"
 
 namespace lf::hal {
@@ -81,7 +82,10 @@ OrderDesk::Ways Daemon::ways(const Surroundings& surroundings) {
     };
   }
   ways.interface = config_.interface;
-  ways.panel = config_.core.controller.mission.layout;
+  ways.why_not = [this](const mission::Tasks& tasks) {
+    const std::string beyond = config::turn_problem(tasks, config_.core.controller.mission.layout);
+    return beyond.empty() ? config::tasks_problem(config_.machine, config_.core.controller.mission_limits, tasks) : beyond;
+  };
   ways.no_sight = [this]() -> std::string { return board_.newest().camera.images > 0 ? "" : camera_lacks_; };
   ways.commissioner = &commissioner_;
   return ways;
@@ -125,6 +129,7 @@ void Daemon::run_operator() {
   while (!operator_stops_) {
     server_.serve(desk_.settled() ? serve_for : serve_while_settling, -1);
     commissioner_.lose_zeros(board_.newest().control.zeros_lost);
+    commissioner_.doubt_jaw(board_.newest().control.jaw_doubted);
     commissioner_.step();
     desk_.settle(reply);
   }

@@ -53,19 +53,6 @@ const char* remedy(Command command, mission::Standing standing) {
   }
 }
 
-// The angles of a turn are refused here with their bounds; the core keeps them, too.
-std::string turn_problem(const mission::Tasks& tasks, const PanelLayout& panel) {
-  for (const mission::Task& task : tasks) {
-    if (task.kind != mission::Task::Kind::turn_valve) continue;
-    if (task.to_rad >= panel.handle_min_rad && task.to_rad <= panel.handle_max_rad) continue;
-    char text[128];
-    std::snprintf(text, sizeof text, "the valve cannot be turned to %.4g deg: its handle goes from %.4g to %.4g deg",
-                  deg_from_rad(task.to_rad), deg_from_rad(panel.handle_min_rad), deg_from_rad(panel.handle_max_rad));
-    return text;
-  }
-  return "";
-}
-
 Json answer_of(const OrderAnswer& answer, Command command) {
   Json reply{{"ok", answer.taken}, {"standing", mission::name(answer.standing)}};
   if (answer.taken) return reply;
@@ -163,7 +150,7 @@ std::optional<Json> OrderDesk::give(Waiting& one) {
   }
   if (const std::string blind = command == Command::start && ways_.no_sight ? ways_.no_sight() : ""; !blind.empty())
     return refused("a job needs the camera: " + blind);
-  const std::string beyond = command == Command::set_tasks ? turn_problem(one.request.order.tasks, ways_.panel) : "";
+  const std::string beyond = command == Command::set_tasks && ways_.why_not ? ways_.why_not(one.request.order.tasks) : "";
   if (!beyond.empty()) return refused(beyond);
   const bool stop = command == Command::emergency_stop;
   if (!stop && waiting_.size() >= most_waiting) return refused("too many orders at once");

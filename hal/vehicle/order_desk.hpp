@@ -31,13 +31,13 @@ class OrderDesk {
 
   struct Ways {
     std::function<Json()> status;
-    std::function<int()> restart_bus;       // 0 or errno; may block: called on a thread of its own
-    std::function<void(const Json&)> log;   // a line of log.jsonl
-    std::function<User(unsigned)> look_up;  // may block: called on a thread of its own
-    std::string interface;                  // for messages
-    std::function<std::string()> no_sight;  // why there is no camera, in words; empty: there is one
-    PanelLayout panel;                      // whose handle a task turns
-    Commissioner* commissioner = nullptr;   // of the same thread; outlives the desk
+    std::function<int()> restart_bus;                           // 0 or errno; may block: called on a thread of its own
+    std::function<void(const Json&)> log;                       // a line of log.jsonl
+    std::function<User(unsigned)> look_up;                      // may block: called on a thread of its own
+    std::string interface;                                      // for messages
+    std::function<std::string()> no_sight;                      // why there is no camera, in words; empty: there is one
+    std::function<std::string(const mission::Tasks&)> why_not;  // tasks that this machine cannot do, in words; empty: it can
+    Commissioner* commissioner = nullptr;                       // of the same thread; outlives the desk
   };
 
   OrderDesk(LoopRings& rings, Ways ways);

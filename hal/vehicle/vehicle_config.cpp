@@ -6,6 +6,7 @@
 #include <limits>
 #include <system_error>
 
+#include "hal/config/arm_match.hpp"
 #include "hal/config/handle_check.hpp"
 #include "hal/config/key_listing.hpp"
 #include "hal/config/key_schema.hpp"
@@ -103,13 +104,21 @@ void check_together(const VehicleConfig& c, const std::string& file, std::vector
   const PanelLayout& panel = c.machine.panel;
   if ((panel.plate_min_m.array() >= panel.plate_max_m.array()).any()) refuse("'panel.plate_min_m' is not below 'panel.plate_max_m'");
   if (panel.marker_plate_m <= panel.marker_size_m) refuse("'panel.marker_plate_m' is not larger than 'panel.marker_size_m'");
-  for (const std::string& problem : config::handle_problems(panel, c.machine.valve, c.machine.tasks)) refuse(problem);
+  for (const std::string& problem : config::handle_problems(c.machine)) refuse(problem);
   for (const std::string& problem : config::panel_problems(panel)) refuse(problem);
-  for (const std::string& problem : config::low_button_problems(panel, c.machine.mission.press_overtravel_m, c.machine.tasks))
-    refuse(problem);
+  for (const std::string& problem : config::low_button_problems(c.machine)) refuse(problem);
   const double between_ms = c.machine.mission.camera_syncs * can_map::sync_period.s() * 1e3;
   if (c.match_window_us * 1e-3 >= between_ms / 2)
     refuse("'camera.match_window_us' is half the time between two exposures or more: an image could belong to either");
+}
+
+// The core moves the arm that it was built of, whatever is before it.
+void check_arm(const VehicleConfig& c, std::vector<std::string>& problems) {
+  const std::string urdf = config::named_file(c.machine.file, "arm.urdf", c.machine.arm_urdf);
+  const std::string differs = config::difference_from_core(load_arm_urdf(urdf));
+  if (differs.empty()) return;
+  problems.push_back(c.machine.file + ": 'arm.urdf' names another arm than the control core's: " + differs +
+                     ". The core moves its own arm: put " + urdf + " in place of shared/arm/arm5e.urdf and build again");
 }
 
 // A file that is missing may be one that was misspelt. Its place is kept, so that commissioning writes where was read.
@@ -211,6 +220,7 @@ VehicleConfig load_vehicle_config(const std::string& path, std::vector<std::stri
   check_together(config, path, problems);
   find_homing(config.machine, problems);
   config.core = config::make_core(config.machine, problems);
+  if (problems.empty()) check_arm(config, problems);
   config.core.scan.match_window = Duration::from_us(config.match_window_us);
   config.core.controller.mission.image_due = Duration::from_ms(config.image_due_ms);
   return config;

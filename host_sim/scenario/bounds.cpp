@@ -51,9 +51,16 @@ Bounds of_buttons(const config::Key& key, const Scenario& s) {
   return {key.min, key.max};
 }
 
+// The lower a cap, the more aslant the arm comes to it: the height that is asked for depends on the height.
+double lowest_button_m(const Scenario& s) {
+  PanelLayout panel = s.panel;
+  for (int i = 0; i < 4; ++i) panel.button_height_m = config::lowest_button_m(panel, s.mission);
+  return panel.button_height_m + 1e-6;
+}
+
 Bounds of_panel(const config::Key& key, const Scenario& s) {
   const PanelLayout& panel = s.panel;
-  const double lowest_m = config::lowest_button_m(panel, s.mission.press_overtravel_m);
+  const double lowest_m = lowest_button_m(s);
   if (key.path == "panel.button_stroke_m")
     return within(key, s.buttons.click_depth_m,
                   std::min(2 * (pressed_force_n(s) - s.buttons.preload_n) / s.buttons.spring_n_m,

@@ -105,12 +105,23 @@ std::string beyond_stops(const Scenario& s) {
   return text;
 }
 
+// What the checks of a panel and its tasks look at.
+config::Machine work_of(const Scenario& s) {
+  config::Machine work;
+  work.panel = s.panel;
+  work.valve = s.valve;
+  work.mission = s.mission;
+  work.tasks = s.tasks;
+  return work;
+}
+
 // What no single key can tell.
 void check_together(const Scenario& s, const std::string& where, std::vector<std::string>& problems) {
   const auto refuse = [&](const std::string& message) { problems.push_back(where + ": " + message); };
-  for (const std::string& problem : config::handle_problems(s.panel, s.valve, s.tasks)) refuse(problem);
+  const config::Machine work = work_of(s);
+  for (const std::string& problem : config::handle_problems(work)) refuse(problem);
   for (const std::string& problem : config::panel_problems(s.panel)) refuse(problem);
-  for (const std::string& problem : config::low_button_problems(s.panel, s.mission.press_overtravel_m, s.tasks)) refuse(problem);
+  for (const std::string& problem : config::low_button_problems(work)) refuse(problem);
   if (s.valve.start_deg.min < s.valve.stop_min_deg || s.valve.start_deg.max > s.valve.stop_max_deg) refuse(beyond_stops(s));
   check_buttons(s, refuse);
   if (s.buttons.release_depth_m >= s.buttons.click_depth_m) refuse("'buttons.release_depth_m' is not below 'buttons.click_depth_m'");

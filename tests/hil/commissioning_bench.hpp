@@ -20,7 +20,8 @@ using Zeros = std::array<std::int32_t, joint_count>;
 using Angles = std::array<double, joint_count>;
 
 inline constexpr Zeros somewhere{12'345, -70'000, 7, 100'123, -54'321};
-inline constexpr Angles parked{0, 0.60, 1.90, 0, 0.3};
+// Folded, the jaw closed.
+inline constexpr Angles parked{0, 0.60, 1.90, 0, arm_geometry::joints[4].lower_rad + 0.004};
 // Screws rub, and what is not known of that before costs 0.02 degrees.
 inline constexpr double allowed_rad = 0.07 * pi / 180;
 
@@ -53,10 +54,10 @@ class CommissioningBench {
     config.network = nominal_.controller.network;
     config.backlash_rad = backlash_rad_;
     config.transmissions = nominal_.controller.transmissions;
-    // The jaw's zero is an old one.
+    // The jaw's zero is an old one, the others' are not known.
+    for (std::size_t i = 0; i < joint_count; ++i) config.network.drives[i].zero_known = i == 4;
     config.network.drives[4].encoder_zero_counts = zeros_[4];
     config.jaw_known = true;
-    config.bar_m = nominal_.controller.mission.layout.handle_thickness_m;
     return config;
   }
 

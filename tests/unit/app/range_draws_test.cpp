@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <set>
+
+#include "host_sim/scenario/instance.hpp"
 
 namespace lf::app {
 namespace {
@@ -51,11 +54,14 @@ TEST(RangeDraws, BothEndsOfANumbersRangeAreFlown) {
   for (const RangeRow& row : range_rows(0, 3)) EXPECT_FALSE(is_of_an_end(row.name)) << "without draws there are no ends";
 }
 
+// A panel at the end of its range may be out of reach or view, and is refused by name.
 TEST(RangeDraws, TheEndsAreAcceptedByTheDefaultScenario) {
+  constexpr std::array<const char*, 4> groups{"panel.button_", "buttons.", "latency.", "jaw."};
   for (const RangeRow& row : range_rows(1, 0)) {
     if (!is_of_an_end(row.name) || row.key.starts_with("drives.") || row.key == "outputs.node") continue;
-    if (!row.key.starts_with("panel.button_") && !row.key.starts_with("buttons.") && !row.key.starts_with("latency.")) continue;
-    EXPECT_NO_THROW((void)scenario::load_scenario("default", row.set)) << row.name;
+    const bool whole = std::any_of(groups.begin(), groups.end(), [&](const char* group) { return row.key.starts_with(group); });
+    if (!whole) continue;
+    EXPECT_NO_THROW(scenario::check_runnable(scenario::load_scenario("default", row.set))) << row.name;
   }
 }
 

@@ -27,5 +27,18 @@ TEST(ArmMatch, OtherLimitsAreNamedByTheirJoints) {
   EXPECT_EQ(difference_from_core(other), "the limits of slew, elbow differ");
 }
 
+TEST(ArmMatch, AnotherScrewGearOrFingerIsNamed) {
+  ArmDescription other = shipped();
+  other.joints[2].actuator.counts_per_m = 250000;
+  other.joints[3].actuator.counts_per_rad *= 1.01;
+  EXPECT_EQ(difference_from_core(other), "the screw or gear of elbow, roll differs");
+  other = shipped();
+  other.joints[1].actuator.pivot_b_m += 0.001;
+  EXPECT_EQ(difference_from_core(other), "the screw or gear of shoulder differs");
+  other = shipped();
+  other.finger_b.parent_from_joint.translate(Vec3(0.001, 0, 0));
+  EXPECT_EQ(difference_from_core(other), "its fingers are elsewhere on the wrist");
+}
+
 }  // namespace
 }  // namespace lf::config

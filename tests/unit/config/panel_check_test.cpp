@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace lf::config {
 namespace {
 
@@ -46,26 +48,45 @@ TEST(PanelCheck, TheLargestPlateIsTheLastThatIsAccepted) {
   EXPECT_FALSE(panel_problems(panel).empty());
 }
 
+Machine that_presses() {
+  Machine machine;
+  machine.tasks = {Task{Task::Kind::press_buttons}};
+  return machine;
+}
+
 TEST(PanelCheck, ALowCapIsRefusedByTheNamesOfHeightStrokeAndOvertravel) {
-  const std::vector<Task> press{Task{Task::Kind::press_buttons}};
-  PanelLayout panel;
-  EXPECT_THAT(low_button_problems(panel, 0.006, press), IsEmpty());
-  // The stroke of 5 mm, 6 mm of overtravel, a corner 28 mm from the middle at 18 degrees, and 3.6 mm of doubt.
-  EXPECT_NEAR(lowest_button_m(panel, 0.006), 0.005 + 0.006 + 0.00868 + 0.0036, 1e-9);
-  panel.button_height_m = 0.0232;
-  for (const char* part : {"'panel.button_height_m' is 0.0232", "'panel.button_stroke_m'", "'mission.press_overtravel_m'", "0.0233 m"})
-    EXPECT_THAT(low_button_problems(panel, 0.006, press), ElementsAre(HasSubstr(part)));
-  EXPECT_THAT(low_button_problems(panel, 0.006, {Task{}}), IsEmpty()) << "none is pressed";
-  panel.button_height_m = 0.0234;
-  EXPECT_THAT(low_button_problems(panel, 0.006, press), IsEmpty());
-  panel.button_stroke_m = 0.02;
-  EXPECT_THAT(low_button_problems(panel, 0.006, press), ElementsAre(HasSubstr("0.0383 m")));
+  Machine machine = that_presses();
+  EXPECT_THAT(low_button_problems(machine), IsEmpty());
+  // The stroke of 5 mm, 6 mm of overtravel, a corner 28 mm from the middle of fingers that come at up to 13.5 + 6.7 degrees, and 3.6 mm of doubt. `lanternfish
+  // reach` has 13.5.
+  EXPECT_NEAR(lowest_button_m(machine.panel, machine.mission), 0.005 + 0.006 + 0.028 * std::sin(rad_from_deg(13.5 + 6.7)) + 0.0036, 0.0001);
+  machine.panel.button_height_m = 0.0240;
+  for (const char* part : {"'panel.button_height_m' is 0.024", "'panel.button_stroke_m'", "'mission.press_overtravel_m'", "0.02"})
+    EXPECT_THAT(low_button_problems(machine), ElementsAre(HasSubstr(part)));
+  machine.tasks = {Task{}};
+  EXPECT_THAT(low_button_problems(machine), IsEmpty()) << "none is pressed";
+  machine = that_presses();
+  machine.panel.button_stroke_m = 0.02;
+  EXPECT_THAT(low_button_problems(machine), ElementsAre(HasSubstr("'panel.button_height_m'")));
+}
+
+// The farther off a button is the more aslant the fingers come: 18.3 degrees here, and 13.5, by `lanternfish reach`.
+TEST(PanelCheck, ABoxThatStandsFarOffNeedsHigherCaps) {
+  Machine near = that_presses(), far = near;
+  far.panel.nominal_z_m = 0.55;
+  EXPECT_NEAR(lowest_button_m(far.panel, far.mission) - lowest_button_m(near.panel, near.mission),
+              0.028 * (std::sin(rad_from_deg(18.3 + 6.7)) - std::sin(rad_from_deg(13.5 + 6.7))), 0.0001);
 }
 
 // What is touched more than 8 mm below the bottom is not taken for the button, however far the press goes on.
 TEST(PanelCheck, ALongOvertravelAsksForNoMoreThanWhatPassesForTheButton) {
-  EXPECT_EQ(lowest_button_m({}, 0.008), lowest_button_m({}, 0.05));
-  EXPECT_LT(lowest_button_m({}, 0.002), lowest_button_m({}, 0.008));
+  const auto lowest_m = [](double overtravel_m) {
+    mission::MissionConfig mission;
+    mission.press_overtravel_m = overtravel_m;
+    return lowest_button_m({}, mission);
+  };
+  EXPECT_EQ(lowest_m(0.008), lowest_m(0.05));
+  EXPECT_LT(lowest_m(0.002), lowest_m(0.008));
 }
 
 }  // namespace

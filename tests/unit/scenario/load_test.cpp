@@ -283,6 +283,9 @@ TEST(Load, ALatencyBeyondItsTimeOutIsRefusedByBothNames) {
               HasSubstr("'latency.panel_vision_ms' is 3000: by 'vision_timeout_s'"));
   // A scenario that is to end so may make it so.
   EXPECT_EQ(complaint_before_a_run("latency: {panel_vision_ms: 3000}\nexpect: {failure: panel vision late}"), "");
+  for (const char* other : {"emergency stop", "image lost"})
+    EXPECT_THAT(complaint_before_a_run(std::string("latency: {panel_vision_ms: 3000}\nexpect: {failure: ") + other + "}"),
+                HasSubstr("'latency.panel_vision_ms' is 3000"));
 }
 
 TEST(Load, AJawBelowItsMotorsRatingIsRefusedByItsKey) {

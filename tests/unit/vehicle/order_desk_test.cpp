@@ -10,6 +10,7 @@
 #include <map>
 #include <memory>
 
+#include "hal/config/task_check.hpp"
 #include "hal/vehicle/tick_clock.hpp"
 
 namespace lf::hal {
@@ -115,8 +116,12 @@ TEST_F(Desk, SaysWhatToDoBeforeAnOrderThatIsNotAllowedNow) {
 
 // It was "its numbers are out of bounds".
 TEST_F(Desk, NamesTheAngleThatTheHandleCannotHaveAndItsBounds) {
-  ways.panel.handle_min_rad = rad_from_deg(-10);
-  ways.panel.handle_max_rad = rad_from_deg(105);
+  ways.why_not = [](const mission::Tasks& tasks) {
+    PanelLayout panel;
+    panel.handle_min_rad = rad_from_deg(-10);
+    panel.handle_max_rad = rad_from_deg(105);
+    return config::turn_problem(tasks, panel);
+  };
   desk = std::make_unique<OrderDesk>(*rings, ways);
   const auto turn = [&](const char* to) {
     return ask(std::string(R"({"do":"task","tasks":[{"turn_valve":{"to_deg":)") + to + "}}]}", alice);

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
 #include <sstream>
 
 #include "firmware/arm/actuator.hpp"
@@ -83,6 +85,29 @@ TEST(VehicleConfig, ACapThatIsTooLowToPressIsRefused) {
   const auto told = ::testing::Contains(HasSubstr("'panel.button_height_m' is 0.012: with 'panel.button_stroke_m' at 0.005"));
   EXPECT_THAT(problems_of(folder.write("press.yaml", low + "tasks: [{press_buttons: {order: [left]}}]\n")), told);
   EXPECT_THAT(problems_of(folder.write("turn.yaml", low + "tasks: [{turn_valve: {to_deg: 90}}]\n")), ::testing::Not(told));
+}
+
+// The core would move a real arm by the kinematics of another one.
+TEST(VehicleConfig, AnotherArmThanTheCoresIsRefused) {
+  const TemporaryFolder folder;
+  std::ifstream shipped(LANTERNFISH_SOURCE_DIR "/shared/arm/arm5e.urdf");
+  std::string urdf{std::istreambuf_iterator<char>(shipped), std::istreambuf_iterator<char>()};
+  folder.write("mine.urdf", urdf);
+  const std::string config = folder.write("v.yaml", "arm: {urdf: mine.urdf}\n");
+  EXPECT_THAT(problems_of(config), IsEmpty());
+  const std::string counts = "166667";
+  ASSERT_NE(urdf.find(counts), std::string::npos);
+  folder.write("mine.urdf", urdf.replace(urdf.find(counts), counts.size(), "250000"));
+  EXPECT_THAT(problems_of(config),
+              ElementsAre(HasSubstr("'arm.urdf' names another arm than the control core's: the screw or gear of elbow")));
+}
+
+// What is missing hides nothing else.
+TEST(VehicleConfig, AMissingFileOfTheMissionsLimitsHidesNoOtherProblem) {
+  const TemporaryFolder folder;
+  EXPECT_THAT(
+      problems_of(folder.write("v.yaml", "safety: {mission_limits: gone.yaml}\npanel: {ahead_m: 0.7}\n")),
+      ::testing::AllOf(::testing::Contains(HasSubstr("there is no gone.yaml")), ::testing::Contains(HasSubstr("out of the arm's reach"))));
 }
 
 TEST(VehicleConfig, TextThatIsNoYamlIsToldWithItsLine) {
