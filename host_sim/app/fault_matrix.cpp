@@ -117,13 +117,16 @@ judge::Ending ending_of(const Flight& flight, const Watched& watched, const Matr
 }
 
 // An arm may be pushed where none of its drives can feel it. That it calls a success then is no lie, but the row says so.
-bool unfelt_push(const Flight& flight, const Watched& watched, const MatrixRow& row, const world::World& world) {
+// The obstacle is a body of the panel's kind: what touched another body, or touched before it came, is not its push.
+bool unfelt_push(const Flight& flight, const Watched& watched, const MatrixRow& row, const world::World& world, Time begin) {
   const bool pushed =
       std::any_of(row.causes.begin(), row.causes.end(), [](const judge::Cause& cause) { return cause.rule->kind == "obstacle"; });
   if (!pushed) return false;
   const auto& results = flight.mission().tasks();
   world::ContactReport contacts = world.contacts();
-  contacts.unintended.clear();
+  std::erase_if(contacts.unintended, [&](const world::UnintendedContact& touch) {
+    return touch.first_s >= begin.s() && (touch.a == scene::BodyId::panel || touch.b == scene::BodyId::panel);
+  });
   if (judge::contradiction({results.data(), results.size()}, watched.truth.tasks(), judge::task_truth(world), contacts)) return false;
   return !judge::felt_a_push(watched.safety.seen());
 }
@@ -134,6 +137,7 @@ RowResult fly_row(const config::Drives& drives, Flight& flight, Watched& watched
   situation.causes = row.causes;
   situation.deceleration_rad_s2 = flight.deceleration_rad_s2();
   situation.gear_gives_rad = flight.gear_gives_rad();
+  situation.units_per_count = flight.units_per_count();
   situation.powering_up = mission::row(row.moment.step).phase == safety::Phase::boot;
   situation.over = flight.mission().outcome().ended;
   situation.fails_anyway = !walk.succeeds() && !walk.by_hand();
@@ -166,7 +170,7 @@ RowResult fly_row(const config::Drives& drives, Flight& flight, Watched& watched
     flight.step();
   }
   judge::Ending ending = ending_of(flight, watched, row, flight.platform().world(), begin, situation.over);
-  const bool unfelt = !ending.contradicted.empty() && unfelt_push(flight, watched, row, flight.platform().world());
+  const bool unfelt = !ending.contradicted.empty() && unfelt_push(flight, watched, row, flight.platform().world(), begin);
   if (unfelt) ending.contradicted.clear();
   judge::SafetyFigures figures;
   if (flight.has_own_drives()) figures.self_stop_s = judge::by_deadline_s;
@@ -175,6 +179,7 @@ RowResult fly_row(const config::Drives& drives, Flight& flight, Watched& watched
   result.wrong = verdict.wrong;
   result.unclear = verdict.unclear;
   result.unfelt = unfelt;
+  result.stood_anyway = verdict.stood_anyway;
   result.false_success = verdict.false_success;
   result.went_on = verdict.went_on;
   result.end = ending.ended ? ending.step : "not ended, in " + ending.step;

@@ -38,7 +38,8 @@ std::vector<MatrixRow> matrix_rows(const std::vector<FaultMoment>& moments, cons
 struct RowResult {
   std::string row, kind, step, walk;
   std::vector<std::string> wrong, unclear;
-  bool unfelt = false;  // it ended in success, and was touched: its drives had nothing to feel that by
+  bool unfelt = false;        // it ended in success, and was touched: its drives had nothing to feel that by
+  bool stood_anyway = false;  // a joint that seized where it was to stay was told as a contact
   bool false_success = false, must_go_on = false, went_on = false;
   std::string end, reason;
   std::vector<std::string> reported;  // the core's faults that it reported since the first was made, by safety::name()

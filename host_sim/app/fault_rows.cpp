@@ -28,6 +28,7 @@ std::string row_json(const RowResult& row) {
                       {"unclear", row.unclear},
                       {"false_success", row.false_success},
                       {"unfelt", row.unfelt},
+                      {"stood_anyway", row.stood_anyway},
                       {"must_go_on", row.must_go_on},
                       {"went_on", row.went_on},
                       {"end", row.end},
@@ -54,6 +55,7 @@ std::optional<RowResult> parse_row(const std::string& line) {
     object.at("unclear").get_to(row.unclear);
     object.at("false_success").get_to(row.false_success);
     object.at("unfelt").get_to(row.unfelt);
+    row.stood_anyway = object.value("stood_anyway", false);
     object.at("must_go_on").get_to(row.must_go_on);
     object.at("went_on").get_to(row.went_on);
     object.at("end").get_to(row.end);

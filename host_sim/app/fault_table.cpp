@@ -58,6 +58,7 @@ FaultTable tabulate_faults(const std::vector<RowResult>& rows) {
     line.unclear += lf::app::unclear(row) ? 1 : 0;
     line.false_success += row.false_success ? 1 : 0;
     line.unfelt += row.unfelt ? 1 : 0;
+    line.stood_anyway += row.stood_anyway ? 1 : 0;
     line.must_go_on += row.must_go_on ? 1 : 0;
     line.went_on += row.must_go_on && row.went_on ? 1 : 0;
     worsen(line.stop_ms, row.stop_ms);
@@ -75,6 +76,7 @@ FaultTable tabulate_faults(const std::vector<RowResult>& rows) {
     table.unclear += line.unclear;
     table.false_success += line.false_success;
     table.unfelt += line.unfelt;
+    table.stood_anyway += line.stood_anyway;
     table.must_go_on += line.must_go_on;
     table.went_on += line.went_on;
     table.kinds.push_back(line);
@@ -93,6 +95,8 @@ void tell(const FaultTable& table) {
   }
   for (const RowResult& row : table.bad) print("%s: %s\n    %s\n", row.safe() ? "unclear" : "UNSAFE", row.row.c_str(), why(row).c_str());
   if (table.unfelt > 0) print("%zu succeeded that were pushed, and had no drive that could feel it\n", table.unfelt);
+  if (table.stood_anyway > 0)
+    print("%zu held the arm for a joint that had seized where it was to stay, and was told as a contact\n", table.stood_anyway);
   print("%zu rows: %zu unsafe, %zu unclear, %zu false successes; %zu of %zu went on that must\n", table.rows, table.unsafe, table.unclear,
         table.false_success, table.went_on, table.must_go_on);
 }
@@ -107,6 +111,7 @@ Json json_of(const FaultTable& table) {
                      {"unclear", line.unclear},
                      {"false_successes", line.false_success},
                      {"unfelt", line.unfelt},
+                     {"stood_anyway", line.stood_anyway},
                      {"must_go_on", line.must_go_on},
                      {"went_on", line.went_on},
                      {"stop_ms", number_or_null(line.stop_ms)},
@@ -122,6 +127,7 @@ Json json_of(const FaultTable& table) {
           {"unclear", table.unclear},
           {"false_successes", table.false_success},
           {"unfelt", table.unfelt},
+          {"stood_anyway", table.stood_anyway},
           {"must_go_on", table.must_go_on},
           {"went_on", table.went_on},
           {"kinds", kinds},
@@ -143,6 +149,9 @@ std::string markdown_of(const FaultTable& table, const std::string& command) {
   text += "| all | " + std::to_string(table.rows) + " | " + std::to_string(table.unsafe) + " | " + std::to_string(table.unclear) + " | " +
           std::to_string(table.went_on) + " of " + std::to_string(table.must_go_on) + " | | | | | |\n";
   if (table.unfelt > 0) text += "\n" + std::to_string(table.unfelt) + " succeeded that were pushed, and had no drive that could feel it.\n";
+  if (table.stood_anyway > 0)
+    text += "\n" + std::to_string(table.stood_anyway) +
+            " held the arm for a joint that had seized where it was to stay, and was told as a contact.\n";
   if (table.bad.empty()) return text;
   text += "\n| row | what was wrong |\n|---|---|\n";
   for (const RowResult& row : table.bad) text += "| " + markdown_cell(row.row) + " | " + markdown_cell(why(row)) + " |\n";

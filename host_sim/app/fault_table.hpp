@@ -12,13 +12,13 @@ namespace lf::app {
 struct FaultTable {
   struct Line {
     std::string kind;  // of a pair "pairs"
-    std::size_t rows = 0, unsafe = 0, unclear = 0, false_success = 0, unfelt = 0, must_go_on = 0, went_on = 0;
+    std::size_t rows = 0, unsafe = 0, unclear = 0, false_success = 0, unfelt = 0, stood_anyway = 0, must_go_on = 0, went_on = 0;
     std::optional<double> stop_ms, standing_s, power_off_s, stop_to_off_s;  // the worst
     double force_n = 0;
   };
   std::vector<Line> kinds;
   std::vector<RowResult> bad;  // unsafe first, then unclear
-  std::size_t rows = 0, unsafe = 0, unclear = 0, false_success = 0, unfelt = 0, must_go_on = 0, went_on = 0;
+  std::size_t rows = 0, unsafe = 0, unclear = 0, false_success = 0, unfelt = 0, stood_anyway = 0, must_go_on = 0, went_on = 0;
 
   // No row was unsafe or unclear, and of those that must go on at least 95 % did.
   bool good() const;

@@ -11,6 +11,8 @@ Flight::Flight(const scenario::Scenario& scenario, std::uint64_t seed, hal::SimO
   for (std::size_t i = 0; i < joint_count; ++i) {
     deceleration_rad_s2_[i] = sim.devices.drives[i].max_acceleration_rad_s2;
     has_own_drives_ = has_own_drives_ && sim.devices.drives[i].habit == nullptr;
+    const canopen::Ratio& position = nominal.controller.network.drives[i].profile.scale.position;
+    units_per_count_[i] = double(position.num) / double(position.den);
     const ArmJoint& joint = sim.world.arm.joints[i];
     gear_gives_rad_[i] = 0.5 * joint.backlash_rad + joint.rated_torque_nm / sim.world.drive_stiffness_nm_rad[i];
   }

@@ -6,15 +6,18 @@
 namespace lf::judge {
 
 bool felt_a_push(const Seen& seen, const SafetyFigures& figures) {
-  constexpr std::size_t before_ms = 20, judged_ms = 50;
+  // A joint whose speed changes its sign for a moment is pushed all the same.
+  constexpr std::size_t before_ms = 20, judged_ms = 50, within_ms = 60;
+  const std::size_t size = seen.moments.size(), free_ms = std::min(before_ms, size);
   for (std::size_t joint = 0; joint < arm_joint_count; ++joint) {
     double free_nm = 0;
-    for (std::size_t t = 0; t < std::min(before_ms, seen.moments.size()); ++t)
-      free_nm += double(seen.moments[t].works_nm[joint]) / before_ms;
-    std::size_t run = 0;
-    for (const Moment& moment : seen.moments) {
-      run = double(moment.works_nm[joint]) - free_nm > figures.felt_nm[joint] ? run + 1 : 0;
-      if (run >= judged_ms) return true;
+    for (std::size_t t = 0; t < free_ms; ++t) free_nm += double(seen.moments[t].works_nm[joint]) / double(free_ms);
+    const auto felt = [&](std::size_t t) { return double(seen.moments[t].works_nm[joint]) - free_nm > figures.felt_nm[joint]; };
+    std::size_t felt_ms = 0;
+    for (std::size_t t = 0; t < size; ++t) {
+      felt_ms += felt(t) ? 1 : 0;
+      if (t >= within_ms && felt(t - within_ms)) --felt_ms;
+      if (felt_ms >= judged_ms) return true;
     }
   }
   return false;

@@ -27,7 +27,7 @@ bool is_unheard(const Cause& cause) { return loses_for_good(cause, "tpdo "); }
 
 bool misleads(const Cause& cause) {
   const std::string& kind = cause.rule->kind;
-  return kind == "stuck_encoder" || kind == "encoder_jump" || kind == "runaway";
+  return kind == "stuck_encoder" || kind == "encoder_jump" || kind == "runaway" || kind == "following";
 }
 
 bool misleads_its_joint(const Cause& cause) { return cause.rule->kind == "runaway" || cause.rule->kind == "stuck_encoder"; }

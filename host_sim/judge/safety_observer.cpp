@@ -1,5 +1,6 @@
 #include "host_sim/judge/safety_observer.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "shared/can/can_map.hpp"
@@ -14,6 +15,8 @@ constexpr std::uint32_t emergency = 0x080, first_tpdo = 0x180, first_rpdo = 0x20
 constexpr std::uint8_t boot_up = 0;
 constexpr float moves_rad_s = 0.02f;
 // CiA 402: the statusword's fault bit; a controlword of "enable operation" has its four low bits set.
+// The master maps 6040, of two bytes, and 607A into the first RPDO.
+constexpr std::size_t target_byte = 2;
 constexpr std::uint8_t status_fault = 0x08, run_bits = 0x0F;
 
 }  // namespace
@@ -30,6 +33,7 @@ void SafetyObserver::on_bus_frame(const devices::BusRecord& record) {
   const bool from_master = record.sender == can_map::master_node;
   if (from_master && (frame.id & function_mask) == first_rpdo && node >= 1 && node <= joint_count) {
     run_ordered_[node - 1] = (frame.data[0] & run_bits) == run_bits;
+    if (devices_ != nullptr && record.delivered >= begin_ && run_ordered_[node - 1]) note_target(node - 1, frame);
   }
   if (devices_ == nullptr || record.delivered < begin_) return;
   const double t_s = (record.delivered - begin_).s();
@@ -40,6 +44,14 @@ void SafetyObserver::on_bus_frame(const devices::BusRecord& record) {
   if (from_master) return;
   judge_report(frame, t_s);
   if ((frame.id & function_mask) == first_tpdo && node >= 1 && node <= seen_.last_heard_s.size()) seen_.last_heard_s[node - 1] = t_s;
+}
+
+void SafetyObserver::note_target(std::size_t joint, const CanFrame& frame) {
+  std::uint32_t raw = 0;
+  for (std::size_t byte = 0; byte < 4; ++byte) raw |= std::uint32_t{frame.data[target_byte + byte]} << (8 * byte);
+  const auto target = static_cast<std::int32_t>(raw);
+  auto& span = seen_.told_to_go[joint];
+  span = span ? std::pair(std::min(span->first, target), std::max(span->second, target)) : std::pair(target, target);
 }
 
 void SafetyObserver::judge_report(const CanFrame& frame, double t_s) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "hal/sim/sim_platform.hpp"
@@ -33,6 +34,8 @@ struct Seen {
   std::optional<double> second_master_s;  // the first frame of a second master
   // The newest process data that arrived from each node, by its number less 1; 0 when none did.
   std::array<double, joint_count + 1> last_heard_s{};
+  // The lowest and the highest position that our master told each drive to go to, in the drive's units; nothing where it told none.
+  std::array<std::optional<std::pair<std::int32_t, std::int32_t>>, joint_count> told_to_go{};
 };
 
 class SafetyObserver : public hal::SimObserver {
@@ -46,6 +49,7 @@ class SafetyObserver : public hal::SimObserver {
   const Seen& seen() const { return seen_; }
 
  private:
+  void note_target(std::size_t joint, const CanFrame& frame);
   void judge_report(const CanFrame& frame, double t_s);
 
   const devices::Devices* devices_ = nullptr;

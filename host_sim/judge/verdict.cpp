@@ -434,13 +434,26 @@ class Judge {
     const bool powered = std::any_of(moments_.begin() + std::ptrdiff_t(from), moments_.end(), [](const Moment& m) { return m.power != 0; });
     if (travels(from) && !taken_over()) wrong("the arm moves after the end");
     if (powered && !ending_.holds && !taken_over()) wrong("power is on after the end");
-    if (ending_.holds && !situation_.over && touches_nothing())
-      wrong("held under power for a contact that is none, with a drive that misleads");
+    if (ending_.holds && !situation_.over && touches_nothing()) note_or_wrong();
+  }
+
+  void note_or_wrong() {
+    verdict_.stood_anyway = stood_where_it_was_to_stay();
+    if (!verdict_.stood_anyway) wrong("held under power for a contact that is none, with a drive that misleads");
   }
 
   // A contact was told, or holds the arm, and only drives that mislead can have made one: the arm has touched nothing.
   bool touches_nothing() const {
     return verdict_.force_n == 0 && std::all_of(situation_.causes.begin(), situation_.causes.end(), misleads);
+  }
+
+  // The only cause is a joint that seized, and its set-point has hardly moved since: within the two counts by which rounding and a drive that holds differ.
+  bool stood_where_it_was_to_stay() const {
+    if (situation_.causes.size() != 1 || situation_.causes[0].rule->kind != "following") return false;
+    const std::size_t joint = node_index(situation_.causes[0].node);
+    if (joint >= joint_count) return false;
+    const auto& told = seen_.told_to_go[joint];
+    return told && double(told->second) - double(told->first) <= 2 * situation_.units_per_count[joint];
   }
 
   // From a moment to the last one, by more than a joint that stands: bodies that press on each other quiver where they are.
@@ -467,7 +480,7 @@ class Judge {
         ending_.reason.starts_with("unexpected contact") || ending_.reason.find("touched something") != std::string::npos;
     const bool named =
         std::any_of(situation_.causes.begin(), situation_.causes.end(), [&](const Cause& c) { return c.named_in(ending_.reason); });
-    if (named && !(told_of_contact && touches_nothing())) return;
+    if (named && !(told_of_contact && touches_nothing() && !stood_where_it_was_to_stay())) return;
     verdict_.unclear.push_back("the reason does not name the cause: " + (ending_.reason.empty() ? "none is given" : ending_.reason));
   }
 

@@ -60,6 +60,7 @@ struct Situation {
   bool over = false;             // the mission had ended before
   bool fails_anyway = false;     // it was on its way to a failure of another cause, which is what its reason names
   std::array<double, joint_count> deceleration_rad_s2{};
+  std::array<double, joint_count> units_per_count{1, 1, 1, 1, 1};  // of each drive's position, for an encoder's count
   std::array<double, joint_count>
       gear_gives_rad{};  // by which a joint may be off its motor: half of its gear's play, and the wind-up under its motor's rated torque
 };
@@ -69,6 +70,8 @@ struct Verdict {
   std::vector<std::string> unclear;  // safe, but the end does not say what happened
   bool false_success = false;
   bool went_on = false;  // the mission succeeded, and truly
+  // A joint that seized where it should stay was told as a contact, and nothing was touched. No sensor tells the two apart, and what has seized cannot move.
+  bool stood_anyway = false;
   // Measured; nothing where it does not apply.
   std::optional<double> stop_ms;      // from the report until no drive runs as it was told
   std::optional<double> standing_s;   // from there until every joint stands

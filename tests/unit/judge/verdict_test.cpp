@@ -291,6 +291,27 @@ TEST(Verdict, AContactThatIsNoneIsNoReasonToHoldADriveThatMisleads) {
   EXPECT_THAT(judged_with(20, "unexpected contact: elbow", true).wrong, IsEmpty());
 }
 
+// A seized motor that should have gone somewhere could have been told from a contact; one that was to stay could not. A set-point of two counts is rounding.
+TEST(Verdict, ASeizedJointMayBeTakenForAContactWhereItWasToStay) {
+  const auto verdict = [](std::int32_t to, double units_per_count) {
+    Seen seen = Stopping{.force_n = 0}.seen();
+    seen.told_to_go[2] = {1000, 1000 + to};
+    Ending ending = failed("unexpected contact: elbow");
+    ending.holds = true;
+    Situation situation = situation_of(cause_of("following elbow"));
+    situation.units_per_count.fill(units_per_count);
+    return judge(seen, situation, ending);
+  };
+  EXPECT_THAT(verdict(2, 1).wrong, IsEmpty());
+  EXPECT_THAT(verdict(2, 1).unclear, IsEmpty());
+  EXPECT_TRUE(verdict(2, 1).stood_anyway);
+  EXPECT_THAT(verdict(3, 1).wrong, ElementsAre(testing::HasSubstr("held under power")));
+  EXPECT_THAT(verdict(3, 1).unclear, testing::SizeIs(1));
+  EXPECT_FALSE(verdict(3, 1).stood_anyway);
+  EXPECT_THAT(verdict(20, 10).wrong, IsEmpty()) << "of a drive that counts finer";
+  EXPECT_THAT(verdict(21, 10).wrong, testing::SizeIs(1));
+}
+
 TEST(Verdict, WhatWaitsForOrdersMovesByNoneOfItsOwn) {
   Seen seen = Stopping().seen();
   for (std::size_t t = 2500; t < seen.moments.size(); ++t) seen.moments[t].angle_rad[4] = 0.0001f * float(t - 2500);
