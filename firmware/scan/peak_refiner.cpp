@@ -109,13 +109,15 @@ void BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::begin_anew() {
   pictures_ = 0;
 }
 
-// The pixels' noise beyond that of their light. A picture alone does not tell it from fine paint: then it stays as configured.
+// The pixels' noise beyond that of their light. A picture alone may be black about the stripe, where half of the noise is clipped: it only tells of more than was configured.
 template <class Pixel, std::int32_t MaxWidth, std::int32_t MaxHeight>
 void BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::learn_read_noise(const Pair& pair) {
-  if (!pair.off.valid()) return;
   const NoiseAlong along = config_.axis == PeakAxis::column ? NoiseAlong::columns : NoiseAlong::rows;
-  const float seen_grey = read_noise_grey(pair.on, pair.off, gain_, noise_.electrons_per_grey, config_.full_scale, along);
-  if (seen_grey > 0) noise_.read_grey = std::max(seen_grey, least_read_grey);
+  const float electrons = noise_.electrons_per_grey;
+  const float seen_grey = pair.off.valid() ? read_noise_grey(pair.on, pair.off, gain_, electrons, config_.full_scale, along)
+                                           : read_noise_grey(pair.on, electrons, config_.full_scale, along);
+  const float least = pair.off.valid() ? least_read_grey : config_.noise.read_grey;
+  if (seen_grey > 0) noise_.read_grey = std::max(seen_grey, least);
 }
 
 template <class Pixel, std::int32_t MaxWidth, std::int32_t MaxHeight>
@@ -245,6 +247,7 @@ void BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::put(const Pair& pair, std::in
     const auto row = static_cast<std::size_t>(i);
     windows.stripe[row][lane] = to_grey * static_cast<float>(lit) - background;
     windows.ambient[row][lane] = two ? background : 0;
+    windows.background[row][lane] = two ? 0 : std::max(background, 0.0f);
     windows.valid[row][lane] = place == inside && lit < config_.full_scale ? 1.0f : 0.0f;
     if (!hazy_) continue;
     windows.ambient_haze[row][lane] = gain_ * haze(haze_off_, line, place);

@@ -162,33 +162,63 @@ TEST(PeakRefiner, LearnsTheSpeckle) {
   }
 }
 
-// Asked for: 1.25 times the bound, which pairs keep. A picture alone has to tell its background as well, which the bound takes as known: two of its twelve rows are 1.25
-// and 1.27. For peaks above 5 sigma of the difference's noise; 97 % of the columns, 0.2 % false. Nothing is told of stripe and speckle.
+FormedStripe plain_scene(double beam_px, double speckle) {
+  FormedStripe s = scene(beam_px);
+  s.bars.contrast = 1;
+  s.peak_grey = 90;
+  s.speckle = speckle;
+  return s;
+}
+
+// Three pictures of plain paint through one refiner, each with an off picture or without.
+Errors on_plain_paint(FormedStripe s, bool pair, const char* name) {
+  const auto refiner = std::make_unique<PeakRefiner>();
+  Errors errors;
+  for (s.seed = 1; s.seed <= 3; ++s.seed) {
+    const FormedImage image = form(s);
+    const auto on = pixels<std::uint8_t>(image.on), off = pair ? pixels<std::uint8_t>(image.off) : std::vector<std::uint8_t>();
+    std::vector<Peak> peaks = coarse(on, off, 255);
+    const PixelView<std::uint8_t> background = pair ? PixelView<std::uint8_t>(off.data(), width, height, width) : PixelView<std::uint8_t>();
+    peaks.resize(refiner->refine({on.data(), width, height, width}, background, peaks));
+    compare(s, image, peaks, errors);
+  }
+  std::printf("%s, %s, beam %.1f px, speckle %.2f: %.3f px, %.2f of the bound, %zu of %d columns, %d far\n", name, pair ? "pair" : "alone",
+              s.beam_sigma_px, s.speckle, Errors::rms(errors.elsewhere), Errors::rms(errors.elsewhere) / test::bound_px(s, pair),
+              errors.elsewhere.size(), errors.columns, errors.far);
+  return errors;
+}
+
+void expect_within_the_bound(const FormedStripe& s, bool pair, const Errors& errors) {
+  EXPECT_LT(Errors::rms(errors.elsewhere), 1.25 * test::bound_px(s, pair))
+      << (pair ? "pair" : "alone") << ", beam " << s.beam_sigma_px << " px, speckle " << s.speckle << ", seeds 1 to 3";
+  EXPECT_GE(static_cast<double>(errors.elsewhere.size()), 0.97 * errors.columns);
+  EXPECT_LE(errors.far, 0.002 * errors.columns);
+}
+
+// Asked for: 1.25 times the bound for peaks above 5 sigma of the difference's noise; 97 % of the columns, 0.2 % false. Nothing is told of stripe and speckle. The bound adds what
+// two estimators reach, each at its own noise. No single one reaches both: by the pixels' own variances a fit of centre and height is left with up to 1.16 times the bound.
 TEST(PeakRefiner, AwayFromMarksItReachesTheBound) {
   for (const bool pair : {true, false}) {
     for (const double beam : {0.8, 1.2, 1.6, 2.4, 3.5, 5.0}) {
       for (const double speckle : {0.0, 0.18}) {
-        FormedStripe s = scene(beam);
-        s.bars.contrast = 1;
-        s.speckle = speckle;
-        s.peak_grey = 90;
-        const auto refiner = std::make_unique<PeakRefiner>();
-        Errors errors;
-        for (s.seed = 1; s.seed <= 3; ++s.seed) {
-          const FormedImage image = form(s);
-          const auto on = pixels<std::uint8_t>(image.on), off = pair ? pixels<std::uint8_t>(image.off) : std::vector<std::uint8_t>();
-          std::vector<Peak> peaks = coarse(on, off, 255);
-          const PixelView<std::uint8_t> background =
-              pair ? PixelView<std::uint8_t>(off.data(), width, height, width) : PixelView<std::uint8_t>();
-          peaks.resize(refiner->refine({on.data(), width, height, width}, background, peaks));
-          compare(s, image, peaks, errors);
-        }
-        const double over_bound = Errors::rms(errors.elsewhere) / test::bound_px(s, pair);
-        std::printf("%s, beam %.1f px, speckle %.2f: %.3f px, %.2f of the bound, %zu of %d columns, %d far\n", pair ? "pair" : "alone",
-                    beam, speckle, Errors::rms(errors.elsewhere), over_bound, errors.elsewhere.size(), errors.columns, errors.far);
-        EXPECT_LT(over_bound, pair ? 1.25 : 1.30) << "seeds 1 to 3";
-        EXPECT_GE(static_cast<double>(errors.elsewhere.size()), 0.97 * errors.columns);
-        EXPECT_LE(errors.far, 0.002 * errors.columns);
+        const FormedStripe s = plain_scene(beam, speckle);
+        expect_within_the_bound(s, pair, on_plain_paint(s, pair, "as told"));
+      }
+    }
+  }
+}
+
+// It is told 40 electrons a grey level and a read noise of 1.5. What the light's noise differs by is found as read noise. Without the shot noise of its background a picture alone
+// was at 1.27 times the bound; without its read noise at 1.41.
+TEST(PeakRefiner, OfAnotherSensorItReachesTheBoundAsWell) {
+  for (const auto& [electrons, read] : {std::pair{20.0, 1.5}, {80.0, 1.5}, {10.0, 1.5}, {40.0, 0.5}, {40.0, 4.0}}) {
+    for (const bool pair : {true, false}) {
+      for (const auto& [beam, speckle] : {std::pair{0.8, 0.18}, {1.6, 0.18}, {5.0, 0.0}}) {
+        FormedStripe s = plain_scene(beam, speckle);
+        s.electrons_per_grey = electrons;
+        s.read_noise_grey = read;
+        SCOPED_TRACE(testing::Message() << electrons << " electrons a grey level, read noise " << read);
+        expect_within_the_bound(s, pair, on_plain_paint(s, pair, "another"));
       }
     }
   }
