@@ -211,7 +211,10 @@ float BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::haze(const BasicHaze<Pixel, 
 
 template <class Pixel, std::int32_t MaxWidth, std::int32_t MaxHeight>
 auto BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::gather(const Pair& pair, std::span<Peak> peaks, StripeWindows& windows) -> Firsts {
-  const std::int32_t reach = reach_of_window(optics(), pair.off.valid());
+  // A plateau tells nothing: what its flanks need comes on top.
+  std::int32_t plateau = 0;
+  for (const Peak& peak : peaks) plateau = std::max<std::int32_t>(plateau, peak.clipped);
+  const std::int32_t reach = std::min(reach_of_window(optics(), pair.off.valid()) + plateau / 2, (StripeWindows::most_rows - 1) / 2);
   windows.count = 2 * reach + 1;
   windows.hazy = hazy_;
   Firsts firsts{};
