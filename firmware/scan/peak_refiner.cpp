@@ -18,6 +18,7 @@ constexpr std::uint32_t look_for_haze = 8;         // pictures
 constexpr float least_read_grey = 0.35f;           // rounding alone is 0.29
 constexpr int first_rounds = 12;                   // of learning, in the first picture
 constexpr float settled = 0.02f;                   // change of a round: what 64 columns can tell
+constexpr float most_electrons = 4000;             // a grey level
 constexpr float most_model_share = 0.3f;           // of the stripe's peak: beyond it no column is a misfit
 constexpr std::int32_t farthest_half_height = 20;  // rows from a peak
 constexpr float half_height_to_sigma = 1 / 2.355f;
@@ -34,14 +35,24 @@ constexpr float shift_by_skew = 3.0f, shift_by_share = 2.4f;
 // The model's share goes half of the way, as a factor, to where the median of the misfits is between these. Haze that is not learned yet makes 1.2, a camera that
 // sharpens 5 and more.
 constexpr float low_misfit = 0.7f, high_misfit = 1.5f;
+constexpr float least_misfit = 0.3f;  // of noise that is there: with a speckle of 0.18 that is not, columns at marks have 0.5 and more
 
-// Returns whether it is there.
+// Returns whether it is there. Where less is left although the model's share is at its least, the noise is less than was supposed: at marks no plain column tells the speckle, and pictures may
+// have no noise at all.
 template <class Misfits>
-bool follow_misfits(Misfits& misfits, float& model) {
+bool follow_misfits(Misfits& misfits, PixelNoise& noise) {
   if (misfits.empty()) return true;
+  float& model = noise.model;
   const auto middle = misfits.begin() + static_cast<std::ptrdiff_t>(misfits.size() / 2);
   std::nth_element(misfits.begin(), middle, misfits.end());
   const float wanted = std::clamp(*middle, low_misfit, high_misfit);
+  if (model == least_model_share && *middle < least_misfit) {
+    const float less = std::sqrt(std::max(*middle / least_misfit, 0.25f));
+    noise.speckle *= less;
+    noise.read_grey = std::max(noise.read_grey * less, least_read_grey);
+    noise.electrons_per_grey = std::min(noise.electrons_per_grey / (less * less), most_electrons);
+    return less > 0.9f;
+  }
   model = std::clamp(model * std::sqrt(std::max(*middle / wanted, 0.01f)), least_model_share, most_model_share);
   return *middle == wanted || model == least_model_share || model == most_model_share;
 }
@@ -141,7 +152,7 @@ void BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::learn(const Pair& pair, std::
       speckle_.add(speckle_between(windows, optics(), noise_, fits));
     }
     noise_.speckle = speckle_.contrast_or(noise_.speckle);
-    const bool fits_well = follow_misfits(misfits, noise_.model);
+    const bool fits_well = follow_misfits(misfits, noise_);
     if (estimate_.update() < settled && fits_well) break;
   }
   if (!begun_) begun_with_ = peaks.size();

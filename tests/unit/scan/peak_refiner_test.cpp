@@ -73,6 +73,13 @@ struct Errors {
     for (const double error : errors) squares += error * error;
     return errors.empty() ? 0 : std::sqrt(squares / static_cast<double>(errors.size()));
   }
+  static double percentile_999(const std::vector<double>& errors) {
+    if (errors.empty()) return 0;
+    std::vector<double> sizes;
+    for (const double error : errors) sizes.push_back(std::abs(error));
+    std::sort(sizes.begin(), sizes.end());
+    return sizes[static_cast<std::size_t>(std::ceil(0.999 * static_cast<double>(sizes.size()))) - 1];
+  }
 };
 
 void compare(const FormedStripe& s, const FormedImage& image, std::span<const Peak> peaks, Errors& errors) {
@@ -106,7 +113,7 @@ Errors over_angles(FormedStripe s, PeakRefiner& refiner, double gain = 1, Errors
   return errors;
 }
 
-// Asked for: 0.20 px at edges of 10:1, 0.25 with speckle and haze; recall 97 %; false peaks 0.2 %.
+// Asked for: 0.20 px at edges of 10:1, 0.25 with speckle and haze; 99.9th percentile 1 px; recall 97 %; false peaks 0.2 %.
 TEST(PeakRefiner, ReachesItsFiguresAtEdges) {
   for (const double beam : {1.2, 1.6, 2.4}) {
     for (const double scatter : {0.0, 0.35}) {
@@ -120,6 +127,7 @@ TEST(PeakRefiner, ReachesItsFiguresAtEdges) {
       EXPECT_LT(Errors::rms(errors.at_edges), scatter > 0 ? 0.25 : 0.20)
           << "beam " << beam << " px, scatter " << scatter << "; found: beam " << refiner->optics().beam_px << ", lens "
           << refiner->optics().lens_px << ", scatter " << refiner->optics().scatter;
+      EXPECT_LE(Errors::percentile_999(errors.at_edges), 1) << "beam " << beam << " px, scatter " << scatter;
       EXPECT_GE(static_cast<double>(errors.at_edges.size() + errors.elsewhere.size()), 0.97 * errors.columns)
           << "beam " << beam << " px, scatter " << scatter;
       EXPECT_LE(errors.far, 0.002 * errors.columns) << "beam " << beam << " px, scatter " << scatter;
@@ -127,14 +135,44 @@ TEST(PeakRefiner, ReachesItsFiguresAtEdges) {
   }
 }
 
+// Pictures of twelve bits without noise; nothing is told. Asked for: 0.07 px. A noise that was supposed all the same spoke for a narrower lens: 0.17 px.
+TEST(PeakRefiner, WithoutNoiseItHasNoBiasAtEdges) {
+  for (const double beam : {1.2, 1.6, 2.4}) {
+    RefinerConfig config;
+    config.full_scale = 4095;
+    const auto refiner = std::make_unique<LargePeakRefiner16>(config);
+    Errors errors;
+    FormedStripe s = scene(beam);
+    s.noise = false;
+    for (const double angle_rad : {0.0, 0.5, 1.0}) {
+      s.bars.angle_rad = angle_rad;
+      for (s.bars.phase_px = 3.3; s.bars.phase_px < 11; s.bars.phase_px += 3.3) {
+        const FormedImage image = form(s);
+        const auto on = pixels<std::uint16_t>(image.on, 4095.0 / 255, 4095), off = pixels<std::uint16_t>(image.off, 4095.0 / 255, 4095);
+        std::vector<Peak> peaks = coarse(on, off, 4095);
+        peaks.resize(refiner->refine({on.data(), width, height, width}, {off.data(), width, height, width}, peaks));
+        compare(s, image, peaks, errors);
+      }
+    }
+    std::printf("beam %.1f px: bias %.3f px, 99.9 %% %.2f px; lens found %.2f px\n", beam, Errors::rms(errors.at_edges),
+                Errors::percentile_999(errors.at_edges), double(refiner->optics().lens_px));
+    EXPECT_LE(Errors::rms(errors.at_edges), 0.07) << "beam " << beam << " px";
+    EXPECT_EQ(errors.far, 0) << "beam " << beam << " px";
+  }
+}
+
+// Of speckle without haze, between the two that are asked for: beams up to 2.4 px within the lower figure. Of wider ones nothing is asked. Their speckle alone moves them by up to 0.15 px on plain paint, and an edge
+// leaves half of the light.
 TEST(PeakRefiner, LearnsAnyWidth) {
   for (const double beam : {0.8, 1.6, 3.5, 5.0}) {
     const auto refiner = std::make_unique<PeakRefiner>();
     const FormedStripe s = scene(beam);
     const Errors errors = over_angles(s, *refiner);
     EXPECT_NEAR(width_in_picture_px(refiner->optics()), width_px(s), 0.05 * width_px(s)) << "beam " << beam << " px";
-    EXPECT_LT(Errors::rms(errors.at_edges), 0.32) << "beam " << beam << " px";
-    EXPECT_LE(errors.far, 0.005 * errors.columns) << "beam " << beam << " px";
+    std::printf("beam %.1f px: %.3f px at edges, 99.9 %% %.2f px, %d of %d far\n", beam, Errors::rms(errors.at_edges),
+                Errors::percentile_999(errors.at_edges), errors.far, errors.columns);
+    EXPECT_LT(Errors::rms(errors.at_edges), beam <= 2.4 ? 0.20 : 0.32) << "beam " << beam << " px";
+    EXPECT_LE(errors.far, 0.002 * errors.columns) << "beam " << beam << " px";
   }
 }
 
@@ -270,7 +308,6 @@ TEST(PeakRefiner, ClippedAndFaintStripesOfAnyWidthAreFound) {
         const auto detector = std::make_unique<LargePeakDetector>();
         const auto refiner = std::make_unique<PeakRefiner>();
         Errors errors;
-        std::vector<double> sizes;
         for (s.seed = 1; s.seed <= 2; ++s.seed) {
           const FormedImage image = form(s);
           FormedStripe darker = s;
@@ -282,10 +319,8 @@ TEST(PeakRefiner, ClippedAndFaintStripesOfAnyWidthAreFound) {
           peaks.resize(find_stripe(*detector, *refiner, picture, background, peaks));
           compare(s, image, peaks, errors);
         }
-        for (const double error : errors.elsewhere) sizes.push_back(std::abs(error));
-        std::sort(sizes.begin(), sizes.end());
-        ASSERT_FALSE(sizes.empty());
-        const double percentile_999 = sizes[static_cast<std::size_t>(0.999 * static_cast<double>(sizes.size()))];
+        ASSERT_FALSE(errors.elsewhere.empty());
+        const double percentile_999 = Errors::percentile_999(errors.elsewhere);
         const double over_bound = Errors::rms(errors.elsewhere) / test::bound_px(s, pair);
         SCOPED_TRACE(testing::Message() << "beam " << beam << " px, peak " << s.peak_grey << ", off picture of " << off_exposure
                                         << " of the exposure, seeds 1 and 2");
