@@ -6,6 +6,7 @@
 #include "firmware/arm/collision.hpp"
 #include "firmware/arm/kinematics.hpp"
 #include "firmware/scan/picture_light.hpp"
+#include "firmware/scan/stripe_finder.hpp"
 
 namespace lf {
 namespace {
@@ -66,6 +67,7 @@ void BasicScanPipeline<capacity>::begin_sweep(std::uint32_t sweep) {
   cloud_.clear();
   // Light and water may have changed: the stripe is learned anew.
   refiner_.begin_anew();
+  detector_.follow(0);
   stats_.stripe = {};
   // Between sweeps the arm, its shadow and what it turned have moved.
   background_.present = false;
@@ -223,8 +225,7 @@ ImageView BasicScanPipeline<capacity>::background_of(const Exposure& exposure) c
 template <ScanCapacity capacity>
 void BasicScanPipeline<capacity>::measure(const Image& image, const Exposure& exposure) {
   const ImageView background = background_of(exposure);
-  const std::size_t found = detector_.detect(image.view, background, last_peaks_);
-  last_peaks_count_ = refiner_.refine(image.view, background, std::span(last_peaks_).first(found));
+  last_peaks_count_ = scan::find_stripe(detector_, refiner_, image.view, background, last_peaks_);
   last_peaks_time_ = image.mid_exposure();
   const scan::PeakCounters& counters = detector_.counters();
   stats_.peaks = static_cast<std::uint32_t>(refiner_.counters().refined);
@@ -268,8 +269,9 @@ bool BasicScanPipeline<capacity>::add_points(const Stripe& stripe, bool final) {
   const scan::JointHistory::Outcome outcome =
       stripe.count == 0 ? scan::JointHistory::Outcome::done : joints_.at(stripe.mid_exposure, final, q_rad);
   if (outcome == scan::JointHistory::Outcome::wait) return false;
-  taken_count_ = 0;
-  taken_time_ = stripe.mid_exposure;
+  ++stripes_taken_;
+  newest_taken().mid_exposure = stripe.mid_exposure;
+  newest_taken().count = 0;
   if (stripe.count == 0) return true;
   if (outcome != scan::JointHistory::Outcome::done) {
     stats_.points_no_joints += static_cast<std::uint32_t>(stripe.count);
@@ -333,8 +335,9 @@ void BasicScanPipeline<capacity>::add_column(std::span<const scan::Peak> peaks, 
     return;
   }
   for (const CloudPoint& point : points) ++(cloud_.add(point) ? stats_.points : stats_.points_overflowed);
+  Taken& taken = newest_taken();
   for (const Eigen::Vector2f& place : seen) {
-    if (taken_count_ < taken_.size()) taken_[taken_count_++] = place;
+    if (taken.count < taken.places_px.size()) taken.places_px[taken.count++] = place;
   }
 }
 

@@ -58,6 +58,8 @@ struct ScanCapacity {
   std::size_t cloud_points = 262'144;
   // A stripe waits for eight SYNCs, 32 ms: one frame's time, or four at 125 Hz. Beyond that for joint samples that come late.
   std::size_t stripes = 6;
+  // Stripes whose points' places are kept for a report. In one turn all that wait may become points, and the one of a new image.
+  std::size_t stripes_told = 1;
 };
 
 template <ScanCapacity capacity>
@@ -90,9 +92,18 @@ class BasicScanPipeline {
   // Of the newest laser-on image, for the report.
   std::span<const scan::Peak> last_peaks() const { return {last_peaks_.data(), last_peaks_count_}; }
   Time last_peaks_time() const { return last_peaks_time_; }
-  // Where those are that became points, px, of a sweep's newest stripe whose joints are known: the report's, too.
-  std::span<const Eigen::Vector2f> last_taken() const { return {taken_.data(), taken_count_}; }
-  Time last_taken_time() const { return taken_time_; }
+  // A sweep's stripe whose joints are known: where those of its peaks are that became points, px. For the report, too.
+  struct TakenStripe {
+    Time mid_exposure;
+    std::span<const Eigen::Vector2f> places_px;
+  };
+  // Stripes taken since construction. Those that waited for the same joints are taken at once, so the newest `taken_kept` of them can be read: `number` counts from 0.
+  std::uint32_t stripes_taken() const { return stripes_taken_; }
+  static constexpr std::uint32_t taken_kept = static_cast<std::uint32_t>(capacity.stripes_told);
+  TakenStripe taken(std::uint32_t number) const {
+    const Taken& stripe = taken_[number % taken_kept];
+    return {stripe.mid_exposure, {stripe.places_px.data(), stripe.count}};
+  }
 
   const ScanStats& stats() const { return stats_; }
 
@@ -171,14 +182,19 @@ class BasicScanPipeline {
   Time last_peaks_time_;
   // A column shows the panel and at most one proud part in the laser's plane.
   static constexpr std::size_t points_a_column = 2;
-  std::array<Eigen::Vector2f, points_a_column * image_width> taken_;
+  struct Taken {
+    Time mid_exposure;
+    std::size_t count = 0;
+    std::array<Eigen::Vector2f, points_a_column * image_width> places_px;
+  };
+  Taken& newest_taken() { return taken_[(stripes_taken_ - 1) % taken_kept]; }
+  std::array<Taken, taken_kept> taken_{};
+  std::uint32_t stripes_taken_ = 0;
   std::array<std::uint8_t, max_peaks> chains_{};  // columns of the chain that each peak of the stripe under work stands in
-  std::size_t taken_count_ = 0;
-  Time taken_time_;
 };
 
 // Every point of the slowest sweep. The cloud is 4.2 MB of it, two stored images 0.6, stripes 0.2, detector and refiner 0.2.
-inline constexpr ScanCapacity full_scan{};
+inline constexpr ScanCapacity full_scan{.stripes_told = 7};
 using ScanPipeline = BasicScanPipeline<full_scan>;
 static_assert(sizeof(ScanPipeline) <= 6 * 1024 * 1024, "a computer's, or a board's external 8 MB");
 

@@ -18,6 +18,7 @@ constexpr std::uint32_t look_for_haze = 8;         // pictures
 constexpr float least_read_grey = 0.35f;           // rounding alone is 0.29
 constexpr int first_rounds = 12;                   // of learning, in the first picture
 constexpr float settled = 0.02f;                   // change of a round: what 64 columns can tell
+constexpr float most_electrons = 4000;             // a grey level
 constexpr float most_model_share = 0.3f;           // of the stripe's peak: beyond it no column is a misfit
 constexpr std::int32_t farthest_half_height = 20;  // rows from a peak
 constexpr float half_height_to_sigma = 1 / 2.355f;
@@ -34,14 +35,24 @@ constexpr float shift_by_skew = 3.0f, shift_by_share = 2.4f;
 // The model's share goes half of the way, as a factor, to where the median of the misfits is between these. Haze that is not learned yet makes 1.2, a camera that
 // sharpens 5 and more.
 constexpr float low_misfit = 0.7f, high_misfit = 1.5f;
+constexpr float least_misfit = 0.3f;  // of noise that is there: with a speckle of 0.18 that is not, columns at marks have 0.5 and more
 
-// Returns whether it is there.
+// Returns whether it is there. Where less is left although the model's share is at its least, the noise is less than was supposed: at marks no plain column tells the speckle, and pictures may
+// have no noise at all.
 template <class Misfits>
-bool follow_misfits(Misfits& misfits, float& model) {
+bool follow_misfits(Misfits& misfits, PixelNoise& noise) {
   if (misfits.empty()) return true;
+  float& model = noise.model;
   const auto middle = misfits.begin() + static_cast<std::ptrdiff_t>(misfits.size() / 2);
   std::nth_element(misfits.begin(), middle, misfits.end());
   const float wanted = std::clamp(*middle, low_misfit, high_misfit);
+  if (model == least_model_share && *middle < least_misfit) {
+    const float less = std::sqrt(std::max(*middle / least_misfit, 0.25f));
+    noise.speckle *= less;
+    noise.read_grey = std::max(noise.read_grey * less, least_read_grey);
+    noise.electrons_per_grey = std::min(noise.electrons_per_grey / (less * less), most_electrons);
+    return less > 0.9f;
+  }
   model = std::clamp(model * std::sqrt(std::max(*middle / wanted, 0.01f)), least_model_share, most_model_share);
   return *middle == wanted || model == least_model_share || model == most_model_share;
 }
@@ -109,13 +120,15 @@ void BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::begin_anew() {
   pictures_ = 0;
 }
 
-// The pixels' noise beyond that of their light. A picture alone does not tell it from fine paint: then it stays as configured.
+// The pixels' noise beyond that of their light. A picture alone may be black about the stripe, where half of the noise is clipped: it only tells of more than was configured.
 template <class Pixel, std::int32_t MaxWidth, std::int32_t MaxHeight>
 void BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::learn_read_noise(const Pair& pair) {
-  if (!pair.off.valid()) return;
   const NoiseAlong along = config_.axis == PeakAxis::column ? NoiseAlong::columns : NoiseAlong::rows;
-  const float seen_grey = read_noise_grey(pair.on, pair.off, gain_, noise_.electrons_per_grey, config_.full_scale, along);
-  if (seen_grey > 0) noise_.read_grey = std::max(seen_grey, least_read_grey);
+  const float electrons = noise_.electrons_per_grey;
+  const float seen_grey = pair.off.valid() ? read_noise_grey(pair.on, pair.off, gain_, electrons, config_.full_scale, along)
+                                           : read_noise_grey(pair.on, electrons, config_.full_scale, along);
+  const float least = pair.off.valid() ? least_read_grey : config_.noise.read_grey;
+  if (seen_grey > 0) noise_.read_grey = std::max(seen_grey, least);
 }
 
 template <class Pixel, std::int32_t MaxWidth, std::int32_t MaxHeight>
@@ -139,7 +152,7 @@ void BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::learn(const Pair& pair, std::
       speckle_.add(speckle_between(windows, optics(), noise_, fits));
     }
     noise_.speckle = speckle_.contrast_or(noise_.speckle);
-    const bool fits_well = follow_misfits(misfits, noise_.model);
+    const bool fits_well = follow_misfits(misfits, noise_);
     if (estimate_.update() < settled && fits_well) break;
   }
   if (!begun_) begun_with_ = peaks.size();
@@ -209,7 +222,10 @@ float BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::haze(const BasicHaze<Pixel, 
 
 template <class Pixel, std::int32_t MaxWidth, std::int32_t MaxHeight>
 auto BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::gather(const Pair& pair, std::span<Peak> peaks, StripeWindows& windows) -> Firsts {
-  const std::int32_t reach = reach_of_window(optics(), pair.off.valid());
+  // A plateau tells nothing: what its flanks need comes on top.
+  std::int32_t plateau = 0;
+  for (const Peak& peak : peaks) plateau = std::max<std::int32_t>(plateau, peak.clipped);
+  const std::int32_t reach = std::min(reach_of_window(optics(), pair.off.valid()) + plateau / 2, (StripeWindows::most_rows - 1) / 2);
   windows.count = 2 * reach + 1;
   windows.hazy = hazy_;
   Firsts firsts{};
@@ -245,6 +261,7 @@ void BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::put(const Pair& pair, std::in
     const auto row = static_cast<std::size_t>(i);
     windows.stripe[row][lane] = to_grey * static_cast<float>(lit) - background;
     windows.ambient[row][lane] = two ? background : 0;
+    windows.background[row][lane] = two ? 0 : std::max(background, 0.0f);
     windows.valid[row][lane] = place == inside && lit < config_.full_scale ? 1.0f : 0.0f;
     if (!hazy_) continue;
     windows.ambient_haze[row][lane] = gain_ * haze(haze_off_, line, place);

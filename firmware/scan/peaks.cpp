@@ -12,13 +12,22 @@ namespace {
 constexpr std::int32_t lanes = 64;
 constexpr std::int32_t delay = 9;                // rows from the filter's newest tap to its centre
 constexpr float positive_lobe = 34.0f;           // sum of the filter's positive taps 1 4 7 10 7 4 1
-constexpr std::int32_t exclusion = 8;            // px about a peak in which a second maximum is the same stripe's
-constexpr std::int32_t background_distance = 9;  // px from the peak, where the filter's negative lobe ends
+constexpr std::int32_t exclusion = 8;            // rows about a peak in which a second maximum is the same stripe's
+constexpr std::int32_t background_distance = 9;  // rows from the peak, where the filter's negative lobe ends
+
+// Of the filter's sigma. A bell of w before a filter of f is seen with f^2.5 / (w^2 + f^2)^1.5 of the noise: best at f = 2.24 w, three quarters of that at f = 1.08 w. The narrowest that
+// sees so much keeps neighbours apart.
+constexpr float widest_share = 1 / 1.08f;
+constexpr float filter_sigma = 2.83f;
+constexpr std::int32_t widest_scale = 4;
+constexpr std::size_t more_lines = 8;  // a wider window is taken where it finds more by an eighth of the lines
 
 constexpr std::int32_t gain_one = 256;       // a gain of 1 in fixed point
 constexpr std::int32_t gain_told_apart = 3;  // from it: a hundredth, what the pictures tell of it
 
-constexpr std::int32_t few_clipped = 3;  // px at full scale that the filter does not mind
+constexpr std::int32_t few_clipped = 3;        // rows at full scale that the filter does not mind
+constexpr float flank_level = 0.6f;            // of a plateau's height
+constexpr float most_overexposure_log = 3.9f;  // a bell of 50 times full scale, whose plateau is 5.6 of its sigmas
 // Curvature over height of the response: 0.2225..0.227 for a stripe of sigma 1.7 px, more for a narrower one.
 constexpr float narrow_curvature = 0.2225f;
 constexpr std::int32_t narrow_half_width = 5;
@@ -73,6 +82,18 @@ template <class Pixel, class Sum>
   }
 }
 
+template <class Sum>
+[[gnu::noinline]] void add(const Sum* __restrict part, Sum* __restrict sum) {
+  for (std::int32_t i = 0; i < lanes; ++i) sum[i] = static_cast<Sum>(sum[i] + part[i]);
+}
+
+// By 2 or 4, toward minus infinity: what is the same everywhere the filter does not see.
+template <class Sum, class Response>
+[[gnu::noinline]] void divide(std::int32_t by, Sum* values) {
+  const int bits = by == 2 ? 1 : 2;
+  for (std::int32_t i = 0; i < lanes; ++i) values[i] = static_cast<Sum>(static_cast<Response>(values[i]) >> bits);
+}
+
 // One step of -(1 - z^5)^4 / (1 - z)^2: `x5` is the row five before `x0`, and so on.
 template <class Sum, class Response>
 [[gnu::noinline]] void filter_step(const Sum* __restrict x0, const Sum* __restrict x5, const Sum* __restrict x10, const Sum* __restrict x15,
@@ -108,6 +129,13 @@ template <class Response>
 }  // namespace
 
 template <class Pixel, std::int32_t MaxLength>
+std::int32_t BasicPeakDetector<Pixel, MaxLength>::rows_as_one_for(float width_px) {
+  std::int32_t scale = 1;
+  while (scale < widest_scale && width_px > widest_share * filter_sigma * static_cast<float>(scale)) scale *= 2;
+  return scale;
+}
+
+template <class Pixel, std::int32_t MaxLength>
 std::size_t BasicPeakDetector<Pixel, MaxLength>::detect(const PixelView<Pixel>& image, const PixelView<Pixel>& background,
                                                         std::span<Peak> peaks) {
   if (!image.valid() || config_.peaks_per_line < 1 || config_.peaks_per_line > max_peaks_per_line) return 0;
@@ -124,19 +152,55 @@ std::size_t BasicPeakDetector<Pixel, MaxLength>::detect(const PixelView<Pixel>& 
   if (background.valid())
     gain_ = static_cast<std::int32_t>(std::lround(gain_one * gain_between(image, background, config_.full_scale, !columns)));
   if (std::abs(gain_ - gain_one) <= gain_told_apart) gain_ = gain_one;
+  std::int32_t widest = widest_scale;
+  while (length < min_length * widest) widest /= 2;
+  if (width_px_ > 0) return detect_with(std::min(rows_as_one_for(width_px_), widest), image, background, peaks);
+
+  const PeakCounters before = counters_;
+  std::size_t count = detect_with(1, image, background, peaks);
+  if (2 * count >= static_cast<std::size_t>(lines)) return count;
+  std::int32_t best = 1;
+  for (std::int32_t scale = 2; scale <= widest; scale *= 2) {
+    counters_ = before;
+    const std::size_t here = detect_with(scale, image, background, peaks);
+    if (here <= count + static_cast<std::size_t>(lines) / more_lines) continue;
+    best = scale;
+    count = here;
+  }
+  if (best == scale_) return count;
+  counters_ = before;
+  return detect_with(best, image, background, peaks);
+}
+
+template <class Pixel, std::int32_t MaxLength>
+std::size_t BasicPeakDetector<Pixel, MaxLength>::detect_with(std::int32_t scale, const PixelView<Pixel>& image,
+                                                             const PixelView<Pixel>& background, std::span<Peak> peaks) {
+  scale_ = scale;
+  const bool columns = config_.axis == PeakAxis::column;
+  const std::int32_t lines = columns ? image.width : image.height, length = columns ? image.height : image.width;
   std::size_t count = 0;
   for (std::int32_t first = 0; first < lines; first += strip) {
-    const Strip s{image, background, first, std::min(strip, lines - first), length};
+    const Strip s{image, background, first, std::min(strip, lines - first), length, (length + scale - 1) / scale};
     sweep(s);
     for (std::int32_t lane = 0; lane < s.lines; ++lane) count += finish(s, lane, peaks.subspan(count));
   }
   return count;
 }
 
-// The strip's `row`-th difference goes to its place in the ring.
+// The strip's `row`-th difference goes to its place in the ring. Of several pixels their mean.
 template <class Pixel, std::int32_t MaxLength>
 void BasicPeakDetector<Pixel, MaxLength>::load_row(const Strip& s, std::int32_t row) {
   Sum* out = rows_[row & 31].data();
+  load_pixels(s, std::min(row * scale_, s.length - 1), out);
+  for (std::int32_t i = 1; i < scale_; ++i) {
+    load_pixels(s, std::min(row * scale_ + i, s.length - 1), pixels_.data());
+    add(pixels_.data(), out);
+  }
+  if (scale_ > 1) divide<Sum, Response>(scale_, out);
+}
+
+template <class Pixel, std::int32_t MaxLength>
+void BasicPeakDetector<Pixel, MaxLength>::load_pixels(const Strip& s, std::int32_t row, Sum* out) {
   const bool direct = config_.axis == PeakAxis::column && s.lines == strip;
   if (direct) {
     // A strip touches a cache line or two of every row, which on a large image the hardware does not foresee: asked for 16 rows ahead, 1920x1080 took
@@ -192,11 +256,11 @@ void BasicPeakDetector<Pixel, MaxLength>::sweep(const Strip& s) {
   best_row_ = {};
   load_row(s, 0);
   for (std::int32_t i = 1; i < 32; ++i) rows_[i] = rows_[0];
-  for (std::int32_t row = 0; row < s.length + delay; ++row) {
-    if (row < s.length)
+  for (std::int32_t row = 0; row < s.rows + delay; ++row) {
+    if (row < s.rows)
       load_row(s, row);
     else
-      rows_[row & 31] = rows_[(s.length - 1) & 31];
+      rows_[row & 31] = rows_[(s.rows - 1) & 31];
     Response* response = response_[std::max<std::int32_t>(row - delay, 0)].data();
     filter_step(rows_[row & 31].data(), rows_[(row - 5) & 31].data(), rows_[(row - 10) & 31].data(), rows_[(row - 15) & 31].data(),
                 rows_[(row - 20) & 31].data(), sum_.data(), sum_of_sums_.data(), response);
@@ -211,7 +275,7 @@ void BasicPeakDetector<Pixel, MaxLength>::sweep(const Strip& s) {
 template <class Pixel, std::int32_t MaxLength>
 std::size_t BasicPeakDetector<Pixel, MaxLength>::finish(const Strip& s, std::int32_t lane, std::span<Peak> peaks) {
   // Also where the column has no maximum at all, and so no row of one.
-  const float least = std::max(1.0f, config_.min_contrast * positive_lobe);
+  const float least = std::max(1.0f, config_.min_contrast * positive_lobe / std::sqrt(static_cast<float>(scale_)));
   if (static_cast<float>(best_[lane]) < least) {
     ++counters_.weak;
     return 0;
@@ -225,8 +289,7 @@ std::size_t BasicPeakDetector<Pixel, MaxLength>::finish(const Strip& s, std::int
   float second = static_cast<float>(second_[lane]);
   while (next.response >= least && !known.full()) {
     (void)known.push_back(next);
-    const bool too_wide = next.last - next.first - 2 * exclusion >= config_.max_clipped;
-    if (!too_wide) (void)stripes.push_back(next);
+    if (is_stripe(s, s.first + lane, next.plateau)) (void)stripes.push_back(next);
     if (static_cast<std::int32_t>(stripes.size()) >= std::max<std::int32_t>(2, config_.peaks_per_line)) break;
     if (!stripes.empty() && second <= share * stripes[0].response) break;
     next = next_maximum(s, lane, std::span<const Maximum>(known.data(), known.size()));
@@ -265,11 +328,11 @@ std::size_t BasicPeakDetector<Pixel, MaxLength>::finish(const Strip& s, std::int
 template <class Pixel, std::int32_t MaxLength>
 void BasicPeakDetector<Pixel, MaxLength>::measure(const Strip& s, std::int32_t lane, const Maximum& maximum, float ratio, Peak& peak) {
   const std::int32_t line = s.first + lane;
-  const Plateau plateau = find_plateau(s, line, maximum.row);
-  const float position = plateau.length > few_clipped ? plateau_centre(s, line, plateau) : response_peak(s, lane, maximum.row);
+  const Plateau& plateau = maximum.plateau;
+  const float position = plateau.length > few_clipped * scale_ ? plateau_centre(s, line, plateau) : response_peak(s, lane, maximum.row);
   peak.u_px = config_.axis == PeakAxis::column ? static_cast<float>(line) : position;
   peak.v_px = config_.axis == PeakAxis::column ? position : static_cast<float>(line);
-  peak.amplitude = amplitude(s, line, maximum.row);
+  peak.amplitude = amplitude(s, line, middle_of(maximum.row));
   peak.ratio = ratio;
   peak.clipped = static_cast<std::uint8_t>(std::min<std::int32_t>(plateau.length, 255));
   ++counters_.found;
@@ -281,8 +344,8 @@ template <class Pixel, std::int32_t MaxLength>
 float BasicPeakDetector<Pixel, MaxLength>::response_peak(const Strip& s, std::int32_t lane, std::int32_t row) const {
   const float wide[3] = {static_cast<float>(response_[row - 1][lane]), static_cast<float>(response_[row][lane]),
                          static_cast<float>(response_[row + 1][lane])};
-  const float centre = static_cast<float>(row) + vertex(wide);
-  const bool narrow = 2 * wide[1] - wide[0] - wide[2] >= narrow_curvature * wide[1];
+  const float centre = static_cast<float>(scale_) * (static_cast<float>(row) + vertex(wide)) + 0.5f * static_cast<float>(scale_ - 1);
+  const bool narrow = scale_ == 1 && 2 * wide[1] - wide[0] - wide[2] >= narrow_curvature * wide[1];
   const std::int32_t line = s.first + lane;
   const auto raw = [&](std::int32_t v) { return static_cast<float>(difference(s, line, v)); };
   return narrow ? narrow_peak_about(centre, raw) : centre;
@@ -292,9 +355,9 @@ float BasicPeakDetector<Pixel, MaxLength>::response_peak(const Strip& s, std::in
 template <class Pixel, std::int32_t MaxLength>
 auto BasicPeakDetector<Pixel, MaxLength>::maximum_at(const Strip& s, std::int32_t lane, std::int32_t row, float response) const -> Maximum {
   const Plateau plateau = find_plateau(s, s.first + lane, row);
-  const std::int32_t first = plateau.length > 0 ? plateau.first : row;
-  const std::int32_t last = plateau.length > 0 ? plateau.first + plateau.length - 1 : row;
-  return {row, response, first - exclusion, last + exclusion};
+  const std::int32_t first = plateau.length > 0 ? plateau.first : middle_of(row);
+  const std::int32_t last = plateau.length > 0 ? plateau.first + plateau.length - 1 : middle_of(row);
+  return {row, response, first - exclusion * scale_, last + exclusion * scale_, plateau};
 }
 
 // The highest of the lane's maxima that belongs to none of the stripes `before`; of response 0 when there is none.
@@ -303,10 +366,11 @@ auto BasicPeakDetector<Pixel, MaxLength>::next_maximum(const Strip& s, std::int3
     -> Maximum {
   Response highest = 0;
   std::int32_t highest_row = 0;
-  for (std::int32_t row = 1; row < s.length - 1; ++row) {
+  for (std::int32_t row = 1; row < s.rows - 1; ++row) {
     const Response r = response_[row][lane];
     if (r <= highest || r < response_[row - 1][lane] || r <= response_[row + 1][lane]) continue;
-    const bool known = std::any_of(before.begin(), before.end(), [row](const Maximum& m) { return row >= m.first && row <= m.last; });
+    const std::int32_t place = middle_of(row);
+    const bool known = std::any_of(before.begin(), before.end(), [place](const Maximum& m) { return place >= m.first && place <= m.last; });
     if (known) continue;
     highest = r;
     highest_row = row;
@@ -332,38 +396,60 @@ std::int32_t BasicPeakDetector<Pixel, MaxLength>::difference(const Strip& s, std
 // The run of full-scale pixels at the peak; empty when none of the three about it is at full scale.
 template <class Pixel, std::int32_t MaxLength>
 auto BasicPeakDetector<Pixel, MaxLength>::find_plateau(const Strip& s, std::int32_t line, std::int32_t row) const -> Plateau {
-  std::int32_t first = row - 1;
-  while (first <= row + 1 && pixel(s.on, line, first) < config_.full_scale) ++first;
-  if (first > row + 1) return {};
+  const std::int32_t end = std::min((row + 2) * scale_, s.length);
+  std::int32_t first = (row - 1) * scale_;
+  while (first < end && pixel(s.on, line, first) < config_.full_scale) ++first;
+  if (first >= end) return {};
   std::int32_t last = first;
   while (last + 1 < s.length && pixel(s.on, line, last + 1) >= config_.full_scale) ++last;
   while (first > 0 && pixel(s.on, line, first - 1) >= config_.full_scale) --first;
   return {first, last - first + 1};
 }
 
-// Midway between the flanks of a clipped stripe, each where it crosses 0.6 of the plateau's height: the filter's response is flat on a plateau,
-// the flanks are steep. Between pixels a Gaussian's flank is near a straight line in the logarithm.
+// From the plateau's last pixel, at `end`, to where its flank crosses `flank_level`; negative where it does not. Between pixels a Gaussian's flank is near a straight line in the logarithm.
+template <class Pixel, std::int32_t MaxLength>
+float BasicPeakDetector<Pixel, MaxLength>::flank(const Strip& s, std::int32_t line, std::int32_t end, std::int32_t step) const {
+  const float level = flank_level * static_cast<float>(difference(s, line, end));
+  for (std::int32_t i = 0; i < exclusion * scale_; ++i) {
+    const float inner = static_cast<float>(difference(s, line, end + i * step));
+    const float outer = std::max(1.0f, static_cast<float>(difference(s, line, end + (i + 1) * step)));
+    if (outer < level && inner >= level) return static_cast<float>(i) + std::log(inner / level) / std::log(inner / outer);
+  }
+  return -1;
+}
+
+// A bell that is clipped at a sigmas' distance has fallen to the share q of full scale d farther out, where d (2 a + d) = 2 ln(1 / q) sigmas^2, and its height is exp(a^2 / 2) of
+// full scale. A lamp's flanks are steep: they would be those of a bell hundreds of times too bright.
+template <class Pixel, std::int32_t MaxLength>
+bool BasicPeakDetector<Pixel, MaxLength>::is_stripe(const Strip& s, std::int32_t line, const Plateau& plateau) const {
+  if (plateau.length <= config_.max_clipped) return true;
+  if (plateau.length > config_.max_clipped * scale_) return false;
+  const float half = 0.5f * static_cast<float>(plateau.length - 1);
+  const float steepest = half * half * -std::log(flank_level) / most_overexposure_log;
+  const float before = flank(s, line, plateau.first, -1), after = flank(s, line, plateau.first + plateau.length - 1, 1);
+  if (before < 0 || after < 0) return false;
+  const float fall = 0.5f * (before + after);  // of each alone speckle makes more
+  return fall * (2 * half + fall) > steepest;
+}
+
+// Midway between the flanks of a clipped stripe: the filter's response is flat on a plateau, the flanks are steep.
 template <class Pixel, std::int32_t MaxLength>
 float BasicPeakDetector<Pixel, MaxLength>::plateau_centre(const Strip& s, std::int32_t line, const Plateau& plateau) const {
-  const std::int32_t last = plateau.first + plateau.length - 1;
-  const auto crossing = [&](std::int32_t row, std::int32_t step) {
-    const float level = 0.6f * static_cast<float>(difference(s, line, row));
-    for (std::int32_t i = 0; i < exclusion; ++i, row += step) {
-      const float inner = static_cast<float>(difference(s, line, row));
-      const float outer = std::max(1.0f, static_cast<float>(difference(s, line, row + step)));
-      if (outer < level && inner >= level)
-        return static_cast<float>(row) + static_cast<float>(step) * std::log(inner / level) / std::log(inner / outer);
-    }
-    return static_cast<float>(std::clamp<std::int32_t>(row, 0, s.length - 1));  // a flank beyond the image is taken to be at its border
+  const auto crossing = [&](std::int32_t end, std::int32_t step) {
+    const float fall = flank(s, line, end, step);
+    if (fall >= 0) return static_cast<float>(end) + static_cast<float>(step) * fall;
+    // A flank beyond the image is taken to be at its border.
+    return static_cast<float>(std::clamp<std::int32_t>(end + step * exclusion * scale_, 0, s.length - 1));
   };
-  return 0.5f * (crossing(plateau.first, -1) + crossing(last, 1));
+  return 0.5f * (crossing(plateau.first, -1) + crossing(plateau.first + plateau.length - 1, 1));
 }
 
 template <class Pixel, std::int32_t MaxLength>
-float BasicPeakDetector<Pixel, MaxLength>::amplitude(const Strip& s, std::int32_t line, std::int32_t row) const {
-  const std::int32_t top = std::max({difference(s, line, row - 1), difference(s, line, row), difference(s, line, row + 1)});
-  const std::int32_t below = difference(s, line, row - background_distance) + difference(s, line, row - background_distance - 1) +
-                             difference(s, line, row + background_distance) + difference(s, line, row + background_distance + 1);
+float BasicPeakDetector<Pixel, MaxLength>::amplitude(const Strip& s, std::int32_t line, std::int32_t place) const {
+  const std::int32_t top = std::max({difference(s, line, place - 1), difference(s, line, place), difference(s, line, place + 1)});
+  const std::int32_t away = background_distance * scale_;
+  const std::int32_t below = difference(s, line, place - away) + difference(s, line, place - away - 1) + difference(s, line, place + away) +
+                             difference(s, line, place + away + 1);
   return static_cast<float>(top) - 0.25f * static_cast<float>(below);
 }
 

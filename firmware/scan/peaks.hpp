@@ -5,6 +5,8 @@
 // second derivative in place of the first: on a backscatter skirt the zero-mean Laplacian-of-Gaussian of sigma 2.5-3 px erred a third as much).
 // The filter here is the cubic B-spline's second difference, sigma 2.83 px, 19 taps: -(1 - z^5)^4 / (1 - z)^2, so five shifted rows and two
 // running sums in place of 19 multiplications; its sums wrap around in 16 bits, and the result, below 255 * 68, is exact all the same.
+// A filter of twice the stripe's width sees it best, and a wide one takes neighbours for one. So the window follows the stripe: of a stripe wider than 2.6 px two rows are taken as
+// one, and from 5.2 px on four, and with them all distances below.
 // A stripe across an edge of the paint is pulled to its bright side, by up to 0.9 of its width: peak_refiner.hpp puts it where it is.
 #pragma once
 
@@ -21,11 +23,12 @@ namespace lf::scan {
 
 struct Peak {
   float u_px = 0;
-  float v_px = 0;            // pixel centres at integers; sub-pixel along the scanned axis
-  float amplitude = 0;       // grey levels of the brightest pixel over the local background
-  float ratio = 0;           // second peak's response over this one's, 0..1; near 1 the choice is unsure
-  std::uint8_t clipped = 0;  // pixels of the stripe at full scale; above 3 the centre is the plateau's, and less sure
-  float deviation_px = 0;    // standard deviation of the sub-pixel place by the noise; 0: not known
+  float v_px = 0;       // pixel centres at integers; sub-pixel along the scanned axis
+  float amplitude = 0;  // grey levels of the brightest pixel over the local background
+  float ratio = 0;      // second peak's response over this one's, 0..1; near 1 the choice is unsure
+  std::uint8_t clipped =
+      0;  // pixels of the stripe at full scale; above 3, in a wider window 6 or 12, the centre is the plateau's, and less sure
+  float deviation_px = 0;  // standard deviation of the sub-pixel place by the noise; 0: not known
 };
 
 // Columns (or rows) seen by a detector, by what became of them. Never reset.
@@ -42,7 +45,7 @@ enum class PeakAxis : std::uint8_t { column, row };
 
 struct PeakConfig {
   PeakAxis axis = PeakAxis::column;  // along which the one peak is looked for
-  // Response over its positive lobe's sum, grey levels. Noise of 1 grey level in both images gives 0.8 rms, and 480 rows of it 2.4 at most;
+  // Response over its positive lobe's sum, grey levels; of rows that are taken together less, as their noise is. Noise of 1 grey level in both images gives 0.8 rms, and 480 rows of it 2.4 at most;
   // at 3 levels 7. A column of mere noise that passes fails at `max_ratio`, since noise has many peaks alike.
   float min_contrast = 7.0f;
   float max_ratio = 0.65f;  // of the second peak to the first
@@ -52,8 +55,9 @@ struct PeakConfig {
   std::int32_t peaks_per_line = 1;
   float min_second_ratio =
       0.4f;  // of a further peak to the first: parts like the panel give 0.7 and more, edges of moving shadows mostly less
-  std::int32_t max_clipped =
-      12;  // px at full scale; a wider plateau is no stripe and is passed over, where what is left has `min_second_ratio` of it
+  // px at full scale. In a wider window a plateau of 2 or 4 times as many is a stripe's where its flanks are as soft as a bell's. A wider one is none and is passed over, where what is
+  // left has `min_second_ratio` of it.
+  std::int32_t max_clipped = 12;
   std::int32_t full_scale = 255;  // grey level at which the sensor clips
 };
 
@@ -75,6 +79,14 @@ class BasicPeakDetector {
   // O(width * height), no allocation.
   std::size_t detect(const PixelView<Pixel>& image, const PixelView<Pixel>& background, std::span<Peak> peaks);
 
+  // The stripe's standard deviation in the picture, as it was found (peak_refiner.hpp). 0, as at first: not known. Then a picture that shows hardly a stripe is searched with all windows,
+  // and the one that finds clearly more is taken.
+  void follow(float width_px) { width_px_ = width_px; }
+  float followed_px() const { return width_px_; }
+  // Rows that the newest picture was searched with as one.
+  std::int32_t rows_as_one() const { return scale_; }
+  static std::int32_t rows_as_one_for(float width_px);
+
   const PeakCounters& counters() const { return counters_; }
 
  private:
@@ -86,25 +98,28 @@ class BasicPeakDetector {
   template <class T>
   using Lanes = std::array<T, strip>;
 
-  // Up to 64 lines of the picture, from `first` on.
+  // Up to 64 lines of the picture, from `first` on. `rows`: of the filter, each of `scale_` pixels.
   struct Strip {
     const PixelView<Pixel>& on;
     const PixelView<Pixel>& off;
-    std::int32_t first, lines, length;
+    std::int32_t first, lines, length, rows;
   };
 
   struct Plateau {
     std::int32_t first = 0, length = 0;
   };
 
+  std::size_t detect_with(std::int32_t scale, const PixelView<Pixel>& image, const PixelView<Pixel>& background, std::span<Peak> peaks);
   void load_row(const Strip& s, std::int32_t row);
+  void load_pixels(const Strip& s, std::int32_t place, Sum* out);
   void take_difference(const Pixel* on, const Pixel* off, Sum* out) const;
   void load_block(const PixelView<Pixel>& image, const Strip& s, std::int32_t begin, std::array<Lanes<Pixel>, strip>& block) const;
   void sweep(const Strip& s);
   struct Maximum {
     std::int32_t row = 0;
     float response = 0;
-    std::int32_t first = 0, last = 0;  // rows about it whose maxima are the same stripe's
+    std::int32_t first = 0, last = 0;  // pixels about it whose maxima are the same stripe's
+    Plateau plateau;
   };
 
   using Maxima = StaticVector<Maximum, max_peaks_per_line + 2>;  // with two plateaus
@@ -114,17 +129,23 @@ class BasicPeakDetector {
   Maximum next_maximum(const Strip& s, std::int32_t lane, std::span<const Maximum> before) const;
   void measure(const Strip& s, std::int32_t lane, const Maximum& maximum, float ratio, Peak& peak);
   float response_peak(const Strip& s, std::int32_t lane, std::int32_t row) const;
+  std::int32_t middle_of(std::int32_t row) const { return row * scale_ + scale_ / 2; }  // pixel
   std::int32_t pixel(const PixelView<Pixel>& image, std::int32_t line, std::int32_t row) const;
   std::int32_t difference(const Strip& s, std::int32_t line, std::int32_t row) const;
   Plateau find_plateau(const Strip& s, std::int32_t line, std::int32_t row) const;
+  float flank(const Strip& s, std::int32_t line, std::int32_t end, std::int32_t step) const;
+  bool is_stripe(const Strip& s, std::int32_t line, const Plateau& plateau) const;
   float plateau_centre(const Strip& s, std::int32_t line, const Plateau& plateau) const;
-  float amplitude(const Strip& s, std::int32_t line, std::int32_t row) const;
+  float amplitude(const Strip& s, std::int32_t line, std::int32_t place) const;
 
   Config config_;
   PeakCounters counters_;
+  float width_px_ = 0;
+  std::int32_t scale_ = 1;   // pixels that are one row of the filter: 1, 2 or 4
   std::int32_t gain_ = 256;  // of the picture's exposure over the background's, in 256ths
   alignas(64) std::array<Lanes<Pixel>, strip> on_block_{}, off_block_{};
   alignas(64) std::array<Lanes<Sum>, 32> rows_{};               // the newest rows of the difference; the filter looks back 20
+  alignas(64) Lanes<Sum> pixels_{};                             // of a row of several pixels, the one to be added
   alignas(64) Lanes<Sum> sum_{}, sum_of_sums_{};                // the filter's two integrators
   alignas(64) Lanes<Response> best_{}, second_{}, best_row_{};  // of each lane's local maxima
   alignas(64) std::array<Lanes<Response>, MaxLength> response_{};

@@ -110,13 +110,18 @@ bool large_enough(const PixelView<Pixel>& picture) {
 
 template <class Pixel>
 float pixel_noise_grey(const PixelView<Pixel>& picture, std::int32_t full_scale, NoiseAlong along) {
+  return read_noise_grey(picture, 0, full_scale, along);
+}
+
+template <class Pixel>
+float read_noise_grey(const PixelView<Pixel>& picture, float electrons_per_grey, std::int32_t full_scale, NoiseAlong along) {
   if (!large_enough(picture)) return 0;
   Places places(full_scale);
   at_places(picture, [&](std::int32_t v, std::int32_t u) {
     const Three three = three_at(picture, v, u, along);
     if (!three.clipped(full_scale)) places.add(three.mean(), three.difference());
   });
-  return std::sqrt(places.variance(0));
+  return std::sqrt(places.variance(electrons_per_grey > 0 ? 1 / electrons_per_grey : 0));
 }
 
 template <class Pixel>
@@ -140,6 +145,8 @@ float read_noise_grey(const PixelView<Pixel>& on, const PixelView<Pixel>& off, f
 
 template float pixel_noise_grey(const PixelView<std::uint8_t>&, std::int32_t, NoiseAlong);
 template float pixel_noise_grey(const PixelView<std::uint16_t>&, std::int32_t, NoiseAlong);
+template float read_noise_grey(const PixelView<std::uint8_t>&, float, std::int32_t, NoiseAlong);
+template float read_noise_grey(const PixelView<std::uint16_t>&, float, std::int32_t, NoiseAlong);
 template float read_noise_grey(const PixelView<std::uint8_t>&, const PixelView<std::uint8_t>&, float, float, std::int32_t, NoiseAlong);
 template float read_noise_grey(const PixelView<std::uint16_t>&, const PixelView<std::uint16_t>&, float, float, std::int32_t, NoiseAlong);
 

@@ -21,4 +21,8 @@ template <class Pixel>
 float read_noise_grey(const PixelView<Pixel>& on, const PixelView<Pixel>& off, float gain, float electrons_per_grey,
                       std::int32_t full_scale, NoiseAlong along);
 
+// The same from one picture: fine paint counts as noise.
+template <class Pixel>
+float read_noise_grey(const PixelView<Pixel>& picture, float electrons_per_grey, std::int32_t full_scale, NoiseAlong along);
+
 }  // namespace lf::scan

@@ -107,7 +107,7 @@ Paint make_model(const StripeWindows& windows, const StripeOptics& optics, const
     m.inverse_variance[i] = 1 / variance;
     m.level[i] = m.paint[i] * optics.beam_px * sqrt(m.inverse_variance[i]);
     m.highest_level = max(m.highest_level, m.level[i]);
-    const Lanes off = variance_of(noise, windows.ambient[i], near);
+    const Lanes off = variance_of(noise, windows.ambient[i] + windows.background[i], near);
     const LaneMask differenced = windows.ambient[i] > 0;
     m.still_variance[i] = differenced ? off + off : off;
     const Lanes shared = differenced & ~paint.plain ? off / m.paint[i] : Lanes{};

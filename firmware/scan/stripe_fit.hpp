@@ -52,6 +52,7 @@ struct StripeWindows {
   Lanes start{};           // about where the centre is, rows from the window's first
   Rows stripe{};           // laser on less laser off
   Rows ambient{};          // laser off: the paint, as it is lit. All 0 where no such picture is: the paint is then taken to be plain
+  Rows background{};       // where no picture without the laser is: the light under the stripe, of which only the shot noise counts
   Rows stripe_haze{};      // what haze.hpp makes of the first
   Rows ambient_haze{};     // and of the second; 0 in clear water
   Rows valid{};            // 1; 0 where the pixel is clipped

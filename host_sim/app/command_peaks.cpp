@@ -6,6 +6,7 @@
 
 #include "firmware/scan/peak_refiner.hpp"
 #include "firmware/scan/peaks.hpp"
+#include "firmware/scan/stripe_finder.hpp"
 #include "hal/config/nearest.hpp"
 #include "hal/vision/image_file.hpp"
 #include "host_sim/app/checks.hpp"
@@ -28,29 +29,37 @@ struct Found {
   std::vector<scan::Peak> peaks;
   std::vector<scan::Peak> detected;  // before the fit: what a doubt is seen by
   scan::PeakCounters counters;
-  scan::RefinerCounters refined;
   scan::StripeOptics optics;
 };
+
+scan::PeakCounters since(const scan::PeakCounters& before, const scan::PeakCounters& now) {
+  return {now.found - before.found, now.weak - before.weak, now.saturated - before.saturated, now.ambiguous - before.ambiguous};
+}
 
 template <class Pixel>
 Found detect(const scan::PixelView<Pixel>& image, const scan::PixelView<Pixel>& off, const scan::PeakConfig& config) {
   using Detector = scan::BasicPeakDetector<Pixel, 4096>;
   const auto detector = std::make_unique<Detector>(config);
   Found found;
-  found.peaks.resize(static_cast<std::size_t>(std::max(image.width, image.height)));
-  found.peaks.resize(detector->detect(image, off, found.peaks));
-  found.counters = detector->counters();
+  const auto lines = static_cast<std::size_t>(std::max(image.width, image.height));
   scan::RefinerConfig refiner_config;
   refiner_config.axis = config.axis;
   refiner_config.full_scale = config.full_scale;
   refiner_config.largest_misfit =
       std::numeric_limits<float>::infinity();  // nothing comes after that would sort silhouettes out, or miss them
   const auto refiner = std::make_unique<scan::BasicPeakRefiner<Pixel, 4096, 4096>>(refiner_config);
-  found.detected = found.peaks;
-  found.peaks.resize(refiner->refine(image, off, found.peaks));
+  bool again = true;
+  for (int time = 0; again && time < 2; ++time) {
+    const scan::PeakCounters before = detector->counters();
+    found.detected.resize(lines);
+    found.detected.resize(detector->detect(image, off, found.detected));
+    found.counters = since(before, detector->counters());
+    found.peaks = found.detected;
+    found.peaks.resize(refiner->refine(image, off, found.peaks));
+    again = scan::follow_width(*detector, *refiner);
+  }
   // A stripe that is wider than the fit's window, or no Gaussian: what the filter finds is the better answer, and doubtful.
   if (found.peaks.size() * 2 < found.detected.size()) found.peaks = found.detected;
-  found.refined = refiner->counters();
   found.optics = refiner->optics();
   return found;
 }

@@ -23,10 +23,11 @@ void PeakObserver::on_image(const hal::ExposureRecord& exposure) {
 }
 
 bool PeakObserver::after_vision(const ScanPipeline& pipeline) {
-  if (pipeline.last_taken_time() != taken_of_) {
-    taken_of_ = pipeline.last_taken_time();
+  if (pipeline.stripes_taken() - taken_ > ScanPipeline::taken_kept) taken_ = pipeline.stripes_taken() - ScanPipeline::taken_kept;
+  for (; taken_ != pipeline.stripes_taken(); ++taken_) {
+    const auto [time, places_px] = pipeline.taken(taken_);
     for (const Waiting& stripe : waiting_) {
-      if (taken_of_ == stripe.middle || taken_of_ == stripe.start) add(stripe.start, stripe.truth, pipeline.last_taken());
+      if (time == stripe.middle || time == stripe.start) add(stripe.start, stripe.truth, places_px);
     }
   }
   if (frame_ == nullptr || !has_laser_ || pipeline.last_peaks_time() == peaks_of_) return false;

@@ -41,7 +41,8 @@ class PeakObserver : public hal::SimObserver {
   const optics::Frame* frame_ = nullptr;
   Time frame_start_, frame_middle_;
   bool has_laser_ = false;
-  Time peaks_of_, taken_of_;
+  Time peaks_of_;
+  std::uint32_t taken_ = 0;  // stripes that were scored, or came before the first picture
   std::deque<Waiting> waiting_;
   std::vector<double> t_s_, points_, visible_, false_, recall_percent_;
 };

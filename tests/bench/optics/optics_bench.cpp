@@ -28,11 +28,13 @@ Pose looking(const Vec3& position, const Vec3& axis) {
 
 Pose turned(const ArmJoint& joint, double angle_rad) { return joint.parent_from_joint * Eigen::AngleAxisd(angle_rad, joint.axis); }
 
+constexpr double particles_per_l = 3;
+
 // Mid-sweep: the stripe crosses the panel and the handle.
-scene::BodyPoses sweep_poses(const ArmDescription& arm, const PanelLayout& layout) {
+scene::BodyPoses sweep_poses(const ArmDescription& arm, const PanelLayout& layout, double swept_rad = 0) {
   scene::BodyPoses poses;
   poses.fill(Pose::Identity());
-  const std::array<double, joint_count> q{0, 0.945, 1.40, 0, 0.3};
+  const std::array<double, joint_count> q{0, 0.945 + swept_rad, 1.40, 0, 0.3};
   for (std::size_t i = 0; i < joint_count; ++i) poses[i + 1] = poses[i] * turned(arm.joints[i], q[i]);
   poses[std::size_t(BodyId::finger_b)] = poses[std::size_t(BodyId::wrist)] * turned(arm.finger_b, q[4]);
   const Pose panel = layout.nominal_base_from_panel();
@@ -56,6 +58,8 @@ optics::OpticsConfig reference_optics(const ArmDescription& arm, const PanelLayo
   optics::LampConfig lamp;
   lamp.body_from_lamp = looking({0.0, 0.30, 0.03}, {0.70, -0.25, 0.66});
   config.lamps.push_back(lamp);
+  // Everything on. A default run has 0.1 to 3 specks a litre.
+  config.water.particles_per_l = particles_per_l;
   return config;
 }
 
@@ -126,23 +130,35 @@ std::vector<Row> run_optics_bench() {
     const char* name;
     int threads;
     bool edges, lamps;
+    double particles_per_l, asked_fps;
   };
   std::vector<Row> rows;
-  for (const Case& c :
-       {Case{"camera frame, 2 threads", 2, true, false}, Case{"camera frame, 1 thread", 1, true, false},
-        Case{"camera frame, 2 threads, no edge samples", 2, false, false}, Case{"camera frame, 2 threads, lamps on", 2, true, true}}) {
+  for (const Case& c : {Case{"camera, one sample a pixel, 2 threads", 2, false, false, particles_per_l, 60},
+                        Case{"camera, edge samples, 2 threads", 2, true, false, particles_per_l, 40},
+                        Case{"camera, edge samples, lamps, 2 threads", 2, true, true, particles_per_l, 40},
+                        Case{"camera, edge samples, 1 thread", 1, true, false, particles_per_l, 20},
+                        Case{"camera, edge samples, 2 threads, no particles", 2, true, false, 0, 40}}) {
     config.threads = c.threads;
     config.edge_sampling = c.edges;
+    config.water.particles_per_l = c.particles_per_l;
     optics::Optics optics(config);
     shot.lamps = c.lamps;
+    shot.time_s = 0;
     Row row;
     row.name = c.name;
     optics::Frame frame;
-    row.ours = median_ms([&] { optics.render(shot, frame); });
-    row.peer = 20;
-    row.peer_name = "aim";
-    row.ratio = row.peer / row.ours;
-    row.unit = "ms";
+    // As in a sweep: the stripe moves, the particles drift, and the noise is another one.
+    constexpr double interval_s = 0.04, speed_rad_s = 0.01;
+    row.ours = 1000 / median_ms([&] {
+                 shot.time_s += interval_s;
+                 ++shot.frame_number;
+                 shot.poses = sweep_poses(arm, layout, speed_rad_s * shot.time_s);
+                 optics.render(shot, frame);
+               });
+    row.peer = c.asked_fps;
+    row.peer_name = "asked";
+    row.ratio = row.ours / row.peer;
+    row.unit = "frames/s";
     row.note = "640x480, laser on, mid-sweep";
     rows.push_back(row);
   }

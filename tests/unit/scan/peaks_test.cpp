@@ -203,6 +203,29 @@ TEST(Peaks, AWidePlateauIsSaturatedNotAStripe) {
   EXPECT_EQ(detector->counters().saturated, 128u);
 }
 
+// A lamp's flanks are steep, whatever window looks at them.
+TEST(Peaks, OfAWideStripeAPlateauIsToldFromALampByItsFlanks) {
+  const int width = 64, height = 200;
+  for (const int rows : {14, 17, 20, 23}) {
+    std::vector<std::uint8_t> lamp(width * height, 20), stripe(width * height, 20);
+    // A bell that is clipped over as many rows.
+    const double sigma = 5.0, middle = 100.3, peak = 235 * std::exp(0.5 * std::pow(rows / (2 * sigma), 2));
+    for (int v = 0; v < height; ++v) {
+      const double light = 20 + peak * std::exp(-0.5 * std::pow((v - middle) / sigma, 2));
+      std::fill_n(stripe.begin() + v * width, width, static_cast<std::uint8_t>(std::min(255.0, std::round(light))));
+    }
+    std::fill(lamp.begin() + 90 * width, lamp.begin() + (90 + rows) * width, 255);
+    auto detector = std::make_unique<PeakDetector>();
+    detector->follow(5.0f);
+    std::vector<Peak> peaks(width);
+    EXPECT_EQ(detector->detect(ImageView{lamp.data(), width, height, width}, {}, peaks), 0u) << rows;
+    EXPECT_EQ(detector->counters().saturated, 64u) << rows;
+    ASSERT_EQ(detector->detect(ImageView{stripe.data(), width, height, width}, {}, peaks), 64u) << rows;
+    EXPECT_NEAR(peaks[0].v_px, middle, 0.05) << rows;
+    EXPECT_NEAR(peaks[0].clipped, rows, 1);
+  }
+}
+
 // Its outer flank is beyond the image: the peak was given beyond it, too.
 TEST(Peaks, APlateauAtTheBorderLiesInTheImage) {
   const int width = 64, height = 40;
@@ -260,6 +283,52 @@ TEST(Peaks, SixteenBitImagesGiveTheSameAsTheirEightBits) {
     EXPECT_NEAR(a[i].v_px, b[i].v_px, 1e-4);
     EXPECT_NEAR(257 * a[i].amplitude, b[i].amplitude, 1);
   }
+}
+
+// Rows taken together by two or four: the same stripe at as many times the size is found at the same places, and its window is as many times as wide.
+TEST(Peaks, TheWindowIsAsWideAsTheStripe) {
+  EXPECT_EQ(PeakDetector::rows_as_one_for(0), 1);
+  EXPECT_EQ(PeakDetector::rows_as_one_for(2.6f), 1);
+  EXPECT_EQ(PeakDetector::rows_as_one_for(2.7f), 2);
+  EXPECT_EQ(PeakDetector::rows_as_one_for(5.2f), 2);
+  EXPECT_EQ(PeakDetector::rows_as_one_for(5.3f), 4);
+  for (const int size : {1, 2, 4}) {
+    const int width = 64, height = 100 * size;
+    std::vector<std::uint8_t> image(width * height);
+    for (int u = 0; u < width; ++u) {
+      for (int v = 0; v < height; ++v) {
+        const double place = (v + 0.5) / size - 0.5, light = 120 * std::exp(-0.5 * std::pow((place - 40.3 - 0.05 * u) / 1.6, 2));
+        image[v * width + u] = static_cast<std::uint8_t>(std::lround(20 + light));
+      }
+    }
+    auto detector = std::make_unique<PeakDetector>();
+    detector->follow(static_cast<float>(1.6 * size));
+    std::vector<Peak> peaks(width);
+    ASSERT_EQ(detector->detect(ImageView{image.data(), width, height, width}, {}, peaks), 64u);
+    EXPECT_EQ(detector->rows_as_one(), size);
+    for (int u = 0; u < width; ++u) {
+      EXPECT_NEAR(peaks[u].v_px, (40.3 + 0.05 * u + 0.5) * size - 0.5, 0.05 * size) << "size " << size << ", column " << u;
+      // Of the brightest pixel, at most half a pixel from the middle: 120 (1 - exp(-0.5^2 / (2 1.6^2))) is 5.7 less; rounding twice.
+      EXPECT_NEAR(peaks[u].amplitude, 120, 6.7) << "size " << size;
+    }
+  }
+}
+
+// Nothing is told of it: of 15 grey levels with a noise of 3 the narrow window finds hardly a column.
+TEST(Peaks, AFaintWideStripeIsSearchedWithAllWindows) {
+  test::StripeModel model{.sigma_px = 5.0, .amplitude = 15, .noise = 3};
+  model.seed = 12;
+  const test::StripeImage image = make_stripe_image(model);
+  auto detector = std::make_unique<PeakDetector>(), narrow = std::make_unique<PeakDetector>();
+  narrow->follow(1.5f);
+  std::vector<Peak> peaks(image.width);
+  EXPECT_LT(narrow->detect(image.on_view(), image.off_view(), peaks), 0.4 * image.width);
+  const std::size_t found = detector->detect(image.on_view(), image.off_view(), peaks);
+  EXPECT_GE(found, 0.97 * image.width);
+  EXPECT_GT(detector->rows_as_one(), 1);
+  const PeakCounters& counters = detector->counters();
+  EXPECT_EQ(counters.found, found) << "of the window that was taken";
+  EXPECT_EQ(counters.found + counters.weak + counters.saturated + counters.ambiguous, static_cast<std::uint64_t>(image.width));
 }
 
 // The response of -(1 - z^5)^4 / (1 - z)^2 is the convolution with its 19 taps, whatever the running sums overflow to.

@@ -306,6 +306,23 @@ TEST_F(ScanOrders, AnalyseTakesInWhatStillWaits) {
   EXPECT_FALSE(request.fit.valid) << "one stripe is no plane";
 }
 
+// Three stripes whose joints come in one turn of the vision thread.
+TEST_F(ScanOrders, EachOfSeveralStripesThatAreTakenInOneTurnCanBeRead) {
+  begin();
+  for (int sync = 10; sync <= 30; sync += 10) {
+    bench_->order(ScanBench::time(sync), ExposureKind::laser_on);
+    bench_->send(ScanBench::time(sync), stripe_);
+  }
+  EXPECT_EQ(bench_->pipeline().stripes_taken(), 0u);
+  joints_until(40);
+  ASSERT_EQ(bench_->pipeline().stripes_taken(), 3u);
+  for (std::uint32_t number = 0; number < 3; ++number) {
+    const auto [time, places_px] = bench_->pipeline().taken(number);
+    EXPECT_EQ(time, ScanBench::time(10 * static_cast<int>(number + 1)) + exposure / 2);
+    EXPECT_GT(places_px.size(), 400u) << "stripe " << number;
+  }
+}
+
 TEST_F(ScanOrders, ImagesWithoutAnOrderAreUnexpected) {
   begin();
   joints_until(30);

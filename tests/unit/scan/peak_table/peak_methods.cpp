@@ -7,6 +7,7 @@
 
 #include "firmware/scan/peak_refiner.hpp"
 #include "firmware/scan/peaks.hpp"
+#include "firmware/scan/stripe_finder.hpp"
 #include "tests/unit/scan/ridge.hpp"
 #include "tests/unit/scan/stripe_estimators.hpp"
 
@@ -59,8 +60,7 @@ struct Chain {
     const scan::PixelView<Pixel> background =
         shot.has_off ? scan::PixelView<Pixel>(off.data(), image.width, image.height, image.width) : scan::PixelView<Pixel>();
     std::vector<scan::Peak> peaks(static_cast<std::size_t>(image.width));
-    peaks.resize(detector.detect(picture, background, peaks));
-    peaks.resize(refiner.refine(picture, background, peaks));
+    peaks.resize(scan::find_stripe(detector, refiner, picture, background, peaks));
     Rows rows = no_rows(image.width);
     for (const scan::Peak& peak : peaks) rows[static_cast<std::size_t>(std::lround(peak.u_px))] = double(peak.v_px);
     return rows;

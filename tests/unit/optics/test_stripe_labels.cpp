@@ -1,0 +1,146 @@
+// What a rendered frame says of its stripe, against the picture itself and against closed forms.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <vector>
+
+#include "tests/unit/optics/optics_scenes.hpp"
+
+namespace lf::optics::test {
+namespace {
+
+constexpr double distance_m = 0.7;
+
+// A plate that faces the camera and ends at z = `end_m`, above the image's middle being negative; a sheet from above and before it.
+struct Labelled {
+  Labelled(double end_m, const Vec3& toward) {
+    config.cameras.push_back(quiet_camera());
+    body(config.scene, scene::BodyId::panel)
+        .shapes.push_back(make_shape(scene::ShapeKind::box, {0.02, 2, 2}, {distance_m + 0.01, 0, end_m - 1}, 0.5f));
+    config.water = dark_clear_water();
+    laser = sheet(from, toward - from, Vec3::UnitY());
+    config.lasers.push_back(vehicle_laser(laser));
+  }
+  Frame render(bool laser_on) {
+    Optics optics(config);
+    Shot shot;
+    shot.poses = resting();
+    shot.laser = laser_on ? 1.f : 0.f;
+    shot.truth = laser_on;
+    Frame frame;
+    optics.render(shot, frame);
+    return frame;
+  }
+  // Standard deviation of the light on the plate along z in column u, m.
+  double sigma_m(double u) const {
+    const CameraIntrinsics k;
+    const Vec3 at(distance_m, distance_m * (u - k.cx) / k.fx, centre_m());
+    const LaserConfig& sheet = config.lasers[0];
+    return std::hypot(sheet.waist_sigma_m, sheet.divergence_rad * (at - from).norm()) / std::abs(laser.linear().col(0).z());
+  }
+  // Where the sheet's middle meets the plate's plane: the same in all columns.
+  double centre_m() const {
+    const Vec3 n = laser.linear().col(0);
+    return from.z() - n.x() * (distance_m - from.x()) / n.z();
+  }
+
+  OpticsConfig config;
+  const Vec3 from{0.05, 0, -0.35};
+  Pose laser;
+};
+
+double difference(const Frame& on, const Frame& off, int u, int v) {
+  const auto at = static_cast<std::size_t>(v * on.width + u);
+  return double(on.pixels[at]) - double(off.pixels[at]);
+}
+
+// sigma: of the light on the plate, seen by the camera; the lens's spot and the pixel's aperture on top. height: of the bell that has the picture's light.
+TEST(StripeLabels, WidthAndHeightOfAPieceAreThoseOfThePicture) {
+  for (const double blur_px : {0.6, 1.0, 1.4}) {
+    Labelled s(1.0, Vec3(distance_m, 0, 0.05));
+    s.config.cameras[0].blur_px = blur_px;
+    s.config.lasers[0].power_w = 0.25;
+    const Frame on = s.render(true), off = s.render(false);
+    const CameraIntrinsics k;
+    int seen = 0;
+    double ratios = 0;
+    for (const StripePiece& piece : on.pieces) {
+      if (piece.u < 200 || piece.u > 440) continue;
+      ASSERT_FALSE(piece.part) << piece.u;
+      ++seen;
+      const double centre = k.cy + k.fy * s.centre_m() / distance_m;
+      EXPECT_NEAR(piece.v, centre, 0.01) << piece.u;
+      const double beam = k.fy * s.sigma_m(piece.u) / distance_m, sigma = std::sqrt(beam * beam + blur_px * blur_px + 1.0 / 12);
+      EXPECT_NEAR(piece.sigma_px, sigma, 0.02 * sigma) << piece.u;
+      double light = 0, highest = 0;
+      for (int v = static_cast<int>(centre) - 14; v <= static_cast<int>(centre) + 15; ++v) {
+        light += difference(on, off, piece.u, v);
+        highest = std::max(highest, difference(on, off, piece.u, v));
+      }
+      ASSERT_LT(highest, 250) << "not clipped";
+      ASSERT_GT(highest, 60);
+      // The paint is grained: the label has it at the centre, the picture over the stripe's rows.
+      const double height = light / (std::sqrt(2 * pi) * sigma);
+      EXPECT_NEAR(piece.grey, height, 0.05 * height) << piece.u << ", blur " << blur_px;
+      ratios += double(piece.grey) / height;
+    }
+    ASSERT_GE(seen, 240);
+    EXPECT_NEAR(ratios / seen, 1, 0.01) << "blur " << blur_px;
+  }
+}
+
+// The sheet's middle passes the plate's end: its flank lights the last rows. Independently: a bell that a step cuts off, spread by the lens and summed by the pixel.
+TEST(StripeLabels, AFlankAtAPlatesEndIsAPartWhereThePictureIsBrightest) {
+  const Labelled whole(1.0, Vec3(distance_m, 0, 0.05));
+  const CameraIntrinsics k;
+  const double middle_px = k.cy + k.fy * whole.centre_m() / distance_m, blur = whole.config.cameras[0].blur_px;
+  for (const double end_px : {263.25, 263.5, 263.75, 262.5}) {
+    SCOPED_TRACE(end_px);
+    Labelled s((end_px - k.cy) * distance_m / k.fy, Vec3(distance_m, 0, 0.05));
+    s.config.lasers[0].power_w = 0.3;
+    const Frame on = s.render(true), off = s.render(false);
+    std::vector<const StripePiece*> of_column(640, nullptr);
+    for (const StripePiece& piece : on.pieces) {
+      EXPECT_TRUE(piece.part) << "the sheet's middle meets nothing, column " << piece.u;
+      EXPECT_EQ(of_column[static_cast<std::size_t>(piece.u)], nullptr) << "one place of a column is brightest, column " << piece.u;
+      EXPECT_EQ(piece.sigma_px, 0);
+      of_column[static_cast<std::size_t>(piece.u)] = &piece;
+    }
+    for (int u = 260; u < 380; u += 20) {
+      const double beam = k.fy * whole.sigma_m(u) / distance_m;
+      constexpr int first = 250, rows = 24;
+      std::vector<double> shape(rows);
+      for (int i = 0; i < rows; ++i) {
+        constexpr double step = 0.02;
+        for (double x = end_px - 20 + step / 2; x < end_px; x += step) {
+          const double before = first + i - 0.5 - x, after = before + 1;
+          shape[static_cast<std::size_t>(i)] += step * std::exp(-0.5 * std::pow((x - middle_px) / beam, 2)) * 0.5 *
+                                                (std::erf(after / blur / std::sqrt(2.0)) - std::erf(before / blur / std::sqrt(2.0)));
+        }
+      }
+      double shapes = 0, light = 0;
+      for (int i = 0; i < rows; ++i) shapes += shape[static_cast<std::size_t>(i)], light += difference(on, off, u, first + i);
+      ASSERT_GT(light, 10);
+      // Each row of two rounded pictures within 1; of an edge's pixel the four rows of samples say its share to an eighth.
+      const auto brightest = std::max_element(shape.begin(), shape.end());
+      for (int i = 0; i < rows; ++i)
+        EXPECT_NEAR(difference(on, off, u, first + i), light * shape[static_cast<std::size_t>(i)] / shapes,
+                    1 + light * *brightest / shapes / 8)
+            << "row " << first + i;
+      ASSERT_NE(of_column[static_cast<std::size_t>(u)], nullptr) << u;
+      EXPECT_NEAR(of_column[static_cast<std::size_t>(u)]->v, static_cast<double>(first + std::distance(shape.begin(), brightest)), 1) << u;
+    }
+  }
+}
+
+// Too faint a flank is none: three grey levels are asked for.
+TEST(StripeLabels, FarBeyondThePlateThereIsNoPiece) {
+  const Labelled whole(1.0, Vec3(distance_m, 0, 0.05));
+  Labelled s(whole.centre_m() - 6 * whole.sigma_m(320), Vec3(distance_m, 0, 0.05));
+  for (const StripePiece& piece : s.render(true).pieces) EXPECT_NE(piece.u, 320);
+}
+
+}  // namespace
+}  // namespace lf::optics::test
