@@ -42,6 +42,7 @@ struct Event {
 struct Telemetry {
   Time t;
   mission::Step step = mission::Step::idle;
+  bool joints_valid = false;  // each drive has answered lately; if not, the joints' numbers below say nothing
   std::array<double, joint_count> target_rad{};
   std::array<double, joint_count> actual_rad{};
   std::array<double, joint_count> torque_nm{};

@@ -327,6 +327,7 @@ void Mission::report(const StepTick& tick) {
   Telemetry& telemetry = tick.telemetry;
   telemetry.t = tick.now;
   telemetry.step = step_;
+  telemetry.joints_valid = joints().valid;
   for (std::size_t i = 0; i < joint_count; ++i) {
     const auto joint = static_cast<Joint>(i);
     telemetry.actual_rad[i] = joints().position_rad[i];

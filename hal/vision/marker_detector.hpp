@@ -44,6 +44,8 @@ struct MarkerPose {
 
   // The second's error over the first's; 1 when both are perfect, large when the tilt is certain.
   double ambiguity() const;
+  // The angle between the two; 0 without a second.
+  double second_angle_rad() const;
 };
 
 class MarkerDetector {

@@ -1,5 +1,7 @@
 #include "hal/vision/marker_files.hpp"
 
+#include <array>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -8,6 +10,7 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
+#include "hal/vision/panel_vision.hpp"
 #include "hal/vision/pixels.hpp"
 #include "shared/input_error.hpp"
 #include "shared/unreadable_file.hpp"
@@ -120,6 +123,8 @@ nlohmann::ordered_json to_json(const MarkerInFrame& found) {
                       {"reprojection_rms_px", found.pose->reprojection_rms_px},
                       {"ambiguity", found.pose->ambiguity()}};
   }
+  marker["doubts"] = nlohmann::ordered_json::array();
+  if (const std::string doubt = doubt_of(found); !doubt.empty()) marker["doubts"].push_back(doubt);
   return marker;
 }
 
@@ -130,6 +135,18 @@ void silence_decoders() {
 }
 
 }  // namespace
+
+std::string doubt_of(const MarkerInFrame& found) {
+  constexpr double alike_rad = rad_from_deg(1);  // no other tilt
+  if (!found.pose || found.pose->ambiguity() >= PanelVisionConfig().full_ambiguity || found.pose->second_angle_rad() < alike_rad) return "";
+  std::array<char, 240> text;
+  (void)std::snprintf(
+      text.data(), text.size(),
+      "of id %d a second pose, %.0f deg from the first, explains the corners with %.1f times the error: its tilt is unsure. "
+      "Take the picture from nearer by, with a wider lens, or sharper",
+      found.marker.id, deg_from_rad(found.pose->second_angle_rad()), found.pose->ambiguity());
+  return text.data();
+}
 
 std::vector<MarkerFrame> find_markers_in_files(const std::vector<std::string>& paths, const MarkerFilesOptions& options) {
   silence_decoders();

@@ -30,11 +30,14 @@ struct MarkerFrame {
   std::vector<MarkerInFrame> markers;
 };
 
+// Why the marker's pose is doubtful: another tilt explains its corners nearly as well. Empty: it is not, or there is no pose.
+std::string doubt_of(const MarkerInFrame& found);
+
 // One entry a frame, in the order of the files. Throws InputError for a file that is neither an image nor a video or is truncated, for a
 // calibration of another image size, and for an overlay that cannot be written.
 std::vector<MarkerFrame> find_markers_in_files(const std::vector<std::string>& paths, const MarkerFilesOptions& options);
 
-// As a JSON array: source, frame, markers with id, corners, margin, and pose or null.
+// As a JSON array: source, frame, markers with id, corners, margin, pose or null, and `doubts`.
 std::string marker_frames_json(const std::vector<MarkerFrame>& frames);
 
 }  // namespace lf::vision

@@ -43,6 +43,11 @@ double MarkerPose::ambiguity() const {
   return std::max(second_rms_px, noise_px) / std::max(reprojection_rms_px, noise_px);
 }
 
+double MarkerPose::second_angle_rad() const {
+  if (!has_second) return 0;
+  return Eigen::AngleAxisd(Mat3(camera_from_tag.linear().transpose() * camera_from_tag_second.linear())).angle();
+}
+
 std::optional<MarkerPose> marker_pose(const std::array<Vec2, 4>& corners_px, double size_m, const CameraIntrinsics& camera) {
   const bool finite = std::all_of(corners_px.begin(), corners_px.end(), [](const Vec2& corner) { return corner.allFinite(); });
   if (!finite || !(size_m > 0)) return std::nullopt;

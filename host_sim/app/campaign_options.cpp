@@ -10,8 +10,10 @@
 
 #include "host_sim/app/run_experiment.hpp"
 #include "host_sim/app/tell_arm.hpp"
+#include "host_sim/record/provenance_json.hpp"
 #include "host_sim/record/run_folder.hpp"
 #include "shared/input_error.hpp"
+#include "shared/version/version.hpp"
 
 namespace lf::app {
 
@@ -41,6 +43,8 @@ CampaignFolder::CampaignFolder(const CampaignOptions& options, const scenario::S
   tell_arm_notes(scenario);
   record::Experiment experiment = experiment_of(scenario);
   experiment["campaign"] = kind;
+  set_ = options.set;
+  scenario_file_ = scenario.file;
   // The values are no part of it: each cell has a folder of its own, and a grid may be extended.
   for (const std::string& key : grid) experiment["grid"] += (experiment["grid"].empty() ? "" : ", ") + key;
   path_ = options.out.empty() ? default_folder(scenario.name + "-" + kind, !options.set.empty(), experiment) : fs::path(options.out);
@@ -51,7 +55,15 @@ CampaignFolder::CampaignFolder(const CampaignOptions& options, const scenario::S
     if (lock_ >= 0) ::close(lock_);
     throw InputError(path_.string(), 0, "another campaign is writing there");
   }
+  experiment_ = record::hash_of(experiment);
   folder.write(record::experiment_file, record::experiment_json(experiment));
+}
+
+Json CampaignFolder::provenance(const std::string& command, const std::string& begun) const {
+  Json json = record::provenance_json({begun, command, set_, scenario_file_, experiment_});
+  json["version"] = version();
+  json["revision"] = revision();
+  return json;
 }
 
 CampaignFolder::~CampaignFolder() { ::close(lock_); }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "host_sim/app/command.hpp"
 #include "host_sim/app/fault_walk.hpp"
 #include "host_sim/scenario/scenario.hpp"
 
@@ -48,8 +49,12 @@ class CampaignFolder {
   CampaignFolder& operator=(const CampaignFolder&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
+  // Of results that `command`, begun at `begun`, leaves in it: command, date, version and revision, files and scenario.
+  Json provenance(const std::string& command, const std::string& begun) const;
 
  private:
+  std::vector<std::string> set_;
+  std::string scenario_file_, experiment_;
   std::filesystem::path path_;
   int lock_ = -1;
 };

@@ -86,6 +86,7 @@ int fault_campaign(const CampaignOptions& options) {
   out.write("faults.md", markdown_of(table, command_of(options)));
   Json json = json_of(table);
   json["folder"] = folder.path().string();
+  json["provenance"] = folder.provenance(command_of(options), begun);
   out.write("faults.json", json.dump(2) + "\n");
   campaign::TestSuite suite = fault_suite(base.name, results, table, {wanted.begin(), wanted.end()});
   suite.begun = begun;

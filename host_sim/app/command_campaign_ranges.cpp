@@ -193,6 +193,7 @@ int range_campaign(const CampaignOptions& options) {
   for (const auto& [verdict, count] : single) singles += count;
   Json json{{"rows", mine.size()}, {"single_draws", singles}, {"folder", folder.path().string()}};
   for (const char* verdict : verdicts) json[verdict] = counts[verdict];
+  json["provenance"] = folder.provenance(command_of(options), begun);
   out.write("ranges.json", json.dump(2) + "\n");
   campaign::TestSuite suite = range_suite(base.name, mine, not_flown);
   suite.begun = begun;

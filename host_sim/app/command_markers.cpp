@@ -1,5 +1,8 @@
 #include <cstdio>
+#include <map>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "hal/config/nearest.hpp"
 #include "hal/vision/calibration_file.hpp"
@@ -39,6 +42,22 @@ void tell(const std::vector<vision::MarkerFrame>& frames) {
   }
 }
 
+// Of a file's doubts the first, and how many there are: a video has one a frame.
+bool tell_doubtful_poses(const std::vector<vision::MarkerFrame>& frames) {
+  std::map<std::string, std::vector<std::string>> by_file;
+  for (const vision::MarkerFrame& frame : frames) {
+    for (const vision::MarkerInFrame& found : frame.markers) {
+      if (std::string doubt = vision::doubt_of(found); !doubt.empty())
+        by_file[frame.source].push_back("frame " + std::to_string(frame.frame) + ": " + doubt);
+    }
+  }
+  for (auto& [file, doubts] : by_file) {
+    if (doubts.size() > 1) doubts[0] += "; and " + std::to_string(doubts.size() - 1) + " more such";
+    tell_doubts(file, {doubts[0]});
+  }
+  return !by_file.empty();
+}
+
 int markers(const Options& options) {
   vision::MarkerFilesOptions asked;
   asked.detector.family = options.family;
@@ -61,7 +80,8 @@ int markers(const Options& options) {
     tell(frames);
     print("%s in %s\n", count_of(found, "marker").c_str(), count_of(frames.size(), "frame").c_str());
   }
-  if (found > 0) return done;
+  const bool doubtful = tell_doubtful_poses(frames);
+  if (found > 0) return doubtful ? failed : done;
   std::fprintf(stderr,
                "lanternfish: no marker of family %s with a margin of %g or more. Check --family, lower --margin, and search small markers "
                "with --decimate 1 (now %g)\n",

@@ -12,6 +12,7 @@
 #include "host_sim/app/run_session.hpp"
 #include "host_sim/app/shell_word.hpp"
 #include "host_sim/app/tell_arm.hpp"
+#include "host_sim/campaign/utc_time.hpp"
 #include "host_sim/scenario/instance.hpp"
 #include "shared/input_error.hpp"
 
@@ -39,14 +40,6 @@ std::string command_of(const Options& options) {
   std::string command = "lanternfish run " + shell_word(options.scenario) + " --seed " + std::to_string(options.seed);
   for (const std::string& set : options.set) command += " --set " + shell_word(set);
   return command;
-}
-
-// ISO 8601, to the second.
-std::string utc_text(std::time_t time) {
-  std::tm utc{};
-  gmtime_r(&time, &utc);
-  char text[32];
-  return {text, std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc)};
 }
 
 // What the reason does not say already.
@@ -114,7 +107,7 @@ int run(const Options& options) {
   request.record_images = options.record_images;
   request.provenance.command = command_of(options);
   request.provenance.set = options.set;
-  request.provenance.date_utc = utc_text(std::time(nullptr));
+  request.provenance.date_utc = campaign::utc_text(std::time(nullptr));
   if (!options.quiet) request.say = [](const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); };
   catch_interrupts();
   const RunOutcome outcome = run_mission(request);

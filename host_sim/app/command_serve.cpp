@@ -1,15 +1,21 @@
 #include <cmath>
+#include <ctime>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "hal/config/homing_file.hpp"
+#include "hal/config/key_text.hpp"
 #include "host_sim/app/checks.hpp"
 #include "host_sim/app/command.hpp"
 #include "host_sim/app/interrupt.hpp"
+#include "host_sim/app/run_experiment.hpp"
+#include "host_sim/app/shell_word.hpp"
 #include "host_sim/app/tell_arm.hpp"
-#include "host_sim/record/run_folder.hpp"
+#include "host_sim/campaign/utc_time.hpp"
+#include "host_sim/record/folder_in_writing.hpp"
 #include "host_sim/serve/serve_session.hpp"
 #include "shared/input_error.hpp"
 #include "shared/version/version.hpp"
@@ -69,6 +75,25 @@ serve::ServeResult serve_or_say_what_lacks(const serve::ServeRequest& request) {
   }
 }
 
+std::string command_of(const Options& options) {
+  std::string command = "lanternfish serve " + shell_word(options.scenario) + " --seed " + std::to_string(options.seed) + " --can " +
+                        shell_word(options.can) + " --nodes " + shell_word(options.nodes) + " --camera " + shell_word(options.camera);
+  if (!options.homing.empty()) command += " --homing " + shell_word(options.homing);
+  if (!options.orders.empty()) command += " --orders " + shell_word(options.orders);
+  if (options.for_s > 0) command += " --for " + config::number_text(options.for_s);
+  for (const std::string& set : options.set) command += " --set " + shell_word(set);
+  return command;
+}
+
+// What was served, to whom, and where the drives counted from.
+record::Experiment served_experiment(const Options& options, const serve::ServeRequest& request) {
+  record::Experiment experiment = experiment_of(request.scenario, request.seed);
+  experiment["served nodes"] = request.nodes.text();
+  experiment["camera"] = options.camera;
+  if (!options.homing.empty()) experiment["file " + options.homing] = record::file_hash(options.homing);
+  return experiment;
+}
+
 int run(const Options& options) {
   serve::ServeRequest request;
   request.scenario = scenario::load_scenario(options.scenario, options.set);
@@ -81,14 +106,25 @@ int run(const Options& options) {
   request.renderer = options.renderer;
   request.render_threads = options.render_threads;
   request.orders = options.orders;
-  request.out = options.out;
   request.for_s = options.for_s;
   request.say = [](const std::string& line) { std::fprintf(stderr, "lanternfish serve: %s\n", line.c_str()); };
+  const record::Experiment experiment = served_experiment(options, request);
+  const record::ProvenanceRecord provenance{campaign::utc_text(std::time(nullptr)), command_of(options), options.set, request.scenario.file,
+                                            record::hash_of(experiment)};
+  std::optional<record::FolderInWriting> out;
+  if (!options.out.empty()) {
+    request.folder = &out.emplace(options.out, experiment).folder();
+    keep_scenario(request.scenario, *request.folder);
+  }
   catch_interrupts();
   serve::ServeResult result = serve_or_say_what_lacks(request);
   result.version = version();
+  result.provenance = provenance;
   const std::string text = serve::serve_result_json(result);
-  if (!options.out.empty()) record::RunFolder(options.out).write("result.json", text);
+  if (out) {
+    request.folder->write("result.json", text);
+    out->publish();
+  }
   if (options.json) {
     print("%s", text.c_str());
   } else {
@@ -116,7 +152,7 @@ void add_serve(CLI::App& app, Action& action) {
   command->add_option("--renderer", options->renderer, "FILE that `lanternfish render-frames` renders for, instead of a thread here");
   command->add_option("--render-threads", options->render_threads, "Threads that render")->check(CLI::Range(1, 256))->capture_default_str();
   command->add_option("--orders", options->orders, "FIFO to read orders from: camera freeze 2, fault reboot elbow ...");
-  command->add_option("--out", options->out, "Folder for result.json and can0.log");
+  command->add_option("--out", options->out, "Folder for result.json, can0.log, scenario.yaml and experiment.json, as a run leaves one");
   command->add_option("--for", options->for_s, "Seconds to serve (default: until SIGTERM)")->check(check_positive);
   command->add_flag("--json", options->json, "Print result.json");
   command->callback([options, &action] { action = [options] { return run(*options); }; });

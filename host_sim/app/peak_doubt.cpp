@@ -88,6 +88,22 @@ double height_at(const StripePicture& picture, std::int32_t line, std::int32_t a
   return picture.grey(line, at) - 0.5 * (picture.grey(line, at - beside) + picture.grey(line, at + beside));
 }
 
+// Whether right beside a peak it is darker than farther out, by half of the peak's height: the other picture's stripe has moved by less than its width.
+bool has_dark_side(const StripePicture& picture, std::int32_t line, std::int32_t middle, std::int32_t apart) {
+  std::vector<double> farther;
+  for (std::int32_t at = std::max(0, middle - half_window); at <= std::min(picture.length - 1, middle + half_window); ++at) {
+    if (std::abs(at - middle) > apart) farther.push_back(picture.grey(line, at));
+  }
+  if (farther.empty() || middle < 0 || middle >= picture.length) return false;
+  const auto median = farther.begin() + static_cast<std::ptrdiff_t>(farther.size() / 2);
+  std::nth_element(farther.begin(), median, farther.end());
+  const double dark = *median - 0.5 * (picture.grey(line, middle) - *median);
+  for (std::int32_t at = std::max(0, middle - apart); at + 1 <= std::min(picture.length - 1, middle + apart); ++at) {
+    if (picture.grey(line, at) < dark && picture.grey(line, at + 1) < dark) return true;
+  }
+  return false;
+}
+
 // A picture of the laser that is subtracted leaves its own stripe, dark.
 double dark_share_of(const StripePicture& picture, std::span<const Place> places) {
   constexpr std::int32_t apart = 12;
@@ -95,7 +111,7 @@ double dark_share_of(const StripePicture& picture, std::span<const Place> places
   for (const Place& place : places) {
     const auto middle = static_cast<std::int32_t>(std::lround(place.along));
     const double least = -0.5 * height_at(picture, place.line, middle);
-    bool found = false;
+    bool found = has_dark_side(picture, place.line, middle, apart);
     for (std::int32_t at = 0; at < picture.length && !found; ++at)
       found = std::abs(at - middle) > apart && height_at(picture, place.line, at) < least && height_at(picture, place.line, at + 1) < least;
     dark += found ? 1 : 0;

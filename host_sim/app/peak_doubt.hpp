@@ -20,9 +20,10 @@ struct StripePicture {
 struct StripeLook {
   std::int32_t lines = 0, found = 0;
   bool off_given = false;  // a picture without the laser was subtracted
-  double dark_share = 0;   // of the lines found, those in which a dark line stands elsewhere, more than half as deep as the peak is high
-  double width_px = 0;     // of the mean profile at half its height; 0: not measured
-  double scatter_px = 0;   // 1 sigma of the peaks about their neighbours, by the median of their second differences; 0: not measured
+  double dark_share =
+      0;  // of the lines found, those in which a dark line stands beside the peak or elsewhere, more than half as deep as the peak is high
+  double width_px = 0;    // of the mean profile at half its height; 0: not measured
+  double scatter_px = 0;  // 1 sigma of the peaks about their neighbours, by the median of their second differences; 0: not measured
 };
 
 // The peaks' places are `v_px` for PeakAxis::column, `u_px` for row; at most one a line.

@@ -45,8 +45,8 @@ void RunRecorder::after_vision(const ScanPipeline& pipeline) {
 }
 
 // What the arm did, what it did to the panel, what it saw, and what that took.
-std::vector<record::ReportChart> RunRecorder::charts() const {
-  std::vector<record::ReportChart> charts = curves_.joint_charts();
+std::vector<record::ReportChart> RunRecorder::charts(const safety::Limits& limits) const {
+  std::vector<record::ReportChart> charts = curves_.joint_charts(limits);
   for (record::ReportChart& chart : motion_.charts()) charts.push_back(std::move(chart));
   for (record::ReportChart& chart : peaks_.charts()) charts.push_back(std::move(chart));
   charts.push_back(curves_.bus_chart());

@@ -42,7 +42,8 @@ class RunRecorder {
   const MotionObserver& motion() const { return motion_; }
   const PanelObserver& panel() const { return panel_; }
   const PeakScore& peaks() const { return peaks_.score(); }
-  std::vector<record::ReportChart> charts() const;
+  // `limits`: those of the mission, which the joints are drawn with.
+  std::vector<record::ReportChart> charts(const safety::Limits& limits) const;
   const judge::TruthObserver& truth() const { return truth_; }
   PictureObserver& pictures() { return pictures_; }
   EventObserver& events() { return events_; }

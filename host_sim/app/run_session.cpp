@@ -189,7 +189,7 @@ class Session {
       data.cloud = located->cloud;
       data.fit = located->panel.fit;
     }
-    data.charts = recorder_.charts();
+    data.charts = recorder_.charts(nominal_.controller.mission_limits);
     data.charts.push_back(tick_chart());
     data.motion = recorder_.motion().motion(sim_.world);
     if (!recorder_.write_error().empty()) data.notes.push_back("Not everything could be recorded: " + recorder_.write_error() + ".");

@@ -1,6 +1,7 @@
 #include "host_sim/campaign/comparison.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -36,6 +37,43 @@ struct Test {
   double least_p = 1;
 };
 
+std::string counts(std::size_t hits, std::size_t of) { return std::to_string(hits) + " of " + std::to_string(of); }
+
+// Runs of both campaigns that came to an end which should not become more frequent, over all cells.
+struct Rise {
+  const char* name;
+  bool (*hit)(const RunSummary&);
+  std::size_t before = 0, of_before = 0, after = 0, of_after = 0;
+  std::size_t vanished = 0, came = 0;  // pairs in which it was so before only, and now only
+  bool paired = true;
+
+  void add(const Cell& earlier, const Cell& later) {
+    const auto hits = [this](const Cell& cell) { return static_cast<std::size_t>(std::count_if(cell.runs.begin(), cell.runs.end(), hit)); };
+    const std::vector<Pair> pairs = pairs_of(earlier, later);
+    before += hits(earlier), of_before += earlier.runs.size();
+    after += hits(later), of_after += later.runs.size();
+    paired = paired && pairs.size() == earlier.runs.size() && pairs.size() == later.runs.size();
+    for (const Pair& pair : pairs) {
+      vanished += hit(*pair.before) && !hit(*pair.after) ? 1 : 0;
+      came += !hit(*pair.before) && hit(*pair.after) ? 1 : 0;
+    }
+  }
+
+  Change change(const std::string& cell) const {
+    Change change{cell, name, "share", ""};
+    change.before = static_cast<double>(before) / static_cast<double>(of_before);
+    change.after = static_cast<double>(after) / static_cast<double>(of_after);
+    change.before_counts = counts(before, of_before);
+    change.after_counts = counts(after, of_after);
+    change.test = paired ? "McNemar, one-sided, by itself" : "Fisher, one-sided, by itself";
+    change.n = paired ? of_after : of_before + of_after;
+    change.differs = paired ? came + vanished > 0 : before * of_after != after * of_before;
+    change.p = change.p_of_all = paired ? mcnemar_rise(vanished, came) : fisher_rise(before, of_before, after, of_after);
+    if (change.p < beyond_chance) change.verdict = Change::Verdict::worse;
+    return change;
+  }
+};
+
 class Comparer {
  public:
   Comparer(const Cell& earlier, const Cell& later, Comparison& comparison, std::vector<Test>& tests)
@@ -59,8 +97,6 @@ class Comparer {
   }
 
  private:
-  static std::string counts(std::size_t hits, std::size_t of) { return std::to_string(hits) + " of " + std::to_string(of); }
-
   void share(const char* name, bool RunSummary::*hit, bool more_is_worse) {
     const auto hits = [&](const Cell& cell) {
       return static_cast<std::size_t>(std::count_if(cell.runs.begin(), cell.runs.end(), [&](const RunSummary& run) { return run.*hit; }));
@@ -173,7 +209,7 @@ void judge(const std::vector<Test>& tests, Comparison& comparison) {
     could = could || counted[i]->least_p * static_cast<double>(p.size()) < beyond_chance;
     if (change.p_of_all < beyond_chance) change.verdict = counted[i]->is_worse ? Change::Verdict::worse : Change::Verdict::better;
   }
-  if (p.empty() || could) return;
+  if (p.empty() || could || comparison.worse()) return;
   std::size_t enough = 1;
   while (std::ldexp(2.0, -static_cast<int>(enough)) * static_cast<double>(p.size()) >= beyond_chance) ++enough;
   comparison.doubt = "too few runs to tell a change from chance: with " + std::to_string(p.size()) + " tests that differ it takes " +
@@ -196,6 +232,8 @@ Comparison compare(const Campaign& earlier, const Campaign& later, const std::ve
   comparison.notes = check_comparable(earlier, later, across);
   comparison.identical = true;
   std::vector<Test> tests;
+  std::array<Rise, 2> rises{Rise{"failures", [](const RunSummary& run) { return !run.success; }},
+                            Rise{"false successes", [](const RunSummary& run) { return run.false_success; }}};
   std::size_t before = 0, after = 0;
   for (const Cell& cell : later.cells) {
     const auto same = [&](const Cell& other) { return label_of(other.choice) == label_of(cell.choice); };
@@ -204,11 +242,13 @@ Comparison compare(const Campaign& earlier, const Campaign& later, const std::ve
     before += found->runs.size();
     after += cell.runs.size();
     Comparer(*found, cell, comparison, tests).compare();
+    for (Rise& rise : rises) rise.add(*found, cell);
   }
   if (before == 0) throw InputError("the campaigns are not comparable: no run of the earlier one was flown");
   if (after == 0) throw InputError("the campaigns are not comparable: no run of the later one was flown");
   comparison.identical = comparison.identical && comparison.pairs > 0;
   if (comparison.pairs == 0) comparison.notes.emplace_back("they have no seed in common: only the shares of success are compared");
+  for (const Rise& rise : rises) comparison.changes.push_back(rise.change(later.cells.size() > 1 ? "all cells" : ""));
   judge(tests, comparison);
   return comparison;
 }

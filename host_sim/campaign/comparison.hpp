@@ -4,6 +4,9 @@
 // campaigns flew the same seeds, else by Fisher's exact test over all runs. A figure is compared over the pairs in which both runs have it: its median by
 // Wilcoxon's signed-rank test, its p95 by a permutation test. All tests in which anything differs count together (Holm): that any verdict is by chance has a
 // probability of at most 5 %. Tests in which nothing differs could say nothing and are not counted (Tarone, Biometrics 46, 1990).
+//
+// Among so many tests a fall of success can be lost. So whether failures, and whether false successes, rose over all cells together is tested apart from these:
+// one-sided, each at its own level of 5 %.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +27,7 @@ struct Change {
   std::string test{};                           // "" of what is not tested: it depends on the machine
   std::size_t n = 0;                            // pairs, or runs of both
   bool differs = false;                         // in any pair; of shares of other seeds: in themselves
-  double p = 1, p_of_all = 1;                   // p_of_all: as it counts among all tests
+  double p = 1, p_of_all = 1;                   // p_of_all: as it counts among all tests; p of a test that stands by itself
   Verdict verdict = Verdict::same;              // by p_of_all
 };
 

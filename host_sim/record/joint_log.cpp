@@ -21,8 +21,9 @@ bool JointLog::write(const Telemetry& telemetry) noexcept {
   int length = std::snprintf(line.data(), line.size(), "%.6f", telemetry.t.s());
   for (std::size_t i = 0; i < joint_count; ++i) {
     const auto used = static_cast<std::size_t>(length);
-    length += std::snprintf(line.data() + used, line.size() - used, ",%.7f,%.7f,%.3f", telemetry.actual_rad[i], telemetry.target_rad[i],
-                            telemetry.torque_nm[i]);
+    length += telemetry.joints_valid ? std::snprintf(line.data() + used, line.size() - used, ",%.7f,%.7f,%.3f", telemetry.actual_rad[i],
+                                                     telemetry.target_rad[i], telemetry.torque_nm[i])
+                                     : std::snprintf(line.data() + used, line.size() - used, ",,,");
     if (static_cast<std::size_t>(length) + 1 >= line.size()) return false;  // no number is that long
   }
   line[static_cast<std::size_t>(length)] = '\n';

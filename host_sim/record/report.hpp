@@ -22,11 +22,17 @@ struct ReportPicture {
   std::vector<std::uint8_t> file;  // a PNG or a JPEG: overlay_peaks + encode_jpeg make one
 };
 
+// Lines across a chart at the lowest and the highest value that a series may have; unknown: no line.
+struct ReportLimits {
+  double low = unknown, high = unknown;
+};
+
 struct ReportSeries {
   std::string name;
   std::vector<double> t_s;    // ascending
   std::vector<double> value;  // as many; not a number is a gap
   bool dashed = false;        // for a target, after the series that it belongs to and in its colour
+  ReportLimits limits{};
 };
 
 struct ReportChart {

@@ -132,6 +132,30 @@ std::string polyline(const ReportSeries& series, const std::string& kind, const 
   return "<path class=\"" + kind + "\" d=\"" + path + "\"/>";
 }
 
+bool has_samples(const ReportSeries& series) {
+  return std::any_of(series.value.begin(), series.value.end(), [](double value) { return std::isfinite(value); });
+}
+
+// In the colour of the series, with its name as a tooltip.
+std::string limit_lines(const ReportSeries& series, std::size_t colour, const Axis& time, const Axis& value) {
+  std::string svg;
+  for (const double limit : {series.limits.low, series.limits.high}) {
+    if (!std::isfinite(limit) || !has_samples(series)) continue;
+    svg += "<g><title>" + escape_html(series.name) + ": " + formatted("limit %g", limit) + "</title>" +
+           line(time.from, value.at(limit), time.to, value.at(limit), ("limit s" + std::to_string(colour)).c_str()) + "</g>";
+  }
+  return svg;
+}
+
+std::string limits_key(const ReportChart& chart) {
+  const bool any = std::any_of(chart.series.begin(), chart.series.end(), [](const ReportSeries& series) {
+    return has_samples(series) && (std::isfinite(series.limits.low) || std::isfinite(series.limits.high));
+  });
+  if (!any) return "";
+  return "<span><svg width=\"26\" height=\"10\" aria-hidden=\"true\"><line class=\"limit s0\" x1=\"1\" y1=\"5\" x2=\"25\" "
+         "y2=\"5\"/></svg>limits, each in its line's colour</span>";
+}
+
 std::string legend(const ReportChart& chart) {
   std::string html = "<div class=\"legend\">";
   const std::vector<std::string> kinds = kinds_of(chart);
@@ -139,10 +163,10 @@ std::string legend(const ReportChart& chart) {
     html += "<span><svg width=\"26\" height=\"10\" aria-hidden=\"true\"><line class=\"" + kinds[i] +
             "\" x1=\"1\" y1=\"5\" x2=\"25\" y2=\"5\"/></svg>" + escape_html(chart.series[i].name) + "</span>";
   }
-  return html + "</div>";
+  return html + limits_key(chart) + "</div>";
 }
 
-// The range of all finite samples; `found` is false when there is none.
+// The range of all finite samples and of their limits; `found` is false when there is no sample.
 void ranges(const ReportChart& chart, Axis& time, Axis& value, bool& found) {
   found = false;
   for (const ReportSeries& series : chart.series) {
@@ -155,6 +179,9 @@ void ranges(const ReportChart& chart, Axis& time, Axis& value, bool& found) {
       value.high = found ? std::max(value.high, v) : v;
       found = true;
     }
+    if (!has_samples(series)) continue;
+    if (std::isfinite(series.limits.low)) value.low = std::min(value.low, series.limits.low);
+    if (std::isfinite(series.limits.high)) value.high = std::max(value.high, series.limits.high);
   }
   if (time.high <= time.low) time.high = time.low + 1;
   const double margin = std::max(0.05 * (value.high - value.low), 1e-3 * std::max(std::abs(value.low), std::abs(value.high)));
@@ -175,12 +202,27 @@ std::vector<std::size_t> series_colours(const ReportChart& chart) {
   return colours;
 }
 
+namespace {
+
+// "20.5 s, failed", behind a phase's bar.
+std::string note_of(const PhaseRecord& phase) {
+  const std::string seconds = formatted("%.1f s", phase.end_s - phase.start_s);
+  return phase.outcome == "done" ? seconds : seconds + ", " + phase.outcome;
+}
+
+constexpr double letter = 7.7;  // width of a digit at 12 px in DejaVu Sans, the widest of the page's fonts
+
+}  // namespace
+
 std::string timeline_svg(const std::vector<PhaseRecord>& phases) {
-  constexpr double left = 170, row = 24, top = 6;
+  constexpr double left = 170, row = 24, top = 6, note_gap = 6;
   std::vector<PhaseRecord> drawn;
   std::copy_if(phases.begin(), phases.end(), std::back_inserter(drawn), drawable);
   if (drawn.empty()) return "";
-  Axis time{drawn[0].start_s, drawn[0].end_s, left, width - right_margin - 60, 10};
+  std::size_t longest = 0;
+  for (const PhaseRecord& phase : drawn) longest = std::max(longest, note_of(phase).size());
+  const double right = std::max(width / 2, width - right_margin - note_gap - letter * static_cast<double>(longest));
+  Axis time{drawn[0].start_s, drawn[0].end_s, left, right, 10};
   for (const PhaseRecord& phase : drawn) {
     time.low = std::min(time.low, phase.start_s);
     time.high = std::max(time.high, phase.end_s);
@@ -198,9 +240,7 @@ std::string timeline_svg(const std::vector<PhaseRecord>& phases) {
     svg += "<rect class=\"bar " + std::string(kind_of(phase.outcome)) + "\" x=\"" + px(from) + "\" y=\"" + px(y + 4) + "\" width=\"" +
            px(length) + "\" height=\"16\" rx=\"3\"><title>" + escape_html(phase.name + ": " + phase.outcome) + ", " +
            formatted("%.2f", phase.start_s) + " to " + formatted("%.2f s", phase.end_s) + "</title></rect>";
-    std::string note = formatted("%.1f s", phase.end_s - phase.start_s);
-    if (phase.outcome != "done") note += ", " + phase.outcome;
-    svg += text(from + length + 6, y + 16, "tick", note);
+    svg += text(from + length + note_gap, y + 16, "tick", note_of(phase));
   }
   return svg + "</svg>";
 }
@@ -223,6 +263,8 @@ std::string chart_svg(const ReportChart& chart, const RunResult& result) {
     html += line(time.at(phase.start_s), top, time.at(phase.start_s), bottom, "phase");
   }
   const std::vector<std::string> kinds = kinds_of(chart);
+  const std::vector<std::size_t> colours = series_colours(chart);
+  for (std::size_t i = 0; i < chart.series.size(); ++i) html += limit_lines(chart.series[i], colours[i], time, value);
   for (std::size_t i = 0; i < chart.series.size(); ++i) html += polyline(chart.series[i], kinds[i], time, value);
   return html + fault_flags(result.faults, time, top, bottom) + "</svg></div>";
 }

@@ -152,8 +152,8 @@ std::string chart_json(const ReportChart& chart, TimeBases& bases) {
   const std::string series = list(chart.series, [&](const ReportSeries& each) {
     const std::size_t base = bases.index_of(each.t_s);
     return "{\"name\":" + text(each.name) + ",\"t\":" + std::to_string(base) + ",\"colour\":" + std::to_string(colours[i++]) +
-           ",\"dashed\":" + (each.dashed ? "true" : "false") +
-           ",\"v\":" + list(bases[base].spikes(each.value), [](double value) { return number(value); }) + "}";
+           ",\"dashed\":" + (each.dashed ? "true" : "false") + ",\"limits\":[" + number(each.limits.low) + "," + number(each.limits.high) +
+           "]" + ",\"v\":" + list(bases[base].spikes(each.value), [](double value) { return number(value); }) + "}";
   });
   return "{\"title\":" + text(chart.title) + ",\"unit\":" + text(chart.unit) + ",\"series\":" + series + "}";
 }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "host_sim/record/provenance_json.hpp"
+
 namespace lf::record {
 namespace {
 
@@ -94,14 +96,6 @@ Json to_json(const FaultRecord& fault) {
   return json;
 }
 
-Json to_json(const ProvenanceRecord& provenance) {
-  return {{"date_utc", provenance.date_utc},
-          {"command", provenance.command},
-          {"set", provenance.set},
-          {"scenario_file", provenance.scenario_file},
-          {"experiment", provenance.experiment}};
-}
-
 template <class Record>
 Json list(const std::vector<Record>& records) {
   Json array = Json::array();
@@ -110,6 +104,14 @@ Json list(const std::vector<Record>& records) {
 }
 
 }  // namespace
+
+Json provenance_json(const ProvenanceRecord& provenance) {
+  return {{"date_utc", provenance.date_utc},
+          {"command", provenance.command},
+          {"set", provenance.set},
+          {"scenario_file", provenance.scenario_file},
+          {"experiment", provenance.experiment}};
+}
 
 TimesRecord times_record(std::vector<double> values_us) {
   if (values_us.empty()) return {};
@@ -126,7 +128,7 @@ std::string result_json(const RunResult& result) {
   document["scenario"] = result.scenario;
   document["seed"] = result.seed;
   document["version"] = result.version;
-  document["provenance"] = to_json(result.provenance);
+  document["provenance"] = provenance_json(result.provenance);
   document["success"] = result.success;
   document["failure"] = nullptr;
   if (result.failure) document["failure"] = to_json(*result.failure);

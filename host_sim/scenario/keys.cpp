@@ -93,7 +93,7 @@ void add_machine(Keys& all, Scenario& s) {
   all.push_back(key("jaw.torque_nm", "N m", 0, 200, &s.jaw.torque_nm,
                     "closing torque at each finger, no less than the rated one; 0: as the URDF says"));
   all.push_back(key("jaw.pad_friction", "", 0, 1.2, &s.jaw.pad_friction, "friction of the finger pads; 0: as the URDF says"));
-  all.push_back(key("physics.restitution", "", 0, 0.02, &s.physics.restitution, "of every contact"));
+  all.push_back(key("physics.restitution", "", 0, 0.5, &s.physics.restitution, "of every contact that closes at 1 cm/s or more"));
   all.push_back(key("physics.joint_drag_nm_s", "N m s/rad", 0, 5, &s.physics.joint_drag_nm_s, "drag of the water on each joint"));
   all.push_back(key("physics.drag_coefficient", "", 0, 3, &s.physics.drag_coefficient,
                     "of the water on the links, across them; a cylinder's is 1.1"));

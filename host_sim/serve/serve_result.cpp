@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "host_sim/record/provenance_json.hpp"
 #include "shared/can/can_map.hpp"
 
 namespace lf::serve {
@@ -107,6 +108,7 @@ std::string serve_result_json(const ServeResult& r) {
   Json json{{"scenario", r.scenario},
             {"seed", r.seed},
             {"version", r.version},
+            {"provenance", record::provenance_json(r.provenance)},
             {"nodes", r.nodes},
             {"success", r.success},
             {"tasks", tasks_json(r.tasks)},

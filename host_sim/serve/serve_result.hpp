@@ -17,6 +17,7 @@ struct ServeResult {
   std::string scenario;
   std::uint64_t seed = 0;
   std::string version;
+  record::ProvenanceRecord provenance;
   std::string nodes;  // served
   // Every task of the scenario is done in the world: the valve within 3 degrees of its last target, every button clicked as often as asked for.
   bool success = false;

@@ -54,12 +54,8 @@ ServeResult serve(const ServeRequest& request, bool (*stop)()) {
   hal::SimConfig sim = scenario::make_truth(request.scenario, sample, nominal, request.render_threads);
   for (std::size_t i = 0; i < joint_count; ++i) sim.devices.drives[i].encoder_zero_counts = request.zero_counts[i];
   say_what_cannot_be(sim, say);
-  std::optional<record::RunFolder> folder;
   std::optional<record::CandumpLog> log;
-  if (!request.out.empty()) {
-    folder.emplace(request.out);
-    log.emplace(folder->file("can0.log"), request.can);
-  }
+  if (request.folder != nullptr) log.emplace(request.folder->file("can0.log"), request.can);
 
   const CameraIntrinsics& size = nominal.controller.camera.intrinsics;
   const std::unique_ptr<FrameTarget> target = open_frame_target(request.camera, size.width, size.height);

@@ -3,10 +3,10 @@
 
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <string>
 
+#include "host_sim/record/run_folder.hpp"
 #include "host_sim/scenario/scenario.hpp"
 #include "host_sim/serve/node_set.hpp"
 #include "host_sim/serve/serve_result.hpp"
@@ -24,7 +24,7 @@ struct ServeRequest {
   std::string renderer;                                 // file of a renderer elsewhere (render_rings.hpp); empty: a thread here
   int render_threads = 1;
   std::string orders;                           // FIFO of orders (serve_orders.hpp); empty: none
-  std::filesystem::path out;                    // gets result.json and can0.log; empty keeps nothing
+  const record::RunFolder* folder = nullptr;    // gets can0.log; null keeps nothing
   double for_s = 0;                             // 0: until it is told to stop
   std::function<void(const std::string&)> say;  // what happens on the way
 };

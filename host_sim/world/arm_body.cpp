@@ -35,7 +35,7 @@ ArmBody::ArmBody(const ArmDescription& arm, const scene::Scene& scene, const Con
   part_.finish_links();
   for (int link = -1; link < bullet_links; ++link) {
     const auto body = body_of(link);
-    part_.add_collider(link, make_collision_shape(scene[body], link_from_frame_[body]), int(body), config.restitution, Friction::free);
+    part_.add_collider(link, make_collision_shape(scene[body], link_from_frame_[body]), int(body), Friction::free);
   }
   for (std::size_t i = 0; i < joint_count; ++i) {
     const ArmJoint& joint = arm_.joints[i];

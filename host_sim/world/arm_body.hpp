@@ -16,7 +16,6 @@ class ArmBody {
     std::array<double, joint_count> start_rad{};
     double joint_drag_nm_s = 0;
     std::array<double, joint_count> drive_stiffness_nm_rad{};
-    double restitution = 0;
     double step_s = 0.001;
     double drag_coefficient = 0;  // of the links, across
   };

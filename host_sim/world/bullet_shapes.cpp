@@ -6,8 +6,6 @@
 #include <BulletCollision/CollisionShapes/btCylinderShape.h>
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
 
-#include <algorithm>
-
 #include "host_sim/world/bullet_types.hpp"
 
 namespace lf::world {
@@ -43,20 +41,21 @@ std::unique_ptr<btCollisionShape> convex_shape(const scene::Shape& shape) {
 CollisionShape make_collision_shape(const scene::Body& body, const Pose& body_from_frame) {
   CollisionShape made;
   made.compound = std::make_unique<btCompoundShape>();
-  double friction = 0;
   for (const scene::Shape& shape : body.shapes) {
     if (!shape.collides) continue;
     made.children.push_back(convex_shape(shape));
     made.compound->addChildShape(to_bullet(Pose(body_from_frame.inverse() * shape.body_from_shape)), made.children.back().get());
-    friction = std::max(friction, shape.friction);
+    made.frictions.push_back(shape.friction);
   }
   if (made.children.empty()) {
     made.children.push_back(std::make_unique<btSphereShape>(1e-4));
     made.compound->addChildShape(btTransform::getIdentity(), made.children.back().get());
-  } else {
-    made.friction = friction;
+    made.frictions.push_back(0);
   }
+  made.compound->setUserPointer(made.frictions.data());  // stays where it is when `made` is moved
   return made;
 }
+
+double friction_of(const btCollisionShape& shape, int child) { return static_cast<const double*>(shape.getUserPointer())[child]; }
 
 }  // namespace lf::world

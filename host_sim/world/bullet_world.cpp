@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "host_sim/world/fixed_base_solver.hpp"
 #include "shared/scene/scene.hpp"
 
 namespace lf::world {
@@ -33,7 +32,7 @@ struct PairFilter : btOverlapFilterCallback {
 
 }  // namespace
 
-BulletWorld::BulletWorld(int solver_iterations) {
+BulletWorld::BulletWorld(int solver_iterations, double restitution) {
   btDefaultCollisionConstructionInfo pools;  // the default of 4096 each costs 5 MB a world; a grip has about 10 contacts
   pools.m_defaultMaxPersistentManifoldPoolSize = 256;
   pools.m_defaultMaxCollisionAlgorithmPoolSize = 256;
@@ -42,7 +41,7 @@ BulletWorld::BulletWorld(int solver_iterations) {
   broadphase_ = std::make_unique<btDbvtBroadphase>();
   filter_ = std::make_unique<PairFilter>();
   broadphase_->getOverlappingPairCache()->setOverlapFilterCallback(filter_.get());
-  solver_ = std::make_unique<FixedBaseSolver>();
+  solver_ = std::make_unique<FixedBaseSolver>(restitution);
   world_ = std::make_unique<btMultiBodyDynamicsWorld>(dispatcher_.get(), broadphase_.get(), solver_.get(), configuration_.get());
   world_->setGravity(btVector3(0, 0, 0));  // weight less buoyancy is applied to each link
   world_->setForceUpdateAllAabbs(false);
@@ -56,9 +55,9 @@ BulletWorld::BulletWorld(int solver_iterations) {
 
 BulletWorld::~BulletWorld() = default;
 
-void BulletWorld::make_restitution_exact() {
-  world_->getSolverInfo().m_restitutionVelocityThreshold = 0.01;
-  world_->getSolverInfo().m_erp2 = 0;
+void BulletWorld::step(double step_s) {
+  solver_->begin_step(*world_);
+  world_->stepSimulation(step_s, 0);
 }
 
 }  // namespace lf::world

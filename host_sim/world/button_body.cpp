@@ -16,15 +16,14 @@ constexpr double rest_depth_m = 1e-9;
 
 }  // namespace
 
-ButtonBody::ButtonBody(const ButtonConfig& config, const Pose& base_from_button, const scene::Body& cap, int scene_body, double restitution,
-                       double step_s)
+ButtonBody::ButtonBody(const ButtonConfig& config, const Pose& base_from_button, const scene::Body& cap, int scene_body, double step_s)
     : config_(config), step_s_(step_s), part_(1, base_from_button) {
   const btVector3 inertia(1e-4, 1e-4, 1e-4);  // of no effect: it does not turn
   part_.body().setupPrismatic(0, config.mass_kg, inertia, -1, btQuaternion::getIdentity(), btVector3(0, 0, -1), btVector3(0, 0, 0),
                               btVector3(0, 0, 0), false);
   part_.finish_links();
-  part_.add_collider(-1, make_collision_shape({}, Pose::Identity()), no_body, restitution, Friction::anchored);
-  part_.add_collider(0, make_collision_shape(cap, Pose::Identity()), scene_body, restitution, Friction::anchored);
+  part_.add_collider(-1, make_collision_shape({}, Pose::Identity()), no_body, Friction::anchored);
+  part_.add_collider(0, make_collision_shape(cap, Pose::Identity()), scene_body, Friction::anchored);
   rows_ = &part_.add_rows(0);
   part_.update_poses();
 }

@@ -9,8 +9,7 @@ namespace lf::world {
 class ButtonBody {
  public:
   // `base_from_button`: on the panel's plane at the cap's centre, z out of the panel.
-  ButtonBody(const ButtonConfig& config, const Pose& base_from_button, const scene::Body& cap, int scene_body, double restitution,
-             double step_s);
+  ButtonBody(const ButtonConfig& config, const Pose& base_from_button, const scene::Body& cap, int scene_body, double step_s);
 
   void before_step();
   void after_step();

@@ -6,19 +6,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host_sim/world/bullet_shapes.hpp"
+
 namespace lf::world {
 namespace {
 
-void limit_push_out(btPersistentManifold& manifold, const btContactSolverInfo& info) {
-  for (int i = 0; i < manifold.getNumContacts(); ++i) {
-    btManifoldPoint& point = manifold.getContactPoint(i);
-    const double depth_m = -point.getDistance();
-    if (depth_m <= 0) continue;
-    const double too_deep_m = std::max(0.0, depth_m - FixedBaseSolver::blow_m_s * info.m_timeStep);
-    const double push_out_m_s = FixedBaseSolver::push_out_m_s + too_deep_m / FixedBaseSolver::recovery_s;
-    point.m_contactERP = std::min(info.m_erp2, push_out_m_s * info.m_timeStep / depth_m);
-    point.m_contactPointFlags |= BT_CONTACT_FLAG_HAS_CONTACT_ERP;
-  }
+void limit_push_out(btManifoldPoint& point, const btContactSolverInfo& info) {
+  const double depth_m = -point.getDistance();
+  if (depth_m <= 0) return;
+  const double too_deep_m = std::max(0.0, depth_m - FixedBaseSolver::blow_m_s * info.m_timeStep);
+  const double push_out_m_s = FixedBaseSolver::push_out_m_s + too_deep_m / FixedBaseSolver::recovery_s;
+  point.m_contactERP = std::min(info.m_erp2, push_out_m_s * info.m_timeStep / depth_m);
+  point.m_contactPointFlags |= BT_CONTACT_FLAG_HAS_CONTACT_ERP;
 }
 
 }  // namespace
@@ -26,9 +25,55 @@ void limit_push_out(btPersistentManifold& manifold, const btContactSolverInfo& i
 btScalar FixedBaseSolver::solveGroupCacheFriendlySetup(btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
                                                        int manifold_count, btTypedConstraint** constraints, int constraint_count,
                                                        const btContactSolverInfo& info, btIDebugDraw* drawer) {
-  for (int i = 0; i < manifold_count; ++i) limit_push_out(*manifolds[i], info);
-  return btMultiBodyConstraintSolver::solveGroupCacheFriendlySetup(bodies, body_count, manifolds, manifold_count, constraints,
-                                                                   constraint_count, info, drawer);
+  for (int i = 0; i < manifold_count; ++i) prepare(*manifolds[i], info);
+  const btScalar residual = btMultiBodyConstraintSolver::solveGroupCacheFriendlySetup(bodies, body_count, manifolds, manifold_count,
+                                                                                      constraints, constraint_count, info, drawer);
+  if (restitution_ > 0) add_rebounds(info);
+  return residual;
+}
+
+void FixedBaseSolver::begin_step(btMultiBodyDynamicsWorld& world) {
+  if (restitution_ == 0) return;
+  before_.clear();
+  for (int i = 0; i < world.getNumMultibodies(); ++i) {
+    const btMultiBody& body = *world.getMultiBody(i);
+    Before& before = before_.emplace_back();
+    before.body = &body;
+    for (int joint = 0; joint < body.getNumDofs(); ++joint) before.speeds[joint] = body.getVelocityVector()[6 + joint];
+  }
+}
+
+void FixedBaseSolver::prepare(btPersistentManifold& manifold, const btContactSolverInfo& info) const {
+  // A contact that is solved ahead of time, while there is still a gap, is braked before it closes and has nothing to rebound with.
+  if (restitution_ > 0) manifold.setContactProcessingThreshold(0);
+  const btCollisionShape& a = *manifold.getBody0()->getCollisionShape();
+  const btCollisionShape& b = *manifold.getBody1()->getCollisionShape();
+  for (int i = 0; i < manifold.getNumContacts(); ++i) {
+    btManifoldPoint& point = manifold.getContactPoint(i);
+    point.m_combinedFriction = friction_of(a, point.m_index0) * friction_of(b, point.m_index1);
+    point.m_combinedRestitution = 0;  // add_rebounds has it
+    limit_push_out(point, info);
+  }
+}
+
+double FixedBaseSolver::speed_before(const btMultiBody* body, int jacobian_index) const {
+  const auto found = std::find_if(before_.begin(), before_.end(), [&](const Before& before) { return before.body == body; });
+  if (body == nullptr || found == before_.end()) return 0;
+  double speed = 0;
+  for (int i = 0; i < body->getNumDofs(); ++i) speed += m_data.m_jacobians[jacobian_index + 6 + i] * found->speeds[i];
+  return speed;
+}
+
+// Bullet's rows end at the push-out's speed.
+void FixedBaseSolver::add_rebounds(const btContactSolverInfo& info) {
+  for (int i = 0; i < m_multiBodyNormalContactConstraints.size(); ++i) {
+    btMultiBodySolverConstraint& row = m_multiBodyNormalContactConstraints[i];
+    const double closing_m_s = -speed_before(row.m_multiBodyA, row.m_jacAindex) - speed_before(row.m_multiBodyB, row.m_jacBindex);
+    if (closing_m_s < bounce_m_s) continue;
+    const auto& point = *static_cast<const btManifoldPoint*>(row.m_originalContactPoint);
+    const double leaving_m_s = std::max(0.0, -point.getDistance()) * point.m_contactERP / info.m_timeStep;
+    row.m_rhs += std::max(0.0, restitution_ * closing_m_s - leaving_m_s) * row.m_jacDiagABInv;
+  }
 }
 
 FixedBaseSolver::Side FixedBaseSolver::side(const btMultiBody* body, int speeds_index, int jacobian_index) {

@@ -8,10 +8,15 @@
 // down to the depth of a blow at `blow_m_s`; what lies deeper, as pads that are pressed into a turning bar faster than the iterations keep them out
 // (1.2 mm/s), is pushed out within `recovery_s`.
 //
+// Bullet applies restitution to the speed that the step's forces have already changed, so that what is pressed bounces in every step. Here a contact
+// rebounds at the restitution times the speed at which it closed before the step, from `bounce_m_s` on, or at the speed that takes it out of its overlap,
+// whichever is more. Friction is that of the two shapes that touch; Bullet has one value a body.
+//
 // Only for worlds whose multibodies have fixed bases and at most 6 joints, and whose rigid bodies do not move.
 #pragma once
 
 #include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
+#include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
 
 #include <Eigen/Core>
 #include <vector>
@@ -24,6 +29,12 @@ class FixedBaseSolver : public btMultiBodyConstraintSolver {
   static constexpr double push_out_m_s = 0.0005;  // out of 0.2 mm, a step's depth of a blow at 0.2 m/s, in 0.4 s
   static constexpr double blow_m_s = 0.5;
   static constexpr double recovery_s = 0.05;
+  static constexpr double bounce_m_s = 0.01;
+
+  explicit FixedBaseSolver(double restitution) : restitution_(restitution) {}
+
+  // Before each step: the speeds of `world` are those at which its contacts close.
+  void begin_step(btMultiBodyDynamicsWorld& world);
 
  protected:
   btScalar solveGroupCacheFriendlySetup(btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds, int manifold_count,
@@ -54,6 +65,15 @@ class FixedBaseSolver : public btMultiBodyConstraintSolver {
     int normal_row = 0;  // friction rows: the contact they belong to
   };
 
+  // A mechanism's speeds before the step.
+  struct Before {
+    const btMultiBody* body = nullptr;
+    Joints speeds = Joints::Zero();
+  };
+
+  void prepare(btPersistentManifold& manifold, const btContactSolverInfo& info) const;
+  double speed_before(const btMultiBody* body, int jacobian_index) const;
+  void add_rebounds(const btContactSolverInfo& info);
   void take_rows();
   void take(const btMultiBodyConstraintArray& from, std::vector<Row>& to);
   Side side(const btMultiBody* body, int speeds_index, int jacobian_index);
@@ -63,6 +83,8 @@ class FixedBaseSolver : public btMultiBodyConstraintSolver {
   double solve_friction(Row& first, Row& second);
   void give_back(const std::vector<Row>& from, btMultiBodyConstraintArray& to);
 
+  double restitution_;
+  std::vector<Before> before_;  // empty without restitution
   std::vector<Row> joints_, normals_, frictions_;
   std::vector<const btMultiBody*> mechanisms_;
   std::vector<Joints> speeds_;  // what the impulses have changed so far

@@ -1,7 +1,5 @@
 #include "host_sim/world/multibody_part.hpp"
 
-#include <cmath>
-
 #include "host_sim/world/bullet_types.hpp"
 
 namespace lf::world {
@@ -21,13 +19,9 @@ void MultibodyPart::finish_links() {
   update_poses();
 }
 
-void MultibodyPart::add_collider(int link, CollisionShape shape, int scene_body, double restitution, Friction friction) {
+void MultibodyPart::add_collider(int link, CollisionShape shape, int scene_body, Friction friction) {
   auto collider = std::make_unique<btMultiBodyLinkCollider>(body_.get(), link);
   collider->setCollisionShape(shape.compound.get());
-  collider->setFriction(shape.friction);
-  collider->setRestitution(std::sqrt(restitution));  // Bullet multiplies both bodies'
-  // Restitution is lost when contacts are solved ahead of time, while there is still a gap.
-  if (restitution > 0) collider->setContactProcessingThreshold(0);
   collider->setUserIndex(scene_body);
   collider->setActivationState(DISABLE_DEACTIVATION);
   int flags = friction == Friction::anchored ? btCollisionObject::CF_HAS_FRICTION_ANCHOR : 0;

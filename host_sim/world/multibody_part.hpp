@@ -36,7 +36,7 @@ class MultibodyPart {
   // After all links are set up.
   void finish_links();
   // link -1 is the base; user index: the body of the scene, or `no_body`.
-  void add_collider(int link, CollisionShape shape, int scene_body, double restitution, Friction friction);
+  void add_collider(int link, CollisionShape shape, int scene_body, Friction friction);
   JointRows& add_rows(int link, int second_link = -1);
 
   // Brings everything into the world, or takes it out.

@@ -45,8 +45,8 @@ Obstacle::Obstacle(btMultiBodyDynamicsWorld& world, const Vec3& target_m, int sc
   }
   part_.finish_links();
   for (int link = -1; link < box_link; ++link)
-    part_.add_collider(link, make_collision_shape({}, Pose::Identity()), no_body, 0, Friction::free);
-  part_.add_collider(box_link, make_collision_shape(box(), Pose::Identity()), scene_body, 0, Friction::free);
+    part_.add_collider(link, make_collision_shape({}, Pose::Identity()), no_body, Friction::free);
+  part_.add_collider(box_link, make_collision_shape(box(), Pose::Identity()), scene_body, Friction::free);
   part_.update_poses();
   part_.enter(world_);
 }

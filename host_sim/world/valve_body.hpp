@@ -8,7 +8,7 @@ namespace lf::world {
 
 class ValveBody {
  public:
-  ValveBody(const ValveConfig& config, const Pose& base_from_panel, const scene::Body& handle, double restitution, double step_s);
+  ValveBody(const ValveConfig& config, const Pose& base_from_panel, const scene::Body& handle, double step_s);
 
   void before_step();
   double angle_rad() const { return part_.body().getJointPos(0); }

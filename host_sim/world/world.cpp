@@ -79,25 +79,18 @@ struct World::Impl {
 
   explicit Impl(const WorldConfig& from)
       : config(checked(from)),
-        bullet(config.solver_iterations),
+        bullet(config.solver_iterations, config.restitution),
         arm(config.arm, config.scene,
-            {config.start_rad, config.joint_drag_nm_s, config.drive_stiffness_nm_rad, config.restitution, config.step_s,
-             config.drag_coefficient}),
+            {config.start_rad, config.joint_drag_nm_s, config.drive_stiffness_nm_rad, config.step_s, config.drag_coefficient}),
         panel_shape(make_collision_shape(config.scene[std::size_t(BodyId::panel)], Pose::Identity())),
-        valve(config.valve, config.base_from_panel, config.scene[std::size_t(BodyId::handle)], config.restitution, config.step_s),
+        valve(config.valve, config.base_from_panel, config.scene[std::size_t(BodyId::handle)], config.step_s),
         buttons{make_button(0), make_button(1), make_button(2)},
         sensor(config.force_window_s, config.judged_window_s, config.step_s, config.vehicle_com_m) {
     arm.part().enter(bullet.get());
     panel = std::make_unique<btRigidBody>(0, nullptr, panel_shape.compound.get());
     panel->setWorldTransform(to_bullet(config.base_from_panel));
-    panel->setFriction(panel_shape.friction);
-    panel->setRestitution(std::sqrt(config.restitution));  // Bullet multiplies both bodies'
     panel->setUserIndex(int(BodyId::panel));
     bullet.get().addCollisionObject(panel.get());
-    if (config.restitution > 0) {
-      panel->setContactProcessingThreshold(0);
-      bullet.make_restitution_exact();
-    }
   }
 
   ~Impl() {
@@ -110,7 +103,7 @@ struct World::Impl {
 
   ButtonBody make_button(std::size_t i) const {
     const std::size_t body = std::size_t(BodyId::button_left) + i;
-    return ButtonBody(config.buttons[i], base_from_button(config, i), config.scene[body], int(body), config.restitution, config.step_s);
+    return ButtonBody(config.buttons[i], base_from_button(config, i), config.scene[body], int(body), config.step_s);
   }
 
   bool arm_is_near(const MultibodyPart& part) {

@@ -60,7 +60,7 @@ struct WorldConfig {
   double drag_coefficient =
       1.1;  // of the links across the flow: a cylinder's at Reynolds numbers of 1e3 to 1e5 (Hoerner, Fluid-Dynamic Drag, 1965)
   double joint_drag_nm_s = 0.5;  // viscous, each arm joint in water, per rad/s; the jaw's fingers a tenth of it
-  double restitution = 0;        // of every contact
+  double restitution = 0;        // of every contact that closes at 1 cm/s or more
   double step_s = 0.001;
   double force_window_s = 0.020;   // over which a sensor would average a contact's wrench
   double judged_window_s = 0.050;  // over which a contact's force is judged: what panel and arm bear

@@ -16,9 +16,10 @@ void CurveObserver::on_telemetry(const Telemetry& telemetry) {
   if (joint_log_ && !joint_log_->write(telemetry)) files_.lost(joint_log_->sink().error());
   t_s_.push_back(telemetry.t.s());
   for (std::size_t i = 0; i < joint_count; ++i) {
-    target_rad_[i].push_back(telemetry.target_rad[i]);
-    actual_rad_[i].push_back(telemetry.actual_rad[i]);
-    torque_nm_[i].push_back(telemetry.torque_nm[i]);
+    const auto known = [&](double value) { return telemetry.joints_valid ? value : record::unknown; };
+    target_rad_[i].push_back(known(telemetry.target_rad[i]));
+    actual_rad_[i].push_back(known(telemetry.actual_rad[i]));
+    torque_nm_[i].push_back(known(telemetry.torque_nm[i]));
   }
   const double window_s = ticks_a_sample * can_map::sync_period.s();
   bus_load_percent_.push_back(100.0 * static_cast<double>(bus_.bits() - bits_before_) / (window_s * can_map::bitrate));
@@ -29,13 +30,14 @@ void CurveObserver::finish() {
   if (joint_log_ && !joint_log_->close()) files_.lost(joint_log_->sink().error());
 }
 
-std::vector<record::ReportChart> CurveObserver::joint_charts() const {
+std::vector<record::ReportChart> CurveObserver::joint_charts(const safety::Limits& limits) const {
   record::ReportChart positions{"Joint positions, measured and asked", "rad", {}},
       torques{"Motor torques at the joints, measured", "N m", {}};
   for (std::size_t i = 0; i < joint_count; ++i) {
-    positions.series.push_back({joint_names[i], t_s_, actual_rad_[i], false});
+    const safety::JointLimit& limit = limits.joints[i];
+    positions.series.push_back({joint_names[i], t_s_, actual_rad_[i], false, {limit.min_rad, limit.max_rad}});
     positions.series.push_back({std::string(joint_names[i]) + ", asked", t_s_, target_rad_[i], true});
-    torques.series.push_back({joint_names[i], t_s_, torque_nm_[i], false});
+    torques.series.push_back({joint_names[i], t_s_, torque_nm_[i], false, {-limit.max_torque_nm, limit.max_torque_nm}});
   }
   return {positions, torques};
 }

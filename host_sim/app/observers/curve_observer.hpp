@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "firmware/safety/limits.hpp"
 #include "hal/sim/sim_platform.hpp"
 #include "host_sim/app/observers/bus_observer.hpp"
 #include "host_sim/record/joint_log.hpp"
@@ -23,8 +24,8 @@ class CurveObserver : public hal::SimObserver {
   void on_telemetry(const Telemetry& telemetry) override;
   void finish();
 
-  // Positions and torques of the joints, and the load of the bus.
-  std::vector<record::ReportChart> joint_charts() const;
+  // Positions and torques of the joints, with `limits`; a gap where the core had none. And the load of the bus.
+  std::vector<record::ReportChart> joint_charts(const safety::Limits& limits) const;
   record::ReportChart bus_chart() const;
   const std::vector<double>& times_s() const { return t_s_; }  // of the samples
 

@@ -28,10 +28,24 @@ double fisher(std::size_t hits_a, std::size_t of_a, std::size_t hits_b, std::siz
 }
 
 double mcnemar(std::size_t gained, std::size_t lost) {
+  return std::min(1.0, 2 * mcnemar_rise(std::min(gained, lost), std::max(gained, lost)));
+}
+
+double fisher_rise(std::size_t hits_a, std::size_t of_a, std::size_t hits_b, std::size_t of_b) {
+  const std::size_t hits = hits_a + hits_b;
+  const double log_all = log_choose(of_a + of_b, hits);
+  double p = 0;
+  for (std::size_t b = hits_b; b <= std::min(hits, of_b); ++b) {
+    if (hits - b <= of_a) p += std::exp(log_choose(of_a, hits - b) + log_choose(of_b, b) - log_all);
+  }
+  return std::min(1.0, p);
+}
+
+double mcnemar_rise(std::size_t gained, std::size_t lost) {
   const std::size_t n = gained + lost;
   double tail = 0;
-  for (std::size_t k = 0; k <= std::min(gained, lost); ++k) tail += std::exp(log_choose(n, k) - static_cast<double>(n) * std::log(2.0));
-  return std::min(1.0, 2 * tail);
+  for (std::size_t k = 0; k <= gained; ++k) tail += std::exp(log_choose(n, k) - static_cast<double>(n) * std::log(2.0));
+  return std::min(1.0, tail);
 }
 
 }  // namespace lf::campaign

@@ -1,4 +1,4 @@
-// Whether two counts differ by more than chance: exact tests, two-sided.
+// Whether two counts differ, or one rose, by more than chance: exact tests.
 #pragma once
 
 #include <cstddef>
@@ -11,5 +11,9 @@ double fisher(std::size_t hits_a, std::size_t of_a, std::size_t hits_b, std::siz
 
 // McNemar's exact test, for runs in pairs: `gained` pairs went from failure to success, `lost` the other way. By chance either is as probable.
 double mcnemar(std::size_t gained, std::size_t lost);
+
+// The same one-sided: the probability that by chance as many hits or more fall to b (Fisher), or as many pairs or more are lost (McNemar).
+double fisher_rise(std::size_t hits_a, std::size_t of_a, std::size_t hits_b, std::size_t of_b);
+double mcnemar_rise(std::size_t gained, std::size_t lost);
 
 }  // namespace lf::campaign

@@ -44,6 +44,29 @@ function drawMarks(plot) {
   ctx.restore();
 }
 
+// Of the series that are shown, dotted in their colours.
+function drawLimits(plot, series) {
+  const {ctx, bbox} = plot, ratio = devicePixelRatio;
+  ctx.save();
+  ctx.lineWidth = ratio;
+  ctx.globalAlpha = 0.7;
+  ctx.setLineDash([2 * ratio, 3 * ratio]);
+  series.forEach((each, index) => {
+    if (!plot.series[index + 1].show) return;
+    ctx.strokeStyle = colour('--c' + each.colour);
+    for (const limit of limitsOf(each)) {
+      const y = Math.round(plot.valToPos(limit, 'y', true));
+      ctx.beginPath();
+      ctx.moveTo(bbox.left, y);
+      ctx.lineTo(bbox.left + bbox.width, y);
+      ctx.stroke();
+    }
+  });
+  ctx.restore();
+}
+
+const limitsOf = series => series.v.some(value => value != null) ? series.limits.filter(limit => limit != null) : [];
+
 // A finger's drag sideways is a mouse's; up and down it scrolls the page.
 function takeTouch(plot) {
   let held = false, last = 0;
@@ -100,9 +123,12 @@ function makeChart(figure, chart) {
   const decimals = decimalsOf(series);
   const axis = {stroke: () => colour('--soft'), grid: {stroke: () => colour('--line'), width: 1}, ticks: {stroke: () => colour('--line'), width: 1}};
   const size = () => ({width: Math.max(240, figure.clientWidth), height: figure.clientWidth < 480 ? 150 : 190});
+  const limits = series.flatMap(limitsOf);
+  // uPlot's own range, and the limits within it.
+  const range = (_, low, high) => uPlot.rangeNum(Math.min(low, ...limits), Math.max(high, ...limits), 0.1, true);
   const plot = new uPlot({
     ...size(),
-    scales: {x: {time: false, auto: false, min: span.value[0], max: span.value[1]}},
+    scales: {x: {time: false, auto: false, min: span.value[0], max: span.value[1]}, ...(limits.length ? {y: {range}} : {})},
     axes: [{...axis, size: 34}, {...axis, size: 58}],
     cursor: {
       y: false,
@@ -127,7 +153,7 @@ function makeChart(figure, chart) {
         points: {show: false}, value: (_, value) => value == null ? '–' : value.toFixed(decimals).replace(/^-(0\.?0*)$/, '$1'),
       }))],
     hooks: {
-      drawAxes: [drawMarks],
+      drawAxes: [drawMarks, self => drawLimits(self, series)],
       draw: [placeCursor],  // scale and size are new only now
       setSelect: [self => {
         const {left, width} = self.select;

@@ -1,9 +1,13 @@
 // `lanternfish campaign --seeds` and `lanternfish compare`, from outside.
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "host_sim/record/experiment.hpp"
 #include "tests/unit/app/program.hpp"
 
 namespace lf::app {
@@ -48,6 +52,45 @@ TEST_F(Campaigns, LeaveDataATableAPageAndTestCases) {
   EXPECT_EQ(Json::parse(again.out)["runs"], 4);
   EXPECT_EQ(json_of("c/campaign.json")["sittings"].size(), 2u);
   EXPECT_EQ(json_of("c/campaign.json")["sittings"][0], campaign["sittings"][0]);
+}
+
+// Command, date, program and scenario of results that are put together from many runs.
+void expect_provenance(const Json& results, const std::filesystem::path& experiment, const std::string& command) {
+  const Json& provenance = results["provenance"];
+  EXPECT_EQ(provenance["command"], command);
+  EXPECT_EQ(provenance["date_utc"].get<std::string>().size(), std::string("2026-11-24T21:34:07Z").size()) << provenance;
+  EXPECT_FALSE(provenance["version"].get<std::string>().empty());
+  EXPECT_TRUE(provenance["revision"].is_string());
+  EXPECT_EQ(provenance["set"][0], "water.attenuation_per_m=0.2");
+  EXPECT_EQ(provenance["experiment"], record::file_hash(experiment));
+}
+
+TEST_F(Campaigns, TablesOfFaultsAndOfRangesSayHowTheyCameAbout) {
+  const std::string set = " --set water.attenuation_per_m=0.2";
+  (void)run("campaign turn_only --faults --rows 'boot: estop' --out f" + set);
+  expect_provenance(json_of("f/faults.json"), folder() / "f/experiment.json",
+                    "lanternfish campaign turn_only --faults --rows 'boot: estop' --set 'water.attenuation_per_m=0.2'");
+  (void)run("campaign turn_only --ranges --draws 1 --many 0 --kinds docking.x_m --shard 9999/10000 --out r" + set);
+  expect_provenance(
+      json_of("r/ranges.json"), folder() / "r/experiment.json",
+      "lanternfish campaign turn_only --ranges --draws 1 --many 0 --kinds docking.x_m --set water.attenuation_per_m=0.2 --shard "
+      "9999/10000");
+}
+
+// As a campaign that runs holds it.
+TEST_F(Campaigns, AFolderThatAnotherCampaignWritesToIsRefused) {
+  std::filesystem::create_directory(folder() / "c");
+  const int other = ::open((folder() / "c").c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  ASSERT_EQ(::flock(other, LOCK_EX | LOCK_NB), 0);
+  file("my.yaml", short_scenario);
+  for (const char* kind : {"--seeds 1", "--faults --rows 'boot: estop'", "--ranges --draws 1 --many 0"}) {
+    const Said said = run(std::string("campaign ./my.yaml ") + kind + " --jobs 1 --out c");
+    EXPECT_EQ(said.status, 2) << kind;
+    EXPECT_TRUE(has(said.err, "another campaign is writing there")) << said.err;
+    EXPECT_TRUE(std::filesystem::is_empty(folder() / "c")) << kind;
+  }
+  ::close(other);
+  EXPECT_EQ(run("campaign ./my.yaml --seeds 1 --jobs 1 --out c").status, 1) << "it fails at its time limit";
 }
 
 TEST_F(Campaigns, SeedsThatAreNoneAreRefusedByName) {

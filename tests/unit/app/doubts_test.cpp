@@ -1,4 +1,6 @@
 // Answers that a script must not take for sure ones: the reason on stderr and in the JSON, and exit status 1.
+#include <apriltag/apriltag.h>
+#include <apriltag/tag36h11.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -79,6 +81,22 @@ TEST_F(Doubts, AnOffPictureThatHasTheLaserToo) {
   expect_doubt("peaks " + on + " --off " + on, "peaks in 0 of 300 lines");
 }
 
+// The picture of one frame before: the stripe has moved by less than its width, or by some of them.
+TEST_F(Doubts, AnOffPictureOfOneFrameBefore) {
+  const std::string on = stripe("on.png", 2, 120, 1);
+  for (const double moved_px : {2.0, 3.0, 5.0, 8.0, 12.0, 14.0, -3.0, -8.0})
+    expect_doubt("peaks " + on + " --off " + stripe("before.png", 2, 120, 1, moved_px), "--off seems to have the laser, too");
+}
+
+// Real pairs, of automatic exposures, in the laser's colour.
+TEST_F(Doubts, NoOffPictureOfRealPairsIsTakenForOneWithTheLaser) {
+  for (const char* pair : {"01", "02", "03", "04", "05", "06", "07", "08", "09", "10"}) {
+    const std::string name = std::string(LANTERNFISH_SOURCE_DIR "/tests/data/laser_on_off_pairs/pair") + pair;
+    EXPECT_THAT(run("peaks " + name + "_on.jpg --off " + name + "_off.jpg --channel red").err, ::testing::Not(HasSubstr("--off seems")))
+        << pair;
+  }
+}
+
 TEST_F(Doubts, PeaksThatNoiseHasScattered) {
   expect_doubt("peaks " + stripe("noisy.png", 4, 45, 14), "the peaks scatter by ");
   EXPECT_EQ(run("peaks " + stripe("quiet.png", 2, 120, 4)).status, 0);
@@ -143,6 +161,57 @@ TEST_F(Doubts, PeaksOfOnePictureSayNothingOfAnother) {
   EXPECT_EQ(said.status, 1);
   EXPECT_THAT(said.err, HasSubstr("is the laser in this picture and in this channel?"));
   EXPECT_THAT(said.err, ::testing::Not(HasSubstr("--off")));
+}
+
+// A marker of 0.1 m, turned by 30 degrees about its vertical, seen from 0.4 m through a wide lens: its far side is 12 % smaller. From 400 m through a lens a
+// thousand times longer it looks the same but for a thousandth of that, 0.01 px, and the tilt to the other side explains it as well.
+TEST_F(Doubts, AMarkerWhoseTiltIsUnsure) {
+  apriltag_family_t* const family = tag36h11_create();
+  image_u8_t* const tag = apriltag_to_image(family, 7);
+  for (const double times : {1.0, 1000.0}) {
+    SCOPED_TRACE(times);
+    constexpr int width = 640, height = 480;
+    const double focal_px = 600 * times, away_m = 0.4 * times, size_m = 0.1, tilt_rad = 0.5236;
+    const double cells = tag->width, cell_m = size_m / family->width_at_border;
+    std::vector<std::uint8_t> pixels;
+    for (int v = 0; v < height; ++v) {
+      for (int u = 0; u < width; ++u) {
+        double grey = 0;
+        for (int k = 0; k < 64; ++k) {  // samples of the pixel
+          const double x = (u + (k % 8 + 0.5) / 8 - 0.5 - 320) / focal_px, y = (v + (k / 8 + 0.5) / 8 - 0.5 - 240) / focal_px;
+          // Along the ray z (x, y, 1) the plane's horizontal a has z x = a cos, z = away + a sin.
+          const double a = away_m * x / (std::cos(tilt_rad) - x * std::sin(tilt_rad));
+          const double b = y * (away_m + a * std::sin(tilt_rad));
+          const double column = a / cell_m + cells / 2, row = b / cell_m + cells / 2;
+          const bool inside = column >= 0 && row >= 0 && column < cells && row < cells;
+          grey += inside ? tag->buf[static_cast<int>(row) * tag->stride + static_cast<int>(column)] : 200;
+        }
+        pixels.push_back(static_cast<std::uint8_t>(std::lround(30 + 0.7 * grey / 64)));
+      }
+    }
+    const std::vector<std::uint8_t> png = record::encode_png(ImageView{pixels.data(), width, height, width});
+    const std::string picture = file("tag.png", std::string(png.begin(), png.end()));
+    const std::string focal = std::to_string(focal_px);
+    const std::string camera =
+        file("camera.yaml", "image_width: 640\nimage_height: 480\ncamera_matrix: {rows: 3, cols: 3, data: [" + focal + ", 0, 320, 0, " +
+                                focal + ", 240, 0, 0, 1]}\ndistortion_coefficients: {rows: 1, cols: 5, data: [0, 0, 0, 0, 0]}\n");
+    const Said said = run("markers " + picture + " --camera " + camera + " --size-m 0.1 --json");
+    const Json markers = Json::parse(said.out)[0]["markers"];
+    ASSERT_EQ(markers.size(), 1U) << said.err;
+    EXPECT_EQ(markers[0]["id"], 7);
+    EXPECT_EQ(said.status, times > 1 ? 1 : 0) << markers[0];
+    if (times > 1) {
+      EXPECT_THAT(said.err, HasSubstr("tag.png: doubtful: frame 0: of id 7 a second pose, "));
+      EXPECT_THAT(markers[0]["doubts"].dump(), HasSubstr("its tilt is unsure"));
+    } else {
+      EXPECT_EQ(said.err, "");
+      EXPECT_TRUE(markers[0]["doubts"].empty());
+      EXPECT_NEAR(markers[0]["pose"]["translation_m"][2], away_m, 0.01 * away_m);
+    }
+  }
+  std::free(tag->buf);
+  std::free(tag);
+  tag36h11_destroy(family);
 }
 
 TEST_F(Doubts, NoMarkerIsAFailureWithItsReason) {

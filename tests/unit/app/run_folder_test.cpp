@@ -1,5 +1,8 @@
 // What one run leaves in its folder, and what it says.
+#include <fcntl.h>
 #include <gmock/gmock.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -125,6 +128,26 @@ TEST_F(RunFolder, HasALogOfStepsFaultsAndReactions) {
   EXPECT_THAT(text_of(folder() / "r" / "report.html"), HasSubstr("<h2>Faults and reactions</h2>"));
 }
 
+// Without a CAN interface nothing is served, and the folder is looked at before.
+TEST_F(RunFolder, OfServedHardwareIsRefusedAsThatOfARun) {
+  const std::string serve = "serve turn_only --can lf_none0 --out s";
+  const Said said = run(serve);
+  EXPECT_NE(said.status, 0);
+  EXPECT_FALSE(std::filesystem::exists(folder() / "s")) << "what was not served leaves nothing";
+  EXPECT_FALSE(std::filesystem::exists(folder() / "s.writing"));
+
+  std::filesystem::create_directory(folder() / "s.writing");
+  const int other = ::open((folder() / "s.writing").c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  ASSERT_EQ(::flock(other, LOCK_EX | LOCK_NB), 0);
+  EXPECT_THAT(run(serve).err, HasSubstr("another run is writing there"));
+  ::close(other);
+
+  std::filesystem::create_directory(folder() / "s");
+  file("s/notes.txt", "mine");
+  EXPECT_THAT(run(serve).err, HasSubstr("s: is not empty and has no experiment.json"));
+  EXPECT_EQ(text_of(folder() / "s" / "notes.txt"), "mine");
+}
+
 // The page's charts are the record's own numbers: those of joints.csv and result.json.
 TEST_F(RunFolder, HasAReportWithTheNumbersOfTheRecord) {
   EXPECT_EQ(run("run drive_fault --no-outside --out r").status, 0);
@@ -155,18 +178,32 @@ TEST_F(RunFolder, HasAReportWithTheNumbersOfTheRecord) {
   for (; std::getline(csv, line); ++row) {
     ASSERT_LT(row, times.size());
     std::istringstream cells(line);
-    const auto next = [&] {
+    const auto expect_next = [&](const Json& shown_value, double tolerance) {
       std::string cell;
       std::getline(cells, cell, ',');
-      return std::stod(cell);
+      ASSERT_EQ(shown_value.is_null(), cell.empty()) << line;
+      if (!cell.empty()) {
+        ASSERT_NEAR(shown_value.get<double>(), std::stod(cell), tolerance);
+      }
     };
-    ASSERT_NEAR(times[row].get<double>(), next(), 1e-6);
+    expect_next(times[row], 1e-6);
     for (std::size_t joint = 0; joint < 5; ++joint) {
-      ASSERT_NEAR(positions[2 * joint]["v"][row].get<double>(), next(), 1e-5);
-      ASSERT_NEAR(positions[2 * joint + 1]["v"][row].get<double>(), next(), 1e-5);
-      ASSERT_NEAR(torques[joint]["v"][row].get<double>(), next(), 1e-3);
+      expect_next(positions[2 * joint]["v"][row], 1e-5);
+      expect_next(positions[2 * joint + 1]["v"][row], 1e-5);
+      expect_next(torques[joint]["v"][row], 1e-3);
+    }
+    // Before the drives have answered the core knows nothing of its joints; the first that it knows is how the arm is parked, with the shoulder at 0.6 rad.
+    const Json& shoulder = positions[2]["v"];
+    if (row == 0) {
+      EXPECT_TRUE(shoulder[row].is_null()) << shoulder[row];
+    } else if (shoulder[row - 1].is_null() && !shoulder[row].is_null()) {
+      EXPECT_NEAR(shoulder[row].get<double>(), 0.6, 0.01);
+      EXPECT_NEAR(positions[3]["v"][row].get<double>(), 0.6, 0.01);
     }
   }
+  // Of shared/safety/limits.yaml.
+  EXPECT_EQ(positions[0]["limits"], Json::parse("[-1.5508, 0.5288]"));
+  EXPECT_EQ(torques[3]["limits"], Json::parse("[-6.5, 6.5]"));
   EXPECT_EQ(row, times.size());
 
   const Json result = result_of("r");

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "host_sim/campaign/figures.hpp"
@@ -142,6 +143,39 @@ TEST(Comparison, OtherSeedsAreComparedByFishersTest) {
   EXPECT_EQ(change_of(comparison, "success", "share").n, 60u);
   EXPECT_TRUE(comparison.worse());
   EXPECT_THAT(comparison.notes, Contains("they have no seed in common: only the shares of success are compared"));
+}
+
+// Many figures move to and fro, so that there are many tests. Five pairs that fail now, and none the other way, have p = 2 / 2^5 = 0.0625 two-sided, which is lost
+// among them; by themselves 1 / 2^5 = 0.03125. Four have 1 / 16.
+TEST(Comparison, FailuresThatRoseAreWorseByThemselves) {
+  for (const std::size_t failures : {4, 5}) {
+    const Campaign before = test::campaign(50);
+    Campaign after = flown_again(before);
+    for (RunSummary& run : after.cells[0].runs) {
+      for (double& value : run.figures) value += (run.seed * 2654435761u >> 7) % 2 == 0 ? 0.01 : -0.01;
+    }
+    for (std::size_t i = 0; i < failures; ++i) after.cells[0].runs[i] = test::failed(i + 1, "turn", "no grip");
+    const Comparison comparison = compare(before, after, {}, "x");
+    EXPECT_EQ(change_of(comparison, "success", "share").verdict, Verdict::same);
+    const Change& rise = change_of(comparison, "failures", "share");
+    EXPECT_NEAR(rise.p, 1 / std::pow(2.0, static_cast<double>(failures)), 1e-12);
+    EXPECT_EQ(rise.after_counts, std::to_string(failures) + " of 50");
+    EXPECT_EQ(comparison.worse(), failures == 5) << text_of(comparison);
+    EXPECT_FALSE(compare(after, before, {}, "x").worse()) << "fewer failures";
+  }
+}
+
+// Other seeds: 0 of 10 before and 4 of 10 now have 210/4845 = 0.0433 (10 over 4, of 20 over 4); 3 of 10 have 120/1140 = 0.105.
+TEST(Comparison, FailuresOfOtherSeedsThatRoseAreWorseByThemselves) {
+  for (const std::size_t failures : {3, 4}) {
+    const Campaign before = test::campaign(10);
+    Campaign after = flown_again(before);
+    for (RunSummary& run : after.cells[0].runs) run.seed += 100;
+    for (std::size_t i = 0; i < failures; ++i) after.cells[0].runs[i] = test::failed(101 + i, "turn", "no grip");
+    const Comparison comparison = compare(before, after, {}, "x");
+    EXPECT_NEAR(change_of(comparison, "failures", "share").p, failures == 4 ? 210.0 / 4845 : 120.0 / 1140, 1e-9);
+    EXPECT_EQ(comparison.worse(), failures == 4);
+  }
 }
 
 TEST(Comparison, FalseSuccessesAreWorse) {

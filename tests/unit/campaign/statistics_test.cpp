@@ -57,6 +57,18 @@ TEST(Statistics, McNemarsTestIsTheBinomialTail) {
 
 // Hollander and Wolfe, Nonparametric Statistical Methods, 1973, p. 29: the depression scale factor of nine patients before and after therapy: V = 40, one-sided
 // 0.01953 (10 of 512).
+// Fisher's tea: of 4 cups all 4 right by chance in 1 of 70, 3 or more in 17 of 70. A sign test: 5 of 5 in 1 of 32, 4 or more in 6.
+TEST(Statistics, ARiseIsTheUpperTail) {
+  EXPECT_NEAR(fisher_rise(0, 4, 4, 4), 1.0 / 70, 1e-12);
+  EXPECT_NEAR(fisher_rise(1, 4, 3, 4), 17.0 / 70, 1e-12);
+  EXPECT_NEAR(fisher_rise(4, 4, 0, 4), 1, 1e-12);
+  EXPECT_NEAR(fisher_rise(0, 10, 0, 20), 1, 1e-12);
+  EXPECT_NEAR(mcnemar_rise(0, 5), 1.0 / 32, 1e-12);
+  EXPECT_NEAR(mcnemar_rise(1, 4), 6.0 / 32, 1e-12);
+  EXPECT_NEAR(mcnemar_rise(5, 0), 1, 1e-12);
+  EXPECT_NEAR(mcnemar_rise(0, 0), 1, 1e-12);
+}
+
 TEST(Statistics, TheSignedRankTestIsThePublishedOne) {
   const std::vector<double> before{1.83, 0.50, 1.62, 2.48, 1.68, 1.88, 1.55, 3.06, 1.30},
       after{0.878, 0.647, 0.598, 2.05, 1.06, 1.29, 1.06, 3.14, 1.29};

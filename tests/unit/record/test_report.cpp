@@ -220,6 +220,38 @@ TEST(Report, DrawsATargetDashedInTheColourOfWhatWasReached) {
   }
 }
 
+// A chart of -2 to 3 has a margin of 5 % of that: 3 lies 5.25 / 5.5 of the way from 210 up to 10.
+TEST(Report, DrawsASeriesLimitsInItsColourWithinTheChart) {
+  ReportData data;
+  ReportSeries bounded{"slew", {0, 1}, {0, 1}, false, {-2, 3}}, silent{"roll", {0, 1}, {unknown, unknown}, false, {-9, 9}};
+  data.charts = {{"Joints", "rad", {bounded, silent}}};
+  const std::string html = without(report_html(data), "script");
+  EXPECT_THAT(html, HasSubstr("<title>slew: limit 3</title><line class=\"limit s0\" x1=\"64.0\" y1=\"19.1\" x2=\"1104.0\" y2=\"19.1\"/>"));
+  EXPECT_THAT(html,
+              HasSubstr("<title>slew: limit -2</title><line class=\"limit s0\" x1=\"64.0\" y1=\"200.9\" x2=\"1104.0\" y2=\"200.9\"/>"));
+  EXPECT_THAT(html, HasSubstr("limits, each in its line's colour"));
+  EXPECT_THAT(html, Not(HasSubstr("roll: limit"))) << "nothing was recorded that it could limit";
+  data.charts[0].series[0].limits = {};
+  EXPECT_THAT(without(report_html(data), "script"), Not(HasSubstr("limits, each")));
+}
+
+// Twelve pixels high, a digit of DejaVu Sans is 7.7 wide (0.636 em); letters are narrower on the mean.
+TEST(Report, ATextBehindAPhasesBarEndsWithinTheDrawing) {
+  for (const char* outcome : {"done", "failed", "interrupted by hand"}) {
+    ReportData data;
+    PhaseRecord first, last;
+    first.name = "scan", first.start_s = 0, first.end_s = 100, first.outcome = "done";
+    last.name = "turn the valve", last.start_s = 100, last.end_s = 1120.5, last.outcome = outcome;
+    data.result.phases = {first, last};
+    const std::string html = report_html(data);
+    const std::string note = last.outcome == "done" ? "1020.5 s" : "1020.5 s, " + last.outcome;
+    const std::size_t at = html.find(">" + note + "</text>");
+    ASSERT_NE(at, html.npos) << note;
+    const std::size_t x = html.rfind(" x=\"", at);
+    EXPECT_LE(std::stod(html.substr(x + 4)) + 7.7 * static_cast<double>(note.size()), 1120) << note;
+  }
+}
+
 TEST(Report, IsTheSameForTheSameData) { EXPECT_EQ(report_html(small_run()), report_html(small_run())); }
 
 TEST(ReportErrors, AllowMoreInMurkyWater) {

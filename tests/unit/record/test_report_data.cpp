@@ -45,6 +45,7 @@ TEST(ReportData, HasEverySampleOfEverySeries) {
       if (recorded.t_s.size() > most_samples) continue;
       const Json& series = chart["series"][s];
       EXPECT_EQ(series["name"], recorded.name);
+      expect_equal(series["limits"], {recorded.limits.low, recorded.limits.high});
       expect_equal(series["v"], recorded.value);
       expect_equal(json["times"][series["t"].get<std::size_t>()], recorded.t_s);
     }

@@ -26,12 +26,9 @@ inline scene::Body box_body(const Vec3& size_m, const Pose& body_from_shape = Po
 // A fixed structure: infinite mass.
 class Wall {
  public:
-  Wall(BulletWorld& world, const scene::Body& body, const Pose& pose, double restitution, scene::BodyId id = scene::BodyId::panel)
+  Wall(BulletWorld& world, const scene::Body& body, const Pose& pose, scene::BodyId id = scene::BodyId::panel)
       : world_(world), shape_(make_collision_shape(body, Pose::Identity())), body_(0, nullptr, shape_.compound.get()) {
     body_.setWorldTransform(to_bullet(pose));
-    body_.setFriction(shape_.friction);
-    body_.setRestitution(std::sqrt(restitution));
-    body_.setContactProcessingThreshold(restitution > 0 ? 0 : BT_LARGE_FLOAT);
     body_.setUserIndex(int(id));
     world_.get().addCollisionObject(&body_);
   }
@@ -46,8 +43,7 @@ class Wall {
 // A mass that slides along x, y and z of `pose`, without turning. The colliding box is the last link's.
 class Sled {
  public:
-  Sled(BulletWorld& world, double mass_kg, const scene::Body& body, const Pose& pose, double restitution,
-       scene::BodyId id = scene::BodyId::finger_a)
+  Sled(BulletWorld& world, double mass_kg, const scene::Body& body, const Pose& pose, scene::BodyId id = scene::BodyId::finger_a)
       : world_(world), part_(3, pose) {
     const btVector3 inertia(1e-3, 1e-3, 1e-3);
     constexpr double rail_mass_kg = 1e-9;  // the rails weigh nothing beside the sled
@@ -57,9 +53,9 @@ class Sled {
                                   btVector3(0, 0, 0), btVector3(0, 0, 0), false);
     }
     part_.finish_links();
-    part_.add_collider(-1, make_collision_shape({}, Pose::Identity()), no_body, restitution, Friction::anchored);
-    for (int i = 0; i < 2; ++i) part_.add_collider(i, make_collision_shape({}, Pose::Identity()), no_body, restitution, Friction::anchored);
-    part_.add_collider(2, make_collision_shape(body, Pose::Identity()), int(id), restitution, Friction::anchored);
+    part_.add_collider(-1, make_collision_shape({}, Pose::Identity()), no_body, Friction::anchored);
+    for (int i = 0; i < 2; ++i) part_.add_collider(i, make_collision_shape({}, Pose::Identity()), no_body, Friction::anchored);
+    part_.add_collider(2, make_collision_shape(body, Pose::Identity()), int(id), Friction::anchored);
     part_.update_poses();
     part_.enter(world.get());
   }

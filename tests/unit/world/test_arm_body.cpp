@@ -15,12 +15,11 @@ constexpr std::size_t shoulder = 1, elbow = 2, roll = 3, jaw = 4;
 // The arm alone.
 struct Bench {
   WorldConfig config;
-  BulletWorld world{30};
+  BulletWorld world{30, 0};
   ArmBody arm;
 
   explicit Bench(const WorldConfig& of)
-      : config(of),
-        arm(of.arm, of.scene, {of.start_rad, of.joint_drag_nm_s, of.drive_stiffness_nm_rad, 0, of.step_s, of.drag_coefficient}) {
+      : config(of), arm(of.arm, of.scene, {of.start_rad, of.joint_drag_nm_s, of.drive_stiffness_nm_rad, of.step_s, of.drag_coefficient}) {
     arm.part().enter(world.get());
   }
   ~Bench() { arm.part().leave(world.get()); }

@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "host_sim/world/contact_force.hpp"
 #include "host_sim/world/contact_sensor.hpp"
@@ -15,6 +17,7 @@ namespace {
 using scene::BodyId;
 
 constexpr int iterations = 200;
+constexpr double gravity_m_s2 = 9.81;
 
 struct Collision {
   double restitution, window_s, step_s;
@@ -30,10 +33,6 @@ struct Measured {
 double slack_m_s(double restitution) { return restitution > 0 ? 1e-7 : 1.001 * FixedBaseSolver::push_out_m_s; }
 
 class StepRates : public testing::TestWithParam<double> {};
-
-void prepare(BulletWorld& world, double restitution) {
-  if (restitution > 0) world.make_restitution_exact();
-}
 
 template <typename BeforeStep>
 Measured measure(BulletWorld& world, const Collision& collision, double seconds, BodyId body, BeforeStep before_step) {
@@ -61,10 +60,9 @@ TEST_P(StepRates, collisionWithAFixedStructureGivesMassTimesSpeedChangeOverTheWi
       SCOPED_TRACE(testing::Message() << GetParam() << " Hz, window " << window_s << " s, e " << restitution);
       const double mass_kg = 189;
       const double speed_m_s = 0.2;
-      BulletWorld world(iterations);
-      prepare(world, restitution);
-      Sled sled(world, mass_kg, box_body(Vec3(0.4, 0.4, 0.4)), Pose::Identity(), restitution);
-      Wall wall(world, box_body(Vec3(1, 1, 0.2)), Pose(Eigen::Translation3d(0, 0, -0.3 - 0.0113)), restitution);
+      BulletWorld world(iterations, restitution);
+      Sled sled(world, mass_kg, box_body(Vec3(0.4, 0.4, 0.4)), Pose::Identity());
+      Wall wall(world, box_body(Vec3(1, 1, 0.2)), Pose(Eigen::Translation3d(0, 0, -0.3 - 0.0113)));
       sled.set_speed(Vec3(0, 0, -speed_m_s));
       const Measured measured = measure(world, {restitution, window_s, step_s}, 0.2, BodyId::finger_a, [] {});
       const double impulse_n_s = (1 + restitution) * mass_kg * speed_m_s;
@@ -81,10 +79,9 @@ TEST_P(StepRates, collisionOfTwoBodiesGivesTheReducedMassTimesSpeedChangeOverThe
   for (const double restitution : {0.0, 0.5, 1.0}) {
     SCOPED_TRACE(testing::Message() << GetParam() << " Hz, e " << restitution);
     const double m1 = 3, m2 = 5, v1 = 0.3, v2 = -0.1;
-    BulletWorld world(iterations);
-    prepare(world, restitution);
-    Sled first(world, m1, box_body(Vec3(0.1, 0.1, 0.1)), Pose::Identity(), restitution, BodyId::finger_a);
-    Sled second(world, m2, box_body(Vec3(0.1, 0.1, 0.1)), Pose(Eigen::Translation3d(0.1153, 0, 0)), restitution, BodyId::handle);
+    BulletWorld world(iterations, restitution);
+    Sled first(world, m1, box_body(Vec3(0.1, 0.1, 0.1)), Pose::Identity(), BodyId::finger_a);
+    Sled second(world, m2, box_body(Vec3(0.1, 0.1, 0.1)), Pose(Eigen::Translation3d(0.1153, 0, 0)), BodyId::handle);
     first.set_speed(Vec3(v1, 0, 0));
     second.set_speed(Vec3(v2, 0, 0));
     const Measured measured = measure(world, {restitution, 0.020, step_s}, 0.2, BodyId::finger_a, [] {});
@@ -102,23 +99,22 @@ TEST_P(StepRates, collisionOfALeverUsesItsInertia) {
   for (const double restitution : {0.0, 0.5, 1.0}) {
     SCOPED_TRACE(testing::Message() << GetParam() << " Hz, e " << restitution);
     const double inertia = 0.8, speed_rad_s = 0.5, arm_m = 0.45;
-    BulletWorld world(iterations);
-    prepare(world, restitution);
+    BulletWorld world(iterations, restitution);
     MultibodyPart lever(1, Pose::Identity());
     lever.body().setupRevolute(0, 1, btVector3(inertia, inertia, inertia), -1, btQuaternion::getIdentity(), btVector3(0, 0, 1),
                                btVector3(0, 0, 0), btVector3(0, 0, 0), false);
     lever.finish_links();
-    lever.add_collider(-1, make_collision_shape({}, Pose::Identity()), no_body, restitution, Friction::anchored);
+    lever.add_collider(-1, make_collision_shape({}, Pose::Identity()), no_body, Friction::anchored);
     scene::Body tip;
     tip.shapes.resize(1);
     tip.shapes[0].kind = scene::ShapeKind::sphere;
     tip.shapes[0].size_m = Vec3(0.02, 0, 0);
     tip.shapes[0].friction = 0;
     tip.shapes[0].body_from_shape.translation() = Vec3(arm_m, 0, 0);
-    lever.add_collider(0, make_collision_shape(tip, Pose::Identity()), int(BodyId::finger_a), restitution, Friction::anchored);
+    lever.add_collider(0, make_collision_shape(tip, Pose::Identity()), int(BodyId::finger_a), Friction::anchored);
     lever.update_poses();
     lever.enter(world.get());
-    Wall wall(world, box_body(Vec3(1, 0.1, 1), Pose::Identity(), 0), Pose(Eigen::Translation3d(arm_m, 0.07 + 0.002, 0)), restitution);
+    Wall wall(world, box_body(Vec3(1, 0.1, 1), Pose::Identity(), 0), Pose(Eigen::Translation3d(arm_m, 0.07 + 0.002, 0)));
     lever.body().setJointVel(0, speed_rad_s);
     const Measured measured = measure(world, {restitution, 0.020, step_s}, 0.1, BodyId::finger_a, [] {});
     const double force_n = (1 + restitution) * inertia * speed_rad_s / arm_m / 0.020;
@@ -130,13 +126,64 @@ TEST_P(StepRates, collisionOfALeverUsesItsInertia) {
 
 TEST_P(StepRates, weightAtRestReadsAsWeight) {
   const double step_s = 1 / GetParam();
-  BulletWorld world(iterations);
-  Sled sled(world, 20, box_body(Vec3(0.4, 0.4, 0.4)), Pose::Identity(), 0);
-  Wall wall(world, box_body(Vec3(1, 1, 0.2)), Pose(Eigen::Translation3d(0, 0, -0.3)), 0);
-  ForceWindow window(0.020, step_s);
-  measure(world, {0, 0.020, step_s}, 0.3, BodyId::finger_a, [&] { sled.push(Vec3(0, 0, -20 * 9.81)); });
-  const Measured measured = measure(world, {0, 0.020, step_s}, 0.1, BodyId::finger_a, [&] { sled.push(Vec3(0, 0, -20 * 9.81)); });
-  EXPECT_NEAR(measured.peak_n, 196.2, 0.002);
+  for (const double restitution : {0.0, 0.5}) {
+    SCOPED_TRACE(testing::Message() << GetParam() << " Hz, e " << restitution);
+    BulletWorld world(iterations, restitution);
+    Sled sled(world, 20, box_body(Vec3(0.4, 0.4, 0.4)), Pose::Identity());
+    Wall wall(world, box_body(Vec3(1, 1, 0.2)), Pose(Eigen::Translation3d(0, 0, -0.3)));
+    const auto weigh = [&] { sled.push(Vec3(0, 0, -20 * gravity_m_s2)); };
+    measure(world, {restitution, 0.020, step_s}, 0.3, BodyId::finger_a, weigh);
+    const Measured measured = measure(world, {restitution, 0.020, step_s}, 0.1, BodyId::finger_a, weigh);
+    EXPECT_NEAR(measured.peak_n, 20 * gravity_m_s2, 0.002);
+  }
+}
+
+// A body that falls from h bounces to e^2 h, and then to e^4 h. It is met within a step of the surface, v dt deep at most, and starts from there.
+TEST_P(StepRates, aDroppedBodyBouncesToTheSquareOfTheRestitution) {
+  const double step_s = 1 / GetParam();
+  for (const double restitution : {0.4, 0.7, 0.9}) {
+    SCOPED_TRACE(testing::Message() << GetParam() << " Hz, e " << restitution);
+    const double height_m = 0.4, mass_kg = 3, bottom_m = -0.05;
+    BulletWorld world(iterations, restitution);
+    Sled sled(world, mass_kg, box_body(Vec3(0.1, 0.1, 0.1)), Pose::Identity());
+    Wall wall(world, box_body(Vec3(1, 1, 0.2)), Pose(Eigen::Translation3d(0, 0, bottom_m - height_m - 0.1)));
+    std::vector<double> tops_m;
+    double speed_m_s = 0;
+    for (int i = 0; i < std::lround(3 / step_s) && tops_m.size() < 2; ++i) {
+      sled.push(Vec3(0, 0, -mass_kg * gravity_m_s2));
+      world.step(step_s);
+      const double before_m_s = speed_m_s;
+      speed_m_s = sled.speed_m_s().z();
+      if (before_m_s > 0 && speed_m_s <= 0) tops_m.push_back(height_m + sled.position_m().z());
+    }
+    ASSERT_EQ(tops_m.size(), 2U);
+    const double step_m = std::sqrt(2 * gravity_m_s2 * height_m) * step_s;
+    EXPECT_NEAR(tops_m[0], std::pow(restitution, 2) * height_m, step_m);
+    EXPECT_NEAR(tops_m[1], std::pow(restitution, 4) * height_m, 2 * step_m);
+  }
+}
+
+// What begins inside a wall, or was driven into it, comes out and does not jump. The last of it, as deep as a blow of one step, comes out at
+// the push-out's speed; what is deeper, in some `recovery_s`.
+TEST_P(StepRates, aBodyInPenetrationComesOutWithAnyRestitution) {
+  const double step_s = 1 / GetParam();
+  const double seconds = 10 * FixedBaseSolver::recovery_s + 1.2 * FixedBaseSolver::blow_m_s * step_s / FixedBaseSolver::push_out_m_s;
+  for (const double restitution : {0.0, 0.5, 1.0}) {
+    for (const double depth_m : {0.0002, 0.005}) {
+      SCOPED_TRACE(testing::Message() << GetParam() << " Hz, e " << restitution << ", " << depth_m << " m deep");
+      BulletWorld world(iterations, restitution);
+      Sled sled(world, 3, box_body(Vec3(0.1, 0.1, 0.1)), Pose::Identity());
+      Wall wall(world, box_body(Vec3(1, 1, 0.2)), Pose(Eigen::Translation3d(0, 0, depth_m - 0.15)));
+      double highest_m = 0;
+      for (int i = 0; i < std::lround(seconds / step_s); ++i) {
+        sled.push(Vec3(0, 0, -3 * gravity_m_s2));
+        world.step(step_s);
+        highest_m = std::max(highest_m, sled.position_m().z());
+      }
+      EXPECT_NEAR(sled.position_m().z(), depth_m, 1e-5);
+      EXPECT_LE(highest_m, depth_m + 1e-5);
+    }
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(From200HzTo2kHz, StepRates, testing::Values(200.0, 500.0, 1000.0, 2000.0));
@@ -147,9 +194,9 @@ TEST(FrictionCone, holdsBelowItsAngleAndSlidesWithTheRestAboveIt) {
   for (const double heading_deg : {0.0, 22.5, 45.0, 70.0}) {
     for (const double slope_deg : {15.0, 25.0, 28.0, 35.0}) {  // the cone's: 26.6
       SCOPED_TRACE(testing::Message() << "slope " << slope_deg << " deg toward " << heading_deg << " deg");
-      BulletWorld world(iterations);
-      Sled sled(world, mass_kg, box_body(Vec3(0.2, 0.2, 0.1), Pose::Identity(), mu), Pose::Identity(), 0);
-      Wall wall(world, box_body(Vec3(4, 4, 0.2), Pose::Identity(), 1.0), Pose(Eigen::Translation3d(0, 0, -0.15)), 0);
+      BulletWorld world(iterations, 0);
+      Sled sled(world, mass_kg, box_body(Vec3(0.2, 0.2, 0.1), Pose::Identity(), mu), Pose::Identity());
+      Wall wall(world, box_body(Vec3(4, 4, 0.2), Pose::Identity(), 1.0), Pose(Eigen::Translation3d(0, 0, -0.15)));
       const double slope = rad_from_deg(slope_deg);
       const Vec3 downhill(std::cos(rad_from_deg(heading_deg)), std::sin(rad_from_deg(heading_deg)), 0);
       const Vec3 weight = mass_kg * gravity * (std::sin(slope) * downhill - std::cos(slope) * Vec3::UnitZ());
@@ -158,6 +205,30 @@ TEST(FrictionCone, holdsBelowItsAngleAndSlidesWithTheRestAboveIt) {
       const double expected = std::max(0.0, gravity * (std::sin(slope) - mu * std::cos(slope))) * seconds;
       EXPECT_NEAR(sled.speed_m_s().dot(downhill), expected, 0.01 * expected + 1e-4);
       EXPECT_NEAR(sled.speed_m_s().cross(downhill).head<2>().norm(), 0, 1e-3);
+    }
+  }
+}
+
+// Two feet of a body and two plates of a floor, each of its own friction: what touches decides.
+TEST(FrictionOfAShape, isThatOfTheTwoShapesThatTouch) {
+  const double slope = rad_from_deg(35), mass_kg = 2, step_s = 0.001, seconds = 0.5;
+  const std::array<double, 2> feet{0.9, 0.3}, plates{0.2, 0.7};
+  for (std::size_t down = 0; down < 2; ++down) {
+    for (std::size_t over = 0; over < 2; ++over) {
+      SCOPED_TRACE(testing::Message() << "foot of " << feet[down] << " on a plate of " << plates[over]);
+      const auto at = [](double y, double z) { return Pose(Eigen::Translation3d(0, y, z)); };
+      scene::Body body, floor;
+      for (std::size_t i = 0; i < 2; ++i) {
+        body.shapes.push_back(box_body(Vec3(0.1, 0.1, 0.05), at(0, i == down ? -0.025 : 0.025), feet[i]).shapes.front());
+        floor.shapes.push_back(box_body(Vec3(4, 1, 0.2), at(i == over ? 0 : 1, 0), plates[i]).shapes.front());
+      }
+      BulletWorld world(iterations, 0);
+      Sled sled(world, mass_kg, body, Pose::Identity());
+      Wall wall(world, floor, at(0, -0.15));
+      const Vec3 weight = mass_kg * gravity_m_s2 * Vec3(std::sin(slope), 0, -std::cos(slope));
+      measure(world, {0, 0.020, step_s}, seconds, BodyId::finger_a, [&] { sled.push(weight); });
+      const double expected = gravity_m_s2 * (std::sin(slope) - feet[down] * plates[over] * std::cos(slope)) * seconds;
+      EXPECT_NEAR(sled.speed_m_s().x(), expected, 0.01 * expected);
     }
   }
 }

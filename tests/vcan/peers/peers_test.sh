@@ -54,10 +54,15 @@ trap - EXIT
 cat "$out/serve.log"
 [ $status -eq 0 ] || { echo "serve ended with $status" >&2; exit 1; }
 /usr/bin/python3 - "$out/serve" <<'CHECK'
-import json, pathlib, sys
+import hashlib, json, pathlib, sys
 run = pathlib.Path(sys.argv[1])
 result = json.loads((run / "result.json").read_text())
 assert result["nodes"] == "1, 2, 3, 4, 5, 6" and result["bus"]["received"] > 6000 and result["bus"]["send_failures"] == 0, result["bus"]
+experiment = json.loads((run / "experiment.json").read_text())
+digest = hashlib.sha256((run / "experiment.json").read_bytes()).hexdigest()
+assert result["provenance"]["experiment"] == digest and experiment["served nodes"] == result["nodes"], experiment
+assert result["provenance"]["command"].startswith("lanternfish serve buttons_only --seed 1 --can vcan0"), result["provenance"]
+assert (run / "scenario.yaml").read_text().count("tasks:") == 1 and not pathlib.Path(f"{run}.writing").exists()
 assert result["success"] is False and len(result["tasks"]) == 3, result["tasks"]
 lines = (run / "can0.log").read_text().splitlines()
 assert len(lines) == result["bus"]["received"] + result["bus"]["sent"], (len(lines), result["bus"])
