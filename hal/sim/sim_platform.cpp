@@ -176,9 +176,11 @@ PortStatus SimPlatform::receive_image(std::uint8_t camera, Image& image) {
   if (now_ < first.exposure.start + config_.image_latency) return port_empty;
 
   picture(first);
-  observer_.on_image({first.exposure, first.sequence, first.poses, &delivered_});
+  devices::Exposure stamped = first.exposure;
+  stamped.start = stamped.start + config_.stamp_offset;
+  observer_.on_image({stamped, first.sequence, first.poses, &delivered_});
   image.view = {delivered_.pixels.data(), delivered_.width, delivered_.height, delivered_.width};
-  image.exposure_start = first.exposure.start;
+  image.exposure_start = stamped.start;
   image.exposure = first.exposure.duration;
   image.sequence = first.sequence;
   pending_.pop_front();

@@ -26,7 +26,7 @@ namespace lf::hal {
 
 // An exposure with its image and what is true of it.
 struct ExposureRecord {
-  devices::Exposure exposure;
+  devices::Exposure exposure;  // its start as the time stamp has it
   std::uint32_t sequence = 0;
   scene::BodyPoses poses;  // at mid-exposure
   const optics::Frame* frame = nullptr;
