@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "hal/ports.hpp"
+#include "hal/sim/exposure_under_way.hpp"
 #include "hal/sim/render_worker.hpp"
-#include "hal/sim/shutter.hpp"
 #include "hal/sim/sim_config.hpp"
 #include "hal/sim/sim_faults.hpp"
 #include "hal/vision/panel_vision.hpp"
@@ -76,11 +76,7 @@ class SimPlatform : public Unattended {
 
  private:
   struct PendingExposure {
-    devices::Exposure exposure;
-    std::uint32_t sequence = 0;
-    Shutter shutter;
-    scene::BodyPoses poses;  // at its middle
-    bool posed = false;
+    ExposureUnderWay under_way;
     RenderWorker::Ticket ticket = 0;
     bool submitted = false;
   };
@@ -88,7 +84,6 @@ class SimPlatform : public Unattended {
   void step();
   void expose();
   void expose(PendingExposure& pending);
-  optics::Shot shot_of(const PendingExposure& pending) const;
   void picture(const PendingExposure& exposure);
   bool spoil_image(Image& image);
   PanelResult see_as_it_is(const PanelRequest& request) const;

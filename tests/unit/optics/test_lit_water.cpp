@@ -121,8 +121,8 @@ TEST(SheetGlow, IsTheIntegralAcrossTheSheet) {
         const Vec3 p = laser_from_base * Vec3(t * ray), turned = laser_from_base.linear() * ray;
         const double r = std::hypot(p.y(), p.z()), cosine = -(p.y() * turned.y() + p.z() * turned.z()) / r;
         const double phase = 0.99 * henyey_greenstein(0.935, cosine) + 0.01 * henyey_greenstein(-0.14, cosine);
-        const double irradiance = s.laser.power_w / (2 * s.laser.fan_half_angle_rad * r) *
-                                  std::exp(-p.x() * p.x() / (2 * sigma * sigma)) / (sigma * std::sqrt(2 * pi));
+        const double irradiance = s.laser.power_w / (2 * s.laser.fan_half_angle_rad * r) * std::exp(-p.x() * p.x() / (2 * sigma * sigma)) /
+                                  (sigma * std::sqrt(2 * pi));
         return irradiance * b * phase * std::exp(-c * (r + t));
       };
       // About the place where the ray crosses the sheet.

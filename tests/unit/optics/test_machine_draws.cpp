@@ -205,10 +205,13 @@ TEST(Camera, AGhostHasItsShareAndItsPlace) {
   const std::size_t top = static_cast<std::size_t>(std::max_element(low.begin(), low.end()) - low.begin());
   ASSERT_LT(low[top] * 0.25, 250);
   const auto part = [](const std::vector<double>& picture, std::size_t middle_v) {
-    return moments({picture.begin() + static_cast<std::ptrdiff_t>(middle_v) - 10, picture.begin() + static_cast<std::ptrdiff_t>(middle_v) + 11});
+    return moments(
+        {picture.begin() + static_cast<std::ptrdiff_t>(middle_v) - 10, picture.begin() + static_cast<std::ptrdiff_t>(middle_v) + 11});
   };
   const Moments stripe = part(low, top), ghost = part(high, top + 23);
-  ASSERT_LT(*std::max_element(high.begin() + static_cast<std::ptrdiff_t>(top) + 13, high.begin() + static_cast<std::ptrdiff_t>(top) + 34) * 4, 250);
+  ASSERT_LT(
+      *std::max_element(high.begin() + static_cast<std::ptrdiff_t>(top) + 13, high.begin() + static_cast<std::ptrdiff_t>(top) + 34) * 4,
+      250);
   // A level of 8 bits is 0.25 here, and read noise rounds it out to a few hundredths.
   EXPECT_NEAR(ghost.sum / stripe.sum, 0.01, 0.0004);
   EXPECT_NEAR(ghost.mean - stripe.mean, 0, 0.05);
