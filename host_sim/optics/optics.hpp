@@ -75,6 +75,7 @@ struct LaserConfig {
   double divergence_rad = 0.0027;  // with the waist 1.9 mm at 0.6 m
   double waist_at_m = 0;           // the range of the waist: hypot(waist_sigma_m, divergence_rad (r - waist_at_m))
   // A second, faint line as wide as the beam: its height over the beam's, and its place in standard deviations of the beam, toward +x. Both share the power.
+  // Their centre of mass lies in the sheet: a calibration of the line takes a constant shift for the sheet's own place.
   double lobe_share = 0;
   double lobe_sigmas = 2.5;
   // Power over the fan's mean, even in the tangent of the angle from one end of the fan to the other; empty: even.

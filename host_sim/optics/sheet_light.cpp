@@ -188,10 +188,11 @@ StripePacket SheetLight::line(const SurfacePacket& s, const Water& water, float 
   if (!any(stripe.reached)) return stripe;
 
   const Lanes peak = w_per_rad_ / (range * root_two_pi * sigma_m) * weight;
-  Lanes core = box_gaussian(stripe.offset_px, sigma_px, sigma, wide);
   // A surface that faces the camera shows the laser's +x at negative offsets.
+  const Lanes first = stripe.offset_px - lobe_share_ / (1.f + lobe_share_) * lobe_sigmas_ * sigma_px;
+  Lanes core = box_gaussian(first, sigma_px, sigma, wide);
   if (lobe_share_ > 0.f) {
-    const Lanes lobe = box_gaussian(stripe.offset_px + lobe_sigmas_ * sigma_px, sigma_px, sigma, wide);
+    const Lanes lobe = box_gaussian(first + lobe_sigmas_ * sigma_px, sigma_px, sigma, wide);
     core = (core + lobe_share_ * lobe) / (1.f + lobe_share_);
   }
   for (std::size_t band = 0; band < 3; ++band) {

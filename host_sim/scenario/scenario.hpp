@@ -112,7 +112,7 @@ struct Calibration {
   Spread handle_m = Spread::around(0, 0.0005);
   Spread button_size_m = Spread::around(0, 0.0005);
   Spread marker_size_m = Spread::around(0, 0.0002);
-  Spread marker_flat_m = Spread::around(0, 0.0003);
+  Spread marker_flat_m = Spread::around(0, 0.0002);
 };
 
 struct Arm {
