@@ -23,6 +23,8 @@ struct SimConfig {
   Duration image_latency = Duration::from_ms(30);
   // By which the shutter opens after the trigger that the core takes for the exposure's start: the camera's own delay, and the offset of the two clocks.
   Duration exposure_delay;
+  // By which the time stamp of an image is late: an offset of the camera's clock.
+  Duration stamp_offset;
   // From a question to panel vision until its answer can be received. The real one takes 20 to 100 ms on a desktop.
   Duration vision_latency = Duration::from_ms(300);
 

@@ -83,37 +83,21 @@ void SimPlatform::step() {
   observer_.on_step(now_, world_);
 }
 
-// Once the shutter has closed the renderer makes the picture, with the bodies where they were at its middle.
+// Once the shutter has closed the renderer makes the picture.
 void SimPlatform::expose(PendingExposure& pending) {
-  pending.shutter.pass(now_ - physics_step, now_, devices_.laser_on(), devices_.lamps_on());
-  if (!pending.posed && now_ + physics_step / 2 >= pending.shutter.middle()) {
-    pending.poses = world_.base_from_body();
-    pending.posed = true;
-  }
-  if (!pending.shutter.closed(now_)) return;
+  ExposureUnderWay& exposure = pending.under_way;
+  exposure.pass(now_ - physics_step, now_, devices_.laser_on(), devices_.lamps_on(), world_.base_from_body());
+  if (!exposure.closed(now_)) return;
   pending.submitted = true;
-  if (renderer_) pending.ticket = renderer_->submit(shot_of(pending));
-}
-
-optics::Shot SimPlatform::shot_of(const PendingExposure& pending) const {
-  optics::Shot shot;
-  shot.frame_number = pending.sequence;
-  shot.poses = pending.poses;
-  shot.laser = pending.shutter.laser_share();
-  shot.lamps = pending.shutter.lamp_share();
-  shot.exposure = pending.exposure.duration;
-  shot.time_s = pending.shutter.middle().s();
-  shot.truth = pending.exposure.laser;
-  return shot;
+  if (!renderer_) return;
+  optics::Shot shot = exposure.shot();
+  shot.truth = exposure.ordered().laser;
+  pending.ticket = renderer_->submit(shot);
 }
 
 void SimPlatform::expose() {
   while (const std::optional<devices::Exposure> exposure = devices_.take_exposure()) {
-    PendingExposure pending;
-    pending.exposure = *exposure;
-    pending.sequence = exposures_++;
-    pending.shutter = Shutter(exposure->start, config_.exposure_delay, exposure->duration);
-    pending_.push_back(std::move(pending));
+    pending_.push_back({.under_way = ExposureUnderWay(*exposure, exposures_++, config_.exposure_delay)});
   }
   for (PendingExposure& pending : pending_) {
     if (!pending.submitted) expose(pending);
@@ -138,7 +122,7 @@ PortStatus SimPlatform::send_can(std::uint8_t bus, std::span<const CanFrame> fra
 // The picture of a finished exposure, into `delivered_`.
 void SimPlatform::picture(const PendingExposure& exposure) {
   if (renderer_) return renderer_->wait(exposure.ticket, delivered_);
-  blank_picture(exposure.sequence, delivered_);
+  blank_picture(exposure.under_way.sequence(), delivered_);
 }
 
 // False for an image that gets lost.
@@ -173,14 +157,16 @@ PortStatus SimPlatform::receive_image(std::uint8_t camera, Image& image) {
   if (faults_.on(SimFaultKind::camera_fails)) return io_error;
   if (pending_.empty() || !pending_.front().submitted) return port_empty;
   const PendingExposure& first = pending_.front();
-  if (now_ < first.exposure.start + config_.image_latency) return port_empty;
+  devices::Exposure stamped = first.under_way.ordered();
+  if (now_ < stamped.start + config_.image_latency) return port_empty;
 
   picture(first);
-  observer_.on_image({first.exposure, first.sequence, first.poses, &delivered_});
+  stamped.start = stamped.start + config_.stamp_offset;
+  observer_.on_image({stamped, first.under_way.sequence(), first.under_way.poses(), &delivered_});
   image.view = {delivered_.pixels.data(), delivered_.width, delivered_.height, delivered_.width};
-  image.exposure_start = first.exposure.start;
-  image.exposure = first.exposure.duration;
-  image.sequence = first.sequence;
+  image.exposure_start = stamped.start;
+  image.exposure = stamped.duration;
+  image.sequence = first.under_way.sequence();
   pending_.pop_front();
   return spoil_image(image) ? port_ok : port_empty;
 }

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "hal/ports.hpp"
+#include "hal/sim/exposure_under_way.hpp"
 #include "hal/sim/render_worker.hpp"
-#include "hal/sim/shutter.hpp"
 #include "hal/sim/sim_config.hpp"
 #include "hal/sim/sim_faults.hpp"
 #include "hal/vision/panel_vision.hpp"
@@ -26,7 +26,7 @@ namespace lf::hal {
 
 // An exposure with its image and what is true of it.
 struct ExposureRecord {
-  devices::Exposure exposure;
+  devices::Exposure exposure;  // its start as the time stamp has it
   std::uint32_t sequence = 0;
   scene::BodyPoses poses;  // at mid-exposure
   const optics::Frame* frame = nullptr;
@@ -76,11 +76,7 @@ class SimPlatform : public Unattended {
 
  private:
   struct PendingExposure {
-    devices::Exposure exposure;
-    std::uint32_t sequence = 0;
-    Shutter shutter;
-    scene::BodyPoses poses;  // at its middle
-    bool posed = false;
+    ExposureUnderWay under_way;
     RenderWorker::Ticket ticket = 0;
     bool submitted = false;
   };
@@ -88,7 +84,6 @@ class SimPlatform : public Unattended {
   void step();
   void expose();
   void expose(PendingExposure& pending);
-  optics::Shot shot_of(const PendingExposure& pending) const;
   void picture(const PendingExposure& exposure);
   bool spoil_image(Image& image);
   PanelResult see_as_it_is(const PanelRequest& request) const;

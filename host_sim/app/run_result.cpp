@@ -153,6 +153,17 @@ std::vector<std::pair<std::string, std::string>> conditions(const scenario::Samp
       {"laser's mounting error", formatted("%.2f mm, %.3f deg", 1e3 * s.laser_shift_m.norm(), deg_from_rad(s.laser_turn_rad.norm()))}};
 }
 
+namespace {
+
+std::vector<double> phase_percent(const scenario::Sample& s) {
+  std::vector<double> percent;
+  for (const double ratio : s.forward_ratio) percent.push_back(100 * (ratio - 1));
+  percent.push_back(100 * (s.back_ratio - 1));
+  return percent;
+}
+
+}  // namespace
+
 record::DrawnRecord drawn(const scenario::Sample& s) {
   const auto metres = [](const Vec3& v) { return std::vector<double>{v.x(), v.y(), v.z()}; };
   const auto degrees = [](const Vec3& v) { return std::vector<double>{deg_from_rad(v.x()), deg_from_rad(v.y()), deg_from_rad(v.z())}; };
@@ -182,6 +193,24 @@ record::DrawnRecord drawn(const scenario::Sample& s) {
           {"beam_percent", {100 * (s.beam_ratio - 1)}},
           {"button_shift_m", std::move(button_shift_m)},
           {"exposure_delay_ms", {1e3 * s.exposure_delay_s}},
+          {"stamp_ms", {1e3 * s.stamp_s}},
+          {"handle_m", metres(s.handle_m)},
+          {"button_size_m", {s.button_size_m.x(), s.button_size_m.y()}},
+          {"marker_size_m", {s.marker_size_m}},
+          {"marker_flat_m", {s.marker_flat_m.x(), s.marker_flat_m.y()}},
+          {"scattering_percent", {100 * (s.scattering_ratio - 1)}},
+          {"phase_percent", phase_percent(s)},
+          {"corner_blur", {s.corner_blur}},
+          {"electrons_per_grey", {s.electrons_per_grey}},
+          {"exposure_jitter", {s.exposure_jitter}},
+          {"ghost_share", {s.ghost_share}},
+          {"ghost_px", {s.ghost_px}},
+          {"speckle", {s.speckle}},
+          {"waist_at_m", {s.waist_at_m}},
+          {"lobe_share", {s.lobe_share}},
+          {"lobe_sigmas", {s.lobe_sigmas}},
+          {"fan_low_percent", {100 * s.fan_low_ratio}},
+          {"fan_fine_percent", {100 * s.fan_fine_ratio}},
           {"particles_per_l", {s.particles_per_l}}};
 }
 

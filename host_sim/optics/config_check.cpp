@@ -71,6 +71,11 @@ void check(const LaserConfig& laser) {
   require_light(laser.band, "laser: band");
   require_range(laser.waist_sigma_m, 1e-5, 0.1, "laser: waist_sigma_m");
   require_range(laser.divergence_rad, 0, 0.5, "laser: divergence_rad");
+  require_range(laser.waist_at_m, -10, 10, "laser: waist_at_m");
+  require_range(laser.lobe_share, 0, 0.5, "laser: lobe_share");
+  require_range(laser.lobe_sigmas, -5, 5, "laser: lobe_sigmas");
+  require(laser.fan_profile.empty() || laser.fan_profile.size() >= 2, "laser: fan_profile has one entry");
+  for (const float power : laser.fan_profile) require_range(power, 0, 10, "laser: fan_profile");
   require_range(laser.speckle, 0, 0.5, "laser: speckle");
 }
 
@@ -86,6 +91,11 @@ void check(const WaterConfig& water) {
   require_range(water.attenuation_per_m, 0, 100, "water: attenuation_per_m");
   for (const float ratio : water.attenuation_ratio) require_range(ratio, 0, 100, "water: attenuation_ratio");
   require_range(water.scattering_share, -1, 1, "water: scattering_share");
+  require_range(water.scattering_ratio, 0, 10, "water: scattering_ratio");
+  require_range(water.back_share, 0, 1, "water: back_share");
+  require_range(water.forward.core, 0, 1, "water: forward scatter's core");
+  for (const ScatterTerm& term : water.forward.terms) require_range(term.weight, 1e-6, 1, "water: forward scatter's weight");
+  require_range(water.forward.sum(), 0, 1.000001, "water: forward scatter's sum");
   require_range(water.asymmetry, -0.99, 0.99, "water: asymmetry");
   require_range(water.particles_per_l, 0, 1000, "water: particles_per_l");
   require(water.current_m_s.allFinite() && water.current_m_s.norm() <= 10, "water: current_m_s is not finite, or faster than 10 m/s");

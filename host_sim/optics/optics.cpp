@@ -26,7 +26,7 @@ struct Viewer {
         tiles(camera),
         still(camera, tiles, optics.scene, optics.edge_sampling),
         live(camera, tiles),
-        formation(camera),
+        formation(camera, optics.water.forward),
         particles(camera, optics.water, optics.seed) {}
   Camera camera;
   Tiles tiles;

@@ -12,6 +12,7 @@
 #include <optional>
 #include <vector>
 
+#include "host_sim/optics/formation/forward_scatter.hpp"
 #include "shared/calibration/calibration.hpp"
 #include "shared/geometry/pose.hpp"
 #include "shared/messages/time.hpp"
@@ -70,8 +71,15 @@ struct LaserConfig {
   double cone_rad = 0;             // the sheet's half-angle error: 0 a plane; otherwise the cone that a tilted port bends it to, toward +x
   double power_w = 0.45;           // even over the fan; with a pattern over all of the image
   Rgb band{0.f, 1.f, 0.f};         // how the power falls on red, green, blue: 532 nm
-  double waist_sigma_m = 0.0010;   // cross-section's standard deviation at range r: hypot(waist_sigma_m, divergence_rad r)
+  double waist_sigma_m = 0.0010;   // cross-section's standard deviation at its waist
   double divergence_rad = 0.0027;  // with the waist 1.9 mm at 0.6 m
+  double waist_at_m = 0;           // the range of the waist: hypot(waist_sigma_m, divergence_rad (r - waist_at_m))
+  // A second, faint line as wide as the beam: its height over the beam's, and its place in standard deviations of the beam, toward +x. Both share the power.
+  // Their centre of mass lies in the sheet: a calibration of the line takes a constant shift for the sheet's own place.
+  double lobe_share = 0;
+  double lobe_sigmas = 2.5;
+  // Power over the fan's mean, even in the tangent of the angle from one end of the fan to the other; empty: even.
+  std::vector<float> fan_profile;
   double speckle =
       0.18;  // standard deviation of one pixel's laser light over its mean: 0.13 to 0.19 of a diode, 0.18 to 0.25 of a DPSS laser
   std::optional<Pattern> pattern;
@@ -91,6 +99,9 @@ struct WaterConfig {
   double attenuation_per_m = 0.3;            // of the green band, absorption and scattering together
   Rgb attenuation_ratio{2.2f, 1.0f, 1.15f};  // of the bands to green: red is absorbed most
   double scattering_share = sea_water;       // of the attenuation of green that scatters (single-scattering albedo)
+  double scattering_ratio = 1;               // what scatters over that; never more than the attenuation
+  ForwardScatter forward;                    // where the light goes that scatters forward
+  double back_share = 0.01;                  // of the scattered light: the lobe that reaches behind
   double asymmetry = 0.935;                  // Henyey-Greenstein g of the forward lobe, which has 99 % of the scattered light
   double particles_per_l = 0;                // specks of more than 0.5 mm in a litre; of d mm and more there are (0.5 / d)^2 as many
   Vec3 current_m_s{0.01, 0.02, 0.0005};      // that carries them; they settle, too

@@ -1,5 +1,6 @@
 #include "host_sim/optics/sheet_light.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace lf::optics {
@@ -8,6 +9,7 @@ namespace {
 constexpr float root_two_pi = 2.50662827f;
 constexpr float fan_edge = 0.01f;              // the fan's ends fade over this much of tan(angle)
 constexpr float core_reach = 4.5f;             // standard deviations: 4e-5 of the peak
+constexpr float lobe_reach = 3.6f;             // the same of a lobe of 3 %
 constexpr float skirt_reach_rad = 3 * 0.088f;  // the widest Gaussian but one; of the widest 5e-4 of the peak is left there at 0.8 1/m
 constexpr int end_count = 512;
 constexpr float least_range_m = 0.02f;  // nothing is lit closer to the emitter
@@ -26,11 +28,16 @@ SheetLight::SheetLight(const LaserConfig& config, const Pose& base_from_body, co
       w_per_rad_(share * static_cast<float>(config.power_w / (2 * config.fan_half_angle_rad))),
       waist_m_(static_cast<float>(config.waist_sigma_m)),
       divergence_rad_(static_cast<float>(config.divergence_rad)),
+      waist_at_m_(static_cast<float>(config.waist_at_m)),
+      lobe_share_(static_cast<float>(config.lobe_share)),
+      lobe_sigmas_(static_cast<float>(config.lobe_sigmas)),
+      reach_sigmas_(config.lobe_share > 0 ? std::max(core_reach, std::abs(lobe_sigmas_) + lobe_reach) : core_reach),
       tan_cone_(static_cast<float>(std::tan(config.cone_rad))),
       cos_cone_(static_cast<float>(std::cos(config.cone_rad))),
       power_w_(share * config.power_w),
       band_(config.band),
-      pattern_(pattern) {
+      pattern_(pattern),
+      fan_profile_(config.fan_profile) {
   const Pose base_from_laser = base_from_body * config.body_from_laser;
   base_from_laser_ = Rotation(base_from_laser.linear());
   emitter_m_ = base_from_laser.translation();
@@ -63,7 +70,26 @@ Lanes SheetLight::end_m(Lanes y, Lanes z) const {
 Lanes SheetLight::fan_weight(Lanes y, Lanes z) const {
   const Lanes tangent = abs(y) / max(z, all_lanes(1e-4f));
   const Lanes weight = clamp((tan_half_fan_ - tangent) / fan_edge + 0.5f, 0.f, 1.f);
-  return z > 1e-3f ? weight : Lanes{};
+  if (fan_profile_.empty()) return z > 1e-3f ? weight : Lanes{};
+  return z > 1e-3f ? weight * fan_power(y / max(z, all_lanes(1e-4f))) : Lanes{};
+}
+
+// By straight lines between the profile's places.
+Lanes SheetLight::fan_power(Lanes tangent) const {
+  const auto last = static_cast<float>(fan_profile_.size() - 1);
+  const Lanes place = clamp((0.5f + 0.5f * tangent / tan_half_fan_) * last, 0.f, last);
+  Lanes power;
+  for (int lane = 0; lane < lane_count; ++lane) {
+    const auto left = std::min(static_cast<std::size_t>(place[lane]), fan_profile_.size() - 2);
+    const float on = place[lane] - static_cast<float>(left);
+    power[lane] = fan_profile_[left] + on * (fan_profile_[left + 1] - fan_profile_[left]);
+  }
+  return power;
+}
+
+Lanes SheetLight::sigma2_m2(Lanes range) const {
+  const Lanes widening = divergence_rad_ * (range - waist_at_m_);
+  return waist_m_ * waist_m_ + widening * widening;
 }
 
 StripePacket SheetLight::on_surface(const SurfacePacket& surface, const Water& water, float footprint, float blur_px) const {
@@ -96,9 +122,8 @@ SheetLight::ImageDistance SheetLight::image_distance(const SurfacePacket& s) con
 // Lanes that the line reaches, as wide as it is at this place; compared as squares.
 LaneMask SheetLight::within_reach(const SurfacePacket& s, const ImageDistance& d, float blur_px) const {
   const Lanes facing2 = s.facing * s.facing;
-  const Lanes spot =
-      (waist_m_ * waist_m_ + divergence_rad_ * divergence_rad_ * d.range2) * facing2 + (blur_px * blur_px + 1.f) * d.gradient2;
-  return s.met & (d.w * d.w < core_reach * core_reach * spot);
+  const Lanes spot = sigma2_m2(sqrt(d.range2)) * facing2 + (blur_px * blur_px + 1.f) * d.gradient2;
+  return s.met & (d.w * d.w < reach_sigmas_ * reach_sigmas_ * spot);
 }
 
 void SheetLight::add_skirt(const SurfacePacket& s, const ImageDistance& d, const Water& water, StripePacket& stripe) const {
@@ -111,9 +136,9 @@ void SheetLight::add_skirt(const SurfacePacket& s, const ImageDistance& d, const
   beside &= (weight > 0.f) & (range < end_m(d.place.y, d.place.z) * (1.f + skirt_reach_rad) + past_end_m);
   if (!any(beside)) return;
   const Lanes distance2 = d.distance * d.distance;
-  const Lanes sigma2 = waist_m_ * waist_m_ + divergence_rad_ * divergence_rad_ * range * range;
+  const Lanes sigma2 = sigma2_m2(range);
   Lanes bells{};
-  for (const ScatterTerm& term : scatter_terms) {
+  for (const ScatterTerm& term : water.forward.terms) {
     const Lanes per_width2 = 1.f / (sigma2 + term.angle_rad * term.angle_rad * range * range);
     bells += term.weight * sqrt(per_width2) * exp(-0.5f * distance2 * per_width2);
   }
@@ -152,7 +177,7 @@ StripePacket SheetLight::line(const SurfacePacket& s, const Water& water, float 
   const Lanes camera_range = norm(centre - s.origin);
   const Lanes incidence = max(-dot(s.normal, beam) / range, Lanes{});
   const Lanes weight = fan_weight(centre_place.y, centre_place.z) * incidence;
-  const Lanes sigma_m = sqrt(waist_m_ * waist_m_ + divergence_rad_ * divergence_rad_ * range * range);
+  const Lanes sigma_m = sqrt(sigma2_m2(range));
   const Lanes sigma_px = sigma_m * px_per_m;
 
   const Lanes box_u = footprint * abs(w_du) / gradient, box_v = footprint * abs(w_dv) / gradient;
@@ -163,7 +188,13 @@ StripePacket SheetLight::line(const SurfacePacket& s, const Water& water, float 
   if (!any(stripe.reached)) return stripe;
 
   const Lanes peak = w_per_rad_ / (range * root_two_pi * sigma_m) * weight;
-  const Lanes core = box_gaussian(stripe.offset_px, sigma_px, sigma, wide);
+  // A surface that faces the camera shows the laser's +x at negative offsets.
+  const Lanes first = stripe.offset_px - lobe_share_ / (1.f + lobe_share_) * lobe_sigmas_ * sigma_px;
+  Lanes core = box_gaussian(first, sigma_px, sigma, wide);
+  if (lobe_share_ > 0.f) {
+    const Lanes lobe = box_gaussian(first + lobe_sigmas_ * sigma_px, sigma_px, sigma, wide);
+    core = (core + lobe_share_ * lobe) / (1.f + lobe_share_);
+  }
   for (std::size_t band = 0; band < 3; ++band) {
     if (band_[band] == 0.f) continue;
     const Lanes path = range + camera_range;
@@ -180,7 +211,7 @@ RgbLanes SheetLight::at(const Lanes3& point, const Water& water) const {
   const Lanes range = max(norm(place), all_lanes(least_range_m));
   const Lanes lit = range < end_m(place.y, place.z) ? fan_weight(place.y, place.z) : Lanes{};
   const Lanes off_m = place.x - tan_cone_ * sqrt(place.y * place.y + place.z * place.z);
-  const Lanes sigma2 = waist_m_ * waist_m_ + divergence_rad_ * divergence_rad_ * range * range;
+  const Lanes sigma2 = sigma2_m2(range);
   const Lanes light = lit * w_per_rad_ / (range * root_two_pi * sqrt(sigma2)) * exp(-0.5f * off_m * off_m / sigma2);
   for (std::size_t band = 0; band < 3; ++band) irradiance[band] = light * band_[band] * water.transmission(band, range);
   return irradiance;

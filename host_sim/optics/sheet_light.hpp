@@ -7,6 +7,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "host_sim/optics/pattern.hpp"
@@ -35,7 +36,7 @@ struct Glow {
 
 class SheetLight {
  public:
-  // `pattern` (not owned, outlives this) takes the line's place where it has a value.
+  // `config`'s fan profile and `pattern` are not owned and outlive this. A pattern takes the line's place where it has a value.
   // `share`: of the exposure during which it is on.
   SheetLight(const LaserConfig& config, const Pose& base_from_body, const std::optional<PatternTable>& pattern, float share = 1);
 
@@ -67,15 +68,18 @@ class SheetLight {
   StripePacket line(const SurfacePacket& surface, const Water& water, float footprint, float blur_px) const;
   StripePacket picture(const SurfacePacket& surface, const Water& water, float footprint) const;
   Lanes fan_weight(Lanes y, Lanes z) const;
-  Lanes end_m(Lanes y, Lanes z) const;  // range at which the sheet's ray through a place in it ends
+  Lanes fan_power(Lanes tangent) const;  // over the mean
+  Lanes sigma2_m2(Lanes range) const;    // of the beam's cross-section
+  Lanes end_m(Lanes y, Lanes z) const;   // range at which the sheet's ray through a place in it ends
 
   Rotation base_from_laser_;  // columns: plane normal, along the fan, central ray
   Lanes3 emitter_;
   Vec3 emitter_m_;
-  float tan_half_fan_, w_per_rad_, waist_m_, divergence_rad_, tan_cone_, cos_cone_;
+  float tan_half_fan_, w_per_rad_, waist_m_, divergence_rad_, waist_at_m_, lobe_share_, lobe_sigmas_, reach_sigmas_, tan_cone_, cos_cone_;
   double power_w_;
   Rgb band_;
   const std::optional<PatternTable>& pattern_;
+  std::span<const float> fan_profile_;
   std::vector<float> ends_m_;  // of rays that are even in the tangent of their angle; empty: none ends
 };
 

@@ -20,15 +20,15 @@ class Water {
 
   // The same of light that is as bright all round, a lamp's or a wide surface's: what is scattered forward is not lost to it.
   Lanes broad_transmission(std::size_t band, Lanes path_m) const {
-    return exp((scatter_forward * scattering_per_m - attenuation_per_m[band]) * path_m);
+    return exp((forward_share * scattering_per_m - attenuation_per_m[band]) * path_m);
   }
 
   // Light that scatters again and again: the kernel of one scattering K makes exp(b R K) of the direct light (Wells, 1977). K's core is no spread at all, so that
   // direct() is exactly the part that has none, and scattered() the rest, whose shape is taken to be K's. Both are over the light that has not scattered.
-  Lanes direct(Lanes path_m) const { return exp(scatter_core * depth(path_m)); }
+  Lanes direct(Lanes path_m) const { return exp(forward.core * depth(path_m)); }
   Lanes scattered(Lanes path_m) const {
     const Lanes d = depth(path_m);
-    return (exp(scatter_forward * d) - exp(scatter_core * d)) / (scatter_forward - scatter_core);
+    return (exp(forward_share * d) - exp(forward.core * d)) / (forward_share - forward.core);
   }
 
   // Scattered radiance per irradiance and metre of path, 1/(sr m), of light that turns by an angle with this cosine: two lobes after Henyey and Greenstein. With the
@@ -41,11 +41,13 @@ class Water {
 
   Rgb attenuation_per_m{};
   float scattering_per_m = 0;  // of every band
-  float asymmetry;
+  ForwardScatter forward;
+  float forward_share;  // of the light that scatters once
+  float asymmetry, back_share;
   Rgb ambient_w_m2, water_w_m2_sr;
 
  private:
-  static constexpr float back_share = 0.01f, back_asymmetry = -0.14f;
+  static constexpr float back_asymmetry = -0.14f;
   static constexpr float most_depth = 20;  // optical: nothing is seen through more
   Lanes depth(Lanes path_m) const { return min(scattering_per_m * path_m, all_lanes(most_depth)); }
   static Lanes lobe(float g, Lanes cosine) {

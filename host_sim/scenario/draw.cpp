@@ -33,6 +33,25 @@ class Draws {
   std::uint64_t seed_;
 };
 
+void draw_light(const Scenario& s, const Draws& draws, Sample& sample) {
+  const auto ratio = [&](const Spread& percent, const std::string& name) { return 1 + 0.01 * draws.of(percent, name); };
+  sample.scattering_ratio = ratio(s.water.scattering_percent, "water.scattering_percent");
+  for (std::size_t i = 0; i < sample.forward_ratio.size(); ++i)
+    sample.forward_ratio[i] = ratio(s.water.phase_percent, "water.phase_percent." + std::to_string(i));
+  sample.back_ratio = ratio(s.water.phase_percent, "water.phase_percent.back");
+  sample.corner_blur = draws.of(s.camera.corner_blur, "camera.corner_blur");
+  sample.electrons_per_grey = draws.of(s.camera.electrons_per_grey, "camera.electrons_per_grey");
+  sample.exposure_jitter = draws.of(s.camera.exposure_jitter, "camera.exposure_jitter");
+  sample.ghost_share = draws.of(s.camera.ghost_share, "camera.ghost_share");
+  sample.ghost_px = draws.of(s.camera.ghost_px, "camera.ghost_px");
+  sample.speckle = draws.of(s.laser.speckle, "laser.speckle");
+  sample.waist_at_m = draws.of(s.laser.waist_at_m, "laser.waist_at_m");
+  sample.lobe_share = draws.of(s.laser.lobe_share, "laser.lobe_share");
+  sample.lobe_sigmas = draws.of(s.laser.lobe_sigmas, "laser.lobe_sigmas") * (draws.of(s.laser.lobe_ahead, "laser.lobe_ahead") ? 1 : -1);
+  sample.fan_low_ratio = 0.01 * draws.of(s.laser.fan_low_percent, "laser.fan_low_percent");
+  sample.fan_fine_ratio = 0.01 * draws.of(s.laser.fan_fine_percent, "laser.fan_fine_percent");
+}
+
 }  // namespace
 
 std::uint64_t bits(std::uint64_t seed, std::string_view name) { return splitmix64(splitmix64(seed) ^ fnv1a(name)); }
@@ -82,10 +101,17 @@ Sample draw(const Scenario& s, std::uint64_t seed) {
   for (std::size_t i = 0; i < sample.button_shift_m.size(); ++i)
     sample.button_shift_m[i] = draws.each_axis(c.buttons_m, "calibration.buttons_m." + std::to_string(i)).head<2>();
   sample.exposure_delay_s = 1e-3 * draws.of(c.exposure_delay_ms, "calibration.exposure_delay_ms");
+  sample.stamp_s = 1e-3 * draws.of(c.stamp_ms, "calibration.stamp_ms");
+  sample.handle_m = draws.each_axis(c.handle_m, "calibration.handle_m");
+  sample.button_size_m = draws.each_axis(c.button_size_m, "calibration.button_size_m").head<2>();
+  sample.marker_size_m = draws.of(c.marker_size_m, "calibration.marker_size_m");
+  sample.marker_flat_m = draws.each_axis(c.marker_flat_m, "calibration.marker_flat_m").head<2>();
+  draw_light(s, draws, sample);
   sample.particles_per_l = draws.of(s.water.particles_per_l, "water.particles_per_l");
   const std::uint64_t sensor_seed = s.sensors.seed > 0 ? static_cast<std::uint64_t>(s.sensors.seed) : seed;
   sample.optics_seed = bits(sensor_seed, "sensors.optics");
   sample.devices_seed = bits(sensor_seed, "sensors.devices");
+  sample.fan_seed = bits(seed, "laser.fan");
   return sample;
 }
 

@@ -38,8 +38,20 @@ struct Sample {
   Vec3 distortion_px = Vec3::Zero();  // at the picture's corners: by k1, p1, p2
   double laser_cone_rad = 0;
   std::array<Vec2, PanelLayout::button_count> button_shift_m{Vec2::Zero(), Vec2::Zero(), Vec2::Zero()};
-  double exposure_delay_s = 0;
+  double exposure_delay_s = 0, stamp_s = 0;
+  Vec3 handle_m = Vec3::Zero();       // on its length, thickness and height
+  Vec2 button_size_m = Vec2::Zero();  // on width and height
+  double marker_size_m = 0;
+  Vec2 marker_flat_m = Vec2::Zero();  // by which the plate's far edge stands off, along the panel's x and y
   double particles_per_l = 0;
+  // The light's way.
+  double scattering_ratio = 1;                         // over that of the attenuation
+  std::array<double, 5> forward_ratio{1, 1, 1, 1, 1};  // of the forward scatter's core and terms
+  double back_ratio = 1;
+  double corner_blur = 1, electrons_per_grey = 0, exposure_jitter = 0, ghost_share = 0, ghost_px = 0;
+  double speckle = 0, waist_at_m = 0, lobe_share = 0, lobe_sigmas = 0;  // the lobe's place signed
+  double fan_low_ratio = 0, fan_fine_ratio = 0;
+  std::uint64_t fan_seed = 0;
   std::uint64_t optics_seed = 0;
   std::uint64_t devices_seed = 0;
 };

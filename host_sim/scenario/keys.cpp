@@ -46,6 +46,9 @@ void add_sight(Keys& all, Scenario& s) {
                     "attenuation of green light, absorption and scattering together"));
   all.push_back(key("water.scattering_share", "", -1, 1, &s.water.scattering_share,
                     "of the attenuation that scatters; below 0: as much as sea water of that attenuation"));
+  all.push_back(key("water.scattering_percent", "%", -50, 50, &s.water.scattering_percent, "unknown part of what scatters"));
+  all.push_back(key("water.phase_percent", "%", -50, 50, &s.water.phase_percent,
+                    "unknown part of each share of the light that scatters: near, far, farther and back"));
   all.push_back(key("water.asymmetry", "", -0.99, 0.99, &s.water.asymmetry, "Henyey-Greenstein g of the light that scatters forward"));
   all.push_back(key("water.particles_per_l", "1/l", 0, 100, &s.water.particles_per_l, "specks of more than 0.5 mm in a litre of water"));
   all.push_back(key("water.ambient", "", 0, 100, &s.water.ambient, "daylight, over the default's"));
@@ -55,11 +58,26 @@ void add_sight(Keys& all, Scenario& s) {
   all.push_back(key("camera.noise_grey", "grey", 0, 50, &s.camera.noise_grey, "standard deviation of the read noise"));
   all.push_back(
       key("camera.blur_px", "px", 0, 4.5, &s.camera.blur_px, "standard deviation of the lens's spot in the middle of the picture"));
+  all.push_back(key("camera.corner_blur", "", 1, 2.5, &s.camera.corner_blur,
+                    "the spot at the picture's corners, over that in the middle; no spot is wider than 4.5 px"));
+  all.push_back(key("camera.electrons_per_grey", "", 5, 1000, &s.camera.electrons_per_grey,
+                    "electrons of a grey level at gain 1: the light's own noise; the core takes it for 40"));
+  all.push_back(key("camera.exposure_jitter", "", 0, 0.02, &s.camera.exposure_jitter,
+                    "standard deviation of a frame's exposure, or of the light, over the ordered one"));
+  all.push_back(key("camera.ghost_share", "", 0, 0.01, &s.camera.ghost_share, "of the laser's light, in a second reflection"));
+  all.push_back(key("camera.ghost_px", "px", 0, 100, &s.camera.ghost_px, "how far down the picture the second reflection lies"));
   config::add_camera(all, s.camera);
   all.push_back(key("laser.power_w", "W", 0, 10, &s.laser.power_w, "power of the line"));
   all.push_back(
       key("laser.waist_sigma_m", "m", 0.0001, 0.02, &s.laser.waist_sigma_m, "standard deviation of its cross-section at the emitter"));
   all.push_back(key("laser.speckle", "", 0, 0.5, &s.laser.speckle, "standard deviation of a pixel's laser light over its mean"));
+  all.push_back(key("laser.waist_at_m", "m", -0.5, 0.5, &s.laser.waist_at_m, "range at which the line is narrowest"));
+  all.push_back(key("laser.lobe_share", "", 0, 0.1, &s.laser.lobe_share, "height of a second line beside the first, over the first's"));
+  all.push_back(
+      key("laser.lobe_sigmas", "", 0, 4, &s.laser.lobe_sigmas, "how far the second line lies from the first, in its standard deviations"));
+  all.push_back(key("laser.lobe_ahead", "", 0, 0, &s.laser.lobe_ahead, "whether it lies on the side of the laser's x axis"));
+  all.push_back(key("laser.fan_low_percent", "%", 0, 50, &s.laser.fan_low_percent, "most that the power changes slowly along the line"));
+  all.push_back(key("laser.fan_fine_percent", "%", 0, 30, &s.laser.fan_fine_percent, "most that it changes in fine structure"));
   config::add_laser(all, s.laser);
   all.push_back(key("mounting.camera_m", "m", -0.005, 0.005, &s.mounting.camera_m, "unknown shift of the camera, each axis"));
   all.push_back(key("mounting.camera_deg", "deg", -0.4, 0.4, &s.mounting.camera_deg, "unknown turn of the camera, each axis"));
@@ -85,6 +103,12 @@ void add_calibration(Keys& all, Scenario& s) {
   all.push_back(key("calibration.buttons_m", "m", -0.002, 0.002, &c.buttons_m, "unknown shift of each button on the panel, each axis"));
   all.push_back(key("calibration.exposure_delay_ms", "ms", 0, 2, &c.exposure_delay_ms,
                     "from the trigger that the core takes for an exposure's start until the shutter opens"));
+  all.push_back(key("calibration.stamp_ms", "ms", -1, 1, &c.stamp_ms, "by which an image's time stamp is late"));
+  all.push_back(key("calibration.handle_m", "m", -0.002, 0.002, &c.handle_m, "unknown part of the handle's length, thickness and height"));
+  all.push_back(key("calibration.button_size_m", "m", -0.002, 0.002, &c.button_size_m, "unknown part of the buttons' width and height"));
+  all.push_back(key("calibration.marker_size_m", "m", -0.001, 0.001, &c.marker_size_m, "unknown part of the marker's size"));
+  all.push_back(key("calibration.marker_flat_m", "m", -0.002, 0.002, &c.marker_flat_m,
+                    "how far an edge of the marker's plate stands off the panel, each axis"));
 }
 
 void add_machine(Keys& all, Scenario& s) {

@@ -52,6 +52,8 @@ struct Buttons : world::ButtonConfig {
 struct Water {
   Spread attenuation_per_m{0.1, 0.8};  // of green light, absorption and scattering together
   double scattering_share = optics::WaterConfig{}.scattering_share;
+  Spread scattering_percent = Spread::around(0, 30);  // of what scatters of that attenuation
+  Spread phase_percent = Spread::around(0, 30);       // of each share of the phase function, before they are brought to their sum
   double asymmetry = optics::WaterConfig{}.asymmetry;
   Spread particles_per_l{0.1, 3};
   double ambient = 1.0;  // daylight over the default's
@@ -66,12 +68,23 @@ struct Camera : config::Camera {
   bool always_on = false;  // a frame every camera period, needed or not
   Spread noise_grey{1, 3};
   double blur_px = optics::CameraConfig{}.blur_px;
+  Spread corner_blur{1.3, 2.0};
+  Spread electrons_per_grey{20, 80};     // at gain 1: wells of 5,000 to 20,000 electrons; the core takes it for 40
+  Spread exposure_jitter{0.002, 0.007};  // of two frames' ratio 0.3 to 1 %
+  Spread ghost_share{1e-4, 1.6e-3};      // from a port to an uncoated filter
+  Spread ghost_px{6, 17};                // 2 t tan(angle): a filter of 1 mm that is tilted by 1 to 3 degrees, pixels of 6 um
 };
 
 struct Laser : config::Laser {
   double power_w = optics::LaserConfig{}.power_w;
   double waist_sigma_m = optics::LaserConfig{}.waist_sigma_m;
-  double speckle = optics::LaserConfig{}.speckle;
+  Spread speckle{0.13, 0.25};                   // of a diode to of a DPSS laser
+  Spread waist_at_m = Spread::around(0, 0.18);  // 30 % of the range to the panel
+  Spread lobe_share{0.01, 0.03};
+  Spread lobe_sigmas{2, 3};
+  Chance lobe_ahead = Chance::either;  // on which side
+  Spread fan_low_percent{0, 15};       // of the power, slowly along the line
+  Spread fan_fine_percent{0, 5};       // and in fine structure
 };
 
 // Assembly errors that nobody measured: between the machine as it is and as its calibration says. Drawn for each axis and joint on its own.
@@ -95,6 +108,11 @@ struct Calibration {
   Spread beam_percent = Spread::around(0, 20);    // of the line's width
   Spread buttons_m = Spread::around(0, 0.0005);
   Spread exposure_delay_ms{0, 0.5};
+  Spread stamp_ms = Spread::around(0, 0.2);
+  Spread handle_m = Spread::around(0, 0.0005);
+  Spread button_size_m = Spread::around(0, 0.0005);
+  Spread marker_size_m = Spread::around(0, 0.0002);
+  Spread marker_flat_m = Spread::around(0, 0.0002);
 };
 
 struct Arm {

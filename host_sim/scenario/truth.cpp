@@ -14,6 +14,7 @@
 #include "host_sim/scenario/instance.hpp"
 #include "shared/arm/arm_description.hpp"
 #include "shared/input_error.hpp"
+#include "shared/random.hpp"
 #include "shared/scene/panel_scene.hpp"
 
 namespace lf::scenario {
@@ -46,14 +47,22 @@ void move_marker(scene::Body& panel, const Sample& sample) {
   const Pose error = small_pose(sample.marker_shift_m, Vec3(0, 0, sample.marker_turn_rad));
   for (scene::Shape& shape : panel.shapes) {
     if (shape.marker_id < 0) continue;
-    shape.body_from_shape.translation() += error.translation();
-    shape.body_from_shape.linear() = error.linear() * shape.body_from_shape.linear();
+    // A plate that one edge holds off the panel: about its middle it is turned, and lifted by half as much.
+    const Vec3 tilt = Vec3(sample.marker_flat_m.y(), -sample.marker_flat_m.x(), 0) / shape.size_m.x();
+    shape.body_from_shape.translation() += error.translation() + Vec3(0, 0, 0.5 * sample.marker_flat_m.lpNorm<1>());
+    shape.body_from_shape.linear() = small_pose(Vec3::Zero(), tilt).linear() * error.linear() * shape.body_from_shape.linear();
   }
 }
 
-// The panel as it was built: its buttons off their drawn places.
+// The panel as it was built: its buttons off their drawn places, its parts off their drawn sizes.
 PanelLayout true_layout(PanelLayout layout, const Sample& sample) {
   for (std::size_t i = 0; i < layout.buttons_m.size(); ++i) layout.buttons_m[i] += sample.button_shift_m[i];
+  layout.handle_length_m += sample.handle_m.x();
+  layout.handle_thickness_m += sample.handle_m.y();
+  layout.handle_height_m += sample.handle_m.z();
+  layout.button_width_m += sample.button_size_m.x();
+  layout.button_height_m += sample.button_size_m.y();
+  layout.marker_size_m += sample.marker_size_m;
   return layout;
 }
 
@@ -115,6 +124,28 @@ std::vector<optics::LampConfig> lamps(double power) {
   return all;
 }
 
+// Waves of these numbers along the fan, of random phases, that change the power by `most` of it at most.
+void add_waves(int first, int last, double most, std::uint64_t seed, std::vector<float>& profile) {
+  std::vector<double> sum(profile.size());
+  for (int wave = first; wave <= last; ++wave) {
+    const double phase = 2 * pi * uniform(seed, "wave." + std::to_string(wave));
+    for (std::size_t i = 0; i < sum.size(); ++i)
+      sum[i] += std::cos(pi * wave * static_cast<double>(i) / static_cast<double>(sum.size() - 1) + phase);
+  }
+  double mean = 0, greatest = 0;
+  for (const double value : sum) mean += value / static_cast<double>(sum.size());
+  for (const double value : sum) greatest = std::max(greatest, std::abs(value - mean));
+  for (std::size_t i = 0; i < sum.size(); ++i) profile[i] += static_cast<float>(most * (sum[i] - mean) / greatest);
+}
+
+// Low orders of a line's optics, and fine structure of some 2 to 7 px here.
+std::vector<float> fan_profile(const Sample& sample) {
+  std::vector<float> profile(513, 1.f);
+  if (sample.fan_low_ratio > 0) add_waves(1, 4, sample.fan_low_ratio, sample.fan_seed, profile);
+  if (sample.fan_fine_ratio > 0) add_waves(40, 120, sample.fan_fine_ratio, splitmix64(sample.fan_seed), profile);
+  return profile;
+}
+
 optics::OpticsConfig optics_config(const Scenario& scenario, const Sample& sample, const Nominal& nominal,
                                    const world::WorldConfig& world) {
   optics::OpticsConfig optics;
@@ -125,6 +156,11 @@ optics::OpticsConfig optics_config(const Scenario& scenario, const Sample& sampl
   camera.exposure = nominal.controller.camera.exposure;
   camera.read_noise_grey = sample.camera_noise_grey;
   camera.blur_px = std::min(scenario.camera.blur_px * sample.lens_ratio, optics::GaussianTaps::widest_px);
+  camera.corner_blur = sample.corner_blur;
+  camera.electrons_per_grey = sample.electrons_per_grey;
+  camera.exposure_jitter = sample.exposure_jitter;
+  camera.ghost_share = sample.ghost_share;
+  camera.ghost_px = sample.ghost_px;
   optics.cameras.push_back(camera);
 
   optics::LaserConfig laser;
@@ -139,13 +175,20 @@ optics::OpticsConfig optics_config(const Scenario& scenario, const Sample& sampl
   laser.power_w = scenario.laser.power_w;
   laser.waist_sigma_m = scenario.laser.waist_sigma_m * sample.beam_ratio;
   laser.divergence_rad *= sample.beam_ratio;
-  laser.speckle = scenario.laser.speckle;
+  laser.speckle = sample.speckle;
+  laser.waist_at_m = sample.waist_at_m;
+  laser.lobe_share = sample.lobe_share;
+  laser.lobe_sigmas = sample.lobe_sigmas;
+  laser.fan_profile = fan_profile(sample);
   optics.lasers.push_back(laser);
 
   optics.lamps = lamps(scenario.lamps.power);
   optics.water.attenuation_per_m = sample.attenuation_per_m;
   optics.water.scattering_share = scenario.water.scattering_share;
   optics.water.asymmetry = scenario.water.asymmetry;
+  optics.water.scattering_ratio = sample.scattering_ratio;
+  optics.water.forward = optics.water.forward.varied(sample.forward_ratio);
+  optics.water.back_share *= sample.back_ratio;
   optics.water.particles_per_l = sample.particles_per_l;
   for (float& band : optics.water.ambient_w_m2) band *= static_cast<float>(scenario.water.ambient);
   for (float& band : optics.water.water_w_m2_sr) band *= static_cast<float>(scenario.water.ambient);
@@ -371,6 +414,7 @@ hal::SimConfig make_truth(const Scenario& scenario, const Sample& sample, const 
   sim.vision.panel = scenario.panel;
   sim.image_latency = Duration::from_s(scenario.latency.image_ms * 1e-3);
   sim.exposure_delay = Duration::from_s(sample.exposure_delay_s);
+  sim.stamp_offset = Duration::from_s(sample.stamp_s);
   sim.vision_latency = Duration::from_s(scenario.latency.panel_vision_ms * 1e-3);
   return sim;
 }

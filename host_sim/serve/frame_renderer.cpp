@@ -2,17 +2,6 @@
 
 namespace lf::serve {
 
-optics::Shot shot_of(const PictureOrder& order) {
-  optics::Shot shot;
-  shot.frame_number = order.info.sequence;
-  shot.poses = order.poses;
-  shot.laser = (order.info.flags & frame_laser) != 0 ? 1 : 0;
-  shot.lamps = (order.info.flags & frame_lamps) != 0 ? 1 : 0;
-  shot.exposure = Duration::from_ns(order.info.exposure_ns);
-  shot.time_s = Time::from_ns(order.info.start_ns).s();
-  return shot;
-}
-
 void fill_size(RecordInfo& info, const optics::Frame& frame) {
   info.kind = 0;
   info.width = frame.width;
@@ -22,7 +11,7 @@ void fill_size(RecordInfo& info, const optics::Frame& frame) {
 
 bool ThreadRenderer::submit(const PictureOrder& order) {
   if (waiting_.size() >= most_pictures_under_way) return false;
-  waiting_.push_back({order.info, worker_.submit(shot_of(order))});
+  waiting_.push_back({order.info, worker_.submit(order.shot)});
   return true;
 }
 

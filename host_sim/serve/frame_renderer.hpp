@@ -13,10 +13,10 @@
 
 namespace lf::serve {
 
-// What is to be drawn. `info` is handed on with the picture; its sequence picks the camera's noise.
+// What is to be drawn. `info` is handed on with the picture.
 struct PictureOrder {
   RecordInfo info;
-  scene::BodyPoses poses;  // at mid-exposure
+  optics::Shot shot;
 };
 
 struct Picture {
@@ -54,8 +54,6 @@ class ThreadRenderer : public FrameRenderer {
   optics::Frame frame_;
 };
 
-// The exposure as the optics take it.
-optics::Shot shot_of(const PictureOrder& order);
 void fill_size(RecordInfo& info, const optics::Frame& frame);
 
 }  // namespace lf::serve

@@ -18,13 +18,18 @@ enum class CameraTrouble : std::uint8_t {
   away,    // unplugged
 };
 
+// As they light the scene: after the interlock.
+struct Outputs {
+  bool laser = false, lamps = false;
+};
+
 class LoopCamera {
  public:
   virtual ~LoopCamera() = default;
   // In the order of the exposures.
   virtual void expose(const devices::Exposure& exposure) = 0;
-  // Once a step, at simulated time `t`, with the bodies as they are then.
-  virtual void step(Time t, const scene::BodyPoses& poses, const Pace& pace) = 0;
+  // Once a step, at simulated time `t`, with the bodies as they are then and the outputs as they were in the step.
+  virtual void step(Time t, Outputs outputs, const scene::BodyPoses& poses, const Pace& pace) = 0;
   // Until simulated time `until`.
   virtual void set_trouble(CameraTrouble trouble, Time until) = 0;
 };

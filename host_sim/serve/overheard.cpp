@@ -74,9 +74,11 @@ void OverheardOutputs::on_sync(Time t) {
   if (counter_ == last_counter_) return;
   last_counter_ = counter_;
   if (exposure_us_ == 0) return;
-  const bool laser = (outputs_ & can_map::output_laser) != 0 && interlock_closed_;
-  exposures_.push_back({t, Duration::from_us(exposure_us_), counter_, laser, (outputs_ & can_map::output_lamps) != 0});
+  exposures_.push_back({t, Duration::from_us(exposure_us_), counter_, laser_on(), lamps_on()});
 }
+
+bool OverheardOutputs::laser_on() const { return (outputs_ & can_map::output_laser) != 0 && interlock_closed_; }
+bool OverheardOutputs::lamps_on() const { return (outputs_ & can_map::output_lamps) != 0; }
 
 std::optional<devices::Exposure> OverheardOutputs::take_exposure() {
   if (exposures_.empty()) return std::nullopt;

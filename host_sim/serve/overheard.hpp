@@ -43,6 +43,8 @@ class OverheardOutputs {
   void hear(const CanFrame& frame, Time t);
   // The camera was triggered at a SYNC; oldest first, each once.
   std::optional<devices::Exposure> take_exposure();
+  bool laser_on() const;  // after the interlock
+  bool lamps_on() const;
 
  private:
   void on_sync(Time t);

@@ -20,29 +20,37 @@ std::int64_t now_ns() { return hal::linux_calls().monotonic_ns(); }
 
 }  // namespace
 
-ExposurePayload pack(const scene::BodyPoses& poses) {
+ExposurePayload pack(const optics::Shot& shot) {
   ExposurePayload payload;
-  double* to = payload.numbers.data();
-  for (const Pose& pose : poses) {
+  double* to = payload.poses.data();
+  for (const Pose& pose : shot.poses) {
     const Mat3 rotation = pose.linear();
     const Vec3 translation = pose.translation();
     std::copy_n(rotation.data(), 9, to);
     std::copy_n(translation.data(), 3, to + 9);
     to += 12;
   }
+  payload.laser = static_cast<double>(shot.laser);
+  payload.lamps = static_cast<double>(shot.lamps);
+  payload.time_s = shot.time_s;
   return payload;
 }
 
-scene::BodyPoses unpack(const ExposurePayload& payload) {
-  scene::BodyPoses poses;
-  const double* from = payload.numbers.data();
-  for (Pose& pose : poses) {
+optics::Shot unpack(const RecordInfo& info, const ExposurePayload& payload) {
+  optics::Shot shot;
+  shot.frame_number = info.sequence;
+  shot.exposure = Duration::from_ns(info.exposure_ns);
+  shot.laser = static_cast<float>(payload.laser);
+  shot.lamps = static_cast<float>(payload.lamps);
+  shot.time_s = payload.time_s;
+  const double* from = payload.poses.data();
+  for (Pose& pose : shot.poses) {
     pose = Pose::Identity();
     pose.linear() = Eigen::Map<const Mat3>(from);
     pose.translation() = Eigen::Map<const Vec3>(from + 9);
     from += 12;
   }
-  return poses;
+  return shot;
 }
 
 std::size_t exposure_ring_bytes() { return frame_ring_bytes(exposure_slots, sizeof(ExposurePayload)); }
@@ -71,7 +79,7 @@ bool RemoteRenderer::submit(const PictureOrder& order) {
   under_way_.push_back(order.info);
   RecordInfo info = order.info;
   info.kind = kind_exposure;
-  const ExposurePayload payload = pack(order.poses);
+  const ExposurePayload payload = pack(order.shot);
   return exposures_.write(info, std::as_bytes(std::span(&payload, 1)), now_ns());
 }
 
@@ -94,19 +102,18 @@ RenderServer render_frames(const optics::OpticsConfig& config, const std::string
   optics::Frame frame;
   RenderServer server;
   while (!stop()) {
-    PictureOrder order;
+    RecordInfo info;
     ExposurePayload payload;
-    if (exposures.take(order.info, std::as_writable_bytes(std::span(&payload, 1))) != FrameRingReader::Answer::record) {
+    if (exposures.take(info, std::as_writable_bytes(std::span(&payload, 1))) != FrameRingReader::Answer::record) {
       pictures.beat(now_ns());
       std::this_thread::sleep_for(look_again);
       continue;
     }
-    if (order.info.kind != kind_exposure || order.info.bytes != sizeof payload) continue;
-    order.poses = unpack(payload);
+    if (info.kind != kind_exposure || info.bytes != sizeof payload) continue;
     const std::int64_t start = now_ns();
-    optics.render(shot_of(order), frame);
-    fill_size(order.info, frame);
-    pictures.write(order.info, std::as_bytes(std::span(frame.pixels)), now_ns());
+    optics.render(unpack(info, payload), frame);
+    fill_size(info, frame);
+    pictures.write(info, std::as_bytes(std::span(frame.pixels)), now_ns());
     server.render_ms.push_back(1e-6 * static_cast<double>(now_ns() - start));
     ++server.pictures;
   }

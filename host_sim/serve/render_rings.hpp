@@ -24,11 +24,13 @@ namespace lf::serve {
 inline constexpr std::uint32_t kind_exposure = 1;  // RecordInfo::kind of what follows here
 
 // base_from_body of every body: rotation column by column, then translation in metres. Doubles, so that the picture is the very one of a single process.
+// Then the shares of the exposure during which laser and lamps are on, and the time of its middle, s. Its length and number are the record's.
 struct ExposurePayload {
-  std::array<double, 12 * scene::body_count> numbers{};
+  std::array<double, 12 * scene::body_count> poses{};
+  double laser = 0, lamps = 0, time_s = 0;
 };
-ExposurePayload pack(const scene::BodyPoses& poses);
-scene::BodyPoses unpack(const ExposurePayload& payload);
+ExposurePayload pack(const optics::Shot& shot);
+optics::Shot unpack(const RecordInfo& info, const ExposurePayload& payload);
 
 inline constexpr std::uint32_t exposure_slots = 16;
 std::size_t exposure_ring_bytes();

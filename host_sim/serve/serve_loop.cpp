@@ -29,7 +29,7 @@ void ServeLoop::turn() {
   while (const std::optional<devices::Exposure> exposure = bus_.take_exposure()) {
     if (camera_ != nullptr) camera_->expose(*exposure);
   }
-  if (camera_ != nullptr) camera_->step(t, world_.base_from_body(), pace_);
+  if (camera_ != nullptr) camera_->step(t, bus_.outputs(), world_.base_from_body(), pace_);
   if (const std::optional<std::string> report = pace_.second_report(link_.now()); report && say_) say_(*report);
   say_link_changes();
 }

@@ -63,7 +63,7 @@ ServeResult serve(const ServeRequest& request, bool (*stop)()) {
   std::optional<ServedCamera> camera;
   if (target) {
     renderer = make_renderer(request, sim.optics);
-    camera.emplace(*renderer, *target, sim.image_latency);
+    camera.emplace(*renderer, *target, sim);
   }
   warm_up(sim.world);
   OrderReader orders(request.orders);

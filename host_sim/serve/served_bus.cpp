@@ -110,6 +110,11 @@ JointDrives ServedBus::drives(const JointReadings& readings) const {
   return drives;
 }
 
+Outputs ServedBus::outputs() const {
+  if (served_.has(devices::NodeRack::io_slot)) return {rack_.laser_on(), rack_.lamps_on()};
+  return {real_outputs_.laser_on(), real_outputs_.lamps_on()};
+}
+
 std::optional<devices::Exposure> ServedBus::take_exposure() {
   return served_.has(devices::NodeRack::io_slot) ? rack_.take_exposure() : real_outputs_.take_exposure();
 }

@@ -10,6 +10,7 @@
 #include "host_sim/devices/bus/bus_record.hpp"
 #include "host_sim/devices/canopen/node_rack.hpp"
 #include "host_sim/serve/can_link.hpp"
+#include "host_sim/serve/loop_camera.hpp"
 #include "host_sim/serve/node_set.hpp"
 #include "host_sim/serve/overheard.hpp"
 #include "host_sim/serve/pace.hpp"
@@ -45,6 +46,8 @@ class ServedBus {
   JointDrives drives(const JointReadings& readings) const;
   // Exposures in simulated time, of the served output node or of the real one.
   std::optional<devices::Exposure> take_exposure();
+  // Of the same node, as they are now.
+  Outputs outputs() const;
 
   const Stats& stats() const { return stats_; }
   int link_error() const { return link_error_; }  // of the last call; 0 when it was well

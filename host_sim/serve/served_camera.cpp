@@ -1,6 +1,5 @@
 #include "host_sim/serve/served_camera.hpp"
 
-#include <algorithm>
 #include <utility>
 
 namespace lf::serve {
@@ -13,25 +12,27 @@ constexpr Duration punctual = Duration::from_ms(2);
 
 void ServedCamera::expose(const devices::Exposure& exposure) {
   ++stats_.exposures;
-  pending_.push_back({exposure, sequence_++});
+  pending_.emplace_back(exposure, sequence_++, exposure_delay_);
 }
 
-void ServedCamera::submit(const Pending& pending, const scene::BodyPoses& poses, const Pace& pace) {
+void ServedCamera::submit(const hal::ExposureUnderWay& exposure, const Pace& pace) {
+  const devices::Exposure& ordered = exposure.ordered();
   PictureOrder order;
-  order.poses = poses;
-  order.info.start_ns = pace.clock_at(pending.exposure.start).ns();
-  order.info.exposure_ns = pending.exposure.duration.ns();
-  order.info.sequence = pending.sequence;
-  order.info.trigger = pending.exposure.counter;
-  order.info.flags = (pending.exposure.laser ? frame_laser : 0) | (pending.exposure.lamps ? frame_lamps : 0);
+  order.shot = exposure.shot();
+  order.info.start_ns = (pace.clock_at(ordered.start) + stamp_offset_).ns();
+  order.info.exposure_ns = ordered.duration.ns();
+  order.info.sequence = exposure.sequence();
+  order.info.trigger = ordered.counter;
+  order.info.flags = (ordered.laser ? frame_laser : 0) | (ordered.lamps ? frame_lamps : 0);
   if (!renderer_.submit(order)) ++stats_.not_rendered;
 }
 
-void ServedCamera::step(Time t, const scene::BodyPoses& poses, const Pace& pace) {
+void ServedCamera::step(Time t, Outputs outputs, const scene::BodyPoses& poses, const Pace& pace) {
   if (trouble_ != CameraTrouble::none && t >= trouble_end_) set_trouble(CameraTrouble::none, t);
   target_.beat();
-  while (!pending_.empty() && t + Pace::step / 2 >= pending_.front().exposure.start + pending_.front().exposure.duration / 2) {
-    submit(pending_.front(), poses, pace);
+  for (hal::ExposureUnderWay& exposure : pending_) exposure.pass(t - Pace::step, t, outputs.laser, outputs.lamps, poses);
+  while (!pending_.empty() && pending_.front().closed(t)) {
+    submit(pending_.front(), pace);
     pending_.pop_front();
   }
   const Time clock = pace.clock_at(t);
@@ -41,8 +42,7 @@ void ServedCamera::step(Time t, const scene::BodyPoses& poses, const Pace& pace)
       if (!renderer_.take(picture)) return;
       next_ = std::move(picture);
     }
-    const Duration exposure = Duration::from_ns(next_->info.exposure_ns);
-    if (clock < Time::from_ns(next_->info.start_ns) + std::max(latency_, exposure)) return;
+    if (clock < Time::from_ns(next_->info.start_ns) + latency_) return;
     deliver(*next_, clock);
     next_.reset();
   }

@@ -15,8 +15,9 @@ constexpr int reach_packets = 3;
 
 }  // namespace
 
-Formation::Formation(const Camera& camera)
+Formation::Formation(const Camera& camera, const ForwardScatter& scatter)
     : camera_(camera),
+      scatter_(scatter),
       pyramid_(camera.width(), camera.height()),
       lens_(camera.width(), camera.height(), camera.config.blur_px, camera.config.blur_px * camera.config.corner_blur),
       reach_rows_(GaussianTaps::of(camera.config.blur_px * std::max(camera.config.corner_blur, 1.0)).radius + 1),
@@ -70,8 +71,8 @@ void Formation::spread(PixelStore& pixels, const std::vector<std::uint8_t>& line
   // The sensor takes the strayed share off all light, so what is added here is over the rest.
   const auto stray = static_cast<float>(camera_.config.stray_share);
   std::vector<HaloTerm> terms;
-  terms.reserve(scatter_terms.size());
-  for (const ScatterTerm& term : scatter_terms)
+  terms.reserve(scatter_.terms.size());
+  for (const ScatterTerm& term : scatter_.terms)
     terms.push_back({term.weight / (1 - stray), static_cast<double>(term.angle_rad) * camera_.config.intrinsics.fy});
   if (!scatters) terms.clear();
   for (std::size_t c = 0; c < pixels.channels && (scatters || stray > 0); ++c) {

@@ -18,7 +18,8 @@ namespace lf::optics {
 
 class Formation {
  public:
-  explicit Formation(const Camera& camera);
+  // `scatter`: where water lays what it scatters on its way to the camera.
+  explicit Formation(const Camera& camera, const ForwardScatter& scatter = {});
 
   // Lays the scattered and the stray light of `pixels` onto their grey; `scatters`: the water does. `line_packets` (one a packet of eight pixels, row by row) says
   // where the laser's direct light is not zero, packets beside it included or not.
@@ -32,6 +33,7 @@ class Formation {
   void add_ghost(PixelStore& pixels) const;
 
   const Camera& camera_;
+  ForwardScatter scatter_;
   HaloPyramid pyramid_;
   LensSpot lens_;
   int reach_rows_;  // of the spot, and one for samples at edges

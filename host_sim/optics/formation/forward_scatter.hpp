@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 
 namespace lf::optics {
 
@@ -14,17 +15,32 @@ inline double sea_scattering_per_m(double attenuation_per_m) {
   return std::min(attenuation_per_m, std::max(0.03, 0.89 * (attenuation_per_m - 0.145)));
 }
 
-// Of the light that scatters once. The core is not told from the direct light.
-inline constexpr float scatter_core = 0.136f;
 struct ScatterTerm {
   float weight = 0;
   float angle_rad = 0;  // standard deviation, seen from where the way ends
 };
-inline constexpr std::array<ScatterTerm, 4> scatter_terms{{{0.199f, 0.0055f}, {0.248f, 0.022f}, {0.275f, 0.088f}, {0.118f, 0.354f}}};
-inline constexpr float scatter_forward = [] {
-  float sum = scatter_core;
-  for (const ScatterTerm& term : scatter_terms) sum += term.weight;
-  return sum;
-}();
+
+// Weights are shares of the light that scatters once.
+struct ForwardScatter {
+  float core = 0.136f;  // is not told from the direct light
+  std::array<ScatterTerm, 4> terms{{{0.199f, 0.0055f}, {0.248f, 0.022f}, {0.275f, 0.088f}, {0.118f, 0.354f}}};
+
+  constexpr float sum() const {
+    float sum = core;
+    for (const ScatterTerm& term : terms) sum += term.weight;
+    return sum;
+  }
+
+  // Water with another phase function: each weight, the core's first, times its `ratio`, and all of them to the same sum as before. As much light turns back.
+  constexpr ForwardScatter varied(const std::array<double, 5>& ratio) const {
+    ForwardScatter other = *this;
+    other.core *= static_cast<float>(ratio[0]);
+    for (std::size_t i = 0; i < terms.size(); ++i) other.terms[i].weight *= static_cast<float>(ratio[i + 1]);
+    const float scale = sum() / other.sum();
+    other.core *= scale;
+    for (ScatterTerm& term : other.terms) term.weight *= scale;
+    return other;
+  }
+};
 
 }  // namespace lf::optics

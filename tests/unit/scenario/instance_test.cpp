@@ -154,6 +154,110 @@ TEST(Truth, TheMachineIsOffItsCalibrationByWhatWasDrawn) {
   EXPECT_EQ(truth.exposure_delay, Duration::from_us(300));
 }
 
+// Light, lens, sensor, laser and panel of one machine: what the core is told of them, if anything, stays.
+TEST(Truth, LightAndPanelAreThoseThatWereDrawn) {
+  const Scenario scenario = load_scenario("default", {"water.scattering_percent=20",
+                                                      "water.phase_percent=-30",
+                                                      "camera.corner_blur=1.8",
+                                                      "camera.electrons_per_grey=25",
+                                                      "camera.exposure_jitter=0.004",
+                                                      "camera.ghost_share=0.001",
+                                                      "camera.ghost_px=9",
+                                                      "laser.speckle=0.2",
+                                                      "laser.waist_at_m=0.1",
+                                                      "laser.lobe_share=0.02",
+                                                      "laser.lobe_sigmas=2.5",
+                                                      "laser.lobe_ahead=false",
+                                                      "laser.fan_low_percent=15",
+                                                      "laser.fan_fine_percent=5",
+                                                      "calibration.handle_m=0.0004",
+                                                      "calibration.button_size_m=0.0003",
+                                                      "calibration.marker_size_m=0.0002",
+                                                      "calibration.marker_flat_m=0.0003",
+                                                      "calibration.stamp_ms=-0.2",
+                                                      "mounting.marker_m=0",
+                                                      "mounting.marker_deg=0"});
+  const Nominal told = make_nominal(scenario, false);
+  const hal::SimConfig truth = make_truth(scenario, draw(scenario, 1), told, 1);
+  const optics::WaterConfig& water = truth.optics.water;
+  EXPECT_NEAR(water.scattering_ratio, 1.2, 1e-12);
+  EXPECT_NEAR(water.back_share, 0.7 * optics::WaterConfig{}.back_share, 1e-12);
+  // All shares alike: their sum holds them where they were.
+  EXPECT_NEAR(water.forward.core, optics::ForwardScatter{}.core, 1e-6);
+  const optics::CameraConfig& camera = truth.optics.cameras[0];
+  EXPECT_EQ(camera.corner_blur, 1.8);
+  EXPECT_EQ(camera.electrons_per_grey, 25);
+  EXPECT_EQ(camera.exposure_jitter, 0.004);
+  EXPECT_EQ(camera.ghost_share, 0.001);
+  EXPECT_EQ(camera.ghost_px, 9);
+  const optics::LaserConfig& laser = truth.optics.lasers[0];
+  EXPECT_EQ(laser.speckle, 0.2);
+  EXPECT_EQ(laser.waist_at_m, 0.1);
+  EXPECT_EQ(laser.lobe_share, 0.02);
+  EXPECT_EQ(laser.lobe_sigmas, -2.5);
+  double mean = 0, greatest = 0;
+  for (const float power : laser.fan_profile) {
+    mean += double(power) / static_cast<double>(laser.fan_profile.size());
+    greatest = std::max(greatest, std::abs(double(power) - 1));
+  }
+  EXPECT_NEAR(mean, 1, 1e-5) << "the power is the same";
+  EXPECT_LE(greatest, 0.2 + 1e-6);
+  EXPECT_GE(greatest, 0.15 - 0.05 - 1e-6);
+  EXPECT_EQ(truth.stamp_offset, Duration::from_us(-200));
+  // The panel as it was built, in the world and in the picture; the core and its vision have the drawing's.
+  const PanelLayout& built = truth.world.layout;
+  EXPECT_NEAR(built.handle_length_m, scenario.panel.handle_length_m + 0.0004, 1e-12);
+  EXPECT_NEAR(built.handle_thickness_m, scenario.panel.handle_thickness_m + 0.0004, 1e-12);
+  EXPECT_NEAR(built.handle_height_m, scenario.panel.handle_height_m + 0.0004, 1e-12);
+  EXPECT_NEAR(built.button_width_m, scenario.panel.button_width_m + 0.0003, 1e-12);
+  EXPECT_NEAR(built.button_height_m, scenario.panel.button_height_m + 0.0003, 1e-12);
+  EXPECT_EQ(truth.vision.panel.handle_length_m, scenario.panel.handle_length_m);
+  const std::vector<scene::Shape>& shapes = truth.optics.scene[std::size_t(scene::BodyId::panel)].shapes;
+  const auto marker = std::find_if(shapes.begin(), shapes.end(), [](const scene::Shape& shape) { return shape.marker_id >= 0; });
+  ASSERT_NE(marker, shapes.end());
+  EXPECT_NEAR(marker->marker_size_m, scenario.panel.marker_size_m + 0.0002, 1e-12);
+  // The plate's back: one corner lies on the panel, the opposite one stands off by both edges' share.
+  double lowest = 1, highest = -1;
+  for (const double x : {-0.5, 0.5}) {
+    for (const double y : {-0.5, 0.5}) {
+      const Vec3 corner = marker->body_from_shape * Vec3(x * marker->size_m.x(), y * marker->size_m.y(), -0.5 * marker->size_m.z());
+      lowest = std::min(lowest, corner.z()), highest = std::max(highest, corner.z());
+    }
+  }
+  EXPECT_NEAR(lowest, 0, 1e-6);
+  EXPECT_NEAR(highest, 0.0006, 1e-6);
+}
+
+// The machine's truth is not the core's model: no seed has the very mixture of the core's haze, nor the electrons that its fit weighs by.
+TEST(Truth, OfNoSeedIsTheCoresModel) {
+  const Scenario scenario = load_scenario("default");
+  const Nominal told = make_nominal(scenario, false);
+  int farther = 0, fewer = 0, ahead = 0;
+  constexpr int seeds = 60;
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    const hal::SimConfig truth = make_truth(scenario, draw(scenario, seed), told, 1);
+    const optics::ForwardScatter& forward = truth.optics.water.forward;
+    EXPECT_NEAR(forward.sum(), optics::ForwardScatter{}.sum(), 1e-5) << seed;
+    double off = 0;
+    for (std::size_t i = 0; i < forward.terms.size(); ++i) {
+      const double nominal = double(optics::ForwardScatter{}.terms[i].weight), ratio = double(forward.terms[i].weight) / nominal;
+      off = std::max(off, std::abs(ratio - 1));
+      EXPECT_GT(ratio, 0.7 / 1.3) << seed;
+      EXPECT_LT(ratio, 1.3 / 0.7) << seed;
+    }
+    EXPECT_GT(off, 0.01) << seed;
+    farther += forward.terms[2].weight > optics::ForwardScatter{}.terms[2].weight ? 1 : 0;
+    EXPECT_GE(truth.optics.cameras[0].electrons_per_grey, 20) << seed;
+    EXPECT_LE(truth.optics.cameras[0].electrons_per_grey, 80) << seed;
+    fewer += truth.optics.cameras[0].electrons_per_grey < 40 ? 1 : 0;
+    ahead += truth.optics.lasers[0].lobe_sigmas > 0 ? 1 : 0;
+  }
+  // Both ways, each within four standard deviations of a coin's, or of a third's.
+  EXPECT_NEAR(farther, seeds / 2, 4 * std::sqrt(seeds / 4.0));
+  EXPECT_NEAR(ahead, seeds / 2, 4 * std::sqrt(seeds / 4.0));
+  EXPECT_NEAR(fewer, seeds / 3, 4 * std::sqrt(seeds * 2 / 9.0));
+}
+
 TEST(Nominal, EveryShippedScenarioCanBeRun) {
   for (const ShippedScenario& shipped : shipped_scenarios()) EXPECT_EQ(refusal(load_scenario(shipped.name)), "") << shipped.name;
 }

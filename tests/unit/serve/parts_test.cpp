@@ -14,6 +14,7 @@
 #include "host_sim/serve/overheard.hpp"
 #include "host_sim/serve/pace.hpp"
 #include "host_sim/serve/render_rings.hpp"
+#include "host_sim/serve/served_camera.hpp"
 #include "shared/can/can_map.hpp"
 #include "shared/input_error.hpp"
 
@@ -145,15 +146,25 @@ TEST(OverheardOutputs, an_open_interlock_keeps_the_laser_out_of_the_picture) {
   EXPECT_TRUE(exposure->lamps);
 }
 
-TEST(RenderRings, poses_arrive_bit_for_bit) {
-  scene::BodyPoses poses;
+TEST(RenderRings, shots_arrive_bit_for_bit) {
+  optics::Shot shot;
+  shot.laser = 0.8f, shot.lamps = 0.3f, shot.time_s = 12.3456789;
+  scene::BodyPoses& poses = shot.poses;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     poses[i] = Pose::Identity();
     poses[i].linear() = Eigen::AngleAxisd(0.1 * static_cast<double>(i) + 1e-9, Vec3(1, 2, 3).normalized()).toRotationMatrix();
     poses[i].translation() = Vec3(0.1, -0.2, 1.0 / 3.0) * static_cast<double>(i);
   }
-  const scene::BodyPoses back = unpack(pack(poses));
-  for (std::size_t i = 0; i < poses.size(); ++i) EXPECT_EQ(back[i].matrix(), poses[i].matrix());
+  RecordInfo info;
+  info.sequence = 77;
+  info.exposure_ns = 2'500'000;
+  const optics::Shot back = unpack(info, pack(shot));
+  for (std::size_t i = 0; i < poses.size(); ++i) EXPECT_EQ(back.poses[i].matrix(), poses[i].matrix());
+  EXPECT_EQ(back.laser, 0.8f);
+  EXPECT_EQ(back.lamps, 0.3f);
+  EXPECT_EQ(back.time_s, 12.3456789);
+  EXPECT_EQ(back.frame_number, 77u);
+  EXPECT_EQ(back.exposure, Duration::from_us(2500));
 }
 
 TEST(RenderRings, an_order_crosses_the_file_and_nothing_comes_back_by_itself) {
@@ -166,15 +177,15 @@ TEST(RenderRings, an_order_crosses_the_file_and_nothing_comes_back_by_itself) {
     ExposurePayload payload;
     EXPECT_EQ(reader.take(info, std::as_writable_bytes(std::span(&payload, 1))), FrameRingReader::Answer::empty);
     PictureOrder order;
-    for (Pose& pose : order.poses) pose = Pose::Identity();
-    order.poses[3].translation() = Vec3(1, 2, 3);
+    for (Pose& pose : order.shot.poses) pose = Pose::Identity();
+    order.shot.poses[3].translation() = Vec3(1, 2, 3);
     order.info.sequence = 42;
     order.info.flags = frame_laser;
     ASSERT_TRUE(remote.submit(order));
     ASSERT_EQ(reader.take(info, std::as_writable_bytes(std::span(&payload, 1))), FrameRingReader::Answer::record);
     EXPECT_EQ(info.kind, kind_exposure);
     EXPECT_EQ(info.sequence, 42u);
-    EXPECT_EQ(unpack(payload)[3].translation(), Vec3(1, 2, 3));
+    EXPECT_EQ(unpack(info, payload).poses[3].translation(), Vec3(1, 2, 3));
     Picture picture;
     EXPECT_FALSE(remote.take(picture));
     FrameRingWriter pictures;
@@ -187,6 +198,78 @@ TEST(RenderRings, an_order_crosses_the_file_and_nothing_comes_back_by_itself) {
     EXPECT_EQ(picture.pixels, pixels);
   }
   std::filesystem::remove(file);
+}
+
+// Keeps what it is asked for, and has each picture at once.
+class AskedRenderer : public FrameRenderer {
+ public:
+  bool submit(const PictureOrder& order) override {
+    orders.push_back(order);
+    ready = true;
+    return true;
+  }
+  bool take(Picture& picture) override {
+    if (!ready) return false;
+    ready = false;
+    picture.info = orders.back().info;
+    return true;
+  }
+  std::vector<PictureOrder> orders;
+  bool ready = false;
+};
+
+class CountingTarget : public FrameTarget {
+ public:
+  bool deliver(const RecordInfo&, std::span<const std::uint8_t>) override {
+    ++frames;
+    return true;
+  }
+  void set_away(bool) override {}
+  int frames = 0;
+};
+
+struct CameraOnItsOwn {
+  explicit CameraOnItsOwn(const hal::SimConfig& timing) : camera(renderer, target, timing) {}
+  // One exposure from 4 ms on; the laser is on before `laser_off_ms`, the lamps from `lamps_on_ms` on. Returns when the picture came, ms.
+  int expose(Duration exposure, int laser_off_ms, int lamps_on_ms) {
+    Pace pace(Time{});
+    scene::BodyPoses poses;
+    poses.fill(Pose::Identity());
+    for (int t = 1; t < 100; ++t) {
+      if (t == 4) camera.expose({ms(4), exposure, 1, true, false});
+      poses[0].translation().x() = t;
+      camera.step(ms(t), {t <= laser_off_ms, t > lamps_on_ms}, poses, pace);
+      if (target.frames > 0) return t;
+    }
+    return 0;
+  }
+  AskedRenderer renderer;
+  CountingTarget target;
+  ServedCamera camera;
+};
+
+TEST(ServedCamera, an_output_that_is_switched_meanwhile_lights_its_share) {
+  hal::SimConfig timing;
+  timing.exposure_delay = Duration::from_us(500);
+  timing.stamp_offset = Duration::from_us(-100);
+  CameraOnItsOwn served(timing);
+  EXPECT_EQ(served.expose(Duration::from_ms(5), 8, 6), 4 + 30) << "of the latency that a configuration has by itself";
+  ASSERT_EQ(served.renderer.orders.size(), 1u);
+  const PictureOrder& order = served.renderer.orders[0];
+  EXPECT_FLOAT_EQ(order.shot.laser, 3.5f / 5);  // open from 4.5 to 9.5 ms
+  EXPECT_FLOAT_EQ(order.shot.lamps, 3.5f / 5);
+  EXPECT_EQ(order.shot.exposure, Duration::from_ms(5));
+  EXPECT_EQ(order.shot.poses[0].translation().x(), 7) << "at mid-exposure";
+  EXPECT_DOUBLE_EQ(order.shot.time_s, 0.007);
+  EXPECT_EQ(order.info.start_ns, ms(3.9).ns());
+}
+
+TEST(ServedCamera, delivers_no_picture_before_it_is_exposed) {
+  hal::SimConfig timing;
+  timing.image_latency = Duration();
+  timing.exposure_delay = Duration::from_us(500);
+  CameraOnItsOwn served(timing);
+  EXPECT_EQ(served.expose(Duration::from_ms(12), 50, 50), 17) << "the step in which the shutter closes, at 16.5 ms";
 }
 
 // The far side of the rings, at a pace of its own.
@@ -218,7 +301,7 @@ class RemoteRendererTest : public testing::Test {
   ~RemoteRendererTest() override { std::filesystem::remove(file); }
   bool submit(std::uint32_t sequence, Time start) {
     PictureOrder order;
-    for (Pose& pose : order.poses) pose = Pose::Identity();
+    for (Pose& pose : order.shot.poses) pose = Pose::Identity();
     order.info.sequence = sequence;
     order.info.start_ns = start.ns();
     return remote.submit(order);

@@ -20,7 +20,7 @@ class PromptRenderer : public FrameRenderer {
   explicit PromptRenderer(const optics::OpticsConfig& config) : optics_(config) {}
   bool submit(const PictureOrder& order) override {
     optics::Frame frame;
-    optics_.render(shot_of(order), frame);
+    optics_.render(order.shot, frame);
     Picture picture{order.info, frame.pixels};
     fill_size(picture.info, frame);
     pictures_.push_back(std::move(picture));
@@ -120,7 +120,7 @@ TEST(ServedMission, turns_the_valve_by_the_worlds_own_account) {
   test::Wire::Plug nodes(wire, clock);
   PromptRenderer renderer(job.sim.optics);
   MemoryTarget target;
-  ServedCamera camera(renderer, target, job.sim.image_latency);
+  ServedCamera camera(renderer, target, job.sim);
   std::vector<std::string> said;
   ServeLoop loop(job.sim, NodeSet::all(), nodes, &camera, [&](const std::string& line) { said.push_back(line); });
   WirePlatform platform(job, wire, clock, target, [&] { loop.turn(); });
