@@ -234,7 +234,8 @@ Table step_table(std::uint64_t seed) {
   }
   for (const Off off : {Off::none, Off::other}) {
     table.parts.emplace_back([=] {
-      return std::vector{step_row(step(1.6, 30, waters[0], seed), std::string("clear, beam 1.6, 30 deg, ") + name_of(off), off, Asked{})};
+      const Asked asked = off == Off::other ? Asked{.rms_px = 0.20, .percentile_999_px = 1.0} : Asked{};
+      return std::vector{step_row(step(1.6, 30, waters[0], seed), std::string("clear, beam 1.6, 30 deg, ") + name_of(off), off, asked)};
     });
   }
   return table;
