@@ -55,7 +55,7 @@ TEST(AButtonOfALongStroke, ClicksOnceAndIsNoContactOnTheWayBack) {
     std::vector<std::string> scenario = press("left");
     for (const char* set :
          {"mission.press_speed_m_s=0.04146", "physics.drag_coefficient=1.88", "mounting.joints_deg=-0.1497", "mounting.marker_m=-0.001846",
-          "mission.docking_rad=0.02264", "panel.button_stroke_m=0.01245", "panel.button_height_m=0.031"}) {
+          "mission.docking_rad=0.02264", "panel.button_stroke_m=0.01245", "panel.button_height_m=0.032"}) {
       scenario.emplace_back(set);
     }
     Rig rig(scenario, seed);

