@@ -145,8 +145,9 @@ void Commissioner::note_forgotten() {
   const std::lock_guard lock(forgetting->mutex);
   if (!forgetting->done) return;
   forgetting_ = nullptr;
-  const bool told = try_again_ != Time{};
+  const bool told = try_again_ != Time{} && forgetting->joints == last_tried_;
   const bool gone = forgetting->problem.empty();
+  last_tried_ = forgetting->joints;
   try_again_ = gone ? Time{} : monotonic_now() + forget_again_after;
   Json names = Json::array();
   for (std::size_t i = 0; i < joint_count; ++i) {

@@ -110,6 +110,7 @@ class Commissioner {
   std::array<bool, joint_count> still_lost_{};  // those of them that the commissioning under way has not found
   std::array<bool, joint_count> forgotten_{};   // those that the file has no more
   Time try_again_;                              // when the file could not be written; 0: it could
+  std::array<bool, joint_count> last_tried_{};  // a failure is told once for the same joints
   bool jaw_doubted_ = false;
   bool without_power_ = true;  // after the last one
   std::shared_ptr<Forgetting> forgetting_;

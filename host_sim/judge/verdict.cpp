@@ -434,12 +434,9 @@ class Judge {
     const bool powered = std::any_of(moments_.begin() + std::ptrdiff_t(from), moments_.end(), [](const Moment& m) { return m.power != 0; });
     if (travels(from) && !taken_over()) wrong("the arm moves after the end");
     if (powered && !ending_.holds && !taken_over()) wrong("power is on after the end");
-    if (ending_.holds && !situation_.over && touches_nothing()) note_or_wrong();
-  }
-
-  void note_or_wrong() {
-    verdict_.stood_anyway = stood_where_it_was_to_stay();
-    if (!verdict_.stood_anyway) wrong("held under power for a contact that is none, with a drive that misleads");
+    const bool for_nothing = ending_.holds && !situation_.over && touches_nothing();
+    verdict_.stood_anyway = for_nothing && stood_where_it_was_to_stay();
+    if (for_nothing && !verdict_.stood_anyway) wrong("held under power for a contact that is none, with a drive that misleads");
   }
 
   // A contact was told, or holds the arm, and only drives that mislead can have made one: the arm has touched nothing.
