@@ -21,8 +21,8 @@ void add_panel(Keys& all, PanelLayout& p) {
   all.push_back(key("panel.buttons_m", "m", -0.4, 0.4, &p.buttons_m, "left, centre and right button's [right, up] from the valve"));
   all.push_back(key("panel.button_width_m", "m", 0.005, 0.06, &p.button_width_m, "diameter of a button's cap"));
   all.push_back(key("panel.button_height_m", "m", 0.005, 0.07, &p.button_height_m,
-                    "its height over the panel: its stroke, the press's overtravel up to 8 mm, and some 13 mm more, where one is pressed; "
-                    "the more the more aslant the arm comes"));
+                    "its height over the panel: its stroke, the press's overtravel up to 8 mm, and some 13 mm more where one is pressed, "
+                    "by the tilt at which the arm comes"));
   all.push_back(key("panel.button_stroke_m", "m", 0.001, 0.02, &p.button_stroke_m, "how far it goes in"));
   all.push_back(key("panel.marker_id", "", 0, 586, &p.marker_id, "the AprilTag 36h11 beside the valve"));
   all.push_back(key("panel.marker_size_m", "m", 0.02, 0.16, &p.marker_size_m, "side of its black square"));

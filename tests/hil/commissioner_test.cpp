@@ -1,4 +1,6 @@
 // What becomes of a commissioning's findings, in the homing file and in the core: the daemon's commissioner, with the simulated arm.
+#include "hal/vehicle/commissioner.hpp"
+
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -8,7 +10,6 @@
 #include <memory>
 #include <string>
 
-#include "hal/vehicle/commissioner.hpp"
 #include "tests/hil/commissioning_bench.hpp"
 #include "tests/unit/temporary_folder.hpp"
 
