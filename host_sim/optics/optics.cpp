@@ -131,8 +131,8 @@ struct Optics::Impl {
   }
 
   // Where the picture's laser light is brightest in its column, and no centre is near. Of lines only: a pattern's light is not told apart.
-  void find_parts(const PixelStore& pixels, const std::vector<std::uint8_t>& line_packets, const Camera& camera, float light,
-                  Frame& frame) const {
+  void find_parts(const PixelStore& pixels, const std::vector<std::uint8_t>& line_packets, const Camera& camera, const Tiles& tiles,
+                  float light, Frame& frame) {
     if (!std::all_of(patterns.begin(), patterns.end(), [](const auto& pattern) { return !pattern.has_value(); })) return;
     // Beyond 4.5 standard deviations a piece's light is under a ten-thousandth of its height: paint does not lift that over `least_grey`.
     constexpr float least_grey = 3, reach_sigmas = 4.5f, least_reach_px = 4;
@@ -144,7 +144,7 @@ struct Optics::Impl {
       for (std::size_t c = 1; c < pixels.channels; ++c) brightest = std::max(brightest, pixels.laser[c * pixels.plane + at]);
       return brightest;
     };
-    for (std::int32_t v = 1; v + 1 < frame.height; ++v) {
+    const auto in_row = [&](std::int32_t v, std::vector<StripePiece>& parts) {
       for (std::int32_t u = 0; u < frame.width; ++u) {
         if (line_packets[static_cast<std::size_t>(v) * packets_a_row + static_cast<std::size_t>(u / lane_count)] == 0) continue;
         const std::size_t at = pixels.index(u, v);
@@ -156,9 +156,15 @@ struct Optics::Impl {
           return std::abs(piece.v - static_cast<float>(v)) <= std::max(reach_sigmas * piece.sigma_px, least_reach_px);
         };
         if (grey >= least_grey && std::none_of(near.begin(), near.end(), is_near))
-          frame.pieces.push_back({0, u, static_cast<float>(v), grey, 0, true});
+          parts.push_back({0, u, static_cast<float>(v), grey, 0, true});
       }
-    }
+    };
+    std::vector<std::vector<StripePiece>> found(static_cast<std::size_t>(tiles.rows()));
+    pool.run(tiles.rows(), [&](int row) {
+      const int end = std::min(tiles.end_row(row), frame.height - 1);
+      for (std::int32_t v = std::max(tiles.first_row(row), 1); v < end; ++v) in_row(v, found[static_cast<std::size_t>(row)]);
+    });
+    for (const std::vector<StripePiece>& parts : found) frame.pieces.insert(frame.pieces.end(), parts.begin(), parts.end());
   }
 
   void render(const Shot& shot, Frame& frame) {
@@ -183,7 +189,7 @@ struct Optics::Impl {
       if (edge_sampling) pass.resample_edges(row);
       if (shot.truth) pass.write_geometry(row, object_of_shape, frame);
     });
-    viewer.particles.stamp(shot.time_s, shader, viewer.live.pixels);
+    viewer.particles.stamp(shot.time_s, shader, viewer.live.pixels, pool);
     viewer.formation.spread(viewer.live.pixels, pass.lines(), water.scatters(), pool);
     const Speckle speckle = speckle_of(shader);
     const std::size_t row_bytes = frame.pixels.size() / static_cast<std::size_t>(frame.height);
@@ -194,7 +200,7 @@ struct Optics::Impl {
     });
     if (!shot.truth) return;
     find_stripes(pass, shader, viewer.camera, exposing.light, tile_rows, frame);
-    if (!shader.sheets.empty()) find_parts(viewer.live.pixels, pass.lines(), viewer.camera, exposing.light, frame);
+    if (!shader.sheets.empty()) find_parts(viewer.live.pixels, pass.lines(), viewer.camera, viewer.tiles, exposing.light, frame);
   }
 
   std::vector<LaserConfig> lasers;

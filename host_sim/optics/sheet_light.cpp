@@ -78,13 +78,13 @@ Lanes SheetLight::fan_weight(Lanes y, Lanes z) const {
 Lanes SheetLight::fan_power(Lanes tangent) const {
   const auto last = static_cast<float>(fan_profile_.size() - 1);
   const Lanes place = clamp((0.5f + 0.5f * tangent / tan_half_fan_) * last, 0.f, last);
-  Lanes power;
+  const LaneMask left = __builtin_convertvector(min(place, all_lanes(last - 1)), LaneMask);
+  Lanes power, next;
   for (int lane = 0; lane < lane_count; ++lane) {
-    const auto left = std::min(static_cast<std::size_t>(place[lane]), fan_profile_.size() - 2);
-    const float on = place[lane] - static_cast<float>(left);
-    power[lane] = fan_profile_[left] + on * (fan_profile_[left + 1] - fan_profile_[left]);
+    const auto at = static_cast<std::size_t>(left[lane]);
+    power[lane] = fan_profile_[at], next[lane] = fan_profile_[at + 1];
   }
-  return power;
+  return power + (place - __builtin_convertvector(left, Lanes)) * (next - power);
 }
 
 Lanes SheetLight::sigma2_m2(Lanes range) const {

@@ -49,6 +49,7 @@ Particles::Particles(const Camera& camera, const WaterConfig& water, std::uint64
       tan_v_(widest * std::max(camera.config.intrinsics.cy + 1, camera.config.intrinsics.height - camera.config.intrinsics.cy) /
              camera.config.intrinsics.fy),
       per_cell_(water.particles_per_l * 1e3 * cell_m * cell_m * cell_m),
+      none_in_a_cell_(std::exp(-per_cell_)),
       current_m_s_(water.current_m_s),
       seed_(seed) {
   if (per_cell_ <= 0) return;
@@ -80,31 +81,32 @@ Particles::Particles(const Camera& camera, const WaterConfig& water, std::uint64
   }
 }
 
+void Particles::draw_specks(const Cell& cell, const Vec3& drift, std::vector<Speck>& specks) const {
+  const Vec3 whole = drift.array().floor();
+  std::uint64_t key = seed_;
+  for (int axis = 0; axis < 3; ++axis)
+    key = splitmix64(key + static_cast<std::uint64_t>(cell[static_cast<std::size_t>(axis)] - static_cast<std::int64_t>(whole[axis])));
+  Draws draw(key);
+  const int count = count_of(per_cell_, none_in_a_cell_, draw());
+  for (int i = 0; i < count; ++i) {
+    Speck speck;
+    for (int axis = 0; axis < 3; ++axis)
+      speck.place_m[axis] = cell_m * (cell[static_cast<std::size_t>(axis)] + drift[axis] - whole[axis] + draw());
+    speck.diameter_m = std::min(least_m / std::sqrt(draw()), most_m);
+    speck.albedo = 0.1 + 0.4 * draw();
+    specks.push_back(speck);
+  }
+}
+
 std::vector<Particles::Speck> Particles::at(double time_s) const {
   std::vector<Speck> specks;
-  const Vec3 drift = current_m_s_ * (time_s / cell_m);
-  const Vec3 whole = drift.array().floor();
-  const double none = std::exp(-per_cell_);
-  for (const Cell& cell : cells_) {
-    std::uint64_t key = seed_;
-    for (int axis = 0; axis < 3; ++axis)
-      key = splitmix64(key + static_cast<std::uint64_t>(cell[static_cast<std::size_t>(axis)] - static_cast<std::int64_t>(whole[axis])));
-    Draws draw(key);
-    const int count = count_of(per_cell_, none, draw());
-    for (int i = 0; i < count; ++i) {
-      Speck speck;
-      for (int axis = 0; axis < 3; ++axis)
-        speck.place_m[axis] = cell_m * (cell[static_cast<std::size_t>(axis)] + drift[axis] - whole[axis] + draw());
-      speck.diameter_m = std::min(least_m / std::sqrt(draw()), most_m);
-      speck.albedo = 0.1 + 0.4 * draw();
-      specks.push_back(speck);
-    }
-  }
+  for (const Cell& cell : cells_) draw_specks(cell, current_m_s_ * (time_s / cell_m), specks);
   return specks;
 }
 
-std::vector<Particles::Speck> Particles::in_view(double time_s) const {
-  std::vector<Speck> specks = at(time_s);
+std::vector<Particles::Speck> Particles::in_view(std::span<const Cell> cells, double time_s) const {
+  std::vector<Speck> specks;
+  for (const Cell& cell : cells) draw_specks(cell, current_m_s_ * (time_s / cell_m), specks);
   std::size_t kept = 0;
   for (Speck& speck : specks) {
     const Vec3 p = camera_from_base_ * speck.place_m;
@@ -118,51 +120,41 @@ std::vector<Particles::Speck> Particles::in_view(double time_s) const {
   return specks;
 }
 
-// Its light, spread over the pixels about its image: radiance times pixels is irradiance * albedo / pi * area * (f / z)^2.
-void Particles::show(const Speck& speck, const RgbLanes& irradiance, int lane, const Shader& shader, PixelStore& pixels) const {
+int Particles::Spot::reach_px() const { return static_cast<int>(std::ceil(3.5 * sigma_px)); }
+int Particles::Spot::first_row() const { return static_cast<int>(std::lround(centre_px.y())) - reach_px(); }
+int Particles::Spot::last_row() const { return static_cast<int>(std::lround(centre_px.y())) + reach_px(); }
+
+// Radiance times pixels is irradiance * albedo / pi * area * (f / z)^2.
+std::optional<Particles::Spot> Particles::spot_of(const Speck& speck, const RgbLanes& irradiance, int lane, const Shader& shader,
+                                                  const PixelStore& pixels) const {
   const Vec3& p = speck.place_m;
   const double px_per_m = camera_.config.intrinsics.fy / p.z();
   const double defocus_px = aperture_m * camera_.config.intrinsics.fy * std::abs(1 / p.z() - 1 / focus_m);
-  const double sigma = std::max(std::hypot(speck.diameter_m * px_per_m, defocus_px) * disc_sigma, least_sigma_px);
+  Spot spot;
+  spot.sigma_px = std::max(std::hypot(speck.diameter_m * px_per_m, defocus_px) * disc_sigma, least_sigma_px);
   const auto size = static_cast<float>(speck.albedo * speck.diameter_m * speck.diameter_m / 4 * px_per_m * px_per_m);
   RgbLanes radiance;
   const Lanes range = all_lanes(static_cast<float>(p.norm()));
   for (std::size_t band = 0; band < 3; ++band)
     radiance[band] = all_lanes(irradiance[band][lane] * size) * shader.water().transmission(band, range);
   const GreyLanes grey = camera_.grey(radiance);
-  const Lanes brightest = max(grey[0], max(grey[1], grey[2])) / static_cast<float>(2 * pi * sigma * sigma);
-  if (brightest[0] < least_grey) return;
+  const Lanes brightest = max(grey[0], max(grey[1], grey[2])) / static_cast<float>(2 * pi * spot.sigma_px * spot.sigma_px);
+  if (brightest[0] < least_grey) return std::nullopt;
   const std::optional<Vec2> image = camera_.rays.project(p);
-  if (!image) return;
+  if (!image) return std::nullopt;
   const int u = std::clamp(static_cast<int>(std::lround(image->x())), 0, pixels.width - 1);
   const int v = std::clamp(static_cast<int>(std::lround(image->y())), 0, pixels.height - 1);
   const double depth_m = static_cast<double>(pixels.depth_m[pixels.index(u, v)]) + static_cast<double>(camera_.rays.origin_depth_m());
-  if (p.z() >= depth_m) return;
-
-  const int reach = static_cast<int>(std::ceil(3.5 * sigma));
-  const auto centre_u = static_cast<int>(std::lround(image->x())), centre_v = static_cast<int>(std::lround(image->y()));
-  const auto bell = [&](int at, double centre) {
-    return static_cast<float>(std::exp(-(at - centre) * (at - centre) / (2 * sigma * sigma)));
-  };
-  std::vector<float> across;
-  across.reserve(2 * static_cast<std::size_t>(reach) + 1);
-  float sum_across = 0, sum_down = 0;
-  for (int k = -reach; k <= reach; ++k) {
-    across.push_back(bell(centre_u + k, image->x()));
-    sum_across += across.back(), sum_down += bell(centre_v + k, image->y());
-  }
-  for (int y = std::max(centre_v - reach, 0); y <= std::min(centre_v + reach, pixels.height - 1); ++y) {
-    const float row = bell(y, image->y()) / (sum_down * sum_across);
-    for (int x = std::max(centre_u - reach, 0); x <= std::min(centre_u + reach, pixels.width - 1); ++x) {
-      const float share = row * across[static_cast<std::size_t>(std::int64_t{x} - centre_u + reach)];
-      for (std::size_t c = 0; c < pixels.channels; ++c) pixels.grey[c * pixels.plane + pixels.index(x, y)] += share * grey[c][0];
-    }
-  }
+  if (p.z() >= depth_m) return std::nullopt;
+  spot.centre_px = *image;
+  for (std::size_t c = 0; c < 3; ++c) spot.grey[c] = grey[c][0];
+  return spot;
 }
 
-void Particles::stamp(double time_s, const Shader& shader, PixelStore& pixels) const {
-  if (cells_.empty()) return;
-  const std::vector<Speck> specks = in_view(time_s);
+std::vector<Particles::Spot> Particles::spots(std::span<const Cell> cells, double time_s, const Shader& shader,
+                                              const PixelStore& pixels) const {
+  const std::vector<Speck> specks = in_view(cells, time_s);
+  std::vector<Spot> spots;
   for (std::size_t first = 0; first < specks.size(); first += lane_count) {
     const std::size_t count = std::min<std::size_t>(lane_count, specks.size() - first);
     Lanes3 place;
@@ -171,8 +163,58 @@ void Particles::stamp(double time_s, const Shader& shader, PixelStore& pixels) c
       place.x[lane] = static_cast<float>(p.x()), place.y[lane] = static_cast<float>(p.y()), place.z[lane] = static_cast<float>(p.z());
     }
     const RgbLanes irradiance = shader.at(place, daylight_share);
-    for (std::size_t lane = 0; lane < count; ++lane) show(specks[first + lane], irradiance, static_cast<int>(lane), shader, pixels);
+    for (std::size_t lane = 0; lane < count; ++lane) {
+      const std::optional<Spot> spot = spot_of(specks[first + lane], irradiance, static_cast<int>(lane), shader, pixels);
+      if (spot) spots.push_back(*spot);
+    }
   }
+  return spots;
+}
+
+// Its light is spread over the pixels about its centre, of which those from `first_row` to before `end_row` get theirs.
+void Particles::show(const Spot& spot, int first_row, int end_row, PixelStore& pixels) {
+  const double sigma = spot.sigma_px;
+  const int reach = spot.reach_px();
+  const auto centre_u = static_cast<int>(std::lround(spot.centre_px.x())), centre_v = static_cast<int>(std::lround(spot.centre_px.y()));
+  const auto bell = [&](int at, double centre) {
+    return static_cast<float>(std::exp(-(at - centre) * (at - centre) / (2 * sigma * sigma)));
+  };
+  std::vector<float> across;
+  across.reserve(2 * static_cast<std::size_t>(reach) + 1);
+  float sum_across = 0, sum_down = 0;
+  for (int k = -reach; k <= reach; ++k) {
+    across.push_back(bell(centre_u + k, spot.centre_px.x()));
+    sum_across += across.back(), sum_down += bell(centre_v + k, spot.centre_px.y());
+  }
+  for (int y = std::max(centre_v - reach, first_row); y <= std::min(centre_v + reach, end_row - 1); ++y) {
+    const float row = bell(y, spot.centre_px.y()) / (sum_down * sum_across);
+    for (int x = std::max(centre_u - reach, 0); x <= std::min(centre_u + reach, pixels.width - 1); ++x) {
+      const float share = row * across[static_cast<std::size_t>(std::int64_t{x} - centre_u + reach)];
+      for (std::size_t c = 0; c < pixels.channels; ++c) pixels.grey[c * pixels.plane + pixels.index(x, y)] += share * spot.grey[c];
+    }
+  }
+}
+
+// Blocks of cells, then bands of rows: each pixel gets its light in the order of the cells, whatever the number of threads.
+void Particles::stamp(double time_s, const Shader& shader, PixelStore& pixels, WorkerPool& pool) const {
+  if (cells_.empty()) return;
+  constexpr std::size_t cells_a_block = 256;
+  constexpr int rows_a_band = 32;
+  const std::size_t blocks = (cells_.size() + cells_a_block - 1) / cells_a_block;
+  std::vector<std::vector<Spot>> found(blocks);
+  pool.run(static_cast<int>(blocks), [&](int block) {
+    const std::size_t first = static_cast<std::size_t>(block) * cells_a_block;
+    const std::span<const Cell> cells = std::span(cells_).subspan(first, std::min(cells_a_block, cells_.size() - first));
+    found[static_cast<std::size_t>(block)] = spots(cells, time_s, shader, pixels);
+  });
+  pool.run((pixels.height + rows_a_band - 1) / rows_a_band, [&](int band) {
+    const int first = band * rows_a_band, end = std::min(first + rows_a_band, pixels.height);
+    for (const std::vector<Spot>& spots_of_block : found) {
+      for (const Spot& spot : spots_of_block) {
+        if (spot.last_row() >= first && spot.first_row() < end) show(spot, first, end, pixels);
+      }
+    }
+  });
 }
 
 }  // namespace lf::optics

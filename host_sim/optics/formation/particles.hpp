@@ -7,10 +7,13 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "host_sim/optics/pixel_store.hpp"
 #include "host_sim/optics/shader.hpp"
+#include "host_sim/optics/worker_pool.hpp"
 
 namespace lf::optics {
 
@@ -26,7 +29,7 @@ class Particles {
 
   // Adds their light to the grey of `pixels`, whose surfaces hide what is behind them. `time_s`: how long the water has drifted. What adds less than a
   // tenth of a grey level to any pixel is left out.
-  void stamp(double time_s, const Shader& shader, PixelStore& pixels) const;
+  void stamp(double time_s, const Shader& shader, PixelStore& pixels, WorkerPool& pool) const;
 
   // One of them, in the base frame.
   struct Speck {
@@ -38,14 +41,27 @@ class Particles {
 
  private:
   using Cell = std::array<std::int32_t, 3>;
-  // Those before the camera; place_m in its frame.
-  std::vector<Speck> in_view(double time_s) const;
-  void show(const Speck& speck, const RgbLanes& irradiance, int lane, const Shader& shader, PixelStore& pixels) const;
+  // A speck's image.
+  struct Spot {
+    Vec2 centre_px = Vec2::Zero();
+    double sigma_px = 0;
+    std::array<float, 3> grey{};  // all of it, by channel
+    int reach_px() const;
+    int first_row() const;
+    int last_row() const;
+  };
+  void draw_specks(const Cell& cell, const Vec3& drift, std::vector<Speck>& specks) const;
+  // Those of `cells` before the camera; place_m in its frame.
+  std::vector<Speck> in_view(std::span<const Cell> cells, double time_s) const;
+  std::vector<Spot> spots(std::span<const Cell> cells, double time_s, const Shader& shader, const PixelStore& pixels) const;
+  std::optional<Spot> spot_of(const Speck& speck, const RgbLanes& irradiance, int lane, const Shader& shader,
+                              const PixelStore& pixels) const;
+  static void show(const Spot& spot, int first_row, int end_row, PixelStore& pixels);
 
   const Camera& camera_;
   Pose camera_from_base_;
-  double tan_u_, tan_v_;  // of the view's edges, and some
-  double per_cell_;
+  double tan_u_, tan_v_;              // of the view's edges, and some
+  double per_cell_, none_in_a_cell_;  // specks of it on average, and how likely it has none
   Vec3 current_m_s_;
   std::uint64_t seed_;
   std::vector<Cell> cells_;  // that reach into the view, whatever part of a cell's size the grid has drifted

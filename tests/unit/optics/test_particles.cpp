@@ -76,6 +76,7 @@ struct Darkroom {
   Camera camera;
   Bench bench;
   PixelStore pixels;
+  WorkerPool pool{2};
   double sum() const {
     double sum = 0;
     for (const float grey : pixels.grey) sum += double(grey);
@@ -89,7 +90,7 @@ TEST(Particles, ShowTheLightThatAGreyDiscReflects) {
   water.ambient_w_m2 = {0, 10, 0};
   Darkroom dark(water);
   const Particles particles(dark.camera, water, 9);
-  particles.stamp(0, dark.bench.shader, dark.pixels);
+  particles.stamp(0, dark.bench.shader, dark.pixels, dark.pool);
   double expected = 0;
   const CameraIntrinsics& k = dark.camera.config.intrinsics;
   for (const Particles::Speck& speck : particles.at(0)) {
@@ -109,7 +110,7 @@ TEST(Particles, ThoseBehindASurfaceAreHidden) {
   water.ambient_w_m2 = {0, 10, 0};
   Darkroom dark(water);
   std::fill(dark.pixels.depth_m.begin(), dark.pixels.depth_m.end(), 0.09f);
-  Particles(dark.camera, water, 9).stamp(0, dark.bench.shader, dark.pixels);
+  Particles(dark.camera, water, 9).stamp(0, dark.bench.shader, dark.pixels, dark.pool);
   EXPECT_EQ(dark.sum(), 0);
 }
 
@@ -118,7 +119,7 @@ TEST(Particles, InTheSheetAreBrightAndBesideItDark) {
   Darkroom dark(water);
   dark.bench.add(vehicle_laser(sheet({0.5, 0, 0.4}, -Vec3::UnitZ(), Vec3::UnitY())));
   const Particles particles(dark.camera, water, 3);
-  particles.stamp(0, dark.bench.shader, dark.pixels);
+  particles.stamp(0, dark.bench.shader, dark.pixels, dark.pool);
   std::size_t lit = 0;
   const CameraIntrinsics& k = dark.camera.config.intrinsics;
   const auto grey_at = [&](const Vec3& place) {
@@ -134,7 +135,7 @@ TEST(Particles, InTheSheetAreBrightAndBesideItDark) {
   // Light stays near the sheet: five standard deviations off it nothing is added by a speck of its own.
   Darkroom other(water);
   other.bench.add(vehicle_laser(sheet({-5, 0, 0.4}, -Vec3::UnitZ(), Vec3::UnitY())));
-  Particles(other.camera, water, 3).stamp(0, other.bench.shader, other.pixels);
+  Particles(other.camera, water, 3).stamp(0, other.bench.shader, other.pixels, other.pool);
   EXPECT_LT(other.sum(), 1e-6);
 }
 
