@@ -40,12 +40,12 @@ double PanelMap::shape_shift_m(const PlaneFit& fit) const {
   return along_ray * static_cast<double>(fit.shape_doubt_px) * distance_m / camera_.intrinsics.fy;
 }
 
-// The plane is the mean of thousands of points, and so far better known than one of them. An error that bends the plane shows in the points' scatter, and is no
-// larger than it. The line's shape may shift the points by different amounts over the sweep. The worst is no shift at one border and the full shift at the
+// The plane is the mean of thousands of points, and so far better known than one of them. An error that bends it shows in what neighbouring points have in common. The
+// line's shape may shift the points by different amounts over the sweep. The worst is no shift at one border and the full shift at the
 // other: that turns the plane.
 arm::PanelDoubt PanelMap::doubt() const {
   const double across_m = (layout_.plate_max_m - layout_.plate_min_m).minCoeff(), shape_m = shape_shift_m(plane_);
-  return {calibration_shift_m + 2 * plane_.rms_m + shape_m, calibration_turn_rad + (2 * plane_.rms_m + shape_m) / across_m};
+  return {calibration_shift_m + 2 * plane_.bend_m + shape_m, calibration_turn_rad + (2 * plane_.bend_m + shape_m) / across_m};
 }
 
 void PanelMap::expect_handle(double rad) {

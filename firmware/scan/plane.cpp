@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "firmware/scan/plane_bend.hpp"
 #include "shared/random.hpp"
 
 namespace lf::scan {
@@ -320,6 +321,7 @@ PlaneFit PlaneFitter::fit(std::span<const CloudPoint> points, const Config& conf
     result.plane.normal = -result.plane.normal;
     result.plane.offset_m = -result.plane.offset_m;
   }
+  result.bend_m = plane_bend_m(points, result.plane, config.threshold_m);
   result.valid = true;
   return result;
 }

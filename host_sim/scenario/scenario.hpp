@@ -78,7 +78,7 @@ struct Camera : config::Camera {
 struct Laser : config::Laser {
   double power_w = optics::LaserConfig{}.power_w;
   double waist_sigma_m = optics::LaserConfig{}.waist_sigma_m;
-  Spread speckle{0.13, 0.18};                   // of a diode; a DPSS laser has up to 0.25
+  Spread speckle{0.13, 0.25};                   // from a diode to a DPSS laser
   Spread waist_at_m = Spread::around(0, 0.18);  // 30 % of the range to the panel
   Spread lobe_share{0.01, 0.03};
   Spread lobe_sigmas{2, 3};

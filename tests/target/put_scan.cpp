@@ -140,6 +140,7 @@ void put_planes(Ledger& ledger) {
       ledger.numbers(fit.plane.normal);
       ledger.number(fit.plane.offset_m);
       ledger.number(fit.rms_m);
+      ledger.number(fit.bend_m);
     }
   }
 }
