@@ -140,6 +140,13 @@ std::vector<std::pair<std::string, std::string>> conditions(const scenario::Samp
   const auto deg = [](const Vec3& v) {
     return formatted("[%.2f, %.2f, %.2f] deg", deg_from_rad(v.x()), deg_from_rad(v.y()), deg_from_rad(v.z()));
   };
+  const auto mm2 = [](const Vec3& v) { return formatted("[%+.2f, %+.2f, %+.2f] mm", 1e3 * v.x(), 1e3 * v.y(), 1e3 * v.z()); };
+  const auto percents = [](const Vec3& ratios) {
+    const Vec3 percent = 100 * (ratios.array() - 1);
+    return formatted("%+.0f, %+.0f, %+.0f %%", percent.x(), percent.y(), percent.z());
+  };
+  double worst_button_m = 0;
+  for (const Vec2& shift : s.button_shift_m) worst_button_m = std::max(worst_button_m, shift.norm());
   return {
       {"docking error, shift", mm(s.docking_shift_m)},
       {"docking error, turn", deg(s.docking_turn_rad)},
@@ -147,10 +154,25 @@ std::vector<std::pair<std::string, std::string>> conditions(const scenario::Samp
       {"friction torque", formatted("%.2f N m", s.valve_friction_nm)},
       {"attenuation", formatted("%.2f per m", s.attenuation_per_m)},
       {"particles", formatted("%.1f per litre", s.particles_per_l)},
-      {"camera noise", formatted("%.1f grey levels", s.camera_noise_grey)},
+      {"scattering and phase function off by", percents({s.scattering_ratio, s.forward_ratio[0], s.back_ratio}) + " (all, first forward term, back)"},
+      {"camera noise", formatted("%.1f grey levels", s.camera_noise_grey) + formatted(", %.0f electrons a level", s.electrons_per_grey)},
+      {"exposure", formatted("%.2f ms late", 1e3 * s.exposure_delay_s) + formatted(", jitter %.2f %%", 100 * s.exposure_jitter) +
+                       formatted(", time stamps off by %.2f ms", 1e3 * s.stamp_s)},
+      {"lens", formatted("focal length %+.3f %%, ", 100 * (s.focal_ratio - 1)) +
+                   formatted("principal point [%+.2f, %+.2f] px, ", s.principal_point_px.x(), s.principal_point_px.y()) +
+                   formatted("distortion %.2f px, spot %+.0f %%, ", s.distortion_px.norm(), 100 * (s.lens_ratio - 1)) +
+                   formatted("%.2f times as wide in the corners", s.corner_blur)},
+      {"ghost", formatted("%.2f %% of the light, %.0f px away", 100 * s.ghost_share, s.ghost_px)},
+      {"laser's light", formatted("speckle %.2f, waist at %+.2f m, ", s.speckle, s.waist_at_m) +
+                            formatted("lobe of %.1f %% at %+.1f sigma, ", 100 * s.lobe_share, s.lobe_sigmas) +
+                            formatted("beam %+.0f %%, cone %+.1f mrad", 100 * (s.beam_ratio - 1), 1e3 * s.laser_cone_rad)},
       {"lamps", s.lamps_lit ? "on" : "off"},
       {"camera's mounting error", formatted("%.2f mm, %.3f deg", 1e3 * s.camera_shift_m.norm(), deg_from_rad(s.camera_turn_rad.norm()))},
-      {"laser's mounting error", formatted("%.2f mm, %.3f deg", 1e3 * s.laser_shift_m.norm(), deg_from_rad(s.laser_turn_rad.norm()))}};
+      {"laser's mounting error", formatted("%.2f mm, %.3f deg", 1e3 * s.laser_shift_m.norm(), deg_from_rad(s.laser_turn_rad.norm()))},
+      {"marker's side off by", formatted("%+.2f mm, ", 1e3 * s.marker_size_m) +
+                                   formatted("its edges off the panel by %.2f mm", 1e3 * s.marker_flat_m.norm())},
+      {"handle's size off by", mm2(s.handle_m)},
+      {"buttons' place off by at most", formatted("%.2f mm", 1e3 * worst_button_m)}};
 }
 
 namespace {
