@@ -17,7 +17,6 @@ struct Camera {
   int width() const { return config.intrinsics.width; }
   int height() const { return config.intrinsics.height; }
   std::size_t channels() const { return config.colour ? 3 : 1; }
-  float blur_px() const { return static_cast<float>(config.blur_px); }
   RayPacket row(int u, int v) const { return rays.row(place, u, v); }
   RayLines lines(int u, int v) const { return rays.lines(place, u, v); }
 

@@ -180,7 +180,7 @@ struct Optics::Impl {
     size(viewer.camera, shot, frame);
     if (viewer.still.update(shader, shot.poses, lamp_bodies(shot), shot.lamps, pool)) viewer.live.forget();
 
-    const RenderPass pass(viewer.camera, viewer.tiles, viewer.still, shader, arm, viewer.live);
+    const RenderPass pass(viewer.camera, viewer.formation.lens(), viewer.tiles, viewer.still, shader, arm, viewer.live);
     const Exposing exposing = exposing_of(viewer.camera.config, shot);
     const int tile_rows = viewer.tiles.rows();
     pool.run(tile_rows, [&](int row) { pass.sample(row); });

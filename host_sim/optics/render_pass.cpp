@@ -12,9 +12,9 @@ LiveView::LiveView(const Camera& camera, const Tiles& image_tiles) : tiles(image
   packets.assign(pixels.stride / lane_count * static_cast<std::size_t>(camera.height()), hidden);
 }
 
-RenderPass::RenderPass(const Camera& camera, const Tiles& tiles, const StillView& still, const Shader& shader, const BodyBounds& arm,
-                       LiveView& live)
-    : camera_(camera), tiles_(tiles), still_(still), shader_(shader), arm_(arm), live_(live) {}
+RenderPass::RenderPass(const Camera& camera, const LensSpot& lens, const Tiles& tiles, const StillView& still, const Shader& shader,
+                       const BodyBounds& arm, LiveView& live)
+    : camera_(camera), lens_(lens), tiles_(tiles), still_(still), shader_(shader), arm_(arm), live_(live) {}
 
 // Says what moving bodies may do to each tile of the row, and what to any of them.
 Changes RenderPass::judge_tiles(int tile_row) const {
@@ -234,6 +234,9 @@ void RenderPass::write_geometry(int tile_row, const std::vector<std::uint16_t>& 
   }
 }
 
+// Of the lens's spot in the middle of a packet.
+float RenderPass::blur_px(int u, int v) const { return static_cast<float>(lens_.sigma_px(u + 0.5 * (lane_count - 1), v)); }
+
 // Newton's method down the column on the surfaces that the rays really meet; what does not settle on a lit surface is no centre.
 void RenderPass::refine_stripe(std::size_t laser, int u, int v, Lanes offset_v, LaneMask wanted, std::vector<StripeCentre>& centres) const {
   const SheetLight& sheet = shader_.sheets[laser];
@@ -245,7 +248,7 @@ void RenderPass::refine_stripe(std::size_t laser, int u, int v, Lanes offset_v, 
     const RayPacket rays = camera_.rays.shifted_row(camera_.place, u, v, offset_v);
     hit = shader_.scene().all(rays);
     surface = make_surface(rays, hit);
-    stripe = sheet.on_surface(surface, shader_.water(), 1.f, camera_.blur_px());
+    stripe = sheet.on_surface(surface, shader_.water(), 1.f, blur_px(u, v));
   }
   const LaneMask settled = wanted & stripe.reached & (abs(stripe.offset_px) < 2e-3f) & (abs(offset_v) <= 0.75f);
   const LaneMask lit = shader_.scene().clear_of_all(sheet.emitter(), surface, settled);
@@ -270,7 +273,7 @@ std::vector<RenderPass::StripeCentre> RenderPass::stripe_centres(int tile_row, s
       const Sample sample = pixels.sample(pixels.index(u, v));
       if (!any(sample.reached & (1 << laser))) continue;
       const SurfacePacket surface = make_surface(camera_.row(u, v), sample.hit);
-      const StripePacket stripe = shader_.sheets[laser].on_surface(surface, shader_.water(), 1.f, camera_.blur_px());
+      const StripePacket stripe = shader_.sheets[laser].on_surface(surface, shader_.water(), 1.f, blur_px(u, v));
       const Lanes offset_v = -stripe.offset_px / (abs(stripe.slope_v) > 0.02f ? stripe.slope_v : all_lanes(0.02f));
       const LaneMask near = stripe.reached & (abs(offset_v) < 0.75f);
       if (any(near)) refine_stripe(laser, u, v, offset_v, near, centres);

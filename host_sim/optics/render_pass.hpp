@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "host_sim/optics/formation/lens_spot.hpp"
 #include "host_sim/optics/still_view.hpp"
 
 namespace lf::optics {
@@ -23,7 +24,9 @@ struct LiveView {
 
 class RenderPass {
  public:
-  RenderPass(const Camera& camera, const Tiles& tiles, const StillView& still, const Shader& shader, const BodyBounds& arm, LiveView& live);
+  // `lens`: the spot that stripe_centres() counts to a stripe's width.
+  RenderPass(const Camera& camera, const LensSpot& lens, const Tiles& tiles, const StillView& still, const Shader& shader,
+             const BodyBounds& arm, LiveView& live);
 
   // Each tile row of a pass must be done before the next pass begins.
   void sample(int tile_row) const;          // first: a sample a pixel
@@ -56,12 +59,14 @@ class RenderPass {
   void put(int u, int v, const SubPixels& mean) const;
   void add_even_light(int u, int v, const SubPixels& kept) const;
   SubPixels sample_sub_pixels(int u, int v, Changes changes, const std::vector<float>* haze_row) const;
+  float blur_px(int u, int v) const;
   void refine_stripe(std::size_t laser, int u, int v, Lanes offset_v, LaneMask wanted, std::vector<StripeCentre>& centres) const;
   std::size_t packet(int u, int v) const {
     return static_cast<std::size_t>(v) * live_.pixels.stride / lane_count + static_cast<std::size_t>(u / lane_count);
   }
 
   const Camera& camera_;
+  const LensSpot& lens_;
   const Tiles& tiles_;
   const StillView& still_;
   const Shader& shader_;

@@ -28,6 +28,9 @@ class Formation {
   // Row v of the picture as the sensor has it, channels interleaved. After spread(), rows in any order, from several threads.
   void expose_row(const PixelStore& pixels, int v, const Speckle& speckle, const Exposing& exposing, std::uint8_t* out) const;
 
+  // The lens's spot, wider toward the corners.
+  const LensSpot& lens() const { return lens_; }
+
  private:
   void find_lines(const std::vector<std::uint8_t>& line_packets);
   void add_ghost(PixelStore& pixels) const;

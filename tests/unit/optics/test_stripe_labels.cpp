@@ -91,6 +91,35 @@ TEST(StripeLabels, WidthAndHeightOfAPieceAreThoseOfThePicture) {
   }
 }
 
+// Spots of lenses grow with the square of the distance from the picture's middle. Independently: the closed form, and the light of the picture.
+TEST(StripeLabels, WidthAndHeightCountTheWiderSpotOfTheCorners) {
+  constexpr double middle_px = 0.9, corner_px = 1.8;
+  Labelled s(1.0, Vec3(distance_m, 0, 0.25));
+  s.config.cameras[0].blur_px = middle_px;
+  s.config.cameras[0].corner_blur = corner_px / middle_px;
+  s.config.lasers[0].power_w = 0.25;
+  const Frame on = s.render(true), off = s.render(false);
+  const CameraIntrinsics k;
+  int outside = 0;
+  double ratios = 0;
+  for (const StripePiece& piece : on.pieces) {
+    const double out_u = (piece.u - 319.5) / 319.5, out_v = (double(piece.v) - 239.5) / 319.5;
+    const double to_corner2 = (out_u * out_u + out_v * out_v) / (1 + 0.75 * 0.75);
+    if (piece.part || piece.u < 16 || piece.u > 623 || to_corner2 < 0.4) continue;
+    const double beam = k.fy * s.sigma_m(piece.u) / distance_m;
+    const double spot2 = middle_px * middle_px + (corner_px * corner_px - middle_px * middle_px) * to_corner2;
+    const double sigma = std::sqrt(beam * beam + spot2 + 1.0 / 12);
+    EXPECT_NEAR(piece.sigma_px, sigma, 0.02 * sigma) << piece.u;
+    double light = 0;
+    const int centre = static_cast<int>(std::lround(piece.v));
+    for (int v = std::max(centre - 16, 0); v <= std::min(centre + 16, on.height - 1); ++v) light += difference(on, off, piece.u, v);
+    ratios += double(piece.grey) / (light / (std::sqrt(2 * pi) * sigma));
+    ++outside;
+  }
+  ASSERT_GE(outside, 100);
+  EXPECT_NEAR(ratios / outside, 1, 0.015);
+}
+
 // The sheet's middle passes the plate's end: its flank lights the last rows. Independently: a bell that a step cuts off, spread by the lens and summed by the pixel.
 TEST(StripeLabels, AFlankAtAPlatesEndIsAPartWhereThePictureIsBrightest) {
   const Labelled whole(1.0, Vec3(distance_m, 0, 0.05));
