@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <vector>
 
 #include "firmware/arm/kinematics.hpp"
 #include "shared/arm/arm_geometry.hpp"
@@ -41,6 +42,62 @@ bool same(double a, double b) { return std::abs(a - b) <= 1e-6 * std::max(1.0, s
 bool same_actuator(const ArmActuator& a, const arm_geometry::JointNumbers& core) {
   return same(a.pivot_a_m, core.pivot_a_m) && same(a.pivot_b_m, core.pivot_b_m) && same(a.offset_rad, core.offset_rad) &&
          same(a.counts_per_m, core.counts_per_m) && same(a.counts_per_rad, core.counts_per_rad);
+}
+
+bool same_motor(const ArmJoint& a, const arm_geometry::JointNumbers& core) {
+  return same(a.effort_nm, core.effort_nm) && same(a.rated_torque_nm, core.rated_torque_nm) && same(a.velocity_rad_s, core.velocity_rad_s) &&
+         same(a.acceleration_rad_s2, core.acceleration_rad_s2);
+}
+
+// The pad that holds the bar.
+bool has_pad(const ArmLink& finger) {
+  return std::any_of(finger.shapes.begin(), finger.shapes.end(), [](const scene::Shape& shape) {
+    const Vec3& at = shape.body_from_shape.translation();
+    return shape.collides && shape.kind == scene::ShapeKind::box && std::abs(at.x() + shape.size_m.x() / 2 - arm_geometry::jaw.face_x_m) <= same_m &&
+           std::abs(at.z() - arm_geometry::jaw.face_z_m) <= same_m && std::abs(shape.size_m.y() - arm_geometry::jaw.pad_width_m) <= same_m &&
+           std::abs(shape.size_m.z() - arm_geometry::jaw.pad_depth_m) <= same_m;
+  });
+}
+
+double distance_to_capsule(const Vec3& point, const arm_geometry::CapsuleNumbers& capsule) {
+  const Vec3 a(capsule.a_m[0], capsule.a_m[1], capsule.a_m[2]), b(capsule.b_m[0], capsule.b_m[1], capsule.b_m[2]);
+  const double length2 = (b - a).squaredNorm();
+  const double along = length2 > 0 ? std::clamp((point - a).dot(b - a) / length2, 0.0, 1.0) : 0.0;
+  return (a + along * (b - a) - point).norm() - capsule.radius_m;
+}
+
+// A shape's outermost points: a box's corners; eight on each rim of a cylinder or about each end of a capsule; a mesh's vertices.
+std::vector<Vec3> outermost(const scene::Shape& shape) {
+  if (shape.kind == scene::ShapeKind::mesh) return shape.vertices_m;
+  std::vector<Vec3> points;
+  constexpr int around = 8;
+  for (int i = 0; i < around; ++i) {
+    const double turn = 2 * pi * i / around;
+    for (const double end : {-0.5, 0.5}) {
+      if (shape.kind == scene::ShapeKind::box)
+        points.push_back(shape.size_m.cwiseProduct(Vec3((i & 1) != 0 ? 0.5 : -0.5, (i & 2) != 0 ? 0.5 : -0.5, end)));
+      else
+        points.emplace_back(shape.size_m.x() * std::cos(turn), shape.size_m.x() * std::sin(turn),
+                            shape.kind == scene::ShapeKind::sphere ? 0 : end * shape.size_m.z());
+    }
+  }
+  return points;
+}
+
+// By how much the link's shapes stand out of the capsules that the core has for it.
+double stands_out_m(const ArmLink& link, std::size_t body) {
+  double most = 0;
+  for (const scene::Shape& shape : link.shapes) {
+    if (!shape.collides) continue;
+    for (const Vec3& point : outermost(shape)) {
+      double nearest = 1e9;
+      for (const arm_geometry::CapsuleNumbers& capsule : arm_geometry::capsules) {
+        if (capsule.link == body) nearest = std::min(nearest, distance_to_capsule(shape.body_from_shape * point, capsule));
+      }
+      most = std::max(most, nearest);
+    }
+  }
+  return most;
 }
 
 // Where a finger's joint is on the wrist.
@@ -89,10 +146,25 @@ std::string difference_from_core(const ArmDescription& arm) {
       actuators += (actuators.empty() ? "" : ", ") + std::string(joint_names[i]);
   }
   if (!actuators.empty()) text = joined(text, "the screw or gear of " + actuators + " differs");
+  std::string motors;
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    if (!same_motor(arm.joints[i], arm_geometry::joints[i])) motors += (motors.empty() ? "" : ", ") + std::string(joint_names[i]);
+  }
+  if (!motors.empty()) text = joined(text, "torque, speed or acceleration of " + motors + " differs");
   constexpr auto jaw = static_cast<std::size_t>(Joint::jaw);
   if (!same_origin(arm.joints[jaw].parent_from_joint, arm_geometry::joint_origins[jaw]) ||
       !same_origin(arm.finger_b.parent_from_joint, arm_geometry::joint_origins[jaw + 1]))
     text = joined(text, "its fingers are elsewhere on the wrist");
+  constexpr auto finger_a = static_cast<std::size_t>(scene::BodyId::finger_a);
+  if (!has_pad(arm.links[finger_a])) text = joined(text, "its fingers' pads are others");
+  for (std::size_t body = 1; body < ArmDescription::link_count; ++body) {
+    const double out_m = stands_out_m(arm.links[body], body);
+    if (out_m <= same_m) continue;
+    std::array<char, 96> words;
+    (void)std::snprintf(words.data(), words.size(), "its %s stands %.1f mm out of what is kept clear for it", arm.links[body].name.c_str(),
+                        1e3 * out_m);
+    text = joined(text, words.data());
+  }
   return text;
 }
 

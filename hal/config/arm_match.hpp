@@ -8,7 +8,8 @@
 namespace lf::config {
 
 // What differs, in words: "its tool is up to 31.20 mm and 0.000 degrees off, and the limits of elbow differ". Empty for the same arm. Compares tool poses over the joints'
-// ranges, the joints' limits, their screws and gears, and where the fingers' joints are. The links' shapes, by which ways are kept clear, are not compared.
+// ranges, the joints' limits, their screws and gears, what their motors give, where the fingers' joints and pads are, and whether the links' shapes lie within the capsules by
+// which the core keeps its ways clear.
 std::string difference_from_core(const ArmDescription& arm);
 
 }  // namespace lf::config

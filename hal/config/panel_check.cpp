@@ -31,11 +31,15 @@ bool inside_plate(const PanelLayout& panel, const Vec2& centre, double half) {
   return (low.array() >= panel.plate_min_m.array()).all() && (high.array() <= panel.plate_max_m.array()).all();
 }
 
+// From the valve's axis to the farthest corner of its bar.
+double turning_bar_m(const PanelLayout& panel) { return std::hypot(panel.handle_length_m, panel.handle_thickness_m) / 2; }
+
 bool plate_fits(const PanelLayout& panel, double side) {
   const bool free = std::all_of(panel.buttons_m.begin(), panel.buttons_m.end(), [&](const Vec2& button) {
     return distance_to_square(button - panel.marker_centre_m, side) >= panel.button_width_m / 2;
   });
-  return free && inside_plate(panel, panel.marker_centre_m, side / 2);
+  return free && distance_to_square(-panel.marker_centre_m, side) >= turning_bar_m(panel) &&
+         inside_plate(panel, panel.marker_centre_m, side / 2);
 }
 
 }  // namespace
@@ -77,7 +81,11 @@ std::vector<std::string> low_button_problems(const Machine& machine) {
 
 std::vector<std::string> panel_problems(const PanelLayout& panel) {
   std::vector<std::string> problems;
-  const double radius = panel.button_width_m / 2;
+  const double radius = panel.button_width_m / 2, bar_m = turning_bar_m(panel);
+  const double under_m = bar_m - distance_to_square(-panel.marker_centre_m, panel.marker_plate_m);
+  if (under_m > 0)
+    problems.push_back("'panel.marker_centre_m': the turning bar ('panel.handle_length_m') covers the marker's plate by " + millimetres(under_m) +
+                       ": no look would find the marker");
   for (std::size_t i = 0; i < PanelLayout::button_count; ++i) {
     const std::string name = std::string("'panel.buttons_m': the ") + button_names[i] + " button";
     const double gap = distance_to_square(panel.buttons_m[i] - panel.marker_centre_m, panel.marker_plate_m) - radius;
@@ -86,6 +94,9 @@ std::vector<std::string> panel_problems(const PanelLayout& panel) {
       const double between = (panel.buttons_m[i] - panel.buttons_m[j]).norm() - 2 * radius;
       if (between < 0) problems.push_back(name + " and the " + button_names[j] + " one overlap by " + millimetres(-between));
     }
+    const double turned_over_m = bar_m + radius - panel.buttons_m[i].norm();
+    if (turned_over_m > 0)
+      problems.push_back(name + " lies " + millimetres(turned_over_m) + " under the turning bar ('panel.handle_length_m')");
     if (!inside_plate(panel, panel.buttons_m[i], radius)) problems.push_back(name + " hangs beyond the plate");
   }
   if (!inside_plate(panel, panel.marker_centre_m, panel.marker_plate_m / 2))

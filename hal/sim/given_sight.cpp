@@ -22,7 +22,7 @@ PanelResult panel_as_it_is(const Pose& base_from_panel, double handle_rad, const
   result.fit.plane.offset_m = -result.fit.plane.normal.dot(base_from_panel.translation());
   result.fit.points = result.fit.inliers = plane_points;
   result.fit.rms_m = 0.0004;
-  result.fit.bend_m = 0.0001;
+  result.fit.bend_m = 0.0003;  // the worst of a dozen sweeps that were rendered
   result.confidence = 0.9f;
 
   const Pose camera_from_tag = camera.base_from_camera.inverse() * base_from_panel * marker.panel_from_tag;

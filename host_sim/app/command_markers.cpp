@@ -82,10 +82,10 @@ int markers(const Options& options) {
   }
   const bool doubtful = tell_doubtful_poses(frames);
   if (found > 0) return doubtful ? failed : done;
+  const char* other = options.decimate > 1 ? "small markers with --decimate 1" : "large or noisy ones with --decimate 1.5 or 2";
   std::fprintf(stderr,
-               "lanternfish: no marker of family %s with a margin of %g or more. Check --family, lower --margin, and search small markers "
-               "with --decimate 1 (now %g)\n",
-               options.family.c_str(), options.min_margin, options.decimate);
+               "lanternfish: no marker of family %s with a margin of %g or more. Check --family, lower --margin, and search %s (now %g)\n",
+               options.family.c_str(), options.min_margin, other, options.decimate);
   return failed;
 }
 
@@ -99,8 +99,8 @@ void add_markers(CLI::App& app, Action& action) {
   command->add_option("--channel", options->channel, vision::channel_names)->capture_default_str();
   command->add_option("--camera", options->camera, "Calibration (YAML of OpenCV or ROS): gives poses; needs --size-m");
   command->add_option("--size-m", options->size_m, "Side of the black square, m")->check(within(1e-4, 100));
-  command->add_option("--decimate", options->decimate, "Search on an image so many times smaller")->capture_default_str();
-  command->add_option("--margin", options->min_margin, "Smallest decision margin")->capture_default_str();
+  command->add_option("--decimate", options->decimate, "Search on an image so many times smaller")->check(within(1, 8))->capture_default_str();
+  command->add_option("--margin", options->min_margin, "Smallest decision margin")->check(within(0, 1000))->capture_default_str();
   command->add_option("--overlay", options->overlay, "Write the first frame with a marker to this PNG, markers drawn in")->check(check_png);
   command->add_flag("--json", options->json, "Print JSON");
   command->callback([options, &action] { action = [options] { return markers(*options); }; });

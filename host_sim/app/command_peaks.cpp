@@ -121,6 +121,7 @@ void write_overlay(const Options& options, const Found& found) {
 
 void tell(const Options& options, const vision::DeepImage& image, const Found& found, const StripeLook& look,
           const std::vector<std::string>& doubts) {
+  const std::size_t not_fitted = found.detected.size() - found.peaks.size();
   if (options.json) {
     Json peaks = Json::array();
     for (const scan::Peak& peak : found.peaks)
@@ -129,7 +130,7 @@ void tell(const Options& options, const vision::DeepImage& image, const Found& f
         {{"width", image.width},
          {"height", image.height},
          {"peaks", peaks},
-         {"rejected", {{"weak", found.counters.weak}, {"saturated", found.counters.saturated}, {"ambiguous", found.counters.ambiguous}}},
+         {"rejected", {{"weak", found.counters.weak}, {"saturated", found.counters.saturated}, {"ambiguous", found.counters.ambiguous}, {"not_fitted", not_fitted}}},
          {"stripe_width_px", look.width_px},
          {"scatter_px", look.scatter_px},
          {"doubts", doubts}});
@@ -139,9 +140,9 @@ void tell(const Options& options, const vision::DeepImage& image, const Found& f
       print("%.4f,%.4f,%.2f,%.4f\n", double(peak.u_px), double(peak.v_px), double(peak.amplitude), double(peak.ratio));
     }
   } else {
-    print("%s in %d %ss; refused: %llu weak, %llu saturated, %llu ambiguous\n", count_of(found.peaks.size(), "peak").c_str(),
+    print("%s in %d %ss; refused: %llu weak, %llu saturated, %llu ambiguous, %zu not fitted\n", count_of(found.peaks.size(), "peak").c_str(),
           options.axis == "column" ? image.width : image.height, options.axis.c_str(), static_cast<unsigned long long>(found.counters.weak),
-          static_cast<unsigned long long>(found.counters.saturated), static_cast<unsigned long long>(found.counters.ambiguous));
+          static_cast<unsigned long long>(found.counters.saturated), static_cast<unsigned long long>(found.counters.ambiguous), not_fitted);
   }
 }
 
@@ -159,6 +160,7 @@ int peaks(const Options& options) {
   if (!options.overlay.empty()) write_overlay(options, found);
   StripeLook look = look_at_stripe(picture_of(image, off, config.axis), found.detected, config.axis);
   look.off_given = off.has_value();
+  look.ambiguous = found.counters.ambiguous;
   const std::vector<std::string> doubts = peak_doubts(look);
   tell_doubts(options.image, doubts);
   tell(options, image, found, look, doubts);

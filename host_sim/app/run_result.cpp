@@ -110,6 +110,7 @@ record::ErrorRecord score(const RunRecorder& recorder, const hal::SimConfig& tru
   const PlaneFit& fit = located.panel.fit;
   errors.plane_normal_deg = plane_normal_error_deg(fit.plane, base_from_panel);
   errors.plane_offset_mm = plane_offset_error_mm(fit.plane, base_from_panel, truth.world.layout);
+  errors.panel_over_doubt = panel_over_doubt(located.base_from_panel, base_from_panel, located.doubt);
   errors.handle_angle_deg = handle_error_deg(located.handle_found_rad, located.handle_true_rad);
   errors.valve_base_mm = 1e3 * (located.base_from_panel.translation() - base_from_panel.translation()).norm();
   const std::vector<double> cloud_mm = cloud_errors_mm(located.cloud, truth.world.scene, located.poses);

@@ -42,6 +42,12 @@ double plane_normal_error_deg(const Plane& found, const Pose& true_base_from_pan
   return deg_from_rad(std::atan2(found.normal.cross(normal).norm(), std::abs(found.normal.dot(normal))));
 }
 
+double panel_over_doubt(const Pose& found_base_from_panel, const Pose& true_base_from_panel, const arm::PanelDoubt& doubt) {
+  const Eigen::AngleAxisd turn(Mat3(found_base_from_panel.linear() * true_base_from_panel.linear().transpose()));
+  const Vec3 shift_m = found_base_from_panel.translation() - true_base_from_panel.translation(), turn_rad = turn.angle() * turn.axis();
+  return std::max(shift_m.cwiseAbs().maxCoeff() / doubt.shift_m, turn_rad.cwiseAbs().maxCoeff() / doubt.turn_rad);
+}
+
 double plane_offset_error_mm(const Plane& found, const Pose& true_base_from_panel, const PanelLayout& layout) {
   const Vec2 centre = 0.5 * (layout.plate_min_m + layout.plate_max_m);
   return 1e3 * std::abs(found.signed_distance_m(true_base_from_panel * Vec3(centre.x(), centre.y(), 0)));

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "firmware/arm/collision.hpp"
 #include "shared/geometry/pose.hpp"
 #include "shared/messages/panel_vision.hpp"
 #include "shared/panel/panel_layout.hpp"
@@ -14,6 +15,9 @@ namespace lf::app {
 // Angle between the normals, deg, whichever way they point.
 double plane_normal_error_deg(const Plane& found, const Pose& true_base_from_panel);
 // Distance of the true plate's centre from the found plane, mm.
+// The panel's error along and about each of the base's axes, the worst, over what is kept clear for it.
+double panel_over_doubt(const Pose& found_base_from_panel, const Pose& true_base_from_panel, const arm::PanelDoubt& doubt);
+
 double plane_offset_error_mm(const Plane& found, const Pose& true_base_from_panel, const PanelLayout& layout);
 // Of a bar, which is the same after half a turn: -90 to 90 deg, absolute.
 double handle_error_deg(double found_rad, double true_rad);

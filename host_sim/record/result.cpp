@@ -48,6 +48,7 @@ Json to_json(const TaskRecord& task) {
 Json to_json(const ErrorRecord& errors) {
   return {{"plane_normal_deg", number(errors.plane_normal_deg)},
           {"plane_offset_mm", number(errors.plane_offset_mm)},
+          {"panel_over_doubt", number(errors.panel_over_doubt)},
           {"valve_base_mm", number(errors.valve_base_mm)},
           {"handle_angle_deg", number(errors.handle_angle_deg)},
           {"cloud_truth_median_mm", number(errors.cloud_truth_median_mm)},

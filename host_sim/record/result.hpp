@@ -38,6 +38,7 @@ struct TaskRecord {
 struct ErrorRecord {
   double plane_normal_deg = unknown;
   double plane_offset_mm = unknown;
+  double panel_over_doubt = unknown;  // place and attitude along and about each axis, the worst, over what the core keeps clear for it
   double valve_base_mm = unknown;
   double handle_angle_deg = unknown;
   double cloud_truth_median_mm = unknown;  // to the true surface

@@ -96,6 +96,7 @@ ErrorRecord errors_from(const Json& json) {
   ErrorRecord errors;
   read(json, "plane_normal_deg", errors.plane_normal_deg);
   read(json, "plane_offset_mm", errors.plane_offset_mm);
+  read(json, "panel_over_doubt", errors.panel_over_doubt);
   read(json, "valve_base_mm", errors.valve_base_mm);
   read(json, "handle_angle_deg", errors.handle_angle_deg);
   read(json, "cloud_truth_median_mm", errors.cloud_truth_median_mm);

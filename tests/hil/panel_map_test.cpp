@@ -153,6 +153,21 @@ TEST(PanelMap, DoubtsThePanelsPlaceByTheLinesShape) {
   EXPECT_GT(skewed.doubt().turn_rad, plain.doubt().turn_rad + 0.002);
 }
 
+TEST(PanelMap, DoubtsThePanelsPlaceByThePlanesBendAndNotByItsPointsScatter) {
+  const Panel panel;
+  PanelMap plain = panel.map(), bent = panel.map(), speckled = panel.map();
+  PanelResult result = panel.seen(10);
+  ASSERT_EQ(plain.update(result), StepFailure::none);
+  PanelResult bends = result, scatters = result;
+  bends.fit.bend_m += 0.001;
+  scatters.fit.rms_m += 0.001;
+  ASSERT_EQ(bent.update(bends), StepFailure::none);
+  ASSERT_EQ(speckled.update(scatters), StepFailure::none);
+  EXPECT_NEAR(bent.doubt().shift_m - plain.doubt().shift_m, 0.002, 1e-9);
+  EXPECT_NEAR(bent.doubt().turn_rad - plain.doubt().turn_rad, 0.002 / 0.6, 0.001) << "over the plate's shorter side";
+  EXPECT_EQ(speckled.doubt().shift_m, plain.doubt().shift_m);
+}
+
 TEST(PanelMap, NamesAPointerThatItDidNotRecogniseWhereTheStopsLeaveItOpen) {
   const Panel panel;
   PanelResult faint = panel.seen(90);

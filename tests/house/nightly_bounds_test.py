@@ -50,6 +50,7 @@ class Bounds(unittest.TestCase):
         page = "- Steps of 10:1 (bias: 12 bits), hazy, 0 deg: rms 0.276 of 0.250 px\n"
         for table, status in ((heading + "- Steps of 10:1 (bias: 12 bits), hazy, 0 deg: rms 0.271 of 0.250 px\n", 0), (heading, 0), (page, 1),
                               (heading + "- Steps of 10:1 (bias: 12 bits), hazy, 0 deg: rms 0.271 of 0.250 px, recall 90.0 %\n", 1),
+                              (heading + "- Steps of 10:1 (bias: 12 bits), hazy, 0 deg: rms 0.310 of 0.250 px\n", 1),
                               (heading + "- Steps, clear, 0 deg: 99.9th percentile 1.10 of 1.00 px\n", 1)):
             with tempfile.TemporaryDirectory() as folder:
                 for name, text in (("table.md", table), ("page.md", page)):

@@ -25,6 +25,7 @@ void PanelObserver::on_panel_request(const PanelRequest&, ImageView, std::span<c
 void PanelObserver::after_control(const mission::Mission& mission) {
   if (!located_ || map_taken_) return;
   located_->base_from_panel = mission.map().base_from_panel();
+  located_->doubt = mission.map().doubt();
   map_taken_ = true;
 }
 

@@ -19,6 +19,7 @@ struct Located {
   double handle_true_rad = 0;
   scene::BodyPoses poses;  // while it looked
   std::vector<CloudPoint> cloud;
+  arm::PanelDoubt doubt{};  // what the core keeps clear for the panel
 };
 
 // Keeps cloud.pcd, too: the newest cloud until the panel was found.

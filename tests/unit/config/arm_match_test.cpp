@@ -40,5 +40,38 @@ TEST(ArmMatch, AnotherScrewGearOrFingerIsNamed) {
   EXPECT_EQ(difference_from_core(other), "its fingers are elsewhere on the wrist");
 }
 
+TEST(ArmMatch, AnotherMotorIsNamedByItsJoint) {
+  const auto differs = [](const auto& change) {
+    ArmDescription other = shipped();
+    change(other.joints[1]);
+    return difference_from_core(other);
+  };
+  const std::string said = "torque, speed or acceleration of shoulder differs";
+  EXPECT_EQ(differs([](ArmJoint& joint) { joint.rated_torque_nm *= 2; }), said);
+  EXPECT_EQ(differs([](ArmJoint& joint) { joint.effort_nm *= 2; }), said);
+  EXPECT_EQ(differs([](ArmJoint& joint) { joint.velocity_rad_s *= 2; }), said);
+  EXPECT_EQ(differs([](ArmJoint& joint) { joint.acceleration_rad_s2 *= 2; }), said);
+}
+
+TEST(ArmMatch, AThickerLinkIsToldByHowFarItStandsOut) {
+  for (const scene::BodyId body :
+       {scene::BodyId::slew, scene::BodyId::upper_arm, scene::BodyId::forearm, scene::BodyId::wrist, scene::BodyId::finger_b}) {
+    ArmDescription other = shipped();
+    ArmLink& link = other.links[static_cast<std::size_t>(body)];
+    for (scene::Shape& shape : link.shapes) {
+      if (shape.collides) shape.size_m.x() += 0.1, shape.size_m.y() += 0.1;
+    }
+    EXPECT_THAT(difference_from_core(other), HasSubstr("its " + link.name + " stands ")) << link.name;
+  }
+}
+
+TEST(ArmMatch, OtherPadsAreNamed) {
+  ArmDescription other = shipped();
+  for (scene::Shape& shape : other.links[static_cast<std::size_t>(scene::BodyId::finger_a)].shapes) {
+    if (shape.collides && shape.kind == scene::ShapeKind::box) shape.size_m.z() *= 0.9;
+  }
+  EXPECT_EQ(difference_from_core(other), "its fingers' pads are others");
+}
+
 }  // namespace
 }  // namespace lf::config

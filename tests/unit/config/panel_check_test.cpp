@@ -40,6 +40,21 @@ TEST(PanelCheck, OverlappingButtonsAndWhatHangsBeyondThePlateAreNamed) {
   EXPECT_THAT(panel_problems(panel), ElementsAre(HasSubstr("the marker's plate hangs beyond")));
 }
 
+// A bar turns about its middle: its corners are half of its diagonal away.
+TEST(PanelCheck, WhatTheBarTurnsOverIsNamedWithHowFar) {
+  PanelLayout panel;
+  const double bar_m = std::sqrt(panel.handle_length_m * panel.handle_length_m + panel.handle_thickness_m * panel.handle_thickness_m) / 2;
+  panel.marker_centre_m = Vec2(-(bar_m + panel.marker_plate_m / 2 - 0.002), 0);
+  EXPECT_THAT(panel_problems(panel), ElementsAre(HasSubstr("covers the marker's plate by 2.0 mm")));
+  panel.marker_centre_m.x() -= 0.0021;
+  EXPECT_THAT(panel_problems(panel), IsEmpty());
+  panel = {};
+  panel.buttons_m[0] = Vec2(0, -(bar_m + panel.button_width_m / 2 - 0.003));
+  EXPECT_THAT(panel_problems(panel), ElementsAre(HasSubstr("the left button lies 3.0 mm under the turning bar")));
+  panel.buttons_m[0].y() -= 0.0031;
+  EXPECT_THAT(panel_problems(panel), IsEmpty());
+}
+
 TEST(PanelCheck, TheLargestPlateIsTheLastThatIsAccepted) {
   PanelLayout panel;
   panel.marker_plate_m = largest_marker_plate_m(panel) - 1e-6;

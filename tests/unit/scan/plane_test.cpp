@@ -84,6 +84,21 @@ TEST_F(PlaneFitting, HoldsAtEveryShareOfOutliersInSweepOrder) {
   }
 }
 
+// A plate that sags by z = a (t^2 - 1/3) along the sweep, t from -1 to 1: the root of its mean square is a sqrt(4 / 45).
+TEST_F(PlaneFitting, TellsTheBendOfASaggingPlate) {
+  for (const double sag_m : {0.0, 0.0015}) {
+    Scene scene = swept_panel(3, 60'000, 0, 0.0008);
+    const double count = static_cast<double>(scene.points.size());
+    for (std::size_t i = 0; i < scene.points.size(); ++i) {
+      const double t = 2 * static_cast<double>(i) / count - 1;
+      scene.points[i].p_m += (sag_m * (t * t - 1.0 / 3) * scene.truth.normal).cast<float>();
+    }
+    const PlaneFit result = fit(scene.points);
+    ASSERT_TRUE(result.valid);
+    EXPECT_NEAR(result.bend_m, sag_m * std::sqrt(4.0 / 45), 0.00004) << sag_m;
+  }
+}
+
 TEST_F(PlaneFitting, OrderOfThePointsDoesNotMatter) {
   Scene scene = swept_panel(5, 30'000, 0.5, 0.001);
   const PlaneFit swept = fit(scene.points);
