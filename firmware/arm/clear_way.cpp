@@ -64,7 +64,7 @@ void ClearWay::begin(const JointVector& from_rad, const Surroundings& surroundin
   nearest_ = nowhere_near;
   least_slack_m_ = HUGE_VAL;
   const bool numbers = std::isfinite(room.jaw.low_rad + room.jaw.high_rad) && room.base_from_panel.matrix().allFinite() &&
-                       std::isfinite(room.doubt.shift_m + room.doubt.turn_rad) && from_rad.allFinite();
+                       std::isfinite(room.doubt.shift_m + room.doubt.turn_rad + room.doubt.spin_rad) && from_rad.allFinite();
   state_ = numbers && room.jaw.low_rad <= room.jaw.high_rad ? State::looking : State::blocked;
 }
 

@@ -140,22 +140,24 @@ PanelShape::PanelShape(const PanelLayout& layout) {
 }
 
 // To first order in the turn a point p moves by turn x p, of which the part along an axis is linear in p: its largest is at a corner. The second order,
-// which three turns one after the other add, is bounded by half the square of their sum.
+// which turns one after the other add, is bounded by half the square of their sum.
 PanelShape PanelShape::grown(const Pose& base_from_panel, const PanelDoubt& doubt) const {
   constexpr int corners = 8;
   const Mat3& axes = base_from_panel.linear();
-  const double second_order = 4.5 * doubt.turn_rad * doubt.turn_rad;
+  const double turned_rad = 3 * doubt.turn_rad + doubt.spin_rad, second_order = turned_rad * turned_rad / 2;
   PanelShape shape = *this;
   for (Solid& solid : shape.solids_) {
     Vec3 grow = Vec3::Zero();
+    const double spin_rad = solid.radius_m > 0 ? 0 : doubt.spin_rad;  // cylinders stand about the origin, and spin in place
     for (int i = 0; i < corners; ++i) {
       const Vec3 corner =
           solid.centre_m + solid.half_m.cwiseProduct(Vec3((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1, (i & 4) != 0 ? 1 : -1));
       for (Eigen::Index k = 0; k < 3; ++k) {
         const Vec3 axis = Vec3::Unit(k);
         const double by_shift = doubt.shift_m * (axes * axis).lpNorm<1>();
-        const double by_turn = doubt.turn_rad * (axes * corner.cross(axis)).lpNorm<1>() + second_order * corner.norm();
-        grow[k] = std::max(grow[k], by_shift + by_turn);
+        const Vec3 lever = corner.cross(axis);
+        const double by_turn = doubt.turn_rad * (axes * lever).lpNorm<1>() + spin_rad * std::abs(lever.z());
+        grow[k] = std::max(grow[k], by_shift + by_turn + second_order * corner.norm());
       }
     }
     solid.half_m += grow;

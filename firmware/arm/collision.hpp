@@ -35,11 +35,12 @@ struct Clearance {
   PanelPart part = PanelPart::none;  // nearest to it
 };
 
-// By how much a panel may be off the place where it is believed to be: either way along each of the base's axes, and about each of them at the panel's
-// origin.
+// By how much a panel may be off the place where it is believed to be: either way along each of the base's axes, about each of them at the panel's
+// origin, and besides about its own normal, which only the marker's edges tell.
 struct PanelDoubt {
   double shift_m = 0;
   double turn_rad = 0;
+  double spin_rad = 0;
 };
 
 // The panel's solids, worked out once for all the questions to come. The handle counts at every angle: as the disc it sweeps.

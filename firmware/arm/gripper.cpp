@@ -83,7 +83,7 @@ GripperState Gripper::state() const {
   }
 }
 
-bool Gripper::doubted() const { return doubted_ || in_doubt(state()); }
+bool Gripper::doubted() const { return doubted_ || in_doubt(state()) || state() == GripperState::closing; }
 
 bool Gripper::may_hold(double jaw_rad) const { return doubted() || !stands_empty(jaw_rad, config_.bar_m); }
 
@@ -95,6 +95,11 @@ void Gripper::wait(Duration d) {
 }
 
 void Gripper::begin(Time t, double jaw_rad) {
+  // It may have closed on something, and was called away before it could tell.
+  if (state_ == GripperState::closing && order_ != Order::close) {
+    doubted_ = true;
+    doubted_rad_ = jaw_rad;
+  }
   if (order_ == Order::close) goal_rad_ = lower_rad;
   state_ = order_ == Order::open ? GripperState::opening : order_ == Order::close ? GripperState::closing : GripperState::idle;
   order_ = Order::none;

@@ -89,7 +89,7 @@ class Gripper {
   bool may_hold(double jaw_rad) const;
   // A reset makes a new gripper, and does not free the jaw: where the old one was in doubt the new one is, too, until the jaw is seen to move.
   void doubt() { doubted_ = true; }
-  bool doubted() const;  // also where the last order ended held, dropped, jammed or lost
+  bool doubted() const;  // also while it closes, and where the last order ended held, dropped, jammed or lost
   double target_rad() const { return target_rad_; }
   double grip_gap_m() const { return grip_gap_m_; }  // at which it stalled; 0 before
   std::uint32_t refused() const { return refused_; }

@@ -71,7 +71,7 @@ void Look::begin_verify_reach(const StepTick& tick) {
   request.bottom_m = std::max(-band_m, layout.plate_min_m.y());
   request.margin_m = 0.010;
   request.docking_shift_m = bench.map.doubt().shift_m;
-  request.docking_turn_rad = bench.map.doubt().turn_rad;
+  request.docking_turn_rad = bench.map.doubt().turn_rad + bench.map.doubt().spin_rad;
   request.slowest_rad_s = bench.mission().sweep_speed_rad_s;
   bench.go_to_sweep(request);
 }

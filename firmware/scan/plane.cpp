@@ -321,7 +321,9 @@ PlaneFit PlaneFitter::fit(std::span<const CloudPoint> points, const Config& conf
     result.plane.normal = -result.plane.normal;
     result.plane.offset_m = -result.plane.offset_m;
   }
-  result.bend_m = plane_bend_m(points, result.plane, config.threshold_m);
+  const PlaneBend bend = plane_bend(points, result.plane, config.threshold_m);
+  result.bend_m = bend.bend_m;
+  result.seen_m = bend.seen_m;
   result.valid = true;
   return result;
 }

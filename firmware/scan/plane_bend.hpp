@@ -10,9 +10,14 @@
 
 namespace lf::scan {
 
-// Root mean square of the distances' means, metres, over a grid of 8 by 8 cells that holds the points nearer than `threshold_m`; a cell of fewer than 30 such points does
-// not count. Where less than half of the points lie in cells that count, of the distances themselves: few points prove no plane. 0 without a point. No allocation,
+struct PlaneBend {
+  double bend_m = 0;
+  double seen_m = 0;  // the shorter side of the rectangle over which as many points as these spread evenly
+};
+
+// Of the points nearer than `threshold_m`. Bend: root mean square of their distances' means over a grid of 8 by 8 cells; a cell of fewer than 30 points does not count.
+// Where less than nine tenths of the points lie in cells that count, it is that of the distances themselves: few points prove no plane. 0 without a point. No allocation,
 // O(points).
-double plane_bend_m(std::span<const CloudPoint> points, const Plane& plane, double threshold_m);
+PlaneBend plane_bend(std::span<const CloudPoint> points, const Plane& plane, double threshold_m);
 
 }  // namespace lf::scan

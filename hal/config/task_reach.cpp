@@ -48,9 +48,11 @@ arm::IkResult pose_at(const PanelLayout& panel, const Place& place) {
 }
 
 double steepest_rad(const PanelLayout& panel, const Place& place, const arm::PanelDoubt& docking) {
-  constexpr double away_m = 0.5;
+  // A place beside its own turns the arm the more the nearer it is.
+  constexpr double farthest_m = 0.5, nearest_m = 0.1;
   const arm::IkResult ik = pose_at(panel, place);
   if (!ik.ok()) return 0;
+  const double away_m = std::clamp(arm::base_from_tool(ik.q_rad).translation().head<2>().norm(), nearest_m, farthest_m);
   const Vec3 inward = -panel.nominal_base_from_panel().linear().col(2);
   const Vec3 axis = arm::approach_axis(ik.q_rad);
   const double doubt_rad = std::numbers::sqrt3 * docking.turn_rad + std::numbers::sqrt2 * docking.shift_m / away_m;

@@ -22,7 +22,10 @@ PanelResult panel_as_it_is(const Pose& base_from_panel, double handle_rad, const
   result.fit.plane.offset_m = -result.fit.plane.normal.dot(base_from_panel.translation());
   result.fit.points = result.fit.inliers = plane_points;
   result.fit.rms_m = 0.0004;
-  result.fit.bend_m = 0.0003;  // the worst of a dozen sweeps that were rendered
+  // About the worst of a dozen sweeps that were rendered, and how much of the plate they saw.
+  result.fit.bend_m = 0.0003;
+  result.fit.shape_doubt_px = 0.07f;
+  result.fit.seen_m = (layout.plate_max_m - layout.plate_min_m).minCoeff();
   result.confidence = 0.9f;
 
   const Pose camera_from_tag = camera.base_from_camera.inverse() * base_from_panel * marker.panel_from_tag;

@@ -43,9 +43,13 @@ double plane_normal_error_deg(const Plane& found, const Pose& true_base_from_pan
 }
 
 double panel_over_doubt(const Pose& found_base_from_panel, const Pose& true_base_from_panel, const arm::PanelDoubt& doubt) {
-  const Eigen::AngleAxisd turn(Mat3(found_base_from_panel.linear() * true_base_from_panel.linear().transpose()));
-  const Vec3 shift_m = found_base_from_panel.translation() - true_base_from_panel.translation(), turn_rad = turn.angle() * turn.axis();
-  return std::max(shift_m.cwiseAbs().maxCoeff() / doubt.shift_m, turn_rad.cwiseAbs().maxCoeff() / doubt.turn_rad);
+  const Eigen::AngleAxisd off(Mat3(found_base_from_panel.linear() * true_base_from_panel.linear().transpose()));
+  const Vec3 shift_m = found_base_from_panel.translation() - true_base_from_panel.translation(), turn_rad = off.angle() * off.axis();
+  const Vec3 normal = true_base_from_panel.linear().col(2);
+  const double spin_rad = turn_rad.dot(normal);
+  const Vec3 tilt_rad = turn_rad - spin_rad * normal;
+  return std::max({shift_m.cwiseAbs().maxCoeff() / doubt.shift_m, tilt_rad.cwiseAbs().maxCoeff() / doubt.turn_rad,
+                   std::abs(spin_rad) / (doubt.turn_rad + doubt.spin_rad)});
 }
 
 double plane_offset_error_mm(const Plane& found, const Pose& true_base_from_panel, const PanelLayout& layout) {

@@ -15,7 +15,7 @@ namespace lf::app {
 // Angle between the normals, deg, whichever way they point.
 double plane_normal_error_deg(const Plane& found, const Pose& true_base_from_panel);
 // Distance of the true plate's centre from the found plane, mm.
-// The panel's error along and about each of the base's axes, the worst, over what is kept clear for it.
+// The panel's error along each of the base's axes, about its normal, and its tilt about each of the base's axes: the worst, over what is kept clear for it.
 double panel_over_doubt(const Pose& found_base_from_panel, const Pose& true_base_from_panel, const arm::PanelDoubt& doubt);
 
 double plane_offset_error_mm(const Plane& found, const Pose& true_base_from_panel, const PanelLayout& layout);

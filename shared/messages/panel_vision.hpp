@@ -23,7 +23,8 @@ struct PlaneFit {
   std::uint32_t points = 0;
   std::uint32_t inliers = 0;
   double rms_m = 0;   // of the inliers
-  double bend_m = 0;  // of what they have in common with their neighbours (scan::plane_bend_m)
+  double bend_m = 0;  // of what they have in common with their neighbours (scan::plane_bend)
+  double seen_m = 0;  // shorter side of the rectangle that they fill
   // By how much the stripe's shape may have shifted all points alike, pixels: no scatter tells of it. 0 where no stripe was seen.
   float shape_doubt_px = 0;
 };

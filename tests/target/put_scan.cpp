@@ -141,6 +141,7 @@ void put_planes(Ledger& ledger) {
       ledger.number(fit.plane.offset_m);
       ledger.number(fit.rms_m);
       ledger.number(fit.bend_m);
+      ledger.number(fit.seen_m);
     }
   }
 }

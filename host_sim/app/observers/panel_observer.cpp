@@ -1,7 +1,9 @@
 #include "host_sim/app/observers/panel_observer.hpp"
 
+#include <cmath>
 #include <utility>
 
+#include "host_sim/app/scoring.hpp"
 #include "host_sim/record/cloud_file.hpp"
 
 namespace lf::app {
@@ -22,10 +24,17 @@ void PanelObserver::on_panel_request(const PanelRequest&, ImageView, std::span<c
   if (files_.wanted() && !cloud.empty() && !located_) files_.write("cloud.pcd", record::pcd_bytes(cloud));
 }
 
+void PanelObserver::judge_doubt(const mission::PanelMap& map) {
+  if (world_ == nullptr || !map.known() || map.base_from_panel().isApprox(newest_map_, 0)) return;
+  newest_map_ = map.base_from_panel();
+  const Pose& truth = world_->base_from_body()[static_cast<std::size_t>(scene::BodyId::panel)];
+  worst_over_doubt_ = std::fmax(worst_over_doubt_, panel_over_doubt(newest_map_, truth, map.doubt()));
+}
+
 void PanelObserver::after_control(const mission::Mission& mission) {
+  judge_doubt(mission.map());
   if (!located_ || map_taken_) return;
   located_->base_from_panel = mission.map().base_from_panel();
-  located_->doubt = mission.map().doubt();
   map_taken_ = true;
 }
 

@@ -1,6 +1,7 @@
 // What the core made of the panel, with what was true then.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -19,7 +20,6 @@ struct Located {
   double handle_true_rad = 0;
   scene::BodyPoses poses;  // while it looked
   std::vector<CloudPoint> cloud;
-  arm::PanelDoubt doubt{};  // what the core keeps clear for the panel
 };
 
 // Keeps cloud.pcd, too: the newest cloud until the panel was found.
@@ -35,8 +35,12 @@ class PanelObserver : public hal::SimObserver {
   void after_control(const mission::Mission& mission);
 
   const std::optional<Located>& located() const { return located_; }
+  // Of all looks the worst: how far off the panel is, over what the core keeps clear for it. Not a number where there was none.
+  double worst_over_doubt() const { return worst_over_doubt_; }
 
  private:
+  void judge_doubt(const mission::PanelMap& map);
+
   RunFiles& files_;
   const world::World* world_ = nullptr;
   std::vector<CloudPoint> asked_cloud_;
@@ -45,6 +49,8 @@ class PanelObserver : public hal::SimObserver {
   PanelResult answered_;
   std::optional<Located> located_;
   bool map_taken_ = false;
+  Pose newest_map_ = Pose::Identity();
+  double worst_over_doubt_ = std::numeric_limits<double>::quiet_NaN();
 };
 
 }  // namespace lf::app

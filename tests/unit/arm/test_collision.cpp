@@ -160,7 +160,7 @@ TEST(PanelShapeGrown, ContainsItselfWhereverItMayBe) {
   SCOPED_TRACE(testing::Message() << "seed " << seed);
   RandomJoints random(seed);
   const PanelLayout layout;
-  const PanelDoubt doubt{0.020, 0.0349};
+  const PanelDoubt doubt{0.020, 0.0349, 0.0105};
   const Pose believed = layout.nominal_base_from_panel();
   const PanelShape surveyed(layout), grown = surveyed.grown(believed, doubt);
   double nearest_to_border = 1e9;
@@ -172,7 +172,8 @@ TEST(PanelShapeGrown, ContainsItselfWhereverItMayBe) {
     real.translation() += Vec3(either(doubt.shift_m), either(doubt.shift_m), either(doubt.shift_m));
     real.linear() = Eigen::AngleAxisd(either(doubt.turn_rad), Vec3::UnitZ()).toRotationMatrix() *
                     Eigen::AngleAxisd(either(doubt.turn_rad), Vec3::UnitY()).toRotationMatrix() *
-                    Eigen::AngleAxisd(either(doubt.turn_rad), Vec3::UnitX()).toRotationMatrix() * real.linear();
+                    Eigen::AngleAxisd(either(doubt.turn_rad), Vec3::UnitX()).toRotationMatrix() * real.linear() *
+                    Eigen::AngleAxisd(either(doubt.spin_rad), Vec3::UnitZ()).toRotationMatrix();
     // A corner or rim of the plate, a button's face, or the handle's disc.
     Vec3 p;
     const double angle = random.uniform(-pi, pi);

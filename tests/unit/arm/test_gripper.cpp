@@ -200,6 +200,23 @@ TEST(Gripper, IsInDoubtUntilItsJawIsSeenToMove) {
   EXPECT_FALSE(run.gripper.doubted());
 }
 
+// A stop comes while it closes on a pipe, before the stall is told.
+TEST(Gripper, IsInDoubtWhereItsClosingWasNotLedToAnEnd) {
+  GripperRun run;
+  run.gripper.close();
+  ASSERT_EQ(run.run(0.3), GripperState::closing);
+  EXPECT_TRUE(run.gripper.doubted());
+  run.gripper.stay();
+  ASSERT_EQ(run.run(0.1), GripperState::idle);
+  EXPECT_TRUE(run.gripper.may_hold(run.jaw.q_rad));
+  run.gripper.turn_to(run.jaw.q_rad + 0.1);
+  run.run(2);
+  EXPECT_FALSE(run.gripper.doubted());
+  run.gripper.close();
+  ASSERT_EQ(run.run(8), GripperState::empty) << "closed to its stop, nothing is between the pads";
+  EXPECT_FALSE(run.gripper.doubted());
+}
+
 TEST(Gripper, NoticesThatTheBarSlippedOut) {
   GripperRun run;
   run.jaw.stop_closing_rad = 0.0;

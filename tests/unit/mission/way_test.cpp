@@ -51,7 +51,8 @@ class Draws {
     real.translation() += Vec3(either(doubt.shift_m), either(doubt.shift_m), either(doubt.shift_m));
     real.linear() = Eigen::AngleAxisd(either(doubt.turn_rad), Vec3::UnitZ()).toRotationMatrix() *
                     Eigen::AngleAxisd(either(doubt.turn_rad), Vec3::UnitY()).toRotationMatrix() *
-                    Eigen::AngleAxisd(either(doubt.turn_rad), Vec3::UnitX()).toRotationMatrix() * real.linear();
+                    Eigen::AngleAxisd(either(doubt.turn_rad), Vec3::UnitX()).toRotationMatrix() * real.linear() *
+                    Eigen::AngleAxisd(either(doubt.spin_rad), Vec3::UnitZ()).toRotationMatrix();
     return real;
   }
 
@@ -107,7 +108,7 @@ TEST(RandomWays, ThatArePlannedKeepClearOfPanelAndVehicleWhereverThePanelMayBe) 
     const arm::JointVector from = draw.joints(), to = draw.joints();
     Room room;
     room.base_from_panel = layout.nominal_base_from_panel();
-    room.doubt = k % 2 == 0 ? arm::PanelDoubt{0.020, 0.0349} : arm::PanelDoubt{0.003, 0.004};
+    room.doubt = k % 2 == 0 ? arm::PanelDoubt{0.020, 0.0349} : arm::PanelDoubt{0.003, 0.004, 0.0105};
     const double open_rad = arm::jaw_from_gap(0.0606);
     room.jaw = k % 4 < 2 ? arm::JawSweep{-0.05, -0.05} : arm::JawSweep{-0.05, open_rad};
     // A way out of a place that is too near already is another matter: see MayLeaveFromNearerThanItWouldGo.

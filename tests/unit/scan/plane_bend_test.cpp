@@ -44,8 +44,8 @@ TEST(PlaneBend, OfWhiteNoiseIsThatOfTheCellsMeans) {
     std::normal_distribution<double> noise(0, 0.001);
     const auto points = plate(64'000, random, plane, [&](double, double) { return noise(random); });
     // 64 cells of 1000 points each, or fewer and fuller ones where the plate lies oblique to the grid.
-    EXPECT_LT(plane_bend_m(points, plane, far_m), 1.5 * 0.001 / std::sqrt(1000));
-    EXPECT_GT(plane_bend_m(points, plane, far_m), 0.5 * 0.001 / std::sqrt(1000));
+    EXPECT_LT(plane_bend(points, plane, far_m).bend_m, 1.5 * 0.001 / std::sqrt(1000));
+    EXPECT_GT(plane_bend(points, plane, far_m).bend_m, 0.5 * 0.001 / std::sqrt(1000));
   }
 }
 
@@ -56,8 +56,22 @@ TEST(PlaneBend, OfASaggingPlateIsItsRootMeanSquareWhateverTheNoise) {
   std::normal_distribution<double> noise(0, 0.001);
   for (const double sag_m : {0.0005, 0.001, 0.002}) {
     const auto points = plate(64'000, random, plane, [&](double s, double) { return sag_m * (s * s - 1.0 / 3) + noise(random); });
-    EXPECT_NEAR(plane_bend_m(points, plane, far_m), sag_m * std::sqrt(4.0 / 45), 0.08 * sag_m * std::sqrt(4.0 / 45)) << sag_m;
+    EXPECT_NEAR(plane_bend(points, plane, far_m).bend_m, sag_m * std::sqrt(4.0 / 45), 0.08 * sag_m * std::sqrt(4.0 / 45)) << sag_m;
   }
+}
+
+// Of the plate's 0.8 x 0.6 m, however it lies, and of a strip of it.
+TEST(PlaneBend, SaysHowWideWhatWasSeenIs) {
+  const Plane plane = tilted();
+  std::mt19937_64 random(7);
+  const auto points = plate(64'000, random, plane, [](double, double) { return 0.0; });
+  EXPECT_NEAR(plane_bend(points, plane, far_m).seen_m, height_m, 0.005);
+  const Vec3 across = plane.normal.cross(Vec3::UnitZ()).normalized(), down = across.cross(plane.normal);
+  std::vector<CloudPoint> strip;
+  for (const CloudPoint& point : points) {
+    if (std::abs((point.p_m.cast<double>() - Vec3(0.5, 0.1, 0.6)).dot(down)) < 0.07) strip.push_back(point);
+  }
+  EXPECT_NEAR(plane_bend(strip, plane, far_m).seen_m, 0.14, 0.003);
 }
 
 TEST(PlaneBend, OfFewPointsIsTheirScatter) {
@@ -65,7 +79,7 @@ TEST(PlaneBend, OfFewPointsIsTheirScatter) {
   std::mt19937_64 random(5);
   std::normal_distribution<double> noise(0, 0.001);
   const auto points = plate(800, random, plane, [&](double, double) { return noise(random); });
-  EXPECT_NEAR(plane_bend_m(points, plane, far_m), 0.001, 0.0001);
+  EXPECT_NEAR(plane_bend(points, plane, far_m).bend_m, 0.001, 0.0001);
 }
 
 TEST(PlaneBend, LeavesOutWhatIsNoPointOrNotOfThePlane) {
@@ -76,14 +90,14 @@ TEST(PlaneBend, LeavesOutWhatIsNoPointOrNotOfThePlane) {
   points.insert(points.end(), far_off.begin(), far_off.end());
   for (int i = 0; i < 1000; ++i) points.push_back({.p_m = Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN())});
   for (int i = 0; i < 1000; ++i) points.push_back({.p_m = Eigen::Vector3f::Constant(std::numeric_limits<float>::infinity())});
-  EXPECT_LT(plane_bend_m(points, plane, 0.003), 1e-6);
+  EXPECT_LT(plane_bend(points, plane, 0.003).bend_m, 1e-6);
 }
 
 TEST(PlaneBend, OfNoPointsAndOfOnePlaceIsFinite) {
   const Plane plane = tilted();
-  EXPECT_EQ(plane_bend_m({}, plane, far_m), 0);
+  EXPECT_EQ(plane_bend({}, plane, far_m).bend_m, 0);
   const std::vector<CloudPoint> same(100, CloudPoint{.p_m = (-plane.offset_m * plane.normal + 0.002 * plane.normal).cast<float>()});
-  EXPECT_NEAR(plane_bend_m(same, plane, far_m), 0.002, 1e-6);
+  EXPECT_NEAR(plane_bend(same, plane, far_m).bend_m, 0.002, 1e-6);
 }
 
 }  // namespace
