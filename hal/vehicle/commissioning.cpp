@@ -109,6 +109,7 @@ std::array<double, joint_count> Commissioning::places_rad() const {
 void Commissioning::go(State state, Time now) {
   state_ = state;
   since_ = moved_ = now;
+  too_hard_ticks_ = 0;
 }
 
 void Commissioning::stop(const char* why) {
@@ -226,7 +227,6 @@ void Commissioning::step(Time now) {
       if (!axis().enabled()) return;
       target_ = last_counts_ = started_counts_ = axis().actual_counts();
       moved_ = now;
-      too_hard_ticks_ = 0;
       reopening_ = false;
       return go(State::seeking, now);
     case State::seeking: return seek(now);
@@ -311,6 +311,13 @@ bool Commissioning::presses_too_hard() {
   return too_hard_ticks_ > too_hard_ticks;
 }
 
+void Commissioning::fail_pressing(Time now) {
+  std::array<char, 120> why{};
+  std::snprintf(why.data(), why.size(), "it presses with %ld %% of its rated torque: limit it to %ld %% with its maker's tool",
+                std::lround(std::abs(axis().torque_permille()) / 10.0), std::lround(pressing_permille(config_, joint_) / 10.0));
+  fail_joint(why.data(), now);
+}
+
 // Against what it presses on.
 bool Commissioning::stands(Time now, bool pressing) {
   const std::int32_t actual = axis().actual_counts();
@@ -327,12 +334,7 @@ void Commissioning::seek(Time now) {
   const canopen::DriveSetup& drive = config_.network.drives[joint_];
   const double way = direction(joint_), lead = drive.following_window_counts / 2.0;
   const std::int32_t actual = axis().actual_counts();
-  if (presses_too_hard()) {
-    std::array<char, 120> why{};
-    std::snprintf(why.data(), why.size(), "it presses with %ld %% of its rated torque: limit it to %ld %% with its maker's tool",
-                  std::lround(std::abs(axis().torque_permille()) / 10.0), std::lround(pressing_permille(config_, joint_) / 10.0));
-    return fail_joint(why.data(), now);
-  }
+  if (presses_too_hard()) return fail_pressing(now);
   target_ += way * config_.speed_fraction * drive.max_speed_counts_s * network_.config().sync_period.s();
   target_ = std::clamp(target_, actual - lead, actual + lead);
   (void)axis().set_target_counts(static_cast<std::int32_t>(target_));
@@ -416,6 +418,7 @@ void Commissioning::begin_rubbing(Time now) {
 }
 
 void Commissioning::rub(Time now) {
+  if (presses_too_hard()) return fail_pressing(now);
   const canopen::DriveSetup& drive = config_.network.drives[joint_];
   const bool back = !pass_ || *pass_ % 2 == 1;  // to where the stretch begins
   const double end = back ? rub_from_ : rub_to_;
@@ -455,20 +458,27 @@ void Commissioning::back_off(Time now) {
   const double goal = goal_counts();
   const double step = config_.speed_fraction * drive.max_speed_counts_s * network_.config().sync_period.s();
   const std::int32_t actual = axis().actual_counts();
+  const bool closing = static_cast<Joint>(joint_) == Joint::jaw && !reopening_;
+  if (presses_too_hard()) return closing ? reopen(now) : fail_pressing(now);
   target_ = std::clamp(target_ + std::clamp(goal - target_, -step, step), actual - lead, actual + lead);
   (void)axis().set_target_counts(static_cast<std::int32_t>(std::lround(target_)));
-  const bool closing = static_cast<Joint>(joint_) == Joint::jaw && !reopening_;
   const bool arrived = std::abs(actual - goal) <= std::max(3.0, arrived_windows * window);  // drives hold within two counts
   if (!arrived && stands(now, target_ == goal || std::abs(target_ - actual) >= nearly_all * lead)) {
-    if (!closing) return fail_joint("something is in its way back", now);
-    reopening_ = true;
-    moved_ = now;
-    return;
+    return closing ? reopen(now) : fail_joint("something is in its way back", now);
   }
   if (!arrived) return;
   if (reopening_) return fail_joint("something is between its fingers: take it out, or move the arm away from it", now);
   axis().request(canopen::AxisRequest::disable);
   go(State::releasing, now);
+}
+
+// From where it stands: a target that is led back over its lead would go on pressing meanwhile.
+void Commissioning::reopen(Time now) {
+  reopening_ = true;
+  moved_ = now;
+  too_hard_ticks_ = 0;
+  target_ = axis().actual_counts();
+  (void)axis().set_target_counts(axis().actual_counts());
 }
 
 const char* name(Commissioning::State state) {

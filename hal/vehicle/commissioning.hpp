@@ -98,6 +98,7 @@ class Commissioning {
   void watch(Time now);
   bool hear_set_points();
   bool presses_too_hard();
+  void fail_pressing(Time now);
   void step(Time now);
   // Before the first: why none may be moved, if so.
   const char* why_not() const;
@@ -112,6 +113,7 @@ class Commissioning {
   void end_rubbing();
   void end_joint(Time now);
   void back_off(Time now);
+  void reopen(Time now);  // the jaw, which met something on its way to being closed
   bool stands(Time now, bool pressing);
   double off_stop_counts() const;
   double started_off_stop() const;  // where it was, off the stop

@@ -270,6 +270,46 @@ TEST_P(CommissioningOfADriveWithoutALimit, IsStoppedWhenItPressesTooHard) {
   EXPECT_FALSE(elbow.commissioning().found()[2]);
 }
 
+// A joint that meets something behind its stop. Its drive tells its whole rated torque, as one presses whose limit is its maker's affair.
+struct PressesLater {
+  const char* name;
+  std::size_t joint;
+  Commissioning::State in;
+  const char* why;
+};
+class CommissioningThatPressesTooHard : public testing::TestWithParam<PressesLater> {};
+INSTANTIATE_TEST_SUITE_P(
+    Later, CommissioningThatPressesTooHard,
+    testing::Values(PressesLater{"ClosingTheJaw", 4, Commissioning::State::backing_off, "jaw: something is between its fingers"},
+                    PressesLater{"OnItsWayBack", 0, Commissioning::State::backing_off, "slew: it presses with 100 % of its rated torque"},
+                    PressesLater{"WhileItsFrictionIsFound", 0, Commissioning::State::rubbing,
+                                 "slew: it presses with 100 % of its rated torque"}),
+    [](const testing::TestParamInfo<PressesLater>& test) { return test.param.name; });
+
+TEST_P(CommissioningThatPressesTooHard, IsStoppedAndTheJawOpens) {
+  const PressesLater& later = GetParam();
+  constexpr int told_permille = 1000, pressing_ticks = 60;
+  Bench bench(somewhere);
+  Commissioning::Config config = bench.config();
+  config.joints = {};
+  config.joints[later.joint] = true;
+  Commissioning commissioning(config);
+  int ticks = 0;
+  double met_rad = 0;
+  bench.set_ear([&](CanFrame& frame) {
+    if (frame.id != 0x180u + can_map::drive_nodes[later.joint] || commissioning.state() != later.in || ticks >= pressing_ticks) return;
+    if (ticks++ == 0) met_rad = bench.angles()[later.joint];
+    if (later.joint == 4 && ticks > 30) return;  // it opens: nothing presses any more
+    frame.data[6] = told_permille & 0xFF;
+    frame.data[7] = told_permille >> 8;
+  });
+  bench.run(commissioning);
+  EXPECT_EQ(commissioning.state(), Commissioning::State::failed);
+  EXPECT_NE(commissioning.failure().find(later.why), std::string_view::npos) << commissioning.failure();
+  EXPECT_LT(std::abs(bench.angles()[later.joint] - met_rad), 0.2) << "within some 100 ms";
+  EXPECT_FALSE(bench.any_powered());
+}
+
 // Wherever the arm stands is its zero then.
 TEST(CommissioningInAJig, MovesNothing) {
   Bench bench(somewhere);
