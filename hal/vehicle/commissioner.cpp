@@ -113,8 +113,13 @@ Commissioner::~Commissioner() {
   }
 }
 
+void Commissioner::hear(const ControlReport& report) {
+  if (busy() || report.cores_taken != cores_taken_) return;
+  jaw_doubted_ = report.jaw_doubted;
+  lose_zeros(report.zeros_lost);
+}
+
 void Commissioner::lose_zeros(const std::array<bool, joint_count>& lost) {
-  if (busy()) return;
   zero_lost_ = lost;
   if (file_.empty() || config::is_shipped(file_) || forgetting_ != nullptr || monotonic_now() < try_again_) return;
   std::array<bool, joint_count> to_forget{};
@@ -224,6 +229,7 @@ void Commissioner::step() {
   for (Controller* old = nullptr; rings_.old_cores.pop(old);) {
     delete old;
     (void)core_given_.release();  // in the control loop now
+    ++cores_taken_;
     last_ = std::exchange(outcome_, nullptr);
     stage_ = Stage::idle;
   }
@@ -297,7 +303,6 @@ void Commissioner::store(const Commissioning& ended, const std::string& failed) 
   const std::string how = (order_.here ? "in the jig, " : "at its stop, ") + now_text() + " UTC";
   const Commissioned commissioned{ended.found(), ended.zero_counts(), ended.friction_found(), ended.friction(), how, ended.places_rad()};
   for (std::size_t i = 0; i < joint_count; ++i) still_lost_[i] = zero_lost_[i] && !commissioned.found[i];
-  for (std::size_t i = 0; i < joint_count; ++i) forgotten_[i] = forgotten_[i] && !commissioned.found[i];
   const bool posted = worker_.post([prepared = prepared_, file = file_, commissioned, core = core_, motors = motors_, lost = zero_lost_,
                                     still_lost = still_lost_, failed]() mutable {
     std::string problem;
@@ -378,9 +383,11 @@ void Commissioner::install() {
     core_.network.drives[i].encoder_zero_counts = prepared_->offsets.zero_counts[i];
     core_.network.drives[i].zero_known = prepared_->offsets.known[i] && !still_lost_[i];
     config::set_friction(prepared_->offsets, i, core_.transmissions[i].friction);
+    if (prepared_->offsets.known[i]) forgotten_[i] = false;
     if (prepared_->offsets.known[i]) zeros[config::joint_name(i)] = prepared_->offsets.zero_counts[i];
     if (prepared_->taken.moved_rad[i] > 0) moved[config::joint_name(i)] = prepared_->taken.moved_rad[i];
   }
+  zero_lost_ = still_lost_;
   Json outcome{{"state", "done"}, {"zeros", zeros}, {"friction", friction_json(prepared_->offsets)}, {"file", file_}};
   if (!moved.empty()) outcome["moved_rad"] = moved;
   if (!why.empty()) outcome.update({{"state", "failed"}, {"why", why}, {"without_power", without_power_}});

@@ -64,10 +64,9 @@ class Commissioner {
   // One look at what has come back.
   void step();
 
-  // What the control loop says of the core at work: joints whose drive has lost its position. They need a zero until they are commissioned, by the file, too.
-  void lose_zeros(const std::array<bool, joint_count>& lost);
-  // The core at work doubts what its jaw holds.
-  void doubt_jaw(bool doubted) { jaw_doubted_ = doubted; }
+  // What the control loop says of the core at work: whether it doubts what its jaw holds, and the joints whose drive has lost its position. They need a zero
+  // until they are commissioned, by the file, too. A report of the core before is not heard.
+  void hear(const ControlReport& report);
   // Joints that take no power since their zero is not known: "slew, elbow"; empty when there is none.
   std::string unknown_joints() const;
   // How the last one ended, once the core has what it found; null before the first.
@@ -93,6 +92,7 @@ class Commissioner {
   };
   enum class Stage { idle, preparing, lending, running, storing, installing };
 
+  void lose_zeros(const std::array<bool, joint_count>& lost);
   void note_forgotten();
   void lend();
   void take_back(const CommissioningResult& result);
@@ -112,7 +112,8 @@ class Commissioner {
   Time try_again_;                              // when the file could not be written; 0: it could
   std::array<bool, joint_count> last_tried_{};  // a failure is told once for the same joints
   bool jaw_doubted_ = false;
-  bool without_power_ = true;  // after the last one
+  std::uint32_t cores_taken_ = 0;  // by the control loop
+  bool without_power_ = true;      // after the last one
   std::shared_ptr<Forgetting> forgetting_;
   std::string file_;
   std::array<double, joint_count> backlash_rad_{};

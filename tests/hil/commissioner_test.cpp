@@ -19,6 +19,8 @@ namespace {
 using hal::Commissioning;
 using Bench = CommissioningBench;
 
+constexpr std::array<bool, joint_count> only_jaw{false, false, false, false, true};
+
 // What was found cannot be kept. That the jaw must not move holds all the same: it rubs four times as much as its description has it, which cannot be; or its zero
 // is not where the file has it.
 struct Unwritten {
@@ -70,6 +72,8 @@ class AtWork {
     rings->old_cores.push(nullptr);
     return wait_for([&] { return !commissioner->busy(); });
   }
+
+  config::HomingOffsets file() const { return config::read_homing_file(folder / "homing.yaml"); }
 
   const TemporaryFolder folder;
   const std::unique_ptr<hal::LoopRings> rings = std::make_unique<hal::LoopRings>();
@@ -136,9 +140,10 @@ TEST(ALostZero, LeavesTheFileAsSoonAsThatCanBeWritten) {
   AtWork work(somewhere[4]);
   const std::filesystem::path in_the_way = work.folder / "homing.yaml.partial";
   ASSERT_TRUE(std::filesystem::create_directory(in_the_way));
-  const std::array<bool, joint_count> jaw{false, false, false, false, true};
+  hal::ControlReport report;
+  report.zeros_lost = only_jaw;
   const auto gone = [&] {
-    work.commissioner->lose_zeros(jaw);
+    work.commissioner->hear(report);
     return !config::read_homing_file(work.folder / "homing.yaml").known[4];
   };
   for (int i = 0; i < 300; ++i) {
@@ -150,12 +155,42 @@ TEST(ALostZero, LeavesTheFileAsSoonAsThatCanBeWritten) {
   EXPECT_TRUE(work.wait_for(gone));
 }
 
+// The report that is the newest when the cores were exchanged is still of the core before, to which the zero was lost: it took the new one out of the file.
+TEST(ALostZero, ThatWasFoundAgainStaysInTheFile) {
+  AtWork work(somewhere[4]);
+  hal::ControlReport report;
+  report.zeros_lost = only_jaw;
+  const auto known = [&] { return work.file().known[4]; };
+  const auto forgotten = [&] {
+    work.commissioner->hear(report);
+    return !known();
+  };
+  ASSERT_TRUE(work.wait_for(forgotten));
+  Bench bench(somewhere);
+  Commissioning* lent = work.begin(only_jaw);
+  ASSERT_NE(lent, nullptr);
+  bench.run(*lent);
+  EXPECT_EQ(lent->state(), Commissioning::State::done) << lent->failure();
+  EXPECT_NE(work.end(lent), nullptr);
+  ASSERT_TRUE(work.take_over());
+  for (int i = 0; i < 200; ++i) {
+    ASSERT_FALSE(forgotten());
+    work.commissioner->step();
+    usleep(1000);
+  }
+  EXPECT_EQ(work.commissioner->unknown_joints(), "");
+  report.cores_taken = 1;
+  EXPECT_TRUE(work.wait_for(forgotten)) << "lost once more";
+}
+
 // What the jaw holds is in doubt in the core: its angle alone says nothing.
 TEST(CommissioningOfAnArm, WhoseJawIsInDoubtIsNotBegun) {
   for (const bool doubted : {false, true}) {
     Bench bench(somewhere);
     AtWork work(somewhere[4]);
-    work.commissioner->doubt_jaw(doubted);
+    hal::ControlReport report;
+    report.jaw_doubted = doubted;
+    work.commissioner->hear(report);
     Commissioning* lent = work.begin({false, false, false, true, false});
     ASSERT_NE(lent, nullptr);
     bool powered = false;
