@@ -33,11 +33,15 @@ struct Commissioned {
   std::array<config::JointFriction, joint_count> friction{};
   std::string how;                            // and when
   std::array<double, joint_count> place_rad;  // where each zero was found: the joint's stop, or 0 in a jig
+  // By how much it was found off its earlier zero, as the commissioning compared it; 0 where that is less than what is told.
+  std::array<double, joint_count> moved_rad{};
+  std::array<bool, joint_count> lost{};  // its drive had lost its position before: no earlier zero of it means anything
 };
 
 struct TakenOver {
   std::vector<std::string> left_out;  // a sentence for each joint that takes no power
-  // By how much each zero has moved against the file's earlier one, as the angle at its place; 0 where there was none, or it moved by less than what is told.
+  // By how much each zero has moved, as the angle at its place: against the file's earlier one, or as the commissioning compared it, whichever is more. 0 where
+  // there was none, or it moved by less than what is told.
   std::array<double, joint_count> moved_rad{};
 };
 // Takes it over into `offsets`. A joint whose friction cannot be is no longer known there, and stays out until a friction was measured that can be: a zero
@@ -96,6 +100,7 @@ class Commissioner {
   void note_forgotten();
   void lend();
   void take_back(const CommissioningResult& result);
+  Commissioned findings_of(const Commissioning& ended) const;
   void store(const Commissioning& ended, const std::string& failed);
   static void give(Prepared& prepared, const std::string& problem, const TakenOver& taken, const config::HomingOffsets& offsets,
                    std::unique_ptr<Controller> core);

@@ -143,6 +143,12 @@ std::array<bool, joint_count> Commissioning::zeros_lost() const {
   return lost;
 }
 
+std::array<bool, joint_count> Commissioning::lost_before_found() const {
+  std::array<bool, joint_count> lost{};
+  for (std::size_t i = 0; i < joint_count; ++i) lost[i] = found_[i] && losses_when_found_[i] > 0;
+  return lost;
+}
+
 bool Commissioning::without_power() const {
   return std::none_of(powered_.begin(), powered_.end(), [](bool powered) { return powered; });
 }
@@ -281,28 +287,52 @@ void Commissioning::next_joint(Time now) {
 }
 
 void Commissioning::end_joint(Time now) {
-  const bool last = std::none_of(order.begin() + static_cast<std::ptrdiff_t>(turn_) + 1, order.end(),
-                                 [&](std::size_t joint) { return config_.joints[joint]; });
-  if (moved_rad_[joint_] > 0 && !last) {
-    std::array<char, 140> why{};
-    std::snprintf(why.data(), why.size(),
-                  "its stop is %.2f rad from where it was: look for what it met. Where its encoder was exchanged, commission it alone",
-                  moved_rad_[joint_]);
-    return fail_joint(why.data(), now);
-  }
+  if (ends_elsewhere(joint_, now)) return;
   ++turn_;
   next_joint(now);
 }
 
 void Commissioning::take_here(Time now) {
   for (std::size_t i = 0; i < joint_count; ++i) {
-    if (!config_.joints[i]) continue;
-    zero_counts_[i] = network_.axis(static_cast<Joint>(i)).actual_counts() - arm::counts_from_rad(static_cast<Joint>(i), 0);
-    found_[i] = true;
-    losses_when_found_[i] = network_.axis(static_cast<Joint>(i)).stats().zeros_lost;
+    if (config_.joints[i])
+      take_zero(i, network_.axis(static_cast<Joint>(i)).actual_counts() - arm::counts_from_rad(static_cast<Joint>(i), 0));
+  }
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    if (ends_elsewhere(i, now)) return;
   }
   turn_ = joint_count;
   next_joint(now);
+}
+
+void Commissioning::take_zero(std::size_t joint, std::int32_t zero_counts) {
+  zero_counts_[joint] = zero_counts;
+  found_[joint] = true;
+  losses_when_found_[joint] = network_.axis(static_cast<Joint>(joint)).stats().zeros_lost;
+  moved_rad_[joint] = off_earlier_rad(joint);
+}
+
+double Commissioning::off_earlier_rad(std::size_t joint) const {
+  if (network_.axis(static_cast<Joint>(joint)).zero_lost()) return 0;
+  const canopen::DriveSetup& drive = config_.network.drives[joint];
+  const auto off_rad = [&](std::int32_t earlier_counts) {
+    return zero_moved_rad(static_cast<Joint>(joint), places_rad()[joint], static_cast<double>(zero_counts_[joint]) - earlier_counts);
+  };
+  const double off_known = drive.zero_known ? off_rad(drive.encoder_zero_counts) : 0;
+  const double off_file = config_.zero_in_file[joint] ? off_rad(*config_.zero_in_file[joint]) : 0;
+  const double most_rad = std::max(off_known, off_file);
+  return most_rad > told_move_rad ? most_rad : 0;
+}
+
+bool Commissioning::ends_elsewhere(std::size_t joint, Time now) {
+  if (moved_rad_[joint] <= 0 || config_.moved) return false;
+  std::array<char, 160> why{};
+  std::snprintf(
+      why.data(), why.size(),
+      "its zero was found %.2f rad from where it was: %s. If its encoder or its stop was changed, commission it alone with --moved",
+      moved_rad_[joint], config_.here ? "see how it stands in the jig" : "look for what it met");
+  joint_ = joint;
+  fail_joint(why.data(), now);
+  return true;
 }
 
 bool Commissioning::presses_too_hard() {
@@ -378,14 +408,8 @@ void Commissioning::ease(Time now) {
   }
   stop_counts_ = actual + (actual - *easing_counts_) * load / (easing_load_ - load);
   const double touching_rad = stop_rad(joint_) + way * 0.5 * config_.backlash_rad[joint_];
-  zero_counts_[joint_] =
-      static_cast<std::int32_t>(std::lround(stop_counts_ - arm::exact_counts_from_rad(static_cast<Joint>(joint_), touching_rad)));
-  found_[joint_] = true;
-  losses_when_found_[joint_] = axis().stats().zeros_lost;
-  if (drive.zero_known && !axis().zero_lost()) {
-    const double moved_rad = zero_moved_rad(static_cast<Joint>(joint_), stop_rad(joint_), zero_counts_[joint_] - drive.encoder_zero_counts);
-    moved_rad_[joint_] = moved_rad > told_move_rad ? moved_rad : 0;
-  }
+  const double zero = stop_counts_ - arm::exact_counts_from_rad(static_cast<Joint>(joint_), touching_rad);
+  take_zero(joint_, static_cast<std::int32_t>(std::lround(zero)));
   target_ = actual;
   begin_rubbing(now);
 }
