@@ -34,8 +34,8 @@ class Commissioning {
     std::array<double, joint_count>
         backlash_rad{};  // of each gear, as the arm's description has it: the motor touches half of it beyond the stop
     std::array<arm::TransmissionSetup, joint_count> transmissions;  // their friction, as far as it is known before
-    std::array<std::optional<std::int32_t>, joint_count>
-        zero_in_file;             // known or doubtful: compared with, beside the zero that is known in `network`
+    // Known there or doubtful: compared with, beside the zero that is known in `network`.
+    std::array<std::optional<std::int32_t>, joint_count> zero_in_file;
     bool moved = false;           // its encoder or its stop was changed: its zero may be elsewhere
     bool here = false;            // the arm stands at its zero, in a jig: nothing is moved
     bool jaw_known = false;       // its zero in `network` is true, and its encoder is believed

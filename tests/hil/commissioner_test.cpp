@@ -197,6 +197,25 @@ TEST(CommissioningThatFails, LeavesAJointWithoutPowerThatTheFileDoesNotKnow) {
   EXPECT_EQ(work.file().zero_counts[4], somewhere[4] - 700);
 }
 
+// Somebody has put an older file in the place of the one that the commissioning was compared with.
+TEST(CommissioningThatEndsWell, FailsWhereTheFileHasAnotherZeroByThen) {
+  AtWork work(somewhere[4]);
+  Bench bench(somewhere);
+  Commissioning* lent = work.begin(only_jaw);
+  ASSERT_NE(lent, nullptr);
+  bench.run(*lent);
+  EXPECT_EQ(lent->state(), Commissioning::State::done) << lent->failure();
+  work.write_homing("jaw: {zero_counts: " + std::to_string(somewhere[4] - 700) + "}\n");
+  const std::unique_ptr<Controller> core = work.end(lent);
+  ASSERT_NE(core, nullptr);
+  ASSERT_TRUE(work.take_over());
+  EXPECT_FALSE(core->network().axis(Joint::jaw).setup().may_have_power());
+  EXPECT_EQ(work.commissioner->last()["state"], "failed");
+  EXPECT_NE(work.why().find("jaw: its zero was found elsewhere than the homing file has it"), std::string::npos) << work.why();
+  EXPECT_TRUE(work.file().zero_doubtful[4]);
+  EXPECT_EQ(work.file().zero_counts[4], somewhere[4] - 700);
+}
+
 // Something rubs in the jaw, and the slew, which comes after it, is called off. After a restart the jaw had power with the friction that it had before.
 TEST(CommissioningThatFails, LeavesAnEarlierJointThatRubsWithoutPower) {
   Bench bench(somewhere, parked, {}, [](hal::SimConfig& truth) { truth.devices.drives[4].friction.coulomb_nm *= 4; });
