@@ -54,8 +54,7 @@ double plane_bend_m(std::span<const CloudPoint> points, const Plane& plane, doub
   std::array<Cell, cells_a_side * cells_a_side> cells{};
   visit_inliers(points, plane, threshold_m, [&](const Vec2& place, double distance_m) {
     const Vec2 offset = place - origin - mean;
-    Cell& cell =
-        cells[static_cast<std::size_t>((cell_of(offset.x(), half_side_m.x()) * cells_a_side) + cell_of(offset.y(), half_side_m.y()))];
+    Cell& cell = cells[static_cast<std::size_t>((cell_of(offset.x(), half_side_m.x()) * cells_a_side) + cell_of(offset.y(), half_side_m.y()))];
     ++cell.points;
     cell.sum_m += distance_m;
   });

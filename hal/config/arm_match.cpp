@@ -45,18 +45,16 @@ bool same_actuator(const ArmActuator& a, const arm_geometry::JointNumbers& core)
 }
 
 bool same_motor(const ArmJoint& a, const arm_geometry::JointNumbers& core) {
-  return same(a.effort_nm, core.effort_nm) && same(a.rated_torque_nm, core.rated_torque_nm) &&
-         same(a.velocity_rad_s, core.velocity_rad_s) && same(a.acceleration_rad_s2, core.acceleration_rad_s2);
+  return same(a.effort_nm, core.effort_nm) && same(a.rated_torque_nm, core.rated_torque_nm) && same(a.velocity_rad_s, core.velocity_rad_s) &&
+         same(a.acceleration_rad_s2, core.acceleration_rad_s2);
 }
 
 // The pad that holds the bar.
 bool has_pad(const ArmLink& finger) {
   return std::any_of(finger.shapes.begin(), finger.shapes.end(), [](const scene::Shape& shape) {
     const Vec3& at = shape.body_from_shape.translation();
-    return shape.collides && shape.kind == scene::ShapeKind::box &&
-           std::abs(at.x() + shape.size_m.x() / 2 - arm_geometry::jaw.face_x_m) <= same_m &&
-           std::abs(at.z() - arm_geometry::jaw.face_z_m) <= same_m &&
-           std::abs(shape.size_m.y() - arm_geometry::jaw.pad_width_m) <= same_m &&
+    return shape.collides && shape.kind == scene::ShapeKind::box && std::abs(at.x() + shape.size_m.x() / 2 - arm_geometry::jaw.face_x_m) <= same_m &&
+           std::abs(at.z() - arm_geometry::jaw.face_z_m) <= same_m && std::abs(shape.size_m.y() - arm_geometry::jaw.pad_width_m) <= same_m &&
            std::abs(shape.size_m.z() - arm_geometry::jaw.pad_depth_m) <= same_m;
   });
 }

@@ -84,8 +84,8 @@ std::vector<std::string> panel_problems(const PanelLayout& panel) {
   const double radius = panel.button_width_m / 2, bar_m = turning_bar_m(panel);
   const double under_m = bar_m - distance_to_square(-panel.marker_centre_m, panel.marker_plate_m);
   if (under_m > 0)
-    problems.push_back("'panel.marker_centre_m': the turning bar ('panel.handle_length_m') covers the marker's plate by " +
-                       millimetres(under_m) + ": no look would find the marker");
+    problems.push_back("'panel.marker_centre_m': the turning bar ('panel.handle_length_m') covers the marker's plate by " + millimetres(under_m) +
+                       ": no look would find the marker");
   for (std::size_t i = 0; i < PanelLayout::button_count; ++i) {
     const std::string name = std::string("'panel.buttons_m': the ") + button_names[i] + " button";
     const double gap = distance_to_square(panel.buttons_m[i] - panel.marker_centre_m, panel.marker_plate_m) - radius;

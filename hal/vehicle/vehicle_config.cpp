@@ -57,9 +57,7 @@ void add_machine(Keys& all, VehicleConfig& c) {
   config::add_laser(all, c.machine.laser);
   config::add_vehicle(all, c.machine.vehicle);
   all.push_back(key("lamps.lit", "", 0, 0, &c.machine.lamps_lit, "stills are taken with the lamps on"));
-  all.push_back(
-      key("arm.urdf", "", 0, 0, &c.machine.arm_urdf,
-          "the arm, which has to be the one that the core was built of; relative to this file's folder, then to the shipped files"));
+  all.push_back(key("arm.urdf", "", 0, 0, &c.machine.arm_urdf, "the arm, which has to be the one that the core was built of; relative to this file's folder, then to the shipped files"));
   all.push_back(key("safety.limits", "", 0, 0, &c.machine.safety_limits, "the checksummed file of limits; found as arm.urdf is"));
   all.push_back(key("safety.mission_limits", "", 0, 0, &c.machine.mission_limits,
                     "a file of the same form with limits of this mission, none wider; empty: the same"));

@@ -99,9 +99,7 @@ void add_markers(CLI::App& app, Action& action) {
   command->add_option("--channel", options->channel, vision::channel_names)->capture_default_str();
   command->add_option("--camera", options->camera, "Calibration (YAML of OpenCV or ROS): gives poses; needs --size-m");
   command->add_option("--size-m", options->size_m, "Side of the black square, m")->check(within(1e-4, 100));
-  command->add_option("--decimate", options->decimate, "Search on an image so many times smaller")
-      ->check(within(1, 8))
-      ->capture_default_str();
+  command->add_option("--decimate", options->decimate, "Search on an image so many times smaller")->check(within(1, 8))->capture_default_str();
   command->add_option("--margin", options->min_margin, "Smallest decision margin")->check(within(0, 1000))->capture_default_str();
   command->add_option("--overlay", options->overlay, "Write the first frame with a marker to this PNG, markers drawn in")->check(check_png);
   command->add_flag("--json", options->json, "Print JSON");

@@ -126,27 +126,23 @@ void tell(const Options& options, const vision::DeepImage& image, const Found& f
     Json peaks = Json::array();
     for (const scan::Peak& peak : found.peaks)
       peaks.push_back({{"u", peak.u_px}, {"v", peak.v_px}, {"amplitude", peak.amplitude}, {"ratio", peak.ratio}});
-    print_json({{"width", image.width},
-                {"height", image.height},
-                {"peaks", peaks},
-                {"rejected",
-                 {{"weak", found.counters.weak},
-                  {"saturated", found.counters.saturated},
-                  {"ambiguous", found.counters.ambiguous},
-                  {"not_fitted", not_fitted}}},
-                {"stripe_width_px", look.width_px},
-                {"scatter_px", look.scatter_px},
-                {"doubts", doubts}});
+    print_json(
+        {{"width", image.width},
+         {"height", image.height},
+         {"peaks", peaks},
+         {"rejected", {{"weak", found.counters.weak}, {"saturated", found.counters.saturated}, {"ambiguous", found.counters.ambiguous}, {"not_fitted", not_fitted}}},
+         {"stripe_width_px", look.width_px},
+         {"scatter_px", look.scatter_px},
+         {"doubts", doubts}});
   } else if (options.csv) {
     print("u,v,amplitude,ratio\n");
     for (const scan::Peak& peak : found.peaks) {
       print("%.4f,%.4f,%.2f,%.4f\n", double(peak.u_px), double(peak.v_px), double(peak.amplitude), double(peak.ratio));
     }
   } else {
-    print("%s in %d %ss; refused: %llu weak, %llu saturated, %llu ambiguous, %zu not fitted\n",
-          count_of(found.peaks.size(), "peak").c_str(), options.axis == "column" ? image.width : image.height, options.axis.c_str(),
-          static_cast<unsigned long long>(found.counters.weak), static_cast<unsigned long long>(found.counters.saturated),
-          static_cast<unsigned long long>(found.counters.ambiguous), not_fitted);
+    print("%s in %d %ss; refused: %llu weak, %llu saturated, %llu ambiguous, %zu not fitted\n", count_of(found.peaks.size(), "peak").c_str(),
+          options.axis == "column" ? image.width : image.height, options.axis.c_str(), static_cast<unsigned long long>(found.counters.weak),
+          static_cast<unsigned long long>(found.counters.saturated), static_cast<unsigned long long>(found.counters.ambiguous), not_fitted);
   }
 }
 

@@ -142,16 +142,14 @@ StripeLook look_at_stripe(const StripePicture& picture, std::span<const scan::Pe
 std::vector<std::string> peak_doubts(const StripeLook& look) {
   std::vector<std::string> doubts;
   if (2 * look.ambiguous > static_cast<std::uint64_t>(look.lines))
-    doubts.push_back(formatted(look.off_given
-                                   ? "%.0f of %.0f lines have several peaks as strong: crop the picture to the one that counts"
-                                   : "%.0f of %.0f lines have several peaks as strong: give --off, or crop the picture to the one "
-                                     "that counts",
+    doubts.push_back(formatted(look.off_given ? "%.0f of %.0f lines have several peaks as strong: crop the picture to the one that counts"
+                                              : "%.0f of %.0f lines have several peaks as strong: give --off, or crop the picture to the one "
+                                                "that counts",
                                static_cast<double>(look.ambiguous), look.lines));
   else if (look.found < least_share * look.lines)
     doubts.push_back(formatted(
         look.off_given
-            ? "peaks in %.0f of %.0f lines alone: is the laser in this picture and in this channel, does its line run across them "
-              "(--axis), "
+            ? "peaks in %.0f of %.0f lines alone: is the laser in this picture and in this channel, does its line run across them (--axis), "
               "and is --off the same scene without it?"
             : "peaks in %.0f of %.0f lines alone: is the laser in this picture and in this channel, and does its line run across them "
               "(--axis)?",

@@ -20,7 +20,7 @@ struct StripePicture {
 struct StripeLook {
   std::int32_t lines = 0, found = 0;
   std::uint64_t ambiguous = 0;  // lines in which several peaks are as strong
-  bool off_given = false;       // a picture without the laser was subtracted
+  bool off_given = false;  // a picture without the laser was subtracted
   double dark_share =
       0;  // of the lines found, those in which a dark line stands beside the peak or elsewhere, more than half as deep as the peak is high
   double width_px = 0;    // of the mean profile at half its height; 0: not measured

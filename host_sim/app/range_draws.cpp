@@ -128,9 +128,9 @@ bool is_free_text(const Key& key) {
 
 // What these say is seen, or where it is looked from.
 bool is_seen(const std::string& key) {
-  for (const char* group : {"docking.", "water.", "lamps.", "camera.", "laser.", "mounting.", "sensors.", "latency.", "calibration.",
-                            "panel.", "tasks", "valve.start_deg", "valve.stop_", "mission.camera_syncs", "mission.frames_per_background",
-                            "mission.sweep_speed_rad_s", "mission.verify_band_m"}) {
+  for (const char* group :
+       {"docking.", "water.", "lamps.", "camera.", "laser.", "mounting.", "sensors.", "latency.", "calibration.", "panel.", "tasks", "valve.start_deg",
+        "valve.stop_", "mission.camera_syncs", "mission.frames_per_background", "mission.sweep_speed_rad_s", "mission.verify_band_m"}) {
     if (key.starts_with(group)) return true;
   }
   return false;

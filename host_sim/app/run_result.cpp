@@ -155,8 +155,7 @@ std::vector<std::pair<std::string, std::string>> conditions(const scenario::Samp
       {"friction torque", formatted("%.2f N m", s.valve_friction_nm)},
       {"attenuation", formatted("%.2f per m", s.attenuation_per_m)},
       {"particles", formatted("%.1f per litre", s.particles_per_l)},
-      {"scattering and phase function off by",
-       percents({s.scattering_ratio, s.forward_ratio[0], s.back_ratio}) + " (all, first forward term, back)"},
+      {"scattering and phase function off by", percents({s.scattering_ratio, s.forward_ratio[0], s.back_ratio}) + " (all, first forward term, back)"},
       {"camera noise", formatted("%.1f grey levels", s.camera_noise_grey) + formatted(", %.0f electrons a level", s.electrons_per_grey)},
       {"exposure", formatted("%.2f ms late", 1e3 * s.exposure_delay_s) + formatted(", jitter %.2f %%", 100 * s.exposure_jitter) +
                        formatted(", time stamps off by %.2f ms", 1e3 * s.stamp_s)},
@@ -171,8 +170,8 @@ std::vector<std::pair<std::string, std::string>> conditions(const scenario::Samp
       {"lamps", s.lamps_lit ? "on" : "off"},
       {"camera's mounting error", formatted("%.2f mm, %.3f deg", 1e3 * s.camera_shift_m.norm(), deg_from_rad(s.camera_turn_rad.norm()))},
       {"laser's mounting error", formatted("%.2f mm, %.3f deg", 1e3 * s.laser_shift_m.norm(), deg_from_rad(s.laser_turn_rad.norm()))},
-      {"marker's side off by",
-       formatted("%+.2f mm, ", 1e3 * s.marker_size_m) + formatted("its edges off the panel by %.2f mm", 1e3 * s.marker_flat_m.norm())},
+      {"marker's side off by", formatted("%+.2f mm, ", 1e3 * s.marker_size_m) +
+                                   formatted("its edges off the panel by %.2f mm", 1e3 * s.marker_flat_m.norm())},
       {"handle's size off by", mm2(s.handle_m)},
       {"buttons' place off by at most", formatted("%.2f mm", 1e3 * worst_button_m)}};
 }
