@@ -382,7 +382,7 @@ void set_zeros(const Machine& machine, const std::filesystem::path& folder, cons
   if (file.empty()) return;
   const std::string found = find_file(file, folder);
   HomingOffsets offsets = read_homing_file(found);
-  const std::array<bool, joint_count> doubtful_in_file = offsets.friction_doubtful;
+  const HomingOffsets in_file = offsets;
   if (arm != nullptr) {
     std::array<Motor, joint_count> motors;
     for (std::size_t i = 0; i < joint_count; ++i) motors[i] = motor_of(arm->joints[i], drive_of(machine.drives, i).counts_per_rev);
@@ -390,7 +390,11 @@ void set_zeros(const Machine& machine, const std::filesystem::path& folder, cons
       core.notes.push_back(found + ": " + doubtful + ". Until then this joint takes no power");
   }
   for (std::size_t i = 0; i < joint_count; ++i) {
-    if (doubtful_in_file[i])
+    if (in_file.zero_doubtful[i] && !in_file.friction_doubtful[i])
+      core.notes.push_back(
+          found + ": the " + joint_name(i) +
+          "'s zero is doubtful: a commissioning found it elsewhere. This joint takes no power until it is commissioned again");
+    if (in_file.friction_doubtful[i])
       core.notes.push_back(
           found + ": the " + joint_name(i) +
           "'s friction was doubtful when it was last measured. This joint takes no power until a commissioning measures it again");

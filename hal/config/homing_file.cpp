@@ -32,6 +32,7 @@ HomingOffsets read_homing_file(const std::string& path) {
   for (std::size_t i = 0; i < joint_count; ++i) {
     const std::string joint = std::string(joint_name(i));
     table.push_back(key(joint + ".zero_counts", "counts", low, high, &offsets.zero_counts[i], ""));
+    table.push_back(key(joint + ".zero_doubtful", "", 0, 0, &offsets.zero_doubtful[i], ""));
     table.push_back(key(joint + ".found", "", 0, 0, &offsets.found[i], ""));
     table.push_back(key(joint + ".coulomb_mnm", "mN m", 0, most_mnm, &offsets.friction[i].coulomb_mnm, ""));
     table.push_back(key(joint + ".viscous_mnm_s", "mN m s", 0, most_mnm, &offsets.friction[i].viscous_mnm_s, ""));
@@ -41,10 +42,11 @@ HomingOffsets read_homing_file(const std::string& path) {
   read_map(root, "", "", table, source);
   for (std::size_t i = 0; i < joint_count; ++i) {
     const YAML::Node joint = root[joint_name(i)];
-    if (!joint || offsets.friction_doubtful[i]) continue;
+    if (!joint || (offsets.friction_doubtful[i] && !offsets.zero_doubtful[i])) continue;
     if (!joint["zero_counts"])
       source.refuse(joint.Mark(), std::string("'") + joint_name(i) + ".zero_counts' is missing: commission this joint");
-    offsets.known[i] = true;
+    if (offsets.friction_doubtful[i]) continue;
+    offsets.known[i] = !offsets.zero_doubtful[i];
     offsets.friction_known[i] = joint["coulomb_mnm"] && joint["viscous_mnm_s"];
     if (!offsets.friction_known[i] && (joint["coulomb_mnm"] || joint["viscous_mnm_s"]))
       source.refuse(joint.Mark(), std::string("'") + joint_name(i) + "' has one of coulomb_mnm and viscous_mnm_s: a friction needs both");
@@ -79,8 +81,7 @@ std::vector<std::string> leave_out_doubtful(HomingOffsets& offsets, const std::a
     const std::optional<std::string> problem = friction_problem(i, offsets.friction[i], motors[i]);
     if (!problem) continue;
     left_out.push_back(*problem);
-    offsets.known[i] = offsets.friction_known[i] = false;
-    offsets.friction_doubtful[i] = true;
+    offsets.doubt_friction(i);
   }
   return left_out;
 }
@@ -118,22 +119,44 @@ int rename_through(const std::string& from, const std::string& to) {
   return error;
 }
 
+std::string joint_line(const HomingOffsets& offsets, std::size_t joint) {
+  std::ostringstream line;
+  line << joint_name(joint) << ": {";
+  if (offsets.zero_doubtful[joint] || !offsets.friction_doubtful[joint]) line << "zero_counts: " << offsets.zero_counts[joint] << ", ";
+  if (offsets.zero_doubtful[joint]) line << "zero_doubtful: true, ";
+  if (offsets.friction_doubtful[joint]) line << "friction_doubtful: true, ";
+  if (offsets.friction_known[joint] && !offsets.friction_doubtful[joint]) {
+    const JointFriction& friction = offsets.friction[joint];
+    line << "coulomb_mnm: " << friction.coulomb_mnm << ", viscous_mnm_s: " << friction.viscous_mnm_s
+         << ", friction_rms_mnm: " << friction.rms_mnm << ", ";
+  }
+  line << "found: \"" << offsets.found[joint] << "\"}\n";
+  return line.str();
+}
+
 }  // namespace
+
+bool HomingOffsets::has_earlier_zero(std::size_t joint) const { return known[joint] || zero_doubtful[joint]; }
+
+void HomingOffsets::doubt_zero(std::size_t joint) {
+  zero_doubtful[joint] = has_earlier_zero(joint);
+  known[joint] = false;
+}
+
+void HomingOffsets::forget_zero(std::size_t joint) { known[joint] = zero_doubtful[joint] = false; }
+
+void HomingOffsets::doubt_friction(std::size_t joint) {
+  doubt_zero(joint);
+  friction_known[joint] = false;
+  friction_doubtful[joint] = true;
+}
 
 void write_homing_file(const std::string& path, const HomingOffsets& offsets) {
   std::ostringstream out;
   out << "# Written by `lanternfishd commission`: what each drive's absolute encoder counts where the arm's own count is 0,\n"
          "# and the friction of its motor and gear, in mN m at the motor's shaft, with what the fit left of it.\n";
   for (std::size_t i = 0; i < joint_count; ++i) {
-    if (offsets.friction_doubtful[i]) out << joint_name(i) << ": {friction_doubtful: true, found: \"" << offsets.found[i] << "\"}\n";
-    if (offsets.friction_doubtful[i] || !offsets.known[i]) continue;
-    out << joint_name(i) << ": {zero_counts: " << offsets.zero_counts[i];
-    if (offsets.friction_known[i]) {
-      const JointFriction& friction = offsets.friction[i];
-      out << ", coulomb_mnm: " << friction.coulomb_mnm << ", viscous_mnm_s: " << friction.viscous_mnm_s
-          << ", friction_rms_mnm: " << friction.rms_mnm;
-    }
-    out << ", found: \"" << offsets.found[i] << "\"}\n";
+    if (offsets.known[i] || offsets.zero_doubtful[i] || offsets.friction_doubtful[i]) out << joint_line(offsets, i);
   }
   const std::string partial = path + ".partial";
   int error = write_through(partial, out.str());

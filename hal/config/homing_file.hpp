@@ -25,11 +25,18 @@ struct JointFriction {
 struct HomingOffsets {
   std::array<std::int32_t, joint_count> zero_counts{};
   std::array<bool, joint_count> known{};
+  // The joint was found elsewhere than `zero_counts` has it, or something rubs in it. It is not known, and a later commissioning compares with these counts.
+  std::array<bool, joint_count> zero_doubtful{};
   std::array<bool, joint_count> friction_known{};
   // A friction that cannot be was found, and none since: the joint is not known, whatever zero was found.
   std::array<bool, joint_count> friction_doubtful{};
   std::array<JointFriction, joint_count> friction{};
   std::array<std::string, joint_count> found;  // how and when, a line for people
+
+  bool has_earlier_zero(std::size_t joint) const;  // known, or doubtful: one to compare with
+  void doubt_zero(std::size_t joint);              // keeps its counts, if it has any
+  void doubt_friction(std::size_t joint);          // and its zero with it
+  void forget_zero(std::size_t joint);             // its counts mean nothing any more
 };
 
 // The friction as the core takes it: its doubt is what the fit left, and a twentieth for the temperature of another day. Nothing is changed for a joint whose
@@ -45,10 +52,11 @@ std::vector<std::string> leave_out_doubtful(HomingOffsets& offsets, const std::a
 
 const char* joint_name(std::size_t joint);  // "slew" ...
 
-// Throws InputError with file and line: unreadable or malformed, an unknown joint, one without its number, a number out of range. An empty file knows no
+// Throws InputError with file and line: unreadable or malformed, an unknown joint, one without its number, a doubtful zero without its counts, a number out of range. An empty file knows no
 // joint.
 HomingOffsets read_homing_file(const std::string& path);
-// Writes the joints that are known, and those whose friction is doubtful. Replaces the file as a whole or not at all, a loss of power included. Throws InputError with the cause.
+// Writes the joints that are known, and those whose zero or friction is doubtful. Replaces the file as a whole or not at all, a loss of power included. Throws
+// InputError with the cause.
 void write_homing_file(const std::string& path, const HomingOffsets& offsets);
 
 }  // namespace lf::config

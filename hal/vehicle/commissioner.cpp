@@ -44,6 +44,133 @@ config::HomingOffsets read_and_check(const std::string& file) {
   return offsets;
 }
 
+double moved_rad(const Commissioned& commissioned, const config::HomingOffsets& offsets, std::size_t joint) {
+  if (!offsets.has_earlier_zero(joint)) return commissioned.moved_rad[joint];
+  const double off_counts = static_cast<double>(commissioned.zero_counts[joint]) - offsets.zero_counts[joint];
+  const double off_rad = zero_moved_rad(static_cast<Joint>(joint), commissioned.place_rad[joint], off_counts);
+  return std::max(commissioned.moved_rad[joint], off_rad > told_move_rad ? off_rad : 0);
+}
+
+// Why a joint that was found stays without power for its friction, in words.
+std::optional<std::string> friction_doubt(const Commissioned& commissioned, const std::array<Motor, joint_count>& motors,
+                                          const config::HomingOffsets& offsets, std::size_t joint) {
+  if (commissioned.friction_found[joint]) return config::friction_problem(joint, commissioned.friction[joint], motors[joint]);
+  const bool doubtful =
+      offsets.friction_doubtful[joint] ||
+      (offsets.friction_known[joint] && config::friction_problem(joint, offsets.friction[joint], motors[joint]).has_value());
+  if (!doubtful) return std::nullopt;
+  return std::string("the ") + config::joint_name(joint) +
+         "'s friction was doubtful before, and no friction was measured now. Commission it away from its stop, without --here";
+}
+
+// Of a failed one: a zero was found elsewhere, or something rubs.
+bool leaves_doubt(const Commissioning& ended, const std::array<Motor, joint_count>& motors) {
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    if (ended.moved_rad()[i] > 0) return true;
+    if (ended.friction_found()[i] && config::friction_problem(i, ended.friction()[i], motors[i])) return true;
+  }
+  return false;
+}
+
+// The file was changed while the joint moved: the commissioning could not compare with it.
+std::string found_elsewhere(const TakenOver& taken) {
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    if (taken.moved_rad[i] > 0) return std::string(config::joint_name(i)) + ": its zero was found elsewhere than the homing file has it";
+  }
+  return "";
+}
+
+std::string names_of(const std::array<bool, joint_count>& joints) {
+  std::string names;
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    if (joints[i]) names += (names.empty() ? "" : ", ") + std::string(config::joint_name(i));
+  }
+  return names;
+}
+
+void tell_moved(TakenOver& taken) {
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    if (taken.moved_rad[i] > 0)
+      taken.left_out.push_back(std::string("the ") + config::joint_name(i) + "'s zero has moved, and the new one was not written");
+  }
+}
+
+// Found elsewhere than its earlier zero, or with a friction that cannot be. `offsets` is what was taken over.
+std::array<bool, joint_count> doubted_joints(const Commissioned& commissioned, const TakenOver& taken,
+                                             const config::HomingOffsets& offsets) {
+  std::array<bool, joint_count> doubted{};
+  for (std::size_t i = 0; i < joint_count; ++i)
+    doubted[i] = commissioned.found[i] && (taken.moved_rad[i] > 0 || offsets.friction_doubtful[i]);
+  return doubted;
+}
+
+// Whatever the file or the core still has of their zeros.
+void forget_lost(const std::array<bool, joint_count>& lost, config::HomingOffsets& offsets, ControllerConfig& core) {
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    if (!lost[i]) continue;
+    offsets.forget_zero(i);
+    core.network.drives[i].zero_known = false;
+  }
+}
+
+// An earlier zero of a joint that the file does not know is the core's.
+config::HomingOffsets with_doubts(config::HomingOffsets before, const std::array<bool, joint_count>& doubted,
+                                  const config::HomingOffsets& taken_over, const ControllerConfig& core) {
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    if (!doubted[i]) continue;
+    const canopen::DriveSetup& drive = core.network.drives[i];
+    if (!before.has_earlier_zero(i) && drive.zero_known) {
+      before.zero_counts[i] = drive.encoder_zero_counts;
+      before.known[i] = true;
+    }
+    before.doubt_zero(i);
+    if (!taken_over.friction_doubtful[i]) continue;
+    before.doubt_friction(i);
+    before.found[i] = taken_over.found[i];
+  }
+  return before;
+}
+
+// The cause when it cannot be written.
+std::string write_offsets(const std::string& file, const config::HomingOffsets& offsets) {
+  try {
+    config::write_homing_file(file, offsets);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+// How a failed one has ended, in words.
+std::string write_doubts(const std::string& file, const config::HomingOffsets& with_doubts, const std::array<bool, joint_count>& doubted,
+                         const std::string& failed) {
+  const std::string error = write_offsets(file, with_doubts);
+  if (!error.empty()) return failed + ". Nothing was written: " + error;
+  return failed + ". In the homing file the zeros of these joints are doubtful now: " + names_of(doubted) + ". Nothing else was written";
+}
+
+// What was found is not used. That a joint must not have power holds all the same.
+void deny_power(const std::array<bool, joint_count>& denied, ControllerConfig& core, config::HomingOffsets& offsets) {
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    bool& known = core.network.drives[i].zero_known;
+    known = known && !denied[i];
+    offsets.known[i] = known;
+  }
+}
+
+void use_zeros(const config::HomingOffsets& offsets, const std::array<bool, joint_count>& still_lost, ControllerConfig& core) {
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    core.network.drives[i].encoder_zero_counts = offsets.zero_counts[i];
+    core.network.drives[i].zero_known = offsets.known[i] && !still_lost[i];
+    config::set_friction(offsets, i, core.transmissions[i].friction);
+  }
+}
+
+std::array<bool, joint_count> either(std::array<bool, joint_count> one, const std::array<bool, joint_count>& other) {
+  for (std::size_t i = 0; i < joint_count; ++i) one[i] = one[i] || other[i];
+  return one;
+}
+
 }  // namespace
 
 Json friction_json(const config::HomingOffsets& offsets) {
@@ -61,32 +188,19 @@ TakenOver take_over(const Commissioned& commissioned, const std::array<Motor, jo
   TakenOver taken;
   for (std::size_t i = 0; i < joint_count; ++i) {
     if (!commissioned.found[i]) continue;
-    const bool measured = commissioned.friction_found[i];
-    std::optional<std::string> why;
-    if (measured) {
-      why = config::friction_problem(i, commissioned.friction[i], motors[i]);
-    } else if (offsets.friction_doubtful[i] ||
-               (offsets.friction_known[i] && config::friction_problem(i, offsets.friction[i], motors[i]).has_value())) {
-      why = std::string("the ") + config::joint_name(i) +
-            "'s friction was doubtful before, and no friction was measured now. Commission it away from its stop, without --here";
-    }
-    offsets.friction_doubtful[i] = why.has_value();
-    if (why) {
+    taken.moved_rad[i] = moved_rad(commissioned, offsets, i);
+    if (const std::optional<std::string> why = friction_doubt(commissioned, motors, offsets, i)) {
       taken.left_out.push_back(*why);
       // What was known of it before may be as wrong.
-      offsets.known[i] = offsets.friction_known[i] = false;
+      offsets.doubt_friction(i);
       offsets.found[i] = commissioned.how;
       continue;
     }
-    if (offsets.known[i]) {
-      const double moved_rad = zero_moved_rad(static_cast<Joint>(i), commissioned.place_rad[i],
-                                              static_cast<double>(commissioned.zero_counts[i]) - offsets.zero_counts[i]);
-      if (moved_rad > told_move_rad) taken.moved_rad[i] = moved_rad;
-    }
     offsets.zero_counts[i] = commissioned.zero_counts[i];
     offsets.known[i] = true;
+    offsets.zero_doubtful[i] = offsets.friction_doubtful[i] = false;
     offsets.found[i] = commissioned.how;
-    if (!measured) continue;
+    if (!commissioned.friction_found[i]) continue;
     offsets.friction[i] = commissioned.friction[i];
     offsets.friction_known[i] = true;
   }
@@ -113,8 +227,13 @@ Commissioner::~Commissioner() {
   }
 }
 
+void Commissioner::hear(const ControlReport& report) {
+  if (busy() || report.cores_taken != cores_taken_) return;
+  jaw_doubted_ = report.jaw_doubted;
+  lose_zeros(report.zeros_lost);
+}
+
 void Commissioner::lose_zeros(const std::array<bool, joint_count>& lost) {
-  if (busy()) return;
   zero_lost_ = lost;
   if (file_.empty() || config::is_shipped(file_) || forgetting_ != nullptr || monotonic_now() < try_again_) return;
   std::array<bool, joint_count> to_forget{};
@@ -126,7 +245,9 @@ void Commissioner::lose_zeros(const std::array<bool, joint_count>& lost) {
     std::string problem;
     try {
       config::HomingOffsets offsets = read_and_check(file);
-      for (std::size_t i = 0; i < joint_count; ++i) offsets.known[i] = offsets.known[i] && !forgetting->joints[i];
+      for (std::size_t i = 0; i < joint_count; ++i) {
+        if (forgetting->joints[i]) offsets.forget_zero(i);
+      }
       config::write_homing_file(file, offsets);
     } catch (const InputError& error) {
       problem = error.what();
@@ -163,12 +284,9 @@ void Commissioner::note_forgotten() {
 }
 
 std::string Commissioner::unknown_joints() const {
-  std::string names;
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    if (zero_lost_[i] || !core_.network.drives[i].may_have_power())
-      names += (names.empty() ? "" : ", ") + std::string(config::joint_name(i));
-  }
-  return names;
+  std::array<bool, joint_count> unknown{};
+  for (std::size_t i = 0; i < joint_count; ++i) unknown[i] = zero_lost_[i] || !core_.network.drives[i].may_have_power();
+  return names_of(unknown);
 }
 
 std::optional<std::string> Commissioner::begin(const CommissionOrder& order) {
@@ -186,15 +304,19 @@ std::optional<std::string> Commissioner::begin(const CommissionOrder& order) {
   setup.joints = order.joints;
   setup.backlash_rad = backlash_rad_;
   setup.here = order.here;
+  setup.moved = order.moved;
   for (std::size_t i = 0; i < joint_count; ++i) {
     bool& known = setup.network.drives[i].zero_known;
     known = known && !zero_lost_[i];
   }
   setup.jaw_known = setup.network.drives[static_cast<std::size_t>(Joint::jaw)].zero_known && !jaw_doubted_;
-  const bool posted = worker_.post([prepared = prepared_, setup, file = file_] {
+  const bool posted = worker_.post([prepared = prepared_, setup, file = file_, lost = zero_lost_]() mutable {
     std::string problem;
     try {
-      (void)read_and_check(file);
+      const config::HomingOffsets offsets = read_and_check(file);
+      for (std::size_t i = 0; i < joint_count; ++i) {
+        if (offsets.has_earlier_zero(i) && !lost[i]) setup.zero_in_file[i] = offsets.zero_counts[i];
+      }
     } catch (const InputError& error) {
       problem = error.what();
     }
@@ -224,6 +346,7 @@ void Commissioner::step() {
   for (Controller* old = nullptr; rings_.old_cores.pop(old);) {
     delete old;
     (void)core_given_.release();  // in the control loop now
+    ++cores_taken_;
     last_ = std::exchange(outcome_, nullptr);
     stage_ = Stage::idle;
   }
@@ -260,11 +383,10 @@ void Commissioner::take_back(const CommissioningResult& result) {
     return;
   }
   if (last_.is_null()) answer_ = Json{{"ok", true}, {"standing", "commissioning"}};
-  const std::string why = ended->state() == Commissioning::State::done ? "" : "nothing was written: " + std::string(ended->failure());
-  const bool moved = std::any_of(ended->moved_rad().begin(), ended->moved_rad().end(), [](double rad) { return rad > 0; });
+  const std::string failed = ended->state() == Commissioning::State::done ? "" : std::string(ended->failure());
   without_power_ = ended->without_power();
-  if (why.empty() || moved) return store(*ended, why);
-  end_with({{"state", "failed"}, {"why", why}, {"without_power", without_power_}});
+  if (failed.empty() || leaves_doubt(*ended, motors_)) return store(*ended, failed);
+  end_with({{"state", "failed"}, {"why", "nothing was written: " + failed}, {"without_power", without_power_}});
 }
 
 void Commissioner::end_with(const Json& outcome) {
@@ -289,65 +411,51 @@ void Commissioner::give(Prepared& prepared, const std::string& problem, const Ta
   prepared.done = true;
 }
 
-// The file is read again: it keeps what this commissioning has not found. Of one that failed only the doubt is kept, in the zeros that it found elsewhere.
+Commissioned Commissioner::findings_of(const Commissioning& ended) const {
+  Commissioned all{ended.found(), ended.zero_counts(), ended.friction_found(), ended.friction(), "", ended.places_rad()};
+  all.how = (order_.here ? "in the jig, " : "at its stop, ") + now_text() + " UTC";
+  all.moved_rad = ended.moved_rad();
+  all.lost = either(ended.lost_before_found(), zero_lost_);
+  return all;
+}
+
+// The file is read again: it keeps what this commissioning has not found. Of one that failed only the doubt is kept, in zeros found elsewhere and in joints
+// that rub.
 void Commissioner::store(const Commissioning& ended, const std::string& failed) {
   stage_ = Stage::storing;
   last_ = {{"state", "under way"}};  // also of one that ended before its begin was told
   prepared_ = std::make_shared<Prepared>();
-  const std::string how = (order_.here ? "in the jig, " : "at its stop, ") + now_text() + " UTC";
-  const Commissioned commissioned{ended.found(), ended.zero_counts(), ended.friction_found(), ended.friction(), how, ended.places_rad()};
+  const Commissioned commissioned = findings_of(ended);
   for (std::size_t i = 0; i < joint_count; ++i) still_lost_[i] = zero_lost_[i] && !commissioned.found[i];
-  for (std::size_t i = 0; i < joint_count; ++i) forgotten_[i] = forgotten_[i] && !commissioned.found[i];
-  const bool posted = worker_.post([prepared = prepared_, file = file_, commissioned, core = core_, motors = motors_, lost = zero_lost_,
-                                    still_lost = still_lost_, failed]() mutable {
+  const bool posted = worker_.post([prepared = prepared_, file = file_, commissioned, core = core_, motors = motors_,
+                                    still_lost = still_lost_, failed = failed, moved_as_ordered = order_.moved]() mutable {
     std::string problem;
     TakenOver taken;
     config::HomingOffsets offsets;
-    std::unique_ptr<Controller> with_zeros;
     try {
       offsets = read_and_check(file);
-      config::HomingOffsets before = offsets;
+      forget_lost(commissioned.lost, offsets, core);
+      const config::HomingOffsets before = offsets;
       taken = take_over(commissioned, motors, offsets);
-      try {
-        if (!failed.empty()) {
-          for (std::size_t i = 0; i < joint_count; ++i) before.known[i] = before.known[i] && taken.moved_rad[i] <= 0;
-          config::write_homing_file(file, before);
-          throw InputError(failed);
-        }
-        config::write_homing_file(file, offsets);
-      } catch (const InputError& error) {
-        // What was found is lost; that a joint must not have power is not. Nor that its old zero is wrong.
-        problem = error.what();
-        for (std::size_t i = 0; i < joint_count; ++i) {
-          if (taken.moved_rad[i] > 0) {
-            taken.left_out.push_back(std::string("the ") + config::joint_name(i) + "'s zero has moved, and the new one was not written");
-            offsets.known[i] = false;
-          }
-          core.network.drives[i].zero_known = core.network.drives[i].zero_known && offsets.known[i] && !lost[i];
-        }
-        with_zeros = std::make_unique<Controller>(core);
+      if (failed.empty() && !moved_as_ordered) failed = found_elsewhere(taken);
+      const std::array<bool, joint_count> doubted = doubted_joints(commissioned, taken, offsets);
+      problem =
+          failed.empty() ? write_offsets(file, offsets) : write_doubts(file, with_doubts(before, doubted, offsets, core), doubted, failed);
+      if (problem.empty()) {
+        const std::vector<std::string> older =
+            config::leave_out_doubtful(offsets, motors);  // the file's, of joints that were not commissioned now
+        taken.left_out.insert(taken.left_out.end(), older.begin(), older.end());
+        use_zeros(offsets, still_lost, core);
+      } else {
+        tell_moved(taken);
+        deny_power(doubted, core, offsets);
       }
-      if (!problem.empty()) return give(*prepared, problem, taken, offsets, std::move(with_zeros));
-      const std::vector<std::string> older =
-          config::leave_out_doubtful(offsets, motors);  // the file's, of joints that were not commissioned now
-      taken.left_out.insert(taken.left_out.end(), older.begin(), older.end());
-      for (std::size_t i = 0; i < joint_count; ++i) {
-        core.network.drives[i].encoder_zero_counts = offsets.zero_counts[i];
-        core.network.drives[i].zero_known = offsets.known[i] && !still_lost[i];
-        config::set_friction(offsets, i, core.transmissions[i].friction);
-      }
-      with_zeros = std::make_unique<Controller>(core);
     } catch (const InputError& error) {
       // Whether the zeros that were found are the old ones cannot be told: there is nothing to hold them against.
-      problem = error.what();
-      for (std::size_t i = 0; i < joint_count; ++i) {
-        bool& known = core.network.drives[i].zero_known;
-        known = known && !commissioned.found[i] && !lost[i];
-        offsets.known[i] = known;
-      }
-      with_zeros = std::make_unique<Controller>(core);
+      problem = (failed.empty() ? "" : failed + ". Nothing was written: ") + error.what();
+      deny_power(either(commissioned.found, commissioned.lost), core, offsets);
     }
-    give(*prepared, problem, taken, offsets, std::move(with_zeros));
+    give(*prepared, problem, taken, offsets, std::make_unique<Controller>(core));
   });
   if (!posted)
     end_with({{"state", "failed"}, {"why", "nothing was written: too much is waiting to be done"}, {"without_power", without_power_}});
@@ -373,14 +481,14 @@ void Commissioner::install() {
         {"state", "failed"}, {"why", prepared_->problem + (why.empty() ? "" : "; " + why)}, {"without_power", without_power_}};
     return prepared_->core ? give_core(std::move(prepared_->core), failed) : end_with(failed);
   }
+  use_zeros(prepared_->offsets, still_lost_, core_);
   Json zeros = Json::object(), moved = Json::object();
   for (std::size_t i = 0; i < joint_count; ++i) {
-    core_.network.drives[i].encoder_zero_counts = prepared_->offsets.zero_counts[i];
-    core_.network.drives[i].zero_known = prepared_->offsets.known[i] && !still_lost_[i];
-    config::set_friction(prepared_->offsets, i, core_.transmissions[i].friction);
+    if (prepared_->offsets.known[i]) forgotten_[i] = false;
     if (prepared_->offsets.known[i]) zeros[config::joint_name(i)] = prepared_->offsets.zero_counts[i];
     if (prepared_->taken.moved_rad[i] > 0) moved[config::joint_name(i)] = prepared_->taken.moved_rad[i];
   }
+  zero_lost_ = still_lost_;
   Json outcome{{"state", "done"}, {"zeros", zeros}, {"friction", friction_json(prepared_->offsets)}, {"file", file_}};
   if (!moved.empty()) outcome["moved_rad"] = moved;
   if (!why.empty()) outcome.update({{"state", "failed"}, {"why", why}, {"without_power", without_power_}});

@@ -33,11 +33,15 @@ struct Commissioned {
   std::array<config::JointFriction, joint_count> friction{};
   std::string how;                            // and when
   std::array<double, joint_count> place_rad;  // where each zero was found: the joint's stop, or 0 in a jig
+  // By how much it was found off its earlier zero, as the commissioning compared it; 0 where that is less than what is told.
+  std::array<double, joint_count> moved_rad{};
+  std::array<bool, joint_count> lost{};  // its drive had lost its position before: no earlier zero of it means anything
 };
 
 struct TakenOver {
   std::vector<std::string> left_out;  // a sentence for each joint that takes no power
-  // By how much each zero has moved against the file's earlier one, as the angle at its place; 0 where there was none, or it moved by less than what is told.
+  // By how much each zero has moved, as the angle at its place: against the file's earlier one, or as the commissioning compared it, whichever is more. 0 where
+  // there was none, or it moved by less than what is told.
   std::array<double, joint_count> moved_rad{};
 };
 // Takes it over into `offsets`. A joint whose friction cannot be is no longer known there, and stays out until a friction was measured that can be: a zero
@@ -64,10 +68,9 @@ class Commissioner {
   // One look at what has come back.
   void step();
 
-  // What the control loop says of the core at work: joints whose drive has lost its position. They need a zero until they are commissioned, by the file, too.
-  void lose_zeros(const std::array<bool, joint_count>& lost);
-  // The core at work doubts what its jaw holds.
-  void doubt_jaw(bool doubted) { jaw_doubted_ = doubted; }
+  // What the control loop says of the core at work: whether it doubts what its jaw holds, and the joints whose drive has lost its position. They need a zero
+  // until they are commissioned, by the file, too. A report of the core before is not heard.
+  void hear(const ControlReport& report);
   // Joints that take no power since their zero is not known: "slew, elbow"; empty when there is none.
   std::string unknown_joints() const;
   // How the last one ended, once the core has what it found; null before the first.
@@ -93,9 +96,11 @@ class Commissioner {
   };
   enum class Stage { idle, preparing, lending, running, storing, installing };
 
+  void lose_zeros(const std::array<bool, joint_count>& lost);
   void note_forgotten();
   void lend();
   void take_back(const CommissioningResult& result);
+  Commissioned findings_of(const Commissioning& ended) const;
   void store(const Commissioning& ended, const std::string& failed);
   static void give(Prepared& prepared, const std::string& problem, const TakenOver& taken, const config::HomingOffsets& offsets,
                    std::unique_ptr<Controller> core);
@@ -112,7 +117,8 @@ class Commissioner {
   Time try_again_;                              // when the file could not be written; 0: it could
   std::array<bool, joint_count> last_tried_{};  // a failure is told once for the same joints
   bool jaw_doubted_ = false;
-  bool without_power_ = true;  // after the last one
+  std::uint32_t cores_taken_ = 0;  // by the control loop
+  bool without_power_ = true;      // after the last one
   std::shared_ptr<Forgetting> forgetting_;
   std::string file_;
   std::array<double, joint_count> backlash_rad_{};

@@ -109,6 +109,7 @@ std::array<double, joint_count> Commissioning::places_rad() const {
 void Commissioning::go(State state, Time now) {
   state_ = state;
   since_ = moved_ = now;
+  too_hard_ticks_ = 0;
 }
 
 void Commissioning::stop(const char* why) {
@@ -139,6 +140,12 @@ std::array<bool, joint_count> Commissioning::zeros_lost() const {
     const canopen::Axis& one = network_.axis(static_cast<Joint>(i));
     lost[i] = one.zero_lost() && !(state_ == State::done && found_[i] && one.stats().zeros_lost == losses_when_found_[i]);
   }
+  return lost;
+}
+
+std::array<bool, joint_count> Commissioning::lost_before_found() const {
+  std::array<bool, joint_count> lost{};
+  for (std::size_t i = 0; i < joint_count; ++i) lost[i] = found_[i] && losses_when_found_[i] > 0;
   return lost;
 }
 
@@ -226,7 +233,6 @@ void Commissioning::step(Time now) {
       if (!axis().enabled()) return;
       target_ = last_counts_ = started_counts_ = axis().actual_counts();
       moved_ = now;
-      too_hard_ticks_ = 0;
       reopening_ = false;
       return go(State::seeking, now);
     case State::seeking: return seek(now);
@@ -281,34 +287,65 @@ void Commissioning::next_joint(Time now) {
 }
 
 void Commissioning::end_joint(Time now) {
-  const bool last = std::none_of(order.begin() + static_cast<std::ptrdiff_t>(turn_) + 1, order.end(),
-                                 [&](std::size_t joint) { return config_.joints[joint]; });
-  if (moved_rad_[joint_] > 0 && !last) {
-    std::array<char, 140> why{};
-    std::snprintf(why.data(), why.size(),
-                  "its stop is %.2f rad from where it was: look for what it met. Where its encoder was exchanged, commission it alone",
-                  moved_rad_[joint_]);
-    return fail_joint(why.data(), now);
-  }
+  if (ends_elsewhere(joint_, now)) return;
   ++turn_;
   next_joint(now);
 }
 
 void Commissioning::take_here(Time now) {
   for (std::size_t i = 0; i < joint_count; ++i) {
-    if (!config_.joints[i]) continue;
-    zero_counts_[i] = network_.axis(static_cast<Joint>(i)).actual_counts() - arm::counts_from_rad(static_cast<Joint>(i), 0);
-    found_[i] = true;
-    losses_when_found_[i] = network_.axis(static_cast<Joint>(i)).stats().zeros_lost;
+    if (config_.joints[i])
+      take_zero(i, network_.axis(static_cast<Joint>(i)).actual_counts() - arm::counts_from_rad(static_cast<Joint>(i), 0));
+  }
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    if (ends_elsewhere(i, now)) return;
   }
   turn_ = joint_count;
   next_joint(now);
+}
+
+void Commissioning::take_zero(std::size_t joint, std::int32_t zero_counts) {
+  zero_counts_[joint] = zero_counts;
+  found_[joint] = true;
+  losses_when_found_[joint] = network_.axis(static_cast<Joint>(joint)).stats().zeros_lost;
+  moved_rad_[joint] = off_earlier_rad(joint);
+}
+
+double Commissioning::off_earlier_rad(std::size_t joint) const {
+  if (network_.axis(static_cast<Joint>(joint)).zero_lost()) return 0;
+  const canopen::DriveSetup& drive = config_.network.drives[joint];
+  const auto off_rad = [&](std::int32_t earlier_counts) {
+    return zero_moved_rad(static_cast<Joint>(joint), places_rad()[joint], static_cast<double>(zero_counts_[joint]) - earlier_counts);
+  };
+  const double off_known = drive.zero_known ? off_rad(drive.encoder_zero_counts) : 0;
+  const double off_file = config_.zero_in_file[joint] ? off_rad(*config_.zero_in_file[joint]) : 0;
+  const double most_rad = std::max(off_known, off_file);
+  return most_rad > told_move_rad ? most_rad : 0;
+}
+
+bool Commissioning::ends_elsewhere(std::size_t joint, Time now) {
+  if (moved_rad_[joint] <= 0 || config_.moved) return false;
+  std::array<char, 160> why{};
+  std::snprintf(
+      why.data(), why.size(),
+      "its zero was found %.2f rad from where it was: %s. If its encoder or its stop was changed, commission it alone with --moved",
+      moved_rad_[joint], config_.here ? "see how it stands in the jig" : "look for what it met");
+  joint_ = joint;
+  fail_joint(why.data(), now);
+  return true;
 }
 
 bool Commissioning::presses_too_hard() {
   const bool now = std::abs(axis().torque_permille()) > too_hard * pressing_permille(config_, joint_);
   too_hard_ticks_ = now ? too_hard_ticks_ + 1 : 0;
   return too_hard_ticks_ > too_hard_ticks;
+}
+
+void Commissioning::fail_pressing(Time now) {
+  std::array<char, 120> why{};
+  std::snprintf(why.data(), why.size(), "it presses with %ld %% of its rated torque: limit it to %ld %% with its maker's tool",
+                std::lround(std::abs(axis().torque_permille()) / 10.0), std::lround(pressing_permille(config_, joint_) / 10.0));
+  fail_joint(why.data(), now);
 }
 
 // Against what it presses on.
@@ -327,12 +364,7 @@ void Commissioning::seek(Time now) {
   const canopen::DriveSetup& drive = config_.network.drives[joint_];
   const double way = direction(joint_), lead = drive.following_window_counts / 2.0;
   const std::int32_t actual = axis().actual_counts();
-  if (presses_too_hard()) {
-    std::array<char, 120> why{};
-    std::snprintf(why.data(), why.size(), "it presses with %ld %% of its rated torque: limit it to %ld %% with its maker's tool",
-                  std::lround(std::abs(axis().torque_permille()) / 10.0), std::lround(pressing_permille(config_, joint_) / 10.0));
-    return fail_joint(why.data(), now);
-  }
+  if (presses_too_hard()) return fail_pressing(now);
   target_ += way * config_.speed_fraction * drive.max_speed_counts_s * network_.config().sync_period.s();
   target_ = std::clamp(target_, actual - lead, actual + lead);
   (void)axis().set_target_counts(static_cast<std::int32_t>(target_));
@@ -376,14 +408,8 @@ void Commissioning::ease(Time now) {
   }
   stop_counts_ = actual + (actual - *easing_counts_) * load / (easing_load_ - load);
   const double touching_rad = stop_rad(joint_) + way * 0.5 * config_.backlash_rad[joint_];
-  zero_counts_[joint_] =
-      static_cast<std::int32_t>(std::lround(stop_counts_ - arm::exact_counts_from_rad(static_cast<Joint>(joint_), touching_rad)));
-  found_[joint_] = true;
-  losses_when_found_[joint_] = axis().stats().zeros_lost;
-  if (drive.zero_known && !axis().zero_lost()) {
-    const double moved_rad = zero_moved_rad(static_cast<Joint>(joint_), stop_rad(joint_), zero_counts_[joint_] - drive.encoder_zero_counts);
-    moved_rad_[joint_] = moved_rad > told_move_rad ? moved_rad : 0;
-  }
+  const double zero = stop_counts_ - arm::exact_counts_from_rad(static_cast<Joint>(joint_), touching_rad);
+  take_zero(joint_, static_cast<std::int32_t>(std::lround(zero)));
   target_ = actual;
   begin_rubbing(now);
 }
@@ -416,6 +442,7 @@ void Commissioning::begin_rubbing(Time now) {
 }
 
 void Commissioning::rub(Time now) {
+  if (presses_too_hard()) return fail_pressing(now);
   const canopen::DriveSetup& drive = config_.network.drives[joint_];
   const bool back = !pass_ || *pass_ % 2 == 1;  // to where the stretch begins
   const double end = back ? rub_from_ : rub_to_;
@@ -455,20 +482,27 @@ void Commissioning::back_off(Time now) {
   const double goal = goal_counts();
   const double step = config_.speed_fraction * drive.max_speed_counts_s * network_.config().sync_period.s();
   const std::int32_t actual = axis().actual_counts();
+  const bool closing = static_cast<Joint>(joint_) == Joint::jaw && !reopening_;
+  if (presses_too_hard()) return closing ? reopen(now) : fail_pressing(now);
   target_ = std::clamp(target_ + std::clamp(goal - target_, -step, step), actual - lead, actual + lead);
   (void)axis().set_target_counts(static_cast<std::int32_t>(std::lround(target_)));
-  const bool closing = static_cast<Joint>(joint_) == Joint::jaw && !reopening_;
   const bool arrived = std::abs(actual - goal) <= std::max(3.0, arrived_windows * window);  // drives hold within two counts
   if (!arrived && stands(now, target_ == goal || std::abs(target_ - actual) >= nearly_all * lead)) {
-    if (!closing) return fail_joint("something is in its way back", now);
-    reopening_ = true;
-    moved_ = now;
-    return;
+    return closing ? reopen(now) : fail_joint("something is in its way back", now);
   }
   if (!arrived) return;
   if (reopening_) return fail_joint("something is between its fingers: take it out, or move the arm away from it", now);
   axis().request(canopen::AxisRequest::disable);
   go(State::releasing, now);
+}
+
+// From where it stands: a target that is led back over its lead would go on pressing meanwhile.
+void Commissioning::reopen(Time now) {
+  reopening_ = true;
+  moved_ = now;
+  too_hard_ticks_ = 0;
+  target_ = axis().actual_counts();
+  (void)axis().set_target_counts(axis().actual_counts());
 }
 
 const char* name(Commissioning::State state) {

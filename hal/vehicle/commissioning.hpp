@@ -3,8 +3,8 @@
 // One joint after the other is powered, moved slowly against a stop with a third of its rated torque (a screw: two thirds), eased off until it only touches, read there, moved
 // both ways at two speeds over a stretch that it has just passed, from which friction_fit.hpp has its friction, moved back to where it was, and released: the stop's angle is known from the arm's description.
 // The jaw comes first and is closed: what it held is let go of, and what is still between its fingers would be dragged along, or meets them when the arm moves.
-// Without it the arm's joints are moved only where the jaw is known to stand closed. No joint moves after one whose known zero was found elsewhere: its stop
-// may have been something else. A joint that presses has wound up its gear: read under that torque the slew would be 0.4 deg off.
+// Without it the arm's joints are moved only where the jaw is known to stand closed. A joint whose earlier zero was found elsewhere ends it in failure: its
+// stop may have been something else. A joint that presses has wound up its gear: read under that torque the slew would be 0.4 deg off.
 // The drives' own references are not touched. A plain object like the core, run by the control thread in the core's place: frames and the time in, frames
 // out, no heap. It stands on the core's own network and axes.
 //
@@ -34,8 +34,11 @@ class Commissioning {
     std::array<double, joint_count>
         backlash_rad{};  // of each gear, as the arm's description has it: the motor touches half of it beyond the stop
     std::array<arm::TransmissionSetup, joint_count> transmissions;  // their friction, as far as it is known before
-    bool here = false;                                              // the arm stands at its zero, in a jig: nothing is moved
-    bool jaw_known = false;                                         // its zero in `network` is true, and its encoder is believed
+    // Known there or doubtful: compared with, beside the zero that is known in `network`.
+    std::array<std::optional<std::int32_t>, joint_count> zero_in_file;
+    bool moved = false;           // its encoder or its stop was changed: its zero may be elsewhere
+    bool here = false;            // the arm stands at its zero, in a jig: nothing is moved
+    bool jaw_known = false;       // its zero in `network` is true, and its encoder is believed
     double speed_fraction = 0.3;  // of each drive's maximum: 0.13 rad/s of the slew, above its stiction of 0.06
     // Of the rated torque: free motion under water takes less than a fifth. At a stroke's end a screw has a third of its lever left: with less than two
     // thirds of the torque the arm's weight stops the shoulder short.
@@ -79,10 +82,12 @@ class Commissioning {
   std::size_t joint() const { return joint_; }  // under work
   const std::array<std::int32_t, joint_count>& zero_counts() const { return zero_counts_; }
   const std::array<bool, joint_count>& found() const { return found_; }
-  // By how much a zero that was known in `network` has moved, where it is more than told_move_rad; 0 otherwise.
+  // By how much a zero is off the one known in `network`, or the file's, whichever is farther, where it is more than told_move_rad; 0 otherwise.
   const std::array<double, joint_count>& moved_rad() const { return moved_rad_; }
   // Joints whose drive said that it has lost its position, less those that were found after it.
   std::array<bool, joint_count> zeros_lost() const;
+  // Joints whose drive said that it has lost its position before they were found: no earlier zero of theirs means anything.
+  std::array<bool, joint_count> lost_before_found() const;
   // Where each zero is found: the joint's stop, in a jig 0.
   std::array<double, joint_count> places_rad() const;
   // Not found for a joint that had too little way to its stop, or whose torques make no sense.
@@ -98,12 +103,16 @@ class Commissioning {
   void watch(Time now);
   bool hear_set_points();
   bool presses_too_hard();
+  void fail_pressing(Time now);
   void step(Time now);
   // Before the first: why none may be moved, if so.
   const char* why_not() const;
   void begin_work(Time now);
   void next_joint(Time now);
   void take_here(Time now);
+  void take_zero(std::size_t joint, std::int32_t zero_counts);
+  double off_earlier_rad(std::size_t joint) const;
+  bool ends_elsewhere(std::size_t joint, Time now);
   void seek(Time now);
   void ease(Time now);
   double coulomb_permille();
@@ -112,6 +121,7 @@ class Commissioning {
   void end_rubbing();
   void end_joint(Time now);
   void back_off(Time now);
+  void reopen(Time now);  // the jaw, which met something on its way to being closed
   bool stands(Time now, bool pressing);
   double off_stop_counts() const;
   double started_off_stop() const;  // where it was, off the stop
@@ -125,7 +135,7 @@ class Commissioning {
   const char* stop_reason_ = nullptr;
   bool emergency_stopped_ = false;
   std::array<bool, joint_count> powered_{};  // asked to take power, and not heard to be without it since
-  std::array<char, 160> failure_{};
+  std::array<char, 200> failure_{};
   std::size_t turn_ = 0;  // of the joints, in their order
   std::size_t joint_ = 0;
   std::array<std::int32_t, joint_count> zero_counts_{};

@@ -120,6 +120,7 @@ class ControlLoop {
         hand_over(*controller_, *next);
         (void)rings_.old_cores.push(controller_.release());
         controller_.reset(next);
+        ++report_.cores_taken;
       }
     }
     for (Commissioning* next = nullptr; rings_.commissionings.pop(next);) {

@@ -128,8 +128,7 @@ void Daemon::run_operator() {
   const auto reply = [this](OperatorServer::Ticket ticket, const std::string& answer) { server_.reply(ticket, answer); };
   while (!operator_stops_) {
     server_.serve(desk_.settled() ? serve_for : serve_while_settling, -1);
-    commissioner_.lose_zeros(board_.newest().control.zeros_lost);
-    commissioner_.doubt_jaw(board_.newest().control.jaw_doubted);
+    commissioner_.hear(board_.newest().control);
     commissioner_.step();
     desk_.settle(reply);
   }

@@ -210,6 +210,7 @@ struct CommissionOptions {
   std::vector<std::string> joints;
   bool here = false;
   bool clear = false;
+  bool moved = false;
 };
 
 // What a commissioning is at, each time that this changes; its end.
@@ -234,7 +235,7 @@ int follow_commissioning(const std::string& socket, bool json) {
 
 // The daemon does it. An interrupt here ends only the telling: `lanternfishd abort` calls the commissioning off, `estop` stops it.
 int commission(const Options& options, const CommissionOptions& wanted) {
-  Json request{{"do", "commission"}, {"here", wanted.here}, {"clear", wanted.clear}};
+  Json request{{"do", "commission"}, {"here", wanted.here}, {"clear", wanted.clear}, {"moved", wanted.moved}};
   if (!wanted.joints.empty()) request["joints"] = wanted.joints;
   const std::string socket = socket_of(options);
   const Json reply = ask_daemon(socket, request);
@@ -268,6 +269,7 @@ void add_commission(CLI::App& app, const Options& options, Action& action) {
   command->add_option("--joint", wanted->joints, "only this one")->allow_extra_args(false);
   command->add_flag("--here", wanted->here, "the arm stands at its zero, in a jig: nothing moves");
   command->add_flag("--clear", wanted->clear, "nobody and nothing is within the arm's reach");
+  command->add_flag("--moved", wanted->moved, "the encoder or the stop of this one joint was changed: its zero may be elsewhere");
   command->callback([&options, &action, wanted] { action = [&options, wanted] { return commission(options, *wanted); }; });
 }
 

@@ -1,5 +1,6 @@
 #include "hal/vehicle/parse_order.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <initializer_list>
@@ -166,12 +167,7 @@ bool flag(const Value& request, const char* name) {
   return value.is_boolean() && value.get<bool>();
 }
 
-void read_commission(const Value& request, CommissionOrder& order) {
-  allow_only(request, "commission", {"do", "joints", "here", "clear"});
-  order.here = flag(request, "here");
-  if (!order.here && !flag(request, "clear"))
-    refuse("commissioning moves the arm against its stops: clear its reach, then say so with \"clear\": true (--clear)");
-  const Value& joints = member(request, "joints");
+void read_joints(const Value& joints, CommissionOrder& order) {
   if (joints.is_null()) return;
   if (!joints.is_array() || joints.empty()) refuse("\"joints\" is a list of joints, one or more");
   order.joints = {};
@@ -179,6 +175,17 @@ void read_commission(const Value& request, CommissionOrder& order) {
     if (!joint.is_string()) refuse("\"joints\" is a list of joints, one or more");
     order.joints[static_cast<std::size_t>(joint_of(joint))] = true;
   }
+}
+
+void read_commission(const Value& request, CommissionOrder& order) {
+  allow_only(request, "commission", {"do", "joints", "here", "clear", "moved"});
+  order.here = flag(request, "here");
+  if (!order.here && !flag(request, "clear"))
+    refuse("commissioning moves the arm against its stops: clear its reach, then say so with \"clear\": true (--clear)");
+  read_joints(member(request, "joints"), order);
+  order.moved = flag(request, "moved");
+  if (order.moved && std::count(order.joints.begin(), order.joints.end(), true) != 1)
+    refuse("\"moved\" (--moved) says that a joint's encoder or stop was changed: commission this joint alone, with \"joints\" (--joint)");
 }
 
 OperatorRequest read_request(std::string_view line) {

@@ -17,7 +17,8 @@ namespace lf::hal {
 // {"do": "commission", "joints": ["slew"], "clear": true}
 struct CommissionOrder {
   std::array<bool, joint_count> joints{true, true, true, true, true};
-  bool here = false;  // the arm stands at its zero, in a jig: nothing moves
+  bool here = false;   // the arm stands at its zero, in a jig: nothing moves
+  bool moved = false;  // the encoder or the stop of the one joint was changed: its zero may be elsewhere
 };
 
 struct OperatorRequest {

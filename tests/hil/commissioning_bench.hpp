@@ -67,8 +67,8 @@ class CommissioningBench {
       Time now;
       (void)platform_->wait_for_tick(now);
       for (hal::ReceivedFrame received; platform_->receive_can(0, received) == hal::port_ok;) {
-        commissioning.on_frame(received.frame, received.t);
         if (ear_) ear_(received.frame);
+        commissioning.on_frame(received.frame, received.t);
       }
       if (called_off()) commissioning.stop("it was called off");
       canopen::Outbox outbox;
@@ -76,7 +76,8 @@ class CommissioningBench {
       (void)platform_->send_can(0, {outbox.data(), outbox.size()});
     }
   }
-  void set_ear(const std::function<void(const CanFrame&)>& ear) { ear_ = ear; }
+  // Gets each frame before the master does, and may change it.
+  void set_ear(const std::function<void(CanFrame&)>& ear) { ear_ = ear; }
   // Of the true drives, not of what the master was told.
   bool any_powered() const {
     const JointDrives drives = platform_->devices().drives();
@@ -109,7 +110,7 @@ class CommissioningBench {
   std::array<devices::DriveConfig, joint_count> drives_;
   scenario::Nominal nominal_;
   hal::SimObserver nobody_;
-  std::function<void(const CanFrame&)> ear_;
+  std::function<void(CanFrame&)> ear_;
   std::unique_ptr<hal::SimPlatform> platform_;
 };
 

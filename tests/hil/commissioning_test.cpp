@@ -189,24 +189,42 @@ TEST(CommissioningWithSomethingInTheJaw, MovesNoArmJointWithoutTheJaw) {
   }
 }
 
-// What was taken for the jaw's stop may have been something else: with the zero that this gives nothing else moves. Alone it is taken, and told.
-TEST(CommissioningOfAJointThatIsFoundElsewhere, MovesNoOther) {
-  for (const bool alone : {false, true}) {
-    Bench bench(somewhere);
-    Commissioning::Config config = bench.config();
-    config.network.drives[4].encoder_zero_counts -= 700;
-    if (alone) config.joints = {false, false, false, false, true};
-    Commissioning commissioning(config);
-    bench.run(commissioning);
-    EXPECT_EQ(commissioning.state(), alone ? Commissioning::State::done : Commissioning::State::failed) << commissioning.failure();
-    EXPECT_NEAR(commissioning.moved_rad()[4], 700 * arm::rad_per_count(Joint::jaw, 0), 0.005);
-    if (!alone) {
-      EXPECT_NE(commissioning.failure().find("jaw: its stop is 0.38 rad from where it was"), std::string_view::npos)
-          << commissioning.failure();
-    }
-    for (std::size_t i = 0; i < arm_joint_count; ++i) EXPECT_NEAR(bench.angles()[i], parked[i], 0.005);
-    EXPECT_FALSE(bench.any_powered());
+// What was taken for a joint's stop may have been something else: with the zero that this gives nothing moves, whether other joints follow or not. The zero that
+// it is compared with is the core's, or one that the homing file has, a doubtful one for instance.
+struct FoundElsewhere {
+  const char* name;
+  bool alone, in_core, ordered;
+};
+class CommissioningOfAJointThatIsFoundElsewhere : public testing::TestWithParam<FoundElsewhere> {};
+INSTANTIATE_TEST_SUITE_P(Jaw, CommissioningOfAJointThatIsFoundElsewhere,
+                         testing::Values(FoundElsewhere{"BeforeOthers", false, true, false}, FoundElsewhere{"Alone", true, true, false},
+                                         FoundElsewhere{"AloneThanTheFileHasIt", true, false, false},
+                                         FoundElsewhere{"AsTheOrderSays", true, true, true},
+                                         FoundElsewhere{"ThanTheFileHasItAsTheOrderSays", true, false, true}),
+                         [](const testing::TestParamInfo<FoundElsewhere>& test) { return test.param.name; });
+
+TEST_P(CommissioningOfAJointThatIsFoundElsewhere, FailsAndMovesNoOther) {
+  const FoundElsewhere& elsewhere = GetParam();
+  Bench bench(somewhere);
+  Commissioning::Config config = bench.config();
+  canopen::DriveSetup& jaw = config.network.drives[4];
+  jaw.encoder_zero_counts -= 700;
+  jaw.zero_known = elsewhere.in_core;
+  if (!elsewhere.in_core) config.zero_in_file[4] = jaw.encoder_zero_counts;
+  if (elsewhere.alone) config.joints = {false, false, false, false, true};
+  config.moved = elsewhere.ordered;
+  Commissioning commissioning(config);
+  bench.run(commissioning);
+  EXPECT_EQ(commissioning.state(), elsewhere.ordered ? Commissioning::State::done : Commissioning::State::failed)
+      << commissioning.failure();
+  EXPECT_NEAR(commissioning.moved_rad()[4], 700 * arm::rad_per_count(Joint::jaw, 0), 0.005);
+  if (!elsewhere.ordered) {
+    const std::string failure(commissioning.failure());
+    EXPECT_NE(failure.find("jaw: its zero was found 0.38 rad from where it was"), std::string::npos) << failure;
+    EXPECT_NE(failure.find("alone with --moved"), std::string::npos) << failure;
   }
+  for (std::size_t i = 0; i < arm_joint_count; ++i) EXPECT_NEAR(bench.angles()[i], parked[i], 0.005);
+  EXPECT_FALSE(bench.any_powered());
 }
 
 // The elbow alone, with a drive of some make. Its zero is near enough for one that counts in fine units.
@@ -270,11 +288,52 @@ TEST_P(CommissioningOfADriveWithoutALimit, IsStoppedWhenItPressesTooHard) {
   EXPECT_FALSE(elbow.commissioning().found()[2]);
 }
 
+// A joint that meets something behind its stop. Its drive tells its whole rated torque, as one presses whose limit is its maker's affair.
+struct PressesLater {
+  const char* name;
+  std::size_t joint;
+  Commissioning::State in;
+  const char* why;
+};
+class CommissioningThatPressesTooHard : public testing::TestWithParam<PressesLater> {};
+INSTANTIATE_TEST_SUITE_P(
+    Later, CommissioningThatPressesTooHard,
+    testing::Values(PressesLater{"ClosingTheJaw", 4, Commissioning::State::backing_off, "jaw: something is between its fingers"},
+                    PressesLater{"OnItsWayBack", 0, Commissioning::State::backing_off, "slew: it presses with 100 % of its rated torque"},
+                    PressesLater{"WhileItsFrictionIsFound", 0, Commissioning::State::rubbing,
+                                 "slew: it presses with 100 % of its rated torque"}),
+    [](const testing::TestParamInfo<PressesLater>& test) { return test.param.name; });
+
+TEST_P(CommissioningThatPressesTooHard, IsStoppedAndTheJawOpens) {
+  const PressesLater& later = GetParam();
+  constexpr int told_permille = 1000, pressing_ticks = 60;
+  Bench bench(somewhere);
+  Commissioning::Config config = bench.config();
+  config.joints = {};
+  config.joints[later.joint] = true;
+  Commissioning commissioning(config);
+  int ticks = 0;
+  double met_rad = 0;
+  bench.set_ear([&](CanFrame& frame) {
+    if (frame.id != 0x180u + can_map::drive_nodes[later.joint] || commissioning.state() != later.in || ticks >= pressing_ticks) return;
+    if (ticks++ == 0) met_rad = bench.angles()[later.joint];
+    if (later.joint == 4 && ticks > 30) return;  // it opens: nothing presses any more
+    frame.data[6] = told_permille & 0xFF;
+    frame.data[7] = told_permille >> 8;
+  });
+  bench.run(commissioning);
+  EXPECT_EQ(commissioning.state(), Commissioning::State::failed);
+  EXPECT_NE(commissioning.failure().find(later.why), std::string_view::npos) << commissioning.failure();
+  EXPECT_LT(std::abs(bench.angles()[later.joint] - met_rad), 0.2) << "within some 100 ms";
+  EXPECT_FALSE(bench.any_powered());
+}
+
 // Wherever the arm stands is its zero then.
 TEST(CommissioningInAJig, MovesNothing) {
   Bench bench(somewhere);
   Commissioning::Config setup = bench.config();
   setup.here = true;
+  setup.network.drives[4].zero_known = false;  // the jaw stands elsewhere than at 0
   Commissioning commissioning(setup);
   bench.run(commissioning);
   ASSERT_EQ(commissioning.state(), Commissioning::State::done) << commissioning.failure();
@@ -286,6 +345,21 @@ TEST(CommissioningInAJig, MovesNothing) {
     EXPECT_LT(std::abs(counts) * arm::rad_per_count(joint, bench.angles()[i]), bench.tolerance_rad(i) + bench.backlash_rad()[i])
         << config::joint_name(i);
   }
+}
+
+// The arm does not stand in the jig as it should, or not in it at all.
+TEST(CommissioningInAJig, FailsWhereAZeroIsFoundElsewhere) {
+  Bench bench(somewhere);
+  Commissioning::Config setup = bench.config();
+  setup.here = true;
+  setup.network.drives[4].zero_known = false;
+  setup.network.drives[3].zero_known = true;
+  setup.network.drives[3].encoder_zero_counts = somewhere[3] + arm::counts_from_rad(Joint::roll, 0.1);
+  Commissioning commissioning(setup);
+  bench.run(commissioning);
+  EXPECT_EQ(commissioning.state(), Commissioning::State::failed);
+  EXPECT_NE(commissioning.failure().find("roll: its zero was found 0.10 rad from where it was"), std::string_view::npos)
+      << commissioning.failure();
 }
 
 // A frozen reading looks like a stop; but what stands at a stop presses.

@@ -102,7 +102,7 @@ _lanternfishd() {
         --config) compopt -o filenames; COMPREPLY=($(compgen -f -- "$word")); return ;;
         --socket) compopt -o filenames; COMPREPLY=($(compgen -f -- "$word")); return ;;
       esac
-      options='--help --joint --here --clear --config --socket --check --print-config --print-schema --run --json --version'
+      options='--help --joint --here --clear --moved --config --socket --check --print-config --print-schema --run --json --version'
       ;;
     'doctor')
       case $before in

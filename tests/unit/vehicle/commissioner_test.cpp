@@ -148,6 +148,45 @@ TEST(Commissioned, AZeroThatHasMovedIsTold) {
   EXPECT_EQ(text.find("moved"), text.rfind("moved")) << text;
 }
 
+// The file was taken back to an older one, or the joint's line was deleted, while the core knows its zero. And a doubtful zero is compared with like any other.
+TEST(Commissioned, AZeroHasMovedWhereTheCommissioningOrTheFileSaysSo) {
+  const std::array<Motor, joint_count> motors;
+  config::HomingOffsets offsets;
+  offsets.known = {false, true, true, false, false};
+  offsets.zero_doubtful[3] = true;
+  Commissioned commissioned;
+  commissioned.found.fill(true);
+  commissioned.place_rad = {};
+  commissioned.zero_counts[3] = commissioned.zero_counts[4] = 900;
+  commissioned.moved_rad = {0.2, 0.3, 0, 0, 0};
+  const TakenOver taken = take_over(commissioned, motors, offsets);
+  EXPECT_EQ(taken.moved_rad[0], 0.2) << "which the file does not know";
+  EXPECT_EQ(taken.moved_rad[1], 0.3) << "which the file has where it was found";
+  EXPECT_EQ(taken.moved_rad[2], 0);
+  EXPECT_GT(taken.moved_rad[3], 0.5);
+  EXPECT_EQ(taken.moved_rad[4], 0) << "no earlier zero";
+  EXPECT_EQ(offsets.known, (std::array<bool, joint_count>{true, true, true, true, true})) << "found as ordered: no longer doubtful";
+  EXPECT_EQ(offsets.zero_doubtful, (std::array<bool, joint_count>{}));
+}
+
+TEST(Commissioned, AJointLeftOutForItsFrictionKeepsItsEarlierZeroAsADoubtfulOne) {
+  std::array<Motor, joint_count> motors;
+  for (Motor& motor : motors) motor.coulomb_nm = 1e-3, motor.viscous_nm_s = 1e-6;
+  config::HomingOffsets offsets;
+  offsets.known[0] = true;
+  offsets.zero_counts = {11, 0, 0, 0, 0};
+  Commissioned commissioned;
+  commissioned.found = {true, true, false, false, false};
+  commissioned.zero_counts = {12, 13, 0, 0, 0};
+  commissioned.place_rad = {};
+  commissioned.friction_found = {true, true, false, false, false};
+  commissioned.friction = {{{100, 1e-3, 0.1}, {100, 1e-3, 0.1}, {}, {}, {}}};
+  EXPECT_EQ(take_over(commissioned, motors, offsets).left_out.size(), 2u);
+  EXPECT_TRUE(offsets.zero_doubtful[0]);
+  EXPECT_EQ(offsets.zero_counts[0], 11);
+  EXPECT_FALSE(offsets.has_earlier_zero(1)) << "it had none";
+}
+
 TEST(HomingFile, JointsWhoseFrictionCannotBeTakeNoPower) {
   std::array<Motor, joint_count> motors;
   for (Motor& motor : motors) motor.coulomb_nm = 1e-3, motor.viscous_nm_s = 1e-6;

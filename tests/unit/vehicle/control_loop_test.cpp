@@ -306,6 +306,24 @@ TEST_F(Loop, ANewCoreKnowsWhichZerosWereLostMeanwhile) {
     EXPECT_EQ(loop->controller().network().axis(static_cast<Joint>(i)).zero_lost(), i == jaw) << i;
 }
 
+TEST_F(Loop, AReportSaysHowOftenTheCoreWasExchangedBeforeIt) {
+  const auto told = [&] {
+    std::uint32_t newest = 0;
+    for (ControlReport report; rings->reports.pop(report);) newest = report.cores_taken;
+    return newest;
+  };
+  turn();
+  EXPECT_EQ(told(), 0u);
+  for (const std::uint32_t taken : {1u, 2u}) {
+    rings->cores.push(new Controller(config));
+    for (std::uint64_t i = 0; i < ticks_a_report; ++i) turn();
+    Controller* old = nullptr;
+    ASSERT_TRUE(rings->old_cores.pop(old));
+    delete old;
+    EXPECT_EQ(told(), taken);
+  }
+}
+
 // A commissioning has the bus: the core does not hear what is said meanwhile.
 TEST_F(Loop, TheCoreIsToldWhichZerosWereLostWhileAJointWasCommissioned) {
   constexpr std::size_t elbow = 2;

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -57,6 +58,14 @@ TEST(ParseOrder, TakesACommissioning) {
   EXPECT_EQ(taken(R"({"do":"commission","joints":["elbow"],"clear":true})").commission.joints,
             (std::array<bool, joint_count>{false, false, true, false, false}));
   EXPECT_TRUE(taken(R"({"do":"commission","here":true})").commission.here);
+  const OperatorRequest moved = taken(R"({"do":"commission","joints":["roll"],"clear":true,"moved":true})");
+  EXPECT_TRUE(moved.commission.moved && moved.commission.joints[3]);
+  EXPECT_FALSE(taken(R"({"do":"commission","clear":true,"moved":false})").commission.moved);
+  EXPECT_TRUE(taken(R"({"do":"commission","joints":["roll"],"here":true,"moved":true})").commission.moved);
+  for (const char* joints : {"", R"("joints":["slew","jaw"],)"})
+    EXPECT_THAT(refusal(std::string(R"({"do":"commission",)") + joints + R"("clear":true,"moved":true})"),
+                HasSubstr("commission this joint alone"));
+  EXPECT_THAT(refusal(R"({"do":"commission","joints":["roll"],"clear":true,"moved":"yes"})"), HasSubstr("true or false"));
   EXPECT_THAT(refusal(R"({"do":"commission"})"), HasSubstr("clear its reach"));
   EXPECT_THAT(refusal(R"({"do":"commission","clear":1})"), HasSubstr("true or false"));
   EXPECT_THAT(refusal(R"({"do":"commission","clear":true,"joints":["knee"]})"), HasSubstr("no joint 'knee'"));
@@ -79,7 +88,8 @@ TEST(ParseOrder, SaysWhatIsWrong) {
   EXPECT_THAT(refusal(R"({"do":"jog","joint":"slew","by_deg":1e999})"), HasSubstr("a JSON object"));
   EXPECT_THAT(refusal(R"({"do":"start","in":3})"), HasSubstr("start takes no 'in'"));
   EXPECT_EQ(refusal(R"({"do":"start","in":3})"), "start takes no 'in': it takes nothing but \"do\"");
-  EXPECT_EQ(refusal(R"({"do":"commission","joint":"elbw"})"), "commission takes no 'joint': it takes \"joints\", \"here\", \"clear\"");
+  EXPECT_EQ(refusal(R"({"do":"commission","joint":"elbw"})"),
+            "commission takes no 'joint': it takes \"joints\", \"here\", \"clear\", \"moved\"");
   EXPECT_EQ(refusal(R"({"do":"strt"})"), "no request 'strt'; did you mean 'start'?");
   EXPECT_EQ(refusal(R"({"do":"format-disk"})"), "no request 'format-disk'");
   EXPECT_THAT(refusal(R"({"do":7})"), HasSubstr("a JSON object"));
@@ -134,13 +144,14 @@ class Mutator {
   }
 
   std::mt19937 random_;
-  std::array<std::string, 8> lines_{R"({"do":"status"})",
+  std::array<std::string, 9> lines_{R"({"do":"status"})",
                                     R"({"do":"estop"})",
                                     R"({"do":"start"})",
                                     R"({"do":"jog","joint":"elbow","by_deg":-5})",
                                     R"({"do":"jog","joint":"jaw","by_deg":1.5e1})",
                                     R"({"do":"task","tasks":[{"turn_valve":{"to_deg":45}}]})",
                                     R"({"do":"task","tasks":[{"press_buttons":{"order":["left","centre"]}},{"turn_valve":{"to_deg":0}}]})",
+                                    R"({"do":"commission","joints":["roll"],"clear":true,"moved":true})",
                                     R"({"do":"restart-bus"})"};
   std::array<std::string, 14> values_{"null",
                                       "true",
@@ -180,6 +191,8 @@ TEST(ParseOrder, NoLineDoesMoreThanItSays) {
     ASSERT_NE(request.right, nullptr) << line;
     ASSERT_EQ(nlohmann::json::parse(line)["do"], request.right->request) << line;
     ASSERT_LE(std::abs(request.order.by_rad), mission::largest_jog_rad) << line;
+    const std::array<bool, joint_count>& joints = request.commission.joints;
+    ASSERT_TRUE(!request.commission.moved || std::count(joints.begin(), joints.end(), true) == 1) << line;
     for (const mission::Task& task : request.order.tasks) ASSERT_LE(std::abs(task.to_rad), 3.1415926536) << line;
   }
   EXPECT_GT(taken, 20'000);  // both sides of the border are walked

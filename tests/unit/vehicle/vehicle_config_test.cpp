@@ -356,6 +356,44 @@ TEST(HomingFile, ComesBackAsItWentAndRefusesWhatIsNotValid) {
   EXPECT_THROW(config::write_homing_file(folder / "no/such/folder.yaml", offsets), InputError);
 }
 
+// The counts stay, so that a later commissioning is compared with them.
+TEST(HomingFile, KeepsADoubtfulZeroWithItsCounts) {
+  const TemporaryFolder folder;
+  config::HomingOffsets offsets;
+  offsets.zero_counts = {1, 2, -3, 4, 5};
+  offsets.known = {true, true, true, true, false};
+  offsets.friction_known[1] = true;
+  offsets.friction[1] = {2.5, 0.0125, 0.25};
+  offsets.found[1] = "at its stop";
+  offsets.doubt_zero(1);
+  offsets.doubt_friction(2);
+  offsets.forget_zero(3);
+  offsets.doubt_zero(4);  // which has none
+  config::write_homing_file(folder / "h.yaml", offsets);
+  const config::HomingOffsets read = config::read_homing_file(folder / "h.yaml");
+  EXPECT_EQ(read.zero_counts, (std::array<std::int32_t, joint_count>{1, 2, -3, 0, 0}));
+  EXPECT_EQ(read.known, (std::array<bool, joint_count>{true, false, false, false, false}));
+  EXPECT_EQ(read.zero_doubtful, (std::array<bool, joint_count>{false, true, true, false, false}));
+  EXPECT_EQ(read.friction_doubtful, (std::array<bool, joint_count>{false, false, true, false, false}));
+  EXPECT_EQ(read.friction_known, offsets.friction_known);
+  EXPECT_EQ(read.found, offsets.found);
+  EXPECT_TRUE(read.has_earlier_zero(1) && read.has_earlier_zero(2) && !read.has_earlier_zero(3));
+  EXPECT_EQ(config::read_homing_file(folder.write("o.yaml", "slew: {friction_doubtful: true, zero_counts: 7}\n")).has_earlier_zero(0),
+            false)
+      << "without the mark, as before";
+  for (const char* text : {"slew: {zero_doubtful: true}\n", "slew: {zero_doubtful: true, friction_doubtful: true}\n",
+                           "slew: {zero_doubtful: 3, zero_counts: 1}\n"})
+    EXPECT_THROW((void)config::read_homing_file(folder.write("a.yaml", text)), InputError) << text;
+}
+
+TEST(VehicleConfig, AJointWhoseZeroIsDoubtfulTakesNoPowerAndIsNamed) {
+  const TemporaryFolder folder;
+  folder.write("h.yaml", "elbow: {zero_counts: 7, zero_doubtful: true}\nroll: {zero_counts: 7}\n");
+  const VehicleConfig config = load_vehicle_config(folder.write("v.yaml", "homing: {file: h.yaml}\n"));
+  for (std::size_t i = 0; i < joint_count; ++i) EXPECT_EQ(config.core.controller.network.drives[i].may_have_power(), i == 3) << i;
+  EXPECT_THAT(config.core.notes, testing::Contains(HasSubstr("the elbow's zero is doubtful")));
+}
+
 // A file of the machine's limits with the elbow's top speed changed, and its right checksum, which the reader names.
 std::string limits_with_elbow_speed(const TemporaryFolder& folder, const std::string& rad_s) {
   std::ifstream shipped(LANTERNFISH_SOURCE_DIR "/shared/safety/limits.yaml");
