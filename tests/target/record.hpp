@@ -166,8 +166,8 @@ void pass(S& s, PanelLayout& v) {
 }
 template <class S>
 void pass(S& s, arm::PanelDoubt& v) {
-  auto& [shift_m, turn_rad] = v;
-  pass_all(s, shift_m, turn_rad);
+  auto& [shift_m, turn_rad, spin_rad] = v;
+  pass_all(s, shift_m, turn_rad, spin_rad);
 }
 template <class S>
 void pass(S& s, arm::VehicleShape::Box& v) {
