@@ -159,7 +159,7 @@ TEST_F(Doubts, ReachTellsAPlaceThatSomeDockingErrorsLeaveOutOfReach) {
 TEST_F(Doubts, PeaksOfOnePictureSayNothingOfAnother) {
   const Said said = run("peaks " + stripe("one.png", 2, 0, 1));
   EXPECT_EQ(said.status, 1);
-  EXPECT_THAT(said.err, HasSubstr("is the laser in this picture and in this channel?"));
+  EXPECT_THAT(said.err, HasSubstr("is the laser in this picture and in this channel, and does its line run across them (--axis)?"));
   EXPECT_THAT(said.err, ::testing::Not(HasSubstr("--off")));
 }
 
@@ -218,8 +218,10 @@ TEST_F(Doubts, NoMarkerIsAFailureWithItsReason) {
   const Said said = run("markers " + stripe("bare.png", 2, 120, 1));
   EXPECT_EQ(said.status, 1);
   EXPECT_THAT(said.out, HasSubstr("0 markers in 1 frame"));
-  for (const char* word : {"no marker of family 36h11", "--family", "--margin", "--decimate 1 (now "})
+  for (const char* word : {"no marker of family 36h11", "--family", "--margin", "--decimate 1.5 or 2 (now 1)"})
     EXPECT_THAT(said.err, HasSubstr(word));
+  EXPECT_THAT(run("markers --decimate 2 " + stripe("bare.png", 2, 120, 1)).err, HasSubstr("small markers with --decimate 1 (now 2)"));
+  EXPECT_EQ(run("markers --decimate 0 " + stripe("bare.png", 2, 120, 1)).status, 2);
 }
 
 }  // namespace

@@ -72,9 +72,9 @@ Machine that_presses() {
 TEST(PanelCheck, ALowCapIsRefusedByTheNamesOfHeightStrokeAndOvertravel) {
   Machine machine = that_presses();
   EXPECT_THAT(low_button_problems(machine), IsEmpty());
-  // The stroke of 5 mm, 6 mm of overtravel, a corner 28 mm from the middle of fingers that come at up to 13.5 + 6.7 degrees, and 3.6 mm of doubt. `lanternfish
+  // The stroke of 5 mm, 6 mm of overtravel, a corner 28 mm from the middle of fingers that come at up to 13.5 + 7.5 degrees, and 3.6 mm of doubt. `lanternfish
   // reach` has 13.5.
-  EXPECT_NEAR(lowest_button_m(machine.panel, machine.mission), 0.005 + 0.006 + 0.028 * std::sin(rad_from_deg(13.5 + 6.7)) + 0.0036, 0.0001);
+  EXPECT_NEAR(lowest_button_m(machine.panel, machine.mission), 0.005 + 0.006 + 0.028 * std::sin(rad_from_deg(13.5 + 7.5)) + 0.0036, 0.0001);
   machine.panel.button_height_m = 0.0240;
   for (const char* part : {"'panel.button_height_m' is 0.024", "'panel.button_stroke_m'", "'mission.press_overtravel_m'", "0.02"})
     EXPECT_THAT(low_button_problems(machine), ElementsAre(HasSubstr(part)));
@@ -90,7 +90,7 @@ TEST(PanelCheck, ABoxThatStandsFarOffNeedsHigherCaps) {
   Machine near = that_presses(), far = near;
   far.panel.nominal_z_m = 0.55;
   EXPECT_NEAR(lowest_button_m(far.panel, far.mission) - lowest_button_m(near.panel, near.mission),
-              0.028 * (std::sin(rad_from_deg(18.3 + 6.7)) - std::sin(rad_from_deg(13.5 + 6.7))), 0.0001);
+              0.028 * (std::sin(rad_from_deg(18.3 + 7.5)) - std::sin(rad_from_deg(13.5 + 7.5))), 0.0001);
 }
 
 // What is touched more than 8 mm below the bottom is not taken for the button, however far the press goes on.
