@@ -63,7 +63,7 @@ void blank_picture(std::uint32_t sequence, optics::Frame& frame) {
   frame.width = 16;
   frame.height = 12;
   frame.channels = 1;
-  frame.pixels.resize(static_cast<std::size_t>(frame.width * frame.height));
+  frame.pixels.resize(static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(frame.height));
   for (std::size_t i = 0; i < frame.pixels.size(); ++i)
     frame.pixels[i] = static_cast<std::uint8_t>(splitmix64((std::uint64_t{sequence} << 16) + i) >> 60);
 }
