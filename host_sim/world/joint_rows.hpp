@@ -2,7 +2,7 @@
 //
 // Each row asks the joint for a speed and may spend an impulse between two bounds to reach it. Bullet's own joint motor has one symmetric bound and its
 // limit sees a stop only once it is passed. The rows start from the impulse of the step before (applied as a joint torque, the bounds moved by as much), which
-// is what lets 20 to 30 iterations find the balance of friction and a slow contact on a light joint: from zero, each iteration adds only inertia x speed.
+// is what lets 20 to 50 iterations find the balance of friction and a slow contact on a light joint: from zero, each iteration adds only inertia x speed.
 #pragma once
 
 #include <BulletDynamics/Featherstone/btMultiBodyConstraint.h>

@@ -64,7 +64,7 @@ struct WorldConfig {
   double step_s = 0.001;
   double force_window_s = 0.020;   // over which a sensor would average a contact's wrench
   double judged_window_s = 0.050;  // over which a contact's force is judged: what panel and arm bear
-  int solver_iterations = 30;
+  int solver_iterations = 50;      // 30 leave a bar askew between pads that are not parallel to it
 };
 
 struct ButtonState {
