@@ -64,7 +64,7 @@ Bounds of_panel(const config::Key& key, const Scenario& s) {
   if (key.path == "panel.button_stroke_m")
     return within(key, s.buttons.click_depth_m,
                   std::min(2 * (pressed_force_n(s) - s.buttons.preload_n) / s.buttons.spring_n_m,
-                           panel.button_stroke_m + panel.button_height_m - lowest_m));
+                           panel.button_stroke_m + panel.button_height_m - config::lowest_button_m(panel, s.mission) - 1e-6));
   if (key.path == "panel.button_height_m") return within(key, lowest_m, key.max);
   if (key.path == "panel.marker_size_m") return within(key, key.min, panel.marker_plate_m * (1 - clearly));
   if (key.path == "panel.marker_plate_m")
