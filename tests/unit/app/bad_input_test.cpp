@@ -34,7 +34,7 @@ TEST_F(BadInput, UnknownCommandsAndOptions) {
   expect_refused("ik --x 0.3 --y 0", "--z is required");
   expect_refused("ik --x far --y 0 --z 0", "--x");
   expect_refused("ik --x 0,44 --y 0 --z 0.5", "'--x' takes a number, not '0,44': its decimals stand behind a point");
-  expect_refused("markers x.png --decimate much", "'--decimate' takes a number, not 'much'");
+  expect_refused("markers x.png --decimate much", "--decimate: takes a number from 1 to 8, not much");
   expect_refused("ik --x nan --y 0 --z 0.5", "finite");
   expect_refused("run --seed -1", "--seed");
   expect_refused("run --render-threads 0", "--render-threads");
