@@ -8,10 +8,10 @@ namespace lf::scan {
 namespace {
 
 constexpr int cells_a_side = 8;
-constexpr std::uint32_t least_in_a_cell = 30;
+constexpr std::uint32_t least_in_a_cell = 30;  // a mean then scatters by a fifth of what its points do
 constexpr double counted_share = 0.9;
 constexpr double sigmas_a_side = 3.464;  // of an even spread: the root of 12
-constexpr double grid_margin = 1.04;
+constexpr double grid_margin = 1.04;     // for points that do not spread quite evenly; what lies beyond counts to the border's cells
 
 struct Cell {
   std::uint32_t points = 0;

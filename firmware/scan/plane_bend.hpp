@@ -12,7 +12,7 @@ namespace lf::scan {
 
 struct PlaneBend {
   double bend_m = 0;
-  double seen_m = 0;  // the shorter side of the rectangle over which as many points as these spread evenly
+  double seen_m = 0;  // shorter side of an evenly covered rectangle whose points spread as these do
 };
 
 // Of the points nearer than `threshold_m`. Bend: root mean square of their distances' means over a grid of 8 by 8 cells; a cell of fewer than 30 points does not count.

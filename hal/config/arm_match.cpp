@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <vector>
 
 #include "firmware/arm/kinematics.hpp"
@@ -68,38 +69,43 @@ double distance_to_capsule(const Vec3& point, const arm_geometry::CapsuleNumbers
   return (a + along * (b - a) - point).norm() - capsule.radius_m;
 }
 
-// A shape's outermost points: a box's corners; eight on each rim of a cylinder or about each end of a capsule; a mesh's vertices.
-std::vector<Vec3> outermost(const scene::Shape& shape) {
+// A hull's corners: of a cylinder eight on each rim, of a mesh its vertices, of everything else its box's.
+std::vector<Vec3> corners(const scene::Shape& shape) {
   if (shape.kind == scene::ShapeKind::mesh) return shape.vertices_m;
+  const double radius_m = shape.size_m.x();
+  Vec3 half_m(radius_m, radius_m, radius_m);  // of a sphere
+  if (shape.kind == scene::ShapeKind::box) half_m = shape.size_m / 2;
+  if (shape.kind == scene::ShapeKind::capsule) half_m.z() += shape.size_m.z() / 2;
   std::vector<Vec3> points;
   constexpr int around = 8;
   for (int i = 0; i < around; ++i) {
     const double turn = 2 * pi * i / around;
-    for (const double end : {-0.5, 0.5}) {
-      if (shape.kind == scene::ShapeKind::box)
-        points.push_back(shape.size_m.cwiseProduct(Vec3((i & 1) != 0 ? 0.5 : -0.5, (i & 2) != 0 ? 0.5 : -0.5, end)));
+    for (const double end : {-1.0, 1.0}) {
+      if (shape.kind == scene::ShapeKind::cylinder)
+        points.emplace_back(radius_m * std::cos(turn), radius_m * std::sin(turn), end * shape.size_m.z() / 2);
       else
-        points.emplace_back(shape.size_m.x() * std::cos(turn), shape.size_m.x() * std::sin(turn),
-                            shape.kind == scene::ShapeKind::sphere ? 0 : end * shape.size_m.z());
+        points.push_back(half_m.cwiseProduct(Vec3((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1, end)));
     }
   }
   return points;
 }
 
-// By how much the link's shapes stand out of the capsules that the core has for it.
+// By how much the link's shapes stand out of the core's capsules. Each has to lie within one of them: then so does all between its corners.
 double stands_out_m(const ArmLink& link, std::size_t body) {
-  double most = 0;
+  double most_m = 0;
   for (const scene::Shape& shape : link.shapes) {
     if (!shape.collides) continue;
-    for (const Vec3& point : outermost(shape)) {
-      double nearest = 1e9;
-      for (const arm_geometry::CapsuleNumbers& capsule : arm_geometry::capsules) {
-        if (capsule.link == body) nearest = std::min(nearest, distance_to_capsule(shape.body_from_shape * point, capsule));
-      }
-      most = std::max(most, nearest);
+    const std::vector<Vec3> points = corners(shape);
+    double least_m = std::numeric_limits<double>::infinity();
+    for (const arm_geometry::CapsuleNumbers& capsule : arm_geometry::capsules) {
+      if (capsule.link != body) continue;
+      double farthest_m = 0;
+      for (const Vec3& point : points) farthest_m = std::max(farthest_m, distance_to_capsule(shape.body_from_shape * point, capsule));
+      least_m = std::min(least_m, farthest_m);
     }
+    most_m = std::max(most_m, least_m);
   }
-  return most;
+  return most_m;
 }
 
 // Where a finger's joint is on the wrist.

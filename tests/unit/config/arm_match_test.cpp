@@ -65,6 +65,19 @@ TEST(ArmMatch, AThickerLinkIsToldByHowFarItStandsOut) {
   }
 }
 
+TEST(ArmMatch, AShapeThatNoCapsuleHoldsIsTold) {
+  ArmDescription other = shipped();
+  ArmLink& link = other.links[static_cast<std::size_t>(scene::BodyId::forearm)];
+  for (const scene::ShapeKind kind : {scene::ShapeKind::sphere, scene::ShapeKind::capsule}) {
+    scene::Shape extra;
+    extra.kind = kind;
+    extra.size_m = Vec3(0.06, 0, 0.02);
+    link.shapes.push_back(extra);
+    EXPECT_THAT(difference_from_core(other), HasSubstr("its " + link.name + " stands "));
+    link.shapes.pop_back();
+  }
+}
+
 TEST(ArmMatch, OtherPadsAreNamed) {
   ArmDescription other = shipped();
   for (scene::Shape& shape : other.links[static_cast<std::size_t>(scene::BodyId::finger_a)].shapes) {
