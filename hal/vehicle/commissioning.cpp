@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <numbers>
 #include <utility>
 
 #include "firmware/arm/actuator.hpp"
 #include "firmware/arm/gripper.hpp"
+#include "hal/vehicle/gentle_network.hpp"
 #include "hal/vehicle/zero_moved.hpp"
 #include "shared/arm/arm_geometry.hpp"
 
@@ -16,12 +16,6 @@ namespace lf::hal {
 
 namespace {
 
-// Half of the range of counts, since the zero is what is not known yet, or what 32 bits hold in the drive's units. Two units are lost in rounding.
-std::int32_t any_count(const canopen::DriveSetup& drive) {
-  constexpr std::int32_t half = std::numeric_limits<std::int32_t>::max() / 2;
-  const std::int64_t held = drive.profile.scale.position.over(std::numeric_limits<std::int32_t>::max()) - 2 - drive.drive_margin_counts;
-  return static_cast<std::int32_t>(std::min<std::int64_t>(half, held));
-}
 // After the last order: quick stop, NMT stop.
 constexpr Duration stop_time = Duration::from_ms(300);
 // Of the following-error window, 0.15 rad where a joint has the most counts: off the stop, and how near is there.
@@ -56,10 +50,6 @@ double stop_rad(std::size_t joint) {
   return direction(joint) < 0 ? stroke.lower_rad : stroke.upper_rad;
 }
 
-std::uint16_t pressing_permille(const Commissioning::Config& config, std::size_t joint) {
-  return arm_geometry::joints[joint].counts_per_rad > 0 ? config.gear_permille : config.screw_permille;
-}
-
 // The sum over all senders of what another master has sent as RPDOs.
 std::uint32_t foreign_set_points(const canopen::Network& network) {
   std::uint32_t frames = 0;
@@ -82,23 +72,9 @@ safety::JointStates joint_states(const canopen::Network& network, Time now) {
   return joints;
 }
 
-canopen::NetworkConfig gentle(const Commissioning::Config& config) {
-  canopen::NetworkConfig network = config.network;
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    canopen::DriveSetup& drive = network.drives[i];
-    drive.encoder_zero_counts = 0;
-    drive.zero_known = true;  // what is looked for: all counts here are the encoder's own, and wide open
-    drive.min_counts = -any_count(drive);
-    drive.max_counts = any_count(drive);
-    drive.max_torque_permille = std::min(drive.max_torque_permille, pressing_permille(config, i));
-    drive.homing_method = 0;
-  }
-  return network;
-}
-
 }  // namespace
 
-Commissioning::Commissioning(const Config& config) : config_(config), network_(gentle(config)) {}
+Commissioning::Commissioning(const Config& config) : config_(config), network_(gentle_network(config)) {}
 
 std::array<double, joint_count> Commissioning::places_rad() const {
   std::array<double, joint_count> places{};
@@ -503,24 +479,6 @@ void Commissioning::reopen(Time now) {
   too_hard_ticks_ = 0;
   target_ = axis().actual_counts();
   (void)axis().set_target_counts(axis().actual_counts());
-}
-
-const char* name(Commissioning::State state) {
-  switch (state) {
-    case Commissioning::State::rubbing: return "finding its friction";
-    case Commissioning::State::booting: return "booting";
-    case Commissioning::State::enabling: return "powering up";
-    case Commissioning::State::seeking: return "moving to its stop";
-    case Commissioning::State::easing: return "easing off its stop";
-    case Commissioning::State::backing_off: return "moving back";
-    case Commissioning::State::releasing: return "powering off";
-    case Commissioning::State::halting: return "stopping";
-    case Commissioning::State::powering_off: return "losing power";
-    case Commissioning::State::stopping: return "ending";
-    case Commissioning::State::done: return "done";
-    case Commissioning::State::failed: return "failed";
-  }
-  return "unknown";
 }
 
 }  // namespace lf::hal
