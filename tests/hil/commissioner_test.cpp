@@ -70,6 +70,16 @@ class AtWork {
     EXPECT_TRUE(wait_for([&] { return lent != nullptr || rings->commissionings.pop(lent); }));
     return lent;
   }
+  // To its good end, and the new core has taken over.
+  void commission_jaw() {
+    Bench bench(somewhere);
+    Commissioning* lent = begin(only_jaw);
+    ASSERT_NE(lent, nullptr);
+    bench.run(*lent);
+    EXPECT_EQ(lent->state(), Commissioning::State::done) << lent->failure();
+    EXPECT_NE(end(lent), nullptr);
+    ASSERT_TRUE(take_over());
+  }
   // The core with what it found, or was left of it.
   std::unique_ptr<Controller> end(Commissioning* lent) {
     EXPECT_TRUE(rings->commissioned.push({lent, true}));
@@ -167,13 +177,7 @@ TEST(CommissioningThatFails, LeavesAZeroThatHoldsOnceTheJointIsFoundThereAgain) 
   AtWork work(0);
   work.write_homing("jaw: {zero_counts: " + std::to_string(somewhere[4]) + ", zero_doubtful: true}\n");
   work.start();
-  Bench bench(somewhere);
-  Commissioning* lent = work.begin(only_jaw);
-  ASSERT_NE(lent, nullptr);
-  bench.run(*lent);
-  EXPECT_EQ(lent->state(), Commissioning::State::done) << lent->failure();
-  EXPECT_NE(work.end(lent), nullptr);
-  ASSERT_TRUE(work.take_over());
+  ASSERT_NO_FATAL_FAILURE(work.commission_jaw());
   EXPECT_TRUE(work.file().known[4] && !work.file().zero_doubtful[4]);
   EXPECT_EQ(work.commissioner->unknown_joints(), "");
 }
@@ -305,13 +309,7 @@ TEST(ALostZero, ThatWasFoundAgainStaysInTheFile) {
     return !known();
   };
   ASSERT_TRUE(work.wait_for(forgotten));
-  Bench bench(somewhere);
-  Commissioning* lent = work.begin(only_jaw);
-  ASSERT_NE(lent, nullptr);
-  bench.run(*lent);
-  EXPECT_EQ(lent->state(), Commissioning::State::done) << lent->failure();
-  EXPECT_NE(work.end(lent), nullptr);
-  ASSERT_TRUE(work.take_over());
+  ASSERT_NO_FATAL_FAILURE(work.commission_jaw());
   for (int i = 0; i < 200; ++i) {
     ASSERT_FALSE(forgotten());
     work.commissioner->step();
