@@ -66,7 +66,7 @@ void tell(const RunOutcome& outcome, const std::string& folder) {
   print("errors against the truth:\n");
   tell_error("plane, normal", result.errors.plane_normal_deg, "deg");
   tell_error("plane, offset", result.errors.plane_offset_mm, "mm");
-  tell_error("panel's place over its doubt", result.errors.panel_over_doubt, "");
+  tell_error("panel's place over the room kept for it", result.errors.panel_over_doubt, "");
   tell_error("valve's base", result.errors.valve_base_mm, "mm");
   tell_error("handle's angle", result.errors.handle_angle_deg, "deg");
   tell_error("cloud to the true surface, median", result.errors.cloud_truth_median_mm, "mm");

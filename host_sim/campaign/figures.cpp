@@ -21,7 +21,7 @@ constexpr Figure::Good more = Figure::Good::more, less = Figure::Good::less;
 const std::array all{
     Figure{"plane_normal_deg", "panel's normal", "deg", [](const Run& r) { return r.errors.plane_normal_deg; }},
     Figure{"plane_offset_mm", "panel's distance", "mm", [](const Run& r) { return r.errors.plane_offset_mm; }},
-    Figure{"panel_over_doubt", "panel's place over its doubt", "", [](const Run& r) { return r.errors.panel_over_doubt; }},
+    Figure{"panel_over_doubt", "panel's place over the room kept for it", "", [](const Run& r) { return r.errors.panel_over_doubt; }},
     Figure{"valve_base_mm", "valve's base", "mm", [](const Run& r) { return r.errors.valve_base_mm; }},
     Figure{"handle_angle_deg", "handle's angle", "deg", [](const Run& r) { return r.errors.handle_angle_deg; }},
     Figure{"valve_final_deg", "valve's final angle", "deg", valve_final_deg},

@@ -198,7 +198,7 @@ std::vector<ReportError> report_errors(const RunResult& result, double attenuati
   const ErrorRecord& e = result.errors;
   std::vector<ReportError> errors{{"panel's normal", e.plane_normal_deg, 0.3, "°", false},
                                   {"panel's distance", e.plane_offset_mm, unknown, "mm", false},
-                                  {"panel's place, over what the core doubts of it", e.panel_over_doubt, 1, "", false},
+                                  {"panel's place, over the room kept for it", e.panel_over_doubt, 1, "", false},
                                   {"valve's base", e.valve_base_mm, 3.0, "mm", false},
                                   {"handle's angle", e.handle_angle_deg, 1.0, "°", false},
                                   {"cloud to the true surface, median", e.cloud_truth_median_mm, unknown, "mm", false},
