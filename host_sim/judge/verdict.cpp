@@ -241,7 +241,7 @@ class Judge {
   // A joint whose motor stands may be pulled through its gear's play, or unwind it, as by a bar in the jaw: for a time, and by what the gear gives. Who is
   // pushed winds it up by as much as the push.
   bool joint_moves(const Moment& moment, std::size_t joint, double unwound_s) const {
-    if (motor_moves(moment, joint) && !settles_without_power(moment, joint)) return true;
+    if (motor_moves(moment, joint) && !settles_without_power(moment, joint) && !pushed_without_power(moment, joint)) return true;
     if (moment.speed_rad_s[joint] < figures_.standing_rad_s || pushed_at(moment) ||
         !travels_in(moment, quiver_ms, &Moment::angle_rad, joint))
       return false;
@@ -281,6 +281,15 @@ class Judge {
       return stood && std::abs(moment.motor_rad[joint] - before.motor_rad[joint]) <= situation_.gear_gives_rad[joint];
     }
     return false;
+  }
+
+  // What has no power keeps nobody from turning it a little: a screw under a push gives way by what its gear gives.
+  bool pushed_without_power(const Moment& moment, std::size_t joint) const {
+    const std::size_t bit = std::size_t{1} << joint;
+    if ((moment.power & bit) != 0 || !pushed_at(moment)) return false;
+    const Moment* off = &moment;
+    while (off != moments_.data() && ((off - 1)->power & bit) == 0) --off;
+    return std::abs(moment.motor_rad[joint] - off->motor_rad[joint]) <= situation_.gear_gives_rad[joint];
   }
 
   // A motor that runs through its gear's play is faster than its joint, and it is what brakes.
@@ -365,7 +374,10 @@ class Judge {
     const auto last = static_cast<std::size_t>(std::max(heard_s, ms) / ms);
     double speed = 0;
     for (std::size_t i = first; i <= last && i < moments_.size(); ++i) speed = std::max(speed, double(moments_[i].speed_rad_s[joint]));
-    return std::max(0.0, speed - figures_.standing_rad_s) / situation_.deceleration_rad_s2[joint];
+    // The record begins with the first cause. Before that the joint may have been faster, by as much as it brakes in that time.
+    const double deceleration_rad_s2 = situation_.deceleration_rad_s2[joint];
+    speed += deceleration_rad_s2 * std::max(0.0, speed_over_s - heard_s);
+    return std::max(0.0, speed - figures_.standing_rad_s) / deceleration_rad_s2;
   }
 
   bool swings(const Moment& moment, std::uint8_t joints) const {

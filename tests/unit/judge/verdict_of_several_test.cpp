@@ -154,6 +154,25 @@ TEST(VerdictOfSeveral, WhoIsPushedWindsUpItsGear) {
   EXPECT_THAT(wrong("handle_breaks", 0.5, 80, false), moves);
 }
 
+// The power goes at 298 ms; the gear gives 4 mrad.
+TEST(VerdictOfSeveral, WhoIsPushedWithoutPowerGivesWayByItsGear) {
+  const auto wrong = [](std::size_t from_ms, float by_rad, float force_n) {
+    Seen seen = Stopping().seen();
+    for (std::size_t t = from_ms; t < seen.moments.size(); ++t) {
+      Moment& moment = seen.moments[t];
+      moment.motor_rad[0] = moment.angle_rad[0] = std::min(by_rad, 0.0001f * static_cast<float>(t - from_ms));
+      if (t < from_ms + 100) moment.force_n = force_n;
+    }
+    Situation situation = situation_of(cause_of("overcurrent elbow"), cause_of("obstacle"));
+    return judge(seen, situation, failed("drive fault: elbow")).wrong;
+  };
+  const auto moves = testing::Contains(testing::HasSubstr("slew moves"));
+  EXPECT_THAT(wrong(600, 0.0038f, 80), IsEmpty());
+  EXPECT_THAT(wrong(600, 0.0045f, 80), moves) << "by more than its gear gives";
+  EXPECT_THAT(wrong(600, 0.0038f, 0), moves) << "nothing pushes";
+  EXPECT_THAT(wrong(270, 0.0038f, 80), moves) << "under power";
+}
+
 TEST(VerdictOfSeveral, AForceIsAForceWhateverPushes) {
   for (const char* cause : {"obstacle", "handle_breaks"}) {
     Seen seen = Stopping().seen();

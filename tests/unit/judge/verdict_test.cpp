@@ -81,6 +81,14 @@ TEST(Verdict, AJointThatIsNotHeardIsTakenForMovingUntilItsRampIsOver) {
   EXPECT_THAT(wrong_unheard("drop_frames emcy elbow", ramp_s + 0.095, elbow, 0.088), testing::Not(IsEmpty())) << "it is heard";
 }
 
+// The record begins with the fault, 5 ms before the joint is heard last: of the 20 ms whose speed the master knows 15 are not on it.
+TEST(Verdict, AJointThatIsNotHeardFromTheRecordsBeginningMayHaveBeenFasterBefore) {
+  constexpr std::uint8_t elbow = 1 << 2;
+  constexpr double ramp_s = 0.14 + 0.015;
+  EXPECT_THAT(wrong_unheard("drop_frames tpdo elbow", ramp_s + 0.095, elbow, 0.005), IsEmpty());
+  EXPECT_THAT(wrong_unheard("drop_frames tpdo elbow", ramp_s + 0.110, elbow, 0.005), ElementsAre(testing::HasSubstr("after standing")));
+}
+
 // Frames are on the bus, and the master has none of them from then on.
 TEST(Verdict, AMasterThatHearsNothingHasHeardNothingSince) {
   constexpr std::uint8_t elbow = 1 << 2;
