@@ -43,7 +43,8 @@ class Job {
   const Task& task() const { return results_[index_].task; }
   TaskResult& result() { return results_[index_]; }
 
-  bool may_try_again(Step step) const { return tries_[static_cast<std::size_t>(step)] + 1u < tries_allowed_; }
+  bool may_try_again(Step step) const { return tries(step) + 1u < tries_allowed_; }
+  std::uint32_t tries(Step step) const { return tries_[static_cast<std::size_t>(step)]; }
   void count_try(Step step) { ++tries_[static_cast<std::size_t>(step)]; }
   void forget_tries(Step step) { tries_[static_cast<std::size_t>(step)] = 0; }
 

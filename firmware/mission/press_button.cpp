@@ -1,5 +1,7 @@
 #include "firmware/mission/press_button.hpp"
 
+#include <array>
+
 namespace lf::mission {
 
 namespace {
@@ -8,6 +10,9 @@ constexpr double limit_margin_rad = 0.01;
 // A stuck cap ends a press no deeper than this below where its face is believed to be, and a tenth of its stroke: the doubts of press_face_m, added in squares.
 constexpr double deepest_stuck_m = 0.0036;
 constexpr double stuck_share = 0.1;
+// The hand's turns about its approach axis in the order of the tries. A hand that is tilted to the panel comes nearest to it with its broad side, and that is
+// known to be in the way only once the line is looked at.
+constexpr std::array rolls_rad{0.0, 1.4, -1.4};
 // Of a press, until it goes at its speed.
 constexpr double to_speed_m = 0.012;
 // A press that works shows nearly its whole stroke, a stuck cap a tenth of a default one: what is felt late, and what the arm gives way by.
@@ -57,18 +62,33 @@ Progress PressButton::run(const StepTick& tick) {
 Progress PressButton::begin_reach(Workbench& bench) {
   bench.take_up_task();
   pressed_ = bench.wound_up = false;
-  bench.tool_roll_rad = 0;
-  const Vec3 tip = bench.map.button_m(bench.job.task().button) + bench.map.normal() * bench.mission().approach_distance_m;
-  arm::JointVector q;
-  if (!tool_for_tip(tip, closed_tip_beyond_tool_m(), bench.tool_roll_rad, q)) return Progress::failed(StepFailure::unreachable);
-  bench.go_clear(q, 0);
-  bench.standoff_m = arm::base_from_tool(q).translation();
+  const std::optional<arm::JointVector> q = choose_roll(bench);
+  if (!q) return Progress::failed(StepFailure::unreachable);
+  bench.go_clear(*q, 0);
+  bench.standoff_m = arm::base_from_tool(*q).translation();
   return Progress::running();
+}
+
+std::optional<arm::JointVector> PressButton::choose_roll(Workbench& bench) {
+  if (bench.job.tries(Step::reach_button) + bench.job.tries(Step::press) == 0) roll_ = 0;
+  const Vec3 tip = bench.map.button_m(bench.job.task().button) + bench.map.normal() * bench.mission().approach_distance_m;
+  for (std::size_t k = 0; k < rolls_rad.size(); ++k, roll_ = (roll_ + 1) % rolls_rad.size()) {
+    bench.tool_roll_rad = rolls_rad[roll_];
+    arm::JointVector q;
+    if (tool_for_tip(tip, closed_tip_beyond_tool_m(), bench.tool_roll_rad, q)) return q;
+  }
+  return std::nullopt;
+}
+
+// Where the panel bars this turn of the hand, the next try takes another.
+Progress PressButton::follow(Progress motion) {
+  if (motion.kind == Progress::Kind::failed && motion.failure == StepFailure::panel_in_the_way) roll_ = (roll_ + 1) % rolls_rad.size();
+  return motion;
 }
 
 // The press reckons with the tip of closed fingers. Fingers that hold something end elsewhere, and what they hold would press the button.
 Progress PressButton::run_reach(const StepTick& tick) {
-  const Progress motion = tick.bench.follow_way();
+  const Progress motion = follow(tick.bench.follow_way());
   if (motion.kind == Progress::Kind::failed || tick.bench.motion.planning()) return motion;
   switch (tick.bench.gripper.state()) {
     case arm::GripperState::empty: return motion;
@@ -105,7 +125,7 @@ Progress PressButton::run_press(const StepTick& tick) {
     tick.faults.report(safety::Fault::following_error, static_cast<std::int32_t>(guard_.joint()));
     return Progress::running();
   }
-  const Progress motion = bench.follow_motion();
+  const Progress motion = follow(bench.follow_motion());
   bench.wound_up = bench.wound_up || met_something() || feel_.touched();
   if (!met_something() && !motion.is_done()) return motion;
   // At once: a stop along its ramp goes on for millimetres, and the bottom gives way by none.

@@ -23,6 +23,9 @@ class PressButton {
 
  private:
   Progress begin_reach(Workbench& bench);
+  // The tool's turn about its approach axis for this try, and the stand-off's pose; nothing where no turn reaches it.
+  std::optional<arm::JointVector> choose_roll(Workbench& bench);
+  Progress follow(Progress motion);
   Progress run_reach(const StepTick& tick);
   Progress begin_press(Workbench& bench);
   Progress run_press(const StepTick& tick);
@@ -37,6 +40,7 @@ class PressButton {
 
   arm::GuardedMotion guard_;  // of the press, where touching is meant to happen
   ButtonFeel feel_;
+  std::size_t roll_ = 0;  // which of the hand's turns this try takes
   bool pressed_ = false;
   bool learned_under_way_ = false;
   bool pushed_under_way_ = false;            // what was learned there is no friction
