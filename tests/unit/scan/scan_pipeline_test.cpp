@@ -50,20 +50,6 @@ TEST(ScanPipelineTest, RebuildsThePanelFromImagesAndJoints) {
   EXPECT_EQ(stats.images_missing + stats.images_refused + stats.images_unexpected + stats.points_no_joints + stats.commands_refused, 0u);
 }
 
-// As many points of four times as many frames: a fourth of the columns, and the same plane.
-TEST(ScanPipelineTest, TakesFewerColumnsOfEachStripeWhereItIsToldTo) {
-  ScanBench all(PanelLayout{}.nominal_base_from_panel()), fourth(PanelLayout{}.nominal_base_from_panel(), 4);
-  const auto points = [](ScanBench& bench, PanelRequest& request) {
-    (void)bench.sweep(nominal_sweep());
-    bench.command(ScanCommand::Kind::analyse);
-    EXPECT_TRUE(bench.pipeline().take_request(request));
-    return static_cast<double>(bench.pipeline().cloud().size());
-  };
-  PanelRequest whole, thin;
-  EXPECT_NEAR(points(fourth, thin) / points(all, whole), 0.25, 0.01);
-  EXPECT_LT(thin.fit.plane.normal.cross(whole.fit.plane.normal).norm(), rad_from_deg(0.01));
-}
-
 class ScanOrders : public testing::Test {
  protected:
   void SetUp() override {
