@@ -1,7 +1,5 @@
 #include "firmware/mission/press_button.hpp"
 
-#include <array>
-
 namespace lf::mission {
 
 namespace {
@@ -41,6 +39,7 @@ double closed_tip_beyond_tool_m() { return arm::tip_beyond_tool_m(arm::jaw_from_
 }  // namespace
 
 Progress PressButton::begin(const StepTick& tick) {
+  static_assert(rolls_rad.size() == roll_count);
   switch (tick.step) {
     case Step::reach_button: return begin_reach(tick.bench);
     case Step::press: return begin_press(tick.bench);
@@ -63,26 +62,40 @@ Progress PressButton::begin_reach(Workbench& bench) {
   bench.take_up_task();
   pressed_ = bench.wound_up = false;
   const std::optional<arm::JointVector> q = choose_roll(bench);
-  if (!q) return Progress::failed(StepFailure::unreachable);
+  if (!q) return barrier_ == StepFailure::none ? Progress::failed(StepFailure::unreachable) : Progress::failed_for_good(barrier_);
   bench.go_clear(*q, 0);
   bench.standoff_m = arm::base_from_tool(*q).translation();
   return Progress::running();
 }
 
 std::optional<arm::JointVector> PressButton::choose_roll(Workbench& bench) {
-  if (bench.job.tries(Step::reach_button) + bench.job.tries(Step::press) == 0) roll_ = 0;
+  if (bench.job.tries(Step::reach_button) + bench.job.tries(Step::press) == 0) {
+    barred_.fill(false);
+    barrier_ = StepFailure::none;
+  }
   const Vec3 tip = bench.map.button_m(bench.job.task().button) + bench.map.normal() * bench.mission().approach_distance_m;
-  for (std::size_t k = 0; k < rolls_rad.size(); ++k, roll_ = (roll_ + 1) % rolls_rad.size()) {
+  const arm::JointLimits limits = bench.motion.limits(1);
+  for (roll_ = 0; roll_ < roll_count; ++roll_) {
+    if (barred_[roll_]) continue;
     bench.tool_roll_rad = rolls_rad[roll_];
     arm::JointVector q;
-    if (tool_for_tip(tip, closed_tip_beyond_tool_m(), bench.tool_roll_rad, q)) return q;
+    if (!tool_for_tip(tip, closed_tip_beyond_tool_m(), bench.tool_roll_rad, q)) continue;
+    if (roll_ == 0 || (q[3] >= limits.lower_rad[3] && q[3] <= limits.upper_rad[3])) return q;
   }
   return std::nullopt;
 }
 
-// Where the panel bars this turn of the hand, the next try takes another.
 Progress PressButton::follow(Progress motion) {
-  if (motion.kind == Progress::Kind::failed && motion.failure == StepFailure::panel_in_the_way) roll_ = (roll_ + 1) % rolls_rad.size();
+  if (motion.kind != Progress::Kind::failed) return motion;
+  switch (motion.failure) {
+    case StepFailure::panel_in_the_way:
+    case StepFailure::vehicle_in_the_way:
+    case StepFailure::arm_in_its_own_way:
+      barred_[roll_] = true;
+      barrier_ = motion.failure;
+      break;
+    default: break;
+  }
   return motion;
 }
 

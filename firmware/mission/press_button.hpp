@@ -2,6 +2,7 @@
 // stroke; one that is stuck and one that is not there are told apart by what the press felt like.
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "firmware/arm/guarded_motion.hpp"
@@ -23,8 +24,9 @@ class PressButton {
 
  private:
   Progress begin_reach(Workbench& bench);
-  // The tool's turn about its approach axis for this try, and the stand-off's pose; nothing where no turn reaches it.
+  // The tool's turn about its approach axis for this try, and the stand-off's pose; nothing where no turn is left that reaches it.
   std::optional<arm::JointVector> choose_roll(Workbench& bench);
+  // Where something bars this turn of the hand, the next try takes another.
   Progress follow(Progress motion);
   Progress run_reach(const StepTick& tick);
   Progress begin_press(Workbench& bench);
@@ -40,7 +42,10 @@ class PressButton {
 
   arm::GuardedMotion guard_;  // of the press, where touching is meant to happen
   ButtonFeel feel_;
-  std::size_t roll_ = 0;  // which of the hand's turns this try takes
+  static constexpr std::size_t roll_count = 3;
+  std::size_t roll_ = 0;                     // which of the hand's turns this try takes
+  std::array<bool, roll_count> barred_{};    // those in whose way something was, in this task
+  StepFailure barrier_ = StepFailure::none;  // what it was, the last time
   bool pressed_ = false;
   bool learned_under_way_ = false;
   bool pushed_under_way_ = false;            // what was learned there is no friction

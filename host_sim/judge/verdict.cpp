@@ -275,21 +275,24 @@ class Judge {
     for (auto t = std::max<std::ptrdiff_t>(1, index - settling_ms); t < std::min(size, index + seen_before_ms + 1); ++t) {
       const Moment &before = moments_[t - 1], &after = moments_[t];
       if ((before.power & bit) == 0 || (after.power & bit) != 0) continue;
-      constexpr std::ptrdiff_t stood_ms = 20;
-      const Moment& earlier = moments_[static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, t - 1 - stood_ms))];
-      const bool stood = std::abs(before.motor_rad[joint] - earlier.motor_rad[joint]) < figures_.standing_rad_s * stood_ms * ms;
-      return stood && std::abs(moment.motor_rad[joint] - before.motor_rad[joint]) <= situation_.gear_gives_rad[joint];
+      return stood_before(before, joint) && std::abs(moment.motor_rad[joint] - before.motor_rad[joint]) <= situation_.gear_gives_rad[joint];
     }
     return false;
   }
 
-  // What has no power keeps nobody from turning it a little: a screw under a push gives way by what its gear gives.
+  // What has no power keeps nobody from turning it a little: a screw that stood gives way under a push, by no more than bodies quiver.
   bool pushed_without_power(const Moment& moment, std::size_t joint) const {
     const std::size_t bit = std::size_t{1} << joint;
     if ((moment.power & bit) != 0 || !pushed_at(moment)) return false;
     const Moment* off = &moment;
     while (off != moments_.data() && ((off - 1)->power & bit) == 0) --off;
-    return std::abs(moment.motor_rad[joint] - off->motor_rad[joint]) <= situation_.gear_gives_rad[joint];
+    return stood_before(*off, joint) && std::abs(moment.motor_rad[joint] - off->motor_rad[joint]) <= figures_.quivers_rad;
+  }
+
+  bool stood_before(const Moment& moment, std::size_t joint) const {
+    constexpr std::ptrdiff_t stood_ms = 20;
+    const Moment& earlier = moments_[static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, &moment - moments_.data() - stood_ms))];
+    return std::abs(moment.motor_rad[joint] - earlier.motor_rad[joint]) < figures_.standing_rad_s * stood_ms * ms;
   }
 
   // A motor that runs through its gear's play is faster than its joint, and it is what brakes.

@@ -154,23 +154,28 @@ TEST(VerdictOfSeveral, WhoIsPushedWindsUpItsGear) {
   EXPECT_THAT(wrong("handle_breaks", 0.5, 80, false), moves);
 }
 
-// The power goes at 298 ms; the gear gives 4 mrad.
-TEST(VerdictOfSeveral, WhoIsPushedWithoutPowerGivesWayByItsGear) {
-  const auto wrong = [](std::size_t from_ms, float by_rad, float force_n) {
+// The motor stands from 200 ms on, the power goes at 298, and the push begins at 600.
+TEST(VerdictOfSeveral, WhoIsPushedWithoutPowerGivesWayByAMilliradian) {
+  const auto wrong = [](float by_rad, float force_n, std::size_t power_off_ms = 298, std::size_t still_from_ms = 200) {
+    constexpr std::size_t from_ms = 600;
     Seen seen = Stopping().seen();
-    for (std::size_t t = from_ms; t < seen.moments.size(); ++t) {
+    for (std::size_t t = 0; t < seen.moments.size(); ++t) {
       Moment& moment = seen.moments[t];
-      moment.motor_rad[0] = moment.angle_rad[0] = std::min(by_rad, 0.0001f * static_cast<float>(t - from_ms));
-      if (t < from_ms + 100) moment.force_n = force_n;
+      const float earlier_rad = -0.0001f * static_cast<float>(std::min(t, still_from_ms));
+      const float pushed_rad = t < from_ms ? 0 : std::min(by_rad, 0.0001f * static_cast<float>(t - from_ms));
+      moment.motor_rad[0] = moment.angle_rad[0] = earlier_rad + pushed_rad;
+      if (t >= from_ms && t < from_ms + 100) moment.force_n = force_n;
+      if (t < power_off_ms) moment.power |= 1;
     }
     Situation situation = situation_of(cause_of("overcurrent elbow"), cause_of("obstacle"));
     return judge(seen, situation, failed("drive fault: elbow")).wrong;
   };
   const auto moves = testing::Contains(testing::HasSubstr("slew moves"));
-  EXPECT_THAT(wrong(600, 0.0038f, 80), IsEmpty());
-  EXPECT_THAT(wrong(600, 0.0045f, 80), moves) << "by more than its gear gives";
-  EXPECT_THAT(wrong(600, 0.0038f, 0), moves) << "nothing pushes";
-  EXPECT_THAT(wrong(270, 0.0038f, 80), moves) << "under power";
+  EXPECT_THAT(wrong(0.0009f, 80), IsEmpty());
+  EXPECT_THAT(wrong(0.0011f, 80), moves) << "too far";
+  EXPECT_THAT(wrong(0.0009f, 0), moves) << "nothing pushes";
+  EXPECT_THAT(wrong(0.0009f, 80, 700), moves) << "under power";
+  EXPECT_THAT(wrong(0.0009f, 80, 298, 297), moves) << "it did not stand when its power went";
 }
 
 TEST(VerdictOfSeveral, AForceIsAForceWhateverPushes) {
