@@ -267,9 +267,11 @@ class Judge {
     return ((*high).*rad)[joint] - ((*low).*rad)[joint] >= figures_.standing_rad_s * 2 * static_cast<double>(around_ms) * ms;
   }
 
+  static constexpr std::ptrdiff_t settling_ms = 50;
+
   // A screw that stands under a load settles when its drive lets go of it: at that moment, and by no more than its gear gives.
   bool settles_without_power(const Moment& moment, std::size_t joint) const {
-    constexpr std::ptrdiff_t settling_ms = 50, seen_before_ms = 10;
+    constexpr std::ptrdiff_t seen_before_ms = 10;
     const std::ptrdiff_t index = &moment - moments_.data(), size = std::ssize(moments_);
     const std::size_t bit = std::size_t{1} << joint;
     for (auto t = std::max<std::ptrdiff_t>(1, index - settling_ms); t < std::min(size, index + seen_before_ms + 1); ++t) {
@@ -280,13 +282,14 @@ class Judge {
     return false;
   }
 
-  // What has no power keeps nobody from turning it a little: a screw that stood gives way under a push, by no more than bodies quiver.
+  // What has no power keeps nobody from turning it a little: a screw that stood, and has settled, gives way under a push, by no more than bodies quiver.
   bool pushed_without_power(const Moment& moment, std::size_t joint) const {
     const std::size_t bit = std::size_t{1} << joint;
     if ((moment.power & bit) != 0 || !pushed_at(moment)) return false;
     const Moment* off = &moment;
     while (off != moments_.data() && ((off - 1)->power & bit) == 0) --off;
-    return stood_before(*off, joint) && std::abs(moment.motor_rad[joint] - off->motor_rad[joint]) <= figures_.quivers_rad;
+    const Moment* settled = off + std::min<std::ptrdiff_t>(settling_ms, &moment - off);
+    return stood_before(*off, joint) && std::abs(moment.motor_rad[joint] - settled->motor_rad[joint]) <= figures_.quivers_rad;
   }
 
   bool stood_before(const Moment& moment, std::size_t joint) const {

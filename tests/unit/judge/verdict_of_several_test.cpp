@@ -156,14 +156,15 @@ TEST(VerdictOfSeveral, WhoIsPushedWindsUpItsGear) {
 
 // The motor stands from 200 ms on, the power goes at 298, and the push begins at 600.
 TEST(VerdictOfSeveral, WhoIsPushedWithoutPowerGivesWayByAMilliradian) {
-  const auto wrong = [](float by_rad, float force_n, std::size_t power_off_ms = 298, std::size_t still_from_ms = 200) {
+  const auto wrong = [](float by_rad, float force_n, std::size_t power_off_ms = 298, std::size_t still_from_ms = 200,
+                        float settles_rad = 0) {
     constexpr std::size_t from_ms = 600;
     Seen seen = Stopping().seen();
     for (std::size_t t = 0; t < seen.moments.size(); ++t) {
       Moment& moment = seen.moments[t];
       const float earlier_rad = -0.0001f * static_cast<float>(std::min(t, still_from_ms));
       const float pushed_rad = t < from_ms ? 0 : std::min(by_rad, 0.0001f * static_cast<float>(t - from_ms));
-      moment.motor_rad[0] = moment.angle_rad[0] = earlier_rad + pushed_rad;
+      moment.motor_rad[0] = moment.angle_rad[0] = earlier_rad + pushed_rad + (t < 300 ? 0 : settles_rad);
       if (t >= from_ms && t < from_ms + 100) moment.force_n = force_n;
       if (t < power_off_ms) moment.power |= 1;
     }
@@ -176,6 +177,7 @@ TEST(VerdictOfSeveral, WhoIsPushedWithoutPowerGivesWayByAMilliradian) {
   EXPECT_THAT(wrong(0.0009f, 0), moves) << "nothing pushes";
   EXPECT_THAT(wrong(0.0009f, 80, 700), moves) << "under power";
   EXPECT_THAT(wrong(0.0009f, 80, 298, 297), moves) << "it did not stand when its power went";
+  EXPECT_THAT(wrong(0.0009f, 80, 298, 200, 0.003f), IsEmpty()) << "it settled before";
 }
 
 TEST(VerdictOfSeveral, AForceIsAForceWhateverPushes) {
