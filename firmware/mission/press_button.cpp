@@ -8,9 +8,6 @@ constexpr double limit_margin_rad = 0.01;
 // A stuck cap ends a press no deeper than this below where its face is believed to be, and a tenth of its stroke: the doubts of press_face_m, added in squares.
 constexpr double deepest_stuck_m = 0.0036;
 constexpr double stuck_share = 0.1;
-// The hand's turns about its approach axis in the order of the tries. A hand that is tilted to the panel comes nearest to it with its broad side, and that is
-// known to be in the way only once the line is looked at.
-constexpr std::array rolls_rad{0.0, 1.4, -1.4};
 // Of a press, until it goes at its speed.
 constexpr double to_speed_m = 0.012;
 // A press that works shows nearly its whole stroke, a stuck cap a tenth of a default one: what is felt late, and what the arm gives way by.
@@ -39,7 +36,6 @@ double closed_tip_beyond_tool_m() { return arm::tip_beyond_tool_m(arm::jaw_from_
 }  // namespace
 
 Progress PressButton::begin(const StepTick& tick) {
-  static_assert(rolls_rad.size() == roll_count);
   switch (tick.step) {
     case Step::reach_button: return begin_reach(tick.bench);
     case Step::press: return begin_press(tick.bench);
@@ -75,12 +71,13 @@ std::optional<arm::JointVector> PressButton::choose_roll(Workbench& bench) {
   }
   const Vec3 tip = bench.map.button_m(bench.job.task().button) + bench.map.normal() * bench.mission().approach_distance_m;
   const arm::JointLimits limits = bench.motion.limits(1);
-  for (roll_ = 0; roll_ < roll_count; ++roll_) {
-    if (barred_[roll_]) continue;
-    bench.tool_roll_rad = rolls_rad[roll_];
+  for (std::size_t k = 0; k < rolls_rad.size(); ++k) {
     arm::JointVector q;
-    if (!tool_for_tip(tip, closed_tip_beyond_tool_m(), bench.tool_roll_rad, q)) continue;
-    if (roll_ == 0 || (q[3] >= limits.lower_rad[3] && q[3] <= limits.upper_rad[3])) return q;
+    if (barred_[k] || !tool_for_tip(tip, closed_tip_beyond_tool_m(), rolls_rad[k], q)) continue;
+    if (q[3] < limits.lower_rad[3] || q[3] > limits.upper_rad[3]) continue;
+    roll_ = k;
+    bench.tool_roll_rad = rolls_rad[k];
+    return q;
   }
   return std::nullopt;
 }

@@ -42,10 +42,12 @@ class PressButton {
 
   arm::GuardedMotion guard_;  // of the press, where touching is meant to happen
   ButtonFeel feel_;
-  static constexpr std::size_t roll_count = 3;
-  std::size_t roll_ = 0;                     // which of the hand's turns this try takes
-  std::array<bool, roll_count> barred_{};    // those in whose way something was, in this task
-  StepFailure barrier_ = StepFailure::none;  // what it was, the last time
+  // The hand's turns about its approach axis in the order of the tries. A hand that is tilted to the panel comes nearest to it with its broad side: from 45
+  // degrees on it was clear wherever it was tried. 80 leave room within a wrist of a quarter turn.
+  static constexpr std::array rolls_rad{0.0, 1.4, -1.4};
+  std::size_t roll_ = 0;                         // the one that this try takes
+  std::array<bool, rolls_rad.size()> barred_{};  // those in whose way something was, in this task
+  StepFailure barrier_ = StepFailure::none;      // what it was, the last time
   bool pressed_ = false;
   bool learned_under_way_ = false;
   bool pushed_under_way_ = false;            // what was learned there is no friction

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "host_sim/judge/joint_motions.hpp"
 #include "host_sim/judge/report_deadline.hpp"
 #include "shared/messages/joint_names.hpp"
 
@@ -37,7 +38,12 @@ constexpr auto all_joints = static_cast<std::uint8_t>((1U << joint_count) - 1);
 class Judge {
  public:
   Judge(const Seen& seen, const Situation& situation, const Ending& ending, const SafetyFigures& figures)
-      : moments_(seen.moments), seen_(seen), situation_(situation), ending_(ending), figures_(figures) {}
+      : moments_(seen.moments),
+        motions_(seen.moments, situation, figures),
+        seen_(seen),
+        situation_(situation),
+        ending_(ending),
+        figures_(figures) {}
 
   Verdict verdict() {
     forces();
@@ -224,93 +230,18 @@ class Judge {
       // A drive brakes from the SYNC on that follows the order: until then it does what it was told before.
       double speed = 0;
       for (std::size_t i = at; i < std::min(at + takes_effect_ms, moments_.size()); ++i)
-        speed = std::max({speed, double(moments_[i].speed_rad_s[joint]), motor_speed_rad_s(i, joint)});
+        speed = std::max({speed, double(moments_[i].speed_rad_s[joint]), motions_.motor_speed_rad_s(i, joint)});
       // A drive that cannot be reached stops when it misses the master; one that loses its process data when NMT tells it.
       const double late_s = (cut & bit) != 0 ? figures_.self_stop_s : (untold & bit) != 0 ? figures_.unheeded_stop_s : 0;
       const double allowed_s = speed / situation_.deceleration_rad_s2[joint] + figures_.settling_s + late_s;
       const double unwound_s = from_s + allowed_s + figures_.unwinding_s;
-      const double moved_s = last_s(moments_, from_s, [&](const Moment& m) { return joint_moves(m, joint, unwound_s); });
+      const double moved_s = last_s(moments_, from_s, [&](const Moment& m) { return motions_.moves(m, joint, unwound_s); });
       stood_s_[joint] = moved_s;
       standing_s = std::max(standing_s, moved_s);
       if (moved_s - from_s > allowed_s)
         wrong(std::string(joint_names[joint]) + formatted(" moves %.2f s after the stop, %.2f s are allowed", moved_s - from_s, allowed_s));
     }
     verdict_.standing_s = standing_s - from_s;
-  }
-
-  // A joint whose motor stands may be pulled through its gear's play, or unwind it, as by a bar in the jaw: for a time, and by what the gear gives. Who is
-  // pushed winds it up by as much as the push.
-  bool joint_moves(const Moment& moment, std::size_t joint, double unwound_s) const {
-    if (motor_moves(moment, joint) && !settles_without_power(moment, joint) && !pushed_without_power(moment, joint)) return true;
-    if (moment.speed_rad_s[joint] < figures_.standing_rad_s || pushed_at(moment) ||
-        !travels_in(moment, quiver_ms, &Moment::angle_rad, joint))
-      return false;
-    if (std::abs(moment.angle_rad[joint] - moment.motor_rad[joint]) > situation_.gear_gives_rad[joint]) return true;
-    if (time_s(moment) <= unwound_s) return false;
-    // Bodies that press on each other quiver where they are.
-    const double stood_rad = moments_[std::min(static_cast<std::size_t>(unwound_s / ms), moments_.size() - 1)].angle_rad[joint];
-    return std::abs(moment.angle_rad[joint] - stood_rad) > figures_.quivers_rad;
-  }
-
-  double time_s(const Moment& moment) const { return static_cast<double>(&moment - moments_.data()) * ms; }
-
-  // Bodies that press on each other quiver to and fro, by less than 0.4 mrad.
-  static constexpr std::ptrdiff_t quiver_ms = 10;
-
-  // By more than what stands, in so many milliseconds to either side of it.
-  bool travels_in(const Moment& moment, std::ptrdiff_t around_ms, const std::array<float, joint_count> Moment::*rad,
-                  std::size_t joint) const {
-    const std::ptrdiff_t index = &moment - moments_.data(), size = std::ssize(moments_);
-    const auto by_angle = [&](const Moment& a, const Moment& b) { return (a.*rad)[joint] < (b.*rad)[joint]; };
-    const auto [low, high] = std::minmax_element(moments_.begin() + std::max<std::ptrdiff_t>(0, index - around_ms),
-                                                 moments_.begin() + std::min(size, index + around_ms + 1), by_angle);
-    return ((*high).*rad)[joint] - ((*low).*rad)[joint] >= figures_.standing_rad_s * 2 * static_cast<double>(around_ms) * ms;
-  }
-
-  static constexpr std::ptrdiff_t settling_ms = 50;
-
-  // A screw that stands under a load settles when its drive lets go of it: at that moment, and by no more than its gear gives.
-  bool settles_without_power(const Moment& moment, std::size_t joint) const {
-    constexpr std::ptrdiff_t seen_before_ms = 10;
-    const std::ptrdiff_t index = &moment - moments_.data(), size = std::ssize(moments_);
-    const std::size_t bit = std::size_t{1} << joint;
-    for (auto t = std::max<std::ptrdiff_t>(1, index - settling_ms); t < std::min(size, index + seen_before_ms + 1); ++t) {
-      const Moment &before = moments_[t - 1], &after = moments_[t];
-      if ((before.power & bit) == 0 || (after.power & bit) != 0) continue;
-      return stood_before(before, joint) && std::abs(moment.motor_rad[joint] - before.motor_rad[joint]) <= situation_.gear_gives_rad[joint];
-    }
-    return false;
-  }
-
-  // What has no power keeps nobody from turning it a little: a screw that stood, and has settled, gives way under a push, by no more than bodies quiver.
-  bool pushed_without_power(const Moment& moment, std::size_t joint) const {
-    const std::size_t bit = std::size_t{1} << joint;
-    if ((moment.power & bit) != 0 || !pushed_at(moment)) return false;
-    const Moment* off = &moment;
-    while (off != moments_.data() && ((off - 1)->power & bit) == 0) --off;
-    const Moment* settled = off + std::min<std::ptrdiff_t>(settling_ms, &moment - off);
-    return stood_before(*off, joint) && std::abs(moment.motor_rad[joint] - settled->motor_rad[joint]) <= figures_.quivers_rad;
-  }
-
-  bool stood_before(const Moment& moment, std::size_t joint) const {
-    constexpr std::ptrdiff_t stood_ms = 20;
-    const Moment& earlier = moments_[static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, &moment - moments_.data() - stood_ms))];
-    return std::abs(moment.motor_rad[joint] - earlier.motor_rad[joint]) < figures_.standing_rad_s * stood_ms * ms;
-  }
-
-  // A motor that runs through its gear's play is faster than its joint, and it is what brakes.
-  double motor_speed_rad_s(std::size_t index, std::size_t joint) const {
-    constexpr std::size_t over_ms = 10;
-    if (index < over_ms) return 0;
-    return std::abs(double(moments_[index].motor_rad[joint]) - double(moments_[index - over_ms].motor_rad[joint])) / (over_ms * ms);
-  }
-
-  bool motor_moves(const Moment& moment, std::size_t joint) const { return travels_in(moment, 1, &Moment::motor_rad, joint); }
-
-  // The obstacle is there, and the arm touches it, or something else.
-  bool pushed_at(const Moment& moment) const {
-    const bool since = has([&](const Cause& cause) { return cause.rule->kind == "obstacle" && begins_s(cause) <= time_s(moment); });
-    return since && moment.force_n > 0;
   }
 
   void loses_power(double from_s, bool halts) {
@@ -357,7 +288,7 @@ class Judge {
     for (std::size_t joint = 0; joint < joint_count; ++joint) {
       if ((joints >> joint & 1U) != 0) stood_s = std::max(stood_s, stood_s_[joint]);
     }
-    const double swung_s = last_s(moments_, from_s, [this, joints](const Moment& m) { return m.power != 0 && swings(m, joints); });
+    const double swung_s = last_s(moments_, from_s, [this, joints](const Moment& m) { return m.power != 0 && motions_.swings(m, joints); });
     return std::clamp(swung_s, stood_s, stood_s + figures_.settling_s);
   }
 
@@ -384,14 +315,6 @@ class Judge {
     const double deceleration_rad_s2 = situation_.deceleration_rad_s2[joint];
     speed += deceleration_rad_s2 * std::max(0.0, speed_over_s - heard_s);
     return std::max(0.0, speed - figures_.standing_rad_s) / deceleration_rad_s2;
-  }
-
-  bool swings(const Moment& moment, std::uint8_t joints) const {
-    for (std::size_t joint = 0; joint < joint_count; ++joint) {
-      const bool fast = (joints >> joint & 1U) != 0 && moment.speed_rad_s[joint] >= figures_.standing_rad_s;
-      if (fast && travels_in(moment, quiver_ms, &Moment::angle_rad, joint)) return true;
-    }
-    return false;
   }
 
   bool runs_at(double t_s) const {
@@ -428,10 +351,10 @@ class Judge {
         others_are_enabled ? joints_that([](const Cause& cause) { return cause.rule->kind == "runaway"; }) : std::uint8_t{0};
     for (std::size_t joint = 0; joint < joint_count; ++joint) {
       // Without power the joints settle in their gears.
-      const auto moves = [&](const Moment& m) { return m.power != 0 && joint_moves(m, joint, 0); };
+      const auto moves = [&](const Moment& m) { return m.power != 0 && motions_.moves(m, joint, 0); };
       const double moved_s = last_s(moments_, 0, moves);
       if (moved_s == 0) continue;
-      const double since_s = time_s(*std::find_if(moments_.begin(), moments_.end(), moves));
+      const double since_s = motions_.time_s(*std::find_if(moments_.begin(), moments_.end(), moves));
       // It was enabled while the fault was still on its way to the core.
       if (ends_s && since_s < *ends_s && moved_s <= *ends_s + figures_.settling_s) continue;
       if ((runs_off >> joint & 1u) != 0 && moved_s - since_s <= figures_.off_after_stop_s) continue;
@@ -447,10 +370,10 @@ class Judge {
     constexpr std::size_t tail = 200;  // ms
     const std::size_t from = moments_.size() > tail ? moments_.size() - tail : 0;
     // What waits for orders has done the last one.
-    if (!ending_.ended && !must_end && travels(from)) wrong("the arm moves and no order moves it");
+    if (!ending_.ended && !must_end && motions_.travels(from)) wrong("the arm moves and no order moves it");
     if (!ending_.ended) return;
     const bool powered = std::any_of(moments_.begin() + std::ptrdiff_t(from), moments_.end(), [](const Moment& m) { return m.power != 0; });
-    if (travels(from) && !taken_over()) wrong("the arm moves after the end");
+    if (motions_.travels(from) && !taken_over()) wrong("the arm moves after the end");
     if (powered && !ending_.holds && !taken_over()) wrong("power is on after the end");
     const bool for_nothing = ending_.holds && !situation_.over && touches_nothing();
     verdict_.stood_anyway = for_nothing && stood_where_it_was_to_stay();
@@ -471,17 +394,6 @@ class Judge {
     return told && double(told->second) - double(told->first) <= 2 * situation_.units_per_count[joint];
   }
 
-  // From a moment to the last one, by more than a joint that stands: bodies that press on each other quiver where they are.
-  bool travels(std::size_t from) const {
-    const double least_rad = figures_.standing_rad_s * static_cast<double>(moments_.size() - from) * ms;
-    for (std::size_t joint = 0; joint < joint_count; ++joint) {
-      const auto by_angle = [joint](const Moment& a, const Moment& b) { return a.angle_rad[joint] < b.angle_rad[joint]; };
-      const auto [low, high] = std::minmax_element(moments_.begin() + std::ptrdiff_t(from), moments_.end(), by_angle);
-      if (high->angle_rad[joint] - low->angle_rad[joint] > least_rad) return true;
-    }
-    return false;
-  }
-
   void the_account() {
     verdict_.false_success = ending_.success && !ending_.contradicted.empty();
     if (verdict_.false_success) wrong("false success: " + ending_.contradicted);
@@ -500,6 +412,7 @@ class Judge {
   }
 
   const std::vector<Moment>& moments_;
+  const JointMotions motions_;
   const Seen& seen_;
   const Situation& situation_;
   const Ending& ending_;
