@@ -28,8 +28,7 @@ double JointMotions::motor_speed_rad_s(std::size_t index, std::size_t joint) con
 
 bool JointMotions::moves(const Moment& moment, std::size_t joint, double unwound_s) const {
   if (motor_moves(moment, joint) && !settles_without_power(moment, joint) && !pushed_without_power(moment, joint)) return true;
-  if (moment.speed_rad_s[joint] < figures_.standing_rad_s || pushed_at(moment) ||
-      !travels_in(moment, quiver_ms, &Moment::angle_rad, joint))
+  if (moment.speed_rad_s[joint] < figures_.standing_rad_s || pushed_at(moment) || !travels_in(moment, quiver_ms, &Moment::angle_rad, joint))
     return false;
   if (std::abs(moment.angle_rad[joint] - moment.motor_rad[joint]) > situation_.gear_gives_rad[joint]) return true;
   if (time_s(moment) <= unwound_s) return false;

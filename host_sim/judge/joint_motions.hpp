@@ -29,7 +29,8 @@ class JointMotions {
 
  private:
   // By more than what stands, in so many milliseconds to either side of it.
-  bool travels_in(const Moment& moment, std::ptrdiff_t around_ms, const std::array<float, joint_count> Moment::*rad, std::size_t joint) const;
+  bool travels_in(const Moment& moment, std::ptrdiff_t around_ms, const std::array<float, joint_count> Moment::*rad,
+                  std::size_t joint) const;
   bool motor_moves(const Moment& moment, std::size_t joint) const;
   // A screw that stands under a load settles when its drive lets go of it: at that moment, and by no more than its gear gives.
   bool settles_without_power(const Moment& moment, std::size_t joint) const;
