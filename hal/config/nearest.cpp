@@ -30,18 +30,22 @@ int edit_distance(std::string_view a, std::string_view b) {
   return last[b.size()];
 }
 
-std::string suggestion(std::string_view word, const std::vector<std::string>& known) {
-  const std::string* nearest = nullptr;
+const std::string* nearest(std::string_view word, const std::vector<std::string>& known) {
+  const std::string* best = nullptr;
   int fewest = 0;
   for (const std::string& name : known) {
     const int edits = edit_distance(word, name);
-    if (nearest == nullptr || edits < fewest) {
-      nearest = &name;
+    if (best == nullptr || edits < fewest) {
+      best = &name;
       fewest = edits;
     }
   }
-  if (nearest == nullptr || fewest > std::max(2, static_cast<int>(nearest->size()) / 3)) return "";
-  return "; did you mean '" + *nearest + "'?";
+  return best == nullptr || fewest > std::max(2, static_cast<int>(best->size()) / 3) ? nullptr : best;
+}
+
+std::string suggestion(std::string_view word, const std::vector<std::string>& known) {
+  const std::string* near = nearest(word, known);
+  return near == nullptr ? "" : "; did you mean '" + *near + "'?";
 }
 
 namespace {

@@ -11,8 +11,9 @@ namespace lf::config {
 // O(|a| |b|).
 int edit_distance(std::string_view a, std::string_view b);
 
-// "; did you mean 'x'?" for the nearest of `known` if it is near enough to be meant (a third of its letters, at least two), otherwise "".
-// Equal distances go to the one that comes first.
+// The nearest of `known` if it is near enough to be meant (a third of its letters, at least two), otherwise none. Equal distances go to the one that comes first.
+const std::string* nearest(std::string_view word, const std::vector<std::string>& known);
+// "; did you mean 'x'?" for it, or "".
 std::string suggestion(std::string_view word, const std::vector<std::string>& known);
 
 // Throws InputError, beginning with `option`, for the first of `given` that is not among `known`: with the nearest name, or with all of a few.

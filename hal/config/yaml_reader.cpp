@@ -302,7 +302,7 @@ std::string suggest_path(const std::string& path, const std::vector<Key>& table)
   std::vector<std::string> names;
   names.reserve(here.size());
   for (const std::string& candidate : here) names.push_back(last_name(candidate));
-  if (std::string near = suggestion(last_name(path), names); !near.empty()) return near;
+  if (const std::string* near = nearest(last_name(path), names)) return "; did you mean '" + prefix + *near + "'?";
   if (!elsewhere.empty()) return "; did you mean '" + elsewhere.front() + "'?";
   return "";
 }

@@ -157,6 +157,8 @@ int range_campaign(const CampaignOptions& options) {
   ProgressLine progress(missing.size(), "row");
   std::map<std::string, const RangeRow*> by_name;
   Copies copies(jobs_of(options), [&](const Copies::Ended& ended) {
+    // A run that Ctrl-C broke off came to nothing: the next call flies it.
+    if (interrupted() && ended.line.empty()) return;
     const RangeRow& row = *by_name.at(ended.name);
     RangeResult result = parse(ended.line).value_or(RangeResult{row.name, row.key, row.set.front(), "unsafe", ended.failure});
     lines.append(line_of(result));
@@ -169,7 +171,10 @@ int range_campaign(const CampaignOptions& options) {
   for (const RangeRow* row : missing) {
     if (interrupted()) break;
     by_name[row->name] = row;
-    copies.start(row->name, [&] { return line_of(fly(options, *row)); });
+    copies.start(row->name, [&] {
+      const RangeResult result = fly(options, *row);
+      return interrupted() ? std::string() : line_of(result);
+    });
   }
   copies.finish();
   progress.clear();

@@ -65,7 +65,7 @@ TEST_F(BadInput, AreADocumentWhereJsonWasAskedFor) {
 
 TEST_F(BadInput, ScenariosThatAreNotWhatTheyShouldBe) {
   file("misspelt.yaml", "valve:\n  fricton_nm: 2\n");
-  expect_refused("run ./misspelt.yaml", "./misspelt.yaml:2: unknown key 'valve.fricton_nm'; did you mean 'friction_nm'?");
+  expect_refused("run ./misspelt.yaml", "./misspelt.yaml:2: unknown key 'valve.fricton_nm'; did you mean 'valve.friction_nm'?");
   expect_refused("run defualt", "no scenario 'defualt'; did you mean 'default'?");
   expect_refused("run ./missing.yaml", "./missing.yaml: No such file");
   expect_refused("run --set valve.start_deg=left", "'valve.start_deg' takes a number");

@@ -359,6 +359,19 @@ TEST_F(Commands, AFaultCampaignGoesOnWhereItStopped) {
   EXPECT_EQ(run("campaign default --faults --shard 3/2").status, 2);
 }
 
+// The run that was broken off was kept as one that failed, and never flown again.
+TEST_F(Commands, CtrlCLeavesNoRowOfARangeCampaignUnflown) {
+  const std::string arguments = "campaign default --ranges --draws 1 --many 0 --kinds drives.slew.node --jobs 1 --out m --json";
+  const Said said = interrupt(arguments, "m/rows.jsonl", 10);
+  EXPECT_EQ(said.status, 130) << said.err;
+  EXPECT_EQ(Json::parse(said.out)["unnamed"], 0) << said.err;
+  EXPECT_EQ(text_of(folder() / "m" / "rows.jsonl").find("interrupted"), std::string::npos);
+  EXPECT_NE(text_of(folder() / "m" / "junit.xml").find("not flown: the campaign was interrupted"), std::string::npos);
+  const Said again = run(arguments);
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_EQ(Json::parse(again.out)["rows"], 3);
+}
+
 TEST_F(Commands, CtrlCStopsACampaignAndItsRuns) {
   const Said said =
       interrupt("campaign turn_only --seeds 1-40 --jobs 2 --set time_limit_s=600 --out many", "many/1.writing/can0.log", 1000);

@@ -1,7 +1,5 @@
 // Detector and refiner together over the range of beams, waters, sensors and speckle: their figures, on pictures that a camera forms. Nothing is told of the stripe, the lens, the
 // water or the exposures. Some minutes under sanitizers: a program of its own.
-#include "firmware/scan/peak_refiner.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "firmware/scan/peak_refiner.hpp"
 #include "firmware/scan/stripe_finder.hpp"
 #include "tests/unit/scan/formed_stripe.hpp"
 #include "tests/unit/scan/refined_pictures.hpp"

@@ -72,7 +72,7 @@ class Refused : public ::testing::TestWithParam<BadText> {};
 TEST_P(Refused, WithTheLineAndTheCause) { EXPECT_THAT(complaint(GetParam().text), StartsWith(GetParam().complaint)); }
 
 const BadText bad_texts[] = {
-    {"MisspeltKey", "valve:\n  start_dge: 3\n", ":2: unknown key 'valve.start_dge'; did you mean 'start_deg'?"},
+    {"MisspeltKey", "valve:\n  start_dge: 3\n", ":2: unknown key 'valve.start_dge'; did you mean 'valve.start_deg'?"},
     {"MisspeltSection", "\nvavle:\n  start_deg: 3\n", ":2: unknown key 'vavle'; did you mean 'valve'?"},
     {"KeyInTheWrongSection", "water:\n  friction_nm: 3\n", ":2: unknown key 'water.friction_nm'; did you mean 'valve.friction_nm'?"},
     {"ForeignKey", "hydraulics: 3\n", ":1: unknown key 'hydraulics'"},
@@ -258,7 +258,8 @@ TEST(Override, TheLastOneWinsAndListsAreReplacedWhole) {
 }
 
 TEST(Override, IsCheckedAsTheFileIs) {
-  EXPECT_EQ(complaint("", {"valve.strat_deg=10"}), "--set valve.strat_deg=10: unknown key 'valve.strat_deg'; did you mean 'start_deg'?");
+  EXPECT_EQ(complaint("", {"valve.strat_deg=10"}),
+            "--set valve.strat_deg=10: unknown key 'valve.strat_deg'; did you mean 'valve.start_deg'?");
   EXPECT_EQ(complaint("", {"valve.start_deg"}), "--set valve.start_deg: needs the form path.to.key=value");
   EXPECT_EQ(complaint("", {"=3"}), "--set =3: needs the form path.to.key=value");
   EXPECT_THAT(complaint("", {"valve.friction_nm=nan"}), HasSubstr("must be a finite number"));

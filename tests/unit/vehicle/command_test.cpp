@@ -112,7 +112,7 @@ TEST_F(Daemon, PrintsAFilesValuesBesideTheDefaults) {
   const Said bad = run("--config bad.yaml --print-config");
   EXPECT_EQ(bad.status, 2);
   EXPECT_EQ(bad.out, "");
-  EXPECT_THAT(bad.err, HasSubstr("bad.yaml:1: unknown key 'realtime.priorty'; did you mean 'priority'?"));
+  EXPECT_THAT(bad.err, HasSubstr("bad.yaml:1: unknown key 'realtime.priorty'; did you mean 'realtime.priority'?"));
 }
 
 TEST_F(Daemon, AMisspeltOptionOrOrderIsAnsweredWithTheNearest) {
