@@ -72,7 +72,8 @@ void add_sight(Keys& all, Scenario& s) {
       key("laser.waist_sigma_m", "m", 0.0001, 0.02, &s.laser.waist_sigma_m, "standard deviation of its cross-section at the emitter"));
   all.push_back(key("laser.speckle", "", 0, 0.5, &s.laser.speckle, "standard deviation of a pixel's laser light over its mean"));
   all.push_back(key("laser.waist_at_m", "m", -0.5, 0.5, &s.laser.waist_at_m, "range at which the line is narrowest"));
-  all.push_back(key("laser.lobe_share", "", 0, 0.1, &s.laser.lobe_share, "height of a second line beside the first, over the first's"));
+  all.push_back(key("laser.lobe_share", "", 0, 0.1, &s.laser.lobe_share,
+                    "height of a second line beside the first, over the first's; the laser's plane is the middle of their light"));
   all.push_back(
       key("laser.lobe_sigmas", "", 0, 4, &s.laser.lobe_sigmas, "how far the second line lies from the first, in its standard deviations"));
   all.push_back(key("laser.lobe_ahead", "", 0, 0, &s.laser.lobe_ahead, "whether it lies on the side of the laser's x axis"));
