@@ -35,10 +35,15 @@ const TruePiece* PeakScore::nearest(const std::vector<TruePiece>& pieces, double
 }
 
 bool PeakScore::of_a_piece_beside(const StripeTruth& truth, std::size_t column, double v) const {
-  if (!truth.columns[column].empty()) return false;
+  float own_grey = 0;
+  for (const TruePiece& piece : truth.columns[column]) {
+    if (!piece.part) return false;
+    own_grey = std::max(own_grey, piece.grey);
+  }
   const auto from = static_cast<std::int64_t>(column) - beside_px, to = static_cast<std::int64_t>(column) + beside_px;
   for (std::int64_t u = std::max<std::int64_t>(from, 0); u <= std::min<std::int64_t>(to, std::ssize(truth.columns) - 1); ++u) {
-    if (nearest(truth.columns[static_cast<std::size_t>(u)], v) != nullptr) return true;
+    const TruePiece* beside = nearest(truth.columns[static_cast<std::size_t>(u)], v);
+    if (beside != nullptr && beside->grey > own_grey) return true;
   }
   return false;
 }

@@ -16,7 +16,7 @@ class PeakScore {
   static constexpr float visible_grey = 10.0f;
   // Farther off than this from each piece of the stripe a peak is another thing.
   static constexpr double match_px = 2.0;
-  // A lens lays a piece's light into the columns beside it: a peak there is of that piece, though its own column has none.
+  // A lens lays a piece's light into the columns beside it: a peak there is of that piece, though its own column has none, or but a fainter flank of another.
   static constexpr std::int32_t beside_px = 2;
   // The bound is compared with peaks that stand so many standard deviations of the difference's noise over it.
   static constexpr double clear_sigmas = 5.0;

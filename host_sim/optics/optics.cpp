@@ -134,8 +134,9 @@ struct Optics::Impl {
   void find_parts(const PixelStore& pixels, const std::vector<std::uint8_t>& line_packets, const Camera& camera, const Tiles& tiles,
                   float light, Frame& frame) {
     if (!std::all_of(patterns.begin(), patterns.end(), [](const auto& pattern) { return !pattern.has_value(); })) return;
-    // Beyond 4.5 standard deviations a piece's light is under a ten-thousandth of its height: paint does not lift that over `least_grey`.
-    constexpr float least_grey = 3, reach_sigmas = 4.5f, least_reach_px = 4;
+    // Beyond 4.5 standard deviations a piece's light is under a ten-thousandth of its height: paint does not lift that over `least_grey`. A sheet that grazes a
+    // face is wide there, and says nothing of the light on another face: nearer than that is only what a peak could be matched with.
+    constexpr float least_grey = 3, reach_sigmas = 4.5f, least_reach_px = 4, on_any_face_px = 2;
     std::vector<std::vector<StripePiece>> centres(static_cast<std::size_t>(frame.width));
     for (const StripePiece& piece : frame.pieces) centres[static_cast<std::size_t>(piece.u)].push_back(piece);
     const std::size_t packets_a_row = pixels.stride / lane_count;
@@ -153,7 +154,10 @@ struct Optics::Impl {
         const float grey = here * light * camera.sensor.vignetting(u, v);
         const std::vector<StripePiece>& near = centres[static_cast<std::size_t>(u)];
         const auto is_near = [&](const StripePiece& piece) {
-          return std::abs(piece.v - static_cast<float>(v)) <= std::max(reach_sigmas * piece.sigma_px, least_reach_px);
+          const float apart_px = std::abs(piece.v - static_cast<float>(v));
+          if (apart_px <= on_any_face_px) return true;
+          return apart_px <= std::max(reach_sigmas * piece.sigma_px, least_reach_px) &&
+                 pixels.on_one_face(at, pixels.index(u, static_cast<int>(std::lround(piece.v))));
         };
         if (grey >= least_grey && std::none_of(near.begin(), near.end(), is_near))
           parts.push_back({0, u, static_cast<float>(v), grey, 0, true});

@@ -87,6 +87,11 @@ LaneMask PixelStore::edge_between(std::size_t a, std::size_t b) const {
   return (own_shape != other_shape) | ((own_shape >= 0) & ((shadow != 0) | bend));
 }
 
+bool PixelStore::on_one_face(std::size_t a, std::size_t b) const {
+  const float cosine = normal_x[a] * normal_x[b] + normal_y[a] * normal_y[b] + normal_z[a] * normal_z[b];
+  return shape[a] == shape[b] && cosine >= crease_cosine;
+}
+
 LaneMask PixelStore::edges(int u, int v) const {
   const std::size_t i = index(u, v);
   const LaneMask column = LaneMask{0, 1, 2, 3, 4, 5, 6, 7} + u;

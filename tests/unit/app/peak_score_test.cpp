@@ -100,6 +100,22 @@ TEST(PeakScore, APartOfAStripeIsNoFalsePeakAndNoneThatHasToBeFound) {
   EXPECT_EQ(score.false_peaks(), 1u) << "3 px off that light";
 }
 
+// Three of four false peaks of the default mission were such: the light beside a stripe's end, in a column that has a faint flank of another surface.
+TEST(PeakScore, AFaintFlankLeavesAPeakToTheBrighterStripeBesideIt) {
+  const auto false_peaks = [](float flank_grey, std::int32_t beside_column, float peak_v) {
+    optics::StripePiece flank{0, 1, 37, flank_grey};
+    flank.part = true;
+    PeakScore score;
+    score.add(stripe_truth(frame_of(5, 100, {flank, {0, beside_column, 40, 100}})), Peaks{{1, peak_v}});
+    EXPECT_EQ(score.found(), 0u);
+    return score.false_peaks();
+  };
+  EXPECT_EQ(false_peaks(6, 3, 40.5f), 0u);
+  EXPECT_EQ(false_peaks(6, 3, 42.5f), 1u) << "not at that stripe's height";
+  EXPECT_EQ(false_peaks(6, 4, 40.5f), 1u) << "three columns off no light of it is left";
+  EXPECT_EQ(false_peaks(120, 3, 40.5f), 1u) << "the flank is the brighter light";
+}
+
 TEST(PeakScore, PeaksAtAStepOfDepthAreScoredApartFromThoseOnASmoothSurface) {
   optics::Frame frame = frame_of(60, 60, {});
   frame.depth_m.resize(3600);

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
+#include <set>
 #include <vector>
 
 #include "tests/unit/optics/optics_scenes.hpp"
@@ -162,6 +164,37 @@ TEST(StripeLabels, AFlankAtAPlatesEndIsAPartWhereThePictureIsBrightest) {
       EXPECT_NEAR(of_column[static_cast<std::size_t>(u)]->v, static_cast<double>(first + std::distance(shape.begin(), brightest)), 1) << u;
     }
   }
+}
+
+// The sheet grazes the underside of a box by two degrees, where its stripe is tens of pixels wide; past the box's end its flank falls on the plate behind, within the reach of that width.
+TEST(StripeLabels, AFlankBesideAStripeOnAGrazedFaceIsAPart) {
+  Labelled s(1.0, Vec3(distance_m, 0, 0.05));
+  const Vec3 toward = (Vec3(distance_m, 0, 0.05) - s.from).normalized(), middle = s.from + 0.664 * toward;
+  const double slope = std::atan2(toward.z(), toward.x()) + 2 * pi / 180;
+  const Vec3 along(std::cos(slope), 0, std::sin(slope)), outward(-std::sin(slope), 0, std::cos(slope)), end = middle + 0.03 * along;
+  scene::Shape box = make_shape(scene::ShapeKind::box, {0.24, 2, 0.04}, end - 0.12 * along - 0.02 * outward, 0.5f);
+  box.body_from_shape.linear().col(0) = along;
+  box.body_from_shape.linear().col(1) = Vec3::UnitY();
+  box.body_from_shape.linear().col(2) = outward;
+  body(s.config.scene, scene::BodyId::panel).shapes.push_back(box);
+  s.config.lasers[0].power_w = 0.3;
+  const CameraIntrinsics k;
+  const double on_box_px = k.cy + k.fy * middle.z() / middle.x();
+  const double on_plate_px = k.cy + k.fy * (s.from.z() + (end - s.from).z() * (distance_m - s.from.x()) / (end - s.from).x()) / distance_m;
+  std::set<std::int32_t> wide, parts;  // columns
+  for (const StripePiece& piece : s.render(true).pieces) {
+    if (std::abs(piece.u - 320) > 60) continue;
+    if (piece.part) {
+      EXPECT_NEAR(piece.v, on_plate_px, 1.5) << piece.u;
+      parts.insert(piece.u);
+    } else {
+      EXPECT_NEAR(piece.v, on_box_px, 0.5) << piece.u;
+      EXPECT_GT(4.5 * piece.sigma_px, on_plate_px - on_box_px) << "or it is out of reach anyway";
+      wide.insert(piece.u);
+    }
+  }
+  EXPECT_EQ(wide.size(), 121u);
+  EXPECT_EQ(parts.size(), 121u);
 }
 
 // Too faint a flank is none: three grey levels are asked for.
