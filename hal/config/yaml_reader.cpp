@@ -292,7 +292,7 @@ YAML::Node parse_yaml(const std::string& text, const Source& source) {
   }
 }
 
-std::string suggest_path(const std::string& path, const std::vector<Key>& table) {
+std::string suggest_path(const std::string& path, const std::vector<Key>& table, const std::string& shown) {
   const std::string prefix = path.substr(0, path.rfind('.') == std::string::npos ? 0 : path.rfind('.') + 1);
   std::vector<std::string> here, elsewhere;
   for (const Key& key : table) {
@@ -302,8 +302,8 @@ std::string suggest_path(const std::string& path, const std::vector<Key>& table)
   std::vector<std::string> names;
   names.reserve(here.size());
   for (const std::string& candidate : here) names.push_back(last_name(candidate));
-  if (const std::string* near = nearest(last_name(path), names)) return "; did you mean '" + prefix + *near + "'?";
-  if (!elsewhere.empty()) return "; did you mean '" + elsewhere.front() + "'?";
+  if (const std::string* near = nearest(last_name(path), names)) return "; did you mean '" + shown + prefix + *near + "'?";
+  if (!elsewhere.empty()) return "; did you mean '" + shown + elsewhere.front() + "'?";
   return "";
 }
 
@@ -321,7 +321,7 @@ void read_entry(const YAML::Node& name, const YAML::Node& value, const std::stri
     return read_value(value, shown + path, *exact, source);
   }
   const bool section = std::any_of(table.begin(), table.end(), [&](const Key& key) { return key.path.starts_with(path + "."); });
-  if (!section) source.refuse(name.Mark(), "unknown key '" + shown + path + "'" + suggest_path(path, table));
+  if (!section) source.refuse(name.Mark(), "unknown key '" + shown + path + "'" + suggest_path(path, table, shown));
   if (value.IsNull()) return;
   if (!value.IsMap()) source.refuse(value.Mark(), "'" + shown + path + "' takes a group of keys, not " + shape_of(value));
   read_entries(value, path + ".", shown, table, source, seen);

@@ -43,7 +43,7 @@ void read_map(const YAML::Node& node, const std::string& prefix, const std::stri
 // Reads one value.
 void read_value(const YAML::Node& node, const std::string& shown_path, const Key& key, const Source& source);
 
-// ", did you mean" for a path that the table has not: among the names at its level first, then among all paths that end like it. A whole path, as --set takes it.
-std::string suggest_path(const std::string& path, const std::vector<Key>& table);
+// ", did you mean" for a path that the table has not: among the names at its level first, then among all paths that end like it. The whole path, after `shown`.
+std::string suggest_path(const std::string& path, const std::vector<Key>& table, const std::string& shown = "");
 
 }  // namespace lf::config

@@ -106,6 +106,8 @@ std::string cell(std::string text) {
   return text;
 }
 
+constexpr const char* broken_off = "broken off\n";  // a copy's line, by Ctrl-C or a signal of its own
+
 using Counts = std::map<std::string, std::size_t>;
 
 std::string markdown_of(const std::vector<RangeResult>& results) {
@@ -144,7 +146,9 @@ int range_campaign(const CampaignOptions& options) {
   std::map<std::string, RangeResult> results;
   std::ifstream kept(file);
   for (std::string line; std::getline(kept, line);) {
-    if (std::optional<RangeResult> result = parse(line)) results[result->name] = *result;
+    const std::optional<RangeResult> result = parse(line);
+    // Versions until 5497bf1 kept a run that Ctrl-C had broken off.
+    if (result && !result->reason.ends_with(": interrupted")) results[result->name] = *result;
   }
   std::vector<const RangeRow*> missing;
   for (const RangeRow& row : rows) {
@@ -157,8 +161,7 @@ int range_campaign(const CampaignOptions& options) {
   ProgressLine progress(missing.size(), "row");
   std::map<std::string, const RangeRow*> by_name;
   Copies copies(jobs_of(options), [&](const Copies::Ended& ended) {
-    // A run that Ctrl-C broke off came to nothing: the next call flies it.
-    if (interrupted() && ended.line.empty()) return;
+    if (ended.line == broken_off) return;  // the next call flies it
     const RangeRow& row = *by_name.at(ended.name);
     RangeResult result = parse(ended.line).value_or(RangeResult{row.name, row.key, row.set.front(), "unsafe", ended.failure});
     lines.append(line_of(result));
@@ -173,7 +176,7 @@ int range_campaign(const CampaignOptions& options) {
     by_name[row->name] = row;
     copies.start(row->name, [&] {
       const RangeResult result = fly(options, *row);
-      return interrupted() ? std::string() : line_of(result);
+      return interrupted() ? std::string(broken_off) : line_of(result);
     });
   }
   copies.finish();
