@@ -28,8 +28,11 @@ double PeakScore::Squares::rms() const {
 const TruePiece* PeakScore::nearest(const std::vector<TruePiece>& pieces, double v) {
   const TruePiece* nearest = nullptr;
   for (const TruePiece& piece : pieces) {
-    if (!piece.on_another && std::abs(v - double(piece.v)) <= (nearest == nullptr ? match_px : std::abs(v - double(nearest->v))))
-      nearest = &piece;
+    const double apart_px = std::abs(v - double(piece.v));
+    if (piece.on_another || apart_px > match_px) continue;
+    // A part has no centre to err from: it takes no peak from a whole piece.
+    const bool better = nearest == nullptr || (piece.part != nearest->part ? nearest->part : apart_px <= std::abs(v - double(nearest->v)));
+    if (better) nearest = &piece;
   }
   return nearest;
 }
@@ -43,7 +46,9 @@ bool PeakScore::of_a_piece_beside(const StripeTruth& truth, std::size_t column, 
   const auto from = static_cast<std::int64_t>(column) - beside_px, to = static_cast<std::int64_t>(column) + beside_px;
   for (std::int64_t u = std::max<std::int64_t>(from, 0); u <= std::min<std::int64_t>(to, std::ssize(truth.columns) - 1); ++u) {
     const TruePiece* beside = nearest(truth.columns[static_cast<std::size_t>(u)], v);
-    if (beside != nullptr && beside->grey > own_grey) return true;
+    if (beside == nullptr) continue;
+    const auto away = static_cast<std::size_t>(std::abs(u - static_cast<std::int64_t>(column)));
+    if (own_grey == 0 || (!beside->part && light_beside[away] * beside->grey > own_grey)) return true;
   }
   return false;
 }

@@ -135,8 +135,8 @@ struct Optics::Impl {
                   float light, Frame& frame) {
     if (!std::all_of(patterns.begin(), patterns.end(), [](const auto& pattern) { return !pattern.has_value(); })) return;
     // Beyond 4.5 standard deviations a piece's light is under a ten-thousandth of its height: paint does not lift that over `least_grey`. A sheet that grazes a
-    // face is wide there, and says nothing of the light on another face: nearer than that is only what a peak could be matched with.
-    constexpr float least_grey = 3, reach_sigmas = 4.5f, least_reach_px = 4, on_any_face_px = 2;
+    // face is wide there, and says nothing of the light on another plane; near a centre, where a peak could be matched with either, there is no part.
+    constexpr float least_grey = 3, reach_sigmas = 4.5f, least_reach_px = 4;
     std::vector<std::vector<StripePiece>> centres(static_cast<std::size_t>(frame.width));
     for (const StripePiece& piece : frame.pieces) centres[static_cast<std::size_t>(piece.u)].push_back(piece);
     const std::size_t packets_a_row = pixels.stride / lane_count;
@@ -155,9 +155,12 @@ struct Optics::Impl {
         const std::vector<StripePiece>& near = centres[static_cast<std::size_t>(u)];
         const auto is_near = [&](const StripePiece& piece) {
           const float apart_px = std::abs(piece.v - static_cast<float>(v));
-          if (apart_px <= on_any_face_px) return true;
-          return apart_px <= std::max(reach_sigmas * piece.sigma_px, least_reach_px) &&
-                 pixels.on_one_face(at, pixels.index(u, static_cast<int>(std::lround(piece.v))));
+          if (apart_px <= least_reach_px) return true;
+          if (apart_px > reach_sigmas * piece.sigma_px) return false;
+          // A centre at a border may round to the pixel beside, and a little out of the picture.
+          const auto row = [&](float place) { return std::clamp(static_cast<std::int32_t>(place), 0, frame.height - 1); };
+          return pixels.on_one_plane(at, pixels.index(u, row(std::floor(piece.v)))) ||
+                 pixels.on_one_plane(at, pixels.index(u, row(std::ceil(piece.v))));
         };
         if (grey >= least_grey && std::none_of(near.begin(), near.end(), is_near))
           parts.push_back({0, u, static_cast<float>(v), grey, 0, true});

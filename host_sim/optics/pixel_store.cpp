@@ -1,9 +1,13 @@
 #include "host_sim/optics/pixel_store.hpp"
 
+#include <cmath>
+#include <utility>
+
 namespace lf::optics {
 namespace {
 
 constexpr float crease_cosine = 0.97f;  // 14 degrees: beyond the facets of any tessellated curve
+constexpr float plane_step = 0.002f;    // of the inverse depth: 1.4 mm at 0.7 m
 constexpr float depth_step = 0.04f;     // of the depth; a plane seen at 45 degrees changes by 0.003 a pixel
 
 }  // namespace
@@ -87,9 +91,15 @@ LaneMask PixelStore::edge_between(std::size_t a, std::size_t b) const {
   return (own_shape != other_shape) | ((own_shape >= 0) & ((shadow != 0) | bend));
 }
 
-bool PixelStore::on_one_face(std::size_t a, std::size_t b) const {
+bool PixelStore::on_one_plane(std::size_t a, std::size_t b) const {
+  if (a > b) std::swap(a, b);
   const float cosine = normal_x[a] * normal_x[b] + normal_y[a] * normal_y[b] + normal_z[a] * normal_z[b];
-  return shape[a] == shape[b] && cosine >= crease_cosine;
+  if (shape[a] < 0 || shape[b] < 0 || cosine < crease_cosine) return false;
+  const auto inverse = [&](std::size_t i) { return 1 / depth_m[i]; };
+  const auto rows = static_cast<float>((b - a) / stride);
+  // From either end, since the next pixel of one may lie beyond its plane's border.
+  const float at_b = inverse(a) + rows * (inverse(a + stride) - inverse(a)), at_a = inverse(b) + rows * (inverse(b - stride) - inverse(b));
+  return std::abs(at_b - inverse(b)) <= plane_step * inverse(b) || std::abs(at_a - inverse(a)) <= plane_step * inverse(a);
 }
 
 LaneMask PixelStore::edges(int u, int v) const {

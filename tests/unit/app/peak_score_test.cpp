@@ -110,10 +110,31 @@ TEST(PeakScore, AFaintFlankLeavesAPeakToTheBrighterStripeBesideIt) {
     EXPECT_EQ(score.found(), 0u);
     return score.false_peaks();
   };
-  EXPECT_EQ(false_peaks(6, 3, 40.5f), 0u);
-  EXPECT_EQ(false_peaks(6, 3, 42.5f), 1u) << "not at that stripe's height";
-  EXPECT_EQ(false_peaks(6, 4, 40.5f), 1u) << "three columns off no light of it is left";
-  EXPECT_EQ(false_peaks(120, 3, 40.5f), 1u) << "the flank is the brighter light";
+  EXPECT_EQ(false_peaks(4, 3, 42.5f), 1u) << "not at that stripe's height";
+  EXPECT_EQ(false_peaks(4, 4, 40.5f), 1u) << "three columns off no light of it is left";
+  EXPECT_EQ(false_peaks(4, 3, 40.5f), 0u);
+  EXPECT_EQ(false_peaks(6, 3, 40.5f), 1u) << "of the stripe's 100 five are left two columns on";
+  EXPECT_EQ(false_peaks(28, 2, 40.5f), 0u);
+  EXPECT_EQ(false_peaks(60, 2, 40.5f), 1u) << "the flank is the brighter light";
+}
+
+// Two flanks side by side excuse nothing of each other.
+TEST(PeakScore, AFlankBesideAFlankIsNoStripe) {
+  optics::StripePiece flank{0, 1, 37, 6}, beside{0, 2, 40, 100};
+  flank.part = beside.part = true;
+  PeakScore score;
+  score.add(stripe_truth(frame_of(4, 100, {flank, beside})), Peaks{{1, 40.5f}});
+  EXPECT_EQ(score.false_peaks(), 1u);
+}
+
+// A part 1.5 px from a centre: a peak between them errs from the centre.
+TEST(PeakScore, APartTakesNoPeakFromAWholePiece) {
+  optics::StripePiece part{0, 1, 41.5f, 50};
+  part.part = true;
+  PeakScore score;
+  score.add(stripe_truth(frame_of(3, 100, {part, {0, 1, 40, 100}})), Peaks{{1, 41.2f}});
+  EXPECT_NEAR(score.rms_px(), 1.2, 1e-5);
+  EXPECT_EQ(score.found(), 1u);
 }
 
 TEST(PeakScore, PeaksAtAStepOfDepthAreScoredApartFromThoseOnASmoothSurface) {

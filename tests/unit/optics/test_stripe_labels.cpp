@@ -166,7 +166,8 @@ TEST(StripeLabels, AFlankAtAPlatesEndIsAPartWhereThePictureIsBrightest) {
   }
 }
 
-// The sheet grazes the underside of a box by two degrees, where its stripe is tens of pixels wide; past the box's end its flank falls on the plate behind, within the reach of that width.
+// The sheet grazes the underside of a box by two degrees, where its stripe is tens of pixels wide. Past the box's end its flank falls on the plate behind, within the
+// reach of that width.
 TEST(StripeLabels, AFlankBesideAStripeOnAGrazedFaceIsAPart) {
   Labelled s(1.0, Vec3(distance_m, 0, 0.05));
   const Vec3 toward = (Vec3(distance_m, 0, 0.05) - s.from).normalized(), middle = s.from + 0.664 * toward;
