@@ -1,8 +1,10 @@
 // The docked mission with drives of other makes, in their own units, over the simulated bus. Sight is given.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "firmware/arm/actuator.hpp"
 #include "hal/config/event_json.hpp"
@@ -43,36 +45,56 @@ TEST(MixedDrives, FlyWithNodeNumbersAndPolaritiesOfTheirOwn) {
 
 // A drive without an absolute encoder counts from 0 wherever the joint stands, until it homes. Its homing changes its zero by 1.9 rad; what the mission held
 // before, or aimed at, is of the old one.
-TEST(ADriveThatHomesByItsOwnMethod, MovesNoJointBeyondItsHoming) {
-  const auto start_rad = angles_rad(Rig());
-  const auto here_is_home = [&](ControllerConfig& core) {
-    canopen::DriveSetup& elbow = core.network.drives[2];
-    elbow.homing_method = 35;
-    elbow.home_offset_counts = arm::counts_from_rad(Joint::elbow, start_rad[2]);
-  };
-  const auto forgetful = [](hal::SimConfig& truth) { truth.devices.drives[2].absolute_encoder = false; };
+class ADriveThatHomesByItsOwnMethod : public testing::Test {
+ protected:
+  Rig elbow_that_homes_here(const std::vector<std::string>& overrides = {}) const {
+    const auto here_is_home = [this](ControllerConfig& core) {
+      canopen::DriveSetup& elbow = core.network.drives[2];
+      elbow.homing_method = 35;
+      elbow.home_offset_counts = arm::counts_from_rad(Joint::elbow, start_rad_[2]);
+    };
+    const auto forgetful = [](hal::SimConfig& truth) { truth.devices.drives[2].absolute_encoder = false; };
+    return Rig(overrides, 1, here_is_home, forgetful);
+  }
+  const std::array<double, joint_count> start_rad_ = angles_rad(Rig());
+};
+
+TEST_F(ADriveThatHomesByItsOwnMethod, MovesNoJointBeyondItsHoming) {
   {
-    Rig rig({}, 1, here_is_home, forgetful);
+    Rig rig = elbow_that_homes_here();
     ASSERT_TRUE(home(rig)) << rig.story();
     for (int i = 0; i < 250; ++i) {
-      EXPECT_LT(farthest_apart(angles_rad(rig), start_rad), 0.005) << "at " << i;
+      EXPECT_LT(farthest_apart(angles_rad(rig), start_rad_), 0.005) << "at " << i;
       rig.step();
     }
   }
-  Rig rig({}, 1, here_is_home, forgetful);
+  Rig rig = elbow_that_homes_here();
   rig.start();
   ASSERT_TRUE(rig.run_to(mission::Step::home)) << rig.story();
   while (rig.step_now() == mission::Step::home) {
-    ASSERT_LT(farthest_apart(angles_rad(rig), start_rad), 0.005) << rig.story();
+    ASSERT_LT(farthest_apart(angles_rad(rig), start_rad_), 0.005) << rig.story();
     rig.step();
   }
   // A motion begins with a bounded jerk; a leap of the target would take the elbow along at its top speed.
   rig.run_for(0.1);
-  EXPECT_LT(farthest_apart(angles_rad(rig), start_rad), 0.005) << rig.story();
+  EXPECT_LT(farthest_apart(angles_rad(rig), start_rad_), 0.005) << rig.story();
   EXPECT_EQ(rig.count(safety::Fault::following_error), 0u) << rig.story();
   ASSERT_TRUE(rig.run_to_end()) << rig.story();
   EXPECT_TRUE(rig.outcome().success) << rig.story();
   EXPECT_NEAR(deg_from_rad(rig.world().valve_angle_rad()), 90, 3);
+}
+
+TEST_F(ADriveThatHomesByItsOwnMethod, IsNamedWhereItFailsAtIt) {
+  Rig rehearsal = elbow_that_homes_here();
+  rehearsal.start();
+  ASSERT_TRUE(rehearsal.run_to(mission::Step::home)) << rehearsal.story();
+  Rig rig = elbow_that_homes_here({"faults=[{at_s: " + std::to_string(rehearsal.now().s() + 0.02) + ", kind: overcurrent, node: elbow}]"});
+  rig.start();
+  ASSERT_TRUE(rig.run_to_end(60)) << rig.story();
+  EXPECT_EQ(rig.outcome().fault, safety::Fault::drive_fault) << rig.story();
+  EXPECT_EQ(rig.outcome().code, 2);
+  EXPECT_EQ(rig.outcome().step, mission::Step::home) << rig.story();
+  EXPECT_LT(farthest_apart(angles_rad(rig), start_rad_), 0.005);
 }
 
 // The standard has 8A88 as "monitoring" and FF20 as "device specific". The makers' own words say that the power was taken from outside.

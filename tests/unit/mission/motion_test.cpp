@@ -104,6 +104,14 @@ TEST(Motion, RefusesGoalsOutsideTheSafetyLimitsAndStaysWhereItIs) {
   EXPECT_EQ(motion.target(), park);
 }
 
+TEST(Motion, ATurnBeyondTheRollsLimitsIsRefused) {
+  Motion motion = at_park();
+  motion.turn(0, 7, far_away(), 0, 0.2);
+  EXPECT_EQ(motion.failure(), StepFailure::unreachable);
+  EXPECT_TRUE(motion.done());
+  EXPECT_EQ(motion.target(), park);
+}
+
 TEST(Motion, ALineStaysOnTheLine) {
   Motion motion = at_park();
   const arm::IkResult start = arm::inverse_kinematics({0.25, 0, 0.59}, 0.3);

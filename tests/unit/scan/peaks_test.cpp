@@ -203,6 +203,20 @@ TEST(Peaks, AWidePlateauIsSaturatedNotAStripe) {
   EXPECT_EQ(detector->counters().saturated, 128u);
 }
 
+// A lamp of 20 rows, and a line: what is passed over may be the stripe itself, and a faint line its ghost.
+TEST(Peaks, BesideALampALineHasToBeAsStrong) {
+  const int width = 64, height = 120;
+  for (const auto& [grey, lamp, found] : {std::tuple{36, 255, 0u}, {36, 20, 64u}, {250, 255, 64u}}) {
+    std::vector<std::uint8_t> image(width * height, 20);
+    std::fill(image.begin() + 20 * width, image.begin() + 40 * width, static_cast<std::uint8_t>(lamp));
+    for (int row = 84; row <= 86; ++row) std::fill_n(image.begin() + row * width, width, static_cast<std::uint8_t>(grey));
+    auto detector = std::make_unique<PeakDetector>();
+    std::vector<Peak> peaks(width);
+    EXPECT_EQ(detector->detect(ImageView{image.data(), width, height, width}, {}, peaks), found) << grey << ", lamp " << lamp;
+    EXPECT_EQ(detector->counters().saturated, 64u - found) << grey << ", lamp " << lamp;
+  }
+}
+
 // A lamp's flanks are steep, whatever window looks at them.
 TEST(Peaks, OfAWideStripeAPlateauIsToldFromALampByItsFlanks) {
   const int width = 64, height = 200;
