@@ -96,7 +96,8 @@ bool PixelStore::on_one_plane(std::size_t a, std::size_t b) const {
   const float cosine = normal_x[a] * normal_x[b] + normal_y[a] * normal_y[b] + normal_z[a] * normal_z[b];
   if (shape[a] < 0 || shape[b] < 0 || cosine < crease_cosine) return false;
   const auto inverse = [&](std::size_t i) { return 1 / depth_m[i]; };
-  const auto rows = static_cast<float>((b - a) / stride);
+  const std::size_t rows_apart = (b - a) / stride;
+  const auto rows = static_cast<float>(rows_apart);
   // From either end, since the next pixel of one may lie beyond its plane's border.
   const float at_b = inverse(a) + rows * (inverse(a + stride) - inverse(a)), at_a = inverse(b) + rows * (inverse(b - stride) - inverse(b));
   return std::abs(at_b - inverse(b)) <= plane_step * inverse(b) || std::abs(at_a - inverse(a)) <= plane_step * inverse(a);
