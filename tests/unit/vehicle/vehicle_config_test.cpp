@@ -69,7 +69,7 @@ TEST(VehicleConfig, EveryProblemIsListedWithItsLine) {
                                         "wheels: 4\n");
   EXPECT_THAT(
       problems_of(file),
-      ElementsAre(EndsWith("v.yaml:1: unknown key 'can.interfce'; did you mean 'interface'?"),
+      ElementsAre(EndsWith("v.yaml:1: unknown key 'can.interfce'; did you mean 'can.interface'?"),
                   HasSubstr("v.yaml:1: 'can.transmit_deadline_ms' takes a number, not 'soon'"),
                   HasSubstr("v.yaml:3: 'camera.source' has no 'rnig'; did you mean 'ring'?"), HasSubstr("v.yaml:4: 'camera.gain' is -4"),
                   HasSubstr("v.yaml:5: 'camera.gain' is given twice"), HasSubstr("v.yaml:8: 'tasks[0].turn_valve.to_deg' is 900"),
