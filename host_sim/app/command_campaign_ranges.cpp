@@ -216,7 +216,7 @@ int range_campaign(const CampaignOptions& options) {
   }
   if (interrupted()) return exit_interrupted;
   const bool enough = static_cast<double>(single["success"]) >= single_share * static_cast<double>(singles);
-  return counts["unsafe"] + counts["unnamed"] == 0 && enough ? done : failed;
+  return counts["unsafe"] + counts["unnamed"] + not_flown.size() == 0 && enough ? done : failed;
 }
 
 }  // namespace lf::app

@@ -17,7 +17,8 @@ class PeakScore {
   static constexpr float visible_grey = 10.0f;
   // Farther off than this from each piece of the stripe a peak is another thing.
   static constexpr double match_px = 2.0;
-  // A lens lays a piece's light into the columns beside it: a peak there is of that piece, though its own column has none, or but a flank of another that is fainter than that light.
+  // A lens lays a piece's light into the columns beside it. A peak there is of that piece, where its own column has no stripe, or only a flank that is fainter than
+  // that light.
   static constexpr std::int32_t beside_px = 2;
   // Of a stripe's light, so many columns beyond its end: of a lens of 0.9 px, with the pixel's aperture.
   static constexpr std::array<float, beside_px + 1> light_beside{1, 0.3f, 0.05f};

@@ -37,7 +37,7 @@ struct PixelStore {
 
   // Which of the pixels (u .. u + 7, v) differ from a neighbour in shape, depth, slope, or in what of the light that reaches both falls on them.
   LaneMask edges(int u, int v) const;
-  // Whether two pixels of a column, see one plane, of one shape or of two: their normals are alike, and the inverse depth,
+  // Whether two pixels of a column see one plane, of one shape or of two: their normals are alike, and the inverse depth,
   // which is linear over a plane, goes on from one to the other.
   bool on_one_plane(std::size_t a, std::size_t b) const;
 

@@ -100,7 +100,7 @@ TEST(PeakScore, APartOfAStripeIsNoFalsePeakAndNoneThatHasToBeFound) {
   EXPECT_EQ(score.false_peaks(), 1u) << "3 px off that light";
 }
 
-// Three of four false peaks of the default mission were such: the light beside a stripe's end, in a column that has a faint flank of another surface.
+// The light beside a stripe's end, in a column that has a faint flank of another surface: it counted as a false peak.
 TEST(PeakScore, AFaintFlankLeavesAPeakToTheBrighterStripeBesideIt) {
   const auto false_peaks = [](float flank_grey, std::int32_t beside_column, float peak_v) {
     optics::StripePiece flank{0, 1, 37, flank_grey};
