@@ -1,0 +1,50 @@
+// Which pixels see one plane: against planes whose depth is a closed form.
+#include "host_sim/optics/pixel_store.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+namespace lf::optics {
+namespace {
+
+constexpr int height = 40;
+
+// A column that sees, in each row v, a plane of inverse depth `at_0 + v * slope`, 1/m; from row 20 on it is nearer by `step_m` and of `shape`.
+PixelStore column(float at_0, float slope, float step_m, std::int32_t shape, float normal_z = 0) {
+  PixelStore pixels;
+  pixels.resize(8, height, 1);
+  for (int v = 0; v < height; ++v) {
+    const std::size_t at = pixels.index(0, v);
+    pixels.depth_m[at] = 1 / (at_0 + static_cast<float>(v) * slope) - (v < 20 ? 0 : step_m);
+    pixels.normal_x[at] = v < 20 ? -1.f : -std::sqrt(1 - normal_z * normal_z);
+    pixels.normal_y[at] = 0;
+    pixels.normal_z[at] = v < 20 ? 0 : normal_z;
+    pixels.shape[at] = v < 20 ? 0 : shape;
+  }
+  return pixels;
+}
+
+bool on_one_plane(const PixelStore& pixels, int v, int w) {
+  return pixels.on_one_plane(pixels.index(0, v), pixels.index(0, w)) && pixels.on_one_plane(pixels.index(0, w), pixels.index(0, v));
+}
+
+TEST(PixelStore, OnePlaneIsOfOneShapeOrOfTwo) {
+  for (const float slope : {0.f, 0.004f, -0.004f}) {
+    EXPECT_TRUE(on_one_plane(column(1.4f, slope, 0, 0), 10, 30)) << slope;
+    EXPECT_TRUE(on_one_plane(column(1.4f, slope, 0, 1), 10, 30)) << slope;
+    EXPECT_TRUE(on_one_plane(column(1.4f, slope, 0.006f, 1), 0, 19)) << "beside a step, slope " << slope;
+    EXPECT_TRUE(on_one_plane(column(1.4f, slope, 0.006f, 1), 20, height - 1)) << "to the last row, slope " << slope;
+  }
+}
+
+TEST(PixelStore, AStepACreaseAndOpenWaterAreNotOnePlane) {
+  EXPECT_FALSE(on_one_plane(column(1.4f, 0.004f, 0.006f, 0), 10, 30)) << "a bezel of 6 mm";
+  EXPECT_FALSE(on_one_plane(column(1.4f, 0.004f, 0, 0, 0.5f), 10, 30)) << "30 degrees";
+  EXPECT_FALSE(on_one_plane(column(1.4f, 0.004f, 0, -1), 10, 30));
+}
+
+}  // namespace
+}  // namespace lf::optics
