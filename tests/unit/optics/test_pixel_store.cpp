@@ -1,11 +1,11 @@
 // Which pixels see one plane: against planes whose depth is a closed form.
-#include "host_sim/optics/pixel_store.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+
+#include "host_sim/optics/pixel_store.hpp"
 
 namespace lf::optics {
 namespace {
