@@ -16,9 +16,10 @@ constexpr float followed = 0.884f;
 constexpr float scatter_probe = 0.1f;
 constexpr float scatter_stride = 0.2f;
 constexpr float skew_probe = 0.03f, skew_stride = 0.05f, skew_doubt = 0.05f;
-constexpr float most_skew = 0.2f;      // there the stripe's flank is a tenth below 0 at two widths
-constexpr float scatter_doubt = 0.2f;  // of what the first one is told to be
-constexpr float most_scatter = 2.0f;   // there the direct light stands on haze of its own height
+constexpr std::int32_t least_plain_columns = 5;  // of eight
+constexpr float most_skew = 0.2f;                // there the stripe's flank is a tenth below 0 at two widths
+constexpr float scatter_doubt = 0.2f;            // of what the first one is told to be
+constexpr float most_scatter = 2.0f;             // there the direct light stands on haze of its own height
 // Of what is known, from picture to picture: the light's width changes as the arm moves, the lens does not and the water hardly.
 constexpr float width_remembered = 0.9f, lens_remembered = 0.98f;
 constexpr float lens_doubt = 0.3f;  // of what the first one is told to be, its logarithm's standard deviation: +30 to 100 % at the corners
@@ -98,9 +99,11 @@ void OpticsEstimate::add_shape(const StripeWindows& about, const PixelNoise& spe
     if (among[lane] != 0) stripe_.slope -= followed * std::min(1.0f, square(speckled.speckle) * weights.brightest[lane]);
   }
   stripe_.add(left[1], left[0], left[2], stripe_probe);
-  // At marks the model's own error would be taken for skew.
+  // At marks the model's own error would be taken for skew. Where most columns have edges, those of the others are hidden by noise.
   const LaneMask plain = among & probed[0].plain;
-  if (!any(plain)) return;
+  std::int32_t plain_columns = 0;
+  for (int lane = 0; lane < lane_count; ++lane) plain_columns += plain[lane] != 0;
+  if (plain_columns < least_plain_columns) return;
   for (const std::size_t i : {0, 3, 4}) left[i] = squares_left(about, probes[i], noise, probed[i], weights, plain);
   skew_.add(left[3], left[0], left[4], skew_probe);
 }
@@ -131,10 +134,10 @@ void OpticsEstimate::Newton::add(float below, float here, float above, float pro
 
 // Against the slope, no farther than where the deviance's parabola ends. Where that has no end, as far as is allowed.
 float OpticsEstimate::Newton::step(float longest, float remembered) {
-  const float total = curvature + known;
+  const float total = std::max(curvature, 0.0f) + known;
   float move = 0;
   if (slope != 0) move = total > 0 ? std::clamp(-slope / total, -longest, longest) : (slope > 0 ? -longest : longest);
-  known = remembered * std::max(total, 0.0f);
+  known = remembered * total;
   slope = curvature = 0;
   return move;
 }

@@ -372,6 +372,17 @@ TEST_F(Commands, CtrlCLeavesNoRowOfARangeCampaignUnflown) {
   EXPECT_EQ(Json::parse(again.out)["rows"], 3);
 }
 
+// A campaign whose copy was ended from outside said that it had passed.
+TEST_F(Commands, ARangeCampaignWithARowThatWasNotFlownFails) {
+  const std::string arguments = "campaign default --ranges --draws 1 --many 0 --kinds drives.slew.node --jobs 1 --out m --json";
+  const Said said = interrupt(arguments, "m/rows.jsonl", 10, Whom::copies);
+  EXPECT_EQ(said.status, 1) << said.err;
+  EXPECT_EQ(Json::parse(said.out)["rows"], 2) << said.err;
+  const Said again = run(arguments);
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_EQ(Json::parse(again.out)["rows"], 3);
+}
+
 TEST_F(Commands, CtrlCStopsACampaignAndItsRuns) {
   const Said said =
       interrupt("campaign turn_only --seeds 1-40 --jobs 2 --set time_limit_s=600 --out many", "many/1.writing/can0.log", 1000);

@@ -50,9 +50,11 @@ class Program : public ::testing::Test {
     return said(std::system(command(before + " " LANTERNFISH_PROGRAM " " + arguments).c_str()));
   }
 
-  // Ctrl-C on a terminal, for the program and its children, as soon as `file` in the folder has over `bytes` bytes: not after a time, which a busy
-  // machine passes before the program has begun.
-  Said interrupt(const std::string& arguments, const std::string& file, std::uintmax_t bytes) const {
+  enum class Whom { all, copies };
+
+  // Ctrl-C on a terminal, for the program and its children, or a signal to the children that it has by then: as soon as `file` in the folder has over `bytes`
+  // bytes. Not after a time, which a busy machine passes before the program has begun.
+  Said interrupt(const std::string& arguments, const std::string& file, std::uintmax_t bytes, Whom whom = Whom::all) const {
     const std::string line = command("exec " LANTERNFISH_PROGRAM " " + arguments);
     const pid_t child = fork();
     if (child == 0) {
@@ -74,12 +76,22 @@ class Program : public ::testing::Test {
       if (there || looks >= 24'000) break;
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
-    kill(-child, SIGINT);
+    if (whom == Whom::all) kill(-child, SIGINT);
+    for (int looks = 0; whom == Whom::copies && looks < 1000 && signal_copies_of(child) == 0; ++looks)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
     waitpid(child, &status, 0);
     return said(status);
   }
 
  private:
+  // Returns how many there were.
+  static int signal_copies_of(pid_t program) {
+    const std::string id = std::to_string(program);
+    std::ifstream copies("/proc/" + id + "/task/" + id + "/children");
+    int signalled = 0;
+    for (pid_t copy = 0; copies >> copy; ++signalled) kill(copy, SIGINT);
+    return signalled;
+  }
   std::string command(const std::string& words) const {
     return "cd '" + folder_.string() + "' && " + words + " >.stdout 2>.stderr </dev/null";
   }
