@@ -121,7 +121,7 @@ struct Optics::Impl {
         for (const RenderPass::StripeCentre& centre : centres) {
           const std::size_t column = laser * static_cast<std::size_t>(frame.width) + static_cast<std::size_t>(centre.u);
           const float grey = centre.grey * light * camera.sensor.vignetting(centre.u, static_cast<int>(centre.v));
-          frame.pieces.push_back({static_cast<std::int32_t>(laser), centre.u, centre.v, grey, centre.sigma_px, false});
+          frame.pieces.push_back({static_cast<std::int32_t>(laser), centre.u, centre.v, grey, centre.sigma_px, false, centre.near_mark});
           if (!(grey > frame.stripe_grey[column])) continue;
           frame.stripe_v[column] = centre.v;
           frame.stripe_grey[column] = grey;
@@ -163,7 +163,7 @@ struct Optics::Impl {
                  pixels.on_one_plane(at, pixels.index(u, row(std::ceil(piece.v))));
         };
         if (grey >= least_grey && std::none_of(near.begin(), near.end(), is_near))
-          parts.push_back({0, u, static_cast<float>(v), grey, 0, true});
+          parts.push_back({0, u, static_cast<float>(v), grey, 0, true, false});
       }
     };
     std::vector<std::vector<StripePiece>> found(static_cast<std::size_t>(tiles.rows()));
@@ -184,6 +184,7 @@ struct Optics::Impl {
     arm.set_poses(shot.poses);
     Shader shader(scene, look, water);
     light(shot, shader);
+    for (SheetLight& sheet : shader.sheets) sheet.shade_by(viewer.particles.in_sheet(shot.time_s, sheet));
     size(viewer.camera, shot, frame);
     if (viewer.still.update(shader, shot.poses, lamp_bodies(shot), shot.lamps, pool)) viewer.live.forget();
 

@@ -140,6 +140,7 @@ struct StripePiece {
   float sigma_px = 0;     // standard deviation along the column, beam, lens and pixel together; 0 for a part
   // No centre: the beam's middle misses the surface, at its border, and its flank falls on it. v is where that is brightest.
   bool part = false;
+  bool near_mark = false;  // paint that is another's under the stripe or beside it: centres are harder to find there
 };
 
 // Pixels and, on request, what is true of them (otherwise those vectors are empty). Reuse one Frame: its memory is kept.

@@ -28,6 +28,17 @@ CameraConfig divers_camera(const OutsideView& view) {
   return camera;
 }
 
+// A cylinder behind its window, for the eye: what the arm keeps away from is the vehicle's own file's matter.
+void add_housing(const LampConfig& lamp, scene::Scene& scene) {
+  scene::Shape housing;
+  housing.kind = scene::ShapeKind::cylinder;
+  housing.size_m = Vec3(0.028, 0, 0.080);
+  housing.body_from_shape = lamp.body_from_lamp * Eigen::Translation3d(0, 0, -0.045);
+  housing.albedo = {0.25f, 0.25f, 0.22f};
+  housing.collides = false;
+  scene[std::size_t(lamp.body)].shapes.push_back(housing);
+}
+
 }  // namespace
 
 OpticsConfig outside_view(const OpticsConfig& mission, const OutsideView& view) {
@@ -42,6 +53,7 @@ OpticsConfig outside_view(const OpticsConfig& mission, const OutsideView& view) 
   for (LampConfig& lamp : config.lamps) {
     for (float& band : lamp.intensity_w_sr) band *= 3.f;
     lamp.edge_rad = 0.6;
+    add_housing(lamp, config.scene);
   }
   config.water.attenuation_per_m = 0.20;
   config.water.attenuation_ratio = {1.7f, 1.0f, 0.9f};

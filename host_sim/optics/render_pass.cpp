@@ -237,6 +237,26 @@ void RenderPass::write_geometry(int tile_row, const std::vector<std::uint16_t>& 
 // Of the lens's spot in the middle of a packet.
 float RenderPass::blur_px(int u, int v) const { return static_cast<float>(lens_.sigma_px(u + 0.5 * (lane_count - 1), v)); }
 
+// Whether paint within a stripe's reach up or down, or its spot's beside, reflects otherwise than that of pixel (u + lane, v). Grain does by a tenth at most.
+LaneMask RenderPass::near_marks(int u, int v) const {
+  constexpr int reach_px = 5, reach_beside_px = 2;
+  constexpr float most_change = 1.3f;
+  using Around = std::array<float, 3 * lane_count>;
+  const auto green = [&](int at_u, int at_v) {
+    if (at_u < 0 || at_u >= camera_.width() || at_v < 0 || at_v >= camera_.height()) return all_lanes(-1);
+    const HitPacket hit = live_.pixels.sample(live_.pixels.index(at_u, at_v)).hit;
+    return select(hit.shape >= 0, shader_.look().albedo(make_surface(camera_.row(at_u, at_v), hit), hit.shape, 1.f)[1], all_lanes(-1));
+  };
+  const Lanes here = green(u, v);
+  LaneMask near{};
+  const auto compare = [&](Lanes there) { near |= (there >= 0.f) & ((there > most_change * here) | (most_change * there < here)); };
+  for (int off = 1; off <= reach_px; ++off) compare(green(u, v - off)), compare(green(u, v + off));
+  Around row;
+  for (int packet = 0; packet < 3; ++packet) store_lanes(row.data() + packet * lane_count, green(u + (packet - 1) * lane_count, v));
+  for (const int off : {-reach_beside_px, reach_beside_px}) compare(load_lanes(row.data() + lane_count + off));
+  return near;
+}
+
 // Newton's method down the column on the surfaces that the rays really meet; what does not settle on a lit surface is no centre.
 void RenderPass::refine_stripe(std::size_t laser, int u, int v, Lanes offset_v, LaneMask wanted, std::vector<StripeCentre>& centres) const {
   const SheetLight& sheet = shader_.sheets[laser];
@@ -259,8 +279,10 @@ void RenderPass::refine_stripe(std::size_t laser, int u, int v, Lanes offset_v, 
   const Lanes height = max(grey[0], max(grey[1], grey[2]));
   // The other side of the pixel is of another direction: here the whole square counts.
   const Lanes sigma_v = sqrt(stripe.sigma_px * stripe.sigma_px + 1.f / 12.f) / max(abs(stripe.slope_v), all_lanes(0.02f));
+  const LaneMask by_mark = any(lit) ? near_marks(u, v) : LaneMask{};
   for (int lane = 0; lane < lane_count && u + lane < camera_.width(); ++lane) {
-    if (lit[lane] != 0) centres.push_back({u + lane, static_cast<float>(v) + offset_v[lane], height[lane], sigma_v[lane]});
+    if (lit[lane] != 0)
+      centres.push_back({u + lane, static_cast<float>(v) + offset_v[lane], height[lane], sigma_v[lane], by_mark[lane] != 0});
   }
 }
 

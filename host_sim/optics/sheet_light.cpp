@@ -42,6 +42,7 @@ SheetLight::SheetLight(const LaserConfig& config, const Pose& base_from_body, co
   base_from_laser_ = Rotation(base_from_laser.linear());
   emitter_m_ = base_from_laser.translation();
   emitter_ = Lanes3(emitter_m_);
+  laser_from_base_ = base_from_laser.inverse();
 }
 
 void SheetLight::meet(const SplitScene& scene) {
@@ -55,6 +56,28 @@ void SheetLight::meet(const SplitScene& scene) {
     const RayLines rays{emitter_, base_from_laser_ * Lanes3(tan_cone_ * radius, tangent, all_lanes(1.f))};
     store_lanes(ends_m_.data() + first, scene.all(rays).parameter * CameraRays::slope(rays));
   }
+}
+
+double SheetLight::off_m(const Vec3& point) const {
+  const Vec3 place = laser_from_base_ * point;
+  return place.x() - static_cast<double>(tan_cone_) * std::hypot(place.y(), place.z());
+}
+
+double SheetLight::sigma_m(const Vec3& point) const {
+  return std::sqrt(static_cast<double>(sigma2_m2(all_lanes(static_cast<float>((laser_from_base_ * point).norm())))[0]));
+}
+
+void SheetLight::shade_by(const std::vector<Speck>& specks) {
+  if (pattern_.has_value()) return;
+  std::vector<SheetShadows::Caster> casters;
+  for (const Speck& speck : specks) {
+    const Vec3 place = laser_from_base_ * speck.place_m;
+    if (place.z() < static_cast<double>(least_range_m)) continue;
+    const double sigma = sigma_m(speck.place_m), radius = 0.5 * speck.diameter_m;
+    casters.push_back({static_cast<float>(place.y() / place.z()), static_cast<float>(off_m(speck.place_m) / sigma),
+                       static_cast<float>(radius / place.z()), static_cast<float>(radius / sigma), static_cast<float>(place.norm())});
+  }
+  shadows_.emplace(std::move(casters), tan_half_fan_);
 }
 
 Lanes SheetLight::end_m(Lanes y, Lanes z) const {
@@ -150,6 +173,15 @@ void SheetLight::add_skirt(const SurfacePacket& s, const ImageDistance& d, const
   }
 }
 
+// The beam's light that specks take from these surface points, over its middle's.
+Lanes SheetLight::shadow(const SurfacePacket& s, const ImageDistance& d, LaneMask wanted, float footprint) const {
+  const Lanes range = max(sqrt(d.range2), all_lanes(least_range_m)), depth = max(d.place.z, all_lanes(least_range_m));
+  const Lanes sigma = sqrt(sigma2_m2(range));
+  const auto side = [&](const Lanes3& axis) { return footprint * (abs(dot(axis, s.point_du)) + abs(dot(axis, s.point_dv))); };
+  return shadows_->taken(wanted, d.place.y / depth, d.distance / sigma, range, side(base_from_laser_.column_y) / depth,
+                         side(d.normal) / sigma);
+}
+
 StripePacket SheetLight::line(const SurfacePacket& s, const Water& water, float footprint, float blur_px) const {
   StripePacket stripe;
   const ImageDistance d = image_distance(s);
@@ -195,6 +227,7 @@ StripePacket SheetLight::line(const SurfacePacket& s, const Water& water, float 
     const Lanes lobe = box_gaussian(first + lobe_sigmas_ * sigma_px, sigma_px, sigma, wide);
     core = (core + lobe_share_ * lobe) / (1.f + lobe_share_);
   }
+  if (shadows_) core = max(core - shadow(s, d, stripe.reached, footprint) / (1.f + lobe_share_), Lanes{});
   for (std::size_t band = 0; band < 3; ++band) {
     if (band_[band] == 0.f) continue;
     const Lanes path = range + camera_range;

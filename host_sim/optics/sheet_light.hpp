@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "host_sim/optics/pattern.hpp"
+#include "host_sim/optics/sheet_shadows.hpp"
 #include "host_sim/optics/split_scene.hpp"
 #include "host_sim/optics/surface.hpp"
 #include "host_sim/optics/water.hpp"
@@ -43,6 +44,18 @@ class SheetLight {
   // Finds where each of the sheet's rays ends. Until then none does.
   void meet(const SplitScene& scene);
 
+  // Distance of a place in the base frame to the sheet, and the beam's standard deviation there.
+  double off_m(const Vec3& point) const;
+  double sigma_m(const Vec3& point) const;
+
+  // A speck in the water, base frame.
+  struct Speck {
+    Vec3 place_m = Vec3::Zero();
+    double diameter_m = 0;
+  };
+  // Has these cast shadows. Until then nothing in the water does. The line's direct light alone is shaded.
+  void shade_by(const std::vector<Speck>& specks);
+
   // `footprint`: side of the sample's square, px (1, or 1/4 for sub-samples). `blur_px`: a lens's spot, where its blur is wanted here and not in the picture.
   StripePacket on_surface(const SurfacePacket& surface, const Water& water, float footprint, float blur_px) const;
 
@@ -65,6 +78,7 @@ class SheetLight {
   ImageDistance image_distance(const SurfacePacket& surface) const;
   LaneMask within_reach(const SurfacePacket& surface, const ImageDistance& distance, float blur_px) const;
   void add_skirt(const SurfacePacket& surface, const ImageDistance& distance, const Water& water, StripePacket& stripe) const;
+  Lanes shadow(const SurfacePacket& surface, const ImageDistance& distance, LaneMask wanted, float footprint) const;
   StripePacket line(const SurfacePacket& surface, const Water& water, float footprint, float blur_px) const;
   StripePacket picture(const SurfacePacket& surface, const Water& water, float footprint) const;
   Lanes fan_weight(Lanes y, Lanes z) const;
@@ -75,11 +89,13 @@ class SheetLight {
   Rotation base_from_laser_;  // columns: plane normal, along the fan, central ray
   Lanes3 emitter_;
   Vec3 emitter_m_;
+  Pose laser_from_base_;
   float tan_half_fan_, w_per_rad_, waist_m_, divergence_rad_, waist_at_m_, lobe_share_, lobe_sigmas_, reach_sigmas_, tan_cone_, cos_cone_;
   double power_w_;
   Rgb band_;
   const std::optional<PatternTable>& pattern_;
   std::span<const float> fan_profile_;
+  std::optional<SheetShadows> shadows_;
   std::vector<float> ends_m_;  // of rays that are even in the tangent of their angle; empty: none ends
 };
 

@@ -104,6 +104,25 @@ std::vector<Particles::Speck> Particles::at(double time_s) const {
   return specks;
 }
 
+std::vector<SheetLight::Speck> Particles::in_sheet(double time_s, const SheetLight& sheet) const {
+  constexpr double reach_sigmas = 4.5;
+  const Vec3 drift = current_m_s_ * (time_s / cell_m);
+  const Vec3 middle = cell_m * (drift.array() - drift.array().floor() + 0.5).matrix();
+  const double half_diagonal_m = 0.5 * std::sqrt(3.0) * cell_m;
+  std::vector<Speck> specks;
+  std::vector<SheetLight::Speck> met;
+  for (const Cell& cell : cells_) {
+    const Vec3 centre = middle + cell_m * Vec3(cell[0], cell[1], cell[2]);
+    if (std::abs(sheet.off_m(centre)) > half_diagonal_m + most_m + reach_sigmas * sheet.sigma_m(centre)) continue;
+    draw_specks(cell, drift, specks);
+  }
+  for (const Speck& speck : specks) {
+    if (std::abs(sheet.off_m(speck.place_m)) < speck.diameter_m + reach_sigmas * sheet.sigma_m(speck.place_m))
+      met.push_back({speck.place_m, speck.diameter_m});
+  }
+  return met;
+}
+
 std::vector<Particles::Speck> Particles::in_view(std::span<const Cell> cells, double time_s) const {
   std::vector<Speck> specks;
   for (const Cell& cell : cells) draw_specks(cell, current_m_s_ * (time_s / cell_m), specks);

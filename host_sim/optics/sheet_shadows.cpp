@@ -1,0 +1,57 @@
+#include "host_sim/optics/sheet_shadows.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lf::optics {
+namespace {
+
+constexpr std::size_t bin_count = 512;
+constexpr float largest_pixel_tangent = 0.004f;
+constexpr float side_by_radius = 1.77245385f;  // of a square as large as a disc
+
+struct Overlap {
+  float share = 0;   // of the pixel
+  float middle = 0;  // its place
+};
+
+Overlap overlap(float pixel, float pixel_side, float place, float side) {
+  const float low = std::max(pixel - 0.5f * pixel_side, place - 0.5f * side),
+              high = std::min(pixel + 0.5f * pixel_side, place + 0.5f * side);
+  return {std::max(high - low, 0.0f) / pixel_side, 0.5f * (low + high)};
+}
+
+}  // namespace
+
+SheetShadows::SheetShadows(std::vector<Caster> casters, float tan_half_fan) : tan_half_fan_(tan_half_fan), casters_(std::move(casters)) {
+  if (casters_.empty()) return;
+  bins_.resize(bin_count);
+  for (std::size_t i = 0; i < casters_.size(); ++i) {
+    const float half = 0.5f * (side_by_radius * casters_[i].radius_tangent + largest_pixel_tangent);
+    for (std::size_t bin = bin_of(casters_[i].tangent - half); bin <= bin_of(casters_[i].tangent + half); ++bin) bins_[bin].push_back(i);
+  }
+}
+
+std::size_t SheetShadows::bin_of(float tangent) const {
+  const float share = std::clamp(0.5f + 0.5f * tangent / tan_half_fan_, 0.0f, 1.0f);
+  return std::min(static_cast<std::size_t>(share * bin_count), bin_count - 1);
+}
+
+// A speck's shadow is a rectangle of its area, and what it takes from a pixel is their overlap: together its pixels lose what is missing, wherever between them it lies.
+Lanes SheetShadows::taken(LaneMask wanted, Lanes tangent, Lanes across, Lanes range_m, Lanes pixel_tangent, Lanes pixel_across) const {
+  Lanes sum{};
+  if (bins_.empty()) return sum;
+  for (int lane = 0; lane < lane_count; ++lane) {
+    if (wanted[lane] == 0) continue;
+    for (const std::size_t i : bins_[bin_of(tangent[lane])]) {
+      const Caster& caster = casters_[i];
+      if (range_m[lane] <= caster.range_m) continue;
+      const Overlap along = overlap(tangent[lane], pixel_tangent[lane], caster.tangent, side_by_radius * caster.radius_tangent);
+      const Overlap beside = overlap(across[lane], pixel_across[lane], caster.across, side_by_radius * caster.radius_across);
+      if (along.share > 0 && beside.share > 0) sum[lane] += along.share * beside.share * std::exp(-0.5f * beside.middle * beside.middle);
+    }
+  }
+  return sum;
+}
+
+}  // namespace lf::optics
