@@ -58,7 +58,8 @@ void PeakScore::count_matched(const TruePiece& piece, double error_px) {
   if (!piece.on_smooth) return;
   smooth_.add(error_px * error_px);
   const double height = double(piece.grey);
-  if (!(piece.sigma_px > 0) || height < clear_sigmas * std::sqrt(noise_.difference_variance(double(piece.background)))) return;
+  if (!(piece.sigma_px > 0) || piece.near_mark || height < clear_sigmas * std::sqrt(noise_.difference_variance(double(piece.background))))
+    return;
   clear_.add(error_px * error_px);
   bound_.add(noise_.centre_variance_px2(piece));
 }

@@ -33,7 +33,7 @@ class PeakScore {
   double rms_px() const;  // of peaks on a piece of their column; NaN without any
   // Of matched peaks on smooth surfaces. NaN without any, or without depth in the truth.
   double smooth_rms_px() const;
-  // Of those of them that stand clear of the noise: their rms, and what the run's optics and noise allow (PictureNoise). NaN without any.
+  // Of those of them that stand clear of the noise, away from marks: their rms, and what the run's optics and noise allow (PictureNoise). NaN without any.
   double clear_rms_px() const;
   double clear_bound_px() const;
   double recall() const;           // columns whose brightest piece was found, over the visible ones; NaN without any

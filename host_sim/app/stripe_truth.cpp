@@ -54,9 +54,9 @@ StripeTruth stripe_truth(const optics::Frame& frame, const std::function<bool(st
   truth.columns.resize(static_cast<std::size_t>(frame.width));
   for (const optics::StripePiece& piece : frame.pieces) {
     const auto v = std::clamp(static_cast<std::int32_t>(std::lround(piece.v)), 0, frame.height - 1);
-    truth.columns[static_cast<std::size_t>(piece.u)].push_back({piece.v, piece.grey, piece.sigma_px, background_beside(frame, piece),
-                                                                has_depth && on_smooth_surface(frame, piece.u, v), piece.part,
-                                                                looked_for && has_objects && !looked_for(object_about(frame, piece.u, v))});
+    truth.columns[static_cast<std::size_t>(piece.u)].push_back(
+        {piece.v, piece.grey, piece.sigma_px, background_beside(frame, piece), has_depth && on_smooth_surface(frame, piece.u, v),
+         piece.part, piece.near_mark, looked_for && has_objects && !looked_for(object_about(frame, piece.u, v))});
   }
   return truth;
 }

@@ -29,7 +29,7 @@ const std::array all{
     Figure{"cloud_truth_p95_mm", "cloud to the true surface, 95 %", "mm", [](const Run& r) { return r.errors.cloud_truth_p95_mm; }},
     Figure{"peak_rms_px", "stripe peaks, rms", "px", [](const Run& r) { return r.errors.peak_rms_px; }},
     Figure{"peak_rms_smooth_px", "stripe peaks away from edges, rms", "px", [](const Run& r) { return r.errors.peak_rms_smooth_px; }},
-    Figure{"peak_rms_over_bound", "stripe peaks clear of the noise, rms over its bound", "",
+    Figure{"peak_rms_over_bound", "stripe peaks clear of noise and marks, rms over its bound", "",
            [](const Run& r) { return r.errors.peak_rms_clear_px / r.errors.peak_bound_px; }},
     Figure{"peak_recall", "stripe peaks found", "", [](const Run& r) { return r.errors.peak_recall; }, more},
     Figure{"peaks_false", "false peaks", "", [](const Run& r) { return r.errors.peaks_false; }},

@@ -205,7 +205,7 @@ std::vector<ReportError> report_errors(const RunResult& result, double attenuati
                                   {"cloud to the true surface, 95 %", e.cloud_truth_p95_mm, 2.5, "mm", false},
                                   {"stripe peaks, rms", e.peak_rms_px, 0.1 + 0.1 * murk, "px", false},
                                   {"stripe peaks away from edges, rms", e.peak_rms_smooth_px, unknown, "px", false},
-                                  {"stripe peaks clear of the noise, rms", e.peak_rms_clear_px, 1.25 * e.peak_bound_px, "px", false},
+                                  {"stripe peaks clear of noise and marks, rms", e.peak_rms_clear_px, 1.25 * e.peak_bound_px, "px", false},
                                   {"their bound, by noise and speckle", e.peak_bound_px, unknown, "px", false},
                                   {"stripe peaks found", e.peak_recall, 0.97, "", true},
                                   {"false peaks", e.peaks_false, 0.002, "", false}};

@@ -216,6 +216,21 @@ TEST(PictureNoise, OfSpeckleIsThatOfACentroidOfDrawnPixels) {
   }
 }
 
+TEST(PeakScore, TheBoundIsOfPeaksAwayFromMarks) {
+  optics::Frame frame = frame_of(40, 60, {});
+  frame.depth_m.assign(2400, 1.f);
+  Peaks peaks;
+  for (int u = 10; u < 30; ++u) {
+    const bool marked = u % 2 == 0;
+    frame.pieces.push_back({0, u, 30, 50.f, 1.6f, false, marked});
+    peaks.push_back({static_cast<float>(u), marked ? 31.f : 30.1f});
+  }
+  PeakScore score(PictureNoise{1.5, 0, 0});
+  score.add(stripe_truth(frame), peaks);
+  EXPECT_NEAR(score.clear_rms_px(), 0.1, 1e-5);
+  EXPECT_NEAR(score.smooth_rms_px(), std::sqrt((1 + 0.01) / 2), 1e-4);
+}
+
 TEST(PeakScore, TheBoundIsOfPeaksThatStandClearOfTheNoise) {
   optics::Frame frame = frame_of(40, 60, {});
   frame.depth_m.assign(2400, 1.f);

@@ -205,5 +205,38 @@ TEST(StripeLabels, FarBeyondThePlateThereIsNoPiece) {
   for (const StripePiece& piece : s.render(true).pieces) EXPECT_NE(piece.u, 320);
 }
 
+// Darker paint, flush with the plate, from 0.30 m to the right of the middle on and in a patch just under the stripe: both where the reference has them.
+TEST(StripeLabels, APieceWithOtherPaintInReachIsNearAMark) {
+  Labelled s(1.0, Vec3(distance_m, 0, 0.05));
+  constexpr double thin_m = 1e-4, right_m = 0.30;
+  const double row_m = distance_m / CameraIntrinsics().fy;
+  auto& shapes = body(s.config.scene, scene::BodyId::panel).shapes;
+  const auto paint = [&](double y_m, double z_m, double width_m, double height_m, float albedo) {
+    shapes.push_back(make_shape(scene::ShapeKind::box, {thin_m, width_m, height_m}, {distance_m, y_m, z_m}, albedo));
+  };
+  paint(right_m + 0.5, 0, 1, 2, 0.1f);
+  paint(0, s.centre_m() + 3.5 * row_m + 0.05, 0.1, 0.1, 0.1f);      // its edge three to four rows below
+  paint(-0.2, s.centre_m() + 8.5 * row_m + 0.05, 0.1, 0.1, 0.1f);   // eight to nine: beyond the stripe's reach
+  paint(-0.4, s.centre_m() + 3.5 * row_m + 0.05, 0.1, 0.1, 0.45f);  // a shade, within the grain's differences
+  const Frame on = s.render(true);
+  const CameraIntrinsics k;
+  const auto column = [&](double y_m) { return k.cx + k.fx * y_m / distance_m; };
+  int marked = 0, plain = 0;
+  for (const StripePiece& piece : on.pieces) {
+    if (piece.part || piece.u < 20 || piece.u > 620) continue;
+    const double edge = column(right_m), to_edge = std::abs(piece.u - edge), patch = column(0.05), other = column(-0.05);
+    const bool on_patch = piece.u > other + 1 && piece.u < patch - 1, off_patch = piece.u < other - 3 || piece.u > patch + 3;
+    if (to_edge < 1.4 || on_patch) {
+      ++marked;
+      EXPECT_TRUE(piece.near_mark) << piece.u;
+    } else if (to_edge > 3.5 && off_patch) {
+      ++plain;
+      EXPECT_FALSE(piece.near_mark) << piece.u;
+    }
+  }
+  EXPECT_GT(marked, 45);
+  EXPECT_GT(plain, 400);
+}
+
 }  // namespace
 }  // namespace lf::optics::test
