@@ -121,7 +121,15 @@ struct Optics::Impl {
         for (const RenderPass::StripeCentre& centre : centres) {
           const std::size_t column = laser * static_cast<std::size_t>(frame.width) + static_cast<std::size_t>(centre.u);
           const float grey = centre.grey * light * camera.sensor.vignetting(centre.u, static_cast<int>(centre.v));
-          frame.pieces.push_back({static_cast<std::int32_t>(laser), centre.u, centre.v, grey, centre.sigma_px, false, centre.near_mark});
+          const StripePiece piece{.laser = static_cast<std::int32_t>(laser),
+                                  .u = centre.u,
+                                  .v = centre.v,
+                                  .grey = grey,
+                                  .sigma_px = centre.sigma_px,
+                                  .part = centre.shaded,
+                                  .near_mark = centre.near_mark};
+          frame.pieces.push_back(piece);
+          if (centre.shaded) continue;
           if (!(grey > frame.stripe_grey[column])) continue;
           frame.stripe_v[column] = centre.v;
           frame.stripe_grey[column] = grey;

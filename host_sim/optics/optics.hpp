@@ -138,7 +138,8 @@ struct StripePiece {
   std::int32_t laser = 0, u = 0;
   float v = 0, grey = 0;  // its height as Frame::stripe_grey has it
   float sigma_px = 0;     // standard deviation along the column, beam, lens and pixel together; 0 for a part
-  // No centre: the beam's middle misses the surface, at its border, and its flank falls on it. v is where that is brightest.
+  // No centre to hold a peak against. The beam's middle misses the surface, at its border, and its flank falls on it: v is where that is brightest. Or something keeps
+  // the direct light off, and what the water has scattered falls there: v is where the sheet would meet the surface.
   bool part = false;
   bool near_mark = false;  // paint that is another's under the stripe or beside it: centres are harder to find there
 };

@@ -257,6 +257,9 @@ LaneMask RenderPass::near_marks(int u, int v) const {
   return near;
 }
 
+// Of a place that only scattered light reaches: with less no peak stands out of the noise.
+constexpr float least_scattered_grey = 0.5f;
+
 // Newton's method down the column on the surfaces that the rays really meet; what does not settle on a lit surface is no centre.
 void RenderPass::refine_stripe(std::size_t laser, int u, int v, Lanes offset_v, LaneMask wanted, std::vector<StripeCentre>& centres) const {
   const SheetLight& sheet = shader_.sheets[laser];
@@ -273,16 +276,22 @@ void RenderPass::refine_stripe(std::size_t laser, int u, int v, Lanes offset_v, 
   const LaneMask settled = wanted & stripe.reached & (abs(stripe.offset_px) < 2e-3f) & (abs(offset_v) <= 0.75f);
   const LaneMask lit = shader_.scene().clear_of_all(sheet.emitter(), surface, settled);
   const RgbLanes albedo = shader_.look().albedo(surface, hit.shape, 1.f);
-  RgbLanes radiance;
-  for (std::size_t band = 0; band < 3; ++band) radiance[band] = albedo[band] * static_cast<float>(1 / pi) * stripe.irradiance[band];
-  const GreyLanes grey = camera_.grey(radiance);
-  const Lanes height = max(grey[0], max(grey[1], grey[2]));
+  const auto height_of = [&](const RgbLanes& irradiance) {
+    RgbLanes radiance;
+    for (std::size_t band = 0; band < 3; ++band) radiance[band] = albedo[band] * static_cast<float>(1 / pi) * irradiance[band];
+    const GreyLanes grey = camera_.grey(radiance);
+    return max(grey[0], max(grey[1], grey[2]));
+  };
+  const Lanes height = height_of(stripe.irradiance), scattered = height_of(stripe.skirt);
   // The other side of the pixel is of another direction: here the whole square counts.
   const Lanes sigma_v = sqrt(stripe.sigma_px * stripe.sigma_px + 1.f / 12.f) / max(abs(stripe.slope_v), all_lanes(0.02f));
   const LaneMask by_mark = any(lit) ? near_marks(u, v) : LaneMask{};
   for (int lane = 0; lane < lane_count && u + lane < camera_.width(); ++lane) {
+    const float place = static_cast<float>(v) + offset_v[lane];
     if (lit[lane] != 0)
-      centres.push_back({u + lane, static_cast<float>(v) + offset_v[lane], height[lane], sigma_v[lane], by_mark[lane] != 0});
+      centres.push_back({u + lane, place, height[lane], sigma_v[lane], by_mark[lane] != 0, false});
+    else if (settled[lane] != 0 && scattered[lane] > least_scattered_grey)
+      centres.push_back({u + lane, place, scattered[lane], 0, false, true});
   }
 }
 

@@ -44,6 +44,7 @@ class RenderPass {
     std::int32_t u;
     float v, grey, sigma_px;
     bool near_mark;
+    bool shaded;  // something is before it in the sheet: only light that the water has scattered comes there, so high
   };
   std::vector<StripeCentre> stripe_centres(int tile_row, std::size_t laser) const;
 
