@@ -23,32 +23,34 @@ Formation::Formation(const Camera& camera, const ForwardScatter& scatter)
       reach_rows_(GaussianTaps::of(camera.config.blur_px * std::max(camera.config.corner_blur, 1.0)).radius + 1),
       packets_a_row_(static_cast<std::size_t>((camera.width() + lane_count - 1) / lane_count)),
       near_line_(packets_a_row_ * static_cast<std::size_t>(camera.height())),
-      any_line_(static_cast<std::size_t>(camera.height())) {}
+      line_span_(static_cast<std::size_t>(camera.height())),
+      has_line_(static_cast<std::size_t>(camera.height())) {}
 
 void Formation::find_lines(const std::vector<std::uint8_t>& line_packets) {
   const int height = camera_.height(), columns = static_cast<int>(packets_a_row_);
-  std::vector<std::uint8_t> wide(near_line_.size());
+  std::fill(near_line_.begin(), near_line_.end(), std::uint8_t{0});
+  std::fill(line_span_.begin(), line_span_.end(), LensSpot::Packets{columns, 0});
+  std::vector<std::uint8_t> wide(packets_a_row_);
   for (int v = 0; v < height; ++v) {
     const std::uint8_t* from = line_packets.data() + static_cast<std::size_t>(v) * packets_a_row_;
-    any_line_[static_cast<std::size_t>(v)] = std::any_of(from, from + columns, [](std::uint8_t lit) { return lit != 0; });
-    if (!any_line_[static_cast<std::size_t>(v)]) continue;
-    std::uint8_t* to = wide.data() + static_cast<std::size_t>(v) * packets_a_row_;
+    const bool lit = std::any_of(from, from + columns, [](std::uint8_t lit_packet) { return lit_packet != 0; });
+    has_line_[static_cast<std::size_t>(v)] = lit ? 1 : 0;
+    if (!lit) continue;
+    std::fill(wide.begin(), wide.end(), std::uint8_t{0});
+    int first = columns, end = 0;
     for (int p = 0; p < columns; ++p) {
-      for (int q = std::max(p - reach_packets, 0); q <= std::min(p + reach_packets, columns - 1); ++q) to[p] |= from[q];
+      if (from[p] == 0) continue;
+      const int low = std::max(p - reach_packets, 0), high = std::min(p + reach_packets + 1, columns);
+      std::fill(wide.begin() + low, wide.begin() + high, std::uint8_t{1});
+      first = std::min(first, low), end = high;
     }
-  }
-  std::fill(near_line_.begin(), near_line_.end(), std::uint8_t{0});
-  std::vector<std::uint8_t> lit(any_line_.size());
-  for (int v = 0; v < height; ++v) {
-    if (!any_line_[static_cast<std::size_t>(v)]) continue;
-    const std::uint8_t* from = wide.data() + static_cast<std::size_t>(v) * packets_a_row_;
     for (int row = std::max(v - reach_rows_, 0); row <= std::min(v + reach_rows_, height - 1); ++row) {
       std::uint8_t* to = near_line_.data() + static_cast<std::size_t>(row) * packets_a_row_;
-      for (int p = 0; p < columns; ++p) to[p] |= from[p];
-      lit[static_cast<std::size_t>(row)] = 1;
+      for (int p = 0; p < columns; ++p) to[p] |= wide[static_cast<std::size_t>(p)];
+      LensSpot::Packets& span = line_span_[static_cast<std::size_t>(row)];
+      span.first = std::min(span.first, first), span.end = std::max(span.end, end);
     }
   }
-  any_line_ = lit;
 }
 
 void Formation::add_ghost(PixelStore& pixels) const {
@@ -56,7 +58,7 @@ void Formation::add_ghost(PixelStore& pixels) const {
   const auto shift = static_cast<int>(std::lround(camera_.config.ghost_px));
   if (share == 0) return;
   for (int v = shift; v < pixels.height; ++v) {
-    if (any_line_[static_cast<std::size_t>(v - shift)] == 0) continue;
+    if (has_line_[static_cast<std::size_t>(v - shift)] == 0) continue;
     for (std::size_t c = 0; c < pixels.channels; ++c) {
       float* onto = pixels.grey.data() + c * pixels.plane + pixels.index(0, v);
       const float* from = pixels.laser.data() + c * pixels.plane + pixels.index(0, v - shift);
@@ -77,25 +79,27 @@ void Formation::spread(PixelStore& pixels, const std::vector<std::uint8_t>& line
   if (!scatters) terms.clear();
   for (std::size_t c = 0; c < pixels.channels && (scatters || stray > 0); ++c) {
     const PlaneView<float> onto{pixels.grey.data() + c * pixels.plane + pixels.index(0, 0), pixels.stride, pixels.width, pixels.height};
-    pyramid_.add(plane_of(pixels, pixels.scattered, c), terms, {plane_of(pixels, pixels.grey, c), plane_of(pixels, pixels.laser, c)},
-                 {stray / (1 - stray), camera_.config.stray_px}, onto, pool);
+    pyramid_.add(plane_of(pixels, pixels.scattered, c), terms, plane_of(pixels, pixels.grey, c),
+                 {plane_of(pixels, pixels.laser, c), has_line_}, {stray / (1 - stray), camera_.config.stray_px}, onto, pool);
   }
   add_ghost(pixels);
 }
 
 void Formation::expose_row(const PixelStore& pixels, int v, const Speckle& speckle, const Exposing& exposing, std::uint8_t* out) const {
-  std::vector<float> scratch(pixels.stride + 2 * LensSpot::reach()), row(pixels.stride), line(pixels.stride);
+  // Kept from row to row.
+  static thread_local std::vector<float> scratch, row, line, interleaved;
   const std::size_t channels = pixels.channels;
-  std::vector<float> interleaved(channels > 1 ? pixels.stride * channels : 0);
-  const bool lit = any_line_[static_cast<std::size_t>(v)] != 0;
-  const std::uint8_t* wanted = near_line_.data() + static_cast<std::size_t>(v) * packets_a_row_;
+  scratch.resize(pixels.stride + 2 * LensSpot::reach()), row.resize(pixels.stride), line.resize(pixels.stride);
+  interleaved.resize(channels > 1 ? pixels.stride * channels : 0);
+  const LensSpot::Packets span = line_span_[static_cast<std::size_t>(v)];
+  const std::uint8_t* near = near_line_.data() + static_cast<std::size_t>(v) * packets_a_row_;
   constexpr WordLanes count_up{0, 1, 2, 3, 4, 5, 6, 7};
   for (std::size_t c = 0; c < channels; ++c) {
-    lens_.show(plane_of(pixels, pixels.grey, c), v, nullptr, scratch.data(), row.data());
-    if (lit) lens_.show(plane_of(pixels, pixels.laser, c), v, wanted, scratch.data(), line.data());
-    for (std::size_t p = 0; lit && p < packets_a_row_; ++p) {
-      if (wanted[p] == 0) continue;
-      const std::size_t u = p * lane_count;
+    lens_.show(plane_of(pixels, pixels.grey, c), v, {0, static_cast<int>(packets_a_row_)}, scratch.data(), row.data());
+    if (span.first < span.end) lens_.show(plane_of(pixels, pixels.laser, c), v, span, scratch.data(), line.data());
+    for (int p = span.first; p < span.end; ++p) {
+      if (near[p] == 0) continue;
+      const std::size_t u = static_cast<std::size_t>(p) * lane_count;
       const auto number =
           static_cast<std::uint32_t>((c * static_cast<std::size_t>(pixels.height) + static_cast<std::size_t>(v)) * pixels.stride + u);
       store_lanes(row.data() + u, load_lanes(row.data() + u) + load_lanes(line.data() + u) * speckle.factor(count_up + number));

@@ -1,6 +1,7 @@
 #include "host_sim/optics/formation/halo_pyramid.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "shared/lanes/lanes.hpp"
@@ -21,15 +22,20 @@ void pad(float* row, int width) {
   std::fill_n(row + width, margin, row[width - 1]);
 }
 
-// Adds `from` up, halves the sum by (1 3 3 1) / 8 both ways, and writes row r of that. Unlike the mean of 2x2, this keeps the light's mean place. `row` has room for
-// `margin` on both sides.
-void halve_row(const std::vector<PlaneView<const float>>& from, int r, int width, int height, float* row, float* to) {
+// Halves one plane, or the sum of two, by (1 3 3 1) / 8 both ways, and writes row r of that. Unlike the mean of 2x2, this keeps the light's mean place. `row` has room
+// for `margin` on both sides.
+template <std::size_t planes>
+void halve_row(const std::array<PlaneView<const float>, planes>& from, int r, float* row, float* to) {
+  const int width = from[0].width, height = from[0].height;
   const auto clamped = [height](int v) { return std::clamp(v, 0, height - 1); };
+  std::array<std::array<const float*, 4>, planes> rows;
+  for (std::size_t i = 0; i < planes; ++i)
+    rows[i] = {from[i].row(clamped(2 * r - 1)), from[i].row(2 * r), from[i].row(clamped(2 * r + 1)), from[i].row(clamped(2 * r + 2))};
   for (int u = 0; u < width; u += lane_count) {
     Lanes near{}, far{};
-    for (const PlaneView<const float>& plane : from) {
-      near += load_lanes(plane.row(2 * r) + u) + load_lanes(plane.row(clamped(2 * r + 1)) + u);
-      far += load_lanes(plane.row(clamped(2 * r - 1)) + u) + load_lanes(plane.row(clamped(2 * r + 2)) + u);
+    for (const auto& of : rows) {
+      near += load_lanes(of[1] + u) + load_lanes(of[2] + u);
+      far += load_lanes(of[0] + u) + load_lanes(of[3] + u);
     }
     store_lanes(row + u, 0.375f * near + 0.125f * far);
   }
@@ -102,25 +108,33 @@ void HaloPyramid::place(HaloTerm term, bool stray) {
   terms_[level].push_back({GaussianTaps::of(rest), term.weight, stray});
 }
 
-void HaloPyramid::halve_sources(PlaneView<const float> scattered, const std::vector<PlaneView<const float>>& stray, WorkerPool& pool) {
+void HaloPyramid::halve_sources(PlaneView<const float> scattered, PlaneView<const float> grey, const SparsePlane& line, WorkerPool& pool) {
   Level& first = levels_.front();
+  const auto has_line = [&](int r) {
+    const auto begin = line.rows.begin() + std::max(2 * r - 1, 0), end = line.rows.begin() + std::min(2 * r + 3, grey.height);
+    return std::any_of(begin, end, [](std::uint8_t has) { return has != 0; });
+  };
   pool.run((first.height + strip - 1) / strip, [&](int block) {
     std::vector<float> row(padded(scattered.width) + 2 * margin);
     for (int r = block * strip; r < std::min((block + 1) * strip, first.height); ++r) {
       const std::size_t at = static_cast<std::size_t>(r) * first.stride;
-      halve_row({scattered}, r, scattered.width, scattered.height, row.data() + margin, first.scattered.data() + at);
-      halve_row(stray, r, scattered.width, scattered.height, row.data() + margin, first.stray.data() + at);
+      halve_row<1>({scattered}, r, row.data() + margin, first.scattered.data() + at);
+      if (has_line(r))
+        halve_row<2>({grey, line.plane}, r, row.data() + margin, first.stray.data() + at);
+      else
+        halve_row<1>({grey}, r, row.data() + margin, first.stray.data() + at);
     }
   });
   for (std::size_t i = 1; i < levels_.size(); ++i) {
     const Level& from = levels_[i - 1];
     Level& to = levels_[i];
+    const auto plane = [&](const std::vector<float>& values) {
+      return PlaneView<const float>{values.data(), from.stride, from.width, from.height};
+    };
     for (int r = 0; r < to.height; ++r) {
       const std::size_t at = static_cast<std::size_t>(r) * to.stride;
-      halve_row({{from.scattered.data(), from.stride, from.width, from.height}}, r, from.width, from.height, row_.data() + margin,
-                to.scattered.data() + at);
-      halve_row({{from.stray.data(), from.stride, from.width, from.height}}, r, from.width, from.height, row_.data() + margin,
-                to.stray.data() + at);
+      halve_row<1>({plane(from.scattered)}, r, row_.data() + margin, to.scattered.data() + at);
+      halve_row<1>({plane(from.stray)}, r, row_.data() + margin, to.stray.data() + at);
     }
   }
 }
@@ -142,12 +156,12 @@ void HaloPyramid::gather(std::size_t i) {
   }
 }
 
-void HaloPyramid::add(PlaneView<const float> scattered, const std::vector<HaloTerm>& scattered_terms,
-                      const std::vector<PlaneView<const float>>& stray, HaloTerm stray_term, PlaneView<float> onto, WorkerPool& pool) {
+void HaloPyramid::add(PlaneView<const float> scattered, const std::vector<HaloTerm>& scattered_terms, PlaneView<const float> grey,
+                      const SparsePlane& line, HaloTerm stray_term, PlaneView<float> onto, WorkerPool& pool) {
   for (auto& terms : terms_) terms.clear();
   for (const HaloTerm& term : scattered_terms) place(term, false);
   place(stray_term, true);
-  halve_sources(scattered, stray, pool);
+  halve_sources(scattered, grey, line, pool);
   for (std::size_t i = levels_.size(); i-- > 0;) gather(i);
   const Level& low = levels_.front();
   const int blocks = (onto.height + strip - 1) / strip;

@@ -4,6 +4,7 @@
 // Beyond its borders a picture goes on as it ends: an even one stays even. The sums are taken in one order for any number of threads.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "host_sim/optics/formation/gaussian_taps.hpp"
@@ -25,14 +26,20 @@ struct HaloTerm {
   double sigma_px = 0;
 };
 
+// A plane that is 0 on the rows without a flag.
+struct SparsePlane {
+  PlaneView<const float> plane;
+  const std::vector<std::uint8_t>& rows;
+};
+
 class HaloPyramid {
  public:
   HaloPyramid(int width, int height);
 
-  // Adds to `onto` the sum over `scattered_terms` of weight * Gaussian(sigma) * scattered, and the one `stray_term` of the sum of `stray`, all of the same size.
-  // `onto` may be one of the stray ones.
-  void add(PlaneView<const float> scattered, const std::vector<HaloTerm>& scattered_terms, const std::vector<PlaneView<const float>>& stray,
-           HaloTerm stray_term, PlaneView<float> onto, WorkerPool& pool);
+  // Adds to `onto` the sum over `scattered_terms` of weight * Gaussian(sigma) * scattered, and the one `stray_term` of the sum of `grey` and `line`, all of the same
+  // size. `onto` may be `grey`.
+  void add(PlaneView<const float> scattered, const std::vector<HaloTerm>& scattered_terms, PlaneView<const float> grey,
+           const SparsePlane& line, HaloTerm stray_term, PlaneView<float> onto, WorkerPool& pool);
 
  private:
   struct Level {
@@ -46,7 +53,7 @@ class HaloPyramid {
     bool stray = false;
   };
   void place(HaloTerm term, bool stray);
-  void halve_sources(PlaneView<const float> scattered, const std::vector<PlaneView<const float>>& stray, WorkerPool& pool);
+  void halve_sources(PlaneView<const float> scattered, PlaneView<const float> grey, const SparsePlane& line, WorkerPool& pool);
   void gather(std::size_t level);
 
   std::vector<Level> levels_;               // levels_[0] is half the picture

@@ -36,31 +36,28 @@ namespace {
 
 using Rows = const float* const*;  // from the middle one, so many on both sides
 
-// Packets from `first` up to `end` of one row: a filter along columns, and one along a row. Most spots reach four pixels; known to the compiler, such a reach has its
-// taps in registers.
+// A filter along columns and one along a row, a packet at a time. Known to the compiler, the reach has its taps in registers.
 template <int known_radius>
-void filter_down(Rows middle, int first, int end, const GaussianTaps& taps, float* to) {
+Lanes down(Rows middle, int u, const GaussianTaps& taps) {
   const int radius = known_radius > 0 ? known_radius : taps.radius;
-  for (int u = first; u < end; u += lane_count) {
-    Lanes sum = taps.tap[0] * load_lanes(middle[0] + u);
-    for (int k = 1; k <= radius; ++k)
-      sum += taps.tap[static_cast<std::size_t>(k)] * (load_lanes(middle[-k] + u) + load_lanes(middle[k] + u));
-    store_lanes(to + u, sum);
-  }
+  const float* tap = taps.tap.data();
+  Lanes sum = tap[0] * load_lanes(middle[0] + u);
+  for (int k = 1; k <= radius; ++k) sum += tap[k] * (load_lanes(middle[-k] + u) + load_lanes(middle[k] + u));
+  return sum;
 }
 
 template <int known_radius>
-void filter_along(const float* row, int first, int end, const GaussianTaps& taps, float* to) {
+Lanes along(const float* row, int u, const GaussianTaps& taps) {
   const int radius = known_radius > 0 ? known_radius : taps.radius;
-  for (int u = first; u < end; u += lane_count) {
-    Lanes sum = taps.tap[0] * load_lanes(row + u);
-    for (int k = 1; k <= radius; ++k) sum += taps.tap[static_cast<std::size_t>(k)] * (load_lanes(row + u - k) + load_lanes(row + u + k));
-    store_lanes(to + u, sum);
-  }
+  const float* tap = taps.tap.data();
+  Lanes sum = tap[0] * load_lanes(row + u);
+  for (int k = 1; k <= radius; ++k) sum += tap[k] * (load_lanes(row + u - k) + load_lanes(row + u + k));
+  return sum;
 }
 
+// Most spots reach so far.
 template <typename Filter>
-void with_radius(int radius, const Filter& filter) {
+Lanes with_radius(int radius, const Filter& filter) {
   switch (radius) {
     case 2: return filter(std::integral_constant<int, 2>());
     case 3: return filter(std::integral_constant<int, 3>());
@@ -70,42 +67,28 @@ void with_radius(int radius, const Filter& filter) {
   }
 }
 
-void clear(float* to, int first, int end) { std::fill(to + first, to + end, 0.f); }
-
 }  // namespace
 
-void LensSpot::show(PlaneView<const float> from, int v, const std::uint8_t* wanted, float* scratch, float* to) const {
+void LensSpot::show(PlaneView<const float> from, int v, Packets wanted, float* scratch, float* to) const {
+  constexpr int beside = 2;  // packets that light comes from
   float* row = scratch + reach();
   const std::uint8_t* step = step_row(v);
-  const auto packets = static_cast<int>(packets_a_row_);
-  const auto near = [&](int packet) {
-    return wanted == nullptr || std::any_of(wanted + std::max(packet - 2, 0), wanted + std::min(packet + 2, packets - 1) + 1,
-                                            [](std::uint8_t w) { return w != 0; });
-  };
-  const auto here = [&](int packet) { return wanted == nullptr || wanted[packet] != 0; };
   std::array<const float*, 2 * GaussianTaps::most + 1> rows;
   for (std::size_t i = 0; i < rows.size(); ++i)
     rows[i] = from.row(std::clamp(v - GaussianTaps::most + static_cast<int>(i), 0, from.height - 1));
-
-  // Neighbours with one spot are filtered together.
-  const auto runs = [&](const auto& is_wanted, float* onto, const auto& filter) {
-    for (int first = 0, end = 0; first < packets; first = end) {
-      const bool filtered = is_wanted(first);
-      for (end = first + 1; end < packets && step[end] == step[first] && is_wanted(end) == filtered;) ++end;
-      if (filtered)
-        filter(taps_[step[first]], first * lane_count, end * lane_count);
-      else
-        clear(onto, first * lane_count, end * lane_count);
-    }
-  };
-  runs(near, row, [&](const GaussianTaps& taps, int first, int end) {
-    with_radius(taps.radius, [&](auto radius) { filter_down<radius()>(rows.data() + GaussianTaps::most, first, end, taps, row); });
-  });
-  std::fill_n(scratch, reach(), row[0]);
-  std::fill_n(row + from.width, reach(), row[from.width - 1]);
-  runs(here, to, [&](const GaussianTaps& taps, int first, int end) {
-    with_radius(taps.radius, [&](auto radius) { filter_along<radius()>(row, first, end, taps, to); });
-  });
+  const int first = std::max(wanted.first - beside, 0), end = std::min(wanted.end + beside, static_cast<int>(packets_a_row_));
+  for (int packet = first; packet < end; ++packet) {
+    const GaussianTaps& taps = taps_[step[packet]];
+    const int u = packet * lane_count;
+    store_lanes(row + u, with_radius(taps.radius, [&](auto radius) { return down<radius()>(rows.data() + GaussianTaps::most, u, taps); }));
+  }
+  if (first == 0) std::fill_n(scratch, reach(), row[0]);
+  if (end == static_cast<int>(packets_a_row_)) std::fill_n(row + from.width, reach(), row[from.width - 1]);
+  for (int packet = wanted.first; packet < wanted.end; ++packet) {
+    const GaussianTaps& taps = taps_[step[packet]];
+    const int u = packet * lane_count;
+    store_lanes(to + u, with_radius(taps.radius, [&](auto radius) { return along<radius()>(row, u, taps); }));
+  }
 }
 
 }  // namespace lf::optics

@@ -17,9 +17,14 @@ class LensSpot {
 
   double sigma_px(double u, double v) const;
 
-  // Row v of `from` as the lens shows it, into `to` (the padded width); `scratch` has room for a row and reach() on both sides. Packets of eight
-  // pixels for which `wanted` (one a packet, or nothing: all) is 0 are set to 0.
-  void show(PlaneView<const float> from, int v, const std::uint8_t* wanted, float* scratch, float* to) const;
+  // Packets of eight pixels of a row, from `first` to before `end`.
+  struct Packets {
+    int first = 0, end = 0;
+  };
+
+  // The wanted packets of row v of `from` as the lens shows it, into `to` (room for the padded width); the others are left as they are. `scratch` has room for a row and
+  // reach() on both sides.
+  void show(PlaneView<const float> from, int v, Packets wanted, float* scratch, float* to) const;
 
   static constexpr std::size_t reach() { return GaussianTaps::most + 8; }
 

@@ -44,7 +44,9 @@ TEST(HaloPyramid, SpreadsALineAsTheGaussianThatWasAskedFor) {
       Planes planes(640, 41);
       const int line = 312 + place;
       for (int v = 0; v < planes.height; ++v) planes.in[static_cast<std::size_t>(v) * planes.stride + static_cast<std::size_t>(line)] = 1;
-      HaloPyramid(planes.width, planes.height).add(planes.source(), {{1.f, sigma}}, {planes.source()}, {}, planes.target(), pool);
+      const std::vector<std::uint8_t> no_rows(static_cast<std::size_t>(planes.height));
+      HaloPyramid(planes.width, planes.height)
+          .add(planes.source(), {{1.f, sigma}}, planes.source(), {planes.source(), no_rows}, {}, planes.target(), pool);
       for (int u = 0; u < planes.width; ++u) {
         worst = std::max(worst,
                          std::abs(planes.out[20 * planes.stride + static_cast<std::size_t>(u)] - bell(u - line, sigma)) / bell(0, sigma));
@@ -59,13 +61,32 @@ TEST(HaloPyramid, LeavesAnEvenPictureEven) {
   for (const auto& [width, height] : {std::pair{640, 480}, std::pair{333, 217}, std::pair{17, 3}, std::pair{1, 1}}) {
     Planes planes(width, height);
     planes.fill(7);
+    const std::vector<std::uint8_t> no_rows(static_cast<std::size_t>(height));
     HaloPyramid(width, height)
-        .add(planes.source(), {{0.5f, 2.0}, {0.25f, 32.0}, {0.1f, 400.0}}, {planes.source()}, {0.05f, 6.0}, planes.target(), pool);
+        .add(planes.source(), {{0.5f, 2.0}, {0.25f, 32.0}, {0.1f, 400.0}}, planes.source(), {planes.source(), no_rows}, {0.05f, 6.0},
+             planes.target(), pool);
     for (int v = 0; v < height; ++v) {
       for (int u = 0; u < width; ++u)
         ASSERT_NEAR(planes.out[static_cast<std::size_t>(v) * planes.stride + static_cast<std::size_t>(u)], 0.9 * 7, 1e-4);
     }
   }
+}
+
+// Rows that are known to be 0 are not read.
+TEST(HaloPyramid, OfALinesPlaneTheRowsThatAreNotZeroAreEnough) {
+  WorkerPool pool(1);
+  Planes grey(64, 48), line(64, 48), none(64, 48);
+  grey.fill(5);
+  for (int u = 0; u < 64; ++u) line.in[21 * line.stride + static_cast<std::size_t>(u)] = static_cast<float>(u);
+  std::vector<std::uint8_t> all(48, 1), one(48);
+  one[21] = 1;
+  const auto halo = [&](const std::vector<std::uint8_t>& rows) {
+    std::fill(none.out.begin(), none.out.end(), 0.f);
+    HaloPyramid(64, 48).add(none.source(), {}, grey.source(), {line.source(), rows}, {0.1f, 6.0}, none.target(), pool);
+    return none.out;
+  };
+  EXPECT_EQ(halo(all), halo(one));
+  EXPECT_NE(halo(all), halo(std::vector<std::uint8_t>(48)));
 }
 
 TEST(LensSpot, TurnsAStepIntoTheNormalDistributionsOwn) {
@@ -78,7 +99,7 @@ TEST(LensSpot, TurnsAStepIntoTheNormalDistributionsOwn) {
       for (int u = 0; u < width; ++u)
         planes.in[static_cast<std::size_t>(y) * planes.stride + static_cast<std::size_t>(u)] = u < edge ? 0.f : 1.f;
     }
-    lens.show(planes.source(), v, nullptr, scratch.data(), row.data());
+    lens.show(planes.source(), v, {0, width / lane_count}, scratch.data(), row.data());
     const double sigma = lens.sigma_px(edge - 0.5, v);
     for (int u = edge - 6; u < edge + 6; ++u) {
       // Pixels add their own width to the step, and samples of a bell their own to it: under a hundredth at this width.
@@ -90,13 +111,12 @@ TEST(LensSpot, TurnsAStepIntoTheNormalDistributionsOwn) {
   EXPECT_NEAR(lens.sigma_px(0, 0), 1.8, 1e-9);
 }
 
-TEST(LensSpot, ShowsNothingWhereNothingIsWanted) {
+TEST(LensSpot, ShowsTheWantedPacketsAlone) {
   Planes planes(64, 32);
   planes.fill(3);
   const LensSpot lens(64, 32, 1.2, 1.2);
   std::vector<float> scratch(planes.stride + 2 * LensSpot::reach()), row(planes.stride);
-  const std::vector<std::uint8_t> wanted{0, 0, 1, 1, 0, 0, 0, 0};
-  lens.show(planes.source(), 10, wanted.data(), scratch.data(), row.data());
+  lens.show(planes.source(), 10, {2, 4}, scratch.data(), row.data());
   for (int u = 0; u < 64; ++u) EXPECT_NEAR(row[static_cast<std::size_t>(u)], u / 8 == 2 || u / 8 == 3 ? 3 : 0, 1e-5) << u;
 }
 
