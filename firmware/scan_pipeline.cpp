@@ -75,7 +75,8 @@ void BasicScanPipeline<capacity>::begin_sweep(std::uint32_t sweep) {
   request_ready_ = false;
   request_.id = sweep;
   stripes_seen_ = 0;
-  shape_doubts_px_ = 0;
+  m_per_px_ = shape_shifts_m_ = 0;
+  last_shape_doubt_px_ = 0;
   sweeping_ = true;
 }
 
@@ -290,7 +291,7 @@ bool BasicScanPipeline<capacity>::add_points(const Stripe& stripe, bool final) {
   }
   // Beyond the panel there are specks and edges, whose shape is no stripe's.
   stats_.stripe = stripe.form;
-  const std::size_t points_before = cloud_.points().size();
+  const double m_per_px_before = m_per_px_;
   const std::uint32_t shift = stripes_seen_++ % apart;
   for (std::size_t begin = 0; begin < peaks.size();) {
     std::size_t end = begin + 1;
@@ -299,7 +300,8 @@ bool BasicScanPipeline<capacity>::add_points(const Stripe& stripe, bool final) {
     if (column % apart == shift) add_column(peaks.subspan(begin, end - begin), chains.subspan(begin, end - begin), base_from_laser);
     begin = end;
   }
-  shape_doubts_px_ += static_cast<double>(stripe.shape_doubt_px) * static_cast<double>(cloud_.points().size() - points_before);
+  shape_shifts_m_ += static_cast<double>(stripe.shape_doubt_px) * (m_per_px_ - m_per_px_before);
+  if (m_per_px_ > m_per_px_before) last_shape_doubt_px_ = stripe.shape_doubt_px;
   return true;
 }
 
@@ -334,7 +336,15 @@ void BasicScanPipeline<capacity>::add_column(std::span<const scan::Peak> peaks, 
     ++stats_.peaks_ambiguous;
     return;
   }
-  for (const CloudPoint& point : points) ++(cloud_.add(point) ? stats_.points : stats_.points_overflowed);
+  const Vec3 eye_m = config_.camera.base_from_camera.translation(), normal = base_from_laser.linear().col(0);
+  for (const CloudPoint& point : points) {
+    const bool added = cloud_.add(point);
+    ++(added ? stats_.points : stats_.points_overflowed);
+    if (!added) continue;
+    // A pixel's width at the point's distance, over the sine of the angle between ray and laser's plane.
+    const Vec3 ray_m = point.p_m.cast<double>() - eye_m;
+    m_per_px_ += ray_m.squaredNorm() / (config_.camera.intrinsics.fy * std::abs(ray_m.dot(normal)));
+  }
   Taken& taken = newest_taken();
   for (const Eigen::Vector2f& place : seen) {
     if (taken.count < taken.places_px.size()) taken.places_px[taken.count++] = place;
@@ -348,8 +358,10 @@ void BasicScanPipeline<capacity>::analyse(std::uint32_t sweep) {
   sweeping_ = false;
   request_.id = sweep;
   request_.fit = fitter_.fit(cloud_.points(), config_.plane);
+  // The beam is one over the sweep: what the last pictures say of it holds for the first, too.
   if (!cloud_.points().empty())
-    request_.fit.shape_doubt_px = static_cast<float>(shape_doubts_px_ / static_cast<double>(cloud_.points().size()));
+    request_.fit.shape_shift_m =
+        std::max(shape_shifts_m_, static_cast<double>(last_shape_doubt_px_) * m_per_px_) / static_cast<double>(cloud_.points().size());
   request_.has_still = still_.present;
   request_.still_time = still_.mid_exposure;
   request_ready_ = true;

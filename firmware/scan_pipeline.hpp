@@ -168,7 +168,9 @@ class BasicScanPipeline {
   std::uint32_t frames_ordered_ = 0;
   bool any_order_ = false;
   std::uint32_t stripes_seen_ = 0;  // of this sweep
-  double shape_doubts_px_ = 0;      // of its points, summed
+  // Of its points, summed: metres along the ray a pixel, and by how much each may be off.
+  double m_per_px_ = 0, shape_shifts_m_ = 0;
+  float last_shape_doubt_px_ = 0;
   bool sweeping_ = false;
   std::uint64_t last_pixels_ = 0;  // what repeats() made of the image before
   StoredImage background_;

@@ -29,25 +29,17 @@ constexpr double calibration_shift_m = 0.0021;
 constexpr double calibration_turn_rad = 0.0026;
 constexpr double marker_spin_rad = 0.0105;
 
-// A point moves along its ray by a pixel's width at its distance over the sine of the angle between ray and laser's plane: 20 degrees in the default sweep. The distance is
-// measured square to the panel: a ray to its border is a third longer.
-constexpr double along_ray = 4.0;
 // What the valve's base is asked to be known to.
 constexpr double largest_shape_shift_m = 0.003;
 
 }  // namespace
-
-double PanelMap::shape_shift_m(const PlaneFit& fit) const {
-  const double distance_m = std::abs(fit.plane.signed_distance_m(camera_.base_from_camera.translation()));
-  return along_ray * static_cast<double>(fit.shape_doubt_px) * distance_m / camera_.intrinsics.fy;
-}
 
 // The plane is the mean of thousands of points, and so far better known than one of them. An error that bends it shows in what neighbouring points have in common. The
 // line's shape may shift the points by different amounts over the sweep. The worst is no shift at one border of what was seen and the full shift at the other: that turns the
 // plane, and the more the less of the panel was seen.
 arm::PanelDoubt PanelMap::doubt() const {
   constexpr double least_seen_m = 0.01;
-  const double plate_m = (layout_.plate_max_m - layout_.plate_min_m).minCoeff(), shape_m = shape_shift_m(plane_);
+  const double plate_m = (layout_.plate_max_m - layout_.plate_min_m).minCoeff(), shape_m = plane_.shape_shift_m;
   const double seen_m = std::clamp(plane_.seen_m, least_seen_m, plate_m), bent_m = 2 * plane_.bend_m + shape_m;
   return {calibration_shift_m + bent_m, calibration_turn_rad + bent_m / seen_m, marker_spin_rad};
 }
@@ -88,7 +80,7 @@ StepFailure PanelMap::judge(const PanelResult& result, const scan::ValveFrame& f
     case scan::ValveFrameOutcome::not_a_number: return StepFailure::no_panel;
   }
   if (result.fit.inliers < min_inlier_ratio * result.fit.points) return StepFailure::plane_unsure;
-  if (!(shape_shift_m(result.fit) <= largest_shape_shift_m)) return StepFailure::line_misshapen;
+  if (!(result.fit.shape_shift_m <= largest_shape_shift_m)) return StepFailure::line_misshapen;
   // The frame of the first look is what later ones are held against: a shift does not become the truth by being seen twice.
   if (known_ && (frame.base_from_panel.translation() - frame_.base_from_panel.translation()).norm() > max_panel_shift_m)
     return StepFailure::panel_moved;

@@ -54,8 +54,6 @@ class PanelMap {
     double low_rad, high_rad;
   };
   bool has_pointer() const { return layout_.pointer != PanelLayout::Pointer::none; }
-  // Of all points alike, toward the camera or away from it, by what the stripe's shape leaves in doubt.
-  double shape_shift_m(const PlaneFit& fit) const;
   StepFailure judge(const PanelResult& result, const scan::ValveFrame& frame, const scan::HandleObservation& handle) const;
   StepFailure settle(const PanelResult& result, const scan::ValveFrame& frame, const scan::HandleObservation& handle,
                      double& angle_rad) const;

@@ -15,11 +15,10 @@ constexpr float lens_stride = 0.3f;
 constexpr float followed = 0.884f;
 constexpr float scatter_probe = 0.1f;
 constexpr float scatter_stride = 0.2f;
-constexpr float skew_probe = 0.03f, skew_stride = 0.05f, skew_doubt = 0.05f;
-constexpr std::int32_t least_plain_columns = 5;  // of eight
-constexpr float most_skew = 0.2f;                // there the stripe's flank is a tenth below 0 at two widths
-constexpr float scatter_doubt = 0.2f;            // of what the first one is told to be
-constexpr float most_scatter = 2.0f;             // there the direct light stands on haze of its own height
+constexpr float skew_probe = 0.03f, skew_stride = 0.05f, no_skew_seen = 0.05f;
+constexpr float most_skew = 0.2f;      // there the stripe's flank is a tenth below 0 at two widths
+constexpr float scatter_doubt = 0.2f;  // of what the first one is told to be
+constexpr float most_scatter = 2.0f;   // there the direct light stands on haze of its own height
 // Of what is known, from picture to picture: the light's width changes as the arm moves, the lens does not and the water hardly.
 constexpr float width_remembered = 0.9f, lens_remembered = 0.98f;
 constexpr float lens_doubt = 0.3f;  // of what the first one is told to be, its logarithm's standard deviation: +30 to 100 % at the corners
@@ -53,7 +52,7 @@ StripeOptics optics_of(float width_px, float lens_px, float scatter, float skew)
 OpticsEstimate::OpticsEstimate(const StripeOptics& first) : optics_(first) {
   lens_.known = 2 / square(lens_doubt);
   scatter_.known = 2 / square(scatter_doubt);
-  skew_.known = 2 / square(skew_doubt);
+  skew_.known = skew_.least = 2 / square(no_skew_seen);
 }
 
 void OpticsEstimate::add(const StripeWindows& windows, const PixelNoise& noise, const StripeFits& fits) {
@@ -99,11 +98,13 @@ void OpticsEstimate::add_shape(const StripeWindows& about, const PixelNoise& spe
     if (among[lane] != 0) stripe_.slope -= followed * std::min(1.0f, square(speckled.speckle) * weights.brightest[lane]);
   }
   stripe_.add(left[1], left[0], left[2], stripe_probe);
-  // At marks the model's own error would be taken for skew. Where most columns have edges, those of the others are hidden by noise.
+  // At marks the model's own error would be taken for skew.
   const LaneMask plain = among & probed[0].plain;
-  std::int32_t plain_columns = 0;
-  for (int lane = 0; lane < lane_count; ++lane) plain_columns += plain[lane] != 0;
-  if (plain_columns < least_plain_columns) return;
+  for (int lane = 0; lane < lane_count; ++lane) {
+    if (among[lane] != 0) ++fitted_;
+    if (plain[lane] != 0) ++plain_;
+  }
+  if (!any(plain)) return;
   for (const std::size_t i : {0, 3, 4}) left[i] = squares_left(about, probes[i], noise, probed[i], weights, plain);
   skew_.add(left[3], left[0], left[4], skew_probe);
 }
@@ -134,15 +135,21 @@ void OpticsEstimate::Newton::add(float below, float here, float above, float pro
 
 // Against the slope, no farther than where the deviance's parabola ends. Where that has no end, as far as is allowed.
 float OpticsEstimate::Newton::step(float longest, float remembered) {
-  const float total = std::max(curvature, 0.0f) + known;
+  if (slope == 0 && curvature == 0) return 0;
+  const float total = std::max(curvature + known, least);
   float move = 0;
   if (slope != 0) move = total > 0 ? std::clamp(-slope / total, -longest, longest) : (slope > 0 ? -longest : longest);
-  known = remembered * total;
-  slope = curvature = 0;
+  known = std::max(remembered * std::max(total, 0.0f), least);
+  drop();
   return move;
 }
 
+float OpticsEstimate::skew_doubt() const { return std::sqrt(2 / skew_.known); }
+
 float OpticsEstimate::update() {
+  // Where most columns have edges, those of the others are hidden by their noise.
+  if (2 * plain_ < fitted_) skew_.drop();
+  fitted_ = plain_ = 0;
   const float stripe_move = stripe_.step(stripe_stride, width_remembered), lens_move = lens_.step(lens_stride, lens_remembered),
               scatter_move = scatter_.step(scatter_stride, lens_remembered), skew_move = skew_.step(skew_stride, lens_remembered);
   if (stripe_move == 0 && lens_move == 0 && scatter_move == 0 && skew_move == 0) return 0;

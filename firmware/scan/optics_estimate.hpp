@@ -13,6 +13,8 @@ class OpticsEstimate {
   explicit OpticsEstimate(const StripeOptics& first);
 
   const StripeOptics& optics() const { return optics_; }
+  // Standard deviation of the skew, as the columns' noise leaves it: at most that of a skew of which no picture has told.
+  float skew_doubt() const;
 
   // Columns that were fitted with `optics()`. Those that fit badly are left out: another stripe, a silhouette.
   void add(const StripeWindows& windows, const PixelNoise& noise, const StripeFits& fits);
@@ -25,10 +27,13 @@ class OpticsEstimate {
   struct Newton {
     float slope = 0, curvature = 0;  // of the squares that are left, of the columns added since the last update
     float known = 0;                 // curvature that earlier pictures have left
+    float least = 0;                 // of it
 
     // The squares that are left a probe below the estimate, at it and above it.
     void add(float below, float here, float above, float probe);
+    // Moves nothing, and forgets nothing, where nothing was added.
     float step(float longest, float remembered);
+    void drop() { slope = curvature = 0; }
   };
 
   void add_shape(const StripeWindows& about, const PixelNoise& noise, LaneMask among);
@@ -36,6 +41,7 @@ class OpticsEstimate {
 
   StripeOptics optics_;
   Newton stripe_, lens_, scatter_, skew_;
+  std::int32_t fitted_ = 0, plain_ = 0;  // columns since the last update that add_shape took, and those of them that tell of the skew
 };
 
 }  // namespace lf::scan

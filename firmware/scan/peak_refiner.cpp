@@ -107,7 +107,8 @@ std::size_t BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::refine(const PixelView
 template <class Pixel, std::int32_t MaxWidth, std::int32_t MaxHeight>
 float BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::shape_doubt_px() const {
   if (!begun_) return 0;
-  return width_in_picture_px(optics()) * (shift_by_skew * std::abs(optics().skew) + shift_by_share * (noise_.model - least_model_share));
+  const float skew = std::abs(optics().skew) + estimate_.skew_doubt();
+  return width_in_picture_px(optics()) * (shift_by_skew * skew + shift_by_share * (noise_.model - least_model_share));
 }
 
 template <class Pixel, std::int32_t MaxWidth, std::int32_t MaxHeight>

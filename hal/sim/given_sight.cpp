@@ -24,7 +24,7 @@ PanelResult panel_as_it_is(const Pose& base_from_panel, double handle_rad, const
   result.fit.rms_m = 0.0004;
   // About the worst of a dozen sweeps that were rendered, and how much of the plate they saw.
   result.fit.bend_m = 0.0003;
-  result.fit.shape_doubt_px = 0.07f;
+  result.fit.shape_shift_m = 0.0005;
   result.fit.seen_m = (layout.plate_max_m - layout.plate_min_m).minCoeff();
   result.confidence = 0.9f;
 

@@ -25,8 +25,8 @@ struct PlaneFit {
   double rms_m = 0;   // of the inliers
   double bend_m = 0;  // of what they have in common with their neighbours (scan::plane_bend)
   double seen_m = 0;  // shorter side of the rectangle that they fill
-  // By how much the stripe's shape may have shifted all points alike, pixels: no scatter tells of it. 0 where no stripe was seen.
-  float shape_doubt_px = 0;
+  // By how much the stripe's shape may have shifted all points alike, along their rays: no scatter tells of it. 0 where no stripe was seen.
+  double shape_shift_m = 0;
 };
 
 // From the scan pipeline to the worker. The platform adds copies of the still image and of the cloud.

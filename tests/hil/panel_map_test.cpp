@@ -114,8 +114,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Poor{"NoPlane", [](PanelResult& r) { r.fit.valid = false; }, StepFailure::no_panel},
                     Poor{"FewPoints", [](PanelResult& r) { r.fit.points = 100; }, StepFailure::too_few_points},
                     Poor{"CloudOffThePlane", [](PanelResult& r) { r.fit.inliers = r.fit.points / 5; }, StepFailure::plane_unsure},
-                    Poor{"LineMisshapen", [](PanelResult& r) { r.fit.shape_doubt_px = 1; }, StepFailure::line_misshapen},
-                    Poor{"LineOfNoShape", [](PanelResult& r) { r.fit.shape_doubt_px = std::numeric_limits<float>::quiet_NaN(); },
+                    Poor{"LineMisshapen", [](PanelResult& r) { r.fit.shape_shift_m = 0.0031; }, StepFailure::line_misshapen},
+                    Poor{"LineOfNoShape", [](PanelResult& r) { r.fit.shape_shift_m = std::numeric_limits<double>::quiet_NaN(); },
                          StepFailure::line_misshapen},
                     Poor{"NoMarker", [](PanelResult& r) { r.marker.found = false; }, StepFailure::no_marker},
                     Poor{"MarkerTooSmall",
@@ -145,12 +145,11 @@ TEST(PanelMap, DoubtsThePanelsPlaceByTheLinesShape) {
   const Panel panel;
   PanelMap plain = panel.map(), skewed = panel.map();
   PanelResult result = panel.seen(10);
-  result.fit.shape_doubt_px = 0;
+  result.fit.shape_shift_m = 0;
   ASSERT_EQ(plain.update(result), StepFailure::none);
-  result.fit.shape_doubt_px = 0.5f;
+  result.fit.shape_shift_m = 0.0024;
   ASSERT_EQ(skewed.update(result), StepFailure::none);
-  // A pixel of the default camera is 1.2 mm wide at the panel's 0.43 m.
-  EXPECT_NEAR(skewed.doubt().shift_m - plain.doubt().shift_m, 4 * 0.5 * 0.0012, 0.0003);
+  EXPECT_NEAR(skewed.doubt().shift_m - plain.doubt().shift_m, 0.0024, 1e-9);
   EXPECT_GT(skewed.doubt().turn_rad, plain.doubt().turn_rad + 0.002);
 }
 

@@ -234,8 +234,8 @@ void pass(S& s, ScanStats& v) {
 }
 template <class S>
 void pass(S& s, PlaneFit& v) {
-  auto& [valid, plane, points, inliers, rms_m, bend_m, seen_m, shape_doubt_px] = v;
-  pass_all(s, valid, plane.normal, plane.offset_m, points, inliers, rms_m, bend_m, seen_m, shape_doubt_px);
+  auto& [valid, plane, points, inliers, rms_m, bend_m, seen_m, shape_shift_m] = v;
+  pass_all(s, valid, plane.normal, plane.offset_m, points, inliers, rms_m, bend_m, seen_m, shape_shift_m);
 }
 template <class S>
 void pass(S& s, MarkerObservation& v) {

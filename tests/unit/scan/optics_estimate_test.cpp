@@ -147,6 +147,65 @@ TEST(OpticsEstimate, PlainPaintTellsTheWidthAndNothingOfTheLens) {
   }
 }
 
+// Seven columns of eight lie on marks; the eighth, plain as far as its noise tells, has another shape: a border of the plate, the hand's edge. Rounds of such pictures
+// took the skew to its bound.
+TEST(OpticsEstimate, AFewPlainColumnsAmongMarksDoNotTellTheSkew) {
+  FormedStripe marks = at_marks(1.6, 1.0), plain = at_marks(1.6, 1.0);
+  plain.bars.contrast = 1;
+  const FormedImage image = form(marks);
+  FormedImage cut = form(plain);
+  FormedStripe lobe = plain;
+  lobe.noise = false;
+  lobe.middle_px += 2.3 * width_px(plain);
+  const FormedImage second = form(lobe);
+  for (std::size_t i = 0; i < cut.on.size(); ++i) cut.on[i] += 0.2 * (second.on[i] - second.off[i]);
+  for (const int cut_lanes : {1, 8}) {
+    OpticsEstimate found(first_guess(image));
+    const test::PairHaze haze(image), cut_haze(cut);
+    for (int round = 0; round < 12; ++round) {
+      for (int block = 0; block < 8; ++block) {
+        StripeWindows windows;
+        for (int lane = 0; lane < lane_count; ++lane) {
+          const int u = 12 + 17 * block + lane;
+          const bool is_cut = lane < cut_lanes;
+          const FormedImage& from = is_cut ? cut : image;
+          put(from, is_cut ? plain : marks, found.optics(), u, from.centre_px[static_cast<std::size_t>(u)], lane, windows,
+              is_cut ? &cut_haze : &haze);
+        }
+        found.add(windows, noise_of(marks), fit_stripes(windows, found.optics(), noise_of(marks), FitStart::far));
+      }
+      found.update();
+    }
+    if (cut_lanes == 1) {
+      EXPECT_EQ(found.optics().skew, 0.0f);
+      EXPECT_NEAR(found.skew_doubt(), 0.05, 1e-6);
+    } else {
+      EXPECT_GT(std::abs(found.optics().skew), 0.05f) << "the shape is no skew: the test shows nothing";
+    }
+  }
+}
+
+TEST(OpticsEstimate, DoubtsASkewLessTheMorePlainColumnsToldOfIt) {
+  FormedStripe s = at_marks(1.6, 1.0);
+  s.bars.contrast = 1;
+  OpticsEstimate found(first_guess(form(s)));
+  EXPECT_NEAR(found.skew_doubt(), 0.05, 1e-6);
+  float before = found.skew_doubt();
+  for (s.seed = 1; s.seed <= 4; ++s.seed) {
+    estimate(s, form(s), found);
+    EXPECT_LT(found.skew_doubt(), before) << s.seed;
+    before = found.skew_doubt();
+  }
+  EXPECT_LT(before, 0.01);
+  EXPECT_LT(std::abs(found.optics().skew), 3 * before + 0.01);
+  // Pictures of marks, or of nothing, tell nothing of it, and take nothing away.
+  FormedStripe marks = at_marks(1.6, 1.0);
+  const FormedImage image = form(marks);
+  for (int picture = 0; picture < 30; ++picture) estimate(marks, image, found);
+  for (int round = 0; round < 300; ++round) found.update();
+  EXPECT_LT(found.skew_doubt(), 1.2f * before);
+}
+
 TEST(OpticsEstimate, StaysWhereNothingIsTold) {
   OpticsEstimate found(StripeOptics{1.7f, 0.9f});
   EXPECT_EQ(found.update(), 0.0f);

@@ -91,6 +91,20 @@ class ScanBench {
     return pixels;
   }
 
+  // By how much a stripe's point moves when it is seen a pixel lower, the mean over the picture.
+  double m_per_px(const Angles& q) const {
+    const Pose laser = arm::base_from_laser(arm::JointVector(q[0], q[1], q[2], q[3]), config_.laser);
+    const scan::Triangulator triangulator(config_.camera, config_.laser, {});
+    double sum = 0;
+    int points = 0;
+    for (int u = 0; u < width; ++u) {
+      const double v = stripe_row(u, laser);
+      const auto above = triangulator.point(Vec2(u, v - 0.5), laser), below = triangulator.point(Vec2(u, v + 0.5), laser);
+      if (above && below) sum += (*above - *below).norm(), ++points;
+    }
+    return sum / points;
+  }
+
   // Sends images and joints of a whole sweep; every fifth image is a background. Returns the number of images.
   std::uint32_t sweep(const scan::SweepPlan& plan) {
     std::uint32_t images = 0;
