@@ -199,7 +199,7 @@ int range_campaign(const CampaignOptions& options) {
   out.write("ranges.md", markdown_of(mine));
   std::size_t singles = 0;
   for (const auto& [verdict, count] : single) singles += count;
-  Json json{{"rows", mine.size()}, {"single_draws", singles}, {"folder", folder.path().string()}};
+  Json json{{"rows", mine.size()}, {"not_flown", not_flown.size()}, {"single_draws", singles}, {"folder", folder.path().string()}};
   for (const char* verdict : verdicts) json[verdict] = counts[verdict];
   json["provenance"] = folder.provenance(command_of(options), begun);
   out.write("ranges.json", json.dump(2) + "\n");
@@ -212,6 +212,7 @@ int range_campaign(const CampaignOptions& options) {
   } else {
     print("%s", markdown_of(mine).c_str());
     for (const char* verdict : verdicts) print("%s: %zu\n", verdict, counts[verdict]);
+    if (!not_flown.empty()) print("not flown: %zu; the same command flies them\n", not_flown.size());
     print("single-key draws: %zu of %zu succeeded\n", single["success"], singles);
   }
   if (interrupted()) return exit_interrupted;

@@ -75,6 +75,7 @@ void tell(const RunOutcome& outcome, const std::string& folder) {
   tell_error("peaks away from edges, rms", result.errors.peak_rms_smooth_px, "px");
   tell_error("peaks clear of noise and marks, rms", result.errors.peak_rms_clear_px, "px");
   tell_error("their bound", result.errors.peak_bound_px, "px");
+  tell_error("peaks at marks, rms", result.errors.peak_rms_at_marks_px, "px");
   tell_error("peaks, recall", result.errors.peak_recall, "");
   tell_error("peaks, false", result.errors.peaks_false, "");
   print("%.1f s simulated in %.1f s, %.1f x real time\n", result.time.simulated_s, result.time.wall_s, result.time.real_time_factor);

@@ -27,14 +27,21 @@ double PeakScore::Squares::rms() const {
 
 const TruePiece* PeakScore::nearest(const std::vector<TruePiece>& pieces, double v) {
   const TruePiece* nearest = nullptr;
+  double another_px = match_px;
   for (const TruePiece& piece : pieces) {
     const double apart_px = std::abs(v - double(piece.v));
-    if (piece.on_another || apart_px > match_px) continue;
+    if (apart_px > match_px) continue;
+    if (piece.on_another) {
+      another_px = std::min(another_px, apart_px);
+      continue;
+    }
     // A part has no centre to err from: it takes no peak from a whole piece.
     const bool better = nearest == nullptr || (piece.part != nearest->part ? nearest->part : apart_px <= std::abs(v - double(nearest->v)));
     if (better) nearest = &piece;
   }
-  return nearest;
+  // Nor does it excuse a peak on something that is not looked for.
+  const bool is_of_another = nearest != nullptr && nearest->part && another_px < std::abs(v - double(nearest->v));
+  return is_of_another ? nullptr : nearest;
 }
 
 bool PeakScore::of_a_piece_beside(const StripeTruth& truth, std::size_t column, double v) const {
@@ -58,8 +65,11 @@ void PeakScore::count_matched(const TruePiece& piece, double error_px) {
   if (!piece.on_smooth) return;
   smooth_.add(error_px * error_px);
   const double height = double(piece.grey);
-  if (!(piece.sigma_px > 0) || piece.near_mark || height < clear_sigmas * std::sqrt(noise_.difference_variance(double(piece.background))))
+  if (!(piece.sigma_px > 0) || height < clear_sigmas * std::sqrt(noise_.difference_variance(double(piece.background)))) return;
+  if (piece.near_mark) {
+    marks_.add(error_px * error_px);
     return;
+  }
   clear_.add(error_px * error_px);
   bound_.add(noise_.centre_variance_px2(piece));
 }
@@ -98,6 +108,8 @@ double PeakScore::smooth_rms_px() const { return smooth_.rms(); }
 double PeakScore::clear_rms_px() const { return clear_.rms(); }
 
 double PeakScore::clear_bound_px() const { return bound_.rms(); }
+
+double PeakScore::marks_rms_px() const { return marks_.rms(); }
 
 double PeakScore::recall() const { return share(found_, visible_); }
 

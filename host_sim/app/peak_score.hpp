@@ -36,6 +36,8 @@ class PeakScore {
   // Of those of them that stand clear of the noise, away from marks: their rms, and what the run's optics and noise allow (PictureNoise). NaN without any.
   double clear_rms_px() const;
   double clear_bound_px() const;
+  // Of those that stand clear of the noise, near marks: no bound is known there.
+  double marks_rms_px() const;
   double recall() const;           // columns whose brightest piece was found, over the visible ones; NaN without any
   double false_share() const;      // peaks on no piece of the stripe, over all peaks; NaN without any
   double elsewhere_share() const;  // visible columns of which another piece was found and the brightest was not; NaN without any
@@ -56,7 +58,7 @@ class PeakScore {
 
   PictureNoise noise_;
   std::uint64_t visible_ = 0, found_ = 0, elsewhere_ = 0, peaks_ = 0, false_ = 0;
-  Squares matched_, smooth_, clear_, bound_;
+  Squares matched_, smooth_, clear_, bound_, marks_;
 };
 
 }  // namespace lf::app

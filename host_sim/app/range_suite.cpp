@@ -37,7 +37,7 @@ campaign::TestSuite range_suite(const std::string& scenario, const std::vector<R
     successes += single && result.verdict == "success" ? 1 : 0;
   }
   for (const std::string& name : not_flown)
-    suite.cases.push_back({suite.name, name, TestCase::End::skipped, "", "not flown: the campaign was interrupted", record::unknown});
+    suite.cases.push_back({suite.name, name, TestCase::End::skipped, "", "not flown: its run was interrupted", record::unknown});
   if (singles == 0) return suite;
   TestCase share{suite.name, "80 % of the single draws succeed", TestCase::End::passed, "", "", record::unknown};
   share.message = std::to_string(successes) + " of " + std::to_string(singles) + " succeeded";

@@ -101,6 +101,7 @@ record::ErrorRecord score(const RunRecorder& recorder, const hal::SimConfig& tru
   errors.peak_rms_smooth_px = recorder.peaks().smooth_rms_px();
   errors.peak_rms_clear_px = recorder.peaks().clear_rms_px();
   errors.peak_bound_px = recorder.peaks().clear_bound_px();
+  errors.peak_rms_at_marks_px = recorder.peaks().marks_rms_px();
   errors.peak_recall = recorder.peaks().recall();
   errors.peaks_false = recorder.peaks().false_share();
   errors.peaks_elsewhere = recorder.peaks().elsewhere_share();

@@ -16,7 +16,7 @@ struct TruePiece {
   float background = 0;   // grey level beside it, as the picture has it
   bool on_smooth =
       false;  // the stripe lies on one smooth surface here: no silhouette, crease or shadow's end, where the light is not even about its true centre
-  bool part = false;        // its flank alone, at a border: light of the stripe, without a centre to hold a peak against
+  bool part = false;  // light of the stripe without a centre to hold a peak against: its flank at a border, scattered light in a shadow
   bool near_mark = false;   // paint of another reflectance lies within the stripe's reach
   bool on_another = false;  // on something that is not looked for, the arm's own hand
 };

@@ -31,6 +31,7 @@ const std::array all{
     Figure{"peak_rms_smooth_px", "stripe peaks away from edges, rms", "px", [](const Run& r) { return r.errors.peak_rms_smooth_px; }},
     Figure{"peak_rms_over_bound", "stripe peaks clear of noise and marks, rms over its bound", "",
            [](const Run& r) { return r.errors.peak_rms_clear_px / r.errors.peak_bound_px; }},
+    Figure{"peak_rms_at_marks_px", "stripe peaks at marks, rms", "px", [](const Run& r) { return r.errors.peak_rms_at_marks_px; }},
     Figure{"peak_recall", "stripe peaks found", "", [](const Run& r) { return r.errors.peak_recall; }, more},
     Figure{"peaks_false", "false peaks", "", [](const Run& r) { return r.errors.peaks_false; }},
     Figure{"contact_force_n", "peak contact force", "N", [](const Run& r) { return r.contact.peak_force_n; }},

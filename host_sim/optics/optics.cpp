@@ -17,7 +17,8 @@
 namespace lf::optics {
 namespace {
 
-constexpr float grain = 0.05f;  // of the albedo: anodised plates and paint
+constexpr float grain = 0.05f;        // of the albedo: anodised plates and paint
+constexpr float least_part_grey = 3;  // in the picture: with less no peak stands out of the noise
 
 // A camera with all that is kept for it from frame to frame.
 struct Viewer {
@@ -121,6 +122,7 @@ struct Optics::Impl {
         for (const RenderPass::StripeCentre& centre : centres) {
           const std::size_t column = laser * static_cast<std::size_t>(frame.width) + static_cast<std::size_t>(centre.u);
           const float grey = centre.grey * light * camera.sensor.vignetting(centre.u, static_cast<int>(centre.v));
+          if (centre.shaded && grey < least_part_grey) continue;
           const StripePiece piece{.laser = static_cast<std::int32_t>(laser),
                                   .u = centre.u,
                                   .v = centre.v,
@@ -142,11 +144,13 @@ struct Optics::Impl {
   void find_parts(const PixelStore& pixels, const std::vector<std::uint8_t>& line_packets, const Camera& camera, const Tiles& tiles,
                   float light, Frame& frame) {
     if (!std::all_of(patterns.begin(), patterns.end(), [](const auto& pattern) { return !pattern.has_value(); })) return;
-    // Beyond 4.5 standard deviations a piece's light is under a ten-thousandth of its height: paint does not lift that over `least_grey`. A sheet that grazes a
+    // Beyond 4.5 standard deviations a piece's light is under a ten-thousandth of its height: paint does not lift that over `least_part_grey`. A sheet that grazes a
     // face is wide there, and says nothing of the light on another plane; near a centre, where a peak could be matched with either, there is no part.
-    constexpr float least_grey = 3, reach_sigmas = 4.5f, least_reach_px = 4;
+    constexpr float reach_sigmas = 4.5f, least_reach_px = 4;
     std::vector<std::vector<StripePiece>> centres(static_cast<std::size_t>(frame.width));
-    for (const StripePiece& piece : frame.pieces) centres[static_cast<std::size_t>(piece.u)].push_back(piece);
+    for (const StripePiece& piece : frame.pieces) {
+      if (!piece.part) centres[static_cast<std::size_t>(piece.u)].push_back(piece);
+    }
     const std::size_t packets_a_row = pixels.stride / lane_count;
     const auto laser_at = [&](std::size_t at) {
       float brightest = pixels.laser[at];
@@ -170,7 +174,7 @@ struct Optics::Impl {
           return pixels.on_one_plane(at, pixels.index(u, row(std::floor(piece.v)))) ||
                  pixels.on_one_plane(at, pixels.index(u, row(std::ceil(piece.v))));
         };
-        if (grey >= least_grey && std::none_of(near.begin(), near.end(), is_near))
+        if (grey >= least_part_grey && std::none_of(near.begin(), near.end(), is_near))
           parts.push_back({0, u, static_cast<float>(v), grey, 0, true, false});
       }
     };
@@ -192,7 +196,7 @@ struct Optics::Impl {
     arm.set_poses(shot.poses);
     Shader shader(scene, look, water);
     light(shot, shader);
-    for (SheetLight& sheet : shader.sheets) sheet.shade_by(viewer.particles.in_sheet(shot.time_s, sheet));
+    for (SheetLight& sheet : shader.sheets) sheet.shade_by(viewer.particles.in_sheet(shot.time_s, sheet, pool));
     size(viewer.camera, shot, frame);
     if (viewer.still.update(shader, shot.poses, lamp_bodies(shot), shot.lamps, pool)) viewer.live.forget();
 
@@ -215,6 +219,8 @@ struct Optics::Impl {
                                     frame.pixels.data() + static_cast<std::size_t>(v) * row_bytes);
     });
     if (!shot.truth) return;
+    // Labels are of the stripe without its specks: what those make of it, a detector errs by.
+    for (SheetLight& sheet : shader.sheets) sheet.shade_by({});
     find_stripes(pass, shader, viewer.camera, exposing.light, tile_rows, frame);
     if (!shader.sheets.empty()) find_parts(viewer.live.pixels, pass.lines(), viewer.camera, viewer.tiles, exposing.light, frame);
   }

@@ -237,28 +237,26 @@ void RenderPass::write_geometry(int tile_row, const std::vector<std::uint16_t>& 
 // Of the lens's spot in the middle of a packet.
 float RenderPass::blur_px(int u, int v) const { return static_cast<float>(lens_.sigma_px(u + 0.5 * (lane_count - 1), v)); }
 
-// Whether paint within a stripe's reach up or down, or its spot's beside, reflects otherwise than that of pixel (u + lane, v). Grain does by a tenth at most.
-LaneMask RenderPass::near_marks(int u, int v) const {
-  constexpr int reach_px = 5, reach_beside_px = 2;
-  constexpr float most_change = 1.3f;
-  using Around = std::array<float, 3 * lane_count>;
-  const auto green = [&](int at_u, int at_v) {
+// Whether paint as far up or down as a stripe of this width reaches, or its spot beside, reflects otherwise than that of pixel (u + lane, v). Grain does by a fifth at most.
+LaneMask RenderPass::near_marks(int u, int v, float sigma_px) const {
+  constexpr int least_px = 5, most_px = 24, beside_px = 2;
+  constexpr float reach_sigmas = 3.5f, most_change = 1.3f;
+  const auto grey_of = [&](int at_u, int at_v) {
     if (at_u < 0 || at_u >= camera_.width() || at_v < 0 || at_v >= camera_.height()) return all_lanes(-1);
     const HitPacket hit = live_.pixels.sample(live_.pixels.index(at_u, at_v)).hit;
-    return select(hit.shape >= 0, shader_.look().albedo(make_surface(camera_.row(at_u, at_v), hit), hit.shape, 1.f)[1], all_lanes(-1));
+    const GreyLanes grey = camera_.grey(shader_.look().albedo(make_surface(camera_.row(at_u, at_v), hit), hit.shape, 1.f));
+    return select(hit.shape >= 0, max(grey[0], max(grey[1], grey[2])), all_lanes(-1));
   };
-  const Lanes here = green(u, v);
+  const Lanes here = grey_of(u, v);
   LaneMask near{};
   const auto compare = [&](Lanes there) { near |= (there >= 0.f) & ((there > most_change * here) | (most_change * there < here)); };
-  for (int off = 1; off <= reach_px; ++off) compare(green(u, v - off)), compare(green(u, v + off));
-  Around row;
-  for (int packet = 0; packet < 3; ++packet) store_lanes(row.data() + packet * lane_count, green(u + (packet - 1) * lane_count, v));
-  for (const int off : {-reach_beside_px, reach_beside_px}) compare(load_lanes(row.data() + lane_count + off));
+  const int reach_px = std::clamp(static_cast<int>(std::ceil(reach_sigmas * sigma_px)), least_px, most_px);
+  for (int off = 1; off <= reach_px; ++off) compare(grey_of(u, v - off)), compare(grey_of(u, v + off));
+  std::array<float, 3 * lane_count> row;
+  for (int packet = 0; packet < 3; ++packet) store_lanes(row.data() + packet * lane_count, grey_of(u + (packet - 1) * lane_count, v));
+  for (int off = -beside_px; off <= beside_px; ++off) compare(load_lanes(row.data() + lane_count + off));
   return near;
 }
-
-// Of a place that only scattered light reaches: with less no peak stands out of the noise.
-constexpr float least_scattered_grey = 0.5f;
 
 // Newton's method down the column on the surfaces that the rays really meet; what does not settle on a lit surface is no centre.
 void RenderPass::refine_stripe(std::size_t laser, int u, int v, Lanes offset_v, LaneMask wanted, std::vector<StripeCentre>& centres) const {
@@ -285,12 +283,14 @@ void RenderPass::refine_stripe(std::size_t laser, int u, int v, Lanes offset_v, 
   const Lanes height = height_of(stripe.irradiance), scattered = height_of(stripe.skirt);
   // The other side of the pixel is of another direction: here the whole square counts.
   const Lanes sigma_v = sqrt(stripe.sigma_px * stripe.sigma_px + 1.f / 12.f) / max(abs(stripe.slope_v), all_lanes(0.02f));
-  const LaneMask by_mark = any(lit) ? near_marks(u, v) : LaneMask{};
+  float widest = 0;
+  for (int lane = 0; lane < lane_count; ++lane) widest = lit[lane] != 0 ? std::max(widest, sigma_v[lane]) : widest;
+  const LaneMask by_mark = any(lit) ? near_marks(u, v, widest) : LaneMask{};
   for (int lane = 0; lane < lane_count && u + lane < camera_.width(); ++lane) {
     const float place = static_cast<float>(v) + offset_v[lane];
     if (lit[lane] != 0)
       centres.push_back({u + lane, place, height[lane], sigma_v[lane], by_mark[lane] != 0, false});
-    else if (settled[lane] != 0 && scattered[lane] > least_scattered_grey)
+    else if (settled[lane] != 0 && scattered[lane] > 0.f)
       centres.push_back({u + lane, place, scattered[lane], 0, false, true});
   }
 }

@@ -62,7 +62,7 @@ class RenderPass {
   void add_even_light(int u, int v, const SubPixels& kept) const;
   SubPixels sample_sub_pixels(int u, int v, Changes changes, const std::vector<float>* haze_row) const;
   float blur_px(int u, int v) const;
-  LaneMask near_marks(int u, int v) const;
+  LaneMask near_marks(int u, int v, float sigma_px) const;
   void refine_stripe(std::size_t laser, int u, int v, Lanes offset_v, LaneMask wanted, std::vector<StripeCentre>& centres) const;
   std::size_t packet(int u, int v) const {
     return static_cast<std::size_t>(v) * live_.pixels.stride / lane_count + static_cast<std::size_t>(u / lane_count);

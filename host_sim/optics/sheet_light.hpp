@@ -44,9 +44,8 @@ class SheetLight {
   // Finds where each of the sheet's rays ends. Until then none does.
   void meet(const SplitScene& scene);
 
-  // Distance of a place in the base frame to the sheet, and the beam's standard deviation there.
-  double off_m(const Vec3& point) const;
-  double sigma_m(const Vec3& point) const;
+  // Whether the beam reaches to within `margin_m` of a place in the base frame.
+  bool reaches(const Vec3& point, double margin_m) const;
 
   // A speck in the water, base frame.
   struct Speck {
@@ -75,6 +74,7 @@ class SheetLight {
     Lanes distance, range2;          // to the sheet; to the emitter, squared
     Lanes w, w_du, w_dv, gradient2;  // w / gradient: distance to the stripe, px
   };
+  double off_m(const Vec3& place) const;  // of a place in the laser's frame
   ImageDistance image_distance(const SurfacePacket& surface) const;
   LaneMask within_reach(const SurfacePacket& surface, const ImageDistance& distance, float blur_px) const;
   void add_skirt(const SurfacePacket& surface, const ImageDistance& distance, const Water& water, StripePacket& stripe) const;

@@ -7,18 +7,21 @@ namespace lf::optics {
 namespace {
 
 constexpr std::size_t bin_count = 512;
-constexpr float largest_pixel_tangent = 0.004f;
-constexpr float side_by_radius = 1.77245385f;  // of a square as large as a disc
+constexpr float largest_pixel_tangent = 0.06f;  // a picture of 50 px focal length
+constexpr float side_by_radius = 1.77245385f;   // of a square as large as a disc
 
 struct Overlap {
-  float share = 0;   // of the pixel
-  float middle = 0;  // its place
+  float low = 0, high = 0;
 };
 
 Overlap overlap(float pixel, float pixel_side, float place, float side) {
-  const float low = std::max(pixel - 0.5f * pixel_side, place - 0.5f * side),
-              high = std::min(pixel + 0.5f * pixel_side, place + 0.5f * side);
-  return {std::max(high - low, 0.0f) / pixel_side, 0.5f * (low + high)};
+  return {std::max(pixel - 0.5f * pixel_side, place - 0.5f * side), std::min(pixel + 0.5f * pixel_side, place + 0.5f * side)};
+}
+
+// Of a bell of unit height and width.
+float area(const Overlap& of) {
+  constexpr float root_half = 0.70710678f, root_half_pi = 1.25331414f;
+  return root_half_pi * (std::erf(of.high * root_half) - std::erf(of.low * root_half));
 }
 
 }  // namespace
@@ -37,7 +40,7 @@ std::size_t SheetShadows::bin_of(float tangent) const {
   return std::min(static_cast<std::size_t>(share * bin_count), bin_count - 1);
 }
 
-// A speck's shadow is a rectangle of its area, and what it takes from a pixel is their overlap: together its pixels lose what is missing, wherever between them it lies.
+// A speck's shadow is a rectangle of its area, and what it takes from a pixel is the beam's light on their overlap.
 Lanes SheetShadows::taken(LaneMask wanted, Lanes tangent, Lanes across, Lanes range_m, Lanes pixel_tangent, Lanes pixel_across) const {
   Lanes sum{};
   if (bins_.empty()) return sum;
@@ -48,7 +51,8 @@ Lanes SheetShadows::taken(LaneMask wanted, Lanes tangent, Lanes across, Lanes ra
       if (range_m[lane] <= caster.range_m) continue;
       const Overlap along = overlap(tangent[lane], pixel_tangent[lane], caster.tangent, side_by_radius * caster.radius_tangent);
       const Overlap beside = overlap(across[lane], pixel_across[lane], caster.across, side_by_radius * caster.radius_across);
-      if (along.share > 0 && beside.share > 0) sum[lane] += along.share * beside.share * std::exp(-0.5f * beside.middle * beside.middle);
+      if (along.high > along.low && beside.high > beside.low)
+        sum[lane] += (along.high - along.low) / pixel_tangent[lane] * area(beside) / pixel_across[lane];
     }
   }
   return sum;

@@ -207,6 +207,7 @@ std::vector<ReportError> report_errors(const RunResult& result, double attenuati
                                   {"stripe peaks away from edges, rms", e.peak_rms_smooth_px, unknown, "px", false},
                                   {"stripe peaks clear of noise and marks, rms", e.peak_rms_clear_px, 1.25 * e.peak_bound_px, "px", false},
                                   {"their bound, by noise and speckle", e.peak_bound_px, unknown, "px", false},
+                                  {"stripe peaks at marks, rms", e.peak_rms_at_marks_px, 0.25, "px", false},
                                   {"stripe peaks found", e.peak_recall, 0.97, "", true},
                                   {"false peaks", e.peaks_false, 0.002, "", false}};
   for (const TaskRecord& task : result.tasks) {

@@ -57,6 +57,7 @@ Json to_json(const ErrorRecord& errors) {
           {"peak_rms_smooth_px", number(errors.peak_rms_smooth_px)},
           {"peak_rms_clear_px", number(errors.peak_rms_clear_px)},
           {"peak_bound_px", number(errors.peak_bound_px)},
+          {"peak_rms_at_marks_px", number(errors.peak_rms_at_marks_px)},
           {"peak_recall", number(errors.peak_recall)},
           {"peaks_false", number(errors.peaks_false)},
           {"peaks_elsewhere", number(errors.peaks_elsewhere)}};

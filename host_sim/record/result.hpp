@@ -43,13 +43,14 @@ struct ErrorRecord {
   double handle_angle_deg = unknown;
   double cloud_truth_median_mm = unknown;  // to the true surface
   double cloud_truth_p95_mm = unknown;
-  double peak_rms_px = unknown;         // of all columns, those at edges of the scene included
-  double peak_rms_smooth_px = unknown;  // of those whose stripe lies on one smooth surface
-  double peak_rms_clear_px = unknown;   // of those of them that stand clear of the noise, away from marks
-  double peak_bound_px = unknown;       // the least rms that noise and speckle allow there
-  double peak_recall = unknown;         // 0..1
-  double peaks_false = unknown;         // 0..1 of all peaks: on no piece of the stripe
-  double peaks_elsewhere = unknown;     // 0..1 of the visible columns: on another piece than the brightest, and not on that
+  double peak_rms_px = unknown;           // of all columns, those at edges of the scene included
+  double peak_rms_smooth_px = unknown;    // of those whose stripe lies on one smooth surface
+  double peak_rms_clear_px = unknown;     // of those of them that stand clear of the noise, away from marks
+  double peak_bound_px = unknown;         // the least rms that noise and speckle allow there
+  double peak_rms_at_marks_px = unknown;  // of those that stand clear of the noise, near marks
+  double peak_recall = unknown;           // 0..1
+  double peaks_false = unknown;           // 0..1 of all peaks: on no piece of the stripe
+  double peaks_elsewhere = unknown;       // 0..1 of the visible columns: on another piece than the brightest, and not on that
 };
 
 struct DockingRecord {

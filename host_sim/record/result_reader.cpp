@@ -105,6 +105,7 @@ ErrorRecord errors_from(const Json& json) {
   read(json, "peak_rms_smooth_px", errors.peak_rms_smooth_px);
   read(json, "peak_rms_clear_px", errors.peak_rms_clear_px);
   read(json, "peak_bound_px", errors.peak_bound_px);
+  read(json, "peak_rms_at_marks_px", errors.peak_rms_at_marks_px);
   read(json, "peak_recall", errors.peak_recall);
   read(json, "peaks_false", errors.peaks_false);
   read(json, "peaks_elsewhere", errors.peaks_elsewhere);

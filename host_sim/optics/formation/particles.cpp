@@ -10,6 +10,7 @@ namespace {
 
 constexpr double one_of_2_64 = 0x1p-64;
 constexpr int most_in_a_cell = 60;
+constexpr std::size_t cells_a_block = 256;
 constexpr double aperture_m = 0.00077, focus_m = 0.75;  // f 2.17 mm at F/2.8
 constexpr double disc_sigma = 1 / 2.4;                  // of a Gaussian as wide as a disc, over its diameter
 constexpr double least_sigma_px = 0.35;
@@ -104,22 +105,26 @@ std::vector<Particles::Speck> Particles::at(double time_s) const {
   return specks;
 }
 
-std::vector<SheetLight::Speck> Particles::in_sheet(double time_s, const SheetLight& sheet) const {
-  constexpr double reach_sigmas = 4.5;
+std::vector<SheetLight::Speck> Particles::in_sheet(double time_s, const SheetLight& sheet, WorkerPool& pool) const {
+  if (!sheet.is_line()) return {};
+  constexpr double half_diagonal_m = 0.87 * cell_m;
   const Vec3 drift = current_m_s_ * (time_s / cell_m);
   const Vec3 middle = cell_m * (drift.array() - drift.array().floor() + 0.5).matrix();
-  const double half_diagonal_m = 0.5 * std::sqrt(3.0) * cell_m;
-  std::vector<Speck> specks;
+  const std::size_t blocks = (cells_.size() + cells_a_block - 1) / cells_a_block;
+  std::vector<std::vector<SheetLight::Speck>> found(blocks);
+  pool.run(static_cast<int>(blocks), [&](int block) {
+    const std::size_t first = static_cast<std::size_t>(block) * cells_a_block;
+    std::vector<Speck> specks;
+    for (const Cell& cell : std::span(cells_).subspan(first, std::min(cells_a_block, cells_.size() - first))) {
+      if (sheet.reaches(middle + cell_m * Vec3(cell[0], cell[1], cell[2]), half_diagonal_m + most_m)) draw_specks(cell, drift, specks);
+    }
+    for (const Speck& speck : specks) {
+      if (sheet.reaches(speck.place_m, speck.diameter_m))
+        found[static_cast<std::size_t>(block)].push_back({speck.place_m, speck.diameter_m});
+    }
+  });
   std::vector<SheetLight::Speck> met;
-  for (const Cell& cell : cells_) {
-    const Vec3 centre = middle + cell_m * Vec3(cell[0], cell[1], cell[2]);
-    if (std::abs(sheet.off_m(centre)) > half_diagonal_m + most_m + reach_sigmas * sheet.sigma_m(centre)) continue;
-    draw_specks(cell, drift, specks);
-  }
-  for (const Speck& speck : specks) {
-    if (std::abs(sheet.off_m(speck.place_m)) < speck.diameter_m + reach_sigmas * sheet.sigma_m(speck.place_m))
-      met.push_back({speck.place_m, speck.diameter_m});
-  }
+  for (const auto& of_block : found) met.insert(met.end(), of_block.begin(), of_block.end());
   return met;
 }
 
@@ -217,7 +222,6 @@ void Particles::show(const Spot& spot, int first_row, int end_row, PixelStore& p
 // Blocks of cells, then bands of rows: each pixel gets its light in the order of the cells, whatever the number of threads.
 void Particles::stamp(double time_s, const Shader& shader, PixelStore& pixels, WorkerPool& pool) const {
   if (cells_.empty()) return;
-  constexpr std::size_t cells_a_block = 256;
   constexpr int rows_a_band = 32;
   const std::size_t blocks = (cells_.size() + cells_a_block - 1) / cells_a_block;
   std::vector<std::vector<Spot>> found(blocks);

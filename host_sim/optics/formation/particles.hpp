@@ -40,7 +40,7 @@ class Particles {
   std::vector<Speck> at(double time_s) const;
 
   // Those that stand in a sheet's beam, or beside it by less than their size; of the cells that the camera sees. Base frame.
-  std::vector<SheetLight::Speck> in_sheet(double time_s, const SheetLight& sheet) const;
+  std::vector<SheetLight::Speck> in_sheet(double time_s, const SheetLight& sheet, WorkerPool& pool) const;
 
  private:
   using Cell = std::array<std::int32_t, 3>;

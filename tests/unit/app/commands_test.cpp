@@ -366,7 +366,7 @@ TEST_F(Commands, CtrlCLeavesNoRowOfARangeCampaignUnflown) {
   EXPECT_EQ(said.status, 130) << said.err;
   EXPECT_EQ(Json::parse(said.out)["unnamed"], 0) << said.err;
   EXPECT_EQ(text_of(folder() / "m" / "rows.jsonl").find("interrupted"), std::string::npos);
-  EXPECT_NE(text_of(folder() / "m" / "junit.xml").find("not flown: the campaign was interrupted"), std::string::npos);
+  EXPECT_NE(text_of(folder() / "m" / "junit.xml").find("not flown: its run was interrupted"), std::string::npos);
   const Said again = run(arguments);
   EXPECT_EQ(again.status, 0) << again.err;
   EXPECT_EQ(Json::parse(again.out)["rows"], 3);
@@ -378,6 +378,7 @@ TEST_F(Commands, ARangeCampaignWithARowThatWasNotFlownFails) {
   const Said said = interrupt(arguments, "m/rows.jsonl", 10, Whom::copies);
   EXPECT_EQ(said.status, 1) << said.err;
   EXPECT_EQ(Json::parse(said.out)["rows"], 2) << said.err;
+  EXPECT_EQ(Json::parse(said.out)["not_flown"], 1) << said.err;
   const Said again = run(arguments);
   EXPECT_EQ(again.status, 0) << again.err;
   EXPECT_EQ(Json::parse(again.out)["rows"], 3);

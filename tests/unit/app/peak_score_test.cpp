@@ -216,6 +216,24 @@ TEST(PictureNoise, OfSpeckleIsThatOfACentroidOfDrawnPixels) {
   }
 }
 
+// The hand's own stripe a pixel beside the place that the hand shades on the panel.
+TEST(PeakScore, APartExcusesNoPeakOnTheHand) {
+  for (const bool hand : {false, true}) {
+    StripeTruth truth;
+    truth.columns.resize(40);
+    TruePiece shaded, other;
+    shaded.v = 30, shaded.grey = 5, shaded.part = true;
+    other.v = 31.2f, other.grey = 80, other.on_another = true;
+    for (auto& column : truth.columns) {
+      column.push_back(shaded);
+      if (hand) column.push_back(other);
+    }
+    PeakScore score;
+    score.add(truth, Peaks{{20, 31.0f}});
+    EXPECT_EQ(score.false_peaks(), hand ? 1u : 0u);
+  }
+}
+
 TEST(PeakScore, TheBoundIsOfPeaksAwayFromMarks) {
   optics::Frame frame = frame_of(40, 60, {});
   frame.depth_m.assign(2400, 1.f);
@@ -228,6 +246,7 @@ TEST(PeakScore, TheBoundIsOfPeaksAwayFromMarks) {
   PeakScore score(PictureNoise{1.5, 0, 0});
   score.add(stripe_truth(frame), peaks);
   EXPECT_NEAR(score.clear_rms_px(), 0.1, 1e-5);
+  EXPECT_NEAR(score.marks_rms_px(), 1, 1e-5);
   EXPECT_NEAR(score.smooth_rms_px(), std::sqrt((1 + 0.01) / 2), 1e-4);
 }
 

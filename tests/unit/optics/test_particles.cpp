@@ -139,5 +139,45 @@ TEST(Particles, InTheSheetAreBrightAndBesideItDark) {
   EXPECT_LT(other.sum(), 1e-6);
 }
 
+// Of the specks in the sheet, some large one takes light from the stripe on the plate behind it.
+TEST(Particles, InTheSheetShadeThePlateBehindThem) {
+  const Vec3 emitter(0, 0, -0.3), way = (Vec3(0.7, 0, 0) - emitter).normalized();
+  OpticsConfig config;
+  config.cameras.push_back(quiet_camera());
+  config.scene = plate_scene(0.7);
+  config.lasers.push_back(vehicle_laser(sheet(emitter, way, Vec3::UnitY())));
+  config.lasers[0].power_w = 0.3;
+  config.water = snow(20);
+  config.seed = 4;
+  const CameraIntrinsics& k = config.cameras[0].intrinsics;
+  const Camera camera(config.cameras[0]);
+  const Vec3 normal = sheet(emitter, way, Vec3::UnitY()).linear().col(0);
+  Shot shot;
+  shot.poses = resting();
+  Frame snowy, clear;
+  Optics(config).render(shot, snowy);
+  config.water.particles_per_l = 0;
+  Optics(config).render(shot, clear);
+  const auto light = [&](const Frame& frame, int u) {
+    double sum = 0;
+    for (int v = static_cast<int>(k.cy) - 4; v <= static_cast<int>(k.cy) + 5; ++v)
+      sum += frame.pixels[static_cast<std::size_t>(v * k.width + u)];
+    return sum;
+  };
+  int shaded = 0;
+  for (const Particles::Speck& speck : Particles(camera, snow(20), 4).at(0)) {
+    const Vec3 from = speck.place_m - emitter;
+    const double share_of_way = from.dot(way) / (0.7 / way.x());
+    if (speck.diameter_m < 0.0015 || std::abs(from.dot(normal)) > 0.001 || share_of_way < 0.2 || share_of_way > 0.95) continue;
+    const double y_m = from.y() / share_of_way;
+    const int u = static_cast<int>(std::lround(k.cx + k.fx * y_m / 0.7));
+    if (u < 10 || u > k.width - 10) continue;
+    ++shaded;
+    const double least = std::min({light(snowy, u - 1), light(snowy, u), light(snowy, u + 1)});
+    EXPECT_LT(least, 0.9 * light(clear, u)) << "a speck of " << speck.diameter_m << " m, column " << u;
+  }
+  EXPECT_GE(shaded, 1);
+}
+
 }  // namespace
 }  // namespace lf::optics::test
