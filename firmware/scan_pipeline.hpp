@@ -170,7 +170,7 @@ class BasicScanPipeline {
   std::uint32_t stripes_seen_ = 0;  // of this sweep
   // Of its points, summed: metres along the ray a pixel, and by how much each may be off.
   double m_per_px_ = 0, shape_shifts_m_ = 0;
-  float last_shape_doubt_px_ = 0;
+  double late_shape_doubt_px_ = 0;  // of the newest points
   bool sweeping_ = false;
   std::uint64_t last_pixels_ = 0;  // what repeats() made of the image before
   StoredImage background_;

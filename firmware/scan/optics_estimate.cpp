@@ -16,6 +16,7 @@ constexpr float followed = 0.884f;
 constexpr float scatter_probe = 0.1f;
 constexpr float scatter_stride = 0.2f;
 constexpr float skew_probe = 0.03f, skew_stride = 0.05f, no_skew_seen = 0.05f;
+constexpr std::int32_t least_plain_of_8 = 5;
 constexpr float most_skew = 0.2f;      // there the stripe's flank is a tenth below 0 at two widths
 constexpr float scatter_doubt = 0.2f;  // of what the first one is told to be
 constexpr float most_scatter = 2.0f;   // there the direct light stands on haze of its own height
@@ -144,11 +145,17 @@ float OpticsEstimate::Newton::step(float longest, float remembered) {
   return move;
 }
 
-float OpticsEstimate::skew_doubt() const { return std::sqrt(2 / skew_.known); }
+float OpticsEstimate::skew_doubt() const { return std::sqrt(2 / (skew_.least + told_)); }
+
+void OpticsEstimate::end_picture() {
+  if (newest_ > 0) told_ = lens_remembered * told_ + newest_;
+  newest_ = 0;
+}
 
 float OpticsEstimate::update() {
   // Where most columns have edges, those of the others are hidden by their noise.
-  if (2 * plain_ < fitted_) skew_.drop();
+  if (8 * plain_ < least_plain_of_8 * fitted_) skew_.drop();
+  newest_ = skew_.curvature;
   fitted_ = plain_ = 0;
   const float stripe_move = stripe_.step(stripe_stride, width_remembered), lens_move = lens_.step(lens_stride, lens_remembered),
               scatter_move = scatter_.step(scatter_stride, lens_remembered), skew_move = skew_.step(skew_stride, lens_remembered);

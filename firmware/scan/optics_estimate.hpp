@@ -22,6 +22,9 @@ class OpticsEstimate {
   // Moves the estimate by what was added since the last call. Returns the largest change: of the widths relative, of scatter and skew as they are. 0 where nothing was added.
   float update();
 
+  // Ends a picture, of which the estimate was updated any number of times: it tells of the skew once.
+  void end_picture();
+
  private:
   // Of a width's logarithm, of the scatter or of the skew.
   struct Newton {
@@ -41,6 +44,7 @@ class OpticsEstimate {
 
   StripeOptics optics_;
   Newton stripe_, lens_, scatter_, skew_;
+  float told_ = 0, newest_ = 0;          // curvature that the pictures have told of the skew, and of the newest update
   std::int32_t fitted_ = 0, plain_ = 0;  // columns since the last update that add_shape took, and those of them that tell of the skew
 };
 

@@ -156,6 +156,7 @@ void BasicPeakRefiner<Pixel, MaxWidth, MaxHeight>::learn(const Pair& pair, std::
     const bool fits_well = follow_misfits(misfits, noise_);
     if (estimate_.update() < settled && fits_well) break;
   }
+  estimate_.end_picture();
   if (!begun_) begun_with_ = peaks.size();
   begun_ = begun_ || taken > 0;
 }

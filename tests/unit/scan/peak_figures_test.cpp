@@ -261,5 +261,20 @@ TEST(PeakRefiner, DoubtsTheCentresOfAStripeWithALobe) {
   }
 }
 
+// Marks alone tell of no skew. It may be there all the same.
+TEST(PeakRefiner, DoubtsTheCentresWhereNothingPlainWasSeen) {
+  FormedStripe s = scene(1.6);
+  s.bars.angle_rad = 0.6;
+  s.bars.width_px = 8;
+  const auto refiner = std::make_unique<PeakRefiner>();
+  for (s.seed = 1; s.seed <= 6; ++s.seed) {
+    const FormedImage image = form(s);
+    const auto on = pixels<std::uint8_t>(image.on), off = pixels<std::uint8_t>(image.off);
+    std::vector<Peak> peaks = coarse(on, off, 255);
+    refiner->refine({on.data(), width, height, width}, {off.data(), width, height, width}, peaks);
+  }
+  EXPECT_GT(refiner->shape_doubt_px(), 0.14 * width_px(s));
+}
+
 }  // namespace
 }  // namespace lf::scan
