@@ -29,13 +29,15 @@ Formation::Formation(const Camera& camera, const ForwardScatter& scatter)
 void Formation::find_lines(const std::vector<std::uint8_t>& line_packets) {
   const int height = camera_.height(), columns = static_cast<int>(packets_a_row_);
   std::fill(near_line_.begin(), near_line_.end(), std::uint8_t{0});
+  std::fill(has_line_.begin(), has_line_.end(), std::uint8_t{0});
   std::fill(line_span_.begin(), line_span_.end(), LensSpot::Packets{columns, 0});
   std::vector<std::uint8_t> wide(packets_a_row_);
   for (int v = 0; v < height; ++v) {
     const std::uint8_t* from = line_packets.data() + static_cast<std::size_t>(v) * packets_a_row_;
     const bool lit = std::any_of(from, from + columns, [](std::uint8_t lit_packet) { return lit_packet != 0; });
-    has_line_[static_cast<std::size_t>(v)] = lit ? 1 : 0;
     if (!lit) continue;
+    // Samples at edges lay light a row beside.
+    for (int row = std::max(v - 1, 0); row <= std::min(v + 1, height - 1); ++row) has_line_[static_cast<std::size_t>(row)] = 1;
     std::fill(wide.begin(), wide.end(), std::uint8_t{0});
     int first = columns, end = 0;
     for (int p = 0; p < columns; ++p) {

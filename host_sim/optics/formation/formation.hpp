@@ -43,7 +43,7 @@ class Formation {
   std::size_t packets_a_row_;
   std::vector<std::uint8_t> near_line_;       // a packet: whether the laser's light is seen there, once it has gone through the lens
   std::vector<LensSpot::Packets> line_span_;  // a row: from the first of them to the last
-  std::vector<std::uint8_t> has_line_;        // a row: the laser's light falls on it, before the lens
+  std::vector<std::uint8_t> has_line_;        // a row: the laser's light falls on it, before the lens, or beside it
 };
 
 }  // namespace lf::optics

@@ -77,9 +77,9 @@ TEST(HaloPyramid, OfALinesPlaneTheRowsThatAreNotZeroAreEnough) {
   WorkerPool pool(1);
   Planes grey(64, 48), line(64, 48), none(64, 48);
   grey.fill(5);
-  for (int u = 0; u < 64; ++u) line.in[21 * line.stride + static_cast<std::size_t>(u)] = static_cast<float>(u);
+  for (std::size_t u = 0; u < 64; ++u) line.in[21 * line.stride + u] = line.in[34 * line.stride + u] = static_cast<float>(u);
   std::vector<std::uint8_t> all(48, 1), one(48);
-  one[21] = 1;
+  one[21] = one[34] = 1;
   const auto halo = [&](const std::vector<std::uint8_t>& rows) {
     std::fill(none.out.begin(), none.out.end(), 0.f);
     HaloPyramid(64, 48).add(none.source(), {}, grey.source(), {line.source(), rows}, {0.1f, 6.0}, none.target(), pool);
@@ -114,10 +114,12 @@ TEST(LensSpot, TurnsAStepIntoTheNormalDistributionsOwn) {
 TEST(LensSpot, ShowsTheWantedPacketsAlone) {
   Planes planes(64, 32);
   planes.fill(3);
-  const LensSpot lens(64, 32, 1.2, 1.2);
-  std::vector<float> scratch(planes.stride + 2 * LensSpot::reach()), row(planes.stride);
-  lens.show(planes.source(), 10, {2, 4}, scratch.data(), row.data());
-  for (int u = 0; u < 64; ++u) EXPECT_NEAR(row[static_cast<std::size_t>(u)], u / 8 == 2 || u / 8 == 3 ? 3 : 0, 1e-5) << u;
+  for (const double spot_px : {1.2, 4.5}) {
+    const LensSpot lens(64, 32, spot_px, spot_px);
+    std::vector<float> scratch(planes.stride + 2 * LensSpot::reach(), 1e9f), row(planes.stride);
+    lens.show(planes.source(), 10, {3, 4}, scratch.data(), row.data());
+    for (int u = 0; u < 64; ++u) EXPECT_NEAR(row[static_cast<std::size_t>(u)], u / 8 == 3 ? 3 : 0, 1e-5) << spot_px << " " << u;
+  }
 }
 
 WordLanes numbers(std::uint32_t first) { return WordLanes{0, 1, 2, 3, 4, 5, 6, 7} + first; }
