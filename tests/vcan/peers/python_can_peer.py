@@ -155,10 +155,10 @@ def walk_cia402(node):
     for step in range(1, 101):  # 400 counts in 0.4 s
         axis.target = start + 4 * step
         axis.cycles(1)
-    axis.cycles(100)
+    axis.cycles(250)  # the set-points end at once, at 1000 counts/s: the drive runs past by what it needs to stop, and comes back
     moved = node.position - start
     print(f"  moved {moved} counts of 400")
-    assert abs(moved - 400) < 40, "the drive did not follow"
+    assert abs(moved - 400) < 4, "the drive did not follow"
     axis.until(0x02, 0x6F, 0x07, "quick stop active")
     axis.until(0x00, 0x4F, 0x40, "switch on disabled")
     node.nmt(128)
