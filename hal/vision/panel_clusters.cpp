@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -18,11 +19,14 @@ namespace {
 
 using PclCloud = pcl::PointCloud<pcl::PointXYZ>;
 
-// A frame on the fitted plane: the region's x and y axes turned into it, z the plane's normal.
+// A frame on the fitted plane: the region's x and y axes turned into it, z the plane's normal. Not finite where its normal is along the region's x axis, within half a
+// degree: what is left of that axis is rounding.
 Pose base_from_plane(const Plane& plane, const Pose& base_from_region) {
+  constexpr double least_in_plane = 0.01;
   Pose pose = Pose::Identity();
   const Vec3 z = plane.normal.normalized();
-  const Vec3 x = (base_from_region.linear().col(0) - z * z.dot(base_from_region.linear().col(0))).normalized();
+  const Vec3 in_plane = base_from_region.linear().col(0) - z * z.dot(base_from_region.linear().col(0));
+  const Vec3 x = in_plane / (in_plane.norm() > least_in_plane ? in_plane.norm() : std::numeric_limits<double>::quiet_NaN());
   pose.linear().col(0) = x;
   pose.linear().col(1) = z.cross(x);
   pose.linear().col(2) = z;

@@ -139,5 +139,21 @@ TEST(PanelClusters, OfPointsThatAreNotNumbersOrOfNoneAreNone) {
   EXPECT_TRUE(find_panel_clusters(panel_cloud({}), {Vec3::Zero(), 0}, region_of(layout)).clusters.empty());
 }
 
+// Found by the fuzzer: of the region's axis nothing but rounding lay in the plane, and the clusters' axes were no unit vectors.
+TEST(PanelClusters, OfAPlaneThatFacesAlongTheRegionAreNoneOrHaveAnAxis) {
+  PanelRegion region;
+  region.base_from_region = Pose::Identity();
+  region.min_m = Vec2(-1, -1), region.max_m = Vec2(1, 1);
+  std::vector<CloudPoint> cloud;
+  for (int i = 0; i < 200; ++i)
+    cloud.push_back({Eigen::Vector3f(0.05f, 0.002f * static_cast<float>(i % 20), 0.002f * static_cast<float>(i / 20)), 1});
+  for (const double tilt_rad : {0.0, 1e-16, 1e-12, 1e-9, 1e-6, 1e-3, 0.05}) {
+    const Plane plane{Vec3(std::cos(tilt_rad), std::sin(tilt_rad), 0), 0};
+    const PanelClusters found = find_panel_clusters(cloud, plane, region);
+    EXPECT_EQ(found.clusters.empty(), tilt_rad < 0.01) << tilt_rad;
+    for (const ProudCluster& cluster : found.clusters) EXPECT_NEAR(cluster.axis.norm(), 1, 1e-9) << tilt_rad;
+  }
+}
+
 }  // namespace
 }  // namespace lf::vision
