@@ -73,7 +73,7 @@ void tell(const RunOutcome& outcome, const std::string& folder) {
   tell_error("cloud to the true surface, p95", result.errors.cloud_truth_p95_mm, "mm");
   tell_error("peaks, rms", result.errors.peak_rms_px, "px");
   tell_error("peaks away from edges, rms", result.errors.peak_rms_smooth_px, "px");
-  tell_error("peaks clear of noise and marks, rms", result.errors.peak_rms_clear_px, "px");
+  tell_error("clear peaks away from marks, rms", result.errors.peak_rms_clear_px, "px");
   tell_error("their bound", result.errors.peak_bound_px, "px");
   tell_error("peaks at marks, rms", result.errors.peak_rms_at_marks_px, "px");
   tell_error("peaks, recall", result.errors.peak_recall, "");
