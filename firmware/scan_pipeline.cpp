@@ -16,7 +16,8 @@ constexpr double jaw_while_scanning_rad = 0;
 // Of the links only forearm, wrist and fingers come before the panel.
 constexpr std::size_t first_seen_link = 3;
 
-// Of so many of a sweep's newest points the line's doubt is taken for all: the beam is one. The last picture alone may be half off the panel.
+// The beam is one over a sweep: the line's doubt at the end, over so many points, holds for all of them. They are of nine pictures in the default sweep; the last alone may
+// be half off the panel.
 constexpr double late_points = 2000;
 
 // Of every eighth row: noise in 38,400 pixels. FNV-1a by eight pixels at a time, 5 us on a desktop.

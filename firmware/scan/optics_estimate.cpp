@@ -15,7 +15,9 @@ constexpr float lens_stride = 0.3f;
 constexpr float followed = 0.884f;
 constexpr float scatter_probe = 0.1f;
 constexpr float scatter_stride = 0.2f;
-constexpr float skew_probe = 0.03f, skew_stride = 0.05f, no_skew_seen = 0.05f;
+constexpr float skew_probe = 0.03f, skew_stride = 0.05f;
+constexpr float untold_skew = 0.05f;  // its standard deviation before a picture has told of it
+// Columns of eight that have to be plain. Of pictures with one, whose edges the noise hid, the skew went to its bound; on the panel nearly all are.
 constexpr std::int32_t least_plain_of_8 = 5;
 constexpr float most_skew = 0.2f;      // there the stripe's flank is a tenth below 0 at two widths
 constexpr float scatter_doubt = 0.2f;  // of what the first one is told to be
@@ -53,7 +55,7 @@ StripeOptics optics_of(float width_px, float lens_px, float scatter, float skew)
 OpticsEstimate::OpticsEstimate(const StripeOptics& first) : optics_(first) {
   lens_.known = 2 / square(lens_doubt);
   scatter_.known = 2 / square(scatter_doubt);
-  skew_.known = skew_.least = 2 / square(no_skew_seen);
+  skew_.known = skew_.least = 2 / square(untold_skew);
 }
 
 void OpticsEstimate::add(const StripeWindows& windows, const PixelNoise& noise, const StripeFits& fits) {

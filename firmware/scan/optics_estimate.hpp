@@ -13,7 +13,7 @@ class OpticsEstimate {
   explicit OpticsEstimate(const StripeOptics& first);
 
   const StripeOptics& optics() const { return optics_; }
-  // Standard deviation of the skew, as the columns' noise leaves it: at most that of a skew of which no picture has told.
+  // Standard deviation of the skew that the columns' noise leaves. Before a picture has told of it: that of the skews that there are.
   float skew_doubt() const;
 
   // Columns that were fitted with `optics()`. Those that fit badly are left out: another stripe, a silhouette.
@@ -22,7 +22,7 @@ class OpticsEstimate {
   // Moves the estimate by what was added since the last call. Returns the largest change: of the widths relative, of scatter and skew as they are. 0 where nothing was added.
   float update();
 
-  // Ends a picture, of which the estimate was updated any number of times: it tells of the skew once.
+  // Ends a picture. However often the estimate was updated by it, it has told of the skew once.
   void end_picture();
 
  private:
@@ -30,7 +30,7 @@ class OpticsEstimate {
   struct Newton {
     float slope = 0, curvature = 0;  // of the squares that are left, of the columns added since the last update
     float known = 0;                 // curvature that earlier pictures have left
-    float least = 0;                 // of it
+    float least = 0;                 // that `known` keeps, whatever is forgotten
 
     // The squares that are left a probe below the estimate, at it and above it.
     void add(float below, float here, float above, float probe);
@@ -44,7 +44,7 @@ class OpticsEstimate {
 
   StripeOptics optics_;
   Newton stripe_, lens_, scatter_, skew_;
-  float told_ = 0, newest_ = 0;          // curvature that the pictures have told of the skew, and of the newest update
+  float told_ = 0, newest_ = 0;          // curvature of the skew: by all pictures, and by the newest update
   std::int32_t fitted_ = 0, plain_ = 0;  // columns since the last update that add_shape took, and those of them that tell of the skew
 };
 

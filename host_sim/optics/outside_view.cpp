@@ -28,7 +28,7 @@ CameraConfig divers_camera(const OutsideView& view) {
   return camera;
 }
 
-// A cylinder behind its window, for the eye: what the arm keeps away from is the vehicle's own file's matter.
+// A cylinder behind its window, for the eye alone: what the arm keeps away from is `vehicle.capsules_m`.
 void add_housing(const LampConfig& lamp, scene::Scene& scene) {
   scene::Shape housing;
   housing.kind = scene::ShapeKind::cylinder;

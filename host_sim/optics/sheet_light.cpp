@@ -60,11 +60,14 @@ void SheetLight::meet(const SplitScene& scene) {
 
 double SheetLight::off_m(const Vec3& place) const { return place.x() - static_cast<double>(tan_cone_) * std::hypot(place.y(), place.z()); }
 
+double SheetLight::sigma_m(const Vec3& place) const {
+  return std::sqrt(static_cast<double>(sigma2_m2(all_lanes(static_cast<float>(place.norm())))[0]));
+}
+
 bool SheetLight::reaches(const Vec3& point, double margin_m) const {
   const Vec3 place = laser_from_base_ * point;
   const double off = std::abs(off_m(place)) - margin_m;
-  return off < 0 ||
-         off < static_cast<double>(core_reach) * std::sqrt(static_cast<double>(sigma2_m2(all_lanes(static_cast<float>(place.norm())))[0]));
+  return off < 0 || off < static_cast<double>(core_reach) * sigma_m(place);
 }
 
 void SheetLight::shade_by(const std::vector<Speck>& specks) {
@@ -73,8 +76,7 @@ void SheetLight::shade_by(const std::vector<Speck>& specks) {
   for (const Speck& speck : specks) {
     const Vec3 place = laser_from_base_ * speck.place_m;
     if (place.z() < static_cast<double>(least_range_m)) continue;
-    const double sigma = std::sqrt(static_cast<double>(sigma2_m2(all_lanes(static_cast<float>(place.norm())))[0])),
-                 radius = 0.5 * speck.diameter_m;
+    const double sigma = sigma_m(place), radius = 0.5 * speck.diameter_m;
     casters.push_back({static_cast<float>(place.y() / place.z()), static_cast<float>(off_m(place) / sigma),
                        static_cast<float>(radius / place.z()), static_cast<float>(radius / sigma), static_cast<float>(place.norm())});
   }

@@ -74,7 +74,9 @@ class SheetLight {
     Lanes distance, range2;          // to the sheet; to the emitter, squared
     Lanes w, w_du, w_dv, gradient2;  // w / gradient: distance to the stripe, px
   };
-  double off_m(const Vec3& place) const;  // of a place in the laser's frame
+  // Of a place in the laser's frame: its distance to the sheet, and the beam's standard deviation there.
+  double off_m(const Vec3& place) const;
+  double sigma_m(const Vec3& place) const;
   ImageDistance image_distance(const SurfacePacket& surface) const;
   LaneMask within_reach(const SurfacePacket& surface, const ImageDistance& distance, float blur_px) const;
   void add_skirt(const SurfacePacket& surface, const ImageDistance& distance, const Water& water, StripePacket& stripe) const;

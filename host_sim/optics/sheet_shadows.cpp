@@ -7,7 +7,7 @@ namespace lf::optics {
 namespace {
 
 constexpr std::size_t bin_count = 512;
-constexpr float largest_pixel_tangent = 0.06f;  // a picture of 50 px focal length
+constexpr float largest_pixel_tangent = 0.06f;  // twice a pixel's at a focal length of 50 px, for slanted faces
 constexpr float side_by_radius = 1.77245385f;   // of a square as large as a disc
 
 struct Overlap {

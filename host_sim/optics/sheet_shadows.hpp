@@ -1,8 +1,8 @@
 // What specks in a laser's sheet take from its light.
 //
 // Beyond a speck its shadow goes on along the rays: away from the emitter along the fan, and across the sheet as the beam widens. There it is an ellipse of the
-// speck's own proportions to the beam, drawn as a rectangle as large. A speck is opaque, and what it scatters does not reach the surface. Left out: specks that overlap each other's shadows, the beam's lobe, and
-// specks before the camera, which hide the stripe from it in the same way.
+// speck's own proportions to the beam, drawn as a rectangle as large. A speck is opaque, and what it scatters does not reach the surface.
+// Left out: the shadow in the beam's lobe, and the stripe that a speck hides from the camera. Where two shadows overlap, both take their light.
 #pragma once
 
 #include <cstddef>
