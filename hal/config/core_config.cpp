@@ -244,12 +244,20 @@ mission::MissionConfig mission_config(const Machine& machine) {
   return config;
 }
 
+std::string place_text(const PanelLayout& panel) {
+  char text[128];
+  std::snprintf(text, sizeof text, ". 'panel.ahead_m' is %.3g, 'panel.right_m' %.3g, 'panel.down_m' %.3g", panel.nominal_x_m,
+                panel.nominal_y_m, panel.nominal_z_m);
+  return text;
+}
+
 bool check_reach_of_tasks(const Machine& machine, const Steps& steps) {
   bool all = true;
   for (const Place& place : places_of_tasks(machine)) {
     const arm::IkResult ik = pose_at(machine.panel, place);
     const bool reached = steps.take([&] {
-      if (!ik.ok()) refuse(machine, place.what + " is out of the arm's reach at its nominal place: " + excess_text(ik));
+      if (!ik.ok())
+        refuse(machine, place.what + " is out of the arm's reach at its nominal place: " + excess_text(ik) + place_text(machine.panel));
     });
     all = all && reached;
   }
@@ -305,13 +313,14 @@ void check_turn_speed(const Machine& machine, const ArmDescription& description,
 void check_seen(const Machine& machine, const CameraCalibration& camera, const std::string& what, const Vec3& panel_point_m) {
   const Vec3 in_camera = camera.base_from_camera.inverse() * (machine.panel.nominal_base_from_panel() * panel_point_m);
   const std::optional<Vec2> pixel = scan::CameraModel(camera.intrinsics).project(in_camera);
-  if (!pixel) refuse(machine, what + " is behind the camera");
+  const std::string remedy = ": see 'camera.position_m', 'camera.down_deg' and 'camera.right_deg'";
+  if (!pixel) refuse(machine, what + " is behind the camera" + remedy);
   const bool inside =
       pixel->x() >= 0 && pixel->x() <= camera.intrinsics.width - 1 && pixel->y() >= 0 && pixel->y() <= camera.intrinsics.height - 1;
   if (inside) return;
   char text[64];
   std::snprintf(text, sizeof text, " is out of the camera's view, at pixel %.0f, %.0f", pixel->x(), pixel->y());
-  refuse(machine, what + text);
+  refuse(machine, what + text + remedy);
 }
 
 void check_view(const Machine& machine, const CameraCalibration& camera, const Steps& steps) {

@@ -145,6 +145,16 @@ void HomingOffsets::doubt_zero(std::size_t joint) {
 
 void HomingOffsets::forget_zero(std::size_t joint) { known[joint] = zero_doubtful[joint] = false; }
 
+void HomingOffsets::take_joint(const HomingOffsets& from, std::size_t joint) {
+  zero_counts[joint] = from.zero_counts[joint];
+  known[joint] = from.known[joint];
+  zero_doubtful[joint] = from.zero_doubtful[joint];
+  friction_known[joint] = from.friction_known[joint];
+  friction_doubtful[joint] = from.friction_doubtful[joint];
+  friction[joint] = from.friction[joint];
+  found[joint] = from.found[joint];
+}
+
 void HomingOffsets::doubt_friction(std::size_t joint) {
   doubt_zero(joint);
   friction_known[joint] = false;

@@ -37,6 +37,7 @@ struct HomingOffsets {
   void doubt_zero(std::size_t joint);              // keeps its counts, if it has any
   void doubt_friction(std::size_t joint);          // and its zero with it
   void forget_zero(std::size_t joint);             // its counts mean nothing any more
+  void take_joint(const HomingOffsets& from, std::size_t joint);
 };
 
 // The friction as the core takes it: its doubt is what the fit left, and a twentieth for the temperature of another day. Nothing is changed for a joint whose

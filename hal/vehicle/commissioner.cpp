@@ -1,11 +1,7 @@
 #include "hal/vehicle/commissioner.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <ctime>
 #include <filesystem>
 #include <utility>
@@ -21,7 +17,7 @@ namespace lf::hal {
 namespace {
 
 // A file that could not be written, for a full disk for instance, is tried again so much later.
-constexpr Duration forget_again_after = Duration::from_ms(2000);
+constexpr Duration amend_again_after = Duration::from_ms(2000);
 // Of a control period, 4 ms, several: a commissioning that cannot begin comes back at once.
 constexpr Duration refused_within = Duration::from_ms(50);
 
@@ -34,14 +30,6 @@ std::string now_text() {
   gmtime_r(&now, &utc);
   std::strftime(day, sizeof day, "%Y-%m-%d %H:%M", &utc);
   return day;
-}
-
-// What cannot be read or written is told before anything moves.
-config::HomingOffsets read_and_check(const std::string& file) {
-  config::HomingOffsets offsets = config::read_homing_file(file);
-  const std::string folder = std::filesystem::absolute(file).parent_path().string();
-  if (access(folder.c_str(), W_OK | X_OK) != 0) throw InputError(file + ": cannot be written: " + std::strerror(errno));
-  return offsets;
 }
 
 double moved_rad(const Commissioned& commissioned, const config::HomingOffsets& offsets, std::size_t joint) {
@@ -80,10 +68,10 @@ std::string found_elsewhere(const TakenOver& taken) {
   return "";
 }
 
-std::string names_of(const std::array<bool, joint_count>& joints) {
-  std::string names;
+Json names_list(const JointSet& joints) {
+  Json names = Json::array();
   for (std::size_t i = 0; i < joint_count; ++i) {
-    if (joints[i]) names += (names.empty() ? "" : ", ") + std::string(config::joint_name(i));
+    if (joints[i]) names.push_back(config::joint_name(i));
   }
   return names;
 }
@@ -96,61 +84,24 @@ void tell_moved(TakenOver& taken) {
 }
 
 // Found elsewhere than its earlier zero, or with a friction that cannot be. `offsets` is what was taken over.
-std::array<bool, joint_count> doubted_joints(const Commissioned& commissioned, const TakenOver& taken,
-                                             const config::HomingOffsets& offsets) {
-  std::array<bool, joint_count> doubted{};
+JointSet doubted_joints(const Commissioned& commissioned, const TakenOver& taken, const config::HomingOffsets& offsets) {
+  JointSet doubted{};
   for (std::size_t i = 0; i < joint_count; ++i)
     doubted[i] = commissioned.found[i] && (taken.moved_rad[i] > 0 || offsets.friction_doubtful[i]);
   return doubted;
 }
 
-// Whatever the file or the core still has of their zeros.
-void forget_lost(const std::array<bool, joint_count>& lost, config::HomingOffsets& offsets, ControllerConfig& core) {
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    if (!lost[i]) continue;
-    offsets.forget_zero(i);
-    core.network.drives[i].zero_known = false;
-  }
-}
-
-// An earlier zero of a joint that the file does not know is the core's.
-config::HomingOffsets with_doubts(config::HomingOffsets before, const std::array<bool, joint_count>& doubted,
-                                  const config::HomingOffsets& taken_over, const ControllerConfig& core) {
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    if (!doubted[i]) continue;
-    const canopen::DriveSetup& drive = core.network.drives[i];
-    if (!before.has_earlier_zero(i) && drive.zero_known) {
-      before.zero_counts[i] = drive.encoder_zero_counts;
-      before.known[i] = true;
-    }
-    before.doubt_zero(i);
-    if (!taken_over.friction_doubtful[i]) continue;
-    before.doubt_friction(i);
-    before.found[i] = taken_over.found[i];
-  }
-  return before;
-}
-
-// The cause when it cannot be written.
-std::string write_offsets(const std::string& file, const config::HomingOffsets& offsets) {
-  try {
-    config::write_homing_file(file, offsets);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-// How a failed one has ended, in words.
-std::string write_doubts(const std::string& file, const config::HomingOffsets& with_doubts, const std::array<bool, joint_count>& doubted,
-                         const std::string& failed) {
-  const std::string error = write_offsets(file, with_doubts);
-  if (!error.empty()) return failed + ". Nothing was written: " + error;
+// How it has ended, in words; empty: well.
+std::string ending(const std::string& failed, const std::string& unwritten_for, const JointSet& doubted) {
+  const std::string again =
+      any(doubted) ? ". The doubts of these joints are written as soon as that can be done: " + names_of(doubted) : "";
+  if (failed.empty()) return unwritten_for.empty() ? "" : unwritten_for + again;
+  if (!unwritten_for.empty()) return failed + ". Nothing was written: " + unwritten_for + again;
   return failed + ". In the homing file the zeros of these joints are doubtful now: " + names_of(doubted) + ". Nothing else was written";
 }
 
 // What was found is not used. That a joint must not have power holds all the same.
-void deny_power(const std::array<bool, joint_count>& denied, ControllerConfig& core, config::HomingOffsets& offsets) {
+void deny_power(const JointSet& denied, ControllerConfig& core, config::HomingOffsets& offsets) {
   for (std::size_t i = 0; i < joint_count; ++i) {
     bool& known = core.network.drives[i].zero_known;
     known = known && !denied[i];
@@ -158,17 +109,12 @@ void deny_power(const std::array<bool, joint_count>& denied, ControllerConfig& c
   }
 }
 
-void use_zeros(const config::HomingOffsets& offsets, const std::array<bool, joint_count>& still_lost, ControllerConfig& core) {
+void use_zeros(const config::HomingOffsets& offsets, const JointSet& still_lost, ControllerConfig& core) {
   for (std::size_t i = 0; i < joint_count; ++i) {
     core.network.drives[i].encoder_zero_counts = offsets.zero_counts[i];
     core.network.drives[i].zero_known = offsets.known[i] && !still_lost[i];
     config::set_friction(offsets, i, core.transmissions[i].friction);
   }
-}
-
-std::array<bool, joint_count> either(std::array<bool, joint_count> one, const std::array<bool, joint_count>& other) {
-  for (std::size_t i = 0; i < joint_count; ++i) one[i] = one[i] || other[i];
-  return one;
 }
 
 }  // namespace
@@ -230,61 +176,60 @@ Commissioner::~Commissioner() {
 void Commissioner::hear(const ControlReport& report) {
   if (busy() || report.cores_taken != cores_taken_) return;
   jaw_doubted_ = report.jaw_doubted;
-  lose_zeros(report.zeros_lost);
+  zero_lost_ = report.zeros_lost;
+  amend_file();
 }
 
-void Commissioner::lose_zeros(const std::array<bool, joint_count>& lost) {
-  zero_lost_ = lost;
-  if (file_.empty() || config::is_shipped(file_) || forgetting_ != nullptr || monotonic_now() < try_again_) return;
-  std::array<bool, joint_count> to_forget{};
-  for (std::size_t i = 0; i < joint_count; ++i) to_forget[i] = lost[i] && !forgotten_[i];
-  if (std::none_of(to_forget.begin(), to_forget.end(), [](bool one) { return one; })) return;
-  auto forgetting = std::make_shared<Forgetting>();
-  forgetting->joints = to_forget;
-  const bool posted = worker_.post([forgetting, file = file_] {
+// What the file must know, and does not yet: a daemon that is started anew would trust it.
+void Commissioner::amend_file() {
+  if (file_.empty() || config::is_shipped(file_) || amending_ != nullptr || monotonic_now() < try_again_) return;
+  auto amending = std::make_shared<Amending>();
+  for (std::size_t i = 0; i < joint_count; ++i) amending->joints[i] = zero_lost_[i] && !forgotten_[i];
+  amending->doubts = unwritten_;
+  if (!any(amending->joints) && unwritten_ == nullptr) return;
+  const bool posted = worker_.post([amending, file = file_] {
     std::string problem;
     try {
       config::HomingOffsets offsets = read_and_check(file);
+      if (amending->doubts != nullptr) amending->doubts->enter(offsets);
       for (std::size_t i = 0; i < joint_count; ++i) {
-        if (forgetting->joints[i]) offsets.forget_zero(i);
+        if (amending->joints[i]) offsets.forget_zero(i);
       }
       config::write_homing_file(file, offsets);
     } catch (const InputError& error) {
       problem = error.what();
     }
-    const std::lock_guard lock(forgetting->mutex);
-    forgetting->problem = problem;
-    forgetting->done = true;
+    const std::lock_guard lock(amending->mutex);
+    amending->problem = problem;
+    amending->done = true;
   });
-  if (posted) forgetting_ = forgetting;  // otherwise the next report says it again
+  if (posted) amending_ = amending;  // otherwise the next report says it again
 }
 
-// A zero that was lost is no longer in the file: a daemon that is started anew must not trust it.
-void Commissioner::note_forgotten() {
-  const std::shared_ptr<Forgetting> forgetting = forgetting_;
-  if (forgetting == nullptr) return;
-  const std::lock_guard lock(forgetting->mutex);
-  if (!forgetting->done) return;
-  forgetting_ = nullptr;
-  const bool told = try_again_ != Time{} && forgetting->joints == last_tried_;
-  const bool gone = forgetting->problem.empty();
-  last_tried_ = forgetting->joints;
-  try_again_ = gone ? Time{} : monotonic_now() + forget_again_after;
-  Json names = Json::array();
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    if (!forgetting->joints[i]) continue;
-    forgotten_[i] = gone;
-    names.push_back(config::joint_name(i));
+void Commissioner::note_amended() {
+  const std::shared_ptr<Amending> amending = amending_;
+  if (amending == nullptr) return;
+  const std::lock_guard lock(amending->mutex);
+  if (!amending->done) return;
+  amending_ = nullptr;
+  const bool told = try_again_ != Time{} && amending->joints == last_tried_;
+  const bool written = amending->problem.empty();
+  last_tried_ = amending->joints;
+  try_again_ = written ? Time{} : monotonic_now() + amend_again_after;
+  for (std::size_t i = 0; i < joint_count; ++i) forgotten_[i] = amending->joints[i] ? written : forgotten_[i];
+  if (written && amending->doubts != nullptr && amending->doubts == unwritten_) {
+    log_({{"t_s", monotonic_now().s()}, {"kind", "zeros_doubtful"}, {"joints", names_list(unwritten_->joints)}, {"file", file_}});
+    unwritten_ = nullptr;
   }
-  if (told && !gone) return;
-  Json line{{"t_s", monotonic_now().s()}, {"kind", "zeros_lost"}, {"joints", names}, {"file", file_}};
-  if (!forgetting->problem.empty())
-    line["why"] = forgetting->problem + ": commission them before the daemon is started anew; the file is tried again meanwhile";
+  // That doubts cannot be written was told as the commissioning ended.
+  if (!any(amending->joints) || (told && !written)) return;
+  Json line{{"t_s", monotonic_now().s()}, {"kind", "zeros_lost"}, {"joints", names_list(amending->joints)}, {"file", file_}};
+  if (!written) line["why"] = amending->problem + ": commission them before the daemon is started anew; the file is tried again meanwhile";
   log_(line);
 }
 
 std::string Commissioner::unknown_joints() const {
-  std::array<bool, joint_count> unknown{};
+  JointSet unknown{};
   for (std::size_t i = 0; i < joint_count; ++i) unknown[i] = zero_lost_[i] || !core_.network.drives[i].may_have_power();
   return names_of(unknown);
 }
@@ -342,7 +287,7 @@ std::optional<std::string> Commissioner::why_no_power() const {
 std::optional<Json> Commissioner::answer() { return std::exchange(answer_, std::nullopt); }
 
 void Commissioner::step() {
-  note_forgotten();
+  note_amended();
   for (Controller* old = nullptr; rings_.old_cores.pop(old);) {
     delete old;
     (void)core_given_.release();  // in the control loop now
@@ -402,11 +347,12 @@ void Commissioner::write_down(const Json& outcome) const {
 }
 
 void Commissioner::give(Prepared& prepared, const std::string& problem, const TakenOver& taken, const config::HomingOffsets& offsets,
-                        std::unique_ptr<Controller> core) {
+                        const std::shared_ptr<const UnwrittenDoubts>& unwritten, std::unique_ptr<Controller> core) {
   const std::lock_guard lock(prepared.mutex);
   prepared.problem = problem;
   prepared.taken = taken;
   prepared.offsets = offsets;
+  prepared.unwritten = unwritten;
   prepared.core = std::move(core);
   prepared.done = true;
 }
@@ -427,36 +373,46 @@ void Commissioner::store(const Commissioning& ended, const std::string& failed) 
   prepared_ = std::make_shared<Prepared>();
   const Commissioned commissioned = findings_of(ended);
   for (std::size_t i = 0; i < joint_count; ++i) still_lost_[i] = zero_lost_[i] && !commissioned.found[i];
-  const bool posted = worker_.post([prepared = prepared_, file = file_, commissioned, core = core_, motors = motors_,
-                                    still_lost = still_lost_, failed = failed, moved_as_ordered = order_.moved]() mutable {
-    std::string problem;
-    TakenOver taken;
-    config::HomingOffsets offsets;
-    try {
-      offsets = read_and_check(file);
-      forget_lost(commissioned.lost, offsets, core);
-      const config::HomingOffsets before = offsets;
-      taken = take_over(commissioned, motors, offsets);
-      if (failed.empty() && !moved_as_ordered) failed = found_elsewhere(taken);
-      const std::array<bool, joint_count> doubted = doubted_joints(commissioned, taken, offsets);
-      problem =
-          failed.empty() ? write_offsets(file, offsets) : write_doubts(file, with_doubts(before, doubted, offsets, core), doubted, failed);
-      if (problem.empty()) {
-        const std::vector<std::string> older =
-            config::leave_out_doubtful(offsets, motors);  // the file's, of joints that were not commissioned now
-        taken.left_out.insert(taken.left_out.end(), older.begin(), older.end());
-        use_zeros(offsets, still_lost, core);
-      } else {
-        tell_moved(taken);
-        deny_power(doubted, core, offsets);
-      }
-    } catch (const InputError& error) {
-      // Whether the zeros that were found are the old ones cannot be told: there is nothing to hold them against.
-      problem = (failed.empty() ? "" : failed + ". Nothing was written: ") + error.what();
-      deny_power(either(commissioned.found, commissioned.lost), core, offsets);
-    }
-    give(*prepared, problem, taken, offsets, std::make_unique<Controller>(core));
-  });
+  const bool posted =
+      worker_.post([prepared = prepared_, file = file_, commissioned, core = core_, motors = motors_, still_lost = still_lost_,
+                    earlier = unwritten_, failed = failed, moved_as_ordered = order_.moved]() mutable {
+        std::string problem;
+        TakenOver taken;
+        config::HomingOffsets offsets;
+        std::shared_ptr<const UnwrittenDoubts> unwritten = earlier;
+        try {
+          offsets = read_and_check(file);
+          if (earlier != nullptr) earlier->enter(offsets);
+          forget_lost(commissioned.lost, offsets, core);
+          const config::HomingOffsets before = offsets;
+          taken = take_over(commissioned, motors, offsets);
+          if (failed.empty() && !moved_as_ordered) failed = found_elsewhere(taken);
+          const JointSet doubted = doubted_joints(commissioned, taken, offsets);
+          const config::HomingOffsets doubts = with_doubts(before, doubted, offsets, core);
+          const std::string unwritten_for = write_offsets(file, failed.empty() ? offsets : doubts);
+          problem = ending(failed, unwritten_for, doubted);
+          if (unwritten_for.empty()) {
+            unwritten = nullptr;
+          } else if (any(doubted)) {
+            const JointSet joints = earlier == nullptr ? doubted : either(doubted, earlier->joints);
+            unwritten = std::make_shared<const UnwrittenDoubts>(UnwrittenDoubts{joints, doubts});
+          }
+          if (problem.empty()) {
+            const std::vector<std::string> older =
+                config::leave_out_doubtful(offsets, motors);  // the file's, of joints that were not commissioned now
+            taken.left_out.insert(taken.left_out.end(), older.begin(), older.end());
+            use_zeros(offsets, still_lost, core);
+          } else {
+            tell_moved(taken);
+            deny_power(doubted, core, offsets);
+          }
+        } catch (const InputError& error) {
+          // Whether the zeros that were found are the old ones cannot be told: there is nothing to hold them against.
+          problem = (failed.empty() ? "" : failed + ". Nothing was written: ") + error.what();
+          deny_power(either(commissioned.found, commissioned.lost), core, offsets);
+        }
+        give(*prepared, problem, taken, offsets, unwritten, std::make_unique<Controller>(core));
+      });
   if (!posted)
     end_with({{"state", "failed"}, {"why", "nothing was written: too much is waiting to be done"}, {"without_power", without_power_}});
 }
@@ -472,6 +428,7 @@ void Commissioner::give_core(std::unique_ptr<Controller> core, const Json& outco
 void Commissioner::install() {
   const std::lock_guard lock(prepared_->mutex);
   if (!prepared_->done) return;
+  unwritten_ = prepared_->unwritten;
   std::string why;
   for (const std::string& sentence : prepared_->taken.left_out) why += (why.empty() ? "these joints take no power: " : "; ") + sentence;
   if (!prepared_->problem.empty()) {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "hal/vehicle/control_loop.hpp"
+#include "hal/vehicle/homing_changes.hpp"
 #include "hal/vehicle/parse_order.hpp"
 #include "hal/vehicle/status_json.hpp"
 #include "hal/vehicle/vehicle_config.hpp"
@@ -27,15 +28,15 @@ Json friction_json(const config::HomingOffsets& offsets);
 
 // What a commissioning has found.
 struct Commissioned {
-  std::array<bool, joint_count> found{};
+  JointSet found{};
   std::array<std::int32_t, joint_count> zero_counts{};
-  std::array<bool, joint_count> friction_found{};
+  JointSet friction_found{};
   std::array<config::JointFriction, joint_count> friction{};
   std::string how;                            // and when
   std::array<double, joint_count> place_rad;  // where each zero was found: the joint's stop, or 0 in a jig
   // By how much it was found off its earlier zero, as the commissioning compared it; 0 where that is less than what is told.
   std::array<double, joint_count> moved_rad{};
-  std::array<bool, joint_count> lost{};  // its drive had lost its position before: no earlier zero of it means anything
+  JointSet lost{};  // its drive had lost its position before: no earlier zero of it means anything
 };
 
 struct TakenOver {
@@ -86,24 +87,26 @@ class Commissioner {
     std::unique_ptr<Commissioning> commissioning;
     std::unique_ptr<Controller> core;
     config::HomingOffsets offsets;
+    std::shared_ptr<const UnwrittenDoubts> unwritten;
   };
-  // The joints whose zeros a worker takes out of the file; `done` and `problem` are guarded.
-  struct Forgetting {
-    std::array<bool, joint_count> joints{};
+  // A worker takes the zeros of these joints out of the file, and enters doubts into it; `done` and `problem` are guarded.
+  struct Amending {
+    JointSet joints{};
+    std::shared_ptr<const UnwrittenDoubts> doubts;
     std::mutex mutex;
     bool done = false;
     std::string problem;
   };
   enum class Stage { idle, preparing, lending, running, storing, installing };
 
-  void lose_zeros(const std::array<bool, joint_count>& lost);
-  void note_forgotten();
+  void amend_file();
+  void note_amended();
   void lend();
   void take_back(const CommissioningResult& result);
   Commissioned findings_of(const Commissioning& ended) const;
   void store(const Commissioning& ended, const std::string& failed);
   static void give(Prepared& prepared, const std::string& problem, const TakenOver& taken, const config::HomingOffsets& offsets,
-                   std::unique_ptr<Controller> core);
+                   const std::shared_ptr<const UnwrittenDoubts>& unwritten, std::unique_ptr<Controller> core);
   void install();
   // The outcome is logged at once, and is last()'s when the control thread has taken the core over.
   void give_core(std::unique_ptr<Controller> core, const Json& outcome);
@@ -111,15 +114,16 @@ class Commissioner {
   void write_down(const Json& outcome) const;  // in the log
 
   ControllerConfig core_;
-  std::array<bool, joint_count> zero_lost_{};   // of the core at work
-  std::array<bool, joint_count> still_lost_{};  // those of them that the commissioning under way has not found
-  std::array<bool, joint_count> forgotten_{};   // those that the file has no more
-  Time try_again_;                              // when the file could not be written; 0: it could
-  std::array<bool, joint_count> last_tried_{};  // a failure is told once for the same joints
+  JointSet zero_lost_{};                              // of the core at work
+  JointSet still_lost_{};                             // those of them that the commissioning under way has not found
+  JointSet forgotten_{};                              // those that the file has no more
+  std::shared_ptr<const UnwrittenDoubts> unwritten_;  // null: none
+  Time try_again_;                                    // when the file could not be written; 0: it could
+  JointSet last_tried_{};                             // a failure is told once for the same joints
   bool jaw_doubted_ = false;
   std::uint32_t cores_taken_ = 0;  // by the control loop
   bool without_power_ = true;      // after the last one
-  std::shared_ptr<Forgetting> forgetting_;
+  std::shared_ptr<Amending> amending_;
   std::string file_;
   std::array<double, joint_count> backlash_rad_{};
   std::array<Motor, joint_count> motors_;

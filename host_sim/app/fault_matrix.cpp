@@ -117,16 +117,13 @@ judge::Ending ending_of(const Flight& flight, const Watched& watched, const Matr
 }
 
 // An arm may be pushed where none of its drives can feel it. That it calls a success then is no lie, but the row says so.
-// The obstacle is a body of the panel's kind: what touched another body, or touched before it came, is not its push.
-bool unfelt_push(const Flight& flight, const Watched& watched, const MatrixRow& row, const world::World& world, Time begin) {
+bool unfelt_push(const Flight& flight, const Watched& watched, const MatrixRow& row, const world::World& world) {
   const bool pushed =
       std::any_of(row.causes.begin(), row.causes.end(), [](const judge::Cause& cause) { return cause.rule->kind == "obstacle"; });
   if (!pushed) return false;
   const auto& results = flight.mission().tasks();
   world::ContactReport contacts = world.contacts();
-  std::erase_if(contacts.unintended, [&](const world::UnintendedContact& touch) {
-    return touch.first_s >= begin.s() && (touch.a == scene::BodyId::panel || touch.b == scene::BodyId::panel);
-  });
+  std::erase_if(contacts.unintended, [](const world::UnintendedContact& touch) { return touch.b == scene::BodyId::obstacle; });
   if (judge::contradiction({results.data(), results.size()}, watched.truth.tasks(), judge::task_truth(world), contacts)) return false;
   return !judge::felt_a_push(watched.safety.seen());
 }
@@ -170,7 +167,7 @@ RowResult fly_row(const config::Drives& drives, Flight& flight, Watched& watched
     flight.step();
   }
   judge::Ending ending = ending_of(flight, watched, row, flight.platform().world(), begin, situation.over);
-  const bool unfelt = !ending.contradicted.empty() && unfelt_push(flight, watched, row, flight.platform().world(), begin);
+  const bool unfelt = !ending.contradicted.empty() && unfelt_push(flight, watched, row, flight.platform().world());
   if (unfelt) ending.contradicted.clear();
   judge::SafetyFigures figures;
   if (flight.has_own_drives()) figures.self_stop_s = judge::by_deadline_s;

@@ -44,7 +44,9 @@ std::string markdown_cell(std::string text) {
 }  // namespace
 
 bool FaultTable::good() const {
-  return unsafe == 0 && unclear == 0 && false_success == 0 && static_cast<double>(went_on) >= go_on_share * static_cast<double>(must_go_on);
+  const bool few_excused = static_cast<double>(unfelt + stood_anyway) <= excused_share * static_cast<double>(rows) + 1;
+  return unsafe == 0 && unclear == 0 && false_success == 0 && few_excused &&
+         static_cast<double>(went_on) >= go_on_share * static_cast<double>(must_go_on);
 }
 
 FaultTable tabulate_faults(const std::vector<RowResult>& rows) {

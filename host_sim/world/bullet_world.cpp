@@ -16,7 +16,7 @@ bool can_meet(int first, int second) {
   if (first < 0 || second < 0 || first == second) return false;
   const auto a = BodyId(std::min(first, second));
   const auto b = BodyId(std::max(first, second));
-  if (a >= BodyId::panel) return false;                          // panel and what is set in it
+  if (a >= BodyId::panel) return false;                          // panel, what is set in it, and an obstacle
   if (a == BodyId::vehicle && b >= BodyId::panel) return false;  // docked
   if (a <= BodyId::forearm && int(b) == int(a) + 1) return false;
   const bool b_is_finger = b == BodyId::finger_a || b == BodyId::finger_b;

@@ -15,7 +15,7 @@ using scene::BodyId;
 bool is_finger(BodyId body) { return body == BodyId::finger_a || body == BodyId::finger_b; }
 bool is_beyond_wrist(BodyId body) { return body == BodyId::wrist || is_finger(body); }
 bool is_robot(BodyId body) { return body <= BodyId::finger_b; }
-bool is_handled(BodyId body) { return body >= BodyId::handle; }
+bool is_handled(BodyId body) { return body >= BodyId::handle && body <= BodyId::button_right; }
 
 void add(Wrench& sum, const Vec3& impulse, const Vec3& arm) {
   sum.force_n += impulse;
@@ -58,12 +58,12 @@ ContactSensor::ContactSensor(double window_s, double judged_window_s, double ste
       base_(window_s, step_s),
       handle_(window_s, step_s),
       grip_{ForceWindow(window_s, step_s), ForceWindow(window_s, step_s)},
-      on_body_(scene::body_count, ForceWindow(judged_window_s, step_s)) {}
+      on_body_(scene::touchable_body_count, ForceWindow(judged_window_s, step_s)) {}
 
 void ContactSensor::take(const std::vector<ContactImpulse>& impulses, const Pose& base_from_tool, double time_s) {
   Wrench tool, base, handle;
   std::array<Wrench, 2> grip;
-  std::array<Wrench, scene::body_count> on_body;
+  std::array<Wrench, scene::touchable_body_count> on_body;
   const Mat3 tool_from_base = base_from_tool.linear().transpose();
   for (const ContactImpulse& seen : impulses) {
     for (const ContactImpulse& contact : {seen, reversed(seen)}) {

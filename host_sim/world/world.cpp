@@ -157,7 +157,7 @@ void World::break_handle() {
 
 void World::push_obstacle() {
   const Vec3 wrist_m = impl_->arm.base_from_link(std::size_t(BodyId::wrist)).translation();
-  if (!impl_->obstacle) impl_->obstacle = std::make_unique<Obstacle>(impl_->bullet.get(), wrist_m, int(BodyId::panel));
+  if (!impl_->obstacle) impl_->obstacle = std::make_unique<Obstacle>(impl_->bullet.get(), wrist_m, int(BodyId::obstacle));
 }
 
 void World::block_jaw(double lower_rad, double upper_rad) { impl_->arm.limit(Joint::jaw, lower_rad, upper_rad); }

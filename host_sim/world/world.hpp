@@ -75,7 +75,7 @@ struct ButtonState {
 
 // Two bodies that should not have met.
 struct UnintendedContact {
-  scene::BodyId a{}, b{};
+  scene::BodyId a{}, b{};   // in their order
   double first_s = 0;       // since the world began
   double peak_force_n = 0;  // over `judged_window_s`
 };
@@ -108,7 +108,7 @@ class World {
 
   // The handle breaks off: from the next step on it touches nothing, and the valve stays where it is.
   void break_handle();
-  // From the next step on a box floats up from the wrist's left and pushes against it with 80 N. In contact reports it counts as the panel.
+  // From the next step on a box floats up from the wrist's left and pushes against it with 80 N.
   void push_obstacle();
   // From the next step on something rigid keeps the jaw's angle at or above `lower_rad` and at or below `upper_rad`. The jaw stands between the two when
   // this is called.

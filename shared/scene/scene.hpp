@@ -47,8 +47,10 @@ enum class BodyId : std::size_t {
   button_left,
   button_centre,
   button_right,
+  obstacle,  // what a fault of the scenario pushes against the arm: met in contacts, but no part of a Scene
 };
-inline constexpr std::size_t body_count = 12;
+inline constexpr std::size_t body_count = 12;                        // of a Scene
+inline constexpr std::size_t touchable_body_count = body_count + 1;  // in contacts
 
 using Scene = std::array<Body, body_count>;
 using BodyPoses = std::array<Pose, body_count>;  // base_from_body

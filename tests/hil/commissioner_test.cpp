@@ -278,6 +278,48 @@ TEST(CommissioningThatFails, SaysThatNothingWasWrittenWhereTheFileCannotBe) {
   EXPECT_NE(work.why().find("Nothing was written: "), std::string::npos) << work.why();
 }
 
+// The daemon may be started anew before anyone commissions the joint again: the file must not go on trusting its zero. A commissioning of another joint in
+// between gives it no power either.
+TEST(CommissioningThatFails, WritesItsDoubtsAsSoonAsTheFileCanBeWritten) {
+  const auto off = static_cast<std::int32_t>(0.2 / std::abs(arm::rad_per_count(Joint::slew, 0)));
+  for (const bool another_first : {false, true}) {
+    SCOPED_TRACE(another_first ? "another joint is commissioned first" : "nothing is commissioned first");
+    Bench bench(somewhere);
+    AtWork work(somewhere[4]);
+    std::string text = work.folder.read("homing.yaml");
+    const std::string slew = "slew: {zero_counts: " + std::to_string(somewhere[0]);
+    ASSERT_NE(text.find(slew), std::string::npos) << text;
+    work.folder.write("homing.yaml",
+                      text.replace(text.find(slew), slew.size(), "slew: {zero_counts: " + std::to_string(somewhere[0] - off)));
+    work.start();
+    Commissioning* lent = work.begin({true, false, false, false, true});
+    ASSERT_NE(lent, nullptr);
+    bench.run(*lent);
+    const std::filesystem::path in_the_way = work.folder / "homing.yaml.partial";
+    ASSERT_TRUE(std::filesystem::create_directory(in_the_way));
+    ASSERT_NE(work.end(lent), nullptr);
+    ASSERT_TRUE(work.take_over());
+    EXPECT_NE(work.why().find("written as soon as that can be done: slew"), std::string::npos) << work.why();
+    EXPECT_TRUE(work.file().known[0]) << "what could not be written";
+    std::filesystem::remove(in_the_way);
+    hal::ControlReport report;
+    report.cores_taken = 1;
+    const auto doubtful = [&] {
+      if (!another_first) work.commissioner->hear(report);
+      return work.file().zero_doubtful[0];
+    };
+    if (another_first) {
+      ASSERT_NO_FATAL_FAILURE(work.commission_jaw());
+    }
+    EXPECT_TRUE(another_first ? doubtful() : work.wait_for(doubtful));
+    EXPECT_EQ(work.file().zero_counts[0], somewhere[0] - off);
+    EXPECT_TRUE(work.file().known[4]);
+    EXPECT_EQ(work.commissioner->unknown_joints(), "slew");
+    work.start();
+    EXPECT_EQ(work.commissioner->unknown_joints(), "slew");
+  }
+}
+
 // A full disk, say. It is tried again: whoever frees the disk need not think of the zeros.
 TEST(ALostZero, LeavesTheFileAsSoonAsThatCanBeWritten) {
   AtWork work(somewhere[4]);

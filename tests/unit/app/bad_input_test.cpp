@@ -86,7 +86,9 @@ TEST_F(BadInput, ScenariosThatAreNotWhatTheyShouldBe) {
 
 TEST_F(BadInput, JobsThatTheMachineCannotDo) {
   expect_refused("run --set panel.ahead_m=0.69 --set \"camera.position_m=[0.2, -0.245, 0.06]\"", "out of the arm's reach", 2, 4);
+  expect_refused("run --set panel.ahead_m=0.69", "'panel.ahead_m' is 0.69", 2, 4);
   expect_refused("run --set camera.down_deg=10", "out of the camera's view", 2, 4);
+  expect_refused("run --set camera.down_deg=10", "see 'camera.position_m', 'camera.down_deg'", 2, 4);
   expect_refused("run --set arm.urdf=missing.urdf", "missing.urdf");
   file("jointless.urdf", "<robot name=\"none\">\n</robot>\n");
   expect_refused("run --set arm.urdf=" + (folder() / "jointless.urdf").string(), "jointless.urdf");

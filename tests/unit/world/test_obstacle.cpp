@@ -33,6 +33,9 @@ TEST(Obstacle, PressesWithItsPushAndGivesWayToAnArmThatMoves) {
     script.targets_rad[2] += within(-0.3, 0.3);
     script.run(2);
     EXPECT_LT(world.contacts().peak_force_n, push_n + momentum_n_s / window_s + 40) << "draw " << k;
+    // The panel is out of the way: what is touched is the obstacle, and nobody means to touch that.
+    for (const UnintendedContact& touch : world.contacts().unintended) EXPECT_EQ(touch.b, scene::BodyId::obstacle) << "draw " << k;
+    EXPECT_EQ(world.contacts().unintended.empty(), world.contacts().peak_force_n == 0) << "draw " << k;
   }
   EXPECT_GT(met, 20) << "seldom missed";
 }

@@ -1,0 +1,78 @@
+#include "hal/vehicle/homing_changes.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include "shared/input_error.hpp"
+
+namespace lf::hal {
+
+JointSet either(JointSet one, const JointSet& other) {
+  for (std::size_t i = 0; i < joint_count; ++i) one[i] = one[i] || other[i];
+  return one;
+}
+
+bool any(const JointSet& joints) {
+  return std::any_of(joints.begin(), joints.end(), [](bool one) { return one; });
+}
+
+std::string names_of(const JointSet& joints) {
+  std::string names;
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    if (joints[i]) names += (names.empty() ? "" : ", ") + std::string(config::joint_name(i));
+  }
+  return names;
+}
+
+config::HomingOffsets read_and_check(const std::string& file) {
+  config::HomingOffsets offsets = config::read_homing_file(file);
+  const std::string folder = std::filesystem::absolute(file).parent_path().string();
+  if (access(folder.c_str(), W_OK | X_OK) != 0) throw InputError(file + ": cannot be written: " + std::strerror(errno));
+  return offsets;
+}
+
+std::string write_offsets(const std::string& file, const config::HomingOffsets& offsets) {
+  try {
+    config::write_homing_file(file, offsets);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+void forget_lost(const JointSet& lost, config::HomingOffsets& offsets, ControllerConfig& core) {
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    if (!lost[i]) continue;
+    offsets.forget_zero(i);
+    core.network.drives[i].zero_known = false;
+  }
+}
+
+config::HomingOffsets with_doubts(config::HomingOffsets before, const JointSet& doubted, const config::HomingOffsets& taken_over,
+                                  const ControllerConfig& core) {
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    if (!doubted[i]) continue;
+    const canopen::DriveSetup& drive = core.network.drives[i];
+    if (!before.has_earlier_zero(i) && drive.zero_known) {
+      before.zero_counts[i] = drive.encoder_zero_counts;
+      before.known[i] = true;
+    }
+    before.doubt_zero(i);
+    if (!taken_over.friction_doubtful[i]) continue;
+    before.doubt_friction(i);
+    before.found[i] = taken_over.found[i];
+  }
+  return before;
+}
+
+void UnwrittenDoubts::enter(config::HomingOffsets& offsets) const {
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    if (joints[i]) offsets.take_joint(lines, i);
+  }
+}
+
+}  // namespace lf::hal

@@ -1,0 +1,49 @@
+#include "host_sim/app/fault_table.hpp"
+
+#include <gtest/gtest.h>
+
+namespace lf::app {
+namespace {
+
+std::vector<RowResult> safe_rows(std::size_t count) {
+  RowResult row;
+  row.kind = "obstacle";
+  row.step = "turn";
+  return std::vector<RowResult>(count, row);
+}
+
+TEST(FaultTable, FailsForOneUnsafeUnclearOrLyingRow) {
+  std::vector<RowResult> rows = safe_rows(400);
+  EXPECT_TRUE(tabulate_faults(rows).good());
+  rows[7].wrong = {"it moved"};
+  EXPECT_FALSE(tabulate_faults(rows).good());
+  rows[7].wrong.clear();
+  rows[7].unclear = {"no cause is named"};
+  EXPECT_FALSE(tabulate_faults(rows).good());
+  rows[7].unclear.clear();
+  rows[7].false_success = true;
+  EXPECT_FALSE(tabulate_faults(rows).good());
+}
+
+// One in twenty may end all the same.
+TEST(FaultTable, FailsWhereTooFewGoOn) {
+  std::vector<RowResult> rows = safe_rows(40);
+  for (RowResult& row : rows) row.must_go_on = row.went_on = true;
+  rows[0].went_on = rows[1].went_on = false;
+  EXPECT_TRUE(tabulate_faults(rows).good());
+  rows[2].went_on = false;
+  EXPECT_FALSE(tabulate_faults(rows).good());
+}
+
+// One in a hundred and one more: of 400 five.
+TEST(FaultTable, FailsWhereManyRowsAreExcused) {
+  std::vector<RowResult> rows = safe_rows(400);
+  for (std::size_t i = 0; i < 3; ++i) rows[i].unfelt = true;
+  for (std::size_t i = 3; i < 5; ++i) rows[i].stood_anyway = true;
+  EXPECT_TRUE(tabulate_faults(rows).good());
+  rows[5].unfelt = true;
+  EXPECT_FALSE(tabulate_faults(rows).good());
+}
+
+}  // namespace
+}  // namespace lf::app
