@@ -400,9 +400,9 @@ void set_zeros(const Machine& machine, const std::filesystem::path& folder, cons
   }
   for (std::size_t i = 0; i < joint_count; ++i) {
     if (in_file.zero_doubtful[i] && !in_file.friction_doubtful[i])
-      core.notes.push_back(
-          found + ": the " + joint_name(i) +
-          "'s zero is doubtful: a commissioning found it elsewhere. This joint takes no power until it is commissioned again");
+      core.notes.push_back(found + ": the " + joint_name(i) +
+                           "'s zero is doubtful: a commissioning found it elsewhere, or did not come to its end. This joint takes no power "
+                           "until it is commissioned again");
     if (in_file.friction_doubtful[i])
       core.notes.push_back(
           found + ": the " + joint_name(i) +

@@ -25,7 +25,7 @@ struct JointFriction {
 struct HomingOffsets {
   std::array<std::int32_t, joint_count> zero_counts{};
   std::array<bool, joint_count> known{};
-  // The joint was found elsewhere than `zero_counts` has it, or something rubs in it. It is not known, and a later commissioning compares with these counts.
+  // The joint was found elsewhere than `zero_counts` has it, something rubs in it, or its commissioning did not come to its end. It is not known, and a later commissioning compares with these counts.
   std::array<bool, joint_count> zero_doubtful{};
   std::array<bool, joint_count> friction_known{};
   // A friction that cannot be was found, and none since: the joint is not known, whatever zero was found.

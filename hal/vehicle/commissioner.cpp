@@ -17,7 +17,7 @@ namespace lf::hal {
 namespace {
 
 // A file that could not be written, for a full disk for instance, is tried again so much later.
-constexpr Duration amend_again_after = Duration::from_ms(2000);
+constexpr Duration forget_again_after = Duration::from_ms(2000);
 // Of a control period, 4 ms, several: a commissioning that cannot begin comes back at once.
 constexpr Duration refused_within = Duration::from_ms(50);
 
@@ -68,14 +68,6 @@ std::string found_elsewhere(const TakenOver& taken) {
   return "";
 }
 
-Json names_list(const JointSet& joints) {
-  Json names = Json::array();
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    if (joints[i]) names.push_back(config::joint_name(i));
-  }
-  return names;
-}
-
 void tell_moved(TakenOver& taken) {
   for (std::size_t i = 0; i < joint_count; ++i) {
     if (taken.moved_rad[i] > 0)
@@ -91,12 +83,13 @@ JointSet doubted_joints(const Commissioned& commissioned, const TakenOver& taken
   return doubted;
 }
 
-// How it has ended, in words; empty: well.
-std::string ending(const std::string& failed, const std::string& unwritten_for, const JointSet& doubted) {
-  const std::string again =
-      any(doubted) ? ". The doubts of these joints are written as soon as that can be done: " + names_of(doubted) : "";
-  if (failed.empty()) return unwritten_for.empty() ? "" : unwritten_for + again;
-  if (!unwritten_for.empty()) return failed + ". Nothing was written: " + unwritten_for + again;
+// How it has ended, in words; empty: well. `unwritten_for`: why the file could not be written.
+std::string ending(const std::string& failed, const std::string& unwritten_for, const JointSet& doubted, const Marks& marks) {
+  if (!unwritten_for.empty())
+    return (failed.empty() ? "" : failed + ". ") + "Nothing was written: " + unwritten_for +
+           ". In the homing file the zeros of these joints stay doubtful since it began: " + names_of(marks.joints);
+  if (failed.empty()) return "";
+  if (!any(doubted)) return "nothing was written: " + failed;
   return failed + ". In the homing file the zeros of these joints are doubtful now: " + names_of(doubted) + ". Nothing else was written";
 }
 
@@ -107,6 +100,11 @@ void deny_power(const JointSet& denied, ControllerConfig& core, config::HomingOf
     known = known && !denied[i];
     offsets.known[i] = known;
   }
+}
+
+// A file that somebody has changed meanwhile gives no joint power: a daemon that is started anew reads it, and says what it makes of it.
+void only_what_was_found(const JointSet& found, const ControllerConfig& core, config::HomingOffsets& offsets) {
+  for (std::size_t i = 0; i < joint_count; ++i) offsets.known[i] = offsets.known[i] && (found[i] || core.network.drives[i].zero_known);
 }
 
 void use_zeros(const config::HomingOffsets& offsets, const JointSet& still_lost, ControllerConfig& core) {
@@ -176,55 +174,56 @@ Commissioner::~Commissioner() {
 void Commissioner::hear(const ControlReport& report) {
   if (busy() || report.cores_taken != cores_taken_) return;
   jaw_doubted_ = report.jaw_doubted;
-  zero_lost_ = report.zeros_lost;
-  amend_file();
+  lose_zeros(report.zeros_lost);
 }
 
-// What the file must know, and does not yet: a daemon that is started anew would trust it.
-void Commissioner::amend_file() {
-  if (file_.empty() || config::is_shipped(file_) || amending_ != nullptr || monotonic_now() < try_again_) return;
-  auto amending = std::make_shared<Amending>();
-  for (std::size_t i = 0; i < joint_count; ++i) amending->joints[i] = zero_lost_[i] && !forgotten_[i];
-  amending->doubts = unwritten_;
-  if (!any(amending->joints) && unwritten_ == nullptr) return;
-  const bool posted = worker_.post([amending, file = file_] {
+void Commissioner::lose_zeros(const JointSet& lost) {
+  zero_lost_ = lost;
+  if (file_.empty() || config::is_shipped(file_) || forgetting_ != nullptr || monotonic_now() < try_again_) return;
+  JointSet to_forget{};
+  for (std::size_t i = 0; i < joint_count; ++i) to_forget[i] = lost[i] && !forgotten_[i];
+  if (!any(to_forget)) return;
+  auto forgetting = std::make_shared<Forgetting>();
+  forgetting->joints = to_forget;
+  const bool posted = worker_.post([forgetting, file = file_] {
     std::string problem;
     try {
       config::HomingOffsets offsets = read_and_check(file);
-      if (amending->doubts != nullptr) amending->doubts->enter(offsets);
       for (std::size_t i = 0; i < joint_count; ++i) {
-        if (amending->joints[i]) offsets.forget_zero(i);
+        if (forgetting->joints[i]) offsets.forget_zero(i);
       }
       config::write_homing_file(file, offsets);
     } catch (const InputError& error) {
       problem = error.what();
     }
-    const std::lock_guard lock(amending->mutex);
-    amending->problem = problem;
-    amending->done = true;
+    const std::lock_guard lock(forgetting->mutex);
+    forgetting->problem = problem;
+    forgetting->done = true;
   });
-  if (posted) amending_ = amending;  // otherwise the next report says it again
+  if (posted) forgetting_ = forgetting;  // otherwise the next report says it again
 }
 
-void Commissioner::note_amended() {
-  const std::shared_ptr<Amending> amending = amending_;
-  if (amending == nullptr) return;
-  const std::lock_guard lock(amending->mutex);
-  if (!amending->done) return;
-  amending_ = nullptr;
-  const bool told = try_again_ != Time{} && amending->joints == last_tried_;
-  const bool written = amending->problem.empty();
-  last_tried_ = amending->joints;
-  try_again_ = written ? Time{} : monotonic_now() + amend_again_after;
-  for (std::size_t i = 0; i < joint_count; ++i) forgotten_[i] = amending->joints[i] ? written : forgotten_[i];
-  if (written && amending->doubts != nullptr && amending->doubts == unwritten_) {
-    log_({{"t_s", monotonic_now().s()}, {"kind", "zeros_doubtful"}, {"joints", names_list(unwritten_->joints)}, {"file", file_}});
-    unwritten_ = nullptr;
+// A zero that was lost is no longer in the file: a daemon that is started anew must not trust it.
+void Commissioner::note_forgotten() {
+  const std::shared_ptr<Forgetting> forgetting = forgetting_;
+  if (forgetting == nullptr) return;
+  const std::lock_guard lock(forgetting->mutex);
+  if (!forgetting->done) return;
+  forgetting_ = nullptr;
+  const bool told = try_again_ != Time{} && forgetting->joints == last_tried_;
+  const bool gone = forgetting->problem.empty();
+  last_tried_ = forgetting->joints;
+  try_again_ = gone ? Time{} : monotonic_now() + forget_again_after;
+  Json names = Json::array();
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    if (!forgetting->joints[i]) continue;
+    forgotten_[i] = gone;
+    names.push_back(config::joint_name(i));
   }
-  // That doubts cannot be written was told as the commissioning ended.
-  if (!any(amending->joints) || (told && !written)) return;
-  Json line{{"t_s", monotonic_now().s()}, {"kind", "zeros_lost"}, {"joints", names_list(amending->joints)}, {"file", file_}};
-  if (!written) line["why"] = amending->problem + ": commission them before the daemon is started anew; the file is tried again meanwhile";
+  if (told && !gone) return;
+  Json line{{"t_s", monotonic_now().s()}, {"kind", "zeros_lost"}, {"joints", names}, {"file", file_}};
+  if (!forgetting->problem.empty())
+    line["why"] = forgetting->problem + ": commission them before the daemon is started anew; the file is tried again meanwhile";
   log_(line);
 }
 
@@ -255,13 +254,14 @@ std::optional<std::string> Commissioner::begin(const CommissionOrder& order) {
     known = known && !zero_lost_[i];
   }
   setup.jaw_known = setup.network.drives[static_cast<std::size_t>(Joint::jaw)].zero_known && !jaw_doubted_;
-  const bool posted = worker_.post([prepared = prepared_, setup, file = file_, lost = zero_lost_]() mutable {
+  const bool posted = worker_.post([prepared = prepared_, setup, file = file_, lost = zero_lost_, core = core_]() mutable {
     std::string problem;
     try {
-      const config::HomingOffsets offsets = read_and_check(file);
+      prepared->marks = Marks::of(setup.joints, lost, read_and_check(file), core);
       for (std::size_t i = 0; i < joint_count; ++i) {
-        if (offsets.has_earlier_zero(i) && !lost[i]) setup.zero_in_file[i] = offsets.zero_counts[i];
+        if (prepared->marks.before.has_earlier_zero(i)) setup.zero_in_file[i] = prepared->marks.before.zero_counts[i];
       }
+      config::write_homing_file(file, prepared->marks.marked);
     } catch (const InputError& error) {
       problem = error.what();
     }
@@ -287,7 +287,7 @@ std::optional<std::string> Commissioner::why_no_power() const {
 std::optional<Json> Commissioner::answer() { return std::exchange(answer_, std::nullopt); }
 
 void Commissioner::step() {
-  note_amended();
+  note_forgotten();
   for (Controller* old = nullptr; rings_.old_cores.pop(old);) {
     delete old;
     (void)core_given_.release();  // in the control loop now
@@ -311,6 +311,7 @@ void Commissioner::lend() {
     if (!prepared_->done) return;
     if (!prepared_->problem.empty()) answer_ = refused(prepared_->problem);
     commissioning_ = std::move(prepared_->commissioning);
+    marks_ = prepared_->marks;
   }
   stage_ = commissioning_ != nullptr ? Stage::lending : Stage::idle;
   last_ = nullptr;
@@ -322,6 +323,8 @@ void Commissioner::take_back(const CommissioningResult& result) {
   const std::unique_ptr<Commissioning> ended = std::move(commissioning_);
   if (!result.begun) {
     const std::string why = "the arm is not at rest without power: `abort` or `reset` first";
+    // Where that cannot be written the joints stay in doubt, and the next daemon says so.
+    (void)worker_.post([marks = marks_, file = file_] { (void)write_offsets(file, marks.lifted_from(config::read_homing_file(file))); });
     if (stage_ == Stage::running) return end_with({{"state", "failed"}, {"why", why}, {"without_power", true}});
     answer_ = refused(why);
     stage_ = Stage::idle;
@@ -330,8 +333,7 @@ void Commissioner::take_back(const CommissioningResult& result) {
   if (last_.is_null()) answer_ = Json{{"ok", true}, {"standing", "commissioning"}};
   const std::string failed = ended->state() == Commissioning::State::done ? "" : std::string(ended->failure());
   without_power_ = ended->without_power();
-  if (failed.empty() || leaves_doubt(*ended, motors_)) return store(*ended, failed);
-  end_with({{"state", "failed"}, {"why", "nothing was written: " + failed}, {"without_power", without_power_}});
+  store(*ended, failed);
 }
 
 void Commissioner::end_with(const Json& outcome) {
@@ -347,12 +349,11 @@ void Commissioner::write_down(const Json& outcome) const {
 }
 
 void Commissioner::give(Prepared& prepared, const std::string& problem, const TakenOver& taken, const config::HomingOffsets& offsets,
-                        const std::shared_ptr<const UnwrittenDoubts>& unwritten, std::unique_ptr<Controller> core) {
+                        std::unique_ptr<Controller> core) {
   const std::lock_guard lock(prepared.mutex);
   prepared.problem = problem;
   prepared.taken = taken;
   prepared.offsets = offsets;
-  prepared.unwritten = unwritten;
   prepared.core = std::move(core);
   prepared.done = true;
 }
@@ -373,46 +374,38 @@ void Commissioner::store(const Commissioning& ended, const std::string& failed) 
   prepared_ = std::make_shared<Prepared>();
   const Commissioned commissioned = findings_of(ended);
   for (std::size_t i = 0; i < joint_count; ++i) still_lost_[i] = zero_lost_[i] && !commissioned.found[i];
-  const bool posted =
-      worker_.post([prepared = prepared_, file = file_, commissioned, core = core_, motors = motors_, still_lost = still_lost_,
-                    earlier = unwritten_, failed = failed, moved_as_ordered = order_.moved]() mutable {
-        std::string problem;
-        TakenOver taken;
-        config::HomingOffsets offsets;
-        std::shared_ptr<const UnwrittenDoubts> unwritten = earlier;
-        try {
-          offsets = read_and_check(file);
-          if (earlier != nullptr) earlier->enter(offsets);
-          forget_lost(commissioned.lost, offsets, core);
-          const config::HomingOffsets before = offsets;
-          taken = take_over(commissioned, motors, offsets);
-          if (failed.empty() && !moved_as_ordered) failed = found_elsewhere(taken);
-          const JointSet doubted = doubted_joints(commissioned, taken, offsets);
-          const config::HomingOffsets doubts = with_doubts(before, doubted, offsets, core);
-          const std::string unwritten_for = write_offsets(file, failed.empty() ? offsets : doubts);
-          problem = ending(failed, unwritten_for, doubted);
-          if (unwritten_for.empty()) {
-            unwritten = nullptr;
-          } else if (any(doubted)) {
-            const JointSet joints = earlier == nullptr ? doubted : either(doubted, earlier->joints);
-            unwritten = std::make_shared<const UnwrittenDoubts>(UnwrittenDoubts{joints, doubts});
-          }
-          if (problem.empty()) {
-            const std::vector<std::string> older =
-                config::leave_out_doubtful(offsets, motors);  // the file's, of joints that were not commissioned now
-            taken.left_out.insert(taken.left_out.end(), older.begin(), older.end());
-            use_zeros(offsets, still_lost, core);
-          } else {
-            tell_moved(taken);
-            deny_power(doubted, core, offsets);
-          }
-        } catch (const InputError& error) {
-          // Whether the zeros that were found are the old ones cannot be told: there is nothing to hold them against.
-          problem = (failed.empty() ? "" : failed + ". Nothing was written: ") + error.what();
-          deny_power(either(commissioned.found, commissioned.lost), core, offsets);
-        }
-        give(*prepared, problem, taken, offsets, unwritten, std::make_unique<Controller>(core));
-      });
+  const bool changes_core = failed.empty() || leaves_doubt(ended, motors_);
+  const bool posted = worker_.post([prepared = prepared_, file = file_, commissioned, core = core_, motors = motors_, marks = marks_,
+                                    still_lost = still_lost_, failed = failed, moved_as_ordered = order_.moved, changes_core]() mutable {
+    std::string problem;
+    TakenOver taken;
+    config::HomingOffsets offsets;
+    try {
+      offsets = marks.lifted_from(read_and_check(file));
+      forget_lost(commissioned.lost, offsets, core);
+      const config::HomingOffsets before = offsets;
+      if (changes_core) taken = take_over(commissioned, motors, offsets);
+      if (failed.empty() && !moved_as_ordered) failed = found_elsewhere(taken);
+      const JointSet doubted = changes_core ? doubted_joints(commissioned, taken, offsets) : JointSet{};
+      const std::string unwritten_for = write_offsets(file, failed.empty() ? offsets : with_doubts(before, doubted, offsets, core));
+      problem = ending(failed, unwritten_for, doubted, marks);
+      if (problem.empty()) {
+        const std::vector<std::string> older =
+            config::leave_out_doubtful(offsets, motors);  // the file's, of joints that were not commissioned now
+        taken.left_out.insert(taken.left_out.end(), older.begin(), older.end());
+        only_what_was_found(commissioned.found, core, offsets);
+        use_zeros(offsets, still_lost, core);
+      } else {
+        tell_moved(taken);
+        deny_power(doubted, core, offsets);
+      }
+    } catch (const InputError& error) {
+      // Whether the zeros that were found are the old ones cannot be told: there is nothing to hold them against.
+      problem = (failed.empty() ? "" : failed + ". ") + "Nothing was written: " + error.what();
+      deny_power(either(commissioned.found, commissioned.lost), core, offsets);
+    }
+    give(*prepared, problem, taken, offsets, changes_core ? std::make_unique<Controller>(core) : nullptr);
+  });
   if (!posted)
     end_with({{"state", "failed"}, {"why", "nothing was written: too much is waiting to be done"}, {"without_power", without_power_}});
 }
@@ -428,7 +421,6 @@ void Commissioner::give_core(std::unique_ptr<Controller> core, const Json& outco
 void Commissioner::install() {
   const std::lock_guard lock(prepared_->mutex);
   if (!prepared_->done) return;
-  unwritten_ = prepared_->unwritten;
   std::string why;
   for (const std::string& sentence : prepared_->taken.left_out) why += (why.empty() ? "these joints take no power: " : "; ") + sentence;
   if (!prepared_->problem.empty()) {

@@ -87,26 +87,25 @@ class Commissioner {
     std::unique_ptr<Commissioning> commissioning;
     std::unique_ptr<Controller> core;
     config::HomingOffsets offsets;
-    std::shared_ptr<const UnwrittenDoubts> unwritten;
+    Marks marks;
   };
-  // A worker takes the zeros of these joints out of the file, and enters doubts into it; `done` and `problem` are guarded.
-  struct Amending {
+  // The joints whose zeros a worker takes out of the file; `done` and `problem` are guarded.
+  struct Forgetting {
     JointSet joints{};
-    std::shared_ptr<const UnwrittenDoubts> doubts;
     std::mutex mutex;
     bool done = false;
     std::string problem;
   };
   enum class Stage { idle, preparing, lending, running, storing, installing };
 
-  void amend_file();
-  void note_amended();
+  void lose_zeros(const JointSet& lost);
+  void note_forgotten();
   void lend();
   void take_back(const CommissioningResult& result);
   Commissioned findings_of(const Commissioning& ended) const;
   void store(const Commissioning& ended, const std::string& failed);
   static void give(Prepared& prepared, const std::string& problem, const TakenOver& taken, const config::HomingOffsets& offsets,
-                   const std::shared_ptr<const UnwrittenDoubts>& unwritten, std::unique_ptr<Controller> core);
+                   std::unique_ptr<Controller> core);
   void install();
   // The outcome is logged at once, and is last()'s when the control thread has taken the core over.
   void give_core(std::unique_ptr<Controller> core, const Json& outcome);
@@ -114,16 +113,15 @@ class Commissioner {
   void write_down(const Json& outcome) const;  // in the log
 
   ControllerConfig core_;
-  JointSet zero_lost_{};                              // of the core at work
-  JointSet still_lost_{};                             // those of them that the commissioning under way has not found
-  JointSet forgotten_{};                              // those that the file has no more
-  std::shared_ptr<const UnwrittenDoubts> unwritten_;  // null: none
-  Time try_again_;                                    // when the file could not be written; 0: it could
-  JointSet last_tried_{};                             // a failure is told once for the same joints
+  JointSet zero_lost_{};   // of the core at work
+  JointSet still_lost_{};  // those of them that the commissioning under way has not found
+  JointSet forgotten_{};   // those that the file has no more
+  Time try_again_;         // when the file could not be written; 0: it could
+  JointSet last_tried_{};  // a failure is told once for the same joints
   bool jaw_doubted_ = false;
   std::uint32_t cores_taken_ = 0;  // by the control loop
   bool without_power_ = true;      // after the last one
-  std::shared_ptr<Amending> amending_;
+  std::shared_ptr<Forgetting> forgetting_;
   std::string file_;
   std::array<double, joint_count> backlash_rad_{};
   std::array<Motor, joint_count> motors_;
@@ -134,6 +132,7 @@ class Commissioner {
   Time lent_;
   std::shared_ptr<Prepared> prepared_;
   std::unique_ptr<Commissioning> commissioning_;  // lent while it runs
+  Marks marks_;                                   // in the file, meanwhile
   std::unique_ptr<Controller> core_given_;        // until the control thread has taken it
   Json outcome_;                                  // meanwhile
   std::optional<Json> answer_;

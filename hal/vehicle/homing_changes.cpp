@@ -69,10 +69,23 @@ config::HomingOffsets with_doubts(config::HomingOffsets before, const JointSet& 
   return before;
 }
 
-void UnwrittenDoubts::enter(config::HomingOffsets& offsets) const {
+Marks Marks::of(const JointSet& joints, const JointSet& lost, config::HomingOffsets file, const ControllerConfig& core) {
+  JointSet compared{};
   for (std::size_t i = 0; i < joint_count; ++i) {
-    if (joints[i]) offsets.take_joint(lines, i);
+    if (lost[i]) file.forget_zero(i);
+    compared[i] = joints[i] && !lost[i];
   }
+  return {joints, file, with_doubts(file, compared, file, core)};
+}
+
+config::HomingOffsets Marks::lifted_from(config::HomingOffsets file) const {
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    const bool as_marked = file.zero_doubtful[i] == marked.zero_doubtful[i] && file.known[i] == marked.known[i] &&
+                           file.friction_doubtful[i] == marked.friction_doubtful[i] &&
+                           (!file.zero_doubtful[i] || file.zero_counts[i] == marked.zero_counts[i]);
+    if (joints[i] && as_marked) file.take_joint(before, i);
+  }
+  return file;
 }
 
 }  // namespace lf::hal

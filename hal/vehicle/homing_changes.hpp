@@ -1,4 +1,4 @@
-// What a commissioning changes in the homing file, and what of it the file could not be told yet.
+// What a commissioning changes in the homing file.
 #pragma once
 
 #include <array>
@@ -28,12 +28,16 @@ void forget_lost(const JointSet& lost, config::HomingOffsets& offsets, Controlle
 config::HomingOffsets with_doubts(config::HomingOffsets before, const JointSet& doubted, const config::HomingOffsets& taken_over,
                                   const ControllerConfig& core);
 
-// Doubts that could not be written, for a full disk, say: the lines of these joints. The file still trusts them.
-struct UnwrittenDoubts {
+// While joints are commissioned their zeros stand in the file as doubtful ones: a commissioning that does not come to its end, or whose findings cannot be
+// written, leaves no zero that a daemon started anew would trust.
+struct Marks {
   JointSet joints{};
-  config::HomingOffsets lines;
+  config::HomingOffsets before, marked;
 
-  void enter(config::HomingOffsets& offsets) const;
+  // `lost`: joints whose zero in the file means nothing any more.
+  static Marks of(const JointSet& joints, const JointSet& lost, config::HomingOffsets file, const ControllerConfig& core);
+  // The file as it would be without them. A line that somebody has changed since is left.
+  config::HomingOffsets lifted_from(config::HomingOffsets file) const;
 };
 
 }  // namespace lf::hal
