@@ -16,10 +16,6 @@ constexpr double jaw_while_scanning_rad = 0;
 // Of the links only forearm, wrist and fingers come before the panel.
 constexpr std::size_t first_seen_link = 3;
 
-// The beam is one over a sweep: the line's doubt at the end, over so many points, holds for all of them. They are of nine pictures in the default sweep; the last alone may
-// be half off the panel.
-constexpr double late_points = 2000;
-
 // Of every eighth row: noise in 38,400 pixels. FNV-1a by eight pixels at a time, 5 us on a desktop.
 constexpr std::int32_t rows_a_sample = 8;
 
@@ -80,7 +76,7 @@ void BasicScanPipeline<capacity>::begin_sweep(std::uint32_t sweep) {
   request_.id = sweep;
   stripes_seen_ = 0;
   m_per_px_ = shape_shifts_m_ = 0;
-  late_shape_doubt_px_ = 0;
+  late_shape_doubt_px_ = scan::LateMean(late_points);
   sweeping_ = true;
 }
 
@@ -306,8 +302,7 @@ bool BasicScanPipeline<capacity>::add_points(const Stripe& stripe, bool final) {
     begin = end;
   }
   shape_shifts_m_ += static_cast<double>(stripe.shape_doubt_px) * (m_per_px_ - m_per_px_before);
-  const auto added = static_cast<double>(cloud_.points().size() - points_before);
-  late_shape_doubt_px_ += added / (added + late_points) * (static_cast<double>(stripe.shape_doubt_px) - late_shape_doubt_px_);
+  late_shape_doubt_px_.add(static_cast<double>(stripe.shape_doubt_px), static_cast<double>(cloud_.points().size() - points_before));
   return true;
 }
 
@@ -365,7 +360,8 @@ void BasicScanPipeline<capacity>::analyse(std::uint32_t sweep) {
   request_.id = sweep;
   request_.fit = fitter_.fit(cloud_.points(), config_.plane);
   if (!cloud_.points().empty())
-    request_.fit.shape_shift_m = std::max(shape_shifts_m_, late_shape_doubt_px_ * m_per_px_) / static_cast<double>(cloud_.points().size());
+    request_.fit.shape_shift_m =
+        std::max(shape_shifts_m_, late_shape_doubt_px_.mean() * m_per_px_) / static_cast<double>(cloud_.points().size());
   request_.has_still = still_.present;
   request_.still_time = still_.mid_exposure;
   request_ready_ = true;

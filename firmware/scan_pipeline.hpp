@@ -14,6 +14,7 @@
 #include "firmware/arm/kinematics.hpp"
 #include "firmware/scan/cloud.hpp"
 #include "firmware/scan/joint_history.hpp"
+#include "firmware/scan/late_mean.hpp"
 #include "firmware/scan/peak_refiner.hpp"
 #include "firmware/scan/peaks.hpp"
 #include "firmware/scan/plane.hpp"
@@ -170,7 +171,10 @@ class BasicScanPipeline {
   std::uint32_t stripes_seen_ = 0;  // of this sweep
   // Of its points, summed: metres along the ray a pixel, and by how much each may be off.
   double m_per_px_ = 0, shape_shifts_m_ = 0;
-  double late_shape_doubt_px_ = 0;  // of the newest points
+  // The beam is one over a sweep: the line's doubt at the end, over so many points, holds for all of them. They are of nine pictures in the default sweep; the
+  // last alone may be half off the panel.
+  static constexpr double late_points = 2000;
+  scan::LateMean late_shape_doubt_px_{late_points};
   bool sweeping_ = false;
   std::uint64_t last_pixels_ = 0;  // what repeats() made of the image before
   StoredImage background_;

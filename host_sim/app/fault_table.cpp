@@ -30,6 +30,18 @@ std::string why(const RowResult& row) {
   return text;
 }
 
+std::vector<std::string> excused(const FaultTable& table) {
+  std::vector<std::string> sentences;
+  const auto of = [](std::size_t excused, std::size_t all) { return std::to_string(excused) + " of " + std::to_string(all); };
+  if (table.unfelt > 0)
+    sentences.push_back(of(table.unfelt, table.pushed) + " that were pushed succeeded, and had no drive that could feel it");
+  if (table.stood_anyway > 0)
+    sentences.push_back(of(table.stood_anyway, table.seized) +
+                        " with a joint that seized were told as a contact: it had seized where it was to stay");
+  if (!table.few_excused()) sentences.emplace_back("These are too many: of either sort one in ten, and one more, may be excused");
+  return sentences;
+}
+
 std::string csv_cell(const std::string& text) {
   std::string quoted = "\"";
   for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
@@ -44,9 +56,15 @@ std::string markdown_cell(std::string text) {
 }  // namespace
 
 bool FaultTable::good() const {
-  const bool few_excused = static_cast<double>(unfelt + stood_anyway) <= excused_share * static_cast<double>(rows) + 1;
-  return unsafe == 0 && unclear == 0 && false_success == 0 && few_excused &&
+  return unsafe == 0 && unclear == 0 && false_success == 0 && few_excused() &&
          static_cast<double>(went_on) >= go_on_share * static_cast<double>(must_go_on);
+}
+
+bool FaultTable::few_excused() const {
+  const auto few = [](std::size_t excused, std::size_t all) {
+    return static_cast<double>(excused) <= excused_share * static_cast<double>(all) + 1;
+  };
+  return few(unfelt, pushed) && few(stood_anyway, seized);
 }
 
 FaultTable tabulate_faults(const std::vector<RowResult>& rows) {
@@ -61,6 +79,8 @@ FaultTable tabulate_faults(const std::vector<RowResult>& rows) {
     line.false_success += row.false_success ? 1 : 0;
     line.unfelt += row.unfelt ? 1 : 0;
     line.stood_anyway += row.stood_anyway ? 1 : 0;
+    table.pushed += row.kind.find("obstacle") != std::string::npos ? 1 : 0;
+    table.seized += row.kind.find("following") != std::string::npos ? 1 : 0;
     line.must_go_on += row.must_go_on ? 1 : 0;
     line.went_on += row.must_go_on && row.went_on ? 1 : 0;
     worsen(line.stop_ms, row.stop_ms);
@@ -96,9 +116,7 @@ void tell(const FaultTable& table) {
           line.force_n);
   }
   for (const RowResult& row : table.bad) print("%s: %s\n    %s\n", row.safe() ? "unclear" : "UNSAFE", row.row.c_str(), why(row).c_str());
-  if (table.unfelt > 0) print("%zu succeeded that were pushed, and had no drive that could feel it\n", table.unfelt);
-  if (table.stood_anyway > 0)
-    print("%zu held the arm for a joint that had seized where it was to stay, and was told as a contact\n", table.stood_anyway);
+  for (const std::string& sentence : excused(table)) print("%s\n", sentence.c_str());
   print("%zu rows: %zu unsafe, %zu unclear, %zu false successes; %zu of %zu went on that must\n", table.rows, table.unsafe, table.unclear,
         table.false_success, table.went_on, table.must_go_on);
 }
@@ -128,7 +146,9 @@ Json json_of(const FaultTable& table) {
           {"unsafe", table.unsafe},
           {"unclear", table.unclear},
           {"false_successes", table.false_success},
+          {"pushed", table.pushed},
           {"unfelt", table.unfelt},
+          {"seized", table.seized},
           {"stood_anyway", table.stood_anyway},
           {"must_go_on", table.must_go_on},
           {"went_on", table.went_on},
@@ -150,10 +170,7 @@ std::string markdown_of(const FaultTable& table, const std::string& command) {
   }
   text += "| all | " + std::to_string(table.rows) + " | " + std::to_string(table.unsafe) + " | " + std::to_string(table.unclear) + " | " +
           std::to_string(table.went_on) + " of " + std::to_string(table.must_go_on) + " | | | | | |\n";
-  if (table.unfelt > 0) text += "\n" + std::to_string(table.unfelt) + " succeeded that were pushed, and had no drive that could feel it.\n";
-  if (table.stood_anyway > 0)
-    text += "\n" + std::to_string(table.stood_anyway) +
-            " held the arm for a joint that had seized where it was to stay, and was told as a contact.\n";
+  for (const std::string& sentence : excused(table)) text += "\n" + sentence + ".\n";
   if (table.bad.empty()) return text;
   text += "\n| row | what was wrong |\n|---|---|\n";
   for (const RowResult& row : table.bad) text += "| " + markdown_cell(row.row) + " | " + markdown_cell(why(row)) + " |\n";
@@ -162,11 +179,13 @@ std::string markdown_of(const FaultTable& table, const std::string& command) {
 
 std::string csv_of(const std::vector<RowResult>& rows) {
   std::string text =
-      "row,kind,step,walk,safe,false_success,unfelt,must_go_on,went_on,end,reason,why,stop_ms,standing_s,power_off_s,stop_to_off_s,force_"
+      "row,kind,step,walk,safe,false_success,unfelt,stood_anyway,must_go_on,went_on,end,reason,why,stop_ms,standing_s,power_off_s,stop_to_"
+      "off_s,force_"
       "n\n";
   for (const RowResult& row : rows) {
     for (const std::string* cell : {&row.row, &row.kind, &row.step, &row.walk}) text += csv_cell(*cell) + ",";
-    for (const bool flag : {row.safe(), row.false_success, row.unfelt, row.must_go_on, row.went_on}) text += flag ? "1," : "0,";
+    for (const bool flag : {row.safe(), row.false_success, row.unfelt, row.stood_anyway, row.must_go_on, row.went_on})
+      text += flag ? "1," : "0,";
     text += csv_cell(row.end) + "," + csv_cell(row.reason) + "," + csv_cell(why(row)) + "," + number(row.stop_ms, "%.2f") + "," +
             number(row.standing_s, "%.3f") + "," + number(row.power_off_s, "%.3f") + "," + number(row.stop_to_off_s, "%.3f") + "," +
             number(row.force_n, "%.1f") + "\n";

@@ -91,7 +91,7 @@ bool JointMotions::stood_before(const Moment& moment, std::size_t joint) const {
 }
 
 bool JointMotions::pushed_at(const Moment& moment) const {
-  if (moment.force_n <= 0) return false;
+  if (moment.push_n <= 0) return false;
   for (std::size_t i = 0; i < situation_.causes.size(); ++i) {
     if (situation_.causes[i].rule->kind == "obstacle" && situation_.begins_s[i] <= time_s(moment)) return true;
   }

@@ -37,7 +37,7 @@ class JointMotions {
   // A screw that stood when its power went, and has settled, gives way under a push: by no more than bodies quiver.
   bool pushed_without_power(const Moment& moment, std::size_t joint) const;
   bool stood_before(const Moment& moment, std::size_t joint) const;
-  // The obstacle is there, and the arm touches it, or something else.
+  // By the obstacle: it is there, and the arm touches it.
   bool pushed_at(const Moment& moment) const;
 
   const std::vector<Moment>& moments_;

@@ -82,7 +82,9 @@ void SafetyObserver::on_step(Time, const world::World& world) {
     if (power != devices::DrivePower::off) moment.power |= bit;
     if (power == devices::DrivePower::operation && run_ordered_[i]) moment.told_to_run |= bit;
   }
-  moment.force_n = static_cast<float>(world.contacts().largest_force_n);
+  const world::ContactReport contacts = world.contacts();
+  moment.force_n = static_cast<float>(contacts.largest_force_n);
+  moment.push_n = static_cast<float>(contacts.obstacle_force_n);
   seen_.moments.push_back(moment);
 }
 

@@ -407,7 +407,9 @@ class Judge {
         ending_.reason.starts_with("unexpected contact") || ending_.reason.find("touched something") != std::string::npos;
     const bool named =
         std::any_of(situation_.causes.begin(), situation_.causes.end(), [&](const Cause& c) { return c.named_in(ending_.reason); });
-    if (named && !(told_of_contact && touches_nothing() && !stood_where_it_was_to_stay())) return;
+    const bool for_nothing = told_of_contact && touches_nothing();
+    verdict_.stood_anyway = verdict_.stood_anyway || (for_nothing && stood_where_it_was_to_stay());
+    if (named && (!for_nothing || verdict_.stood_anyway)) return;
     verdict_.unclear.push_back("the reason does not name the cause: " + (ending_.reason.empty() ? "none is given" : ending_.reason));
   }
 

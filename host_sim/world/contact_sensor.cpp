@@ -123,6 +123,7 @@ ContactReport ContactSensor::report() const {
   report.grip_force_n = 0.5 * (std::abs(grip_[0].mean().force_n.x()) + std::abs(grip_[1].mean().force_n.x()));
   report.largest_force_n = largest_force_n();
   report.peak_force_n = peak_force_n_;
+  report.obstacle_force_n = on_body_[std::size_t(BodyId::obstacle)].mean().force_n.norm();
   for (const Unintended& pair : unintended_) report.unintended.push_back(pair.contact);
   return report;
 }

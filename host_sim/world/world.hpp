@@ -87,8 +87,9 @@ struct ContactReport {
   Wrench base_wrench;                  // on arm and vehicle, in B, about `vehicle_com_m`
   Vec3 handle_force_n = Vec3::Zero();  // on the handle, in B
   double grip_force_n = 0;             // each finger's force on the handle along the jaw's closing direction, mean of both
-  double largest_force_n = 0;  // between the robot and one other body, or two parts that should not have met: opposed forces do not cancel
-  double peak_force_n = 0;     // largest of it so far
+  double largest_force_n = 0;   // between the robot and one other body, or two parts that should not have met: opposed forces do not cancel
+  double peak_force_n = 0;      // largest of it so far
+  double obstacle_force_n = 0;  // of what push_obstacle() brought, over `judged_window_s`
   // Intended are: finger on finger, finger on handle, finger on button. Each other pair of bodies that touches is listed once, in order of time.
   std::vector<UnintendedContact> unintended;
 };

@@ -133,14 +133,15 @@ TEST(VerdictOfSeveral, ADriveThatLosesItsProcessDataAndIsCutOffStopsByItself) {
 
 // Its motor stands.
 TEST(VerdictOfSeveral, WhoIsPushedWindsUpItsGear) {
-  const auto wrong = [](const std::string& other, double begins_s, float force_n, bool motor_turns) {
+  const auto wrong = [](const std::string& other, double begins_s, float push_n, bool motor_turns) {
     Seen seen = Stopping().seen();
     for (std::size_t t = 600; t < 900; ++t) {
       Moment& moment = seen.moments[t];
       moment.speed_rad_s[0] = 0.1f;
       moment.angle_rad[0] = 0.0001f * static_cast<float>(t - 600);
       moment.motor_rad[0] = motor_turns ? moment.angle_rad[0] : 0;
-      moment.force_n = force_n;
+      moment.force_n = 80;
+      moment.push_n = push_n;
     }
     Situation situation = situation_of(cause_of("overcurrent elbow"), cause_of(other));
     situation.begins_s[1] = begins_s;
@@ -149,14 +150,14 @@ TEST(VerdictOfSeveral, WhoIsPushedWindsUpItsGear) {
   const auto moves = ElementsAre(testing::ContainsRegex("slew moves 0.(79|80) s after the stop"));
   EXPECT_THAT(wrong("obstacle", 0.5, 80, false), IsEmpty());
   EXPECT_THAT(wrong("obstacle", 0.5, 80, true), moves);
-  EXPECT_THAT(wrong("obstacle", 0.5, 0, false), moves) << "nothing touches it";
+  EXPECT_THAT(wrong("obstacle", 0.5, 0, false), moves) << "it touches something else";
   EXPECT_THAT(wrong("obstacle", 1.5, 80, false), moves) << "not yet";
   EXPECT_THAT(wrong("handle_breaks", 0.5, 80, false), moves);
 }
 
 // The motor stands from 200 ms on, the power goes at 298, and the push begins at 600.
 TEST(VerdictOfSeveral, WhoIsPushedWithoutPowerGivesWayByAMilliradian) {
-  const auto wrong = [](float by_rad, float force_n, std::size_t power_off_ms = 298, std::size_t still_from_ms = 200,
+  const auto wrong = [](float by_rad, float push_n, std::size_t power_off_ms = 298, std::size_t still_from_ms = 200,
                         float settles_rad = 0) {
     constexpr std::size_t from_ms = 600;
     Seen seen = Stopping().seen();
@@ -165,7 +166,7 @@ TEST(VerdictOfSeveral, WhoIsPushedWithoutPowerGivesWayByAMilliradian) {
       const float earlier_rad = -0.0001f * static_cast<float>(std::min(t, still_from_ms));
       const float pushed_rad = t < from_ms ? 0 : std::min(by_rad, 0.0001f * static_cast<float>(t - from_ms));
       moment.motor_rad[0] = moment.angle_rad[0] = earlier_rad + pushed_rad + (t < 300 ? 0 : settles_rad);
-      if (t >= from_ms && t < from_ms + 100) moment.force_n = force_n;
+      if (t >= from_ms && t < from_ms + 100) moment.force_n = moment.push_n = push_n;
       if (t < power_off_ms) moment.power |= 1;
     }
     Situation situation = situation_of(cause_of("overcurrent elbow"), cause_of("obstacle"));

@@ -301,11 +301,11 @@ TEST(Verdict, AContactThatIsNoneIsNoReasonToHoldADriveThatMisleads) {
 
 // A seized motor that should have gone somewhere could have been told from a contact; one that was to stay could not. A set-point of two counts is rounding.
 TEST(Verdict, ASeizedJointMayBeTakenForAContactWhereItWasToStay) {
-  const auto verdict = [](std::int32_t to, double units_per_count) {
+  const auto verdict = [](std::int32_t to, double units_per_count, bool holds = true) {
     Seen seen = Stopping{.force_n = 0}.seen();
     seen.told_to_go[2] = {1000, 1000 + to};
     Ending ending = failed("unexpected contact: elbow");
-    ending.holds = true;
+    ending.holds = holds;
     Situation situation = situation_of(cause_of("following elbow"));
     situation.units_per_count.fill(units_per_count);
     return judge(seen, situation, ending);
@@ -316,6 +316,9 @@ TEST(Verdict, ASeizedJointMayBeTakenForAContactWhereItWasToStay) {
   EXPECT_THAT(verdict(3, 1).wrong, ElementsAre(testing::HasSubstr("held under power")));
   EXPECT_THAT(verdict(3, 1).unclear, testing::SizeIs(1));
   EXPECT_FALSE(verdict(3, 1).stood_anyway);
+  EXPECT_TRUE(verdict(2, 1, false).stood_anyway) << "it does not hold the arm: told as a contact all the same";
+  EXPECT_THAT(verdict(2, 1, false).unclear, IsEmpty());
+  EXPECT_FALSE(verdict(3, 1, false).stood_anyway);
   EXPECT_THAT(verdict(20, 10).wrong, IsEmpty()) << "of a drive that counts finer";
   EXPECT_THAT(verdict(21, 10).wrong, testing::SizeIs(1));
 }

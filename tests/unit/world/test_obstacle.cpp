@@ -36,6 +36,7 @@ TEST(Obstacle, PressesWithItsPushAndGivesWayToAnArmThatMoves) {
     // The panel is out of the way: what is touched is the obstacle, and nobody means to touch that.
     for (const UnintendedContact& touch : world.contacts().unintended) EXPECT_EQ(touch.b, scene::BodyId::obstacle) << "draw " << k;
     EXPECT_EQ(world.contacts().unintended.empty(), world.contacts().peak_force_n == 0) << "draw " << k;
+    EXPECT_NEAR(world.contacts().obstacle_force_n, world.contacts().largest_force_n, 1e-9) << "draw " << k;
   }
   EXPECT_GT(met, 20) << "seldom missed";
 }
