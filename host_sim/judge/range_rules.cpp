@@ -1,6 +1,7 @@
 #include "host_sim/judge/range_rules.hpp"
 
 #include <algorithm>
+#include <cctype>
 
 #include "firmware/mission/step_failure.hpp"
 #include "firmware/safety/faults.hpp"
@@ -145,6 +146,28 @@ std::string deciding_part(const std::string& told) {
   return reason;
 }
 
+bool is_of_a_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
+
+// A whole word or path, or with `and_below` the beginning of a longer path.
+bool has_word(const std::string& text, const std::string& word, bool and_below = false) {
+  for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
+    if (at > 0 && (is_of_a_name(text[at - 1]) || text[at - 1] == '.')) continue;
+    const std::string after = text.substr(at + word.size(), 2);
+    const bool goes_on = after.size() > 1 && after[0] == '.' && is_of_a_name(after[1]);
+    if (after.empty() || (!is_of_a_name(after[0]) && (and_below || !goes_on))) return true;
+  }
+  return false;
+}
+
+// What is inside of `tasks` has names of its own.
+bool refusal_names(const std::string& key, const std::string& refusal) {
+  const std::size_t dot = key.rfind('.');
+  if (dot != std::string::npos)
+    return has_word(refusal, key) || (has_word(refusal, key.substr(0, dot), true) && has_word(refusal, key.substr(dot + 1)));
+  return refusal.find("'" + key + "'") != std::string::npos ||
+         (key == "tasks" && (has_word(refusal, "turn_valve.to_deg") || has_word(refusal, "press_buttons.order")));
+}
+
 }  // namespace
 
 std::vector<std::string> words_for(const std::string& key) {
@@ -170,6 +193,10 @@ bool names_a_key(const std::vector<std::string>& keys, const std::string& told) 
     const Words words = words_for(key);
     return std::any_of(words.begin(), words.end(), [&](const std::string& word) { return cause.find(word) != std::string::npos; });
   });
+}
+
+bool refusal_names_a_key(const std::vector<std::string>& keys, const std::string& refusal) {
+  return std::any_of(keys.begin(), keys.end(), [&](const std::string& key) { return refusal_names(key, refusal); });
 }
 
 }  // namespace lf::judge

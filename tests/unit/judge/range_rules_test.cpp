@@ -172,5 +172,24 @@ TEST(RangeRules, EveryKeyThatIsDrawnHasItsWords) {
   }
 }
 
+TEST(RangeRules, ARefusalNamesAKeyByItsPathOrByGroupAndLastPart) {
+  EXPECT_TRUE(refusal_names_a_key({"camera.down_deg"}, "default.yaml: the marker is out of the camera's view: see 'camera.down_deg'."));
+  EXPECT_TRUE(refusal_names_a_key({"drives.slew.counts_per_rev"}, "default.yaml: drives.slew: 'counts_per_rev' is 1e+06: too many"));
+  EXPECT_TRUE(refusal_names_a_key({"drives.counts_per_rev"}, "default.yaml: drives.slew: 'counts_per_rev' is 1e+06: too many"));
+  EXPECT_TRUE(refusal_names_a_key({"outputs.node"}, "default.yaml: drives.slew and outputs have the same node number, 1"));
+  EXPECT_TRUE(refusal_names_a_key({"tasks"}, "default.yaml: 'turn_valve.to_deg' is 200, beyond the valve's stops at -190 and 100"));
+  EXPECT_TRUE(refusal_names_a_key({"water.ambient", "panel.ahead_m"}, "out of reach. 'panel.ahead_m' is 0.7."));
+}
+
+TEST(RangeRules, ARefusalThatNamesAnotherKeyDoesNotCount) {
+  EXPECT_FALSE(refusal_names_a_key({"camera.focal_px"}, "the marker is out of the camera's view: see 'camera.down_deg'"));
+  EXPECT_FALSE(refusal_names_a_key({"drives.elbow.counts_per_rev"}, "default.yaml: drives.slew: 'counts_per_rev' is 1e+06: too many"));
+  EXPECT_FALSE(refusal_names_a_key({"drives.counts_per_rev"}, "default.yaml: drives.slew: 'rated_torque_nm' is 12 N m"));
+  EXPECT_FALSE(refusal_names_a_key({"panel.marker_size_m"}, "default.yaml: 'calibration.marker_size_m' is too large"));
+  EXPECT_FALSE(refusal_names_a_key({"panel.right_m"}, "the laser cannot be swept over the whole panel"));
+  EXPECT_FALSE(refusal_names_a_key({"tasks"}, "the arm does not reach these tasks"));
+  EXPECT_FALSE(refusal_names_a_key({"water.ambient"}, ""));
+}
+
 }  // namespace
 }  // namespace lf::judge
