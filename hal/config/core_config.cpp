@@ -244,20 +244,14 @@ mission::MissionConfig mission_config(const Machine& machine) {
   return config;
 }
 
-std::string place_text(const PanelLayout& panel) {
-  char text[128];
-  std::snprintf(text, sizeof text, ". 'panel.ahead_m' is %.3g, 'panel.right_m' %.3g, 'panel.down_m' %.3g", panel.nominal_x_m,
-                panel.nominal_y_m, panel.nominal_z_m);
-  return text;
-}
-
 bool check_reach_of_tasks(const Machine& machine, const Steps& steps) {
   bool all = true;
   for (const Place& place : places_of_tasks(machine)) {
     const arm::IkResult ik = pose_at(machine.panel, place);
     const bool reached = steps.take([&] {
       if (!ik.ok())
-        refuse(machine, place.what + " is out of the arm's reach at its nominal place: " + excess_text(ik) + place_text(machine.panel));
+        refuse(machine, place.what + " is out of the arm's reach at its nominal place: " + excess_text(ik) + place_text(machine.panel) +
+                            (place.tip_m > 0 ? "; see also 'panel.buttons_m'" : "; see also 'panel.handle_height_m'"));
     });
     all = all && reached;
   }
@@ -310,10 +304,20 @@ void check_turn_speed(const Machine& machine, const ArmDescription& description,
   refuse(machine, text);
 }
 
-void check_seen(const Machine& machine, const CameraCalibration& camera, const std::string& what, const Vec3& panel_point_m) {
-  const Vec3 in_camera = camera.base_from_camera.inverse() * (machine.panel.nominal_base_from_panel() * panel_point_m);
+struct Sighted {
+  const char* what;
+  Vec3 in_panel_m;
+  const char* keys;  // that put it there on the panel, as the end of a list
+};
+
+void check_seen(const Machine& machine, const CameraCalibration& camera, const Sighted& point) {
+  const Vec3 in_camera = camera.base_from_camera.inverse() * (machine.panel.nominal_base_from_panel() * point.in_panel_m);
   const std::optional<Vec2> pixel = scan::CameraModel(camera.intrinsics).project(in_camera);
-  const std::string remedy = ": see 'camera.position_m', 'camera.down_deg' and 'camera.right_deg'";
+  const std::string lens =
+      machine.camera_calibration.empty() ? "'camera.focal_px', 'camera.distortion'" : "the calibration " + machine.camera_calibration;
+  const std::string remedy =
+      ": see 'camera.position_m', 'camera.down_deg', 'camera.right_deg', " + lens + point.keys + place_text(machine.panel);
+  const std::string what = point.what;
   if (!pixel) refuse(machine, what + " is behind the camera" + remedy);
   const bool inside =
       pixel->x() >= 0 && pixel->x() <= camera.intrinsics.width - 1 && pixel->y() >= 0 && pixel->y() <= camera.intrinsics.height - 1;
@@ -326,15 +330,16 @@ void check_seen(const Machine& machine, const CameraCalibration& camera, const s
 void check_view(const Machine& machine, const CameraCalibration& camera, const Steps& steps) {
   const PanelLayout& panel = machine.panel;
   const Vec2 low = panel.plate_min_m, high = panel.plate_max_m;
-  const std::array<std::pair<const char*, Vec3>, 6> places{{
-      {"the panel's upper left corner", Vec3(low.x(), high.y(), 0)},
-      {"the panel's upper right corner", Vec3(high.x(), high.y(), 0)},
-      {"the panel's lower right corner", Vec3(high.x(), low.y(), 0)},
-      {"the panel's lower left corner", Vec3(low.x(), low.y(), 0)},
-      {"the marker", Vec3(panel.marker_centre_m.x(), panel.marker_centre_m.y(), 0)},
-      {"the valve", Vec3(0, 0, panel.handle_height_m)},
+  const char* both = ", 'panel.plate_min_m' and 'panel.plate_max_m'";
+  const std::array<Sighted, 6> points{{
+      {"the panel's upper left corner", Vec3(low.x(), high.y(), 0), both},
+      {"the panel's upper right corner", Vec3(high.x(), high.y(), 0), " and 'panel.plate_max_m'"},
+      {"the panel's lower right corner", Vec3(high.x(), low.y(), 0), both},
+      {"the panel's lower left corner", Vec3(low.x(), low.y(), 0), " and 'panel.plate_min_m'"},
+      {"the marker", Vec3(panel.marker_centre_m.x(), panel.marker_centre_m.y(), 0), " and 'panel.marker_centre_m'"},
+      {"the valve", Vec3(0, 0, panel.handle_height_m), " and 'panel.handle_height_m'"},
   }};
-  for (const auto& [what, place_m] : places) steps.take([&, name = what, &place = place_m] { check_seen(machine, camera, name, place); });
+  for (const Sighted& point : points) steps.take([&] { check_seen(machine, camera, point); });
 }
 
 // Where the panel and what stands proud of it can be: the worst docking error moves a corner of the plate by 20 mm and, over half a metre, by

@@ -37,12 +37,16 @@ void check_stops(const ValveStops& stops, const std::vector<Task>& tasks, std::v
   }
 }
 
+double tilt_at_bar_rad(const PanelLayout& panel, const arm::PanelDoubt& docking) {
+  return steepest_rad(panel, {"the valve", Vec3(0, 0, panel.handle_height_m), 0}, docking);
+}
+
 // The tips of an open jaw reach beyond the bar, and more so on the side to which the tool is tilted. Below them the panel keeps a centimetre.
 double lowest_bar_m(const PanelLayout& panel, const arm::PanelDoubt& docking) {
   constexpr double finger_m = 0.020;
   constexpr double clear_m = 0.010;
   const double opening_m = arm::jaw_opening_m(panel.handle_thickness_m);
-  const double tilt_rad = steepest_rad(panel, {"the valve", Vec3(0, 0, panel.handle_height_m), 0}, docking);
+  const double tilt_rad = tilt_at_bar_rad(panel, docking);
   return arm::tip_beyond_tool_m(arm::jaw_from_gap(opening_m)) + (opening_m / 2 + finger_m) * std::sin(tilt_rad) + clear_m;
 }
 
@@ -50,17 +54,19 @@ void check_bar(const PanelLayout& panel, const arm::PanelDoubt& docking, std::ve
   const double lowest_m = lowest_bar_m(panel, docking);
   if (panel.handle_height_m < lowest_m)
     problems.push_back("'panel.handle_height_m' is " + number(panel.handle_height_m) + ": the open jaw would touch the panel below " +
-                       number(lowest_m) + " m");
+                       number(lowest_m) + " m with a bar of this 'panel.handle_thickness_m'" +
+                       aslant_text(panel, docking, tilt_at_bar_rad(panel, docking)));
   const double thickest_m = thickest_bar_m(panel);
   if (panel.handle_thickness_m < arm::thinnest_bar_m)
     problems.push_back("'panel.handle_thickness_m' is " + number(panel.handle_thickness_m) + ": the jaw does not tell a bar thinner than " +
                        number(arm::thinnest_bar_m) + " m from nothing");
   if (panel.handle_thickness_m > thickest_m)
-    problems.push_back("'panel.handle_thickness_m' is " + number(panel.handle_thickness_m) + ": a bar of this length can be " +
-                       number(thickest_m) + " m thick, else its angle cannot be seen or the jaw does not open for it");
+    problems.push_back("'panel.handle_thickness_m' is " + number(panel.handle_thickness_m) +
+                       ": a bar of this 'panel.handle_length_m' can be " + number(thickest_m) +
+                       " m thick, else its angle cannot be seen or the jaw does not open for it");
   if (panel.pointer != PanelLayout::Pointer::none && panel.pointer_length_m > longest_mark_m(panel))
     problems.push_back("'panel.pointer_length_m' is " + number(panel.pointer_length_m) + ": more than " + number(longest_mark_m(panel)) +
-                       " m of this bar would not tell its ends apart");
+                       " m of a bar of this 'panel.handle_length_m' would not tell its ends apart");
 }
 
 }  // namespace

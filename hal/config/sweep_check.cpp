@@ -7,6 +7,7 @@
 #include "firmware/mission/look.hpp"
 #include "firmware/mission/motion.hpp"
 #include "hal/config/limits_check.hpp"
+#include "hal/config/task_reach.hpp"
 
 namespace lf::config {
 
@@ -34,20 +35,40 @@ std::string docking_text(const mission::MissionConfig& mission) {
 
 const char* words(scan::SweepOutcome outcome) {
   switch (outcome) {
-    case scan::SweepOutcome::top_unreachable: return "no pose of the arm puts the laser's line above the panel";
-    case scan::SweepOutcome::bottom_unreachable: return "no pose of the arm puts the laser's line below the panel";
-    case scan::SweepOutcome::fan_too_narrow: return "the laser's line is shorter than the panel is wide";
-    case scan::SweepOutcome::no_way: return "the tool would come too near to the panel";
+    case scan::SweepOutcome::top_unreachable:
+      return "no pose of the arm puts the laser's line above the panel: see 'laser.position_m' and 'panel.plate_max_m'";
+    case scan::SweepOutcome::bottom_unreachable:
+      return "no pose of the arm puts the laser's line below the panel: see 'laser.position_m' and 'panel.plate_min_m'";
+    case scan::SweepOutcome::fan_too_narrow:
+      return "the laser's line is shorter than the panel is wide: see 'laser.fan_half_angle_deg', 'laser.position_m', 'panel.plate_min_m' "
+             "and 'panel.plate_max_m'";
+    case scan::SweepOutcome::no_way: return "the tool would come too near to the panel: see 'laser.position_m'";
     case scan::SweepOutcome::bad_request:
     case scan::SweepOutcome::ok: break;
   }
   return "the sweep is not defined";
 }
 
+// The keys that put this part where it stands, for the end of a message.
+const char* keys_of(arm::PanelPart part) {
+  switch (part) {
+    case arm::PanelPart::plate: return ": see 'panel.plate_min_m' and 'panel.plate_max_m'";
+    case arm::PanelPart::marker_plate: return ": see 'panel.marker_centre_m' and 'panel.marker_plate_m'";
+    case arm::PanelPart::button_left:
+    case arm::PanelPart::button_centre:
+    case arm::PanelPart::button_right: return ": see 'panel.buttons_m' and 'panel.button_height_m'";
+    case arm::PanelPart::handle:
+    case arm::PanelPart::stem: return ": see 'panel.handle_height_m' and 'panel.handle_length_m'";
+    case arm::PanelPart::none: break;
+  }
+  return "";
+}
+
 // What is nearest to the arm in one pose, and how near.
 struct Nearest {
   double distance_m = HUGE_VAL;
   std::string what;
+  std::string keys;  // for the end of the message
 };
 
 class Neighbours {
@@ -60,9 +81,10 @@ class Neighbours {
   Nearest of(const JointVector& q_rad, double jaw_rad) const {
     const arm::LinkCapsules capsules = arm::link_capsules(q_rad, jaw_rad);
     const arm::Clearance panel = panel_.clearance(capsules, base_from_panel_);
-    Nearest nearest{panel.distance_m, std::string("the panel's ") + arm::name(panel.part) + ", " + docking_text(mission_)};
+    Nearest nearest{panel.distance_m, std::string("the panel's ") + arm::name(panel.part) + ", " + docking_text(mission_),
+                    std::string(keys_of(panel.part)) + place_text(mission_.layout)};
     const auto hold_against = [&](double distance_m, const std::string& what) {
-      if (distance_m < nearest.distance_m) nearest = {distance_m, what};
+      if (distance_m < nearest.distance_m) nearest = {distance_m, what, ""};
     };
     for (std::size_t i = 0; i < mission_.vehicle.boxes.size(); ++i) {
       arm::VehicleShape one;
@@ -90,14 +112,15 @@ class Neighbours {
 
 std::string too_near(const char* when, const Nearest& nearest) {
   return formatted("%s the arm comes as near as %.0f mm to ", when, 1e3 * std::max(0.0, nearest.distance_m)) + nearest.what +
-         formatted("; it has to keep %.0f mm off", 1e3 * mission::clearance_m);
+         formatted("; it has to keep %.0f mm off", 1e3 * mission::clearance_m) + nearest.keys;
 }
 
 JointVector vector_of(const std::array<double, arm_joint_count>& q) { return {q[0], q[1], q[2], q[3]}; }
 
 // With what of the limits keeps the arm from it, where that is seen at the sweep's ends.
-std::string unreachable_text(const safety::Limits& limits, const scan::SweepPlan& plan) {
-  std::string text = "the arm does not reach the poses from which the laser is swept over the panel";
+std::string unreachable_text(const safety::Limits& limits, const PanelLayout& panel, const scan::SweepPlan& plan) {
+  std::string text =
+      "the arm does not reach the poses from which the laser is swept over the panel: see 'laser.position_m'" + place_text(panel);
   std::vector<std::string> problems = pose_problems(limits, vector_of(plan.start_rad), "the sweep's start");
   for (const std::string& problem : pose_problems(limits, vector_of(plan.end_rad), "the sweep's end")) problems.push_back(problem);
   for (const std::string& problem : problems) text += "; in the safety limits " + problem;
@@ -116,14 +139,19 @@ std::optional<std::string> sweep_problem(const ControllerConfig& controller) {
   const scan::SweepRequest request = mission::sweep_over_panel(mission);
   const scan::SweepPlan plan = scan::plan_sweep(request, controller.laser);
   if (plan.outcome != scan::SweepOutcome::ok) {
-    return "the laser cannot be swept over the whole panel wherever it may stand " + docking_text(mission) + ": " + words(plan.outcome);
+    return "the laser cannot be swept over the whole panel wherever it may stand " + docking_text(mission) + ": " + words(plan.outcome) +
+           place_text(mission.layout);
   }
   const double frame_share = mission.camera_syncs * can_map::sync_period.s() / request.stripe_period.s();
   const double spacing_m = plan.widest_spacing_m * frame_share;
   if (spacing_m > widest_of_bar * mission.layout.handle_thickness_m) {
     return "the laser's lines would lie " + formatted("%.1f mm", 1e3 * spacing_m) + " apart on the panel " + docking_text(mission) +
-           formatted(" and 'mission.sweep_speed_rad_s' at %.3g: no more than %.1f mm show a handle of this thickness",
-                     mission.sweep_speed_rad_s, 1e3 * widest_of_bar * mission.layout.handle_thickness_m);
+           formatted(
+               ", 'mission.sweep_speed_rad_s' at %.3g and 'mission.camera_syncs' at %u: no more than %.1f mm show a handle of this "
+               "'panel.handle_thickness_m'; see also 'laser.position_m'",
+               mission.sweep_speed_rad_s, static_cast<unsigned>(mission.camera_syncs),
+               1e3 * widest_of_bar * mission.layout.handle_thickness_m) +
+           place_text(mission.layout);
   }
   mission::Motion motion(controller.mission_limits, mission.layout, mission.vehicle, mission.park_rad);
   motion.start_at(mission.park_rad);
@@ -131,7 +159,7 @@ std::optional<std::string> sweep_problem(const ControllerConfig& controller) {
   motion.go_to_sweep(request, controller.laser, room, jaw_rad, mission.move_speed_fraction);
   while (motion.planning()) motion.step(can_map::sync_period.s());
   if (motion.failure() == StepFailure::none) return std::nullopt;
-  if (motion.failure() == StepFailure::unreachable) return unreachable_text(controller.mission_limits, plan);
+  if (motion.failure() == StepFailure::unreachable) return unreachable_text(controller.mission_limits, mission.layout, plan);
 
   // The sweep, and the straight way to it: the core looks at more poses, and stops at the first that is too near.
   constexpr int poses = 200;

@@ -59,6 +59,21 @@ double steepest_rad(const PanelLayout& panel, const Place& place, const arm::Pan
   return std::atan2(axis.cross(inward).norm(), axis.dot(inward)) + doubt_rad;
 }
 
+std::string place_text(const PanelLayout& panel) {
+  char text[128];
+  std::snprintf(text, sizeof text, ". 'panel.ahead_m' is %.3g, 'panel.right_m' %.3g, 'panel.down_m' %.3g", panel.nominal_x_m,
+                panel.nominal_y_m, panel.nominal_z_m);
+  return text;
+}
+
+std::string aslant_text(const PanelLayout& panel, const arm::PanelDoubt& docking, double tilt_rad) {
+  char text[160];
+  std::snprintf(text, sizeof text,
+                ": the tool comes to it up to %.1f degrees aslant, with 'mission.docking_m' at %.3g and 'mission.docking_rad' at %.3g",
+                deg_from_rad(tilt_rad), docking.shift_m, docking.turn_rad);
+  return text + place_text(panel);
+}
+
 std::string excess_text(const arm::IkResult& ik) {
   char text[48];
   const bool length = ik.outcome == arm::IkOutcome::too_far || ik.outcome == arm::IkOutcome::too_near;

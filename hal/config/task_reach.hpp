@@ -34,6 +34,12 @@ double steepest_rad(const PanelLayout& panel, const Place& place, const arm::Pan
 // The pose there, found as a press finds it (firmware/mission/press_button.cpp): the approach axis depends on the place itself.
 arm::IkResult pose_at(const PanelLayout& panel, const Place& place);
 
+// How aslant the tool comes to a place, and by which keys: a clause for the end of a message.
+std::string aslant_text(const PanelLayout& panel, const arm::PanelDoubt& docking, double tilt_rad);
+
+// The keys of the panel's place and their values, for the end of a message.
+std::string place_text(const PanelLayout& panel);
+
 // What stops an arm that does not reach, and by how much.
 std::string excess_text(const arm::IkResult& ik);
 

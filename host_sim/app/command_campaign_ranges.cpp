@@ -14,14 +14,13 @@
 #include "host_sim/app/progress_line.hpp"
 #include "host_sim/app/range_draws.hpp"
 #include "host_sim/app/range_suite.hpp"
+#include "host_sim/app/range_verdict.hpp"
 #include "host_sim/app/run_session.hpp"
 #include "host_sim/app/shell_word.hpp"
 #include "host_sim/campaign/utc_time.hpp"
-#include "host_sim/judge/range_rules.hpp"
-#include "host_sim/judge/truth.hpp"
 #include "host_sim/record/run_folder.hpp"
 #include "host_sim/scenario/duration.hpp"
-#include "shared/input_error.hpp"
+#include "host_sim/scenario/instance.hpp"
 #include "shared/version/version.hpp"
 
 namespace lf::app {
@@ -49,48 +48,20 @@ std::optional<RangeResult> parse(const std::string& line) {
                      json.value("reason", "")};
 }
 
-// The keys of "path=value", as --set takes them.
-std::vector<std::string> keys_of(const RangeRow& row) {
-  std::vector<std::string> keys;
-  for (const std::string& set : row.set) keys.push_back(set.substr(0, set.find('=')));
-  return keys;
-}
-
-void judge(const record::RunResult& run, const RangeRow& row, RangeResult& result) {
-  if (run.success) {
-    result.verdict = "success";
-    return;
-  }
-  result.reason = run.failure->phase + ": " + run.failure->reason;
-  const bool forced = run.contact.peak_force_n > judge::contact_limit_n || run.contact.unintended_contacts > 0;
-  const bool unsafe = run.false_success || forced || run.failure->reason.find("moves or has power") != std::string::npos;
-  const bool named = judge::names_a_key(keys_of(row), run.failure->reason);
-  result.verdict = unsafe ? "unsafe" : named ? "safe" : "unnamed";
-  if (forced && !run.false_success) {
-    result.reason += " (" + std::to_string(run.contact.unintended_contacts) + " unintended contacts, up to " +
-                     std::to_string(static_cast<int>(run.contact.peak_force_n)) + " N)";
-  }
-}
-
 RangeResult fly_once(const CampaignOptions& options, const RangeRow& row) {
-  RangeResult result{row.name, row.key, "", "", ""};
   std::vector<std::string> set = options.set;
   set.insert(set.end(), row.set.begin(), row.set.end());
-  for (const std::string& each : row.set) result.set += (result.set.empty() ? "" : " ") + each;
-  try {
-    RunRequest request;
+  RunRequest request;
+  const auto prepare = [&] {
     request.scenario = scenario::load_scenario(options.scenario, set);
+    scenario::check_runnable(request.scenario);
     // Slow speeds are no failure: a run has the time that they need.
     request.scenario.time_limit_s = std::max(request.scenario.time_limit_s, scenario::longest_mission_s(request.scenario));
     request.seed = row.seed;
     request.outside = false;
     request.given_sight = !row.sees;
-    judge(run_mission(request).result, row, result);
-  } catch (const InputError& error) {
-    result.verdict = "refused";
-    result.reason = error.what();
-  }
-  return result;
+  };
+  return verdict_of(row, prepare, [&] { return run_mission(request).result; });
 }
 
 RangeResult fly(const CampaignOptions& options, const RangeRow& row) {

@@ -9,7 +9,7 @@
 
 namespace lf::app {
 
-// What a drawn value came to. "unnamed": it ended safely, but its reason names none of the drawn keys (judge/range_rules.hpp).
+// What a drawn value came to. "unnamed": it ended safely or was refused, but names none of the drawn keys (judge/range_rules.hpp).
 inline constexpr std::array verdicts{"success", "safe", "refused", "unnamed", "unsafe"};
 
 // Of the draws of single keys, how many must succeed.

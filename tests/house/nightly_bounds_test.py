@@ -45,6 +45,13 @@ class Bounds(unittest.TestCase):
         self.assertEqual(said(["campaign"], lying)[0], 1)
         self.assertEqual(said(["campaign"], {**campaign([0.0]), "not_flown": 1})[0], 1)
 
+    # The force is what a mission may do to the panel: no campaign of seeds is without its bound.
+    def test_every_campaign_of_seeds_bounds_the_force(self):
+        shards = [line for line in (PROGRAM.parent / "nightly_shards").read_text(encoding="utf-8").splitlines() if "nightly_bounds.py campaign" in line]
+        self.assertGreaterEqual(len(shards), 3)
+        for shard in shards:
+            self.assertIn("'max contact_force_n <= 150'", shard)
+
     def test_only_rows_that_the_page_lists_may_miss(self):
         heading = "### Rows where detector + fit misses what is asked: 1\n\n"
         page = "- Steps of 10:1 (bias: 12 bits), hazy, 0 deg: rms 0.276 of 0.250 px\n"

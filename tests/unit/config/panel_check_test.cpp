@@ -34,7 +34,8 @@ TEST(PanelCheck, OverlappingButtonsAndWhatHangsBeyondThePlateAreNamed) {
   EXPECT_THAT(panel_problems(panel), ElementsAre(HasSubstr("the centre button and the left one overlap by 10.0 mm")));
   panel = {};
   panel.buttons_m[2] = Vec2(0.39, 0);
-  EXPECT_THAT(panel_problems(panel), ElementsAre(HasSubstr("the right button hangs beyond the plate")));
+  EXPECT_THAT(panel_problems(panel),
+              ElementsAre(HasSubstr("the right button hangs beyond the plate: see 'panel.plate_min_m', 'panel.plate_max_m'")));
   panel = {};
   panel.marker_centre_m = Vec2(-0.36, 0);
   EXPECT_THAT(panel_problems(panel), ElementsAre(HasSubstr("the marker's plate hangs beyond")));
@@ -76,7 +77,8 @@ TEST(PanelCheck, ALowCapIsRefusedByTheNamesOfHeightStrokeAndOvertravel) {
   // reach` has 13.5.
   EXPECT_NEAR(lowest_button_m(machine.panel, machine.mission), 0.005 + 0.006 + 0.028 * std::sin(rad_from_deg(13.5 + 7.5)) + 0.0036, 0.0001);
   machine.panel.button_height_m = 0.0240;
-  for (const char* part : {"'panel.button_height_m' is 0.024", "'panel.button_stroke_m'", "'mission.press_overtravel_m'", "0.02"})
+  for (const char* part : {"'panel.button_height_m' is 0.024", "'panel.button_stroke_m'", "'mission.press_overtravel_m'", "0.02",
+                           "'panel.buttons_m'", "up to 21.", "degrees aslant", "'panel.right_m' 0", "'mission.docking_rad' at 0.0349"})
     EXPECT_THAT(low_button_problems(machine), ElementsAre(HasSubstr(part)));
   machine.tasks = {Task{}};
   EXPECT_THAT(low_button_problems(machine), IsEmpty()) << "none is pressed";

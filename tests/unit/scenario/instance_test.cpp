@@ -298,6 +298,7 @@ TEST(Nominal, ADockingAtWhichTheLaserDoesNotPassOverThePanelIsRefused) {
   scenario.mission.docking.shift_m = 0.05;
   EXPECT_THAT(refusal(scenario), ::testing::HasSubstr("the laser cannot be swept over the whole panel wherever it may stand with "
                                                       "'mission.docking_m' at 0.05 and 'mission.docking_rad' at 0.05: "));
+  EXPECT_THAT(refusal(scenario), ::testing::HasSubstr(". 'panel.ahead_m' is 0.44"));
 }
 
 // A panel that may stand where the arm is folded up: the refusal says which part of it.
@@ -340,6 +341,10 @@ TEST(Nominal, ACloudThinsItsColumnsWhereTheCameraIsFaster) {
 TEST(Nominal, APanelOutOfViewIsRefused) {
   EXPECT_THAT(refusal(load_scenario("default", {"camera.down_deg=-30"})), ::testing::HasSubstr("out of the camera's view"));
   EXPECT_THAT(refusal(load_scenario("default", {"camera.right_deg=180"})), ::testing::HasSubstr("is behind the camera"));
+  EXPECT_THAT(refusal(load_scenario("default", {"camera.focal_px=800"})),
+              ::testing::HasSubstr(": see 'camera.position_m', 'camera.down_deg', 'camera.right_deg', 'camera.focal_px', "
+                                   "'camera.distortion' and 'panel.plate_min_m'. 'panel.ahead_m' is 0.44, 'panel.right_m' 0, "
+                                   "'panel.down_m' 0.592"));
 }
 
 TEST(Nominal, AMissingOrBadUrdfIsRefused) {
