@@ -239,6 +239,7 @@ class ControlLoop {
     }
     report_.jaw_doubted = mission.jaw_doubted();
     report_.inputs = network.io().inputs();
+    report_.inputs_fresh = network.io().seen() && network.io().fresh(report_.t);
     report_.outputs = network.io().outputs();
     report_.boot = network.boot();
     report_.network = network.stats();

@@ -27,6 +27,7 @@ struct ControlReport {
   bool jaw_doubted = false;                    // the core does not know what the jaw holds
   std::array<canopen::AxisFault, joint_count> axis_faults{};
   std::uint8_t inputs = 0, outputs = 0;  // of the output node, bits of can_map
+  bool inputs_fresh = false;             // it says so now: it is in operation
   canopen::BootReport boot;
   canopen::NetworkStats network;
   std::array<std::uint32_t, port_count> port_errors{};

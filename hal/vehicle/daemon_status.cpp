@@ -24,6 +24,7 @@ Json Daemon::status() const {
   } else if (const Json last = commissioner_.last(); !last.is_null()) {
     json["commissioning"] = last;
   }
+  if (estop_.present()) json["estop_input_closed"] = estop_line_.closed(monotonic_now());
   if (const std::string unknown = commissioner_.unknown_joints(); !unknown.empty()) json["without a zero"] = unknown;
   json["latency"] = latencies();
   json["ticks"] = now.control.ticks;

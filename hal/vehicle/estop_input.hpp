@@ -1,5 +1,5 @@
 // An emergency-stop input of the vehicle's computer: a file that reads "1" while the chain is closed, as a GPIO's value does in sysfs. A cut wire, a file
-// that is gone, unreadable or says anything else is a stop. The chain at the output node is another input, and the core's own affair.
+// that is gone, unreadable or says anything else ("12", "1 V") is a stop. The chain at the output node is another input, and the core's own affair.
 #pragma once
 
 #include <atomic>
@@ -10,6 +10,10 @@
 #include "shared/messages/time.hpp"
 
 namespace lf::hal {
+
+// What the file says: "1" or "0", with one newline or without; anything else, and a file that cannot be read, is neither.
+enum class EstopReading : std::uint8_t { closed, open, neither };
+EstopReading read_estop(const std::string& path);
 
 class EstopInput {
  public:

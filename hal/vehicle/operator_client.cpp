@@ -53,6 +53,16 @@ std::string histogram_text(const Json& h) {
          number(", max %.0f us", h["max"].get<double>());
 }
 
+// Who presses the button to try it looks here. The node says nothing before it is in operation.
+std::string chains_text(const Json& status) {
+  const auto state = [&](const char* key) { return status.value(key, false) ? "closed" : "open"; };
+  std::string text = "  emergency-stop chain ";
+  text += status.value("inputs_fresh", false) ? std::string(state("estop_closed")) + ", laser's interlock " + state("interlock_closed")
+                                              : "not heard: the output node is not in operation";
+  if (status.contains("estop_input_closed")) text += std::string("; estop.input ") + state("estop_input_closed");
+  return text + "\n";
+}
+
 }  // namespace
 
 std::string commissioning_text(const Json& done) {
@@ -103,6 +113,7 @@ std::string status_text(const Json& status) {
                   joint["state"].get<std::string>().c_str(), joint["actual_rad"].get<double>(), joint["torque_nm"].get<double>());
     text += std::string(line) + (joint.contains("fault") ? "  " + joint["fault"].get<std::string>() : "") + "\n";
   }
+  text += chains_text(status);
   for (const Json& node : status["nodes"]) {
     if (node.contains("why")) text += "  " + node["why"].get<std::string>() + "\n";
   }

@@ -187,6 +187,7 @@ Json status_json(const ControlReport& control, const Telemetry& telemetry, const
       node["why"] = why;
     json["nodes"].push_back(node);
   }
+  json["inputs_fresh"] = control.inputs_fresh;
   json["estop_closed"] = (control.inputs & can_map::input_estop_closed) != 0;
   json["interlock_closed"] = (control.inputs & can_map::input_interlock_closed) != 0;
   json["laser"] = (control.outputs & can_map::output_laser) != 0;

@@ -6,6 +6,7 @@
 
 #include "hal/config/homing_file.hpp"
 #include "hal/vehicle/doctor/examination.hpp"
+#include "hal/vehicle/estop_input.hpp"
 
 namespace lf::hal::doctor {
 
@@ -21,9 +22,9 @@ void examine_estop(const VehicleConfig& config, Examinations& found) {
   };
   if (access(config.estop_input.c_str(), R_OK) != 0) return bad(std::string(": ") + std::strerror(errno));
   if (std::filesystem::is_directory(config.estop_input, ignored)) return bad(" is a folder");
-  const std::string text = first_line(config.estop_input);
-  if (text.empty() || (text.front() != '0' && text.front() != '1')) return bad(" reads neither 0 nor 1");
-  const bool closed = text.front() == '1';
+  const EstopReading reading = read_estop(config.estop_input);
+  if (reading == EstopReading::neither) return bad(" reads neither 0 nor 1");
+  const bool closed = reading == EstopReading::closed;
   found.push_back({"emergency stop", key, closed ? Grade::good : Grade::note,
                    closed ? "the chain is whole" : "the chain is open: the arm takes no power", closed ? "" : "close it before `home`"});
 }

@@ -26,6 +26,28 @@ TEST(Commissioned, TheFrictionOfEachJointIsToldWithItsResidual) {
             "jaw       zero at 0 counts; friction not measured: as the arm's description has it\n");
 }
 
+// A chain that was wired to the other input was found by no command.
+TEST(StatusText, SaysHowTheEmergencyStopChainStands) {
+  const Json none{{"p50", 0}, {"p999", 0}, {"max", 0}};
+  const auto said = [&](const ControlReport& control, Json more) {
+    Json status = status_json(control, {}, {});
+    status["latency"] = {{"wake_up_us", none}, {"tick_us", none}};
+    status["lost"] = Json::array();
+    status["counters"] = Json::object();
+    status.update(more);
+    const std::string text = status_text(status);
+    const std::size_t at = text.find("  emergency-stop chain");
+    return at == std::string::npos ? text : text.substr(at, text.find('\n', at) - at);
+  };
+  ControlReport control;
+  EXPECT_EQ(said(control, Json::object()), "  emergency-stop chain not heard: the output node is not in operation");
+  control.inputs_fresh = true;
+  control.inputs = can_map::input_interlock_closed;
+  EXPECT_EQ(said(control, Json::object()), "  emergency-stop chain open, laser's interlock closed");
+  control.inputs = can_map::input_estop_closed;
+  EXPECT_EQ(said(control, {{"estop_input_closed", false}}), "  emergency-stop chain closed, laser's interlock open; estop.input open");
+}
+
 // `why` was in the document alone.
 TEST(StatusText, SaysWhatToDoWhenABootFailed) {
   ControlReport control;

@@ -132,8 +132,9 @@ TEST(InstanceLock, TellsWhoHoldsItAndTakesNothing) {
 TEST(EstopInput, OnlyAOneIsClosed) {
   const TemporaryFolder folder;
   EXPECT_TRUE(EstopInput().closed());
-  EXPECT_TRUE(EstopInput(folder.write("a", "1\n")).closed());
-  for (const char* broken : {"0\n", "", "2", "x"}) EXPECT_FALSE(EstopInput(folder.write("b", broken)).closed()) << broken;
+  for (const char* whole : {"1", "1\n"}) EXPECT_TRUE(EstopInput(folder.write("a", whole)).closed()) << whole;
+  for (const char* broken : {"0\n", "0", "", "\n", "2", "x", "11", "12", "1023\n", "10", "1 ", " 1", "1\n\n", "1\r\n", "1.0", "1\n0"})
+    EXPECT_FALSE(EstopInput(folder.write("b", broken)).closed()) << broken;
   EXPECT_FALSE(EstopInput(folder / "none").closed());
 }
 

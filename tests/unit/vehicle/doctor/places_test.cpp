@@ -64,7 +64,10 @@ TEST(Doctor, AnEstopInputThatReadsNeitherZeroNorOneIsTold) {
   EXPECT_THAT(said(folder.path().string()), HasSubstr("is a folder"));
   EXPECT_THAT(said(folder.write("name", "lantern\n")), HasSubstr("reads neither 0 nor 1"));
   EXPECT_THAT(said(folder.write("empty", "")), HasSubstr("reads neither 0 nor 1"));
-  EXPECT_EQ(said(folder.write("value", "1\n")), "nothing");
+  // An analogue channel's value, and two inputs in one file.
+  for (const char* text : {"1023\n", "12", "11", "01", "1\n\n"})
+    EXPECT_THAT(said(folder.write("more", text)), HasSubstr("reads neither 0 nor 1")) << text;
+  for (const char* text : {"1\n", "1", "0\n", "0"}) EXPECT_EQ(said(folder.write("value", text)), "nothing") << text;
 }
 
 TEST(Doctor, SaysNothingOfWhatIsThere) {
