@@ -22,13 +22,12 @@ const std::vector<FaultRule>& rules() {
   static const std::vector<std::string> misbehaves{
       "drive fault",        "following error",       "stale position",         "joint limit",          "overspeed", "overload",
       "unexpected contact", "the jaw does not open", "the jaw does not close", "the jaw holds nothing"};
-  // A false position moves the computed place of the tool, which all joints make. An arm that stands elsewhere than it believes touches what lies there, and grips beside the bar:
-  // the joint that feels it most is not the one that reads wrongly.
-  static const std::vector<std::string> led_astray{"tool outside its workspace", "unexpected contact", "touched something",
-                                                   "the jaw holds nothing"};
+  // An arm that stands elsewhere than it believes touches what lies there, and grips beside the bar: the joint that feels it most is
+  // not the one that reads wrongly.
+  static const std::vector<std::string> led_astray{"unexpected contact", "touched something", "the jaw holds nothing"};
   // Close to a button's face what stands there is not told from a button that does not go in.
-  static const std::vector<std::string> stands_before{"tool outside its workspace", "unexpected contact", "touched something",
-                                                      "the jaw holds nothing", "the button is stuck"};
+  static const std::vector<std::string> stands_before{"unexpected contact", "touched something", "the jaw holds nothing",
+                                                      "the button is stuck"};
   // A torque that stands still is felt nowhere, one that is too high everywhere: the core sees a press that meets nothing, or something too early.
   static const std::vector<std::string> feels_nothing{"no button there", "touched something"}, feels_much{"touched something"};
   static const std::vector<std::string> link{"node lost", "node rebooted", "stale position", "drive fault", "boot failed"};
