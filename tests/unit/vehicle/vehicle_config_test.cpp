@@ -79,6 +79,19 @@ TEST(VehicleConfig, EveryProblemIsListedWithItsLine) {
                   HasSubstr("out of the arm's reach")));
 }
 
+// CANopen's numbers are hexadecimal in every manual.
+TEST(VehicleConfig, WholeNumbersMayBeHexadecimal) {
+  const TemporaryFolder folder;
+  const auto told = [&](const std::string& number) { return problems_of(folder.write("v.yaml", "outputs: {node: " + number + "}\n")); };
+  EXPECT_EQ(load_vehicle_config(folder.write("v.yaml", "outputs: {node: 0x10}\n")).machine.drives.output_node, 16);
+  EXPECT_EQ(load_vehicle_config(folder.write("v.yaml", "outputs: {node: 0X1f}\n")).machine.drives.output_node, 31);
+  for (const char* beyond : {"0x80", "0xFFFFFFFF", "0x100000000000000010", "0x8000000000000010"})
+    EXPECT_THAT(told(beyond), ElementsAre(HasSubstr("out of its range 1 to 126"))) << beyond;
+  for (const char* wrong : {"0x", "0xG", "0x1.8", "-0x10", "0x-1", "\"0x10\""})
+    EXPECT_THAT(told(wrong), ElementsAre(HasSubstr("takes a whole number"))) << wrong;
+  EXPECT_THAT(problems_of(folder.write("v.yaml", "panel: {ahead_m: 0x1}\n")), ElementsAre(HasSubstr("takes a number, not '0x1'")));
+}
+
 TEST(VehicleConfig, ACapThatIsTooLowToPressIsRefused) {
   const TemporaryFolder folder;
   const std::string low = "panel: {button_height_m: 0.012}\n";
