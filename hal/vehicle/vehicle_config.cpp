@@ -24,6 +24,7 @@ using config::key;
 using config::Keys;
 
 constexpr double largest = std::numeric_limits<std::int32_t>::max();
+constexpr std::size_t longest_socket = 107;  // sockaddr_un has 108 bytes, the last of them a zero
 
 void add_bus(Keys& all, VehicleConfig& c) {
   all.push_back(key("can.interface", "", 0, 0, &c.interface, "the CAN interface, real or virtual"));
@@ -101,7 +102,11 @@ void check_together(const VehicleConfig& c, const std::string& file, std::vector
   if (!page_sized(c.ring_bytes)) refuse("'camera.ring_bytes' is not a multiple of 4096");
   if (!page_sized(c.ring_offset) || c.ring_offset >= c.ring_bytes)
     refuse("'camera.ring_offset' is not a multiple of 4096 below 'camera.ring_bytes'");
-  if (c.operator_socket.empty() || c.operator_socket.size() > 107) refuse("'operator.socket' takes a path of 1 to 107 letters");
+  if (c.operator_socket.empty() || c.operator_socket.size() > longest_socket)
+    refuse("'operator.socket' takes a path of 1 to " + std::to_string(longest_socket) + " letters, folder included, and this one has " +
+           std::to_string(c.operator_socket.size()));
+  if (c.log_folder.empty()) refuse("'log.folder' names no folder");
+  if (c.lock_folder.empty()) refuse("'lock_folder' names no folder");
   if (c.machine.camera.distortion.size() != 5) refuse("'camera.distortion' takes 5 numbers: k1, k2, p1, p2, k3");
   const PanelLayout& panel = c.machine.panel;
   if ((panel.plate_min_m.array() >= panel.plate_max_m.array()).any()) refuse("'panel.plate_min_m' is not below 'panel.plate_max_m'");
@@ -143,6 +148,16 @@ void find_homing(config::Machine& machine, std::vector<std::string>& problems) {
       machine.file + ": 'homing.file': there is no " + machine.homing_file +
       ", neither beside this file nor among the shipped ones. An arm that was never commissioned has an empty one: make it with `touch`");
   machine.homing_file.clear();
+}
+
+// Relative paths are beside the file that names them, wherever the program was started. Empty ones name nothing.
+void find_places(VehicleConfig& c) {
+  std::error_code error;  // the working directory may be gone: then a path stays as it is
+  const std::filesystem::path file = std::filesystem::absolute(c.machine.file, error);
+  if (error) return;
+  for (std::string* place : {&c.device, &c.ring, &c.operator_socket, &c.estop_input, &c.log_folder, &c.lock_folder}) {
+    if (!place->empty()) *place = (file.parent_path() / *place).lexically_normal().string();
+  }
 }
 
 void read_keys(const std::string& path, VehicleConfig& config, std::vector<std::string>& problems) {
@@ -219,6 +234,7 @@ std::string vehicle_schema() {
 VehicleConfig load_vehicle_config(const std::string& path, std::vector<std::string>& problems) {
   VehicleConfig config;
   read_keys(path, config, problems);
+  find_places(config);
   check_together(config, path, problems);
   find_homing(config.machine, problems);
   config.core = config::make_core(config.machine, problems);

@@ -13,6 +13,7 @@
 
 namespace lf::hal {
 
+// Once it is loaded, paths are absolute: those that the file has are relative to its folder.
 struct VehicleConfig {
   config::Machine machine;
   config::Core core;  // made of it, with the homing file's offsets

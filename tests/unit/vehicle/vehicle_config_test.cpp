@@ -79,6 +79,34 @@ TEST(VehicleConfig, EveryProblemIsListedWithItsLine) {
                   HasSubstr("out of the arm's reach")));
 }
 
+// They went by the working directory, which a service and a shell do not share.
+TEST(VehicleConfig, RelativePathsAreBesideTheFile) {
+  const TemporaryFolder folder;
+  const VehicleConfig config = load_vehicle_config(folder.write("v.yaml",
+                                                                "camera: {device: video9, ring: ../ring}\n"
+                                                                "operator: {socket: op.sock}\n"
+                                                                "estop: {input: gpio/value}\n"
+                                                                "log: {folder: log}\n"
+                                                                "lock_folder: .\n"));
+  const std::filesystem::path beside = folder.path();
+  EXPECT_EQ(config.device, (beside / "video9").string());
+  EXPECT_EQ(config.ring, (beside.parent_path() / "ring").string());
+  EXPECT_EQ(config.operator_socket, (beside / "op.sock").string());
+  EXPECT_EQ(config.estop_input, (beside / "gpio/value").string());
+  EXPECT_EQ(config.log_folder, (beside / "log").string());
+  EXPECT_EQ(std::filesystem::weakly_canonical(config.lock_folder), std::filesystem::weakly_canonical(beside));
+  const VehicleConfig usual = load_vehicle_config(folder.write("empty.yaml", "estop: {input: \"\"}\n"));
+  EXPECT_EQ(usual.estop_input, "") << "none is none";
+  EXPECT_EQ(usual.ring, "");
+  EXPECT_EQ(usual.log_folder, VehicleConfig().log_folder);
+}
+
+TEST(VehicleConfig, FoldersThatNobodyNamesAreRefused) {
+  const TemporaryFolder folder;
+  EXPECT_THAT(problems_of(folder.write("v.yaml", "log: {folder: \"\"}\nlock_folder: \"\"\n")),
+              ElementsAre(HasSubstr("'log.folder' names no folder"), HasSubstr("'lock_folder' names no folder")));
+}
+
 // CANopen's numbers are hexadecimal in every manual.
 TEST(VehicleConfig, WholeNumbersMayBeHexadecimal) {
   const TemporaryFolder folder;

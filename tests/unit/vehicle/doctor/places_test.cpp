@@ -113,6 +113,20 @@ TEST(Doctor, TellsAFileThatStandsWhereTheOperatorsSocketBelongs) {
   EXPECT_THAT(said_of(found, "operator.socket"), HasSubstr(" can be written"));
 }
 
+// Each of them ended the doctor: "filesystem error: cannot make absolute path".
+TEST(Doctor, APlaceWithoutAFolderEndsNothing) {
+  const test::TemporaryFolder folder;
+  for (const char* text : {"operator: {socket: op.sock}", "operator: {socket: \"\"}", "log: {folder: \"\"}", "lock_folder: \"\""}) {
+    std::vector<std::string> problems;
+    const VehicleConfig config = load_vehicle_config(folder.write("v.yaml", text), problems);
+    EXPECT_NO_THROW(examine(config)) << text;
+  }
+  VehicleConfig config;
+  config.operator_socket = "op.sock";
+  Examinations found;
+  EXPECT_NO_THROW(examine_places(config, {}, found));
+}
+
 TEST(Doctor, HoldsTheLogsAgainstTheDisk) {
   const test::TemporaryFolder folder;
   VehicleConfig config;
