@@ -129,8 +129,10 @@ void check_arm(const VehicleConfig& c, std::vector<std::string>& problems) {
 }
 
 // A file that is missing may be one that was misspelt. Its place is kept, so that commissioning writes where was read.
-void find_homing(config::Machine& machine, std::vector<std::string>& problems) {
+void find_homing(VehicleConfig& c, std::vector<std::string>& problems) {
+  config::Machine& machine = c.machine;
   if (machine.homing_file.empty()) return;
+  c.homing_named = true;
   const std::filesystem::path folder = std::filesystem::path(machine.file).parent_path();
   const std::filesystem::path found = config::find_file(machine.homing_file, folder);
   std::error_code error;  // a name that is no file's, too long for instance, is not there
@@ -236,7 +238,7 @@ VehicleConfig load_vehicle_config(const std::string& path, std::vector<std::stri
   read_keys(path, config, problems);
   find_places(config);
   check_together(config, path, problems);
-  find_homing(config.machine, problems);
+  find_homing(config, problems);
   config.core = config::make_core(config.machine, problems);
   if (problems.empty()) check_arm(config, problems);
   config.core.scan.match_window = Duration::from_us(config.match_window_us);

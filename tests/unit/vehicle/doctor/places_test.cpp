@@ -127,6 +127,16 @@ TEST(Doctor, APlaceWithoutAFolderEndsNothing) {
   EXPECT_NO_THROW(examine_places(config, {}, found));
 }
 
+// It was told twice, and the second remedy was the first's opposite.
+TEST(Doctor, AHomingFileThatIsNotThereIsToldOnce) {
+  const test::TemporaryFolder folder;
+  std::vector<std::string> problems;
+  const VehicleConfig config = load_vehicle_config(folder.write("v.yaml", "homing: {file: nope.yaml}\n"), problems);
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_THAT(problems[0], HasSubstr("there is no nope.yaml"));
+  EXPECT_EQ(said_of(bad_of(config), "homing.file"), "nothing");
+}
+
 TEST(Doctor, HoldsTheLogsAgainstTheDisk) {
   const test::TemporaryFolder folder;
   VehicleConfig config;
