@@ -3,6 +3,7 @@
 #include <net/if.h>
 
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <system_error>
 
@@ -47,7 +48,7 @@ void add_camera_source(Keys& all, VehicleConfig& c) {
   all.push_back(
       key("camera.image_due_ms", "ms", 10, 2000, &c.image_due_ms, "from the start of an exposure until its image has surely come"));
   all.push_back(key("camera.calibration", "", 0, 0, &c.machine.camera_calibration,
-                    "YAML of OpenCV's or ROS's calibration, instead of focal_px and distortion"));
+                    "YAML of OpenCV's or ROS's calibration, taken in water, instead of focal_px and distortion"));
   all.push_back(key("camera.always_on", "", 0, 0, &c.machine.camera_always_on, "a frame every camera period throughout, for the record"));
 }
 
@@ -92,6 +93,15 @@ void add_running(Keys& all, VehicleConfig& c) {
 
 bool page_sized(std::int64_t bytes) { return bytes % static_cast<std::int64_t>(frame_ring_page) == 0; }
 
+// A calibration overrules both. A value that is the default's counts as not given: a file that is printed with its defaults has to be read back.
+void check_calibration(const config::Machine& machine, const std::function<void(const std::string&)>& refuse) {
+  if (machine.camera_calibration.empty()) return;
+  const config::Camera usual;
+  constexpr const char* remedy = ": the calibration has both focal length and distortion, leave the other key out";
+  if (machine.camera.focal_px != usual.focal_px) refuse(std::string("'camera.calibration' stands beside 'camera.focal_px'") + remedy);
+  if (machine.camera.distortion != usual.distortion) refuse(std::string("'camera.calibration' stands beside 'camera.distortion'") + remedy);
+}
+
 // What no single key can tell.
 void check_together(const VehicleConfig& c, const std::string& file, std::vector<std::string>& problems) {
   const auto refuse = [&](const std::string& message) { problems.push_back(file + ": " + message); };
@@ -108,6 +118,7 @@ void check_together(const VehicleConfig& c, const std::string& file, std::vector
   if (c.log_folder.empty()) refuse("'log.folder' names no folder");
   if (c.lock_folder.empty()) refuse("'lock_folder' names no folder");
   if (c.machine.camera.distortion.size() != 5) refuse("'camera.distortion' takes 5 numbers: k1, k2, p1, p2, k3");
+  check_calibration(c.machine, refuse);
   const PanelLayout& panel = c.machine.panel;
   if ((panel.plate_min_m.array() >= panel.plate_max_m.array()).any()) refuse("'panel.plate_min_m' is not below 'panel.plate_max_m'");
   if (panel.marker_plate_m <= panel.marker_size_m) refuse("'panel.marker_plate_m' is not larger than 'panel.marker_size_m'");

@@ -107,6 +107,22 @@ TEST(VehicleConfig, FoldersThatNobodyNamesAreRefused) {
               ElementsAre(HasSubstr("'log.folder' names no folder"), HasSubstr("'lock_folder' names no folder")));
 }
 
+// One overrules the other in silence.
+TEST(VehicleConfig, ACalibrationBesideWhatItOverrulesIsRefused) {
+  const TemporaryFolder folder;
+  const auto with = [&](const std::string& more) {
+    return problems_of(folder.write("v.yaml", "camera: {calibration: none.yaml" + more + "}\n"));
+  };
+  EXPECT_THAT(with(""), ElementsAre(HasSubstr("none.yaml")));
+  EXPECT_THAT(with(", focal_px: 700"), testing::Contains(HasSubstr("'camera.calibration' stands beside 'camera.focal_px'")));
+  EXPECT_THAT(with(", distortion: [0, 0, 0, 0, 0]"),
+              testing::Contains(HasSubstr("'camera.calibration' stands beside 'camera.distortion'")));
+  // The printed file has the defaults of both beside the calibration.
+  const std::string printed = print_vehicle_config(folder.write("v.yaml", "camera: {calibration: none.yaml}\n"));
+  EXPECT_THAT(printed, HasSubstr("focal_px: "));
+  EXPECT_THAT(problems_of(folder.write("again.yaml", printed)), ElementsAre(HasSubstr("none.yaml")));
+}
+
 // CANopen's numbers are hexadecimal in every manual.
 TEST(VehicleConfig, WholeNumbersMayBeHexadecimal) {
   const TemporaryFolder folder;
