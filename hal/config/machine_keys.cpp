@@ -33,7 +33,7 @@ void add_panel(Keys& all, PanelLayout& p) {
 void add_valve_stops(Keys& all, ValveStops& valve) {
   all.push_back(key("valve.stop_min_deg", "deg", -180, 180, &valve.stop_min_deg, "end stop of the handle, clockwise"));
   all.push_back(
-      key("valve.stop_max_deg", "deg", -180, 180, &valve.stop_max_deg, "end stop, counter-clockwise; less than a turn from the other"));
+      key("valve.stop_max_deg", "deg", -180, 180, &valve.stop_max_deg, "end stop, counter-clockwise; at most 350 degrees from the other"));
 }
 
 void add_camera(Keys& all, Camera& camera) {

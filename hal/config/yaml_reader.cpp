@@ -47,7 +47,7 @@ class ValueReader {
   void operator()(double* value) const { *value = number(node_); }
   template <std::integral Integer>
   void operator()(Integer* value) const {
-    const double read = number(node_);
+    const double read = is_hexadecimal(node_) ? hexadecimal(node_) : number(node_);
     if (read != std::floor(read)) wrong_type(node_);
     *value = static_cast<Integer>(read);
   }
@@ -90,6 +90,11 @@ class ValueReader {
   }
 
   double number(const YAML::Node& node) const;
+  static bool is_hexadecimal(const YAML::Node& node) {
+    return node.IsScalar() && node.Tag() != "!" && (node.Scalar().starts_with("0x") || node.Scalar().starts_with("0X"));
+  }
+  double hexadecimal(const YAML::Node& node) const;
+  double in_range(const YAML::Node& node, double value) const;
   std::vector<double> numbers(const YAML::Node& node, std::size_t count) const;
   Vec2 point(const YAML::Node& node) const {
     const std::vector<double> read = numbers(node, 2);
@@ -118,6 +123,19 @@ double ValueReader::number(const YAML::Node& node) const {
   else if (error != std::errc() || end != text.data() + text.size())
     wrong_type(node);
   if (!std::isfinite(value)) source_.refuse(node.Mark(), "'" + path_ + "' must be a finite number, not " + node.Scalar());
+  return in_range(node, value);
+}
+
+// "0x182": CAN identifiers, nodes. One of more than 64 bits is out of every range.
+double ValueReader::hexadecimal(const YAML::Node& node) const {
+  const std::string_view digits = std::string_view(node.Scalar()).substr(2);
+  std::uint64_t value = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value, 16);
+  if (error == std::errc::invalid_argument || end != digits.data() + digits.size()) wrong_type(node);
+  return in_range(node, error == std::errc::result_out_of_range ? INFINITY : static_cast<double>(value));
+}
+
+double ValueReader::in_range(const YAML::Node& node, double value) const {
   if (value < key_.min || value > key_.max) {
     const std::string unit = key_.unit.empty() ? "" : " " + key_.unit;
     source_.refuse(node.Mark(), "'" + path_ + "' is " + node.Scalar() + ", out of its range " + number_text(key_.min) + " to " +

@@ -3,6 +3,7 @@
 #include <net/if.h>
 
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <system_error>
 
@@ -24,6 +25,7 @@ using config::key;
 using config::Keys;
 
 constexpr double largest = std::numeric_limits<std::int32_t>::max();
+constexpr std::size_t longest_socket = 107;  // sockaddr_un has 108 bytes, the last of them a zero
 
 void add_bus(Keys& all, VehicleConfig& c) {
   all.push_back(key("can.interface", "", 0, 0, &c.interface, "the CAN interface, real or virtual"));
@@ -46,7 +48,7 @@ void add_camera_source(Keys& all, VehicleConfig& c) {
   all.push_back(
       key("camera.image_due_ms", "ms", 10, 2000, &c.image_due_ms, "from the start of an exposure until its image has surely come"));
   all.push_back(key("camera.calibration", "", 0, 0, &c.machine.camera_calibration,
-                    "YAML of OpenCV's or ROS's calibration, instead of focal_px and distortion"));
+                    "YAML of OpenCV's or ROS's calibration, taken in water, instead of focal_px and distortion"));
   all.push_back(key("camera.always_on", "", 0, 0, &c.machine.camera_always_on, "a frame every camera period throughout, for the record"));
 }
 
@@ -91,6 +93,15 @@ void add_running(Keys& all, VehicleConfig& c) {
 
 bool page_sized(std::int64_t bytes) { return bytes % static_cast<std::int64_t>(frame_ring_page) == 0; }
 
+// A calibration overrules both. A value that is the default's counts as not given: a file that is printed with its defaults has to be read back.
+void check_calibration(const config::Machine& machine, const std::function<void(const std::string&)>& refuse) {
+  if (machine.camera_calibration.empty()) return;
+  const config::Camera usual;
+  constexpr const char* remedy = ": the calibration has both focal length and distortion, leave the other key out";
+  if (machine.camera.focal_px != usual.focal_px) refuse(std::string("'camera.calibration' stands beside 'camera.focal_px'") + remedy);
+  if (machine.camera.distortion != usual.distortion) refuse(std::string("'camera.calibration' stands beside 'camera.distortion'") + remedy);
+}
+
 // What no single key can tell.
 void check_together(const VehicleConfig& c, const std::string& file, std::vector<std::string>& problems) {
   const auto refuse = [&](const std::string& message) { problems.push_back(file + ": " + message); };
@@ -101,8 +112,13 @@ void check_together(const VehicleConfig& c, const std::string& file, std::vector
   if (!page_sized(c.ring_bytes)) refuse("'camera.ring_bytes' is not a multiple of 4096");
   if (!page_sized(c.ring_offset) || c.ring_offset >= c.ring_bytes)
     refuse("'camera.ring_offset' is not a multiple of 4096 below 'camera.ring_bytes'");
-  if (c.operator_socket.empty() || c.operator_socket.size() > 107) refuse("'operator.socket' takes a path of 1 to 107 letters");
+  if (c.operator_socket.empty() || c.operator_socket.size() > longest_socket)
+    refuse("'operator.socket' takes a path of 1 to " + std::to_string(longest_socket) + " letters, folder included, and this one has " +
+           std::to_string(c.operator_socket.size()));
+  if (c.log_folder.empty()) refuse("'log.folder' names no folder");
+  if (c.lock_folder.empty()) refuse("'lock_folder' names no folder");
   if (c.machine.camera.distortion.size() != 5) refuse("'camera.distortion' takes 5 numbers: k1, k2, p1, p2, k3");
+  check_calibration(c.machine, refuse);
   const PanelLayout& panel = c.machine.panel;
   if ((panel.plate_min_m.array() >= panel.plate_max_m.array()).any()) refuse("'panel.plate_min_m' is not below 'panel.plate_max_m'");
   if (panel.marker_plate_m <= panel.marker_size_m) refuse("'panel.marker_plate_m' is not larger than 'panel.marker_size_m'");
@@ -124,8 +140,10 @@ void check_arm(const VehicleConfig& c, std::vector<std::string>& problems) {
 }
 
 // A file that is missing may be one that was misspelt. Its place is kept, so that commissioning writes where was read.
-void find_homing(config::Machine& machine, std::vector<std::string>& problems) {
+void find_homing(VehicleConfig& c, std::vector<std::string>& problems) {
+  config::Machine& machine = c.machine;
   if (machine.homing_file.empty()) return;
+  c.homing_named = true;
   const std::filesystem::path folder = std::filesystem::path(machine.file).parent_path();
   const std::filesystem::path found = config::find_file(machine.homing_file, folder);
   std::error_code error;  // a name that is no file's, too long for instance, is not there
@@ -143,6 +161,16 @@ void find_homing(config::Machine& machine, std::vector<std::string>& problems) {
       machine.file + ": 'homing.file': there is no " + machine.homing_file +
       ", neither beside this file nor among the shipped ones. An arm that was never commissioned has an empty one: make it with `touch`");
   machine.homing_file.clear();
+}
+
+// Relative paths are beside the file that names them, wherever the program was started. Empty ones name nothing.
+void find_places(VehicleConfig& c) {
+  std::error_code error;  // the working directory may be gone: then a path stays as it is
+  const std::filesystem::path file = std::filesystem::absolute(c.machine.file, error);
+  if (error) return;
+  for (std::string* place : {&c.device, &c.ring, &c.operator_socket, &c.estop_input, &c.log_folder, &c.lock_folder}) {
+    if (!place->empty()) *place = (file.parent_path() / *place).lexically_normal().string();
+  }
 }
 
 void read_keys(const std::string& path, VehicleConfig& config, std::vector<std::string>& problems) {
@@ -219,8 +247,9 @@ std::string vehicle_schema() {
 VehicleConfig load_vehicle_config(const std::string& path, std::vector<std::string>& problems) {
   VehicleConfig config;
   read_keys(path, config, problems);
+  find_places(config);
   check_together(config, path, problems);
-  find_homing(config.machine, problems);
+  find_homing(config, problems);
   config.core = config::make_core(config.machine, problems);
   if (problems.empty()) check_arm(config, problems);
   config.core.scan.match_window = Duration::from_us(config.match_window_us);

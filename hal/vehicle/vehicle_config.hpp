@@ -13,9 +13,11 @@
 
 namespace lf::hal {
 
+// Once it is loaded, paths are absolute: those that the file has are relative to its folder.
 struct VehicleConfig {
   config::Machine machine;
-  config::Core core;  // made of it, with the homing file's offsets
+  config::Core core;          // made of it, with the homing file's offsets
+  bool homing_named = false;  // by the file's `homing.file`, which `machine` has only if it is there
 
   std::string interface = "can0";
   double transmit_deadline_ms = 4;  // a SYNC period

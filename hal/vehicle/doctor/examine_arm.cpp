@@ -37,6 +37,7 @@ void examine_zeros(const VehicleConfig& config, Examinations& found) {
   }
   if (unknown.empty()) return found.push_back({"zeros", "homing.file", Grade::good, "known of all joints", ""});
   const bool no_file = config.machine.homing_file.empty();
+  if (no_file && config.homing_named) return;  // that it is not there was told with the file's own problems
   found.push_back({"zeros", "homing.file", Grade::bad,
                    (no_file ? "no file is named for the zeros of " : "no zero is known of ") + unknown + ": no power",
                    no_file ? "name an empty one (`touch homing.yaml`), then `lanternfishd commission`, while the daemon runs"

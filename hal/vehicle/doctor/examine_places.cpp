@@ -19,8 +19,8 @@ constexpr double packed_share = 0.15;  // of a can0.log that is compressed
 
 // The folder itself, or the nearest that is there and in which it would be made.
 fs::path standing_folder(const fs::path& folder) {
-  fs::path at = fs::absolute(folder);
   std::error_code ignored;
+  fs::path at = fs::absolute(folder, ignored);
   while (!fs::exists(at, ignored) && at.has_relative_path()) at = at.parent_path();
   return at;
 }
@@ -32,6 +32,7 @@ bool is_pseudo(const fs::path& folder) {
 }
 
 void examine_folder(const char* subject, const char* key, const std::string& folder, Grade grade, Examinations& found) {
+  if (folder.empty()) return;  // refused with the file's own problems
   const fs::path at = standing_folder(folder);
   std::error_code ignored;
   if (!fs::is_directory(at, ignored)) {
@@ -40,12 +41,13 @@ void examine_folder(const char* subject, const char* key, const std::string& fol
     found.push_back(
         {subject, key, grade, folder + ": nothing can be written in " + at.string(), "give this user the right, or name another place"});
   } else {
-    found.push_back({subject, key, Grade::good, folder + (at == fs::absolute(folder) ? " can be written" : " can be made"), ""});
+    found.push_back({subject, key, Grade::good, folder + (at == fs::absolute(folder, ignored) ? " can be written" : " can be made"), ""});
   }
 }
 
 void examine_log_space(const VehicleConfig& config, Examinations& found) {
   struct statvfs volume {};
+  if (config.log_folder.empty()) return;
   if (statvfs(standing_folder(config.log_folder).c_str(), &volume) != 0 || volume.f_blocks == 0) return;
   const double free_mb = 1e-6 * static_cast<double>(volume.f_bavail) * static_cast<double>(volume.f_frsize);
   const double share = config.log_pack ? packed_share : 1;
@@ -62,6 +64,7 @@ void examine_lock(const VehicleConfig& config, Examinations& found) {
   constexpr const char* subject = "lock";
   constexpr const char* key = "lock_folder";
   std::error_code ignored;
+  if (config.lock_folder.empty()) return;
   if (!fs::exists(config.lock_folder, ignored)) {
     const bool usual = config.lock_folder == VehicleConfig().lock_folder;
     const bool makeable = !is_pseudo(standing_folder(config.lock_folder));

@@ -79,6 +79,63 @@ TEST(VehicleConfig, EveryProblemIsListedWithItsLine) {
                   HasSubstr("out of the arm's reach")));
 }
 
+// They went by the working directory, which a service and a shell do not share.
+TEST(VehicleConfig, RelativePathsAreBesideTheFile) {
+  const TemporaryFolder folder;
+  const VehicleConfig config = load_vehicle_config(folder.write("v.yaml",
+                                                                "camera: {device: video9, ring: ../ring}\n"
+                                                                "operator: {socket: op.sock}\n"
+                                                                "estop: {input: gpio/value}\n"
+                                                                "log: {folder: log}\n"
+                                                                "lock_folder: .\n"));
+  const std::filesystem::path beside = folder.path();
+  EXPECT_EQ(config.device, (beside / "video9").string());
+  EXPECT_EQ(config.ring, (beside.parent_path() / "ring").string());
+  EXPECT_EQ(config.operator_socket, (beside / "op.sock").string());
+  EXPECT_EQ(config.estop_input, (beside / "gpio/value").string());
+  EXPECT_EQ(config.log_folder, (beside / "log").string());
+  EXPECT_EQ(std::filesystem::weakly_canonical(config.lock_folder), std::filesystem::weakly_canonical(beside));
+  const VehicleConfig usual = load_vehicle_config(folder.write("empty.yaml", "estop: {input: \"\"}\n"));
+  EXPECT_EQ(usual.estop_input, "") << "none is none";
+  EXPECT_EQ(usual.ring, "");
+  EXPECT_EQ(usual.log_folder, VehicleConfig().log_folder);
+}
+
+TEST(VehicleConfig, FoldersThatNobodyNamesAreRefused) {
+  const TemporaryFolder folder;
+  EXPECT_THAT(problems_of(folder.write("v.yaml", "log: {folder: \"\"}\nlock_folder: \"\"\n")),
+              ElementsAre(HasSubstr("'log.folder' names no folder"), HasSubstr("'lock_folder' names no folder")));
+}
+
+// One overrules the other in silence.
+TEST(VehicleConfig, ACalibrationBesideWhatItOverrulesIsRefused) {
+  const TemporaryFolder folder;
+  const auto with = [&](const std::string& more) {
+    return problems_of(folder.write("v.yaml", "camera: {calibration: none.yaml" + more + "}\n"));
+  };
+  EXPECT_THAT(with(""), ElementsAre(HasSubstr("none.yaml")));
+  EXPECT_THAT(with(", focal_px: 700"), testing::Contains(HasSubstr("'camera.calibration' stands beside 'camera.focal_px'")));
+  EXPECT_THAT(with(", distortion: [0, 0, 0, 0, 0]"),
+              testing::Contains(HasSubstr("'camera.calibration' stands beside 'camera.distortion'")));
+  // The printed file has the defaults of both beside the calibration.
+  const std::string printed = print_vehicle_config(folder.write("v.yaml", "camera: {calibration: none.yaml}\n"));
+  EXPECT_THAT(printed, HasSubstr("focal_px: "));
+  EXPECT_THAT(problems_of(folder.write("again.yaml", printed)), ElementsAre(HasSubstr("none.yaml")));
+}
+
+// CANopen's numbers are hexadecimal in every manual.
+TEST(VehicleConfig, WholeNumbersMayBeHexadecimal) {
+  const TemporaryFolder folder;
+  const auto told = [&](const std::string& number) { return problems_of(folder.write("v.yaml", "outputs: {node: " + number + "}\n")); };
+  EXPECT_EQ(load_vehicle_config(folder.write("v.yaml", "outputs: {node: 0x10}\n")).machine.drives.output_node, 16);
+  EXPECT_EQ(load_vehicle_config(folder.write("v.yaml", "outputs: {node: 0X1f}\n")).machine.drives.output_node, 31);
+  for (const char* beyond : {"0x80", "0xFFFFFFFF", "0x100000000000000010", "0x8000000000000010"})
+    EXPECT_THAT(told(beyond), ElementsAre(HasSubstr("out of its range 1 to 126"))) << beyond;
+  for (const char* wrong : {"0x", "0xG", "0x1.8", "-0x10", "0x-1", "\"0x10\""})
+    EXPECT_THAT(told(wrong), ElementsAre(HasSubstr("takes a whole number"))) << wrong;
+  EXPECT_THAT(problems_of(folder.write("v.yaml", "panel: {ahead_m: 0x1}\n")), ElementsAre(HasSubstr("takes a number, not '0x1'")));
+}
+
 TEST(VehicleConfig, ACapThatIsTooLowToPressIsRefused) {
   const TemporaryFolder folder;
   const std::string low = "panel: {button_height_m: 0.012}\n";

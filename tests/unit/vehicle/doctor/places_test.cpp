@@ -113,6 +113,30 @@ TEST(Doctor, TellsAFileThatStandsWhereTheOperatorsSocketBelongs) {
   EXPECT_THAT(said_of(found, "operator.socket"), HasSubstr(" can be written"));
 }
 
+// Each of them ended the doctor: "filesystem error: cannot make absolute path".
+TEST(Doctor, APlaceWithoutAFolderEndsNothing) {
+  const test::TemporaryFolder folder;
+  for (const char* text : {"operator: {socket: op.sock}", "operator: {socket: \"\"}", "log: {folder: \"\"}", "lock_folder: \"\""}) {
+    std::vector<std::string> problems;
+    const VehicleConfig config = load_vehicle_config(folder.write("v.yaml", text), problems);
+    EXPECT_NO_THROW(examine(config)) << text;
+  }
+  VehicleConfig config;
+  config.operator_socket = "op.sock";
+  Examinations found;
+  EXPECT_NO_THROW(examine_places(config, {}, found));
+}
+
+// It was told twice, and the second remedy was the first's opposite.
+TEST(Doctor, AHomingFileThatIsNotThereIsToldOnce) {
+  const test::TemporaryFolder folder;
+  std::vector<std::string> problems;
+  const VehicleConfig config = load_vehicle_config(folder.write("v.yaml", "homing: {file: nope.yaml}\n"), problems);
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_THAT(problems[0], HasSubstr("there is no nope.yaml"));
+  EXPECT_EQ(said_of(bad_of(config), "homing.file"), "nothing");
+}
+
 TEST(Doctor, HoldsTheLogsAgainstTheDisk) {
   const test::TemporaryFolder folder;
   VehicleConfig config;
