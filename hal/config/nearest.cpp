@@ -30,7 +30,28 @@ int edit_distance(std::string_view a, std::string_view b) {
   return last[b.size()];
 }
 
+namespace {
+
+// Names end in their units: the shortest that goes on where the word ends, at an underscore if there is one.
+const std::string* continued(std::string_view word, const std::vector<std::string>& known) {
+  constexpr std::size_t fewest_letters = 3;
+  if (word.size() < fewest_letters) return nullptr;
+  const std::string* best = nullptr;
+  bool best_at_end = false;
+  for (const std::string& name : known) {
+    if (!std::string_view(name).starts_with(word)) continue;
+    const bool at_end = name.size() == word.size() || name[word.size()] == '_';
+    if (best != nullptr && (best_at_end > at_end || (best_at_end == at_end && best->size() <= name.size()))) continue;
+    best = &name;
+    best_at_end = at_end;
+  }
+  return best;
+}
+
+}  // namespace
+
 const std::string* nearest(std::string_view word, const std::vector<std::string>& known) {
+  if (const std::string* longer = continued(word, known)) return longer;
   const std::string* best = nullptr;
   int fewest = 0;
   for (const std::string& name : known) {
@@ -40,7 +61,7 @@ const std::string* nearest(std::string_view word, const std::vector<std::string>
       fewest = edits;
     }
   }
-  return best == nullptr || fewest > std::max(2, static_cast<int>(best->size()) / 3) ? nullptr : best;
+  return best == nullptr || fewest > static_cast<int>(std::min(word.size(), best->size())) / 3 ? nullptr : best;
 }
 
 std::string suggestion(std::string_view word, const std::vector<std::string>& known) {

@@ -11,7 +11,8 @@ namespace lf::config {
 // O(|a| |b|).
 int edit_distance(std::string_view a, std::string_view b);
 
-// The nearest of `known` if it is near enough to be meant (a third of its letters, at least two), otherwise none. Equal distances go to the one that comes first.
+// The shortest of `known` that begins with `word`, before an underscore rather than in a name's middle ("sweep_speed", "sweep_speed_rad_s"). Where none does,
+// the nearest if it is near enough to be meant (a third of the shorter one's letters), otherwise none. Equal distances go to the one that comes first.
 const std::string* nearest(std::string_view word, const std::vector<std::string>& known);
 // "; did you mean 'x'?" for it, or "".
 std::string suggestion(std::string_view word, const std::vector<std::string>& known);

@@ -5,12 +5,14 @@
 #include <set>
 
 #include "hal/config/key_text.hpp"
+#include "hal/config/nearest.hpp"
 #include "host_sim/app/campaign_options.hpp"
 #include "host_sim/app/fault_suite.hpp"
 #include "host_sim/app/fault_table.hpp"
 #include "host_sim/app/interrupt.hpp"
 #include "host_sim/app/progress_line.hpp"
 #include "host_sim/campaign/utc_time.hpp"
+#include "host_sim/judge/fault_rules.hpp"
 #include "host_sim/record/run_folder.hpp"
 #include "shared/input_error.hpp"
 #include "shared/version/version.hpp"
@@ -38,10 +40,22 @@ void say(const RowResult& row) {
   std::fprintf(stderr, "%-8s %s\n", verdict, row.row.c_str());
 }
 
+// What is misspelt is told before a mission is flown for its steps' times. A step that the mission has and no walk comes to is told after.
+void check_names_early(const CampaignOptions& options) {
+  std::vector<std::string> kinds, steps{"power-on"};
+  for (const judge::FaultRule& rule : judge::fault_rules()) kinds.push_back(rule.kind);
+  for (std::size_t i = 0; i < mission::step_count; ++i) {
+    if (const auto step = static_cast<mission::Step>(i); step != mission::Step::idle) steps.emplace_back(mission::row(step).name);
+  }
+  config::check_names(options.kinds, kinds, "--kinds");
+  config::check_names(options.steps, steps, "--steps");
+}
+
 }  // namespace
 
 int fault_campaign(const CampaignOptions& options) {
   const Shard shard = parse_shard(options.shard);
+  check_names_early(options);
   const scenario::Scenario base = scenario::load_scenario(options.scenario, options.set);
   std::string kind = options.pairs ? "fault-pairs" : "faults";
   if (options.rendered) kind += "-rendered";
@@ -49,7 +63,14 @@ int fault_campaign(const CampaignOptions& options) {
   const CampaignFolder folder(options, base, kind);
   catch_interrupts();
   const MatrixChoice choice{options.kinds, options.steps, options.rows, options.pairs, shard.index, shard.count, options.one_in};
-  const std::vector<MatrixRow> all = matrix_rows(survey_moments(base, options.into), choice);
+  const std::vector<FaultMoment> moments = survey_moments(base, options.into);
+  if (interrupted()) {
+    constexpr const char* told = "interrupted while the steps' times were measured: no row was flown";
+    std::fprintf(stderr, "lanternfish: %s\n", told);
+    if (options.json) print_json({{"problems", Json::array({told})}, {"exit_status", exit_interrupted}});
+    return exit_interrupted;
+  }
+  const std::vector<MatrixRow> all = matrix_rows(moments, choice);
 
   if (all.empty() && shard.count == 1) throw InputError("no row of the matrix is of this choice");
 

@@ -2,6 +2,8 @@
 
 #include <set>
 
+#include "host_sim/app/interrupt.hpp"
+
 namespace lf::app {
 
 namespace {
@@ -35,7 +37,7 @@ std::vector<Stay> stays_of(FaultWalk walk, const scenario::Scenario& base) {
   Flight flight(walk.with_its_faults(base), 1, nobody);
   std::vector<Stay> stays;
   double ended_s = -1;
-  while (flight.now().s() < longest_s && (ended_s < 0 || flight.now().s() < ended_s + after_end_s)) {
+  while (!interrupted() && flight.now().s() < longest_s && (ended_s < 0 || flight.now().s() < ended_s + after_end_s)) {
     walk.give_orders(flight);
     flight.step();
     const double now_s = flight.now().s();
@@ -95,6 +97,7 @@ std::vector<FaultMoment> survey_moments(const scenario::Scenario& base, double s
   std::vector<FaultMoment> moments{{"mission", Step::idle, "power-on", power_on_s, power_on_s}};
   std::set<Step> known{Step::idle};
   for (const std::string& name : FaultWalk::names()) {
+    if (interrupted()) break;
     for (const Stay& stay : stays_of(FaultWalk(name), base)) {
       if (!known.insert(stay.step).second) continue;
       const double in_s = mission::is_end(stay.step) ? into_end_s : share_of_step * (stay.end_s - stay.begin_s);

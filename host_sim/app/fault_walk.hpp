@@ -52,6 +52,7 @@ struct FaultMoment {
 inline constexpr double usual_share_of_step = 0.4;
 
 // One moment for each step of the table that can be reached, in the order of the walks and of time: this share of the step's duration in.
+// An interrupt ends it early: what it gives then is of no use.
 std::vector<FaultMoment> survey_moments(const scenario::Scenario& base, double share_of_step = usual_share_of_step);
 
 }  // namespace lf::app

@@ -359,6 +359,22 @@ TEST_F(Commands, AFaultCampaignGoesOnWhereItStopped) {
   EXPECT_EQ(run("campaign default --faults --shard 3/2").status, 2);
 }
 
+// A mission was flown for its steps' times, and a folder made, before the words were looked at.
+TEST_F(Commands, AKindOrStepThatThereIsNotIsRefusedBeforeAnythingIsFlown) {
+  const Said kind = run("campaign default --faults --kinds overcurent --out early");
+  EXPECT_EQ(kind.status, 2);
+  EXPECT_NE(kind.err.find("--kinds: there is no 'overcurent'; did you mean 'overcurrent'?"), std::string::npos) << kind.err;
+  EXPECT_EQ(run("campaign default --faults --steps depoly --out early").status, 2);
+  EXPECT_FALSE(std::filesystem::exists(folder() / "early"));
+}
+
+TEST_F(Commands, CtrlCEndsTheSurveyOfTheSteps) {
+  const Said said = interrupt("campaign default --faults --kinds estop --jobs 1 --out m --json", "m/experiment.json", 0);
+  EXPECT_EQ(said.status, 130) << said.err;
+  EXPECT_EQ(Json::parse(said.out)["exit_status"], 130) << said.out;
+  EXPECT_NE(said.err.find("no row was flown"), std::string::npos) << said.err;
+}
+
 // The run that was broken off was kept as one that failed, and never flown again.
 TEST_F(Commands, CtrlCLeavesNoRowOfARangeCampaignUnflown) {
   const std::string arguments = "campaign default --ranges --draws 1 --many 0 --kinds drives.slew.node --jobs 1 --out m --json";

@@ -34,6 +34,17 @@ TEST(Nearest, SuggestsWhatWasProbablyMeantAndNothingElse) {
   EXPECT_EQ(suggestion("lazer", names), "; did you mean 'laser'?");
   EXPECT_EQ(suggestion("hydraulics", names), "");
   EXPECT_EQ(suggestion("x", {}), "");
+  EXPECT_EQ(suggestion("water", {"laser"}), "") << "two of five letters are another word";
+}
+
+// Keys end in their units, which are what a user leaves out.
+TEST(Nearest, ANameThatGoesOnWhereTheWordEndsIsMeant) {
+  const std::vector<std::string> names{"attention",    "attenuation_per_m", "sweep_speed_rad_s",
+                                       "sweep_speeds", "stop_min_deg",      "stop_max_deg"};
+  EXPECT_EQ(suggestion("attenuation", names), "; did you mean 'attenuation_per_m'?");
+  EXPECT_EQ(suggestion("sweep_speed", names), "; did you mean 'sweep_speed_rad_s'?");
+  EXPECT_EQ(suggestion("stop", names), "; did you mean 'stop_min_deg'?");
+  EXPECT_EQ(suggestion("sw", names), "") << "two letters are too few";
 }
 
 TEST(Nearest, ARefusalNamesTheNearestOrTheFewThatThereAre) {
