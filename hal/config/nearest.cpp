@@ -55,13 +55,17 @@ const std::string* nearest(std::string_view word, const std::vector<std::string>
   const std::string* best = nullptr;
   int fewest = 0;
   for (const std::string& name : known) {
+    // So many edits as the lengths differ by are needed at least.
+    const auto [shorter, longer] = std::minmax({word.size(), name.size()});
+    const auto most = static_cast<int>(shorter) / 3;
+    if (static_cast<int>(longer - shorter) > most) continue;
     const int edits = edit_distance(word, name);
-    if (best == nullptr || edits < fewest) {
+    if (edits <= most && (best == nullptr || edits < fewest)) {
       best = &name;
       fewest = edits;
     }
   }
-  return best == nullptr || fewest > static_cast<int>(std::min(word.size(), best->size())) / 3 ? nullptr : best;
+  return best;
 }
 
 std::string suggestion(std::string_view word, const std::vector<std::string>& known) {
