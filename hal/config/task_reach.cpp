@@ -67,6 +67,7 @@ std::string place_text(const PanelLayout& panel) {
 }
 
 std::string aslant_text(const PanelLayout& panel, const arm::PanelDoubt& docking, double tilt_rad) {
+  if (tilt_rad <= 0) return place_text(panel);  // the arm does not come there
   char text[160];
   std::snprintf(text, sizeof text,
                 ": the tool comes to it up to %.1f degrees aslant, with 'mission.docking_m' at %.3g and 'mission.docking_rad' at %.3g",

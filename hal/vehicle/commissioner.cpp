@@ -93,6 +93,14 @@ std::string ending(const std::string& failed, const std::string& unwritten_for, 
   return failed + ". In the homing file the zeros of these joints are doubtful now: " + names_of(doubted) + ". Nothing else was written";
 }
 
+// Where that cannot be done the joints stay in doubt there, and the next daemon says so.
+void lift(const Marks& marks, const std::string& file) {
+  try {
+    (void)write_offsets(file, marks.lifted_from(config::read_homing_file(file)));
+  } catch (const InputError&) {
+  }
+}
+
 // What was found is not used. That a joint must not have power holds all the same.
 void deny_power(const JointSet& denied, ControllerConfig& core, config::HomingOffsets& offsets) {
   for (std::size_t i = 0; i < joint_count; ++i) {
@@ -102,16 +110,16 @@ void deny_power(const JointSet& denied, ControllerConfig& core, config::HomingOf
   }
 }
 
-// A file that somebody has changed meanwhile gives no joint power: a daemon that is started anew reads it, and says what it makes of it.
-void only_what_was_found(const JointSet& found, const ControllerConfig& core, config::HomingOffsets& offsets) {
-  for (std::size_t i = 0; i < joint_count; ++i) offsets.known[i] = offsets.known[i] && (found[i] || core.network.drives[i].zero_known);
-}
-
-void use_zeros(const config::HomingOffsets& offsets, const JointSet& still_lost, ControllerConfig& core) {
+// The other joints keep what the core has: the file may have been changed since the daemon read it. One whose friction there cannot be takes no power all the same.
+void use_zeros(const config::HomingOffsets& offsets, const JointSet& found, const JointSet& still_lost, ControllerConfig& core) {
   for (std::size_t i = 0; i < joint_count; ++i) {
-    core.network.drives[i].encoder_zero_counts = offsets.zero_counts[i];
-    core.network.drives[i].zero_known = offsets.known[i] && !still_lost[i];
-    config::set_friction(offsets, i, core.transmissions[i].friction);
+    canopen::DriveSetup& drive = core.network.drives[i];
+    if (found[i]) {
+      drive.encoder_zero_counts = offsets.zero_counts[i];
+      drive.zero_known = offsets.known[i];
+      config::set_friction(offsets, i, core.transmissions[i].friction);
+    }
+    drive.zero_known = drive.zero_known && !still_lost[i] && !offsets.friction_doubtful[i];
   }
 }
 
@@ -261,7 +269,9 @@ std::optional<std::string> Commissioner::begin(const CommissionOrder& order) {
       for (std::size_t i = 0; i < joint_count; ++i) {
         if (prepared->marks.before.has_earlier_zero(i)) setup.zero_in_file[i] = prepared->marks.before.zero_counts[i];
       }
-      config::write_homing_file(file, prepared->marks.marked);
+      problem = write_offsets(file, prepared->marks.marked);
+      // It may have the marks all the same, where its folder alone could not be brought to the disk.
+      if (!problem.empty()) (void)write_offsets(file, prepared->marks.before);
     } catch (const InputError& error) {
       problem = error.what();
     }
@@ -323,8 +333,7 @@ void Commissioner::take_back(const CommissioningResult& result) {
   const std::unique_ptr<Commissioning> ended = std::move(commissioning_);
   if (!result.begun) {
     const std::string why = "the arm is not at rest without power: `abort` or `reset` first";
-    // Where that cannot be written the joints stay in doubt, and the next daemon says so.
-    (void)worker_.post([marks = marks_, file = file_] { (void)write_offsets(file, marks.lifted_from(config::read_homing_file(file))); });
+    (void)worker_.post([marks = marks_, file = file_] { lift(marks, file); });
     if (stage_ == Stage::running) return end_with({{"state", "failed"}, {"why", why}, {"without_power", true}});
     answer_ = refused(why);
     stage_ = Stage::idle;
@@ -362,7 +371,7 @@ Commissioned Commissioner::findings_of(const Commissioning& ended) const {
   Commissioned all{ended.found(), ended.zero_counts(), ended.friction_found(), ended.friction(), "", ended.places_rad()};
   all.how = (order_.here ? "in the jig, " : "at its stop, ") + now_text() + " UTC";
   all.moved_rad = ended.moved_rad();
-  all.lost = either(ended.lost_before_found(), zero_lost_);
+  all.lost = either(either(ended.lost_before_found(), ended.zeros_lost()), zero_lost_);
   return all;
 }
 
@@ -374,38 +383,43 @@ void Commissioner::store(const Commissioning& ended, const std::string& failed) 
   prepared_ = std::make_shared<Prepared>();
   const Commissioned commissioned = findings_of(ended);
   for (std::size_t i = 0; i < joint_count; ++i) still_lost_[i] = zero_lost_[i] && !commissioned.found[i];
-  const bool changes_core = failed.empty() || leaves_doubt(ended, motors_);
-  const bool posted = worker_.post([prepared = prepared_, file = file_, commissioned, core = core_, motors = motors_, marks = marks_,
-                                    still_lost = still_lost_, failed = failed, moved_as_ordered = order_.moved, changes_core]() mutable {
-    std::string problem;
-    TakenOver taken;
-    config::HomingOffsets offsets;
-    try {
-      offsets = marks.lifted_from(read_and_check(file));
-      forget_lost(commissioned.lost, offsets, core);
-      const config::HomingOffsets before = offsets;
-      if (changes_core) taken = take_over(commissioned, motors, offsets);
-      if (failed.empty() && !moved_as_ordered) failed = found_elsewhere(taken);
-      const JointSet doubted = changes_core ? doubted_joints(commissioned, taken, offsets) : JointSet{};
-      const std::string unwritten_for = write_offsets(file, failed.empty() ? offsets : with_doubts(before, doubted, offsets, core));
-      problem = ending(failed, unwritten_for, doubted, marks);
-      if (problem.empty()) {
-        const std::vector<std::string> older =
-            config::leave_out_doubtful(offsets, motors);  // the file's, of joints that were not commissioned now
-        taken.left_out.insert(taken.left_out.end(), older.begin(), older.end());
-        only_what_was_found(commissioned.found, core, offsets);
-        use_zeros(offsets, still_lost, core);
-      } else {
-        tell_moved(taken);
-        deny_power(doubted, core, offsets);
-      }
-    } catch (const InputError& error) {
-      // Whether the zeros that were found are the old ones cannot be told: there is nothing to hold them against.
-      problem = (failed.empty() ? "" : failed + ". ") + "Nothing was written: " + error.what();
-      deny_power(either(commissioned.found, commissioned.lost), core, offsets);
-    }
-    give(*prepared, problem, taken, offsets, changes_core ? std::make_unique<Controller>(core) : nullptr);
-  });
+  JointSet disowned{};  // their earlier zeros are wrong, by the order's own words, and no other was found
+  for (std::size_t i = 0; i < joint_count; ++i) disowned[i] = order_.moved && order_.joints[i] && !commissioned.found[i];
+  const bool changes_core = failed.empty() || any(disowned) || leaves_doubt(ended, motors_);
+  const bool posted =
+      worker_.post([prepared = prepared_, file = file_, commissioned, core = core_, motors = motors_, marks = marks_,
+                    still_lost = still_lost_, failed = failed, moved_as_ordered = order_.moved, disowned, changes_core]() mutable {
+        std::string problem;
+        TakenOver taken;
+        config::HomingOffsets offsets;
+        try {
+          offsets = marks.lifted_from(config::read_homing_file(file));
+          forget_lost(commissioned.lost, offsets, core);
+          const config::HomingOffsets before = offsets;
+          if (changes_core) taken = take_over(commissioned, motors, offsets);
+          if (failed.empty() && !moved_as_ordered) failed = found_elsewhere(taken);
+          const JointSet doubted = changes_core ? either(disowned, doubted_joints(commissioned, taken, offsets)) : JointSet{};
+          const std::string unwritten_for = write_offsets(file, failed.empty() ? offsets : with_doubts(before, doubted, offsets, core));
+          problem = ending(failed, unwritten_for, doubted, marks);
+          if (problem.empty()) {
+            const std::vector<std::string> older =
+                config::leave_out_doubtful(offsets, motors);  // the file's, of joints that were not commissioned now
+            taken.left_out.insert(taken.left_out.end(), older.begin(), older.end());
+            use_zeros(offsets, commissioned.found, still_lost, core);
+          } else {
+            tell_moved(taken);
+            deny_power(doubted, core, offsets);
+          }
+        } catch (const InputError& error) {
+          // Whether the zeros that were found are the old ones cannot be told: there is nothing to hold them against.
+          const JointSet denied = either(either(commissioned.found, disowned), commissioned.lost);
+          problem = (failed.empty() ? "" : failed + ". ") + "Nothing was written: " + error.what() +
+                    (any(denied) ? ". These joints take no power until they are commissioned again: " + names_of(denied) : "");
+          deny_power(denied, core, offsets);
+        }
+        prepared->found = commissioned.found;
+        give(*prepared, problem, taken, offsets, changes_core ? std::make_unique<Controller>(core) : nullptr);
+      });
   if (!posted)
     end_with({{"state", "failed"}, {"why", "nothing was written: too much is waiting to be done"}, {"without_power", without_power_}});
 }
@@ -430,7 +444,7 @@ void Commissioner::install() {
         {"state", "failed"}, {"why", prepared_->problem + (why.empty() ? "" : "; " + why)}, {"without_power", without_power_}};
     return prepared_->core ? give_core(std::move(prepared_->core), failed) : end_with(failed);
   }
-  use_zeros(prepared_->offsets, still_lost_, core_);
+  use_zeros(prepared_->offsets, prepared_->found, still_lost_, core_);
   Json zeros = Json::object(), moved = Json::object();
   for (std::size_t i = 0; i < joint_count; ++i) {
     if (prepared_->offsets.known[i]) forgotten_[i] = false;

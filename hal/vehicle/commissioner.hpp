@@ -88,6 +88,7 @@ class Commissioner {
     std::unique_ptr<Controller> core;
     config::HomingOffsets offsets;
     Marks marks;
+    JointSet found{};
   };
   // The joints whose zeros a worker takes out of the file; `done` and `problem` are guarded.
   struct Forgetting {

@@ -67,6 +67,7 @@ class Commissioning {
   explicit Commissioning(const Config& config);
 
   void on_frame(const CanFrame& frame, Time t) { network_.on_frame(frame, t); }
+  const canopen::IoModule& io() const { return network_.io(); }
   void tick(Time now, canopen::Outbox& outbox);
   // Stops what moves, takes the power, and ends as failed for this reason. The first reason holds.
   void stop(const char* why);

@@ -238,9 +238,10 @@ class ControlLoop {
       report_.axis_faults[i] = network.axis(static_cast<Joint>(i)).fault();
     }
     report_.jaw_doubted = mission.jaw_doubted();
-    report_.inputs = network.io().inputs();
-    report_.inputs_fresh = network.io().seen() && network.io().fresh(report_.t);
-    report_.outputs = network.io().outputs();
+    const canopen::IoModule& io = commissioning_ != nullptr ? commissioning_->io() : network.io();
+    report_.inputs = io.inputs();
+    report_.inputs_fresh = io.seen() && io.fresh(report_.t);
+    report_.outputs = io.outputs();
     report_.boot = network.boot();
     report_.network = network.stats();
     report_.port_errors = controller_->port_errors();

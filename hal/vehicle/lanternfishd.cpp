@@ -150,8 +150,17 @@ std::string socket_of(const Options& options) {
   return VehicleConfig().operator_socket;
 }
 
+// A stop goes out whatever else is wrong with the file: it is told, and its socket is taken as far as it can be read.
+std::string socket_for_stop(const Options& options) {
+  if (!options.socket.empty() || options.config.empty()) return socket_of(options);
+  std::vector<std::string> problems;
+  const VehicleConfig config = load_vehicle_config(options.config, problems);
+  for (const std::string& problem : problems) complain(problem);
+  return config.operator_socket;
+}
+
 int ask(const Options& options, const Json& request) {
-  const Json reply = ask_daemon(socket_of(options), request);
+  const Json reply = ask_daemon(request["do"] == "estop" ? socket_for_stop(options) : socket_of(options), request);
   if (options.json) {
     std::printf("%s\n", reply.dump(1).c_str());
   } else if (!reply.value("ok", false)) {

@@ -188,8 +188,9 @@ Json status_json(const ControlReport& control, const Telemetry& telemetry, const
     json["nodes"].push_back(node);
   }
   json["inputs_fresh"] = control.inputs_fresh;
-  json["estop_closed"] = (control.inputs & can_map::input_estop_closed) != 0;
-  json["interlock_closed"] = (control.inputs & can_map::input_interlock_closed) != 0;
+  // What the node said last means nothing once it is no longer heard.
+  json["estop_closed"] = control.inputs_fresh && (control.inputs & can_map::input_estop_closed) != 0;
+  json["interlock_closed"] = control.inputs_fresh && (control.inputs & can_map::input_interlock_closed) != 0;
   json["laser"] = (control.outputs & can_map::output_laser) != 0;
   json["lamps"] = (control.outputs & can_map::output_lamps) != 0;
   return json;

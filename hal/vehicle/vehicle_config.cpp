@@ -166,7 +166,8 @@ void find_homing(VehicleConfig& c, std::vector<std::string>& problems) {
 // Relative paths are beside the file that names them, wherever the program was started. Empty ones name nothing.
 void find_places(VehicleConfig& c) {
   std::error_code error;  // the working directory may be gone: then a path stays as it is
-  const std::filesystem::path file = std::filesystem::absolute(c.machine.file, error);
+  // The file itself, not a link to it: two daemons of one file must meet at one lock.
+  const std::filesystem::path file = std::filesystem::canonical(c.machine.file, error);
   if (error) return;
   for (std::string* place : {&c.device, &c.ring, &c.operator_socket, &c.estop_input, &c.log_folder, &c.lock_folder}) {
     if (!place->empty()) *place = (file.parent_path() / *place).lexically_normal().string();

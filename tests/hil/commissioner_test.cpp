@@ -337,6 +337,39 @@ TEST(CommissioningUnderWay, LeavesTheZerosAsTheyWereWhereItIsCalledOffOrNeverBeg
   }
 }
 
+// The encoder was changed, by the order's own words: the earlier zero is wrong, whether or not another was found.
+TEST(CommissioningUnderWay, LeavesAJointThatHasMovedWithoutPowerWhereItIsCalledOff) {
+  Bench bench(somewhere);
+  AtWork work(somewhere[4]);
+  Commissioning* lent = work.begin(only_jaw, true);
+  ASSERT_NE(lent, nullptr);
+  bench.run(*lent, [&] { return lent->state() == Commissioning::State::seeking; });
+  const std::unique_ptr<Controller> core = work.end(lent);
+  ASSERT_NE(core, nullptr);
+  ASSERT_TRUE(work.take_over());
+  EXPECT_FALSE(core->network().axis(Joint::jaw).setup().may_have_power());
+  EXPECT_EQ(work.commissioner->unknown_joints(), "jaw");
+  EXPECT_TRUE(work.file().zero_doubtful[4]);
+  EXPECT_NE(work.why().find("doubtful now: jaw"), std::string::npos) << work.why();
+}
+
+// Another arm's file was copied over it: the other joints keep the zeros that the core has, until the daemon is started anew.
+TEST(CommissioningUnderWay, TakesNoZeroOfAnotherJointFromAChangedFile) {
+  Bench bench(somewhere);
+  AtWork work(somewhere[4]);
+  const std::string text = work.folder.read("homing.yaml"), slew = "slew: {zero_counts: ";
+  work.folder.write("homing.yaml", slew + std::to_string(somewhere[0] + 5000) + text.substr(text.find('}')));
+  Commissioning* lent = work.begin(only_jaw);
+  ASSERT_NE(lent, nullptr);
+  bench.run(*lent);
+  EXPECT_EQ(lent->state(), Commissioning::State::done) << lent->failure();
+  const std::unique_ptr<Controller> core = work.end(lent);
+  ASSERT_NE(core, nullptr);
+  ASSERT_TRUE(work.take_over());
+  EXPECT_EQ(core->network().axis(Joint::slew).setup().encoder_zero_counts, somewhere[0]);
+  EXPECT_EQ(work.file().zero_counts[0], somewhere[0] + 5000) << "the file is whose it is";
+}
+
 // As on a full disk: nothing has moved yet.
 TEST(CommissioningUnderWay, IsNotBegunWhereTheFileCannotBeWritten) {
   AtWork work(somewhere[4]);

@@ -15,6 +15,7 @@ namespace {
 using Json = nlohmann::json;
 using ::testing::Contains;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 const std::vector<std::string> commands{"status", "estop", "start",      "home",        "hold",   "resume", "abort",     "reset",
                                         "jog",    "task",  "commission", "restart-bus", "doctor", "help",   "completion"};
@@ -176,6 +177,16 @@ TEST_F(Daemon, TheDoctorLooksAtTheMachineEvenWhenTheFileIsWrong) {
   const Json document = Json::parse(said.out);
   EXPECT_THAT(document["problems"].at(0).get<std::string>(), HasSubstr("'realtime.priority' is 500"));
   EXPECT_GT(document["findings"].size(), 10u);
+}
+
+// A daemon at work has read its file: what somebody has made of it since keeps no stop from it.
+TEST_F(Daemon, AStopGoesOutWhateverIsWrongWithTheFile) {
+  config("realtime: {priority: 500}\n");
+  const Said stop = run("--config vehicle.yaml estop");
+  EXPECT_THAT(stop.err, HasSubstr("'realtime.priority' is 500"));
+  EXPECT_THAT(stop.err, HasSubstr("/s: no lanternfishd answers there"));
+  EXPECT_THAT(run("--config vehicle.yaml home").err, Not(HasSubstr("no lanternfishd answers")))
+      << "anything else waits for a file that is right";
 }
 
 TEST_F(Daemon, TheDoctorsPartsAreChosen) {

@@ -46,6 +46,9 @@ TEST(StatusText, SaysHowTheEmergencyStopChainStands) {
   EXPECT_EQ(said(control, Json::object()), "  emergency-stop chain open, laser's interlock closed");
   control.inputs = can_map::input_estop_closed;
   EXPECT_EQ(said(control, {{"estop_input_closed", false}}), "  emergency-stop chain closed, laser's interlock open; estop.input open");
+  EXPECT_EQ(status_json(control, {}, {})["estop_closed"], true);
+  control.inputs_fresh = false;
+  EXPECT_EQ(status_json(control, {}, {})["estop_closed"], false) << "what it said before it fell silent";
 }
 
 // `why` was in the document alone.
