@@ -11,7 +11,6 @@
 #include "firmware/arm/gripper.hpp"
 #include "firmware/arm/reach.hpp"
 #include "firmware/mission/axis_limits.hpp"
-#include "firmware/scan/camera_model.hpp"
 #include "hal/config/drive_kind.hpp"
 #include "hal/config/homing_file.hpp"
 #include "hal/config/limits_check.hpp"
@@ -21,6 +20,7 @@
 #include "hal/config/share.hpp"
 #include "hal/config/sweep_check.hpp"
 #include "hal/config/task_reach.hpp"
+#include "hal/config/view_check.hpp"
 #include "hal/vision/calibration_file.hpp"
 #include "shared/arm/arm_description.hpp"
 #include "shared/arm/motor.hpp"
@@ -293,53 +293,14 @@ void check_exposure(const Machine& machine) {
 
 // The wrist turns about the tool axis, the bar about the panel's normal: so far apart the wrist is faster than the bar by 1 / cos.
 void check_turn_speed(const Machine& machine, const ArmDescription& description, const safety::Limits& limits) {
-  const double cosine_of_tilt =
-      std::cos(steepest_rad(machine.panel, {"the valve", Vec3(0, 0, machine.panel.handle_height_m), 0}, machine.mission.docking));
+  const double tilt_rad = steepest_rad(machine.panel, {"the valve", Vec3(0, 0, machine.panel.handle_height_m), 0}, machine.mission.docking);
   const auto roll = static_cast<std::size_t>(Joint::roll);
-  const double fastest = cosine_of_tilt * std::min(description.joints[roll].velocity_rad_s, limits.joints[roll].max_speed_rad_s);
+  const double fastest = std::cos(tilt_rad) * std::min(description.joints[roll].velocity_rad_s, limits.joints[roll].max_speed_rad_s);
   if (machine.mission.turn_speed_rad_s <= fastest) return;
   char text[128];
   std::snprintf(text, sizeof text, "'mission.turn_speed_rad_s' is %.3g: with this wrist a handle turns at most at %.3g rad/s",
                 machine.mission.turn_speed_rad_s, fastest);
-  refuse(machine, text);
-}
-
-struct Sighted {
-  const char* what;
-  Vec3 in_panel_m;
-  const char* keys;  // that put it there on the panel, as the end of a list
-};
-
-void check_seen(const Machine& machine, const CameraCalibration& camera, const Sighted& point) {
-  const Vec3 in_camera = camera.base_from_camera.inverse() * (machine.panel.nominal_base_from_panel() * point.in_panel_m);
-  const std::optional<Vec2> pixel = scan::CameraModel(camera.intrinsics).project(in_camera);
-  const std::string lens =
-      machine.camera_calibration.empty() ? "'camera.focal_px', 'camera.distortion'" : "the calibration " + machine.camera_calibration;
-  const std::string remedy =
-      ": see 'camera.position_m', 'camera.down_deg', 'camera.right_deg', " + lens + point.keys + place_text(machine.panel);
-  const std::string what = point.what;
-  if (!pixel) refuse(machine, what + " is behind the camera" + remedy);
-  const bool inside =
-      pixel->x() >= 0 && pixel->x() <= camera.intrinsics.width - 1 && pixel->y() >= 0 && pixel->y() <= camera.intrinsics.height - 1;
-  if (inside) return;
-  char text[64];
-  std::snprintf(text, sizeof text, " is out of the camera's view, at pixel %.0f, %.0f", pixel->x(), pixel->y());
-  refuse(machine, what + text + remedy);
-}
-
-void check_view(const Machine& machine, const CameraCalibration& camera, const Steps& steps) {
-  const PanelLayout& panel = machine.panel;
-  const Vec2 low = panel.plate_min_m, high = panel.plate_max_m;
-  const char* both = ", 'panel.plate_min_m' and 'panel.plate_max_m'";
-  const std::array<Sighted, 6> points{{
-      {"the panel's upper left corner", Vec3(low.x(), high.y(), 0), both},
-      {"the panel's upper right corner", Vec3(high.x(), high.y(), 0), " and 'panel.plate_max_m'"},
-      {"the panel's lower right corner", Vec3(high.x(), low.y(), 0), both},
-      {"the panel's lower left corner", Vec3(low.x(), low.y(), 0), " and 'panel.plate_min_m'"},
-      {"the marker", Vec3(panel.marker_centre_m.x(), panel.marker_centre_m.y(), 0), " and 'panel.marker_centre_m'"},
-      {"the valve", Vec3(0, 0, panel.handle_height_m), " and 'panel.handle_height_m'"},
-  }};
-  for (const Sighted& point : points) steps.take([&] { check_seen(machine, camera, point); });
+  refuse(machine, text + aslant_text(machine.panel, machine.mission.docking, tilt_rad));
 }
 
 // Where the panel and what stands proud of it can be: the worst docking error moves a corner of the plate by 20 mm and, over half a metre, by
@@ -482,7 +443,9 @@ Core assemble(const Machine& machine, const Steps& steps) {
       workable = check_limits(machine, named_file(machine.file, "safety.mission_limits", machine.mission_limits), controller.mission_limits,
                               controller, steps);
   }
-  if (camera) check_view(machine, controller.camera, steps);
+  if (camera) {
+    for (const std::string& problem : view_problems(machine, controller.camera)) steps.take([&] { refuse(machine, problem); });
+  }
   if (limits && mission && reach && workable) {
     steps.take([&] {
       if (const std::optional<std::string> problem = sweep_problem(controller)) refuse(machine, *problem);

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
@@ -27,6 +28,23 @@ TEST(ViewCheck, WhatIsOutOfViewNamesTheLensAndWhereItStands) {
                                            "'camera.down_deg', 'camera.right_deg', 'camera.focal_px', 'camera.distortion' and "
                                            "'panel.marker_centre_m'. 'panel.ahead_m' is 0.44, 'panel.right_m' 0, 'panel.down_m' 0.592")));
   EXPECT_THAT(problems, Contains(HasSubstr("'camera.distortion', 'panel.plate_min_m' and 'panel.plate_max_m'. 'panel.ahead_m'")));
+}
+
+// Barrel distortion pulls the panel's corners into the picture. The pixels beyond the fold have no ray: the run ended with a sentence that named no key.
+TEST(ViewCheck, ALensThatFoldsItsPictureOverIsRefused) {
+  for (const double k1 : {-0.2, -0.1}) {
+    Machine machine;
+    machine.camera.distortion = {k1, 0, 0, 0, 0};
+    // r (1 + k1 r^2) has its largest value at r^2 = -1 / (3 k1): a corner that is farther out is imaged by no ray.
+    const double farthest = std::sqrt(-1 / (3 * k1)) * 2 / 3, corner = std::hypot(328, 248) / machine.camera.focal_px;
+    const auto folds =
+        Contains(HasSubstr("folds its picture over at the border, so that pixels there have no ray or two: see "
+                           "'camera.focal_px', 'camera.distortion'"));
+    if (corner > farthest)
+      EXPECT_THAT(problems_of(machine), folds) << k1;
+    else
+      EXPECT_THAT(problems_of(machine), Not(folds)) << k1;
+  }
 }
 
 // A calibration overrules the focal length and the distortion of the machine's file: these would not help.
