@@ -61,7 +61,8 @@ const std::vector<Group>& groups() {
 
   static const std::vector<Group> all{
       {"tasks", joined(turn, bar), turn_words},
-      {"docking.", joined(Failures{F::no_marker, F::no_handle, F::panel_moved}, touch, way), joined(off_its_place, Words{"overload"})},
+      {"docking.", joined(Failures{F::no_marker, F::no_handle, F::panel_moved}, touch, way),
+       joined(off_its_place, Words{"overload", "the marker is hidden"})},
       {"valve.start_deg", joined(turn, bar), turn_words},
       {"valve.stop_", joined(turn, bar), turn_words},
       {"valve.", turn, turn_words},

@@ -131,6 +131,9 @@ TEST(RangeRules, WhereALookSaysWhatItSawThatDecides) {
   const std::string turbid = "panel vision unsure: no usable marker seen: the water is too turbid (The still picture shows no contrast.)";
   EXPECT_TRUE(names_a_key({"water.attenuation_per_m"}, turbid));
   EXPECT_FALSE(names_a_key({"docking.x_m"}, turbid));
+  EXPECT_TRUE(names_a_key({"docking.x_m"},
+                          "panel vision unsure: no usable marker seen: the marker is hidden or another one (Panel and handle ...)"))
+      << "by the arm, where the panel stands elsewhere";
   EXPECT_FALSE(names_a_key({"laser.power_w"}, turbid));
   const std::string noisy = "panel vision unsure: no handle seen: the pictures are noisy: 30 grey levels (Give them more light.)";
   EXPECT_TRUE(names_a_key({"camera.noise_grey"}, noisy));
