@@ -38,7 +38,7 @@ std::vector<std::string> excused(const FaultTable& table) {
   if (table.stood_anyway > 0)
     sentences.push_back(of(table.stood_anyway, table.seized) +
                         " with a joint that seized were told as a contact: it had seized where it was to stay");
-  if (!table.few_excused()) sentences.emplace_back("These are too many: of either sort one in ten, and one more, may be excused");
+  if (!table.few_excused()) sentences.emplace_back("These are too many: of either sort one in ten, and two more, may be excused");
   return sentences;
 }
 
@@ -62,7 +62,7 @@ bool FaultTable::good() const {
 
 bool FaultTable::few_excused() const {
   const auto few = [](std::size_t excused, std::size_t all) {
-    return static_cast<double>(excused) <= excused_share * static_cast<double>(all) + 1;
+    return static_cast<double>(excused) <= excused_share * static_cast<double>(all) + 2;
   };
   return few(unfelt, pushed) && few(stood_anyway, seized);
 }

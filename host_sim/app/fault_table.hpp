@@ -23,7 +23,7 @@ struct FaultTable {
 
   // No row was unsafe or unclear, of those that must go on at least 95 % did, and few were excused.
   bool good() const;
-  // Of either sort at most one in ten that may be, and one more.
+  // Of either sort at most one in ten that may be, and two more: a sample of a few dozen rows scatters.
   bool few_excused() const;
 };
 
