@@ -87,7 +87,8 @@ JointSet doubted_joints(const Commissioned& commissioned, const TakenOver& taken
 std::string ending(const std::string& failed, const std::string& unwritten_for, const JointSet& doubted, const Marks& marks) {
   if (!unwritten_for.empty())
     return (failed.empty() ? "" : failed + ". ") + "Nothing was written: " + unwritten_for +
-           ". In the homing file the zeros of these joints stay doubtful since it began: " + names_of(marks.joints);
+           ". In the homing file these joints' zeros are still marked doubtful, so that a daemon started anew gives them no power: " +
+           names_of(marks.joints);
   if (failed.empty()) return "";
   if (!any(doubted)) return "nothing was written: " + failed;
   return failed + ". In the homing file the zeros of these joints are doubtful now: " + names_of(doubted) + ". Nothing else was written";
@@ -196,7 +197,7 @@ void Commissioner::lose_zeros(const JointSet& lost) {
   const bool posted = worker_.post([forgetting, file = file_] {
     std::string problem;
     try {
-      config::HomingOffsets offsets = read_and_check(file);
+      config::HomingOffsets offsets = config::read_homing_file(file);
       for (std::size_t i = 0; i < joint_count; ++i) {
         if (forgetting->joints[i]) offsets.forget_zero(i);
       }
@@ -265,7 +266,7 @@ std::optional<std::string> Commissioner::begin(const CommissionOrder& order) {
   const bool posted = worker_.post([prepared = prepared_, setup, file = file_, lost = zero_lost_, core = core_]() mutable {
     std::string problem;
     try {
-      prepared->marks = Marks::of(setup.joints, lost, read_and_check(file), core);
+      prepared->marks = Marks::of(setup.joints, lost, config::read_homing_file(file), core);
       for (std::size_t i = 0; i < joint_count; ++i) {
         if (prepared->marks.before.has_earlier_zero(i)) setup.zero_in_file[i] = prepared->marks.before.zero_counts[i];
       }
@@ -411,7 +412,7 @@ void Commissioner::store(const Commissioning& ended, const std::string& failed) 
             deny_power(doubted, core, offsets);
           }
         } catch (const InputError& error) {
-          // Whether the zeros that were found are the old ones cannot be told: there is nothing to hold them against.
+          // The file cannot be read, so that what was found cannot be compared with it.
           const JointSet denied = either(either(commissioned.found, disowned), commissioned.lost);
           problem = (failed.empty() ? "" : failed + ". ") + "Nothing was written: " + error.what() +
                     (any(denied) ? ". These joints take no power until they are commissioned again: " + names_of(denied) : "");

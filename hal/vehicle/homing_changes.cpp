@@ -1,11 +1,6 @@
 #include "hal/vehicle/homing_changes.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <filesystem>
 
 #include "shared/input_error.hpp"
 
@@ -26,13 +21,6 @@ std::string names_of(const JointSet& joints) {
     if (joints[i]) names += (names.empty() ? "" : ", ") + std::string(config::joint_name(i));
   }
   return names;
-}
-
-config::HomingOffsets read_and_check(const std::string& file) {
-  config::HomingOffsets offsets = config::read_homing_file(file);
-  const std::string folder = std::filesystem::absolute(file).parent_path().string();
-  if (access(folder.c_str(), W_OK | X_OK) != 0) throw InputError(file + ": cannot be written: " + std::strerror(errno));
-  return offsets;
 }
 
 std::string write_offsets(const std::string& file, const config::HomingOffsets& offsets) {

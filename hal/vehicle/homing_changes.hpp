@@ -15,8 +15,6 @@ JointSet either(JointSet one, const JointSet& other);
 bool any(const JointSet& joints);
 std::string names_of(const JointSet& joints);  // "slew, elbow"
 
-// Throws InputError: what cannot be read or written is told before anything moves.
-config::HomingOffsets read_and_check(const std::string& file);
 // The cause when it cannot be written; empty: it was.
 std::string write_offsets(const std::string& file, const config::HomingOffsets& offsets);
 

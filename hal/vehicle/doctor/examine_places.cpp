@@ -46,8 +46,8 @@ void examine_folder(const char* subject, const char* key, const std::string& fol
 }
 
 void examine_log_space(const VehicleConfig& config, Examinations& found) {
-  struct statvfs volume {};
   if (config.log_folder.empty()) return;
+  struct statvfs volume {};
   if (statvfs(standing_folder(config.log_folder).c_str(), &volume) != 0 || volume.f_blocks == 0) return;
   const double free_mb = 1e-6 * static_cast<double>(volume.f_bavail) * static_cast<double>(volume.f_frsize);
   const double share = config.log_pack ? packed_share : 1;
@@ -63,8 +63,8 @@ void examine_log_space(const VehicleConfig& config, Examinations& found) {
 void examine_lock(const VehicleConfig& config, Examinations& found) {
   constexpr const char* subject = "lock";
   constexpr const char* key = "lock_folder";
-  std::error_code ignored;
   if (config.lock_folder.empty()) return;
+  std::error_code ignored;
   if (!fs::exists(config.lock_folder, ignored)) {
     const bool usual = config.lock_folder == VehicleConfig().lock_folder;
     const bool makeable = !is_pseudo(standing_folder(config.lock_folder));
