@@ -9,11 +9,14 @@
 # User Mode Linux: under them `vcan` tests marked SANITIZED, which need no real time, run in the other guest, and the rest is left out.
 set(guests ${CMAKE_SOURCE_DIR}/toolchain/guests)
 add_executable(watch_time ${guests}/watch_time.cpp)
-add_library(slow_clock MODULE ${guests}/slow_clock.cpp)
+add_library(uml_preload MODULE ${guests}/slow_clock.cpp)
+if(CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64")
+  target_sources(uml_preload PRIVATE ${guests}/whole_xstate.cpp)
+endif()
 # Without sanitizers: the one locks all its memory, the other is a guest in somebody else's program.
 target_compile_options(watch_time PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Werror)
-target_compile_options(slow_clock PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Werror)
-set_target_properties(watch_time slow_clock PROPERTIES
+target_compile_options(uml_preload PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Werror)
+set_target_properties(watch_time uml_preload PROPERTIES
   RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
 
 function(lanternfish_guest_test name guest)
@@ -32,9 +35,9 @@ function(lanternfish_guest_test name guest)
   set(out ${CMAKE_BINARY_DIR}/guest_out/${name})
   file(MAKE_DIRECTORY ${out})
   if(guest STREQUAL "vcan")
-    set(runner ${guests}/with_vcan.sh --memory 1500M)
+    set(runner ${guests}/with_vcan.sh --memory 1500M --preload $<TARGET_FILE:uml_preload>)
     if(arg_SLOWDOWN)
-      list(APPEND runner --slowdown ${arg_SLOWDOWN} --clock $<TARGET_FILE:slow_clock>)
+      list(APPEND runner --slowdown ${arg_SLOWDOWN})
     endif()
   else()
     set(runner --own-clock ${guests}/run_in_qemu.sh --guest ${CMAKE_BINARY_DIR}/qemu_guest)

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # Runs a command in User Mode Linux, a kernel of its own that is an ordinary process: it has SocketCAN where the machine's kernel has none.
-# Usage: run_in_uml.sh [--time-limit S] [--memory 512M] [--out FOLDER]... [--mmapper FILE] [--slowdown N --clock LIBRARY] COMMAND [ARGUMENT]...
+# Usage: run_in_uml.sh [--time-limit S] [--memory 512M] [--out FOLDER]... [--mmapper FILE] [--preload LIBRARY] [--slowdown N] COMMAND [ARGUMENT]...
 #
-# The guest has one processor and keeps this machine's time; with N, its clock goes N times slower (LIBRARY is slow_clock.cpp, built). It sees this
-# machine's files, in the same places, read-only; /tmp, /var/tmp, /run and /dev/shm are its own and empty, and each FOLDER of --out is this machine's
-# and may be written. The command runs as the guest's root, in the present folder and environment, with vcan0 up and the modules for vcan, vxcan and
-# can-gw loaded. FILE, a multiple of the page size, is the guest's /dev/mmapper, shared both ways.
+# The guest has one processor and keeps this machine's time; with N, its clock goes N times slower. LIBRARY is slow_clock.cpp and whole_xstate.cpp, built:
+# wanted with N, and on processors with AMX. The guest sees this machine's files, in the same places, read-only; /tmp, /var/tmp, /run and /dev/shm are
+# its own and empty, and each FOLDER of --out is this machine's and may be written. The command runs as the guest's root, in the present folder and
+# environment, with vcan0 up and the modules for vcan, vxcan and can-gw loaded. FILE, a multiple of the page size, is the guest's /dev/mmapper, shared both ways.
 # Exit status: the command's; 3 when something has to be installed, or no guest boots here; 124 when the time limit (60 s of this machine) is over;
 # 125 when the guest failed after it had booted.
 # Environment: LANTERNFISH_GUEST_CPU, the processor to run on (default: the last one allowed).
@@ -13,7 +13,7 @@ set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 PATH=$PATH:/usr/sbin:/sbin
 
-time_limit=60 memory=512M mmapper='' slowdown=1 clock='' out=()
+time_limit=60 memory=512M mmapper='' slowdown=1 preload='' out=()
 while [[ ${1:-} == --* ]]; do
   case $1 in
     --time-limit) time_limit=$2 ;;
@@ -21,12 +21,13 @@ while [[ ${1:-} == --* ]]; do
     --out) out+=("$(realpath "$2")") ;;
     --mmapper) mmapper=$(realpath "$2") ;;
     --slowdown) slowdown=$2 ;;
-    --clock) clock=$(realpath "$2") ;;
+    --preload) preload=$(realpath "$2") ;;
     *) echo "run_in_uml: no such option: $1" >&2; exit 2 ;;
   esac
   shift 2
 done
 [ $# -gt 0 ] || { sed -n '2,/^set/s/^# \{0,1\}//p' "$0" >&2; exit 2; }
+[ "$slowdown" -eq 1 ] || [ -n "$preload" ] || { echo "run_in_uml: --slowdown wants --preload" >&2; exit 2; }
 
 for need in linux.uml:user-mode-linux ip:iproute2 insmod:kmod; do
   command -v "${need%%:*}" >/dev/null && continue
@@ -55,8 +56,8 @@ cpu=${LANTERNFISH_GUEST_CPU:-$(taskset -cp $$ | sed 's/.*[ ,-]//')}
 pinned=(taskset -c "$cpu")
 ! chrt -f 20 true 2>/dev/null || pinned+=(chrt --reset-on-fork -f 20)
 
-slow=()
-[ "$slowdown" -eq 1 ] || slow=(env LD_PRELOAD="$clock" LANTERNFISH_SLOWDOWN="$slowdown")
+kernel=(linux.uml)
+[ -z "$preload" ] || kernel=(env LD_PRELOAD="$preload" LANTERNFISH_SLOWDOWN="$slowdown" linux.uml)
 
 # The guest's programs are children of its kernel, each a process here. Real-time like the kernel, one that computes would keep it from its timer until
 # the next system call, 50 ms and more; and together they would be throttled (sched_rt_runtime_us). So they are ordinary, and first among these.
@@ -93,7 +94,7 @@ room_mb=$(df --output=avail -BM /dev/shm 2>/dev/null | tail -n 1 | tr -dc 0-9)
 # The kernel's messages go to a file; the command's output and errors come through consoles of their own.
 mkfifo "$private/never"
 status=0
-TMPDIR=$memory_folder timeout -k 5 "$time_limit" "${pinned[@]}" "${slow[@]}" linux.uml mem="$memory" ${mmapper:+iomem=mmapper,"$mmapper"} uml_dir="$private/" \
+TMPDIR=$memory_folder timeout -k 5 "$time_limit" "${pinned[@]}" "${kernel[@]}" mem="$memory" ${mmapper:+iomem=mmapper,"$mmapper"} uml_dir="$private/" \
   rootfstype=hostfs rootflags=/ ro init="$here/uml_init.sh" LANTERNFISH_PRIVATE="$private" \
   con=null con0=null,fd:3 con1=null,fd:4 con2=null,fd:5 3>"$private/kernel.log" 4>&1 5>&2 </dev/null >>"$private/kernel.log" 2>&1 &
 guest=$!

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Boots a root folder with its own systemd in User Mode Linux, runs a script of it as a unit, and powers off.
-# Usage: run_systemd_in_uml.sh --root FOLDER [--time-limit S] [--memory 768M] SCRIPT    SCRIPT: a path in FOLDER
+# Usage: run_systemd_in_uml.sh --root FOLDER [--time-limit S] [--memory 768M] [--preload LIBRARY] SCRIPT    SCRIPT: a path in FOLDER; LIBRARY as for run_in_uml.sh
 #
 # FOLDER is a Debian root with systemd (tests/package/clean_root.py --with systemd). It is copied into an image and stays as it is. The script runs as root once
 # basic.target is reached; its output is shown. The kernel's modules for CAN are in /lib/modules/can, in the order of insmod.
@@ -8,12 +8,13 @@
 # before the script did.
 set -euo pipefail
 PATH=$PATH:/usr/sbin:/sbin
-root='' time_limit=120 memory=768M
+root='' time_limit=120 memory=768M kernel=(linux.uml)
 while [[ ${1:-} == --* ]]; do
   case $1 in
     --root) root=$2 ;;
     --time-limit) time_limit=$2 ;;
     --memory) memory=$2 ;;
+    --preload) kernel=(env LD_PRELOAD="$(realpath "$2")" linux.uml) ;;
     *) echo "run_systemd_in_uml: no such option: $1" >&2; exit 2 ;;
   esac
   shift 2
@@ -61,7 +62,7 @@ done
 size_mb=$(($(du -sm "$root" | cut -f1) + 200))
 mke2fs -q -t ext4 -d "$root" "$private/image" "${size_mb}M" 2>"$private/mke2fs.log" >&2 || { cat "$private/mke2fs.log" >&2; exit 125; }
 status=0
-timeout -k 5 "$time_limit" linux.uml mem="$memory" ubd0="$private/image" root=/dev/ubda rw uml_dir="$private/" init=/lib/systemd/systemd \
+timeout -k 5 "$time_limit" "${kernel[@]}" mem="$memory" ubd0="$private/image" root=/dev/ubda rw uml_dir="$private/" init=/lib/systemd/systemd \
   systemd.unit=guest.target con=null con0=null,fd:3 con1=null,fd:4 con2=null,fd:5 3>"$private/kernel.log" 4>&1 5>"$private/status" \
   </dev/null >>"$private/kernel.log" 2>&1 || status=$?
 if said=$(grep -aoE 'status [0-9]+' "$private/status"); then exit "${said#status }"; fi

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Runs a command as root of a network of its own in which vcan0 is up: with this machine's kernel where that has CAN, else in User Mode Linux.
-# Usage: with_vcan.sh [--time-limit S] [--memory 512M] [--out FOLDER]... [--mmapper FILE] [--slowdown N --clock LIBRARY] COMMAND [ARGUMENT]...
+# Usage: with_vcan.sh [--time-limit S] [--memory 512M] [--out FOLDER]... [--mmapper FILE] [--preload LIBRARY] [--slowdown N] COMMAND [ARGUMENT]...
 #
 # Options, exit status: those of run_in_uml.sh; this machine's kernel keeps this machine's time, whatever N. The command finds LANTERNFISH_GUEST=kernel or uml in its environment, and in LANTERNFISH_SHARED_FILE
 # what FILE is there: FILE itself, or /dev/mmapper.
