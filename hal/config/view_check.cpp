@@ -1,5 +1,6 @@
 #include "hal/config/view_check.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <optional>
@@ -15,35 +16,38 @@ std::string lens_keys(const Machine& machine) {
   return machine.camera_calibration.empty() ? "'camera.focal_px', 'camera.distortion'" : "the calibration " + machine.camera_calibration;
 }
 
-// Whether a pixel has a ray, and none between it and the optical axis is imaged farther out than a later one: there two rays would share a pixel.
+// How much larger than without distortion an area about the ray (x, y, 1) is imaged; negative where it is turned over. The renderer takes nothing below 0.01.
+constexpr double least_stretch = 0.01;
+double stretch(const scan::CameraModel& model, const Vec2& at) {
+  constexpr double step = 1e-5;
+  const auto pixel = [&](double x, double y) { return model.project(Vec3(x, y, 1)).value_or(Vec2::Zero()); };
+  const Vec2 by_x = (pixel(at.x() + step, at.y()) - pixel(at.x() - step, at.y())) / (2 * step * model.intrinsics().fx);
+  const Vec2 by_y = (pixel(at.x(), at.y() + step) - pixel(at.x(), at.y() - step)) / (2 * step * model.intrinsics().fy);
+  return by_x.x() * by_y.y() - by_x.y() * by_y.x();
+}
+
+// Whether a pixel has a ray, and the picture does not fold over between it and the optical axis: there two rays would share a pixel.
 bool has_one_ray(const scan::CameraModel& model, const Vec2& pixel) {
-  constexpr int steps = 32;
+  constexpr int steps = 16;
   const std::optional<Vec3> ray = model.ray(pixel);
   if (!ray) return false;
-  const Vec2 middle(model.intrinsics().cx, model.intrinsics().cy);
-  double before_px = 0;
+  const Vec2 end(ray->x() / ray->z(), ray->y() / ray->z());
   for (int i = 1; i <= steps; ++i) {
-    const double share = static_cast<double>(i) / steps / ray->z();
-    const std::optional<Vec2> at = model.project(Vec3(share * ray->x(), share * ray->y(), 1));
-    if (!at || (*at - middle).norm() <= before_px) return false;
-    before_px = (*at - middle).norm();
+    if (!(stretch(model, end * (static_cast<double>(i) / steps)) > least_stretch)) return false;
   }
   return true;
 }
 
-// Looked at from the axis to each part of the border, and 8 px beyond: the true lens may be off its calibration by 3 px and 0.3 %.
-bool folds_over(const scan::CameraModel& model) {
-  constexpr int step_px = 16, margin_px = 8;
+// Looked at all over the picture, and 4 px beyond: the true lens may be off its calibration by 3 px and 0.3 %.
+bool lacks_rays(const scan::CameraModel& model) {
+  constexpr int step_px = 16, margin_px = 4;
   const CameraIntrinsics& c = model.intrinsics();
-  const int right = c.width + margin_px, low = c.height + margin_px;
-  const auto folds = [&](int u, int v) { return !has_one_ray(model, Vec2(u, v)); };
-  for (int u = -margin_px; u <= right; u += step_px) {
-    if (folds(u, -margin_px) || folds(u, low)) return true;
+  for (int v = -margin_px; v < c.height + margin_px + step_px; v += step_px) {
+    for (int u = -margin_px; u < c.width + margin_px + step_px; u += step_px) {
+      if (!has_one_ray(model, Vec2(std::min(u, c.width + margin_px), std::min(v, c.height + margin_px)))) return true;
+    }
   }
-  for (int v = -margin_px; v <= low; v += step_px) {
-    if (folds(-margin_px, v) || folds(right, v)) return true;
-  }
-  return folds(right, low);
+  return false;
 }
 
 struct Sighted {
@@ -62,7 +66,10 @@ std::string why_unseen(const Machine& machine, const CameraCalibration& camera, 
   if (!pixel) return what + " is behind the camera" + remedy;
   const bool inside =
       pixel->x() >= 0 && pixel->x() <= camera.intrinsics.width - 1 && pixel->y() >= 0 && pixel->y() <= camera.intrinsics.height - 1;
-  if (inside) return "";
+  // What lies beyond a fold comes back into the picture, at a pixel of another ray.
+  const std::optional<Vec3> ray = scan::CameraModel(camera.intrinsics).ray(*pixel);
+  if (inside && ray && (*ray - in_camera.normalized()).norm() < 1e-6) return "";
+  if (inside) return what + " lies farther aside than this lens images" + remedy;
   char text[64];
   std::snprintf(text, sizeof text, " is out of the camera's view, at pixel %.0f, %.0f", pixel->x(), pixel->y());
   return what + text + remedy;
@@ -71,9 +78,9 @@ std::string why_unseen(const Machine& machine, const CameraCalibration& camera, 
 }  // namespace
 
 std::vector<std::string> view_problems(const Machine& machine, const CameraCalibration& camera) {
-  // Where points fold over, their pixels say nothing.
-  if (folds_over(scan::CameraModel(camera.intrinsics)))
-    return {"this lens folds its picture over, so that some pixels have no ray or several: see " + lens_keys(machine)};
+  // Without rays the pixels of the points say nothing.
+  if (lacks_rays(scan::CameraModel(camera.intrinsics)))
+    return {"with this lens some pixels have no ray, or several, as where a picture folds over: see " + lens_keys(machine)};
   const PanelLayout& panel = machine.panel;
   const Vec2 low = panel.plate_min_m, high = panel.plate_max_m;
   const char* both = ", 'panel.plate_min_m' and 'panel.plate_max_m'";

@@ -16,6 +16,8 @@ namespace lf::hal {
 
 namespace {
 
+// Who ordered it has gone away by then: `lanternfishd commission` gives up so soon.
+constexpr Duration begin_within = Duration::from_s(5);
 // A file that could not be written, for a full disk for instance, is tried again so much later.
 constexpr Duration forget_again_after = Duration::from_ms(2000);
 // Of a control period, 4 ms, several: a commissioning that cannot begin comes back at once.
@@ -32,68 +34,6 @@ std::string now_text() {
   return day;
 }
 
-double moved_rad(const Commissioned& commissioned, const config::HomingOffsets& offsets, std::size_t joint) {
-  if (!offsets.has_earlier_zero(joint)) return commissioned.moved_rad[joint];
-  const double off_counts = static_cast<double>(commissioned.zero_counts[joint]) - offsets.zero_counts[joint];
-  const double off_rad = zero_moved_rad(static_cast<Joint>(joint), commissioned.place_rad[joint], off_counts);
-  return std::max(commissioned.moved_rad[joint], off_rad > told_move_rad ? off_rad : 0);
-}
-
-// Why a joint that was found stays without power for its friction, in words.
-std::optional<std::string> friction_doubt(const Commissioned& commissioned, const std::array<Motor, joint_count>& motors,
-                                          const config::HomingOffsets& offsets, std::size_t joint) {
-  if (commissioned.friction_found[joint]) return config::friction_problem(joint, commissioned.friction[joint], motors[joint]);
-  const bool doubtful =
-      offsets.friction_doubtful[joint] ||
-      (offsets.friction_known[joint] && config::friction_problem(joint, offsets.friction[joint], motors[joint]).has_value());
-  if (!doubtful) return std::nullopt;
-  return std::string("the ") + config::joint_name(joint) +
-         "'s friction was doubtful before, and no friction was measured now. Commission it away from its stop, without --here";
-}
-
-// Of a failed one: a zero was found elsewhere, or something rubs.
-bool leaves_doubt(const Commissioning& ended, const std::array<Motor, joint_count>& motors) {
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    if (ended.moved_rad()[i] > 0) return true;
-    if (ended.friction_found()[i] && config::friction_problem(i, ended.friction()[i], motors[i])) return true;
-  }
-  return false;
-}
-
-// The file was changed while the joint moved: the commissioning could not compare with it.
-std::string found_elsewhere(const TakenOver& taken) {
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    if (taken.moved_rad[i] > 0) return std::string(config::joint_name(i)) + ": its zero was found elsewhere than the homing file has it";
-  }
-  return "";
-}
-
-void tell_moved(TakenOver& taken) {
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    if (taken.moved_rad[i] > 0)
-      taken.left_out.push_back(std::string("the ") + config::joint_name(i) + "'s zero has moved, and the new one was not written");
-  }
-}
-
-// Found elsewhere than its earlier zero, or with a friction that cannot be. `offsets` is what was taken over.
-JointSet doubted_joints(const Commissioned& commissioned, const TakenOver& taken, const config::HomingOffsets& offsets) {
-  JointSet doubted{};
-  for (std::size_t i = 0; i < joint_count; ++i)
-    doubted[i] = commissioned.found[i] && (taken.moved_rad[i] > 0 || offsets.friction_doubtful[i]);
-  return doubted;
-}
-
-// How it has ended, in words; empty: well. `unwritten_for`: why the file could not be written.
-std::string ending(const std::string& failed, const std::string& unwritten_for, const JointSet& doubted, const Marks& marks) {
-  if (!unwritten_for.empty())
-    return (failed.empty() ? "" : failed + ". ") + "Nothing was written: " + unwritten_for +
-           ". In the homing file these joints' zeros are still marked doubtful, so that a daemon started anew gives them no power: " +
-           names_of(marks.joints);
-  if (failed.empty()) return "";
-  if (!any(doubted)) return "nothing was written: " + failed;
-  return failed + ". In the homing file the zeros of these joints are doubtful now: " + names_of(doubted) + ". Nothing else was written";
-}
-
 // Where that cannot be done the joints stay in doubt there, and the next daemon says so.
 void lift(const Marks& marks, const std::string& file) {
   try {
@@ -102,66 +42,11 @@ void lift(const Marks& marks, const std::string& file) {
   }
 }
 
-// What was found is not used. That a joint must not have power holds all the same.
-void deny_power(const JointSet& denied, ControllerConfig& core, config::HomingOffsets& offsets) {
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    bool& known = core.network.drives[i].zero_known;
-    known = known && !denied[i];
-    offsets.known[i] = known;
-  }
-}
-
-// The other joints keep what the core has: the file may have been changed since the daemon read it. One whose friction there cannot be takes no power all the same.
-void use_zeros(const config::HomingOffsets& offsets, const JointSet& found, const JointSet& still_lost, ControllerConfig& core) {
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    canopen::DriveSetup& drive = core.network.drives[i];
-    if (found[i]) {
-      drive.encoder_zero_counts = offsets.zero_counts[i];
-      drive.zero_known = offsets.known[i];
-      config::set_friction(offsets, i, core.transmissions[i].friction);
-    }
-    drive.zero_known = drive.zero_known && !still_lost[i] && !offsets.friction_doubtful[i];
-  }
-}
-
 }  // namespace
-
-Json friction_json(const config::HomingOffsets& offsets) {
-  Json all = Json::object();
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    const config::JointFriction& friction = offsets.friction[i];
-    if (offsets.friction_known[i])
-      all[config::joint_name(i)] = {
-          {"coulomb_mnm", friction.coulomb_mnm}, {"viscous_mnm_s", friction.viscous_mnm_s}, {"rms_mnm", friction.rms_mnm}};
-  }
-  return all;
-}
-
-TakenOver take_over(const Commissioned& commissioned, const std::array<Motor, joint_count>& motors, config::HomingOffsets& offsets) {
-  TakenOver taken;
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    if (!commissioned.found[i]) continue;
-    taken.moved_rad[i] = moved_rad(commissioned, offsets, i);
-    if (const std::optional<std::string> why = friction_doubt(commissioned, motors, offsets, i)) {
-      taken.left_out.push_back(*why);
-      // What was known of it before may be as wrong.
-      offsets.doubt_friction(i);
-      offsets.found[i] = commissioned.how;
-      continue;
-    }
-    offsets.zero_counts[i] = commissioned.zero_counts[i];
-    offsets.known[i] = true;
-    offsets.zero_doubtful[i] = offsets.friction_doubtful[i] = false;
-    offsets.found[i] = commissioned.how;
-    if (!commissioned.friction_found[i]) continue;
-    offsets.friction[i] = commissioned.friction[i];
-    offsets.friction_known[i] = true;
-  }
-  return taken;
-}
 
 Commissioner::Commissioner(const VehicleConfig& config, LoopRings& rings, Log log)
     : core_(config.core.controller), file_(config.machine.homing_file), rings_(rings), log_(std::move(log)) {
+  file_is_shipped_ = !file_.empty() && config::is_shipped(file_);
   const std::filesystem::path folder = std::filesystem::path(config.machine.file).parent_path();
   const ArmDescription arm = load_arm_urdf(config::find_file(config.machine.arm_urdf, folder));
   for (std::size_t i = 0; i < joint_count; ++i) {
@@ -180,18 +65,30 @@ Commissioner::~Commissioner() {
   }
 }
 
+// While a new core waits for its reset the old one goes on to hear its drives: what they lose meanwhile has to leave the file. What they had lost before may
+// have been found since.
 void Commissioner::hear(const ControlReport& report) {
-  if (busy() || report.cores_taken != cores_taken_) return;
-  jaw_doubted_ = report.jaw_doubted;
-  lose_zeros(report.zeros_lost);
+  if (report.cores_taken != cores_taken_) return;
+  if (stage_ == Stage::installing) {
+    JointSet lost_since{};
+    for (std::size_t i = 0; i < joint_count; ++i) lost_since[i] = report.zeros_lost[i] && !lost_at_begin_[i];
+    zero_lost_ = either(zero_lost_, lost_since);
+    forget_in_file(lost_since);
+  } else if (!busy()) {
+    jaw_doubted_ = report.jaw_doubted;
+    lose_zeros(report.zeros_lost);
+  }
 }
 
 void Commissioner::lose_zeros(const JointSet& lost) {
   zero_lost_ = lost;
-  if (file_.empty() || config::is_shipped(file_) || forgetting_ != nullptr || monotonic_now() < try_again_) return;
+  forget_in_file(lost);
+}
+
+void Commissioner::forget_in_file(const JointSet& lost) {
   JointSet to_forget{};
   for (std::size_t i = 0; i < joint_count; ++i) to_forget[i] = lost[i] && !forgotten_[i];
-  if (!any(to_forget)) return;
+  if (!any(to_forget) || file_.empty() || file_is_shipped_ || forgetting_ != nullptr || monotonic_now() < try_again_) return;
   auto forgetting = std::make_shared<Forgetting>();
   forgetting->joints = to_forget;
   const bool posted = worker_.post([forgetting, file = file_] {
@@ -245,8 +142,11 @@ std::string Commissioner::unknown_joints() const {
 std::optional<std::string> Commissioner::begin(const CommissionOrder& order) {
   if (stage_ != Stage::idle) return "a commissioning is under way";
   if (file_.empty()) return "'homing.file' names no file to write the zeros to";
-  if (config::is_shipped(file_)) return "'homing.file' is the shipped " + file_ + ": copy it, and name the copy";
+  if (file_is_shipped_) return "'homing.file' is the shipped " + file_ + ": copy it, and name the copy";
   order_ = order;
+  ordered_ = monotonic_now();
+  called_off_.clear();
+  lost_at_begin_ = zero_lost_;
   answer_.reset();
   prepared_ = std::make_shared<Prepared>();
   Commissioning::Config setup;
@@ -316,13 +216,32 @@ void Commissioner::step() {
   if (stage_ == Stage::storing) install();
 }
 
+bool Commissioner::call_off_before_it_moves() {
+  if (stage_ != Stage::preparing || !called_off_.empty()) return false;
+  called_off_ = "another order came before the homing file was written";
+  answer_ = refused(called_off_ + ": nothing moves");
+  return true;
+}
+
+// A disk that takes its time must not have the arm move when nobody expects it any more.
+void Commissioner::drop_late() {
+  if (!called_off_.empty() || monotonic_now() - ordered_ < begin_within) return;
+  called_off_ = "the homing file could not be written in time";
+  answer_ = refused(called_off_ + ": nothing moves. Look at its disk");
+}
+
 void Commissioner::lend() {
+  drop_late();
   {
     const std::lock_guard lock(prepared_->mutex);
     if (!prepared_->done) return;
-    if (!prepared_->problem.empty()) answer_ = refused(prepared_->problem);
+    if (!prepared_->problem.empty() && called_off_.empty()) answer_ = refused(prepared_->problem);
     commissioning_ = std::move(prepared_->commissioning);
     marks_ = prepared_->marks;
+  }
+  if (!called_off_.empty() && commissioning_ != nullptr) {
+    commissioning_.reset();
+    (void)worker_.post([marks = marks_, file = file_] { lift(marks, file); });
   }
   stage_ = commissioning_ != nullptr ? Stage::lending : Stage::idle;
   last_ = nullptr;
@@ -333,7 +252,8 @@ void Commissioner::lend() {
 void Commissioner::take_back(const CommissioningResult& result) {
   const std::unique_ptr<Commissioning> ended = std::move(commissioning_);
   if (!result.begun) {
-    const std::string why = "the arm is not at rest without power: `abort` or `reset` first";
+    std::string why = "the arm is not at rest without power: `abort` or `reset` first";
+    if (order_.moved) why += ". Nothing was begun: the core still trusts the old zero of a joint that has moved";
     (void)worker_.post([marks = marks_, file = file_] { lift(marks, file); });
     if (stage_ == Stage::running) return end_with({{"state", "failed"}, {"why", why}, {"without_power", true}});
     answer_ = refused(why);
@@ -341,8 +261,14 @@ void Commissioner::take_back(const CommissioningResult& result) {
     return;
   }
   if (last_.is_null()) answer_ = Json{{"ok", true}, {"standing", "commissioning"}};
-  const std::string failed = ended->state() == Commissioning::State::done ? "" : std::string(ended->failure());
+  const bool well = ended->state() == Commissioning::State::done;
+  const JointSet lost = ended->zeros_lost();
+  JointSet lost_again{};
+  for (std::size_t i = 0; i < joint_count; ++i) lost_again[i] = well && ended->found()[i] && lost[i];
+  std::string failed = well ? "" : std::string(ended->failure());
+  if (any(lost_again)) failed = "a drive lost its position again after its zero was found: " + names_of(lost_again);
   without_power_ = ended->without_power();
+  zero_lost_ = either(zero_lost_, lost);
   store(*ended, failed);
 }
 
@@ -373,6 +299,7 @@ Commissioned Commissioner::findings_of(const Commissioning& ended) const {
   all.how = (order_.here ? "in the jig, " : "at its stop, ") + now_text() + " UTC";
   all.moved_rad = ended.moved_rad();
   all.lost = either(either(ended.lost_before_found(), ended.zeros_lost()), zero_lost_);
+  for (std::size_t i = 0; i < joint_count; ++i) all.found[i] = all.found[i] && !ended.zeros_lost()[i];
   return all;
 }
 
@@ -386,7 +313,7 @@ void Commissioner::store(const Commissioning& ended, const std::string& failed) 
   for (std::size_t i = 0; i < joint_count; ++i) still_lost_[i] = zero_lost_[i] && !commissioned.found[i];
   JointSet disowned{};  // their earlier zeros are wrong, by the order's own words, and no other was found
   for (std::size_t i = 0; i < joint_count; ++i) disowned[i] = order_.moved && order_.joints[i] && !commissioned.found[i];
-  const bool changes_core = failed.empty() || any(disowned) || leaves_doubt(ended, motors_);
+  bool changes_core = failed.empty() || any(disowned) || any(ended.zeros_lost()) || leaves_doubt(ended, motors_);
   const bool posted =
       worker_.post([prepared = prepared_, file = file_, commissioned, core = core_, motors = motors_, marks = marks_,
                     still_lost = still_lost_, failed = failed, moved_as_ordered = order_.moved, disowned, changes_core]() mutable {
@@ -395,17 +322,20 @@ void Commissioner::store(const Commissioning& ended, const std::string& failed) 
         config::HomingOffsets offsets;
         try {
           offsets = marks.lifted_from(config::read_homing_file(file));
+          const JointSet gone = with_a_zero(commissioned.lost, offsets);
           forget_lost(commissioned.lost, offsets, core);
           const config::HomingOffsets before = offsets;
           if (changes_core) taken = take_over(commissioned, motors, offsets);
           if (failed.empty() && !moved_as_ordered) failed = found_elsewhere(taken);
           const JointSet doubted = changes_core ? either(disowned, doubted_joints(commissioned, taken, offsets)) : JointSet{};
           const std::string unwritten_for = write_offsets(file, failed.empty() ? offsets : with_doubts(before, doubted, offsets, core));
-          problem = ending(failed, unwritten_for, doubted, marks);
+          problem = ending(failed, unwritten_for, doubted, gone, marks);
           if (problem.empty()) {
             const std::vector<std::string> older =
                 config::leave_out_doubtful(offsets, motors);  // the file's, of joints that were not commissioned now
             taken.left_out.insert(taken.left_out.end(), older.begin(), older.end());
+            const std::vector<std::string> cut = cut_off(offsets, commissioned.found, core);
+            taken.left_out.insert(taken.left_out.end(), cut.begin(), cut.end());
             use_zeros(offsets, commissioned.found, still_lost, core);
           } else {
             tell_moved(taken);
@@ -417,6 +347,7 @@ void Commissioner::store(const Commissioning& ended, const std::string& failed) 
           problem = (failed.empty() ? "" : failed + ". ") + "Nothing was written: " + error.what() +
                     (any(denied) ? ". These joints take no power until they are commissioned again: " + names_of(denied) : "");
           deny_power(denied, core, offsets);
+          changes_core = changes_core || any(denied);
         }
         prepared->found = commissioned.found;
         give(*prepared, problem, taken, offsets, changes_core ? std::make_unique<Controller>(core) : nullptr);
@@ -448,8 +379,9 @@ void Commissioner::install() {
   use_zeros(prepared_->offsets, prepared_->found, still_lost_, core_);
   Json zeros = Json::object(), moved = Json::object();
   for (std::size_t i = 0; i < joint_count; ++i) {
+    const canopen::DriveSetup& drive = core_.network.drives[i];  // what the core has, whatever else the file says
     if (prepared_->offsets.known[i]) forgotten_[i] = false;
-    if (prepared_->offsets.known[i]) zeros[config::joint_name(i)] = prepared_->offsets.zero_counts[i];
+    if (drive.zero_known) zeros[config::joint_name(i)] = drive.encoder_zero_counts;
     if (prepared_->taken.moved_rad[i] > 0) moved[config::joint_name(i)] = prepared_->taken.moved_rad[i];
   }
   zero_lost_ = still_lost_;

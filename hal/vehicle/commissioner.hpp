@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "hal/vehicle/control_loop.hpp"
+#include "hal/vehicle/findings.hpp"
 #include "hal/vehicle/homing_changes.hpp"
 #include "hal/vehicle/parse_order.hpp"
 #include "hal/vehicle/status_json.hpp"
@@ -21,33 +22,6 @@
 #include "hal/vehicle/zero_moved.hpp"
 
 namespace lf::hal {
-
-// {"elbow": {"coulomb_mnm", "viscous_mnm_s", "rms_mnm"}, ...} of the joints whose friction is known: at the motor's shaft, viscous per rad/s of the motor, and
-// what the fit left.
-Json friction_json(const config::HomingOffsets& offsets);
-
-// What a commissioning has found.
-struct Commissioned {
-  JointSet found{};
-  std::array<std::int32_t, joint_count> zero_counts{};
-  JointSet friction_found{};
-  std::array<config::JointFriction, joint_count> friction{};
-  std::string how;                            // and when
-  std::array<double, joint_count> place_rad;  // where each zero was found: the joint's stop, or 0 in a jig
-  // By how much it was found off its earlier zero, as the commissioning compared it; 0 where that is less than what is told.
-  std::array<double, joint_count> moved_rad{};
-  JointSet lost{};  // its drive had lost its position before: no earlier zero of it means anything
-};
-
-struct TakenOver {
-  std::vector<std::string> left_out;  // a sentence for each joint that takes no power
-  // By how much each zero has moved, as the angle at its place: against the file's earlier one, or as the commissioning compared it, whichever is more. 0 where
-  // there was none, or it moved by less than what is told.
-  std::array<double, joint_count> moved_rad{};
-};
-// Takes it over into `offsets`. A joint whose friction cannot be is no longer known there, and stays out until a friction was measured that can be: a zero
-// alone does not show that what rubbed is gone.
-TakenOver take_over(const Commissioned& commissioned, const std::array<Motor, joint_count>& motors, config::HomingOffsets& offsets);
 
 class Commissioner {
  public:
@@ -60,6 +34,8 @@ class Commissioner {
 
   // Why it cannot begin, in words; nothing: answer() tells later whether it has.
   std::optional<std::string> begin(const CommissionOrder& order);
+  // Whether one was being prepared, and nothing of it will move: any other order to the core means that somebody no longer waits for it.
+  bool call_off_before_it_moves();
   // {"ok": ...} once after each begin(), when the control thread has begun it or when it could not.
   std::optional<Json> answer();
   // From begin() until the new zeros are on the disk and in the core.
@@ -100,6 +76,8 @@ class Commissioner {
   enum class Stage { idle, preparing, lending, running, storing, installing };
 
   void lose_zeros(const JointSet& lost);
+  void forget_in_file(const JointSet& lost);
+  void drop_late();
   void note_forgotten();
   void lend();
   void take_back(const CommissioningResult& result);
@@ -114,23 +92,26 @@ class Commissioner {
   void write_down(const Json& outcome) const;  // in the log
 
   ControllerConfig core_;
-  JointSet zero_lost_{};   // of the core at work
-  JointSet still_lost_{};  // those of them that the commissioning under way has not found
-  JointSet forgotten_{};   // those that the file has no more
-  Time try_again_;         // when the file could not be written; 0: it could
-  JointSet last_tried_{};  // a failure is told once for the same joints
+  JointSet zero_lost_{};      // of the core at work
+  JointSet lost_at_begin_{};  // of it, when the commissioning began
+  JointSet still_lost_{};     // those of them that the commissioning under way has not found
+  JointSet forgotten_{};      // those that the file has no more
+  Time try_again_;            // when the file could not be written; 0: it could
+  JointSet last_tried_{};     // a failure is told once for the same joints
   bool jaw_doubted_ = false;
   std::uint32_t cores_taken_ = 0;  // by the control loop
   bool without_power_ = true;      // after the last one
   std::shared_ptr<Forgetting> forgetting_;
   std::string file_;
+  bool file_is_shipped_ = false;
   std::array<double, joint_count> backlash_rad_{};
   std::array<Motor, joint_count> motors_;
   LoopRings& rings_;
   Log log_;
   Stage stage_ = Stage::idle;
   CommissionOrder order_;
-  Time lent_;
+  Time ordered_, lent_;
+  std::string called_off_;  // why what is being prepared will not move; empty: it will
   std::shared_ptr<Prepared> prepared_;
   std::unique_ptr<Commissioning> commissioning_;  // lent while it runs
   Marks marks_;                                   // in the file, meanwhile

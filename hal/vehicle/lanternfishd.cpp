@@ -143,24 +143,17 @@ int run_daemon(const Options& options) {
   return well ? done : failed;
 }
 
-std::string socket_of(const Options& options) {
-  if (!options.socket.empty()) return options.socket;
-  if (!options.config.empty()) return load_vehicle_config(options.config).operator_socket;
+std::string usual_socket() {
   if (const char* set = std::getenv("LANTERNFISHD_SOCKET"); set != nullptr && *set != '\0') return set;
   return VehicleConfig().operator_socket;
 }
 
-// A stop goes out whatever else is wrong with the file: it is told, and its socket is taken as far as it can be read.
-std::string socket_for_stop(const Options& options) {
-  if (!options.socket.empty() || options.config.empty()) return socket_of(options);
-  std::vector<std::string> problems;
-  const VehicleConfig config = load_vehicle_config(options.config, problems);
-  for (const std::string& problem : problems) complain(problem);
-  return config.operator_socket;
+std::string socket_of(const Options& options) {
+  if (!options.socket.empty()) return options.socket;
+  return options.config.empty() ? usual_socket() : load_vehicle_config(options.config).operator_socket;
 }
 
-int ask(const Options& options, const Json& request) {
-  const Json reply = ask_daemon(request["do"] == "estop" ? socket_for_stop(options) : socket_of(options), request);
+int tell(const Options& options, const Json& request, const Json& reply) {
   if (options.json) {
     std::printf("%s\n", reply.dump(1).c_str());
   } else if (!reply.value("ok", false)) {
@@ -169,6 +162,23 @@ int ask(const Options& options, const Json& request) {
     std::fputs(status_text(reply).c_str(), stdout);
   }
   return reply.value("ok", false) ? done : failed;
+}
+
+// A stop goes out whatever is wrong with the vehicle's file. Where that does not tell its socket, the usual one is taken, which may be another arm's: no success.
+int ask_for_stop(const Options& options, const Json& request) {
+  if (!options.socket.empty() || options.config.empty()) return tell(options, request, ask_daemon(socket_of(options), request));
+  const StopSocket found = stop_socket(options.config);
+  for (const std::string& problem : found.problems) complain(problem);
+  if (found.is_the_files) return tell(options, request, ask_daemon(found.path, request));
+  const std::string usual = usual_socket();
+  complain("the file does not tell the daemon's socket: the stop goes to " + usual + ". Look whether that is this arm's");
+  (void)tell(options, request, ask_daemon(usual, request));
+  return failed;
+}
+
+int ask(const Options& options, const Json& request) {
+  if (request["do"] == "estop") return ask_for_stop(options, request);
+  return tell(options, request, ask_daemon(socket_of(options), request));
 }
 
 using Action = std::function<int()>;

@@ -153,6 +153,9 @@ std::optional<Json> OrderDesk::give(Waiting& one) {
   const std::string beyond = command == Command::set_tasks && ways_.why_not ? ways_.why_not(one.request.order.tasks) : "";
   if (!beyond.empty()) return refused(beyond);
   const bool stop = command == Command::emergency_stop;
+  const bool called_off = ways_.commissioner != nullptr && ways_.commissioner->call_off_before_it_moves();
+  if (called_off && command == Command::abort)
+    return Json{{"ok", true}, {"standing", "the commissioning is called off: nothing has moved"}};
   if (!stop && waiting_.size() >= most_waiting) return refused("too many orders at once");
   if (!stop) one.request.order.expires = monotonic_now() + take_within;  // the core refuses what it meets later
   one.number = ++orders_given_;

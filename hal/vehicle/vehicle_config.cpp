@@ -164,11 +164,16 @@ void find_homing(VehicleConfig& c, std::vector<std::string>& problems) {
 }
 
 // Relative paths are beside the file that names them, wherever the program was started. Empty ones name nothing.
-void find_places(VehicleConfig& c) {
+void find_places(VehicleConfig& c, std::vector<std::string>& problems) {
+  namespace fs = std::filesystem;
   std::error_code error;  // the working directory may be gone: then a path stays as it is
-  // The file itself, not a link to it: two daemons of one file must meet at one lock.
-  const std::filesystem::path file = std::filesystem::canonical(c.machine.file, error);
+  const fs::path file = fs::absolute(c.machine.file, error).lexically_normal();
   if (error) return;
+  // Two links in two folders, or one that is put elsewhere while a daemon runs: the other daemon would not meet the lock.
+  if (fs::path(c.lock_folder).is_relative() && !c.lock_folder.empty() && fs::canonical(file, error) != file && !error)
+    problems.push_back(c.machine.file +
+                       ": 'lock_folder' is relative, and this file is reached by a link: two daemons of one bus could take two locks. Give "
+                       "it as a full path");
   for (std::string* place : {&c.device, &c.ring, &c.operator_socket, &c.estop_input, &c.log_folder, &c.lock_folder}) {
     if (!place->empty()) *place = (file.parent_path() / *place).lexically_normal().string();
   }
@@ -232,6 +237,22 @@ VehicleConfig load_vehicle_config(const std::string& path) {
   return config;
 }
 
+StopSocket stop_socket(const std::string& path) {
+  StopSocket found;
+  VehicleConfig config;
+  try {
+    read_keys(path, config, found.problems);
+    found.is_the_files = std::none_of(found.problems.begin(), found.problems.end(),
+                                      [](const std::string& problem) { return problem.find("operator") != std::string::npos; });
+    std::vector<std::string> ignored;
+    find_places(config, ignored);
+  } catch (const InputError& error) {
+    found.problems.emplace_back(error.what());
+  }
+  if (found.is_the_files) found.path = config.operator_socket;
+  return found;
+}
+
 std::string print_vehicle_config(const std::string& path) {
   std::vector<std::string> problems;
   VehicleConfig config, defaults;
@@ -248,7 +269,7 @@ std::string vehicle_schema() {
 VehicleConfig load_vehicle_config(const std::string& path, std::vector<std::string>& problems) {
   VehicleConfig config;
   read_keys(path, config, problems);
-  find_places(config);
+  find_places(config, problems);
   check_together(config, path, problems);
   find_homing(config, problems);
   config.core = config::make_core(config.machine, problems);

@@ -68,4 +68,12 @@ VehicleConfig load_vehicle_config(const std::string& path);
 // The same, but adds what is wrong to `problems`, as long as the file is YAML; what comes back is then good for looking at this machine alone.
 VehicleConfig load_vehicle_config(const std::string& path, std::vector<std::string>& problems);
 
+// Where a stop goes. Nothing but the file itself is read, and whatever is wrong there does not keep the stop back.
+struct StopSocket {
+  std::string path;  // empty: the file does not tell
+  bool is_the_files = false;
+  std::vector<std::string> problems;
+};
+StopSocket stop_socket(const std::string& path);
+
 }  // namespace lf::hal

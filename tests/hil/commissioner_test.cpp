@@ -11,16 +11,13 @@
 #include <memory>
 #include <string>
 
-#include "tests/hil/commissioning_bench.hpp"
-#include "tests/unit/temporary_folder.hpp"
+#include "tests/hil/commissioner_at_work.hpp"
 
 namespace lf::test {
 namespace {
 
 using hal::Commissioning;
 using Bench = CommissioningBench;
-
-constexpr std::array<bool, joint_count> only_jaw{false, false, false, false, true};
 
 // What was found cannot be kept. That the jaw must not move holds all the same: it rubs four times as much as its description has it, which cannot be; or its zero
 // is not where the file has it.
@@ -31,75 +28,6 @@ struct Unwritten {
   const char* why;  // no power; nothing: the old zero is as good
 };
 class CommissioningWhoseFileCannotBeWritten : public testing::TestWithParam<Unwritten> {};
-
-// A commissioner as the daemon has it; the test plays the control thread.
-class AtWork {
- public:
-  explicit AtWork(std::int32_t jaw_zero_counts) {
-    write_homing("jaw: {zero_counts: " + std::to_string(jaw_zero_counts) + "}\n");
-    start();
-  }
-  // The arm's joints have the simulated drives' zeros.
-  void write_homing(const std::string& jaw) {
-    std::string text;
-    for (std::size_t i = 0; i < arm_joint_count; ++i)
-      text += std::string(config::joint_name(i)) + ": {zero_counts: " + std::to_string(somewhere[i]) + "}\n";
-    folder.write("homing.yaml", text + jaw);
-  }
-  // As the daemon, anew.
-  void start() {
-    const hal::VehicleConfig vehicle = hal::load_vehicle_config(
-        folder.write("vehicle.yaml", "can: {interface: can0}\ncamera: {source: none}\nlock_folder: " + folder.path().string() +
-                                         "\nlog: {folder: " + (folder / "log") + "}\nhoming: {file: homing.yaml}\n"));
-    commissioner = std::make_unique<hal::Commissioner>(vehicle, *rings, [](const hal::Json&) {});
-  }
-  bool wait_for(const std::function<bool()>& done) {
-    for (int ms = 0; ms < 20'000 && !done(); ++ms) {
-      commissioner->step();
-      usleep(1000);
-    }
-    return done();
-  }
-  // Lent by the commissioner; null where it is not.
-  Commissioning* begin(const std::array<bool, joint_count>& joints, bool moved = false) {
-    hal::CommissionOrder order;
-    order.joints = joints;
-    order.moved = moved;
-    EXPECT_EQ(commissioner->begin(order), std::nullopt);
-    Commissioning* lent = nullptr;
-    EXPECT_TRUE(wait_for([&] { return lent != nullptr || rings->commissionings.pop(lent); }));
-    return lent;
-  }
-  // To its good end, and the new core has taken over.
-  void commission_jaw() {
-    Bench bench(somewhere);
-    Commissioning* lent = begin(only_jaw);
-    ASSERT_NE(lent, nullptr);
-    bench.run(*lent);
-    EXPECT_EQ(lent->state(), Commissioning::State::done) << lent->failure();
-    EXPECT_NE(end(lent), nullptr);
-    ASSERT_TRUE(take_over());
-  }
-  // The core with what it found, or was left of it.
-  std::unique_ptr<Controller> end(Commissioning* lent) {
-    EXPECT_TRUE(rings->commissioned.push({lent, true}));
-    Controller* core = nullptr;
-    EXPECT_TRUE(wait_for([&] { return core != nullptr || rings->cores.pop(core); }));
-    return std::unique_ptr<Controller>(core);
-  }
-  // As the control loop does when it has taken the core over.
-  bool take_over() {
-    rings->old_cores.push(nullptr);
-    return wait_for([&] { return !commissioner->busy(); });
-  }
-
-  config::HomingOffsets file() const { return config::read_homing_file(folder / "homing.yaml"); }
-  std::string why() const { return commissioner->last()["why"]; }
-
-  const TemporaryFolder folder;
-  const std::unique_ptr<hal::LoopRings> rings = std::make_unique<hal::LoopRings>();
-  std::unique_ptr<hal::Commissioner> commissioner;
-};
 
 TEST_P(CommissioningWhoseFileCannotBeWritten, LeavesAJointInDoubtWithoutPower) {
   const Unwritten& unwritten = GetParam();
@@ -307,6 +235,42 @@ TEST(CommissioningThatFails, LeavesNoPowerToAJointWhoseFileWasUnreadableByThen) 
   EXPECT_EQ(work.commissioner->unknown_joints(), "slew");
 }
 
+// The jaw was found where it was, the slew was called off. It was told that the jaw takes no power, and it kept it.
+TEST(CommissioningThatFails, TakesThePowerThatItSaysItTakesWhereTheFileIsUnreadable) {
+  Bench bench(somewhere);
+  AtWork work(somewhere[4]);
+  Commissioning* lent = work.begin({true, false, false, false, true});
+  ASSERT_NE(lent, nullptr);
+  bench.run(*lent, [&] { return lent->joint() == 0 && lent->state() == Commissioning::State::seeking; });
+  work.folder.write("homing.yaml", "slew: {zero_counts: 1\n");
+  const std::unique_ptr<Controller> core = work.end(lent);
+  ASSERT_NE(core, nullptr);
+  ASSERT_TRUE(work.take_over());
+  EXPECT_NE(work.why().find("take no power until they are commissioned again: jaw"), std::string::npos) << work.why();
+  EXPECT_FALSE(core->network().axis(Joint::jaw).setup().may_have_power());
+  EXPECT_EQ(work.commissioner->unknown_joints(), "jaw");
+}
+
+// An operator who has given another order no longer waits for it, nor does one who was told that nothing answers: then the disk came back, and the arm moved.
+TEST(CommissioningUnderWay, DoesNotMoveWhenAnotherOrderCameBeforeTheFileWasWritten) {
+  AtWork work(somewhere[4]);
+  EXPECT_FALSE(work.commissioner->call_off_before_it_moves());
+  hal::CommissionOrder order;
+  order.joints = only_jaw;
+  ASSERT_EQ(work.commissioner->begin(order), std::nullopt);
+  EXPECT_TRUE(work.commissioner->call_off_before_it_moves());
+  EXPECT_FALSE(work.commissioner->call_off_before_it_moves()) << "once is enough";
+  const std::optional<hal::Json> answer = work.commissioner->answer();
+  ASSERT_TRUE(answer.has_value());
+  EXPECT_EQ((*answer)["ok"], false);
+  EXPECT_NE((*answer)["why"].get<std::string>().find("another order came"), std::string::npos) << *answer;
+  EXPECT_TRUE(work.wait_for([&] { return !work.commissioner->busy() && work.file().known[4]; }));
+  Commissioning* lent = nullptr;
+  EXPECT_FALSE(work.rings->commissionings.pop(lent));
+  EXPECT_FALSE(work.file().zero_doubtful[4]);
+  EXPECT_NE(work.begin(only_jaw), nullptr) << "the next one is";
+}
+
 // From before anything moves until its end is written: the daemon, the machine or its disk may fail at any time between.
 TEST(CommissioningUnderWay, LeavesNoZeroThatADaemonStartedAnewWouldTrust) {
   AtWork work(somewhere[4]);
@@ -384,48 +348,6 @@ TEST(CommissioningUnderWay, IsNotBegunWhereTheFileCannotBeWritten) {
   EXPECT_FALSE(work.commissioner->busy());
   Commissioning* lent = nullptr;
   EXPECT_FALSE(work.rings->commissionings.pop(lent));
-}
-
-// A full disk, say. It is tried again: whoever frees the disk need not think of the zeros.
-TEST(ALostZero, LeavesTheFileAsSoonAsThatCanBeWritten) {
-  AtWork work(somewhere[4]);
-  const std::filesystem::path in_the_way = work.folder / "homing.yaml.partial";
-  ASSERT_TRUE(std::filesystem::create_directory(in_the_way));
-  hal::ControlReport report;
-  report.zeros_lost = only_jaw;
-  const auto gone = [&] {
-    work.commissioner->hear(report);
-    return !config::read_homing_file(work.folder / "homing.yaml").known[4];
-  };
-  for (int i = 0; i < 300; ++i) {
-    EXPECT_FALSE(gone());
-    work.commissioner->step();
-    usleep(1000);
-  }
-  std::filesystem::remove(in_the_way);
-  EXPECT_TRUE(work.wait_for(gone));
-}
-
-// The report that is the newest when the cores were exchanged is still of the core before, to which the zero was lost: it took the new one out of the file.
-TEST(ALostZero, ThatWasFoundAgainStaysInTheFile) {
-  AtWork work(somewhere[4]);
-  hal::ControlReport report;
-  report.zeros_lost = only_jaw;
-  const auto known = [&] { return work.file().known[4]; };
-  const auto forgotten = [&] {
-    work.commissioner->hear(report);
-    return !known();
-  };
-  ASSERT_TRUE(work.wait_for(forgotten));
-  ASSERT_NO_FATAL_FAILURE(work.commission_jaw());
-  for (int i = 0; i < 200; ++i) {
-    ASSERT_FALSE(forgotten());
-    work.commissioner->step();
-    usleep(1000);
-  }
-  EXPECT_EQ(work.commissioner->unknown_joints(), "");
-  report.cores_taken = 1;
-  EXPECT_TRUE(work.wait_for(forgotten)) << "lost once more";
 }
 
 // What the jaw holds is in doubt in the core: its angle alone says nothing.

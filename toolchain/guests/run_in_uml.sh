@@ -3,7 +3,7 @@
 # Usage: run_in_uml.sh [--time-limit S] [--memory 512M] [--out FOLDER]... [--mmapper FILE] [--preload LIBRARY] [--slowdown N] COMMAND [ARGUMENT]...
 #
 # The guest has one processor and keeps this machine's time; with N, its clock goes N times slower. LIBRARY is slow_clock.cpp and whole_xstate.cpp, built:
-# wanted with N, and on processors with AMX. The guest sees this machine's files, in the same places, read-only; /tmp, /var/tmp, /run and /dev/shm are
+# wanted with N, and on processors with AMX; without it that of build/release is taken where it is there. The guest sees this machine's files, in the same places, read-only; /tmp, /var/tmp, /run and /dev/shm are
 # its own and empty, and each FOLDER of --out is this machine's and may be written. The command runs as the guest's root, in the present folder and
 # environment, with vcan0 up and the modules for vcan, vxcan and can-gw loaded. FILE, a multiple of the page size, is the guest's /dev/mmapper, shared both ways.
 # Exit status: the command's; 3 when something has to be installed, or no guest boots here; 124 when the time limit (60 s of this machine) is over;
@@ -27,6 +27,8 @@ while [[ ${1:-} == --* ]]; do
   shift 2
 done
 [ $# -gt 0 ] || { sed -n '2,/^set/s/^# \{0,1\}//p' "$0" >&2; exit 2; }
+built=$here/../../build/release/tests/libuml_preload.so
+[ -n "$preload" ] || [ ! -e "$built" ] || preload=$(realpath "$built")
 [ "$slowdown" -eq 1 ] || [ -n "$preload" ] || { echo "run_in_uml: --slowdown wants --preload" >&2; exit 2; }
 
 for need in linux.uml:user-mode-linux ip:iproute2 insmod:kmod; do

@@ -189,6 +189,20 @@ TEST_F(Daemon, AStopGoesOutWhateverIsWrongWithTheFile) {
       << "anything else waits for a file that is right";
 }
 
+// In the middle of an edit it may be no YAML at all, or be gone. Whose daemon answers at the usual place nobody knows then.
+TEST_F(Daemon, AStopOfAFileThatTellsNoSocketGoesToTheUsualOneAndSaysSo) {
+  for (const char* text : {"can: {interface: can0\n\tcamera", "operator: {soket: /x}\n", ""}) {
+    if (*text != '\0')
+      std::ofstream(folder() / "broken.yaml") << text;
+    else
+      std::filesystem::remove(folder() / "broken.yaml");
+    const Said stop = run("--config broken.yaml estop");
+    EXPECT_THAT(stop.err, HasSubstr("the stop goes to /run/lanternfishd/operator.sock. Look whether that is this arm's")) << text;
+    EXPECT_THAT(stop.err, HasSubstr("/run/lanternfishd/operator.sock: no lanternfishd answers there")) << text;
+    EXPECT_NE(stop.status, 0);
+  }
+}
+
 TEST_F(Daemon, TheDoctorsPartsAreChosen) {
   const Said machine = run("--config " + config() + " doctor --machine");
   EXPECT_THAT(machine.out, ::testing::Not(HasSubstr("drives")));

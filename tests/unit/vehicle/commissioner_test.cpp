@@ -133,6 +133,31 @@ TEST(Commissioned, AJointLeftOutForItsFrictionStaysOutUntilAFrictionWasMeasured)
 }
 
 // A screw whose stop was taken to be where an obstacle stood, and back; and the roll's gear, whose counts are the angle everywhere.
+// It was said that nothing was written, when the zero of a drive that had lost its position was no longer in the file.
+TEST(Commissioned, TheEndSaysWhatTheFileHasOfEachJoint) {
+  const JointSet none{}, jaw{false, false, false, false, true}, elbow{false, false, true};
+  EXPECT_EQ(ending("", "", none, none, {}), "");
+  EXPECT_EQ(ending("it was called off", "", none, none, {}), "nothing was written: it was called off");
+  EXPECT_EQ(ending("it was called off", "", none, elbow, {}),
+            "it was called off. These are no longer in the homing file, since their drives have lost their positions: elbow. Nothing else "
+            "was written");
+  EXPECT_EQ(ending("it was called off", "", jaw, elbow, {}),
+            "it was called off. In the homing file the zeros of these joints are doubtful now: jaw. These are no longer in the homing "
+            "file, since "
+            "their drives have lost their positions: elbow. Nothing else was written");
+}
+
+// A changed file took a joint's power without a word.
+TEST(Commissioned, AJointThatTheFileDoubtsIsNamed) {
+  config::HomingOffsets offsets;
+  offsets.known.fill(true);
+  offsets.doubt_friction(1);
+  ControllerConfig core;
+  for (canopen::DriveSetup& drive : core.network.drives) drive.zero_known = true;
+  EXPECT_EQ(cut_off(offsets, {}, core), (std::vector<std::string>{"the homing file has the shoulder's friction as doubtful"}));
+  EXPECT_TRUE(cut_off(offsets, {false, true}, core).empty()) << "it was commissioned";
+}
+
 TEST(Commissioned, AZeroThatHasMovedIsTold) {
   std::array<Motor, joint_count> motors;
   for (const double off_rad : {0.02, 0.04, -0.04, 0.5}) {

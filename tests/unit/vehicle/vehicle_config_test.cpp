@@ -79,6 +79,21 @@ TEST(VehicleConfig, EveryProblemIsListedWithItsLine) {
                   HasSubstr("out of the arm's reach")));
 }
 
+// A link that is put elsewhere while a daemon runs: the socket is looked for where the link is, and a lock beside the file itself would be another one.
+TEST(VehicleConfig, AFileReachedByALinkHasItsPlacesBesideTheLinkAndALockWithAFullPath) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder.path() / "release");
+  std::ofstream(folder.path() / "release/v.yaml") << "operator: {socket: op.sock}\nlock_folder: lock\n";
+  std::filesystem::create_symlink("release/v.yaml", folder.path() / "v.yaml");
+  std::vector<std::string> problems;
+  const VehicleConfig config = load_vehicle_config(folder / "v.yaml", problems);
+  EXPECT_EQ(config.operator_socket, folder / "op.sock");
+  EXPECT_THAT(problems, ::testing::Contains(HasSubstr("'lock_folder' is relative, and this file is reached by a link")));
+  problems.clear();
+  (void)load_vehicle_config((folder.path() / "release/v.yaml").string(), problems);
+  EXPECT_THAT(problems, ::testing::IsEmpty());
+}
+
 // They went by the working directory, which a service and a shell do not share.
 TEST(VehicleConfig, RelativePathsAreBesideTheFile) {
   const TemporaryFolder folder;
