@@ -59,6 +59,10 @@ const std::vector<Group>& groups() {
   static const Words noisy{"the pictures are noisy"};
   static const Words no_images{"image lost", "camera silent", "no pictures came", "no still picture came"};
 
+  static const Failures marker = joined(Failures{F::no_marker, F::marker_wrong, F::marker_disagrees, F::panel_moved}, touch);
+  static const Words marker_words{"the marker is hidden", "the marker is too small", "neither marker nor handle",
+                                  "the water is too turbid"};
+
   static const std::vector<Group> all{
       {"tasks", joined(turn, bar), turn_words},
       {"docking.", joined(Failures{F::no_marker, F::no_handle, F::panel_moved}, touch, way),
@@ -71,9 +75,9 @@ const std::vector<Group>& groups() {
       {"panel.handle_", joined(bar, touch, way, Failures{F::stalled, F::jaw_stuck, F::jaw_not_closed}), joined(load_words, off_its_place)},
       {"panel.pointer", {F::pointer_unsure, F::half_turn_open, F::beyond_stops}},
       {"panel.button", joined(press, way, Failures{F::no_marker}), {"overload", "the marker is hidden"}},
-      {"panel.marker_",
-       joined(Failures{F::no_marker, F::marker_wrong, F::marker_disagrees, F::panel_moved}, touch),
-       {"the marker is hidden", "the marker is too small", "neither marker nor handle", "the water is too turbid"}},
+      {"panel.marker_size_m", marker, marker_words},
+      // Its plate stands out of the panel, and motions keep clear of it.
+      {"panel.marker_", joined(marker, Failures{F::panel_in_the_way, F::no_motion}), marker_words},
       // Farther off all is fainter and smaller, and comes nearer to the end of the arm's reach.
       {"panel.", joined(line, still, touch, way),
        joined(load_words, faint, off_its_place, Words{"the marker is too small", "joint limit", "tool outside"})},
