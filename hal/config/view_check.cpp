@@ -40,7 +40,7 @@ bool has_one_ray(const scan::CameraModel& model, const Vec2& pixel) {
 
 // Looked at all over the picture, and 4 px beyond: the true lens may be off its calibration by 3 px and 0.3 %.
 bool lacks_rays(const scan::CameraModel& model) {
-  constexpr int step_px = 16, margin_px = 4;
+  constexpr int step_px = 16, margin_px = 4;  // some 1300 pixels, a few ms
   const CameraIntrinsics& c = model.intrinsics();
   for (int v = -margin_px; v < c.height + margin_px + step_px; v += step_px) {
     for (int u = -margin_px; u < c.width + margin_px + step_px; u += step_px) {

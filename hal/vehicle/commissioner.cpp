@@ -16,8 +16,8 @@ namespace lf::hal {
 
 namespace {
 
-// Who ordered it has gone away by then: `lanternfishd commission` gives up so soon.
-constexpr Duration begin_within = Duration::from_s(5);
+// `lanternfishd commission` gives up after 5 s, which it counts from a little before: who ordered it is still there.
+constexpr Duration begin_within = Duration::from_s(4);
 // A file that could not be written, for a full disk for instance, is tried again so much later.
 constexpr Duration forget_again_after = Duration::from_ms(2000);
 // Of a control period, 4 ms, several: a commissioning that cannot begin comes back at once.
@@ -139,12 +139,12 @@ std::string Commissioner::unknown_joints() const {
   return names_of(unknown);
 }
 
-std::optional<std::string> Commissioner::begin(const CommissionOrder& order) {
+std::optional<std::string> Commissioner::begin(const CommissionOrder& order, Time ordered) {
   if (stage_ != Stage::idle) return "a commissioning is under way";
   if (file_.empty()) return "'homing.file' names no file to write the zeros to";
   if (file_is_shipped_) return "'homing.file' is the shipped " + file_ + ": copy it, and name the copy";
   order_ = order;
-  ordered_ = monotonic_now();
+  ordered_ = ordered;
   called_off_.clear();
   lost_at_begin_ = zero_lost_;
   answer_.reset();

@@ -33,7 +33,8 @@ class Commissioner {
   Commissioner& operator=(const Commissioner&) = delete;
 
   // Why it cannot begin, in words; nothing: answer() tells later whether it has.
-  std::optional<std::string> begin(const CommissionOrder& order);
+  // `ordered`: when it came from the operator.
+  std::optional<std::string> begin(const CommissionOrder& order, Time ordered);
   // Whether one was being prepared, and nothing of it will move: any other order to the core means that somebody no longer waits for it.
   bool call_off_before_it_moves();
   // {"ok": ...} once after each begin(), when the control thread has begun it or when it could not.

@@ -169,7 +169,7 @@ int ask_for_stop(const Options& options, const Json& request) {
   if (!options.socket.empty() || options.config.empty()) return tell(options, request, ask_daemon(socket_of(options), request));
   const StopSocket found = stop_socket(options.config);
   for (const std::string& problem : found.problems) complain(problem);
-  if (found.is_the_files) return tell(options, request, ask_daemon(found.path, request));
+  if (!found.path.empty()) return tell(options, request, ask_daemon(found.path, request));
   const std::string usual = usual_socket();
   complain("the file does not tell the daemon's socket: the stop goes to " + usual + ". Look whether that is this arm's");
   (void)tell(options, request, ask_daemon(usual, request));

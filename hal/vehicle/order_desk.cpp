@@ -135,7 +135,7 @@ std::optional<Json> OrderDesk::begin(Waiting& one, const User& user) {
 
 std::optional<Json> OrderDesk::begin_commissioning(Waiting& one) {
   if (ways_.commissioner == nullptr) return refused("there is nothing to commission here");
-  if (const std::optional<std::string> why = ways_.commissioner->begin(one.request.commission)) return refused(*why);
+  if (const std::optional<std::string> why = ways_.commissioner->begin(one.request.commission, one.since)) return refused(*why);
   one.waits = Waits::for_commissioner;
   return std::nullopt;
 }

@@ -242,14 +242,20 @@ StopSocket stop_socket(const std::string& path) {
   VehicleConfig config;
   try {
     read_keys(path, config, found.problems);
-    found.is_the_files = std::none_of(found.problems.begin(), found.problems.end(),
-                                      [](const std::string& problem) { return problem.find("operator") != std::string::npos; });
-    std::vector<std::string> ignored;
-    find_places(config, ignored);
   } catch (const InputError& error) {
     found.problems.emplace_back(error.what());
+    return found;
   }
-  if (found.is_the_files) found.path = config.operator_socket;
+  // A key that is not known may be a misspelt one of the socket. The file's own name, with which each problem begins, says nothing.
+  const auto may_hide_it = [&](const std::string& problem) {
+    const std::string text = problem.substr(std::min(path.size(), problem.size()));
+    return text.find("operator") != std::string::npos || text.find("unknown key") != std::string::npos;
+  };
+  const bool given = config.operator_socket != VehicleConfig().operator_socket;
+  if (!given && std::any_of(found.problems.begin(), found.problems.end(), may_hide_it)) return found;
+  std::vector<std::string> of_other_places;
+  find_places(config, of_other_places);
+  found.path = config.operator_socket;
   return found;
 }
 

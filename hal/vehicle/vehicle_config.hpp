@@ -71,7 +71,6 @@ VehicleConfig load_vehicle_config(const std::string& path, std::vector<std::stri
 // Where a stop goes. Nothing but the file itself is read, and whatever is wrong there does not keep the stop back.
 struct StopSocket {
   std::string path;  // empty: the file does not tell
-  bool is_the_files = false;
   std::vector<std::string> problems;
 };
 StopSocket stop_socket(const std::string& path);

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "hal/vehicle/commissioner.hpp"
+#include "hal/vehicle/tick_clock.hpp"
 #include "tests/hil/commissioning_bench.hpp"
 #include "tests/unit/temporary_folder.hpp"
 
@@ -50,7 +51,7 @@ class AtWork {
     hal::CommissionOrder order;
     order.joints = joints;
     order.moved = moved;
-    EXPECT_EQ(commissioner->begin(order), std::nullopt);
+    EXPECT_EQ(commissioner->begin(order, hal::monotonic_now()), std::nullopt);
     hal::Commissioning* lent = nullptr;
     EXPECT_TRUE(wait_for([&] { return lent != nullptr || rings->commissionings.pop(lent); }));
     return lent;

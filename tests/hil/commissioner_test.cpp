@@ -257,7 +257,7 @@ TEST(CommissioningUnderWay, DoesNotMoveWhenAnotherOrderCameBeforeTheFileWasWritt
   EXPECT_FALSE(work.commissioner->call_off_before_it_moves());
   hal::CommissionOrder order;
   order.joints = only_jaw;
-  ASSERT_EQ(work.commissioner->begin(order), std::nullopt);
+  ASSERT_EQ(work.commissioner->begin(order, hal::monotonic_now()), std::nullopt);
   EXPECT_TRUE(work.commissioner->call_off_before_it_moves());
   EXPECT_FALSE(work.commissioner->call_off_before_it_moves()) << "once is enough";
   const std::optional<hal::Json> answer = work.commissioner->answer();
@@ -269,6 +269,20 @@ TEST(CommissioningUnderWay, DoesNotMoveWhenAnotherOrderCameBeforeTheFileWasWritt
   EXPECT_FALSE(work.rings->commissionings.pop(lent));
   EXPECT_FALSE(work.file().zero_doubtful[4]);
   EXPECT_NE(work.begin(only_jaw), nullptr) << "the next one is";
+}
+
+// A name that took 3 s to look up and a disk that took 2: the client had given up, and the arm would have moved.
+TEST(CommissioningUnderWay, DoesNotMoveWhenWhoOrderedItHasGivenUp) {
+  AtWork work(somewhere[4]);
+  hal::CommissionOrder order;
+  order.joints = only_jaw;
+  ASSERT_EQ(work.commissioner->begin(order, hal::monotonic_now() - Duration::from_s(5)), std::nullopt);
+  std::optional<hal::Json> answer;
+  ASSERT_TRUE(work.wait_for([&] { return answer.has_value() || (answer = work.commissioner->answer()).has_value(); }));
+  EXPECT_NE((*answer)["why"].get<std::string>().find("not be written in time: nothing moves"), std::string::npos) << *answer;
+  EXPECT_TRUE(work.wait_for([&] { return !work.commissioner->busy() && work.file().known[4]; }));
+  Commissioning* lent = nullptr;
+  EXPECT_FALSE(work.rings->commissionings.pop(lent));
 }
 
 // From before anything moves until its end is written: the daemon, the machine or its disk may fail at any time between.
@@ -340,7 +354,7 @@ TEST(CommissioningUnderWay, IsNotBegunWhereTheFileCannotBeWritten) {
   ASSERT_TRUE(std::filesystem::create_directory(work.folder / "homing.yaml.partial"));
   hal::CommissionOrder order;
   order.joints = only_jaw;
-  ASSERT_EQ(work.commissioner->begin(order), std::nullopt);
+  ASSERT_EQ(work.commissioner->begin(order, hal::monotonic_now()), std::nullopt);
   std::optional<hal::Json> answer;
   ASSERT_TRUE(work.wait_for([&] { return answer.has_value() || (answer = work.commissioner->answer()).has_value(); }));
   EXPECT_EQ((*answer)["ok"], false);

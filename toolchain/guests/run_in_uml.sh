@@ -2,10 +2,11 @@
 # Runs a command in User Mode Linux, a kernel of its own that is an ordinary process: it has SocketCAN where the machine's kernel has none.
 # Usage: run_in_uml.sh [--time-limit S] [--memory 512M] [--out FOLDER]... [--mmapper FILE] [--preload LIBRARY] [--slowdown N] COMMAND [ARGUMENT]...
 #
-# The guest has one processor and keeps this machine's time; with N, its clock goes N times slower. LIBRARY is slow_clock.cpp and whole_xstate.cpp, built:
-# wanted with N, and on processors with AMX; without it that of build/release is taken where it is there. The guest sees this machine's files, in the same places, read-only; /tmp, /var/tmp, /run and /dev/shm are
-# its own and empty, and each FOLDER of --out is this machine's and may be written. The command runs as the guest's root, in the present folder and
-# environment, with vcan0 up and the modules for vcan, vxcan and can-gw loaded. FILE, a multiple of the page size, is the guest's /dev/mmapper, shared both ways.
+# The guest has one processor and keeps this machine's time; with N, its clock goes N times slower. N and processors with AMX need LIBRARY, which is built of
+# slow_clock.cpp and whole_xstate.cpp; the one in build/release is taken where none is named. The guest sees this machine's files, in the same places,
+# read-only; /tmp, /var/tmp, /run and /dev/shm are its own and empty, and each FOLDER of --out is this machine's and may be written. The command runs as the
+# guest's root, in the present folder and environment, with vcan0 up and the modules for vcan, vxcan and can-gw loaded. FILE, a multiple of the page size,
+# is the guest's /dev/mmapper, shared both ways.
 # Exit status: the command's; 3 when something has to be installed, or no guest boots here; 124 when the time limit (60 s of this machine) is over;
 # 125 when the guest failed after it had booted.
 # Environment: LANTERNFISH_GUEST_CPU, the processor to run on (default: the last one allowed).

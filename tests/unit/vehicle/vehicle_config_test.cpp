@@ -94,6 +94,24 @@ TEST(VehicleConfig, AFileReachedByALinkHasItsPlacesBesideTheLinkAndALockWithAFul
   EXPECT_THAT(problems, ::testing::IsEmpty());
 }
 
+// A stop goes to the file's own socket wherever that can be read. A folder's name is no problem of a key.
+TEST(VehicleConfig, TheSocketOfAStopIsTheFilesWhereverItCanBeRead) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder.path() / "operator");
+  const auto socket_of = [&](const std::string& text) {
+    std::ofstream(folder.path() / "operator/v.yaml") << text;
+    return stop_socket(folder / "operator/v.yaml").path;
+  };
+  const std::string usual = VehicleConfig().operator_socket;
+  EXPECT_EQ(socket_of("operator: {socket: op.sock}\nrealtime: {priority: 500}\n"), folder / "operator/op.sock");
+  EXPECT_EQ(socket_of("operator: {socket: op.sock, grop: x}\n"), folder / "operator/op.sock");
+  EXPECT_EQ(socket_of("realtime: {priority: 500}\n"), usual) << "it has the usual one, and is only wrong elsewhere";
+  EXPECT_EQ(socket_of("operator: {soket: op.sock}\n"), "");
+  EXPECT_EQ(socket_of("oprtr: {socket: op.sock}\n"), "");
+  EXPECT_EQ(socket_of("operator: {socket: [a, b]}\n"), "");
+  EXPECT_EQ(socket_of("operator: {\n"), "");
+}
+
 // They went by the working directory, which a service and a shell do not share.
 TEST(VehicleConfig, RelativePathsAreBesideTheFile) {
   const TemporaryFolder folder;
