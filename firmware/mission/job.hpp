@@ -21,6 +21,8 @@ struct TaskResult {
   std::uint32_t presses = 0;                // press_button: went in and bottomed
   double travel_m = 0;                      // of the last press: how far the button went in
   bool click_felt = false;                  // in the last press
+  bool face_felt = false;                   // by the last press, near where the face was seen
+  double face_off_m = 0;                    // then: how much deeper than it was seen
   StepFailure failure = StepFailure::none;  // of the last press: stuck, missing, yielding, or touched too early; none where it was pressed
 };
 using TaskResults = StaticVector<TaskResult, MissionConfig::max_tasks>;

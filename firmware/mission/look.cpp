@@ -120,10 +120,16 @@ bool Look::answered(const StepTick& tick) {
   return panel_arrived_;
 }
 
+StepFailure Look::take_answer(PanelMap& map) {
+  const StepFailure failure = map.update(panel_);
+  sight_.fit = map.fit();
+  return failure;
+}
+
 Progress Look::run_perceive(const StepTick& tick) {
   if (!answered(tick)) return Progress::running();
   PanelMap& map = tick.bench.map;
-  const StepFailure failure = map.update(panel_);
+  const StepFailure failure = take_answer(map);
   if (failure != StepFailure::none) return Progress::failed(failure);
   tick.event(Event::Kind::located, map.handle_rad());
   return Progress::done();
@@ -134,7 +140,7 @@ Progress Look::run_verify(const StepTick& tick) {
   PanelMap& map = tick.bench.map;
   Job& job = tick.bench.job;
   const double left_at_rad = map.handle_rad();  // where the jaw had the handle when it let go
-  const StepFailure failure = map.update(panel_);
+  const StepFailure failure = take_answer(map);
   if (failure != StepFailure::none) return Progress::failed(failure);
   tick.event(Event::Kind::located, map.handle_rad());
   TaskResult& result = job.result();

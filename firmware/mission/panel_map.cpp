@@ -51,10 +51,12 @@ void PanelMap::expect_handle(double rad) {
 }
 
 StepFailure PanelMap::update(const PanelResult& result) {
+  fit_ = {};
   if (!result.fit.valid) return StepFailure::no_panel;
   if (result.fit.points < min_plane_points) return StepFailure::too_few_points;
   const scan::ValveFrameConfig config;
   const scan::ValveFrame frame = scan::find_valve_frame(result, marker_, camera_, config);
+  fit_ = fit_of(result, frame);
   const scan::HandleObservation handle = scan::find_handle(result, frame, layout_, config);
   const StepFailure failure = judge(result, frame, handle);
   if (failure != StepFailure::none) return failure;
@@ -68,6 +70,22 @@ StepFailure PanelMap::update(const PanelResult& result) {
   handle_rad_ = angle_rad;
   way_ = {angle_rad, angle_rad};
   return StepFailure::none;
+}
+
+CalibrationFit PanelMap::fit_of(const PanelResult& result, const scan::ValveFrame& frame) const {
+  CalibrationFit fit;
+  fit.known = frame.marker_size_m > 0 && marker_.size_m > 0;
+  if (!fit.known) return fit;
+  const std::array<Vec2, 4>& corners_px = result.marker.corners_px;
+  double around_px = 0;
+  for (std::size_t i = 0; i < 4; ++i) around_px += (corners_px[(i + 1) % 4] - corners_px[i]).norm();
+  fit.marker_size_m = static_cast<float>(marker_.size_m);
+  fit.marker_side_px = static_cast<float>(around_px / 4);
+  fit.marker_side_error = static_cast<float>(frame.marker_size_m / marker_.size_m - 1);
+  fit.marker_corners_m = static_cast<float>(frame.marker_rms_m);
+  fit.plane_bend_m = static_cast<float>(result.fit.bend_m);
+  if (known_) fit.panel_shift_m = static_cast<float>((frame.base_from_panel.translation() - frame_.base_from_panel.translation()).norm());
+  return fit;
 }
 
 StepFailure PanelMap::judge(const PanelResult& result, const scan::ValveFrame& frame, const scan::HandleObservation& handle) const {

@@ -1,6 +1,7 @@
 // What the mission knows of the panel: where its frame is, how the handle stands, and from these every point the tool has to go to.
 #pragma once
 
+#include "firmware/mission/calibration_fit.hpp"
 #include "firmware/mission/mission_config.hpp"
 #include "firmware/mission/step_failure.hpp"
 #include "firmware/scan/valve_frame.hpp"
@@ -28,6 +29,9 @@ class PanelMap {
   // after a turn of our own without a mark the way of that turn. Where two angles stay possible, the look fails: nothing is guessed.
   StepFailure update(const PanelResult& result);
 
+  // Of the newest answer, taken or not.
+  const CalibrationFit& fit() const { return fit_; }
+
   bool known() const { return known_; }
   const Pose& base_from_panel() const { return frame_.base_from_panel; }
   // By how much that may be wrong, once it is known: what the calibration errs by, the scatter of the points about the plane, and what
@@ -54,6 +58,7 @@ class PanelMap {
     double low_rad, high_rad;
   };
   bool has_pointer() const { return layout_.pointer != PanelLayout::Pointer::none; }
+  CalibrationFit fit_of(const PanelResult& result, const scan::ValveFrame& frame) const;
   StepFailure judge(const PanelResult& result, const scan::ValveFrame& frame, const scan::HandleObservation& handle) const;
   StepFailure settle(const PanelResult& result, const scan::ValveFrame& frame, const scan::HandleObservation& handle,
                      double& angle_rad) const;
@@ -61,6 +66,7 @@ class PanelMap {
   PanelLayout layout_;
   MarkerCalibration marker_;
   CameraCalibration camera_;
+  CalibrationFit fit_;
   bool known_ = false;
   scan::ValveFrame frame_;
   scan::HandleObservation handle_;

@@ -143,6 +143,8 @@ Progress PressButton::run_press(const StepTick& tick) {
   TaskResult& result = bench.job.result();
   result.travel_m = feel_.travel_m();
   result.click_felt = feel_.clicked();
+  result.face_felt = feel_.touched();
+  result.face_off_m = feel_.touch_depth_m();
   result.failure = judge(bench);
   if (result.failure == StepFailure::early_contact) return Progress::failed_by_touch(result.failure);
   // What may have gone in unfelt is not pressed again: nobody asked for two clicks.

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "firmware/mission/calibration_fit.hpp"
 #include "shared/calibration/calibration.hpp"
 #include "shared/messages/panel_vision.hpp"
 #include "shared/messages/scan_messages.hpp"
@@ -41,9 +42,10 @@ struct Sight {
   std::uint32_t proud_clusters = 0;
   bool handle_found = false;
   float handle_off_m = 0;
+  CalibrationFit fit;
 };
 
-// `before`: as the sweep began. `now`: as its answer came.
+// `before`: as the sweep began. `now`: as its answer came. Without the fit, which the panel's map knows.
 Sight sight_of(const PanelResult& result, const ScanStats& before, const ScanStats& now, const PanelLayout& layout,
                const CameraCalibration& camera);
 

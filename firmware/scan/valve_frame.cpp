@@ -91,6 +91,7 @@ ValveFrame find_valve_frame(const PanelResult& result, const MarkerCalibration& 
   const Pose pnp = camera.base_from_camera * result.marker.camera_from_tag;
   frame.base_from_panel = square.base_from_tag * marker.panel_from_tag.inverse();
   frame.marker_size_m = square.side_m;
+  frame.marker_rms_m = square.rms_m;
   frame.centre_disagreement_m = (pnp.translation() - square.base_from_tag.translation()).norm();
   frame.normal_disagreement_rad = angle_between(pnp.linear().col(2), tag_plane.normal);
   const double largest_m = config.max_size_error * marker.size_m;

@@ -25,6 +25,7 @@ struct ValveFrame {
   ValveFrameOutcome outcome = ValveFrameOutcome::no_plane;
   Pose base_from_panel = Pose::Identity();
   double marker_size_m = 0;            // side of the square measured on the plane, against the surveyed one
+  double marker_rms_m = 0;             // of its corners about that square
   double centre_disagreement_m = 0;    // between ray-and-plane and PnP
   double normal_disagreement_rad = 0;  // between plane and PnP
 };

@@ -5,8 +5,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
+#include "firmware/mission/job.hpp"
 #include "firmware/mission/sight.hpp"
 #include "firmware/mission/step_failure.hpp"
 #include "firmware/safety/faults.hpp"
@@ -23,6 +25,13 @@ Cause cause_of(safety::Fault fault, std::int32_t code, const mission::Sight& sig
 
 // Of a look's failure, by what it saw. Empty for a failure that is no matter of seeing, and where the numbers name no cause.
 Cause sight_cause(StepFailure failure, const mission::Sight& sight);
+
+// By how much deeper than they were seen the faces of the buttons were felt, in the mean; nothing when none was felt.
+std::optional<double> faces_off_m(const mission::TaskResults& results);
+
+// Of looks and presses that leave over more than the calibration's own uncertainty explains: what does not fit, and what to do. Empty where all fits, or nothing is
+// known.
+Cause calibration_cause(const mission::CalibrationFit& fit, const mission::TaskResults& results);
 
 // What a look saw, for people: "179 images of the laser, peaks in 3 % of their columns; still: ...". Empty when there was no look.
 std::string sight_text(const mission::Sight& sight);

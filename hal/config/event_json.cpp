@@ -23,6 +23,21 @@ const char* kind_of(Event::Kind kind) {
 
 }  // namespace
 
+Json fit_json(const mission::CalibrationFit& fit, const mission::TaskResults& results) {
+  Json json = Json::object();
+  if (fit.known) {
+    json["marker_side_percent"] = 100 * static_cast<double>(fit.marker_side_error);
+    json["marker_corners_mm"] = 1e3 * static_cast<double>(fit.marker_corners_m);
+    json["plane_bend_mm"] = 1e3 * static_cast<double>(fit.plane_bend_m);
+    json["panel_shift_mm"] = 1e3 * static_cast<double>(fit.panel_shift_m);
+  }
+  if (const std::optional<double> off_m = faces_off_m(results)) json["faces_off_mm"] = 1e3 * *off_m;
+  const Cause doubt = calibration_cause(fit, results);
+  if (!doubt.name.empty()) json["doubt"] = doubt.name;
+  if (!doubt.remedy.empty()) json["remedy"] = doubt.remedy;
+  return json;
+}
+
 Json cause_json(safety::Fault fault, std::int32_t code, const mission::Sight& sight) {
   Json json = Json::object();
   const Cause cause = cause_of(fault, code, sight);
@@ -51,7 +66,10 @@ Json event_json(const Event& event, const ErrorTexts& texts, const mission::Sigh
     json["emcy"] = event.emcy;
     json["text"] = texts.of_node(event.code, event.emcy);
   }
-  if (event.kind == Event::Kind::located) json["handle_deg"] = deg_from_rad(event.value);
+  if (event.kind == Event::Kind::located) {
+    json["handle_deg"] = deg_from_rad(event.value);
+    if (sight.fit.known) json["fit"] = fit_json(sight.fit, {});
+  }
   if (event.kind == Event::Kind::task_done || event.kind == Event::Kind::task_failed) {
     json["task"] = event.task;
     json["value"] = event.value;

@@ -195,6 +195,7 @@ std::string sight_text(const Sight& sight) {
   text += formatted("; still: mean %.0f grey", sight.still.mean_grey) + formatted(", contrast %.1f", sight.still.contrast_grey) +
           formatted(", noise %.1f", sight.still.noise_grey) + formatted(", %.0f %% white", 100 * sight.still.white_share);
   text += sight.marker_found ? formatted(", marker %.0f mm off its nominal place", 1e3 * sight.marker_off_m) : ", no marker";
+  if (sight.fit.known) text += formatted(", its side on the plane %+.1f %% off", 100 * static_cast<double>(sight.fit.marker_side_error));
   return text + (sight.handle_found ? formatted(", handle %.0f mm", 1e3 * sight.handle_off_m) : ", no handle");
 }
 

@@ -107,6 +107,10 @@ std::string status_text(const Json& status) {
     if (task.contains("target_deg")) text += number(" to %.1f deg", task["target_deg"].get<double>());
     text += task["done"].get<bool>() ? ": done\n" : ": not done\n";
   }
+  if (status.contains("fit") && status["fit"].contains("doubt")) {
+    const Json& fit = status["fit"];
+    text += "  doubtful calibration: " + fit["doubt"].get<std::string>() + ". " + fit.value("remedy", "") + "\n";
+  }
   for (const Json& joint : status["joints"]) {
     char line[128];
     std::snprintf(line, sizeof line, "  %-9s %-10s %8.4f rad %7.2f N m", joint["joint"].get<std::string>().c_str(),

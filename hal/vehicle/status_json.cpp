@@ -112,6 +112,7 @@ Json tasks_json(const ControlReport& control) {
       json["presses"] = result.presses;
       if (result.attempted) json["travel_mm"] = 1e3 * result.travel_m;
       if (result.attempted) json["click_felt"] = result.click_felt;
+      if (result.face_felt) json["face_off_mm"] = 1e3 * result.face_off_m;
       if (result.failure != StepFailure::none) json["failure"] = lf::name(result.failure);
     }
     json["done"] = result.done;
@@ -171,6 +172,7 @@ Json status_json(const ControlReport& control, const Telemetry& telemetry, const
     if (!later.empty()) json["faults since the end"] = later;
   }
   json["tasks"] = tasks_json(control);
+  if (const Json fit = config::fit_json(telemetry.sight.fit, control.tasks); !fit.empty()) json["fit"] = fit;
   for (std::size_t i = 0; i < joint_count; ++i) {
     Json joint{{"joint", config::joint_name(i)},
                {"state", canopen::name(control.axes[i])},

@@ -54,6 +54,19 @@ void tell_error(const char* name, double value, const char* unit) {
   if (std::isfinite(value)) print("  %-32s %8.3f %s\n", name, value, unit);
 }
 
+// The core's own account, so not among the errors.
+void tell_calibration(const record::RunResult& result) {
+  if (!result.calibration) return;
+  const record::CalibrationRecord& fit = *result.calibration;
+  print("left over by looks and presses:\n");
+  tell_error("marker's side on the plane", fit.marker_side_percent, "%");
+  tell_error("marker's corners about a square", fit.marker_corners_mm, "mm");
+  tell_error("plane's bend", fit.plane_bend_mm, "mm");
+  tell_error("panel's shift between looks", fit.panel_shift_mm, "mm");
+  tell_error("buttons' faces, deeper than seen", fit.faces_off_mm, "mm");
+  if (!fit.doubt.empty()) print("doubtful calibration: %s. %s\n", fit.doubt.c_str(), fit.remedy.c_str());
+}
+
 void tell(const RunOutcome& outcome, const std::string& folder) {
   const record::RunResult& result = outcome.result;
   for (const record::TaskRecord& task : result.tasks) {
@@ -78,6 +91,7 @@ void tell(const RunOutcome& outcome, const std::string& folder) {
   tell_error("peaks at marks, rms", result.errors.peak_rms_at_marks_px, "px");
   tell_error("peaks, recall", result.errors.peak_recall, "");
   tell_error("peaks, false", result.errors.peaks_false, "");
+  tell_calibration(result);
   print("%.1f s simulated in %.1f s, %.1f x real time\n", result.time.simulated_s, result.time.wall_s, result.time.real_time_factor);
   print("bus load %.1f %%; without stuff bits %.1f %%, with worst-case stuffing %.1f %%\n", result.bus.load_percent,
         result.bus.load_unstuffed_percent, result.bus.load_worst_case_percent);

@@ -7,6 +7,7 @@
 
 #include "hal/sim/observers.hpp"
 #include "host_sim/app/observers/bus_observer.hpp"
+#include "host_sim/app/observers/calibration_observer.hpp"
 #include "host_sim/app/observers/curve_observer.hpp"
 #include "host_sim/app/observers/event_observer.hpp"
 #include "host_sim/app/observers/motion_observer.hpp"
@@ -41,6 +42,7 @@ class RunRecorder {
   const CurveObserver& curves() const { return curves_; }
   const MotionObserver& motion() const { return motion_; }
   const PanelObserver& panel() const { return panel_; }
+  const CalibrationObserver& calibration() const { return calibration_; }
   const PeakScore& peaks() const { return peaks_.score(); }
   // `limits`: those of the mission, which the joints are drawn with.
   std::vector<record::ReportChart> charts(const safety::Limits& limits) const;
@@ -61,10 +63,11 @@ class RunRecorder {
   CurveObserver curves_;
   MotionObserver motion_;
   PanelObserver panel_;
+  CalibrationObserver calibration_;
   PeakObserver peaks_;
   PictureObserver pictures_;
   std::optional<RawImageObserver> raw_images_;
-  hal::SimObservers all_{&truth_, &bus_, &phases_, &events_, &curves_, &motion_, &panel_, &peaks_, &pictures_};
+  hal::SimObservers all_{&truth_, &bus_, &phases_, &events_, &curves_, &motion_, &panel_, &calibration_, &peaks_, &pictures_};
 };
 
 }  // namespace lf::app

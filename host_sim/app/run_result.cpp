@@ -51,6 +51,19 @@ std::optional<record::FailureRecord> disagreement(const Controller& controller, 
   return record::FailureRecord{wrong->phase, wrong->reason};
 }
 
+std::optional<record::CalibrationRecord> calibration_of(const std::optional<record::CalibrationRecord>& looks,
+                                                        const mission::TaskResults& results) {
+  const std::optional<double> off_m = config::faces_off_m(results);
+  if (!looks || !off_m) return looks;
+  record::CalibrationRecord all = *looks;
+  all.faces_off_mm = 1e3 * *off_m;
+  if (const config::Cause doubt = config::calibration_cause({}, results); all.doubt.empty()) {
+    all.doubt = doubt.name;
+    all.remedy = doubt.remedy;
+  }
+  return all;
+}
+
 std::vector<record::TaskRecord> task_records(const Controller& controller, const world::World& world, const RunRecorder& recorder) {
   std::vector<record::TaskRecord> records;
   const auto& results = controller.mission().tasks();

@@ -25,6 +25,10 @@ std::optional<record::FailureRecord> failure_of(const Controller& controller, co
 std::optional<record::FailureRecord> disagreement(const Controller& controller, const world::World& world, const RunRecorder& recorder);
 
 // Done when the core says so and the truth agrees (judge::truly_done).
+// `looks` with what the presses tell.
+std::optional<record::CalibrationRecord> calibration_of(const std::optional<record::CalibrationRecord>& looks,
+                                                        const mission::TaskResults& results);
+
 std::vector<record::TaskRecord> task_records(const Controller& controller, const world::World& world, const RunRecorder& recorder);
 
 // Those that the run ended before, or whose step it never came to: "overcurrent elbow, at step free jaw". The platform has flown the run.

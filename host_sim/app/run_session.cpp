@@ -161,6 +161,7 @@ class Session {
     result.faults_not_made = faults_not_made(request_.scenario, *platform_);
     result.tasks = task_records(*controller_, platform_->world(), recorder_);
     result.errors = score(recorder_, sim_);
+    result.calibration = calibration_of(recorder_.calibration().record(), controller_->mission().tasks());
     const world::ContactReport contacts = platform_->world().contacts();
     result.contact = {contacts.peak_force_n, contacts.unintended.size()};
     if (hal::HeapGuard::available()) result.core.heap_calls = heap_calls_;
@@ -193,6 +194,8 @@ class Session {
     data.charts.push_back(tick_chart());
     data.motion = recorder_.motion().motion(sim_.world);
     if (!recorder_.write_error().empty()) data.notes.push_back("Not everything could be recorded: " + recorder_.write_error() + ".");
+    if (result.calibration && !result.calibration->doubt.empty())
+      data.notes.push_back("Doubtful calibration: " + result.calibration->doubt + ". " + result.calibration->remedy);
     for (const world::UnintendedContact& contact : platform_->world().contacts().unintended)
       data.notes.push_back("Unintended contact: " + judge::contact_text(contact) + ".");
     return data;

@@ -63,6 +63,17 @@ Json to_json(const ErrorRecord& errors) {
           {"peaks_elsewhere", number(errors.peaks_elsewhere)}};
 }
 
+Json to_json(const CalibrationRecord& calibration) {
+  Json json{{"marker_side_percent", number(calibration.marker_side_percent)},
+            {"marker_corners_mm", number(calibration.marker_corners_mm)},
+            {"plane_bend_mm", number(calibration.plane_bend_mm)},
+            {"panel_shift_mm", number(calibration.panel_shift_mm)},
+            {"faces_off_mm", number(calibration.faces_off_mm)}};
+  if (!calibration.doubt.empty()) json["doubt"] = calibration.doubt;
+  if (!calibration.remedy.empty()) json["remedy"] = calibration.remedy;
+  return json;
+}
+
 Json to_json(const DockingRecord& docking) {
   return {{"attempts", docking.attempts},
           {"offset_mm", number(docking.offset_mm)},
@@ -143,6 +154,7 @@ std::string result_json(const RunResult& result) {
   document["phases"] = list(result.phases);
   document["tasks"] = list(result.tasks);
   document["errors"] = to_json(result.errors);
+  if (result.calibration) document["calibration"] = to_json(*result.calibration);
   if (result.docking) document["docking"] = to_json(*result.docking);
   document["contact"] = {{"peak_force_n", number(result.contact.peak_force_n)},
                          {"unintended_contacts", result.contact.unintended_contacts}};

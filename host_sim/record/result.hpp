@@ -53,6 +53,17 @@ struct ErrorRecord {
   double peaks_elsewhere = unknown;       // 0..1 of the visible columns: on another piece than the brightest, and not on that
 };
 
+// By the core's own looks, the largest of each, and presses: what they leave over that an exact calibration would explain. Not held against the truth.
+struct CalibrationRecord {
+  double marker_side_percent = unknown;  // of the marker's square on the scanned plane: side over the surveyed one, less 100; signed
+  double marker_corners_mm = unknown;    // rms of its corners about a square
+  double plane_bend_mm = unknown;        // what neighbouring points of the plane err by together
+  double panel_shift_mm = unknown;       // of the panel from look to look
+  double faces_off_mm = unknown;         // how much deeper than seen the presses felt the buttons' faces, in the mean
+  std::string doubt{};                   // the first that was found; empty: all fits
+  std::string remedy{};
+};
+
 struct DockingRecord {
   int attempts = 0;
   double offset_mm = unknown;
@@ -147,7 +158,8 @@ struct RunResult {
   std::vector<PhaseRecord> phases;
   std::vector<TaskRecord> tasks;
   ErrorRecord errors;
-  std::optional<DockingRecord> docking;  // when the vehicle swims
+  std::optional<CalibrationRecord> calibration;  // none: no look found plane and marker
+  std::optional<DockingRecord> docking;          // when the vehicle swims
   ContactRecord contact;
   CoreRecord core;
   BusRecord bus;

@@ -112,6 +112,18 @@ ErrorRecord errors_from(const Json& json) {
   return errors;
 }
 
+CalibrationRecord calibration_from(const Json& json) {
+  CalibrationRecord calibration;
+  read(json, "marker_side_percent", calibration.marker_side_percent);
+  read(json, "marker_corners_mm", calibration.marker_corners_mm);
+  read(json, "plane_bend_mm", calibration.plane_bend_mm);
+  read(json, "panel_shift_mm", calibration.panel_shift_mm);
+  read(json, "faces_off_mm", calibration.faces_off_mm);
+  read(json, "doubt", calibration.doubt);
+  read(json, "remedy", calibration.remedy);
+  return calibration;
+}
+
 DockingRecord docking_from(const Json& json) {
   DockingRecord docking;
   read(json, "attempts", docking.attempts);
@@ -176,6 +188,7 @@ RunResult result_from(const Json& document) {
   for (const Json& phase : section(document, "phases")) result.phases.push_back(phase_from(phase));
   for (const Json& task : section(document, "tasks")) result.tasks.push_back(task_from(task));
   result.errors = errors_from(section(document, "errors"));
+  if (const Json& calibration = section(document, "calibration"); !calibration.empty()) result.calibration = calibration_from(calibration);
   if (const Json& docking = section(document, "docking"); !docking.empty()) result.docking = docking_from(docking);
   read(section(document, "contact"), "peak_force_n", result.contact.peak_force_n);
   read(section(document, "contact"), "unintended_contacts", result.contact.unintended_contacts);

@@ -27,7 +27,23 @@ TEST_P(AButton, ThatWorksGoesInByItsStroke) {
     EXPECT_EQ(result(rig).presses, 1u);
     EXPECT_NEAR(result(rig).travel_m, PanelLayout{}.button_stroke_m, 0.0015) << "seed " << seed;
     EXPECT_EQ(result(rig).failure, StepFailure::none);
+    EXPECT_TRUE(result(rig).face_felt);
+    EXPECT_NEAR(result(rig).face_off_m, 0, 0.0036) << "seed " << seed;
   }
+}
+
+// The panel is not where the look said that it is, by as much as a camera whose principal point is off puts it. The arm's own error is in both presses.
+TEST(AButtonThatIsSeenAtAWrongDistance, IsFeltWhereItIs) {
+  const auto felt_m = [](double deeper_m) {
+    Rig rig(press("centre"), 1, {}, [&](hal::SimConfig& truth) {
+      truth.world.base_from_panel.translation() -= deeper_m * truth.world.base_from_panel.linear().col(2);
+    });
+    rig.start();
+    EXPECT_TRUE(rig.run_to_end()) << rig.story();
+    EXPECT_TRUE(result(rig).face_felt) << rig.story();
+    return result(rig).face_off_m;
+  };
+  EXPECT_NEAR(felt_m(0.004) - felt_m(-0.004), 0.008, 0.0005);
 }
 
 int clicks_felt(const char* drop_n, std::uint64_t seeds) {

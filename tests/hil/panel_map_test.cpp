@@ -173,6 +173,42 @@ TEST(PanelMap, DoubtsThePanelsPlaceByThePlanesBendAndNotByItsPointsScatter) {
   EXPECT_EQ(speckled.doubt().shift_m, plain.doubt().shift_m);
 }
 
+TEST(PanelMap, TellsWhatItsLookLeavesOver) {
+  const Panel panel;
+  PanelMap map = panel.map();
+  EXPECT_FALSE(map.fit().known);
+  ASSERT_EQ(map.update(panel.seen(0)), StepFailure::none);
+  ASSERT_TRUE(map.fit().known);
+  EXPECT_NEAR(map.fit().marker_side_error, 0, 1e-6);
+  EXPECT_NEAR(map.fit().marker_corners_m, 0, 1e-7);
+  EXPECT_EQ(map.fit().panel_shift_m, 0);
+  EXPECT_NEAR(map.fit().marker_size_m, panel.layout.marker_size_m, 1e-7);
+
+  // The marker's plane a hundredth farther than it is: the rays of its corners meet it in a square so much larger.
+  PanelResult far = panel.seen(0);
+  const double camera_m = far.fit.plane.signed_distance_m(panel.camera.base_from_camera.translation());
+  far.fit.plane.offset_m += 0.01 * (camera_m - panel.layout.panel_from_tag().translation().z());
+  far.fit.bend_m = 0.0004;
+  ASSERT_EQ(map.update(far), StepFailure::none);
+  EXPECT_NEAR(map.fit().marker_side_error, 0.01, 1e-6);
+  EXPECT_NEAR(map.fit().marker_corners_m, 0, 1e-7);
+  EXPECT_NEAR(map.fit().plane_bend_m, 0.0004, 1e-9);
+  EXPECT_NEAR(map.fit().panel_shift_m, (map.base_from_panel().translation() - panel.layout.nominal_base_from_panel().translation()).norm(),
+              1e-6);
+
+  // One corner off by a fiftieth of the side: no square.
+  PanelResult skewed = panel.seen(0);
+  const double side_px = (skewed.marker.corners_px[1] - skewed.marker.corners_px[0]).norm();
+  skewed.marker.corners_px[2].x() += 0.02 * side_px;
+  (void)map.update(skewed);
+  EXPECT_GT(map.fit().marker_corners_m, 0.005 * panel.layout.marker_size_m);
+
+  PanelResult no_marker = panel.seen(0);
+  no_marker.marker.found = false;
+  (void)map.update(no_marker);
+  EXPECT_FALSE(map.fit().known);
+}
+
 TEST(PanelMap, NamesAPointerThatItDidNotRecogniseWhereTheStopsLeaveItOpen) {
   const Panel panel;
   PanelResult faint = panel.seen(90);

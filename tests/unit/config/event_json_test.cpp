@@ -33,6 +33,24 @@ TEST(EventJson, AFailedLookHasItsCauseItsRemedyAndWhatItSaw) {
   EXPECT_NE(json["seen"].get<std::string>().find("100 % white"), std::string::npos);
 }
 
+TEST(EventJson, APanelThatWasFoundTellsWhatItsLookLeftOver) {
+  Event event;
+  event.kind = Event::Kind::located;
+  mission::Sight sight;
+  EXPECT_FALSE(event_json(event, {}, sight).contains("fit"));
+  sight.fit = {true, 0.08f, 32, 0.0009765625f, 0.00025f, 0.0005f, 0.001f};
+  const auto good = event_json(event, {}, sight)["fit"];
+  EXPECT_NEAR(good["marker_side_percent"], 0.09765625, 1e-9);
+  EXPECT_NEAR(good["marker_corners_mm"], 0.25, 1e-6);
+  EXPECT_NEAR(good["plane_bend_mm"], 0.5, 1e-6);
+  EXPECT_NEAR(good["panel_shift_mm"], 1, 1e-6);
+  EXPECT_FALSE(good.contains("doubt"));
+  sight.fit.marker_side_error = -0.03f;
+  const auto doubted = event_json(event, {}, sight)["fit"];
+  EXPECT_TRUE(doubted.contains("doubt"));
+  EXPECT_TRUE(doubted.contains("remedy"));
+}
+
 TEST(EventJson, ADrivesFaultNamesItsJoint) {
   const auto json = event_json(fault_event(safety::Fault::drive_fault, 2), {}, {});
   EXPECT_EQ(json["text"], "drive fault: elbow");

@@ -63,6 +63,7 @@ TEST(Result, ComesBackFromItsFileAsItWas) {
   result.faults_left_out = 4;
   result.provenance = {"2026-11-24T21:34:07Z", "lanternfish run a --seed 7", {"a.b=1", "c=2"}, "a.yaml", "0123"};
   result.errors.peak_rms_px = unknown;
+  result.calibration = CalibrationRecord{-0.31, 0.12, 0.2, unknown, -1.25, "the marker is too small", "survey it"};
   const std::string text = result_json(result);
   EXPECT_EQ(result_json(parse_result_json(text, "result.json")), text);
 }

@@ -71,6 +71,31 @@ TEST(StatusText, SaysWhatToDoWhenABootFailed) {
       << status_text(status);
 }
 
+// A user learns that the marker was printed too small before the arm misses the valve.
+TEST(StatusText, SaysThatTheCalibrationIsDoubtful) {
+  const Json none{{"p50", 0}, {"p999", 0}, {"max", 0}};
+  const auto said = [&](float side_error) {
+    Telemetry telemetry;
+    telemetry.sight.look = 1;
+    telemetry.sight.fit = {true, 0.08f, 32, side_error, 0, 0, 0};
+    Json status = status_json({}, telemetry, {});
+    status["latency"] = {{"wake_up_us", none}, {"tick_us", none}};
+    status["lost"] = Json::array();
+    status["counters"] = Json::object();
+    return status_text(status);
+  };
+  EXPECT_EQ(said(0.001f).find("doubtful calibration"), std::string::npos);
+  EXPECT_NE(said(-0.03f).find("  doubtful calibration: the marker's square on the scanned plane is 3.0 % smaller than surveyed"),
+            std::string::npos)
+      << said(-0.03f);
+  ControlReport felt;
+  (void)felt.tasks.push_back(
+      mission::TaskResult{.task = {.kind = mission::Task::Kind::press_button}, .face_felt = true, .face_off_m = 0.006});
+  EXPECT_NEAR(status_json(felt, {}, {})["fit"]["faces_off_mm"], 6, 1e-9);
+  EXPECT_TRUE(status_json(felt, {}, {})["fit"].contains("doubt"));
+  EXPECT_FALSE(status_json({}, {}, {}).contains("fit")) << "before the first look";
+}
+
 TEST(Commissioned, AJointThatSomethingRubsAgainstIsLeftOutAndTheOthersAreTakenOver) {
   std::array<Motor, joint_count> motors;
   for (Motor& motor : motors) motor.coulomb_nm = 1e-3, motor.viscous_nm_s = 1e-6;
