@@ -17,12 +17,12 @@ struct TaskResult {
   Task task;
   bool attempted = false;
   bool done = false;
-  double reached_rad = 0;                   // turn_valve: as the second look saw it
-  std::uint32_t presses = 0;                // press_button: went in and bottomed
-  double travel_m = 0;                      // of the last press: how far the button went in
-  bool click_felt = false;                  // in the last press
-  bool face_felt = false;                   // by the last press, near where the face was seen
-  double face_off_m = 0;                    // then: how much deeper than it was seen
+  double reached_rad = 0;     // turn_valve: as the second look saw it
+  std::uint32_t presses = 0;  // press_button: went in and bottomed
+  double travel_m = 0;        // of the last press: how far the button went in
+  bool click_felt = false;    // in the last press
+  bool face_felt = false;     // by the last press, near where the face was seen
+  double face_off_m = 0;      // then: how far behind the place where it was seen, to half of what an aslant finger leaves open
   StepFailure failure = StepFailure::none;  // of the last press: stuck, missing, yielding, or touched too early; none where it was pressed
 };
 using TaskResults = StaticVector<TaskResult, MissionConfig::max_tasks>;

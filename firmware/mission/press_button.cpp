@@ -1,5 +1,8 @@
 #include "firmware/mission/press_button.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace lf::mission {
 
 namespace {
@@ -29,6 +32,13 @@ bool tool_for_tip(const Vec3& tip_m, double tip_beyond_m, double roll_rad, arm::
     tool_m = tip_m - tip_beyond_m * arm::approach_axis(q_rad);
   }
   return false;
+}
+
+// Fingers that come aslant touch with a corner, so far before the middle of their tips at most. How much of it, the roundness of corners and caps leaves open.
+double corner_ahead_m(const arm::JointVector& q_rad, const Vec3& normal, double button_width_m) {
+  const double half_m = 0.5 * std::min(arm_geometry::jaw.pad_width_m, button_width_m);
+  const Eigen::Matrix3d base_from_tool = arm::base_from_tool(q_rad).linear();
+  return half_m * (std::abs(normal.dot(base_from_tool.col(0))) + std::abs(normal.dot(base_from_tool.col(1))));
 }
 
 double closed_tip_beyond_tool_m() { return arm::tip_beyond_tool_m(arm::jaw_from_gap(0)); }
@@ -144,7 +154,8 @@ Progress PressButton::run_press(const StepTick& tick) {
   result.travel_m = feel_.travel_m();
   result.click_felt = feel_.clicked();
   result.face_felt = feel_.touched();
-  result.face_off_m = feel_.touch_depth_m();
+  result.face_off_m =
+      feel_.touch_depth_m() + 0.5 * corner_ahead_m(bench.measured_rad(), bench.map.normal(), bench.mission().layout.button_width_m);
   result.failure = judge(bench);
   if (result.failure == StepFailure::early_contact) return Progress::failed_by_touch(result.failure);
   // What may have gone in unfelt is not pressed again: nobody asked for two clicks.

@@ -30,8 +30,10 @@ Words words(StepFailure failure) {
       return {"no usable marker seen",
               "It is hidden, out of view, or too dim: look at the still image; check panel.marker_id and the lamps."};
     case StepFailure::no_handle:
-      return {"no handle seen",
-              "Nothing of its height and length stands before the valve: check panel.handle_length_m and panel.handle_height_m."};
+      return {
+          "no handle seen",
+          "Nothing of its height and length stands before the valve: check panel.handle_length_m and panel.handle_height_m, and in turbid "
+          "water whether the laser reaches it."};
     case StepFailure::panel_moved: return {"the panel has moved", "The docking slipped: dock again."};
     case StepFailure::not_homed: return {"homing failed", "Commission the joint again."};
     case StepFailure::too_few_points:
@@ -83,7 +85,9 @@ Words words(StepFailure failure) {
               "is there, a joint's torque reading stands still."};
     case StepFailure::button_yields:
       return {"the button gives way without bottoming",
-              "Check panel.button_stroke_m, mission.press_overtravel_m and mission.press_torque_nm."};
+              "Check panel.button_stroke_m, mission.press_overtravel_m and mission.press_torque_nm. A panel farther off than it was seen "
+              "feels so, "
+              "too: check the calibration of camera and laser, and the joints' zeros."};
     case StepFailure::arm_in_its_own_way: return {"the arm is in its own way", "Dock nearer to the nominal place, or jog it apart."};
   }
   return {"unknown", ""};

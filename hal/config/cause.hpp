@@ -26,11 +26,14 @@ Cause cause_of(safety::Fault fault, std::int32_t code, const mission::Sight& sig
 // Of a look's failure, by what it saw. Empty for a failure that is no matter of seeing, and where the numbers name no cause.
 Cause sight_cause(StepFailure failure, const mission::Sight& sight);
 
-// By how much deeper than they were seen the faces of the buttons were felt, in the mean; nothing when none was felt.
+// How far behind the place where they were seen the faces of the buttons were felt, in the mean; nothing when none was felt.
 std::optional<double> faces_off_m(const mission::TaskResults& results);
 
-// Of looks and presses that leave over more than the calibration's own uncertainty explains: what does not fit, and what to do. Empty where all fits, or nothing is
-// known.
+// What the marker's side may be off by, of a fit whose size and side are above 0.
+double allowed_side_error(const mission::CalibrationFit& fit);
+
+// Of a look and presses that leave over more than the calibration's own uncertainty explains: all that does not fit, and what to do. Empty where all fits, or nothing
+// is known.
 Cause calibration_cause(const mission::CalibrationFit& fit, const mission::TaskResults& results);
 
 // What a look saw, for people: "179 images of the laser, peaks in 3 % of their columns; still: ...". Empty when there was no look.

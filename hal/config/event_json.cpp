@@ -1,5 +1,7 @@
 #include "hal/config/event_json.hpp"
 
+#include <cmath>
+
 #include "hal/config/cause.hpp"
 #include "hal/config/fault_text.hpp"
 
@@ -29,7 +31,7 @@ Json fit_json(const mission::CalibrationFit& fit, const mission::TaskResults& re
     json["marker_side_percent"] = 100 * static_cast<double>(fit.marker_side_error);
     json["marker_corners_mm"] = 1e3 * static_cast<double>(fit.marker_corners_m);
     json["plane_bend_mm"] = 1e3 * static_cast<double>(fit.plane_bend_m);
-    json["panel_shift_mm"] = 1e3 * static_cast<double>(fit.panel_shift_m);
+    if (std::isfinite(fit.panel_shift_m)) json["panel_shift_mm"] = 1e3 * static_cast<double>(fit.panel_shift_m);
   }
   if (const std::optional<double> off_m = faces_off_m(results)) json["faces_off_mm"] = 1e3 * *off_m;
   const Cause doubt = calibration_cause(fit, results);

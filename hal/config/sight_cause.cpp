@@ -87,7 +87,9 @@ Cause no_line() {
 Cause line_saturated() { return {"the laser's line is white over its width", "Lower camera.exposure_us or the laser's power."}; }
 Cause marker_hidden() {
   return {"the marker is hidden or another one",
-          "Panel and handle are at their place and the picture has contrast: look at the still picture for what covers the marker; check "
+          "Panel and handle are at their place and the picture has contrast: look at the still picture for what covers, blurs or outshines "
+          "the marker, as haze in "
+          "the lamps' light does; check "
           "panel.marker_id "
           "and panel.marker_centre_m."};
 }
@@ -108,7 +110,8 @@ Cause panel_elsewhere() {
   return {
       "neither marker nor handle is at its place",
       "The picture has contrast: look at the still picture. Where the panel stands elsewhere, dock again, nearer to the nominal place, and "
-      "check panel.ahead_m, panel.right_m and panel.down_m; where it is covered, clean it."};
+      "check panel.ahead_m, panel.right_m and panel.down_m; where it is covered, clean it; where the picture is "
+      "blurred or hazy, check the lens, the exposure and the lamps."};
 }
 
 // The panel was seen somewhere: is that where docking allows it?
@@ -195,7 +198,8 @@ std::string sight_text(const Sight& sight) {
   text += formatted("; still: mean %.0f grey", sight.still.mean_grey) + formatted(", contrast %.1f", sight.still.contrast_grey) +
           formatted(", noise %.1f", sight.still.noise_grey) + formatted(", %.0f %% white", 100 * sight.still.white_share);
   text += sight.marker_found ? formatted(", marker %.0f mm off its nominal place", 1e3 * sight.marker_off_m) : ", no marker";
-  if (sight.fit.known) text += formatted(", its side on the plane %+.1f %% off", 100 * static_cast<double>(sight.fit.marker_side_error));
+  if (sight.fit.known)
+    text += formatted(", its side %+.1f %% against the surveyed one", 100 * static_cast<double>(sight.fit.marker_side_error));
   return text + (sight.handle_found ? formatted(", handle %.0f mm", 1e3 * sight.handle_off_m) : ", no handle");
 }
 

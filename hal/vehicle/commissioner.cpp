@@ -65,15 +65,13 @@ Commissioner::~Commissioner() {
   }
 }
 
-// While a new core waits for its reset the old one goes on to hear its drives: what they lose meanwhile has to leave the file. What they had lost before may
-// have been found since.
+// While a new core waits for its reset the old one goes on to hear its drives: what they lose meanwhile has to leave the file. A report from before a commissioning's
+// end does not know what it has found.
 void Commissioner::hear(const ControlReport& report) {
-  if (report.cores_taken != cores_taken_) return;
+  if (report.cores_taken != cores_taken_ || report.commissionings_ended != ended_) return;
   if (stage_ == Stage::installing) {
-    JointSet lost_since{};
-    for (std::size_t i = 0; i < joint_count; ++i) lost_since[i] = report.zeros_lost[i] && !lost_at_begin_[i];
-    zero_lost_ = either(zero_lost_, lost_since);
-    forget_in_file(lost_since);
+    zero_lost_ = either(zero_lost_, report.zeros_lost);
+    forget_in_file(report.zeros_lost);
   } else if (!busy()) {
     jaw_doubted_ = report.jaw_doubted;
     lose_zeros(report.zeros_lost);
@@ -135,19 +133,17 @@ void Commissioner::note_forgotten() {
 
 std::string Commissioner::unknown_joints() const {
   JointSet unknown{};
-  for (std::size_t i = 0; i < joint_count; ++i) unknown[i] = zero_lost_[i] || !core_.network.drives[i].may_have_power();
+  for (std::size_t i = 0; i < joint_count; ++i) unknown[i] = zero_lost_[i] || disowned_[i] || !core_.network.drives[i].may_have_power();
   return names_of(unknown);
 }
 
 std::optional<std::string> Commissioner::begin(const CommissionOrder& order, Time ordered) {
-  if (stage_ != Stage::idle) return "a commissioning is under way";
+  if (stage_ != Stage::idle || answer_) return "a commissioning is under way";
   if (file_.empty()) return "'homing.file' names no file to write the zeros to";
   if (file_is_shipped_) return "'homing.file' is the shipped " + file_ + ": copy it, and name the copy";
   order_ = order;
   ordered_ = ordered;
   called_off_.clear();
-  lost_at_begin_ = zero_lost_;
-  answer_.reset();
   prepared_ = std::make_shared<Prepared>();
   Commissioning::Config setup;
   setup.network = core_.network;
@@ -162,7 +158,8 @@ std::optional<std::string> Commissioner::begin(const CommissionOrder& order, Tim
     bool& known = setup.network.drives[i].zero_known;
     known = known && !zero_lost_[i];
   }
-  setup.jaw_known = setup.network.drives[static_cast<std::size_t>(Joint::jaw)].zero_known && !jaw_doubted_;
+  constexpr auto jaw = static_cast<std::size_t>(Joint::jaw);
+  setup.jaw_known = setup.network.drives[jaw].zero_known && !jaw_doubted_ && !disowned_[jaw];
   const bool posted = worker_.post([prepared = prepared_, setup, file = file_, lost = zero_lost_, core = core_]() mutable {
     std::string problem;
     try {
@@ -216,18 +213,33 @@ void Commissioner::step() {
   if (stage_ == Stage::storing) install();
 }
 
-bool Commissioner::call_off_before_it_moves() {
-  if (stage_ != Stage::preparing || !called_off_.empty()) return false;
-  called_off_ = "another order came before the homing file was written";
-  answer_ = refused(called_off_ + ": nothing moves");
+bool Commissioner::call_off_before_it_moves(const std::string& why) {
+  const bool may_be_waiting = stage_ == Stage::preparing || stage_ == Stage::lending || stage_ == Stage::running;
+  if (!may_be_waiting || !called_off_.empty()) return false;
+  if (stage_ == Stage::preparing) {
+    called_off_ = why;
+    answer_ = refused(disown(why));
+  } else {
+    called_off_ = why;
+    rings_.loan_is_void.store(true, std::memory_order_release);
+  }
   return true;
+}
+
+// By the order's own words the earlier zeros are wrong, whether or not it moved anything.
+std::string Commissioner::disown(const std::string& why) {
+  const std::string text = why + ": nothing moves";
+  if (!order_.moved) return text;
+  disowned_ = either(disowned_, order_.joints);
+  return text +
+         ". These joints' zeros have moved, as the order says, and take no power until they are commissioned: " + names_of(order_.joints);
 }
 
 // A disk that takes its time must not have the arm move when nobody expects it any more.
 void Commissioner::drop_late() {
   if (!called_off_.empty() || monotonic_now() - ordered_ < begin_within) return;
-  called_off_ = "the homing file could not be written in time";
-  answer_ = refused(called_off_ + ": nothing moves. Look at its disk");
+  called_off_ = "the homing file could not be written in time, look at its disk";
+  answer_ = refused(disown(called_off_));
 }
 
 void Commissioner::lend() {
@@ -235,31 +247,43 @@ void Commissioner::lend() {
   {
     const std::lock_guard lock(prepared_->mutex);
     if (!prepared_->done) return;
-    if (!prepared_->problem.empty() && called_off_.empty()) answer_ = refused(prepared_->problem);
+    if (!prepared_->problem.empty() && called_off_.empty()) answer_ = refused(prepared_->problem + old_zero_stays());
     commissioning_ = std::move(prepared_->commissioning);
     marks_ = prepared_->marks;
   }
   if (!called_off_.empty() && commissioning_ != nullptr) {
     commissioning_.reset();
-    (void)worker_.post([marks = marks_, file = file_] { lift(marks, file); });
+    // Zeros that have moved stay in doubt.
+    if (!order_.moved) (void)worker_.post([marks = marks_, file = file_] { lift(marks, file); });
   }
   stage_ = commissioning_ != nullptr ? Stage::lending : Stage::idle;
   last_ = nullptr;
   lent_ = monotonic_now();
-  if (commissioning_ != nullptr) (void)rings_.commissionings.push(commissioning_.get());
+  if (commissioning_ == nullptr) return;
+  rings_.loan_is_void.store(false, std::memory_order_release);
+  (void)rings_.commissionings.push({commissioning_.get(), ordered_ + begin_within});
+}
+
+// Of an order that was refused: it changes nothing.
+std::string Commissioner::old_zero_stays() const {
+  return order_.moved ? ". Nothing was begun: the core still trusts the old zero of a joint that has moved" : "";
+}
+
+void Commissioner::not_begun() {
+  if (called_off_.empty() && monotonic_now() - ordered_ >= begin_within) called_off_ = "the control thread did not begin it in time";
+  const bool is_void = !called_off_.empty();
+  const std::string why =
+      is_void ? disown(called_off_) : "the arm is not at rest without power: `abort` or `reset` first" + old_zero_stays();
+  if (!is_void || !order_.moved) (void)worker_.post([marks = marks_, file = file_] { lift(marks, file); });
+  if (stage_ == Stage::running) return end_with({{"state", "failed"}, {"why", why}});
+  answer_ = refused(why);
+  stage_ = Stage::idle;
 }
 
 void Commissioner::take_back(const CommissioningResult& result) {
   const std::unique_ptr<Commissioning> ended = std::move(commissioning_);
-  if (!result.begun) {
-    std::string why = "the arm is not at rest without power: `abort` or `reset` first";
-    if (order_.moved) why += ". Nothing was begun: the core still trusts the old zero of a joint that has moved";
-    (void)worker_.post([marks = marks_, file = file_] { lift(marks, file); });
-    if (stage_ == Stage::running) return end_with({{"state", "failed"}, {"why", why}, {"without_power", true}});
-    answer_ = refused(why);
-    stage_ = Stage::idle;
-    return;
-  }
+  if (!result.begun) return not_begun();
+  ++ended_;
   if (last_.is_null()) answer_ = Json{{"ok", true}, {"standing", "commissioning"}};
   const bool well = ended->state() == Commissioning::State::done;
   const JointSet lost = ended->zeros_lost();
@@ -381,6 +405,7 @@ void Commissioner::install() {
   for (std::size_t i = 0; i < joint_count; ++i) {
     const canopen::DriveSetup& drive = core_.network.drives[i];  // what the core has, whatever else the file says
     if (prepared_->offsets.known[i]) forgotten_[i] = false;
+    if (prepared_->found[i] && drive.zero_known) disowned_[i] = false;
     if (drive.zero_known) zeros[config::joint_name(i)] = drive.encoder_zero_counts;
     if (prepared_->taken.moved_rad[i] > 0) moved[config::joint_name(i)] = prepared_->taken.moved_rad[i];
   }

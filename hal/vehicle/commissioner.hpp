@@ -35,8 +35,9 @@ class Commissioner {
   // Why it cannot begin, in words; nothing: answer() tells later whether it has.
   // `ordered`: when it came from the operator.
   std::optional<std::string> begin(const CommissionOrder& order, Time ordered);
-  // Whether one was being prepared, and nothing of it will move: any other order to the core means that somebody no longer waits for it.
-  bool call_off_before_it_moves();
+  // One that has not begun will not: another order to the core came, or who ordered it has gone. One that moves by then goes on; an `abort` stops it as an order.
+  // True when this is the first of these calls while one may still be before its begin.
+  bool call_off_before_it_moves(const std::string& why);
   // {"ok": ...} once after each begin(), when the control thread has begun it or when it could not.
   std::optional<Json> answer();
   // From begin() until the new zeros are on the disk and in the core.
@@ -77,6 +78,9 @@ class Commissioner {
   enum class Stage { idle, preparing, lending, running, storing, installing };
 
   void lose_zeros(const JointSet& lost);
+  std::string disown(const std::string& why);
+  std::string old_zero_stays() const;
+  void not_begun();
   void forget_in_file(const JointSet& lost);
   void drop_late();
   void note_forgotten();
@@ -93,14 +97,15 @@ class Commissioner {
   void write_down(const Json& outcome) const;  // in the log
 
   ControllerConfig core_;
-  JointSet zero_lost_{};      // of the core at work
-  JointSet lost_at_begin_{};  // of it, when the commissioning began
-  JointSet still_lost_{};     // those of them that the commissioning under way has not found
-  JointSet forgotten_{};      // those that the file has no more
-  Time try_again_;            // when the file could not be written; 0: it could
-  JointSet last_tried_{};     // a failure is told once for the same joints
+  JointSet zero_lost_{};   // of the core at work
+  JointSet still_lost_{};  // those of them that the commissioning under way has not found
+  JointSet disowned_{};    // called wrong by an order that was called off before it moved: without power until they are found
+  JointSet forgotten_{};   // those that the file has no more
+  Time try_again_;         // when the file could not be written; 0: it could
+  JointSet last_tried_{};  // a failure is told once for the same joints
   bool jaw_doubted_ = false;
   std::uint32_t cores_taken_ = 0;  // by the control loop
+  std::uint32_t ended_ = 0;        // commissionings that had begun
   bool without_power_ = true;      // after the last one
   std::shared_ptr<Forgetting> forgetting_;
   std::string file_;
@@ -112,7 +117,7 @@ class Commissioner {
   Stage stage_ = Stage::idle;
   CommissionOrder order_;
   Time ordered_, lent_;
-  std::string called_off_;  // why what is being prepared will not move; empty: it will
+  std::string called_off_;  // why it shall not begin, unless it has; empty: it shall
   std::shared_ptr<Prepared> prepared_;
   std::unique_ptr<Commissioning> commissioning_;  // lent while it runs
   Marks marks_;                                   // in the file, meanwhile

@@ -68,6 +68,8 @@ class Commissioning {
 
   void on_frame(const CanFrame& frame, Time t) { network_.on_frame(frame, t); }
   const canopen::IoModule& io() const { return network_.io(); }
+  // Before its first tick: its drive has lost its position, as somebody else has heard.
+  void lose_zero(Joint joint) { network_.axis(joint).lose_zero(); }
   void tick(Time now, canopen::Outbox& outbox);
   // Stops what moves, takes the power, and ends as failed for this reason. The first reason holds.
   void stop(const char* why);

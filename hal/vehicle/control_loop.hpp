@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <utility>
 
@@ -25,9 +26,14 @@ struct PortFault {
   PortStatus code = port_ok;
 };
 
+struct CommissioningLoan {
+  Commissioning* commissioning = nullptr;
+  Time expires = Time::from_ns(std::numeric_limits<std::int64_t>::max());  // not begun later: nobody expects it any more
+};
+
 struct CommissioningResult {
   Commissioning* commissioning = nullptr;
-  bool begun = false;  // false: the arm had power, or another one is under way
+  bool begun = false;  // false: the arm had power, another one is under way, or it was called off or late
 };
 
 struct LoopRings {
@@ -41,7 +47,8 @@ struct LoopRings {
   SpscRing<ControlReport, 8> reports;    // control -> status
   // A commissioning is lent to the control thread and comes back when it has ended, or at once when it cannot begin. A core with other zeros is exchanged
   // for the one before while nothing has power. Whoever lends owns: the control thread neither makes nor deletes.
-  SpscRing<Commissioning*, 2> commissionings;     // operator -> control
+  SpscRing<CommissioningLoan, 2> commissionings;  // operator -> control
+  std::atomic<bool> loan_is_void{false};          // operator -> control: the one that is lent shall not begin any more
   SpscRing<CommissioningResult, 4> commissioned;  // control -> operator
   SpscRing<Controller*, 2> cores;                 // operator -> control
   SpscRing<Controller*, 2> old_cores;             // control -> operator
@@ -123,13 +130,29 @@ class ControlLoop {
         ++report_.cores_taken;
       }
     }
-    for (Commissioning* next = nullptr; rings_.commissionings.pop(next);) {
-      if (commissioning_ == nullptr && at_rest() && !has_to_be_reset()) {
-        commissioning_ = next;
+    for (CommissioningLoan next; rings_.commissionings.pop(next);) {
+      const bool wanted = !rings_.loan_is_void.load(std::memory_order_acquire) && now_ <= next.expires;
+      if (commissioning_ == nullptr && wanted && at_rest() && !has_to_be_reset()) {
+        commissioning_ = next.commissioning;
+        tell_lost_zeros(*commissioning_);
       } else {
-        (void)rings_.commissioned.push({next, false});
+        (void)rings_.commissioned.push({next.commissioning, false});
       }
     }
+  }
+
+  // It hears the drives from now on, and may have been made before they said so.
+  void tell_lost_zeros(Commissioning& begun) const {
+    for (std::size_t i = 0; i < joint_count; ++i) {
+      const auto joint = static_cast<Joint>(i);
+      if (controller_->network().axis(joint).zero_lost()) begun.lose_zero(joint);
+    }
+  }
+
+  // Its drive has lost it, and it was not found since.
+  bool zero_lost(const Controller& core, std::size_t joint) const {
+    const canopen::Axis& axis = core.network().axis(static_cast<Joint>(joint));
+    return axis.zero_lost() && !(found_[joint] && axis.stats().zeros_lost == losses_when_found_[joint]);
   }
 
   // What the core before was told since it began, and what it has heard of its drives: a zero that was lost after it was found is lost.
@@ -140,8 +163,7 @@ class ControlLoop {
     (void)next.on_order(order, now_);
     for (std::size_t i = 0; i < joint_count; ++i) {
       const auto joint = static_cast<Joint>(i);
-      const canopen::Axis& axis = before.network().axis(joint);
-      if (axis.zero_lost() && !(found_[i] && axis.stats().zeros_lost == losses_when_found_[i])) next.lose_zero(joint);
+      if (zero_lost(before, i)) next.lose_zero(joint);
     }
     if (before.mission().jaw_doubted() && !found_[static_cast<std::size_t>(Joint::jaw)]) next.doubt_jaw();
     found_.fill(false);
@@ -178,6 +200,7 @@ class ControlLoop {
       // The core latches it, and wants its reset.
       if (commissioning_->emergency_stopped()) (void)controller_->on_command(Command::emergency_stop, now_);
       note_zeros(*commissioning_);
+      ++report_.commissionings_ended;
       core_has_turned_ = false;
       (void)rings_.commissioned.push({std::exchange(commissioning_, nullptr), true});
       if (stopping_) (void)controller_->on_command(Command::shut_down, now_);
@@ -234,7 +257,7 @@ class ControlLoop {
     const canopen::Network& network = controller_->network();
     for (std::size_t i = 0; i < joint_count; ++i) {
       report_.axes[i] = network.axis(static_cast<Joint>(i)).state();
-      report_.zeros_lost[i] = network.axis(static_cast<Joint>(i)).zero_lost() && !network.axis(static_cast<Joint>(i)).may_have_power();
+      report_.zeros_lost[i] = zero_lost(*controller_, i) && !network.axis(static_cast<Joint>(i)).may_have_power();
       report_.axis_faults[i] = network.axis(static_cast<Joint>(i)).fault();
     }
     report_.jaw_doubted = mission.jaw_doubted();

@@ -24,6 +24,7 @@ struct ControlReport {
   std::array<canopen::AxisState, joint_count> axes{};
   std::array<bool, joint_count> zeros_lost{};  // the joint needs a zero: its drive has lost its position, and does not home by itself
   std::uint32_t cores_taken = 0;               // exchanges of the core before this report
+  std::uint32_t commissionings_ended = 0;      // that had begun, before this report
   bool jaw_doubted = false;                    // the core does not know what the jaw holds
   std::array<canopen::AxisFault, joint_count> axis_faults{};
   std::uint8_t inputs = 0, outputs = 0;  // of the output node, bits of can_map

@@ -64,6 +64,7 @@ Daemon::Daemon(const VehicleConfig& config, const Surroundings& surroundings)
   (void)platform_.open_camera(camera_lacks_);
   if (const int error = writer_.open(); error != 0)
     throw EnvironmentLacks(config.log_folder + ": the log cannot be written there: " + std::strerror(error));
+  server_.on_gone([this](OperatorServer::Ticket ticket) { desk_.gone(ticket); });
   if (const int error = server_.open(config.operator_socket, {config.operator_everyone, config.operator_group}); error != 0)
     throw EnvironmentLacks(OperatorServer::explain(error, config.operator_socket));
 }

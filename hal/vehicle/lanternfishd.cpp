@@ -11,6 +11,7 @@
 #include <cstring>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -164,15 +165,37 @@ int tell(const Options& options, const Json& request, const Json& reply) {
   return reply.value("ok", false) ? done : failed;
 }
 
-// A stop goes out whatever is wrong with the vehicle's file. Where that does not tell its socket, the usual one is taken, which may be another arm's: no success.
+// To each of these sockets. It was taken when one has taken it.
+int stop_at(const std::vector<std::string>& sockets, const Options& options, const Json& request) {
+  std::optional<int> status;
+  std::string silent;
+  for (const std::string& socket : sockets) {
+    try {
+      const int one = tell(options, request, ask_daemon(socket, request));
+      status = status ? std::min(*status, one) : one;
+    } catch (const EnvironmentLacks& lacks) {
+      silent += (silent.empty() ? "" : "; ") + std::string(lacks.what());
+    }
+  }
+  if (!status) throw EnvironmentLacks(silent);
+  return *status;
+}
+
+// A stop goes out whatever is wrong with the vehicle's file. Where that does not tell its socket, it goes to all that it may be, which may be another arm's: no
+// success.
 int ask_for_stop(const Options& options, const Json& request) {
   if (!options.socket.empty() || options.config.empty()) return tell(options, request, ask_daemon(socket_of(options), request));
-  const StopSocket found = stop_socket(options.config);
+  StopSocket found = stop_socket(options.config);
   for (const std::string& problem : found.problems) complain(problem);
-  if (!found.path.empty()) return tell(options, request, ask_daemon(found.path, request));
-  const std::string usual = usual_socket();
-  complain("the file does not tell the daemon's socket: the stop goes to " + usual + ". Look whether that is this arm's");
-  (void)tell(options, request, ask_daemon(usual, request));
+  if (found.told) return stop_at(found.paths, options, request);
+  for (const std::string& usual : {usual_socket(), VehicleConfig().operator_socket}) {
+    if (std::find(found.paths.begin(), found.paths.end(), usual) == found.paths.end()) found.paths.push_back(usual);
+  }
+  std::string all;
+  for (const std::string& path : found.paths) all += (all.empty() ? "" : " and ") + path;
+  complain("the file does not tell the daemon's socket: the stop goes to " + all + ". Look whether " +
+           (found.paths.size() > 1 ? "this arm's is among them" : "that is this arm's"));
+  (void)stop_at(found.paths, options, request);
   return failed;
 }
 

@@ -117,6 +117,7 @@ std::string OperatorServer::explain(int error, const std::string& path) {
 void OperatorServer::let_go(Client& client) {
   close(client.fd);
   client.fd = -1;
+  if (client.waits_for != 0 && gone_) gone_(client.waits_for);
 }
 
 void OperatorServer::forget_gone() {
@@ -163,9 +164,10 @@ void OperatorServer::accept_new(Time now) {
   }
 }
 
-void OperatorServer::read(Client& client) {
+void OperatorServer::read(Client& client, bool hung_up) {
   std::array<char, 4096> buffer{};
   const ssize_t bytes = recv(client.fd, buffer.data(), buffer.size(), 0);
+  if (bytes == 0 && !hung_up) client.waits_for = 0;  // it may still read: its order goes on
   if (bytes == 0 || (bytes < 0 && errno != EAGAIN && errno != EINTR)) return let_go(client);
   if (bytes > 0) client.text.append(buffer.data(), static_cast<std::size_t>(bytes));
 }
@@ -254,7 +256,8 @@ void OperatorServer::serve(Duration how_long, int wake) {
   const int ready = poll(polled.data(), polled.size(), lines_wait ? 0 : static_cast<int>(how_long.ns() / 1'000'000));
   const Time now = monotonic_now();
   for (std::size_t i = 0; ready > 0 && i < clients_.size(); ++i) {
-    if (polled[i + 2].revents != 0) read(clients_[i]);
+    const short come = polled[i + 2].revents;
+    if (come != 0) read(clients_[i], (come & (POLLHUP | POLLERR)) != 0);
   }
   forget_gone();
   for (Client& client : clients_) overtake(client, now);

@@ -57,6 +57,9 @@ class OperatorServer {
   OperatorServer(const OperatorServer&) = delete;
   OperatorServer& operator=(const OperatorServer&) = delete;
 
+  // Called with the ticket of a line whose client has hung up, or was let go, before its answer. One that has only sent its last line has not.
+  void on_gone(std::function<void(Ticket)> gone) { gone_ = std::move(gone); }
+
   // 0 or errno; `explain` puts it in words. The folder is made if need be. A socket of this user's that nobody listens to any more is replaced; one that
   // somebody does is EADDRINUSE, and whatever else stands at the path is EEXIST and left alone.
   int open(const std::string& path, const Access& access);
@@ -85,7 +88,7 @@ class OperatorServer {
   void let_go(Client& client);
   void refuse_length(Client& client);
   void forget_gone();
-  void read(Client& client);
+  void read(Client& client, bool hung_up);
   void overtake(Client& client, Time now);
   void take_line(Client& client, Time now);
   bool cut_line(Client& client, std::string& line);
@@ -94,6 +97,7 @@ class OperatorServer {
 
   Take take_;
   IsStop is_stop_;
+  std::function<void(Ticket)> gone_;
   Limits limits_;
   int listener_ = -1;
   std::string path_;

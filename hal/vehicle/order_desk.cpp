@@ -153,9 +153,7 @@ std::optional<Json> OrderDesk::give(Waiting& one) {
   const std::string beyond = command == Command::set_tasks && ways_.why_not ? ways_.why_not(one.request.order.tasks) : "";
   if (!beyond.empty()) return refused(beyond);
   const bool stop = command == Command::emergency_stop;
-  const bool called_off = ways_.commissioner != nullptr && ways_.commissioner->call_off_before_it_moves();
-  if (called_off && command == Command::abort)
-    return Json{{"ok", true}, {"standing", "the commissioning is called off: nothing has moved"}};
+  one.called_off = ways_.commissioner != nullptr && ways_.commissioner->call_off_before_it_moves("another order came before it began");
   if (!stop && waiting_.size() >= most_waiting) return refused("too many orders at once");
   if (!stop) one.request.order.expires = monotonic_now() + take_within;  // the core refuses what it meets later
   one.number = ++orders_given_;
@@ -171,6 +169,7 @@ std::optional<Json> OrderDesk::give(Waiting& one) {
 
 void OrderDesk::settle(const Reply& reply) {
   for (OrderAnswer answer; rings_.answers.pop(answer);) answers_.push_back(answer);
+  drop_those_of_clients_gone();
   // An answer may lead to another line being taken, and that to another entry: the list is taken out meanwhile.
   std::vector<Waiting> before;
   before.swap(waiting_);
@@ -184,10 +183,22 @@ void OrderDesk::settle(const Reply& reply) {
   answers_.clear();
 }
 
+// Whoever ordered a motion of the arm and left may be on the way to it. Other orders act within half a second, or not at all.
+void OrderDesk::drop_those_of_clients_gone() {
+  for (const Ticket ticket : std::exchange(gone_, {})) {
+    for (Waiting& one : waiting_) {
+      if (one.ticket != ticket || !is(one.request, "commission")) continue;
+      one.gone = true;
+      if (one.waits == Waits::for_commissioner) (void)ways_.commissioner->call_off_before_it_moves("who ordered it has gone");
+    }
+  }
+}
+
 std::optional<Json> OrderDesk::look_again(Waiting& one) {
   if (one.waits == Waits::for_control) return await_control(one);
   if (one.waits == Waits::for_bus) return await_bus(one);
   if (one.waits == Waits::for_commissioner) return ways_.commissioner->answer();
+  if (one.gone) return refused("who ordered it has gone: nothing moves");
   // A reset that was given before a stop would take it back, and power could follow.
   if (stops_given_ != one.stops_before) return refused("an emergency stop came behind it: it was not carried out");
   if (const std::optional<User> user = users_.find(one.user, monotonic_now())) return begin(one, *user);
@@ -197,7 +208,12 @@ std::optional<Json> OrderDesk::look_again(Waiting& one) {
 
 std::optional<Json> OrderDesk::await_control(Waiting& one) {
   for (const OrderAnswer& answer : answers_) {
-    if (answer.number == one.number) return answer_of(answer, one.request.order.command);
+    if (answer.number != one.number) continue;
+    const bool nothing_else = !answer.taken && !answer.commissioning &&
+                              (answer.standing == mission::Standing::idle || answer.standing == mission::Standing::ended);
+    if (one.called_off && one.request.order.command == Command::abort && nothing_else)
+      return Json{{"ok", true}, {"standing", mission::name(answer.standing)}, {"why", "the commissioning is called off before it began"}};
+    return answer_of(answer, one.request.order.command);
   }
   if (monotonic_now() - one.since < take_within) return std::nullopt;
   if (one.request.order.command == Command::emergency_stop) return refused("the control thread does not answer; the stop remains ordered");

@@ -46,6 +46,8 @@ class OrderDesk {
   std::optional<std::string> take(const std::string& line, unsigned user, Ticket ticket);
   // Answers what has come to an end since.
   void settle(const Reply& reply);
+  // The client of a line that waits has hung up: nobody reads its answer.
+  void gone(Ticket ticket) { gone_.push_back(ticket); }
   bool settled() const { return waiting_.empty(); }
 
   static bool is_stop(std::string_view line);
@@ -62,6 +64,8 @@ class OrderDesk {
     std::uint64_t number = 0;                 // of the order, for_control
     bool taken = false;                       // the control thread has it, but has not answered
     std::uint64_t stops_before = 0;           // given when it came
+    bool called_off = false;                  // it called off a commissioning that may not have begun
+    bool gone = false;                        // its client
     std::shared_ptr<std::optional<int>> bus;  // the restart's result, guarded by `bus_mutex_`
   };
 
@@ -73,6 +77,7 @@ class OrderDesk {
   std::optional<Json> await_control(Waiting& one);
   std::optional<Json> await_bus(Waiting& one);
   std::optional<Json> begin_commissioning(Waiting& one);
+  void drop_those_of_clients_gone();
   std::string finish(const Waiting& one, const Json& answer);
 
   LoopRings& rings_;
@@ -82,6 +87,7 @@ class OrderDesk {
   std::shared_ptr<std::mutex> bus_mutex_ = std::make_shared<std::mutex>();
   std::vector<Waiting> waiting_;
   std::vector<OrderAnswer> answers_;  // of the control thread, not yet looked at
+  std::vector<Ticket> gone_;
   std::uint64_t orders_given_ = 0;
   std::uint64_t stops_given_ = 0;
 };

@@ -170,7 +170,7 @@ void find_places(VehicleConfig& c, std::vector<std::string>& problems) {
   const fs::path file = fs::absolute(c.machine.file, error).lexically_normal();
   if (error) return;
   // Two links in two folders, or one that is put elsewhere while a daemon runs: the other daemon would not meet the lock.
-  if (fs::path(c.lock_folder).is_relative() && !c.lock_folder.empty() && fs::canonical(file, error) != file && !error)
+  if (fs::path(c.lock_folder).is_relative() && !c.lock_folder.empty() && fs::canonical(c.machine.file, error) != file)
     problems.push_back(c.machine.file +
                        ": 'lock_folder' is relative, and this file is reached by a link: two daemons of one bus could take two locks. Give "
                        "it as a full path");
@@ -179,12 +179,20 @@ void find_places(VehicleConfig& c, std::vector<std::string>& problems) {
   }
 }
 
-void read_keys(const std::string& path, VehicleConfig& config, std::vector<std::string>& problems) {
+// The file's root, a map or nothing.
+YAML::Node read_keys(const std::string& path, VehicleConfig& config, std::vector<std::string>& problems) {
   config.machine.file = path;
   const config::Source source = config::Source::of_file(path, problems);
   const YAML::Node root = config::parse_yaml(config::read_text_file(path), source);
   if (!root.IsNull() && !root.IsMap()) source.refuse(root.Mark(), "a vehicle's configuration is a group of keys");
   if (root.IsMap()) config::read_map(root, "", "", keys(config), source);
+  return root;
+}
+
+bool gives_socket(const YAML::Node& root) {
+  if (!root.IsMap()) return false;
+  const YAML::Node group = root["operator"];
+  return group && group.IsMap() && group["socket"] && group["socket"].IsScalar();
 }
 
 std::string joined(const std::vector<std::string>& problems) {
@@ -240,8 +248,9 @@ VehicleConfig load_vehicle_config(const std::string& path) {
 StopSocket stop_socket(const std::string& path) {
   StopSocket found;
   VehicleConfig config;
+  bool given = false;
   try {
-    read_keys(path, config, found.problems);
+    given = gives_socket(read_keys(path, config, found.problems));
   } catch (const InputError& error) {
     found.problems.emplace_back(error.what());
     return found;
@@ -251,11 +260,18 @@ StopSocket stop_socket(const std::string& path) {
     const std::string text = problem.substr(std::min(path.size(), problem.size()));
     return text.find("operator") != std::string::npos || text.find("unknown key") != std::string::npos;
   };
-  const bool given = config.operator_socket != VehicleConfig().operator_socket;
-  if (!given && std::any_of(found.problems.begin(), found.problems.end(), may_hide_it)) return found;
-  std::vector<std::string> of_other_places;
-  find_places(config, of_other_places);
-  found.path = config.operator_socket;
+  found.told = given || std::none_of(found.problems.begin(), found.problems.end(), may_hide_it);
+  // The daemon may run by another name of the file than the one that is given here.
+  std::error_code error;
+  const std::string real = std::filesystem::canonical(path, error).string();
+  for (const std::string& name : {path, error ? path : real}) {
+    VehicleConfig named = config;
+    named.machine.file = name;
+    std::vector<std::string> of_other_places;
+    find_places(named, of_other_places);
+    if (std::find(found.paths.begin(), found.paths.end(), named.operator_socket) == found.paths.end())
+      found.paths.push_back(named.operator_socket);
+  }
   return found;
 }
 

@@ -70,7 +70,9 @@ VehicleConfig load_vehicle_config(const std::string& path, std::vector<std::stri
 
 // Where a stop goes. Nothing but the file itself is read, and whatever is wrong there does not keep the stop back.
 struct StopSocket {
-  std::string path;  // empty: the file does not tell
+  std::vector<std::string>
+      paths;          // where the daemon may answer: a file that is reached by a link has two names, beside which a relative path may be
+  bool told = false;  // by the file; false: the daemon's may be another one
   std::vector<std::string> problems;
 };
 StopSocket stop_socket(const std::string& path);

@@ -63,7 +63,7 @@ void tell_calibration(const record::RunResult& result) {
   tell_error("marker's corners about a square", fit.marker_corners_mm, "mm");
   tell_error("plane's bend", fit.plane_bend_mm, "mm");
   tell_error("panel's shift between looks", fit.panel_shift_mm, "mm");
-  tell_error("buttons' faces, deeper than seen", fit.faces_off_mm, "mm");
+  tell_error("buttons' faces, behind their place", fit.faces_off_mm, "mm");
   if (!fit.doubt.empty()) print("doubtful calibration: %s. %s\n", fit.doubt.c_str(), fit.remedy.c_str());
 }
 

@@ -51,16 +51,13 @@ std::optional<record::FailureRecord> disagreement(const Controller& controller, 
   return record::FailureRecord{wrong->phase, wrong->reason};
 }
 
-std::optional<record::CalibrationRecord> calibration_of(const std::optional<record::CalibrationRecord>& looks,
-                                                        const mission::TaskResults& results) {
-  const std::optional<double> off_m = config::faces_off_m(results);
-  if (!looks || !off_m) return looks;
-  record::CalibrationRecord all = *looks;
-  all.faces_off_mm = 1e3 * *off_m;
-  if (const config::Cause doubt = config::calibration_cause({}, results); all.doubt.empty()) {
-    all.doubt = doubt.name;
-    all.remedy = doubt.remedy;
-  }
+std::optional<record::CalibrationRecord> calibration_of(const CalibrationObserver& looks, const mission::TaskResults& results) {
+  if (!looks.record()) return std::nullopt;
+  record::CalibrationRecord all = *looks.record();
+  if (const std::optional<double> off_m = config::faces_off_m(results)) all.faces_off_mm = 1e3 * *off_m;
+  const config::Cause doubt = config::calibration_cause(looks.worst_fit(), results);
+  all.doubt = doubt.name;
+  all.remedy = doubt.remedy;
   return all;
 }
 

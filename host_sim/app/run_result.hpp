@@ -24,11 +24,10 @@ std::optional<record::FailureRecord> failure_of(const Controller& controller, co
 // Where the truth contradicts a mission that believes it succeeded.
 std::optional<record::FailureRecord> disagreement(const Controller& controller, const world::World& world, const RunRecorder& recorder);
 
-// Done when the core says so and the truth agrees (judge::truly_done).
-// `looks` with what the presses tell.
-std::optional<record::CalibrationRecord> calibration_of(const std::optional<record::CalibrationRecord>& looks,
-                                                        const mission::TaskResults& results);
+// Of looks and presses; nothing when no look found plane and marker.
+std::optional<record::CalibrationRecord> calibration_of(const CalibrationObserver& looks, const mission::TaskResults& results);
 
+// Done when the core says so and the truth agrees (judge::truly_done).
 std::vector<record::TaskRecord> task_records(const Controller& controller, const world::World& world, const RunRecorder& recorder);
 
 // Those that the run ended before, or whose step it never came to: "overcurrent elbow, at step free jaw". The platform has flown the run.

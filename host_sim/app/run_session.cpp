@@ -161,7 +161,7 @@ class Session {
     result.faults_not_made = faults_not_made(request_.scenario, *platform_);
     result.tasks = task_records(*controller_, platform_->world(), recorder_);
     result.errors = score(recorder_, sim_);
-    result.calibration = calibration_of(recorder_.calibration().record(), controller_->mission().tasks());
+    result.calibration = calibration_of(recorder_.calibration(), controller_->mission().tasks());
     const world::ContactReport contacts = platform_->world().contacts();
     result.contact = {contacts.peak_force_n, contacts.unintended.size()};
     if (hal::HeapGuard::available()) result.core.heap_calls = heap_calls_;

@@ -9,6 +9,7 @@ RunSummary run_of(const record::RunResult& result, const std::string& folder, bo
   run.seed = result.seed;
   run.success = result.success;
   run.false_success = result.false_success;
+  run.calibration_doubted = result.calibration && !result.calibration->doubt.empty();
   run.failure = result.failure;
   if (result.expected_failure) run.as_expected = result.expected_failure->reason;
   run.figures = figures_of(result);
@@ -20,7 +21,8 @@ RunSummary run_of(const record::RunResult& result, const std::string& folder, bo
 }
 
 std::string verdict_of(const RunSummary& run) {
-  if (run.success) return run.as_expected.empty() ? "ok" : "ok, it failed as expected: " + run.as_expected;
+  const std::string doubted = run.calibration_doubted ? ", doubtful calibration" : "";
+  if (run.success) return (run.as_expected.empty() ? "ok" : "ok, it failed as expected: " + run.as_expected) + doubted;
   const std::string failed = run.false_success ? "FALSE SUCCESS" : "failed";
   return run.failure ? failed + " in " + run.failure->phase + ": " + run.failure->reason : failed;
 }

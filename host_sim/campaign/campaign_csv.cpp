@@ -58,14 +58,14 @@ std::string cells_csv(const Campaign& campaign) {
 }
 
 std::string runs_csv(const Campaign& campaign) {
-  std::string csv = keys(campaign) + "seed,success,false_success,phase,reason,as_expected";
+  std::string csv = keys(campaign) + "seed,success,false_success,phase,reason,as_expected,calibration_doubted";
   for (const Figure& figure : figures()) csv += std::string(",") + figure.name;
   csv += ",wall_s,digest,folder\n";
   for (const Cell& cell : campaign.cells) {
     for (const RunSummary& run : cell.runs) {
       const record::FailureRecord failure = run.failure.value_or(record::FailureRecord{});
       csv += choice(cell) + std::to_string(run.seed) + (run.success ? ",1," : ",0,") + (run.false_success ? "1," : "0,") +
-             quoted(failure.phase) + "," + quoted(failure.reason) + "," + quoted(run.as_expected);
+             quoted(failure.phase) + "," + quoted(failure.reason) + "," + quoted(run.as_expected) + (run.calibration_doubted ? ",1" : ",0");
       for (const double value : run.figures) csv += "," + number(value);
       csv += "," + number(run.wall_s) + "," + run.digest + "," + quoted(run.folder) + "\n";
     }

@@ -57,6 +57,7 @@ Json run_json(const RunSummary& run) {
   Json json{{"seed", run.seed}, {"success", run.success}, {"false_success", run.false_success}, {"failure", failure(run.failure)}};
   if (!run.as_expected.empty()) json["as_expected"] = run.as_expected;
   json["figures"] = std::move(values);
+  json["calibration_doubted"] = run.calibration_doubted;
   json["wall_s"] = number(run.wall_s);
   json["digest"] = run.digest;
   json["folder"] = run.folder;

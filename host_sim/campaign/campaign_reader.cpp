@@ -22,6 +22,7 @@ RunSummary run_from(const Json& json) {
   json.at("seed").get_to(run.seed);
   json.at("success").get_to(run.success);
   json.at("false_success").get_to(run.false_success);
+  run.calibration_doubted = json.value("calibration_doubted", false);
   if (const Json& failure = json.at("failure"); !failure.is_null())
     run.failure = record::FailureRecord{failure.at("phase").get<std::string>(), failure.at("reason").get<std::string>()};
   run.as_expected = json.value("as_expected", "");

@@ -36,7 +36,8 @@ std::string header(const Campaign& campaign) {
           escape_html(campaign.command) + "</pre>";
   html += "<div class=\"tiles\">" + tile(std::to_string(total.successes) + " of " + std::to_string(total.runs), "runs succeeded") +
           tile(percent(total.success), "95 % interval of success") + tile(std::to_string(total.false_successes), "false successes") +
-          tile(percent(total.false_success), "95 % interval of false success");
+          tile(percent(total.false_success), "95 % interval of false success") +
+          tile(std::to_string(total.calibrations_doubted), "with a doubtful calibration");
   if (campaign.cells.size() > 1) html += tile(std::to_string(campaign.cells.size()), "cells of the grid");
   return html + "</div></header>\n";
 }

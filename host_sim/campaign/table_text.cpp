@@ -23,6 +23,7 @@ std::string percent(const Interval& interval) { return formatted("%.1f to %.1f %
 std::string counts(const Tally& tally) {
   std::string text = formatted("%zu of %zu succeeded (95 %%: %s), %zu false successes (%s)", tally.successes, tally.runs,
                                percent(tally.success).c_str(), tally.false_successes, percent(tally.false_success).c_str());
+  if (tally.calibrations_doubted > 0) text += formatted(", %zu with a doubtful calibration", tally.calibrations_doubted);
   if (tally.not_flown > 0) text += formatted(", %zu not flown", tally.not_flown);
   return text + "\n";
 }

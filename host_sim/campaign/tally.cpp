@@ -16,6 +16,7 @@ void count(const Cell& cell, Tally& tally) {
   for (const RunSummary& run : cell.runs) {
     tally.successes += run.success ? 1 : 0;
     tally.false_successes += run.false_success ? 1 : 0;
+    tally.calibrations_doubted += run.calibration_doubted ? 1 : 0;
   }
   tally.success = wilson_95(tally.successes, tally.runs);
   tally.false_success = wilson_95(tally.false_successes, tally.runs);

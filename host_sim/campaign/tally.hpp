@@ -18,7 +18,7 @@ struct Spread {
 };
 
 struct Tally {
-  std::size_t runs = 0, successes = 0, false_successes = 0, not_flown = 0;
+  std::size_t runs = 0, successes = 0, false_successes = 0, not_flown = 0, calibrations_doubted = 0;
   Interval success, false_success;  // 95 %
   std::vector<Spread> spreads;      // of the figures that any run has
 };

@@ -76,6 +76,7 @@ const std::vector<Group>& groups() {
       {"panel.pointer", {F::pointer_unsure, F::half_turn_open, F::beyond_stops}},
       {"panel.button", joined(press, way, Failures{F::no_marker}), {"overload", "the marker is hidden"}},
       {"panel.marker_size_m", marker, marker_words},
+      {"panel.marker_id", marker, marker_words},
       // Its plate stands out of the panel, and motions keep clear of it.
       {"panel.marker_", joined(marker, Failures{F::panel_in_the_way, F::no_motion}), marker_words},
       // Farther off all is fainter and smaller, and comes nearer to the end of the arm's reach.

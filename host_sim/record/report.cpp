@@ -169,11 +169,17 @@ std::string times_text(const TimesRecord& times) {
 }
 
 // The core's own account, so not among the errors.
-std::string calibration_row(const CalibrationRecord& fit) {
-  std::string values = formatted("%+.2f %%, ", fit.marker_side_percent) + formatted("%.2f mm, ", fit.marker_corners_mm) +
-                       formatted("%.2f mm, ", fit.plane_bend_mm) + formatted("%.2f mm", fit.panel_shift_mm);
-  if (std::isfinite(fit.faces_off_mm)) values += formatted(", %+.2f mm", fit.faces_off_mm);
-  return row("left over by looks and presses: marker's side, its corners, plane's bend, panel's shift, buttons' faces", values);
+std::string calibration_rows(const CalibrationRecord& fit) {
+  std::string html;
+  const auto add = [&html](const char* name, const char* format, double value) {
+    if (std::isfinite(value)) html += row(std::string("left over: ") + name, formatted(format, value));
+  };
+  add("the marker's side on the scanned plane", "%+.2f %%", fit.marker_side_percent);
+  add("its corners about a square", "%.2f mm", fit.marker_corners_mm);
+  add("the plane's bend", "%.2f mm", fit.plane_bend_mm);
+  add("the panel's shift between looks", "%.2f mm", fit.panel_shift_mm);
+  add("the buttons' faces, felt behind the place where they were seen", "%+.2f mm", fit.faces_off_mm);
+  return html;
 }
 
 std::string machine_table(const RunResult& result) {
@@ -187,7 +193,7 @@ std::string machine_table(const RunResult& result) {
   html += row("CAN frames, of these errors", std::to_string(result.bus.frames) + ", " + std::to_string(result.bus.errors));
   html += row("peak contact force", formatted("%.1f N", result.contact.peak_force_n));
   html += row("unintended contacts", std::to_string(result.contact.unintended_contacts));
-  if (result.calibration) html += calibration_row(*result.calibration);
+  if (result.calibration) html += calibration_rows(*result.calibration);
   html += row("simulated in", formatted("%.2f s", result.time.wall_s));
   std::string none;
   for (const auto& [name, count] : result.core.rejected_inputs) {

@@ -58,9 +58,9 @@ struct CalibrationRecord {
   double marker_side_percent = unknown;  // of the marker's square on the scanned plane: side over the surveyed one, less 100; signed
   double marker_corners_mm = unknown;    // rms of its corners about a square
   double plane_bend_mm = unknown;        // what neighbouring points of the plane err by together
-  double panel_shift_mm = unknown;       // of the panel from look to look
-  double faces_off_mm = unknown;         // how much deeper than seen the presses felt the buttons' faces, in the mean
-  std::string doubt{};                   // the first that was found; empty: all fits
+  double panel_shift_mm = unknown;       // of the panel from look to look; unknown with one look
+  double faces_off_mm = unknown;         // how far behind the place where they were seen the presses felt the buttons' faces, in the mean
+  std::string doubt{};                   // all that does not fit; empty: all does
   std::string remedy{};
 };
 

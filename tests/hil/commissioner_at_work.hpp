@@ -51,10 +51,11 @@ class AtWork {
     hal::CommissionOrder order;
     order.joints = joints;
     order.moved = moved;
+    (void)commissioner->answer();  // of the one before
     EXPECT_EQ(commissioner->begin(order, hal::monotonic_now()), std::nullopt);
-    hal::Commissioning* lent = nullptr;
-    EXPECT_TRUE(wait_for([&] { return lent != nullptr || rings->commissionings.pop(lent); }));
-    return lent;
+    hal::CommissioningLoan loan;
+    EXPECT_TRUE(wait_for([&] { return loan.commissioning != nullptr || rings->commissionings.pop(loan); }));
+    return loan.commissioning;
   }
   // To its good end, and the new core has taken over.
   void commission_jaw() {

@@ -254,21 +254,72 @@ TEST(CommissioningThatFails, TakesThePowerThatItSaysItTakesWhereTheFileIsUnreada
 // An operator who has given another order no longer waits for it, nor does one who was told that nothing answers: then the disk came back, and the arm moved.
 TEST(CommissioningUnderWay, DoesNotMoveWhenAnotherOrderCameBeforeTheFileWasWritten) {
   AtWork work(somewhere[4]);
-  EXPECT_FALSE(work.commissioner->call_off_before_it_moves());
+  EXPECT_FALSE(work.commissioner->call_off_before_it_moves("another order came"));
   hal::CommissionOrder order;
   order.joints = only_jaw;
   ASSERT_EQ(work.commissioner->begin(order, hal::monotonic_now()), std::nullopt);
-  EXPECT_TRUE(work.commissioner->call_off_before_it_moves());
-  EXPECT_FALSE(work.commissioner->call_off_before_it_moves()) << "once is enough";
+  EXPECT_TRUE(work.commissioner->call_off_before_it_moves("another order came"));
+  EXPECT_FALSE(work.commissioner->call_off_before_it_moves("another order came")) << "once is enough";
   const std::optional<hal::Json> answer = work.commissioner->answer();
   ASSERT_TRUE(answer.has_value());
   EXPECT_EQ((*answer)["ok"], false);
   EXPECT_NE((*answer)["why"].get<std::string>().find("another order came"), std::string::npos) << *answer;
   EXPECT_TRUE(work.wait_for([&] { return !work.commissioner->busy() && work.file().known[4]; }));
-  Commissioning* lent = nullptr;
-  EXPECT_FALSE(work.rings->commissionings.pop(lent));
+  hal::CommissioningLoan loan;
+  EXPECT_FALSE(work.rings->commissionings.pop(loan));
   EXPECT_FALSE(work.file().zero_doubtful[4]);
   EXPECT_NE(work.begin(only_jaw), nullptr) << "the next one is";
+}
+
+// Called wrong by the order's own words, the old zero was trusted when its order was called off before it moved anything.
+TEST(CommissioningUnderWay, LeavesAJointThatHasMovedWithoutPowerWhereItIsCalledOffBeforeItMoves) {
+  for (const bool lent : {false, true}) {
+    AtWork work(somewhere[4]);
+    hal::Commissioning* one = nullptr;
+    if (lent) {
+      one = work.begin(only_jaw, true);
+      ASSERT_NE(one, nullptr);
+    } else {
+      hal::CommissionOrder order;
+      order.joints = only_jaw;
+      order.moved = true;
+      ASSERT_EQ(work.commissioner->begin(order, hal::monotonic_now()), std::nullopt);
+    }
+    EXPECT_TRUE(work.commissioner->call_off_before_it_moves("another order came"));
+    EXPECT_EQ(work.rings->loan_is_void, lent);
+    if (lent) {
+      EXPECT_TRUE(work.rings->commissioned.push({one, false}));
+    }
+    std::optional<hal::Json> answer;
+    ASSERT_TRUE(work.wait_for([&] { return answer.has_value() || (answer = work.commissioner->answer()).has_value(); }));
+    EXPECT_NE((*answer)["why"].get<std::string>().find("another order came: nothing moves. These joints' zeros have moved"),
+              std::string::npos)
+        << *answer;
+    EXPECT_TRUE(work.wait_for([&] { return !work.commissioner->busy() && work.file().zero_doubtful[4]; }));
+    EXPECT_EQ(work.commissioner->unknown_joints(), "jaw");
+    work.commissioner->step();
+    EXPECT_TRUE(work.file().zero_doubtful[4]) << "a daemon started anew does not trust it";
+    Bench bench(somewhere);
+    hal::Commissioning* next = work.begin(only_jaw, true);
+    ASSERT_NE(next, nullptr);
+    EXPECT_FALSE(work.rings->loan_is_void);
+    bench.run(*next);
+    EXPECT_NE(work.end(next), nullptr);
+    ASSERT_TRUE(work.take_over());
+    EXPECT_EQ(work.commissioner->unknown_joints(), "");
+  }
+}
+
+// The client of the one before would have got the next one's answer, and the next one's none, while its joint moved.
+TEST(CommissioningUnderWay, IsNotBegunWhileTheOneBeforeIsUnanswered) {
+  AtWork work(somewhere[4]);
+  hal::CommissionOrder order;
+  order.joints = only_jaw;
+  ASSERT_EQ(work.commissioner->begin(order, hal::monotonic_now() - Duration::from_s(5)), std::nullopt);
+  ASSERT_TRUE(work.wait_for([&] { return !work.commissioner->busy(); }));
+  EXPECT_NE(work.commissioner->begin(order, hal::monotonic_now()), std::nullopt);
+  EXPECT_TRUE(work.commissioner->answer().has_value());
+  EXPECT_EQ(work.commissioner->begin(order, hal::monotonic_now()), std::nullopt);
 }
 
 // A name that took 3 s to look up and a disk that took 2: the client had given up, and the arm would have moved.
@@ -279,10 +330,11 @@ TEST(CommissioningUnderWay, DoesNotMoveWhenWhoOrderedItHasGivenUp) {
   ASSERT_EQ(work.commissioner->begin(order, hal::monotonic_now() - Duration::from_s(5)), std::nullopt);
   std::optional<hal::Json> answer;
   ASSERT_TRUE(work.wait_for([&] { return answer.has_value() || (answer = work.commissioner->answer()).has_value(); }));
-  EXPECT_NE((*answer)["why"].get<std::string>().find("not be written in time: nothing moves"), std::string::npos) << *answer;
+  EXPECT_NE((*answer)["why"].get<std::string>().find("not be written in time, look at its disk: nothing moves"), std::string::npos)
+      << *answer;
   EXPECT_TRUE(work.wait_for([&] { return !work.commissioner->busy() && work.file().known[4]; }));
-  Commissioning* lent = nullptr;
-  EXPECT_FALSE(work.rings->commissionings.pop(lent));
+  hal::CommissioningLoan loan;
+  EXPECT_FALSE(work.rings->commissionings.pop(loan));
 }
 
 // From before anything moves until its end is written: the daemon, the machine or its disk may fail at any time between.
@@ -360,8 +412,8 @@ TEST(CommissioningUnderWay, IsNotBegunWhereTheFileCannotBeWritten) {
   EXPECT_EQ((*answer)["ok"], false);
   EXPECT_NE((*answer)["why"].get<std::string>().find("cannot be written"), std::string::npos) << *answer;
   EXPECT_FALSE(work.commissioner->busy());
-  Commissioning* lent = nullptr;
-  EXPECT_FALSE(work.rings->commissionings.pop(lent));
+  hal::CommissioningLoan loan;
+  EXPECT_FALSE(work.rings->commissionings.pop(loan));
 }
 
 // What the jaw holds is in doubt in the core: its angle alone says nothing.

@@ -16,10 +16,12 @@ void CalibrationObserver::on_telemetry(const Telemetry& telemetry) {
   record_->marker_corners_mm = std::fmax(record_->marker_corners_mm, 1e3 * static_cast<double>(fit.marker_corners_m));
   record_->plane_bend_mm = std::fmax(record_->plane_bend_mm, 1e3 * static_cast<double>(fit.plane_bend_m));
   record_->panel_shift_mm = std::fmax(record_->panel_shift_mm, 1e3 * static_cast<double>(fit.panel_shift_m));
-  if (!record_->doubt.empty()) return;
-  const config::Cause doubt = config::calibration_cause(fit, {});
-  record_->doubt = doubt.name;
-  record_->remedy = doubt.remedy;
+  // Doubted before all others, then by how far the side is off.
+  const bool doubted = !config::calibration_cause(fit, {}).name.empty();
+  const double over = std::abs(static_cast<double>(fit.marker_side_error)) / config::allowed_side_error(fit) + (doubted ? 1 : 0);
+  if (over <= worst_) return;
+  worst_ = over;
+  worst_fit_ = fit;
 }
 
 }  // namespace lf::app

@@ -18,8 +18,8 @@ TEST(CalibrationCause, IsNoneWhereTheMarkerFitsThePlane) {
 
 // Printed at 97 % of its size, say.
 TEST(CalibrationCause, NamesAMarkerThatIsNotAsLargeAsSurveyed) {
-  EXPECT_THAT(calibration_cause(fit(0.03f, 0), {}).name, HasSubstr("3.0 % larger than surveyed, where 1.2 % is usual"));
-  EXPECT_THAT(calibration_cause(fit(-0.03f, 0), {}).name, HasSubstr("3.0 % smaller than surveyed"));
+  EXPECT_THAT(calibration_cause(fit(0.03f, 0), {}).name, HasSubstr("off the surveyed one by +3.00 %, where 1.22 % are allowed"));
+  EXPECT_THAT(calibration_cause(fit(-0.03f, 0), {}).name, HasSubstr("by -3.00 %"));
   EXPECT_THAT(calibration_cause(fit(-0.03f, 0), {}).remedy, HasSubstr("panel.marker_size_m"));
 }
 
@@ -32,7 +32,7 @@ TEST(CalibrationCause, AllowsASmallMarkerMore) {
 // 2.5 mm are a pixel here.
 TEST(CalibrationCause, NamesCornersThatAreNoSquare) {
   EXPECT_TRUE(calibration_cause(fit(0, 0.0012f), {}).name.empty());
-  EXPECT_THAT(calibration_cause(fit(0, 0.0020f), {}).name, HasSubstr("off a square by 0.8 px, where 0.5 are usual"));
+  EXPECT_THAT(calibration_cause(fit(0, 0.0020f), {}).name, HasSubstr("off a square by 0.80 px, where 0.50 are allowed"));
 }
 
 // Nothing was seen of it that could be told in pixels.
@@ -55,10 +55,15 @@ mission::TaskResults felt(std::initializer_list<double> off_mm, StepFailure fail
 TEST(CalibrationCause, NamesFacesThatWereFeltElsewhereThanSeen) {
   EXPECT_EQ(faces_off_m(felt({})), std::nullopt);
   EXPECT_NEAR(*faces_off_m(felt({4, 5, 6})), 0.005, 1e-12);
-  EXPECT_TRUE(calibration_cause({}, felt({3.5, -1})).name.empty());
-  EXPECT_THAT(calibration_cause({}, felt({4, 5, 6})).name, HasSubstr("felt 5.0 mm deeper than they were seen, where 3.6 mm are usual"));
-  EXPECT_THAT(calibration_cause({}, felt({-4})).name, HasSubstr("felt 4.0 mm higher"));
+  EXPECT_TRUE(calibration_cause({}, felt({4.5, -1})).name.empty());
+  EXPECT_THAT(calibration_cause({}, felt({4, 5, 6})).name,
+              HasSubstr("felt 5.0 mm behind the place where they were seen, where 4.7 mm are allowed"));
+  EXPECT_THAT(calibration_cause({}, felt({-6})).name, HasSubstr("felt 6.0 mm before the place"));
+  const Cause both = calibration_cause(fit(0.03f, 0), felt({-6}));
+  EXPECT_THAT(both.name, HasSubstr("+3.00 %"));
+  EXPECT_THAT(both.name, HasSubstr("; the buttons' faces"));
   EXPECT_TRUE(calibration_cause({}, felt({-20}, StepFailure::early_contact)).name.empty()) << "that was no face";
+  EXPECT_FALSE(calibration_cause({}, felt({6}, StepFailure::button_yields)).name.empty()) << "that was one";
 }
 
 }  // namespace

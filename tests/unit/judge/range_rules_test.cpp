@@ -70,6 +70,7 @@ TEST(RangeRules, OfTheFailuresOfALookOrStepOnlyTheKeysOwnNameIt) {
        all_of({touch, {F::no_marker, F::marker_wrong, F::marker_disagrees, F::panel_moved, F::panel_in_the_way, F::no_motion}})},
       {"panel.marker_plate_m",
        all_of({touch, {F::no_marker, F::marker_wrong, F::marker_disagrees, F::panel_moved, F::panel_in_the_way, F::no_motion}})},
+      {"panel.marker_id", all_of({touch, {F::no_marker, F::marker_wrong, F::marker_disagrees, F::panel_moved}})},
       {"panel.marker_size_m", all_of({touch, {F::no_marker, F::marker_wrong, F::marker_disagrees, F::panel_moved}})},
       {"water.attenuation_per_m", all_of({line, {F::no_marker, F::pointer_unsure, F::line_misshapen}})},
       {"water.ambient", all_of({line, {F::no_marker, F::pointer_unsure, F::line_misshapen}})},

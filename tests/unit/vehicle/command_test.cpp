@@ -203,6 +203,19 @@ TEST_F(Daemon, AStopOfAFileThatTellsNoSocketGoesToTheUsualOneAndSaysSo) {
   }
 }
 
+// The environment's may be another arm's, and the usual one this arm's.
+TEST_F(Daemon, AStopOfAFileThatTellsNoSocketGoesToAllThatItMayBe) {
+  std::ofstream(folder() / "broken.yaml") << "camera: {foo: 1}\n";
+  setenv("LANTERNFISHD_SOCKET", "/tmp/of_another_arm", 1);
+  const Said stop = run("--config broken.yaml estop");
+  unsetenv("LANTERNFISHD_SOCKET");
+  EXPECT_THAT(stop.err,
+              HasSubstr("goes to /run/lanternfishd/operator.sock and /tmp/of_another_arm. Look whether this arm's is among them"));
+  EXPECT_THAT(stop.err, HasSubstr("/tmp/of_another_arm: no lanternfishd answers there"));
+  EXPECT_THAT(stop.err, HasSubstr("/run/lanternfishd/operator.sock: no lanternfishd answers there"));
+  EXPECT_NE(stop.status, 0);
+}
+
 TEST_F(Daemon, TheDoctorsPartsAreChosen) {
   const Said machine = run("--config " + config() + " doctor --machine");
   EXPECT_THAT(machine.out, ::testing::Not(HasSubstr("drives")));

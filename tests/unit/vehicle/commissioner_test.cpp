@@ -85,7 +85,7 @@ TEST(StatusText, SaysThatTheCalibrationIsDoubtful) {
     return status_text(status);
   };
   EXPECT_EQ(said(0.001f).find("doubtful calibration"), std::string::npos);
-  EXPECT_NE(said(-0.03f).find("  doubtful calibration: the marker's square on the scanned plane is 3.0 % smaller than surveyed"),
+  EXPECT_NE(said(-0.03f).find("  doubtful calibration: the marker's side on the scanned plane is off the surveyed one by -3.00 %"),
             std::string::npos)
       << said(-0.03f);
   ControlReport felt;

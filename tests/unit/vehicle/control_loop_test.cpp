@@ -261,7 +261,7 @@ TEST_F(Loop, AStopAtACommissioningsEndIsNotLostWithTheCoreBefore) {
   Commissioning::Config setup;
   setup.network = config.network;
   Commissioning commissioning(setup);
-  ASSERT_TRUE(rings->commissionings.push(&commissioning));
+  ASSERT_TRUE(rings->commissionings.push({&commissioning}));
   turn();
   EXPECT_TRUE(give(Command::emergency_stop).taken);
   rings->cores.push(new Controller(config));
@@ -331,7 +331,7 @@ TEST_F(Loop, TheCoreIsToldWhichZerosWereLostWhileAJointWasCommissioned) {
   Commissioning::Config setup;
   setup.network = config.network;
   Commissioning commissioning(setup);
-  ASSERT_TRUE(rings->commissionings.push(&commissioning));
+  ASSERT_TRUE(rings->commissionings.push({&commissioning}));
   turn();
   lose_position(elbow);
   EXPECT_TRUE(give(Command::abort).taken);
@@ -340,6 +340,42 @@ TEST_F(Loop, TheCoreIsToldWhichZerosWereLostWhileAJointWasCommissioned) {
   ASSERT_EQ(result.commissioning, &commissioning);
   EXPECT_TRUE(loop->controller().network().axis(Joint::elbow).zero_lost());
   EXPECT_FALSE(loop->controller().network().axis(Joint::slew).zero_lost());
+}
+
+// An abort came before it began, or the control thread took it after its client had given up.
+TEST_F(Loop, ACommissioningThatIsVoidOrLateDoesNotBegin) {
+  Commissioning::Config setup;
+  setup.network = config.network;
+  Commissioning commissioning(setup);
+  turn();
+  turn();
+  const auto begun = [&](bool is_void, Time expires) {
+    rings->loan_is_void = is_void;
+    EXPECT_TRUE(rings->commissionings.push({&commissioning, expires}));
+    turn();
+    CommissioningResult result;
+    const bool came_back = rings->commissioned.pop(result);
+    EXPECT_FALSE(came_back && result.begun);
+    return !came_back;
+  };
+  const Time later = Time::from_s(1e6);
+  EXPECT_FALSE(begun(true, later));
+  EXPECT_FALSE(begun(false, Time{}));
+  EXPECT_TRUE(begun(false, later));
+  EXPECT_TRUE(give(Command::abort).taken);
+}
+
+// The core has heard it; the one that is lent was made before.
+TEST_F(Loop, ACommissioningKnowsWhichZerosWereLostBeforeIt) {
+  constexpr std::size_t jaw = 4;
+  begin_with_drives_that_tell_a_lost_position();
+  lose_position(jaw);
+  Commissioning::Config setup;
+  setup.network = config.network;
+  Commissioning commissioning(setup);
+  ASSERT_TRUE(rings->commissionings.push({&commissioning}));
+  turn();
+  for (std::size_t i = 0; i < joint_count; ++i) EXPECT_EQ(commissioning.zeros_lost()[i], i == jaw) << i;
 }
 
 }  // namespace

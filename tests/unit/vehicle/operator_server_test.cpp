@@ -39,6 +39,7 @@ class Client {
   ~Client() { close(fd_); }
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
+  void write_no_more() const { shutdown(fd_, SHUT_WR); }
   bool say(const std::string& text) const { return send(fd_, text.data(), text.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(text.size()); }
   // Lines that have come; the last one is "gone" when the server let go.
   std::vector<std::string> hear() {
@@ -94,6 +95,28 @@ TEST_F(Server, AnswersEveryLineOfEveryClientInOrder) {
   turn(6);
   EXPECT_THAT(one.hear(), ElementsAre("a!", "b!", "c!"));
   EXPECT_THAT(two.hear(), ElementsAre("d!"));
+}
+
+TEST_F(Server, TellsOfAClientThatHangsUpBeforeItsAnswer) {
+  open();
+  std::vector<OperatorServer::Ticket> gone;
+  server->on_gone([&](OperatorServer::Ticket ticket) { gone.push_back(ticket); });
+  {
+    Client leaves(path);
+    turn();
+    EXPECT_TRUE(leaves.say("now\nlater\n"));
+    turn(4);
+    ASSERT_NE(owed, 0u);
+    EXPECT_THAT(gone, ElementsAre());
+  }
+  turn(2);
+  EXPECT_THAT(gone, ElementsAre(owed));
+  Client writes_no_more(path);
+  EXPECT_TRUE(writes_no_more.say("later\n"));
+  writes_no_more.write_no_more();
+  turn(4);
+  EXPECT_EQ(gone.size(), 1u) << "it may still read";
+  server.reset();
 }
 
 TEST_F(Server, TakesOneLineOfAClientATurn) {

@@ -100,16 +100,40 @@ TEST(VehicleConfig, TheSocketOfAStopIsTheFilesWhereverItCanBeRead) {
   std::filesystem::create_directory(folder.path() / "operator");
   const auto socket_of = [&](const std::string& text) {
     std::ofstream(folder.path() / "operator/v.yaml") << text;
-    return stop_socket(folder / "operator/v.yaml").path;
+    const StopSocket found = stop_socket(folder / "operator/v.yaml");
+    return found.told && found.paths.size() == 1 ? found.paths[0] : "";
   };
   const std::string usual = VehicleConfig().operator_socket;
   EXPECT_EQ(socket_of("operator: {socket: op.sock}\nrealtime: {priority: 500}\n"), folder / "operator/op.sock");
   EXPECT_EQ(socket_of("operator: {socket: op.sock, grop: x}\n"), folder / "operator/op.sock");
   EXPECT_EQ(socket_of("realtime: {priority: 500}\n"), usual) << "it has the usual one, and is only wrong elsewhere";
+  EXPECT_EQ(socket_of("operator: {socket: " + usual + "}\nrealtme: {priority: 5}\n"), usual) << "as the shipped file has it";
   EXPECT_EQ(socket_of("operator: {soket: op.sock}\n"), "");
   EXPECT_EQ(socket_of("oprtr: {socket: op.sock}\n"), "");
   EXPECT_EQ(socket_of("operator: {socket: [a, b]}\n"), "");
   EXPECT_EQ(socket_of("operator: {\n"), "");
+}
+
+// The daemon may run by the one name, and who stops it give the other.
+TEST(VehicleConfig, AStopOfALinkedFileGoesBesideBothNames) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder.path() / "release");
+  std::ofstream(folder.path() / "release/v.yaml") << "operator: {socket: op.sock}\n";
+  std::filesystem::create_symlink("release/v.yaml", folder.path() / "v.yaml");
+  const StopSocket found = stop_socket(folder / "v.yaml");
+  EXPECT_TRUE(found.told);
+  EXPECT_THAT(found.paths, ::testing::ElementsAre(folder / "op.sock", folder / "release/op.sock"));
+}
+
+// `folder/..` of a folder that is a link is not where it seems.
+TEST(VehicleConfig, ALockBesideAFileWhoseNameLeadsThroughALinkIsRefused) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder.path() / "real/inner");
+  std::filesystem::create_directory_symlink("real/inner", folder.path() / "link");
+  std::ofstream(folder.path() / "real/v.yaml") << "lock_folder: lock\n";
+  std::vector<std::string> problems;
+  (void)load_vehicle_config(folder / "link/../v.yaml", problems);
+  EXPECT_THAT(problems, ::testing::Contains(HasSubstr("'lock_folder' is relative, and this file is reached by a link")));
 }
 
 // They went by the working directory, which a service and a shell do not share.
