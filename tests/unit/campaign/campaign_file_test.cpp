@@ -148,9 +148,11 @@ TEST(CampaignCsv, HasARowARun) {
   for (const auto& row : rows) EXPECT_EQ(row.size(), rows[0].size());
   EXPECT_EQ(rows[6][0], "2");
   EXPECT_EQ(rows[6][1], "2");
+  EXPECT_EQ(rows[0][7], "calibration_doubted");
+  EXPECT_EQ(rows[6][7], "0");
   EXPECT_EQ(rows[6][5], "turned by 3.2 deg, \"not\" 90\nand more");
-  EXPECT_EQ(rows[6][7 + test::figure("valve_final_deg")], "");
-  EXPECT_EQ(std::stod(rows[6][7]), mixed().cells[1].runs[1].figures[0]);
+  EXPECT_EQ(rows[6][8 + test::figure("valve_final_deg")], "");
+  EXPECT_EQ(std::stod(rows[6][8]), mixed().cells[1].runs[1].figures[0]);
 }
 
 }  // namespace

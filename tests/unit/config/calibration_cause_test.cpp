@@ -9,7 +9,7 @@ namespace {
 using testing::HasSubstr;
 
 // The default marker as the docked camera sees it.
-mission::CalibrationFit fit(float side_error, float corners_m) { return {true, 0.08f, 32, side_error, corners_m, 0.0003f, 0.001f}; }
+mission::CalibrationFit fit(float side_error, float corners_m) { return {true, 0.08f, 40, side_error, corners_m, 0.0003f, 0.001f}; }
 
 TEST(CalibrationCause, IsNoneWhereTheMarkerFitsThePlane) {
   EXPECT_TRUE(calibration_cause({}, {}).name.empty());
@@ -18,7 +18,7 @@ TEST(CalibrationCause, IsNoneWhereTheMarkerFitsThePlane) {
 
 // Printed at 97 % of its size, say.
 TEST(CalibrationCause, NamesAMarkerThatIsNotAsLargeAsSurveyed) {
-  EXPECT_THAT(calibration_cause(fit(0.03f, 0), {}).name, HasSubstr("off the surveyed one by +3.00 %, where 1.22 % are allowed"));
+  EXPECT_THAT(calibration_cause(fit(0.03f, 0), {}).name, HasSubstr("off the surveyed one by +3.00 %, where 1.10 % are allowed"));
   EXPECT_THAT(calibration_cause(fit(-0.03f, 0), {}).name, HasSubstr("by -3.00 %"));
   EXPECT_THAT(calibration_cause(fit(-0.03f, 0), {}).remedy, HasSubstr("panel.marker_size_m"));
 }
@@ -29,10 +29,10 @@ TEST(CalibrationCause, AllowsASmallMarkerMore) {
   EXPECT_FALSE(calibration_cause({true, 0.02f, 8, 0.039f, 0, 0, 0}, {}).name.empty());
 }
 
-// 2.5 mm are a pixel here.
+// 2 mm are a pixel here.
 TEST(CalibrationCause, NamesCornersThatAreNoSquare) {
-  EXPECT_TRUE(calibration_cause(fit(0, 0.0012f), {}).name.empty());
-  EXPECT_THAT(calibration_cause(fit(0, 0.0020f), {}).name, HasSubstr("off a square by 0.80 px, where 0.50 are allowed"));
+  EXPECT_TRUE(calibration_cause(fit(0, 0.0009f), {}).name.empty());
+  EXPECT_THAT(calibration_cause(fit(0, 0.0016f), {}).name, HasSubstr("off a square by 0.80 px, where 0.50 are allowed"));
 }
 
 // Nothing was seen of it that could be told in pixels.
