@@ -228,7 +228,7 @@ bool Commissioner::call_off_before_it_moves(const std::string& why) {
 
 // By the order's own words the earlier zeros are wrong, whether or not it moved anything.
 std::string Commissioner::disown(const std::string& why) {
-  const std::string text = why + ": nothing moves";
+  std::string text = why + ": nothing moves";
   if (!order_.moved) return text;
   disowned_ = either(disowned_, order_.joints);
   return text +
