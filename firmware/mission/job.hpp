@@ -22,7 +22,7 @@ struct TaskResult {
   double travel_m = 0;        // of the last press: how far the button went in
   bool click_felt = false;    // in the last press
   bool face_felt = false;     // by the last press, near where the face was seen
-  double face_off_m = 0;      // then: how far behind the place where it was seen, to half of what an aslant finger leaves open
+  double face_off_m = 0;      // then: how far behind the place where it was seen, by the middle of what aslant fingers leave open
   StepFailure failure = StepFailure::none;  // of the last press: stuck, missing, yielding, or touched too early; none where it was pressed
 };
 using TaskResults = StaticVector<TaskResult, MissionConfig::max_tasks>;

@@ -34,7 +34,7 @@ bool tool_for_tip(const Vec3& tip_m, double tip_beyond_m, double roll_rad, arm::
   return false;
 }
 
-// Fingers that come aslant touch with a corner, so far before the middle of their tips at most. How much of it, the roundness of corners and caps leaves open.
+// By how much at most a corner of fingers that come aslant touches before the middle of their tips. Round corners and caps touch later.
 double corner_ahead_m(const arm::JointVector& q_rad, const Vec3& normal, double button_width_m) {
   const double half_m = 0.5 * std::min(arm_geometry::jaw.pad_width_m, button_width_m);
   const Eigen::Matrix3d base_from_tool = arm::base_from_tool(q_rad).linear();
@@ -154,6 +154,7 @@ Progress PressButton::run_press(const StepTick& tick) {
   result.travel_m = feel_.travel_m();
   result.click_felt = feel_.clicked();
   result.face_felt = feel_.touched();
+  // Half: a corner touches somewhere between not at all and so much earlier.
   result.face_off_m =
       feel_.touch_depth_m() + 0.5 * corner_ahead_m(bench.measured_rad(), bench.map.normal(), bench.mission().layout.button_width_m);
   result.failure = judge(bench);

@@ -84,10 +84,10 @@ Words words(StepFailure failure) {
               "Nothing was touched down to its bottom: look whether it broke off; check panel.buttons_m and panel.button_height_m. If it "
               "is there, a joint's torque reading stands still."};
     case StepFailure::button_yields:
-      return {"the button gives way without bottoming",
-              "Check panel.button_stroke_m, mission.press_overtravel_m and mission.press_torque_nm. A panel farther off than it was seen "
-              "feels so, "
-              "too: check the calibration of camera and laser, and the joints' zeros."};
+      return {
+          "the button gives way without bottoming",
+          "Check panel.button_stroke_m, mission.press_overtravel_m and mission.press_torque_nm. A panel that is farther off than it was "
+          "seen feels the same: check the calibration of camera and laser, and the joints' zeros."};
     case StepFailure::arm_in_its_own_way: return {"the arm is in its own way", "Dock nearer to the nominal place, or jog it apart."};
   }
   return {"unknown", ""};

@@ -216,13 +216,11 @@ void Commissioner::step() {
 bool Commissioner::call_off_before_it_moves(const std::string& why) {
   const bool may_be_waiting = stage_ == Stage::preparing || stage_ == Stage::lending || stage_ == Stage::running;
   if (!may_be_waiting || !called_off_.empty()) return false;
-  if (stage_ == Stage::preparing) {
-    called_off_ = why;
+  called_off_ = why;
+  if (stage_ == Stage::preparing)
     answer_ = refused(disown(why));
-  } else {
-    called_off_ = why;
+  else
     rings_.loan_is_void.store(true, std::memory_order_release);
-  }
   return true;
 }
 

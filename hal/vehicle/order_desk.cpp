@@ -212,7 +212,7 @@ std::optional<Json> OrderDesk::await_control(Waiting& one) {
     const bool nothing_else = !answer.taken && !answer.commissioning &&
                               (answer.standing == mission::Standing::idle || answer.standing == mission::Standing::ended);
     if (one.called_off && one.request.order.command == Command::abort && nothing_else)
-      return Json{{"ok", true}, {"standing", mission::name(answer.standing)}, {"why", "the commissioning is called off before it began"}};
+      return Json{{"ok", true}, {"standing", mission::name(answer.standing)}, {"note", "the commissioning is called off before it began"}};
     return answer_of(answer, one.request.order.command);
   }
   if (monotonic_now() - one.since < take_within) return std::nullopt;

@@ -16,8 +16,8 @@ namespace lf::campaign {
 struct RunSummary {
   std::uint64_t seed = 0;
   bool success = false;
-  bool calibration_doubted = false;  // by what looks and presses left over
   bool false_success = false;        // the mission believes it succeeded, and the truth disagrees
+  bool calibration_doubted = false;  // by what looks and presses left over
   std::optional<record::FailureRecord> failure;
   std::string as_expected;      // the failure that the scenario asked for, and got
   std::vector<double> figures;  // as figures(); NaN where there is none

@@ -87,7 +87,7 @@ TEST_F(CalledOff, AnAbortIsAnsweredWellWhereThereWasNothingElseToAbort) {
   const OrderDesk::Ticket ordered = take(commission), aborted = take(abort_it);
   const Json answered = answer(aborted);
   EXPECT_EQ(answered["ok"], true) << answered;
-  EXPECT_EQ(answered["why"], "the commissioning is called off before it began");
+  EXPECT_EQ(answered["note"], "the commissioning is called off before it began");
   EXPECT_EQ(answer(ordered)["ok"], false);
   EXPECT_FALSE(lent());
   EXPECT_EQ(answer_of(abort_it)["ok"], false) << "now there is nothing";
