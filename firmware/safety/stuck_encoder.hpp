@@ -16,7 +16,9 @@ class StuckEncoder {
   static constexpr std::int64_t least_counts = 8;
   static constexpr double least_rad = 0.003;  // of the set-point, since the position last changed
   static constexpr Duration least_time = Duration::from_ms(300);
-  static constexpr double load_nm = 4;  // a joint whose torque has changed by this since then is held by something
+  static constexpr double load_nm = 4;  // a joint whose torque has changed by this since then may be held by something
+  // But not for long: its drive winds it up to the end of its torque. One whose torque stays short of that is not where it says.
+  static constexpr double held_rad_s = 0.003;  // behind, times how long: at a gain of 50 a second it has gone 0.15 rad by then
   static constexpr Duration blind_time =
       Duration::from_ms(100);  // without a count, though the set-point goes on: no torque proves a contact then
 
@@ -32,12 +34,17 @@ class StuckEncoder {
   bool update(const Sample& now) {
     if (!now.follows || !began_.follows || now.actual_counts != began_.actual_counts) {
       began_ = now;
+      last_ = now.t;
+      behind_rad_s_ = 0;
       shows_nothing_ = false;
       return false;
     }
     const std::int64_t gone = std::abs(std::int64_t{now.target_counts} - began_.target_counts);
-    const bool held = std::abs(now.torque_nm - began_.torque_nm) >= load_nm;
-    const bool left_behind = gone >= least_counts && static_cast<double>(gone) * std::abs(now.rad_per_count) >= least_rad;
+    const double gone_rad = static_cast<double>(gone) * std::abs(now.rad_per_count);
+    const bool left_behind = gone >= least_counts && gone_rad >= least_rad;
+    if (left_behind) behind_rad_s_ += gone_rad * (now.t - last_).s();
+    last_ = now.t;
+    const bool held = std::abs(now.torque_nm - began_.torque_nm) >= load_nm && behind_rad_s_ < held_rad_s;
     shows_nothing_ = left_behind && now.t - began_.t >= blind_time;
     return left_behind && !held && now.t - began_.t >= least_time;
   }
@@ -47,6 +54,8 @@ class StuckEncoder {
 
  private:
   Sample began_;
+  Time last_;
+  double behind_rad_s_ = 0;
   bool shows_nothing_ = false;
 };
 

@@ -3,15 +3,20 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
 namespace lf::safety {
 namespace {
+
+constexpr double end_nm = 20;  // of a joint's torque
 
 struct Joint {
   StuckEncoder encoder;
   StuckEncoder::Sample now{Time(), 0, 0, 1.3e-4, 0, true};
 
-  // Seconds until it is found stuck while the set-point goes at `counts_s` and the position follows at `share` of it; 5 when it is not.
+  // From now on with `torque_nm_s`. Seconds until it is found stuck while the set-point goes at `counts_s` and the position follows at `share` of it; 5 when it is not.
   double run(double counts_s, double share, double torque_nm_s = 0) {
+    const double from_nm = now.torque_nm;
     const Time began = now.t;
     const std::int32_t from = now.actual_counts;
     while (now.t - began < Duration::from_s(5)) {
@@ -19,7 +24,8 @@ struct Joint {
       const double s = (now.t - began).s();
       now.target_counts = from + static_cast<std::int32_t>(counts_s * s);
       now.actual_counts = from + static_cast<std::int32_t>(share * counts_s * s);
-      now.torque_nm = torque_nm_s * s;
+      now.torque_nm = from_nm + torque_nm_s * s;
+      now.follows = now.follows && now.torque_nm < end_nm;
       if (encoder.update(now)) return s;
     }
     return 5;
@@ -37,13 +43,42 @@ TEST(StuckEncoder, IsNoJointThatFollowsOrStandsOrIsHeld) {
   EXPECT_EQ(Joint().run(1000, 0.99), 5);
   EXPECT_EQ(Joint().run(40, 0.5), 5) << "it lags, and moves";
   EXPECT_EQ(Joint().run(0, 0), 5);
-  EXPECT_EQ(Joint().run(1000, 0, 20), 5) << "its load rises";
+  EXPECT_EQ(Joint().run(1000, 0, 100), 5) << "its load rises to the end of its torque";
   Joint off;
   off.now.follows = false;
   EXPECT_EQ(off.run(1000, 0), 5);
   Joint coarse;
   coarse.now.rad_per_count = 3.1e-3;
   EXPECT_NEAR(coarse.run(10, 0), 0.8, 0.02) << "one count of a coarse encoder is more than the way";
+}
+
+// A drive winds its motor up while something holds the joint back. One that stays behind, short of the end of its torque, goes on unseen: at the gain of its position loop, 20 to 50 a
+// second, times the lag.
+TEST(StuckEncoder, IsNotHeldForGoodByALoadShortOfTheEndOfItsTorque) {
+  for (const double counts_s : {20.0, 40.0, 100.0, 300.0, 1000.0})
+    for (const auto& [before_nm, since_nm] : {std::pair{-12.7, -0.5}, {0.8, 5.8}, {-8.0, 8.0}}) {
+      Joint joint;
+      joint.now.torque_nm = before_nm;  // when it showed its last count
+      (void)joint.encoder.update(joint.now);
+      joint.now.torque_nm = since_nm;
+      const double told_s = joint.run(counts_s, 0);
+      EXPECT_LT(told_s, 5) << counts_s << " counts a second";
+      EXPECT_LT(50 * counts_s * 1.3e-4 * told_s * told_s / 2, 0.5) << "rad, at " << counts_s << " counts a second";
+    }
+}
+
+TEST(StuckEncoder, IsNotHeldForGoodWhereItsTargetStandsALittleWayOff) {
+  Joint joint;
+  joint.now.torque_nm = -12.7;
+  (void)joint.encoder.update(joint.now);
+  joint.now.torque_nm = -0.5;
+  joint.now.target_counts = 39;
+  double s = 0;
+  for (bool stuck = false; !stuck && s < 5; s += 0.004) {
+    joint.now.t = joint.now.t + Duration::from_ms(4);
+    stuck = joint.encoder.update(joint.now);
+  }
+  EXPECT_LT(50 * 39 * 1.3e-4 * s, 0.5) << "rad, until it is told after " << s << " s";
 }
 
 // A load that rises faster than any contact's threshold is no proof of one while the position shows nothing.
