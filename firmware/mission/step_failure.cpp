@@ -43,7 +43,8 @@ Words words(StepFailure failure) {
     case StepFailure::jaw_not_closed:
       return {"the jaw does not close", "Look at what is between the fingers; free it by hand without power."};
     case StepFailure::touched_on_the_way_back:
-      return {"touched something on the way back", "Press the emergency stop, then look at what the arm touches before it is moved again."};
+      return {"touched something on the way back",
+              "Press the emergency stop, then look at what the arm touches, or what jams one of its joints, before it is moved again."};
     case StepFailure::stalled: return {"the turn stalled", "The valve takes more torque than the wrist has, or something blocks it."};
     case StepFailure::marker_wrong:
       return {"the marker has another size than surveyed", "Check panel.marker_size_m and the camera's calibration."};
@@ -78,7 +79,7 @@ Words words(StepFailure failure) {
     case StepFailure::button_stuck:
       return {"the button is stuck",
               "It was touched and did not go in by half its stroke: free it, or take away what stands before it; check "
-              "panel.button_stroke_m and mission.press_torque_nm."};
+              "panel.button_stroke_m, mission.press_torque_nm, and that no joint reads a torque where the arm touches nothing."};
     case StepFailure::button_missing:
       return {"no button there",
               "Nothing was touched down to its bottom: look whether it broke off; check panel.buttons_m and panel.button_height_m. If it "
