@@ -29,9 +29,9 @@ const std::vector<FaultRule>& rules() {
   static const std::vector<std::string> stands_before{"unexpected contact", "touched something", "the jaw holds nothing",
                                                       "the button is stuck"};
   // A torque that stands still is felt nowhere, one that is too high everywhere: the core sees a press that meets nothing, or something too early, or a
-  // button that gives way too little. A joint that is jammed is felt as what the arm touches. Their advice says so.
+  // button that gives way too little. Its advice says so.
   static const std::vector<std::string> feels_nothing{"no button there", "touched something"},
-      feels_much{"touched something", "the button is stuck"}, feels_a_jam{"touched something on the way back"};
+      feels_much{"touched something", "the button is stuck"};
   static const std::vector<std::string> link{"node lost", "node rebooted", "stale position", "drive fault", "boot failed"};
   static const std::vector<std::string> bus_off_of_the_master{"CAN bus off"};
   static const std::vector<std::string> sight{"image", "camera", "panel vision", "platform call", "no panel seen", "too few points"};
@@ -40,7 +40,7 @@ const std::vector<FaultRule>& rules() {
   static const std::vector<FaultRule> all{
       {"overcurrent", stop, Report::frame, 0, {"drive fault"}, {}},
       {"hot", stop, Report::frame, 0, {"drive fault"}, {}},
-      {"following", safe_end, Report::none, 0, misbehaves, feels_a_jam},
+      {"following", safe_end, Report::none, 0, misbehaves, {}},
       {"stuck_encoder", safe_end, Report::none, 0, misbehaves, led_astray},
       {"encoder_jump", safe_end, Report::none, 0, misbehaves, led_astray},
       {"torque_frozen", safe_end, Report::none, 0, misbehaves, feels_nothing},
