@@ -79,7 +79,8 @@ Words words(StepFailure failure) {
     case StepFailure::button_stuck:
       return {"the button is stuck",
               "It was touched and did not go in by half its stroke: free it, or take away what stands before it; check "
-              "panel.button_stroke_m, mission.press_torque_nm, and that no joint reads a torque where the arm touches nothing."};
+              "panel.button_stroke_m, mission.press_torque_nm, and that no joint's torque is far above the usual while the arm touches "
+              "nothing."};
     case StepFailure::button_missing:
       return {"no button there",
               "Nothing was touched down to its bottom: look whether it broke off; check panel.buttons_m and panel.button_height_m. If it "

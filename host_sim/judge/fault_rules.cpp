@@ -29,7 +29,7 @@ const std::vector<FaultRule>& rules() {
   static const std::vector<std::string> stands_before{"unexpected contact", "touched something", "the jaw holds nothing",
                                                       "the button is stuck"};
   // A torque that stands still is felt nowhere, one that is too high everywhere: the core sees a press that meets nothing, or something too early, or a
-  // button that gives way too little. Its advice says so.
+  // button that gives way too little. The advice for that names the torques.
   static const std::vector<std::string> feels_nothing{"no button there", "touched something"},
       feels_much{"touched something", "the button is stuck"};
   static const std::vector<std::string> link{"node lost", "node rebooted", "stale position", "drive fault", "boot failed"};
