@@ -52,8 +52,8 @@ TEST(StuckEncoder, IsNoJointThatFollowsOrStandsOrIsHeld) {
   EXPECT_NEAR(coarse.run(10, 0), 0.8, 0.02) << "one count of a coarse encoder is more than the way";
 }
 
-// A drive winds its motor up while something holds the joint back. One that stays behind, short of the end of its torque, goes on unseen: at the gain of its position loop, 20 to 50 a
-// second, times the lag.
+// A drive winds its motor up while something holds the joint back. One that stays behind, short of the end of its torque, goes on unseen: at the gain of its position loop
+// times the lag. The simulator's gain is 20 a second; 50 stands for stiffer drives.
 TEST(StuckEncoder, IsNotHeldForGoodByALoadShortOfTheEndOfItsTorque) {
   for (const double counts_s : {20.0, 40.0, 100.0, 300.0, 1000.0})
     for (const auto& [before_nm, since_nm] : {std::pair{-12.7, -0.5}, {0.8, 5.8}, {-8.0, 8.0}}) {
