@@ -63,15 +63,24 @@ void Watch::observe_torque(const canopen::Axis& axis, std::size_t joint) {
   joints_.torque_high_nm[joint] = torque.high_nm;
 }
 
+// What takes half of the joint's torque limit, or nearly all that its motor may give, is held by something: near a stroke's end a screw's motor gives its joint less
+// than the half.
+bool Watch::at_torque_limit(const canopen::Axis& axis, std::size_t joint) const {
+  constexpr double free_share = 0.5, motor_share = 0.9;
+  const double motor_permille = axis.setup().max_torque_of(axis.rated_torque_unm());
+  return std::abs(joints_.torque_nm[joint]) >= free_share * limits_.joints[joint].max_torque_nm ||
+         std::abs(axis.torque_permille()) >= motor_share * motor_permille;
+}
+
 void Watch::observe_encoder(const canopen::Axis& axis, std::size_t joint, Time now) {
-  constexpr double free_share = 0.5;  // of the joint's torque limit: what takes more is held by something
   StuckEncoder::Sample sample;
   sample.t = now;
   sample.actual_counts = axis.actual_counts();
   sample.target_counts = axis.target_counts();
   sample.rad_per_count = arm::rad_per_count(static_cast<Joint>(joint), joints_.position_rad[joint]);
   sample.torque_nm = joints_.torque_nm[joint];
-  sample.follows = axis.enabled() && std::abs(sample.torque_nm) < free_share * limits_.joints[joint].max_torque_nm;
+  sample.follows = axis.enabled();
+  sample.at_torque_limit = at_torque_limit(axis, joint);
   const bool stuck = encoders_[joint].update(sample);
   stuck_[joint] = stuck && joint < static_cast<std::size_t>(Joint::roll);
 }

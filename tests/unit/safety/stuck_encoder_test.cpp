@@ -1,113 +1,326 @@
-// A position that stands still while its set-point goes on.
+// A position that stands still while its target does not.
 #include "firmware/safety/stuck_encoder.hpp"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <functional>
 #include <utility>
 
 namespace lf::safety {
 namespace {
 
+constexpr double never = 10;  // s
+constexpr double rad_per_count = 1.3e-4;
 constexpr double end_nm = 13;  // of a joint's torque, as the watch has it by default
 
+// A joint at its target, and what is made of it from now on.
 struct Joint {
   StuckEncoder encoder;
-  StuckEncoder::Sample now{Time(), 0, 0, 1.3e-4, 0, true};
+  StuckEncoder::Sample now{Time(), 0, 0, rad_per_count, 0, true, false};
 
-  // From now on with `torque_nm_s`. Seconds until it is found stuck while the set-point goes at `counts_s` and the position follows at `share` of it; 5 when it is not.
-  double run(double counts_s, double share, double torque_nm_s = 0) {
-    const double from_nm = now.torque_nm;
+  // `change` makes the sample after so many seconds. Seconds until it is found stuck; `never` when it is not.
+  double run(const std::function<void(StuckEncoder::Sample&, double)>& change, double for_s = never) {
     const Time began = now.t;
-    const std::int32_t from = now.actual_counts;
-    while (now.t - began < Duration::from_s(5)) {
+    while (now.t - began < Duration::from_s(for_s)) {
       now.t = now.t + Duration::from_ms(4);
       const double s = (now.t - began).s();
-      now.target_counts = from + static_cast<std::int32_t>(counts_s * s);
-      now.actual_counts = from + static_cast<std::int32_t>(share * counts_s * s);
-      now.torque_nm = from_nm + torque_nm_s * s;
-      now.follows = now.follows && now.torque_nm < end_nm;
+      change(now, s);
+      now.at_torque_limit = std::abs(now.torque_nm) >= end_nm;
       if (encoder.update(now)) return s;
     }
-    return 5;
+    return never;
+  }
+  // The target goes at `counts_s`, the position follows at `share` of it, the torque rises.
+  double go(double counts_s, double share, double torque_nm_s = 0, double for_s = never) {
+    const std::int32_t from = now.actual_counts;
+    const double from_nm = now.torque_nm;
+    return run(
+        [=](StuckEncoder::Sample& sample, double s) {
+          sample.target_counts = from + static_cast<std::int32_t>(std::lround(counts_s * s));
+          sample.actual_counts = from + static_cast<std::int32_t>(std::lround(share * counts_s * s));
+          sample.torque_nm = from_nm + torque_nm_s * s;
+        },
+        for_s);
+  }
+  void stand(double for_s) {
+    (void)run([](StuckEncoder::Sample&, double) {}, for_s);
+  }
+  // It stays where it is, and the target so many counts off.
+  double left_at(std::int32_t counts, double torque_nm, double for_s = never) {
+    return run(
+        [=](StuckEncoder::Sample& sample, double) {
+          sample.target_counts = sample.actual_counts + counts;
+          sample.torque_nm = torque_nm;
+        },
+        for_s);
   }
 };
 
-TEST(StuckEncoder, IsToldOnceTheSetPointHasGoneOnWithoutIt) {
+// When the lag's sum is reached by a target that goes on at `rad_s`, from behind_rad on.
+double sum_reached_s(double rad_s, double rad_s_sum) {
+  const double from_s = StuckEncoder::behind_rad / rad_s;
+  return std::sqrt(from_s * from_s + 2 * rad_s_sum / rad_s);
+}
+
+TEST(StuckEncoder, IsToldOnceTheTargetHasGoneOnWithoutIt) {
   for (const double way : {-1.0, 1.0}) {
-    EXPECT_NEAR(Joint().run(way * 1000, 0), 0.304, 0.01) << "fast: after the time";
-    EXPECT_NEAR(Joint().run(way * 40, 0), 3e-3 / 1.3e-4 / 40, 0.03) << "slow: after the way";
+    EXPECT_NEAR(Joint().go(way * 1000, 0), 0.3 + 8.0 / 1000, 0.009) << "fast: after the time";
+    EXPECT_NEAR(Joint().go(way * 40, 0), sum_reached_s(40 * rad_per_count, 1.5e-3), 0.02) << "slow: after the sum";
+    EXPECT_NEAR(Joint().go(way * 5, 0), sum_reached_s(5 * rad_per_count, 1.5e-3), 0.1) << "very slow";
   }
 }
 
-TEST(StuckEncoder, IsNoJointThatFollowsOrStandsOrIsHeld) {
-  EXPECT_EQ(Joint().run(1000, 0.99), 5);
-  EXPECT_EQ(Joint().run(40, 0.5), 5) << "it lags, and moves";
-  EXPECT_EQ(Joint().run(0, 0), 5);
-  EXPECT_EQ(Joint().run(100, 0, 20), 5) << "its load rises to the end of its torque: it is 3.1 mrad behind with 4.8 N m, 8.5 with 13";
+TEST(StuckEncoder, IsNoJointThatFollowsOrStands) {
+  EXPECT_EQ(Joint().go(1000, 0.99), never);
+  EXPECT_EQ(Joint().go(40, 0.5), never) << "it lags, and moves";
+  EXPECT_EQ(Joint().go(0, 0), never);
+  EXPECT_EQ(Joint().left_at(4, 0), never) << "a loop without an integrator";
   Joint off;
   off.now.follows = false;
-  EXPECT_EQ(off.run(1000, 0), 5);
+  EXPECT_EQ(off.go(1000, 0), never);
   Joint coarse;
   coarse.now.rad_per_count = 3.1e-3;
-  EXPECT_NEAR(coarse.run(10, 0), 0.8, 0.02) << "one count of a coarse encoder is more than the way";
+  EXPECT_EQ(coarse.left_at(7, 0), never) << "one count of a coarse encoder is more than the way";
+  Joint fine;
+  fine.now.rad_per_count = 1e-6;
+  EXPECT_EQ(fine.left_at(900, 0), never) << "many counts of a fine one are less";
+}
+
+// It lags at its speed over its gain, as a drive without feed-forward does, and shows its way.
+TEST(StuckEncoder, IsNoJointThatLagsAndMoves) {
+  for (const double counts_s : {8.0, 40.0, 400.0, 3000.0})
+    for (const double gain_per_s : {10.0, 50.0}) {
+      Joint joint;
+      EXPECT_EQ(joint.run([&](StuckEncoder::Sample& sample, double s) {
+        sample.target_counts = static_cast<std::int32_t>(counts_s * s);
+        sample.actual_counts = static_cast<std::int32_t>(counts_s * (s - (1 - std::exp(-gain_per_s * s)) / gain_per_s));
+      }),
+                never)
+          << counts_s << " counts a second at " << gain_per_s;
+    }
+}
+
+// A joint that meets something is 3.1 mrad behind with 4.8 N m, and 8.5 with 13. Either way, with a drive that counts either way.
+TEST(StuckEncoder, IsNoJointThatIsHeld) {
+  for (const double way : {-1.0, 1.0})
+    for (const double sign : {-1.0, 1.0})
+      for (const double counts_s : {100.0, 300.0, 1000.0}) {
+        Joint joint;
+        joint.now.rad_per_count = sign * rad_per_count;
+        EXPECT_EQ(joint.go(way * counts_s, 0, way * sign * 0.2 * counts_s), never)
+            << "its load rises to the end of its torque, and stays there";
+      }
+}
+
+TEST(StuckEncoder, IsHeldByALoadThatHoldsItBackOnly) {
+  EXPECT_NEAR(Joint().left_at(40, 3), 0.3, 0.01) << "too little to be a hold";
+  Joint heavy;
+  heavy.now.torque_nm = -14;
+  heavy.stand(0.1);
+  EXPECT_NEAR(heavy.left_at(40, -14), 0.3, 0.01) << "what it bears anyway";
+  for (const double way : {-1.0, 1.0})
+    for (const double sign : {-1.0, 1.0}) {
+      Joint joint;
+      joint.now.rad_per_count = sign * rad_per_count;
+      EXPECT_NEAR(joint.left_at(static_cast<std::int32_t>(way) * 40, -way * sign * 8), 0.3, 0.01) << "pushed on towards its target";
+      Joint held;
+      held.now.rad_per_count = sign * rad_per_count;
+      EXPECT_NEAR(held.left_at(static_cast<std::int32_t>(way) * 40, way * sign * 8), 3e-3 / (40 * rad_per_count), 0.01);
+    }
+}
+
+// Five to six counts behind on its way, while its weight changes: what it bore long ago is no measure.
+TEST(StuckEncoder, IsHeldByMoreThanItBoreWhenItLastMoved) {
+  Joint joint;
+  EXPECT_EQ(joint.run(
+                [](StuckEncoder::Sample& sample, double s) {
+                  sample.target_counts = 6 + static_cast<std::int32_t>(100 * s);
+                  sample.actual_counts = static_cast<std::int32_t>(100 * s);
+                  sample.torque_nm = 2 * s;
+                },
+                4),
+            never);
+  EXPECT_NEAR(joint.left_at(40, 8), 0.3, 0.01);
 }
 
 // A drive winds its motor up while something holds the joint back. One that stays behind, short of the end of its torque, goes on unseen: at the gain of its position loop
 // times the lag. The simulator's gain is 20 a second; 50 stands for stiffer drives.
 TEST(StuckEncoder, IsNotHeldForGoodByALoadShortOfTheEndOfItsTorque) {
-  for (const double counts_s : {20.0, 40.0, 100.0, 300.0, 1000.0})
+  for (const double counts_s : {3.0, 20.0, 40.0, 100.0, 300.0, 1000.0})
     for (const auto& [before_nm, since_nm] : {std::pair{-12.7, -0.5}, {0.8, 5.8}, {-8.0, 8.0}}) {
       Joint joint;
-      joint.now.torque_nm = before_nm;  // when it showed its last count
-      (void)joint.encoder.update(joint.now);
+      joint.now.torque_nm = before_nm;  // when it last followed
+      joint.stand(0.1);
       joint.now.torque_nm = since_nm;
-      const double told_s = joint.run(counts_s, 0);
-      EXPECT_LT(told_s, 5) << counts_s << " counts a second";
-      EXPECT_LT(50 * counts_s * 1.3e-4 * told_s * told_s / 2, 0.5) << "rad, at " << counts_s << " counts a second";
+      double gone_rad = 0;
+      const double told_s = joint.run([&](StuckEncoder::Sample& sample, double s) {
+        sample.target_counts = static_cast<std::int32_t>(counts_s * s);
+        gone_rad += 50 * sample.target_counts * rad_per_count * 4e-3;
+      });
+      EXPECT_LT(told_s, never) << counts_s << " counts a second";
+      EXPECT_LT(gone_rad, 0.5) << "at " << counts_s << " counts a second";
     }
-}
-
-// Seconds until a joint that bore a load when it showed its last count, and no longer does, is found stuck with its target `counts` off.
-double told_with_a_target_off_by(Joint& joint, std::int32_t counts) {
-  const Time began = joint.now.t;
-  joint.now.torque_nm = -12.7;
-  ++joint.now.actual_counts;
-  (void)joint.encoder.update(joint.now);
-  joint.now.torque_nm = -0.5;
-  joint.now.target_counts += counts;
-  while (joint.now.t - began < Duration::from_s(5)) {
-    joint.now.t = joint.now.t + Duration::from_ms(4);
-    if (joint.encoder.update(joint.now)) break;
-  }
-  return (joint.now.t - began).s();
 }
 
 TEST(StuckEncoder, IsHeldForLessTheFartherItIsBehind) {
-  for (const std::int32_t way : {-1, 1}) {
+  for (const std::int32_t way : {-1, 1})
+    for (const std::int32_t counts : {8, 24, 60})
+      EXPECT_NEAR(Joint().left_at(way * counts, way * 8), 3e-3 / (counts * rad_per_count), 0.01);
+  EXPECT_NEAR(Joint().left_at(200, 8), 0.3, 0.005) << "never sooner than without a load";
+}
+
+// What wavers about its place shows no way, however long; what creeps two counts towards its target does.
+TEST(StuckEncoder, IsOneThatWavers) {
+  for (const std::int32_t by : {1, 2, 3}) {
     Joint joint;
-    EXPECT_NEAR(told_with_a_target_off_by(joint, way * 24), 0.003 / (24 * 1.3e-4), 0.005);
-    EXPECT_NEAR(told_with_a_target_off_by(joint, way * 24), 0.003 / (24 * 1.3e-4), 0.005) << "after another count it begins anew";
-    EXPECT_NEAR(told_with_a_target_off_by(joint, way * 60), 0.003 / (60 * 1.3e-4), 0.005);
-    EXPECT_NEAR(told_with_a_target_off_by(joint, way * 200), 0.3, 0.005) << "never sooner than without a load";
+    const double told_s = joint.run([&](StuckEncoder::Sample& sample, double s) {
+      sample.target_counts = static_cast<std::int32_t>(300 * s);
+      sample.actual_counts = (std::lround(s / 4e-3) * 7 % 3 - 1) * by;
+    });
+    EXPECT_LT(told_s, 0.7) << by << " counts either way";
   }
+  // Its target stays behind, as that of an arm that was held: it is carried on, and comes back.
+  Joint carried;
+  EXPECT_EQ(carried.run(
+                [](StuckEncoder::Sample& sample, double s) {
+                  sample.target_counts = -40;
+                  sample.actual_counts = static_cast<std::int32_t>(std::lround(s < 0.2 ? 500 * s : s < 0.3 ? 100 : 100 - 400 * (s - 0.3)));
+                },
+                0.6),
+            never);
+  EXPECT_FALSE(carried.encoder.shows_nothing());
+  Joint slow;
+  const double told_s = slow.run([](StuckEncoder::Sample& sample, double s) {
+    sample.target_counts = 50 + static_cast<std::int32_t>(4 * s);
+    sample.actual_counts = static_cast<std::int32_t>(4 * s);
+  });
+  EXPECT_LT(told_s, 1) << "a count, and no second one";
+  Joint creeps;
+  EXPECT_EQ(creeps.run([](StuckEncoder::Sample& sample, double s) {
+    sample.target_counts = 50 + static_cast<std::int32_t>(8 * s);
+    sample.actual_counts = static_cast<std::int32_t>(8 * s);
+  }),
+            never);
+}
+
+// At the end of its torque it is held: nothing is summed. But that ends no account: of a running motor's blows the first would end it otherwise.
+TEST(StuckEncoder, GoesOnAfterTheEndOfItsTorque) {
+  Joint joint;
+  EXPECT_EQ(joint.left_at(40, 8, 0.4), never);
+  EXPECT_EQ(joint.left_at(40, 14, 5), never);
+  EXPECT_TRUE(joint.encoder.shows_nothing()) << "it still shows nothing";
+  EXPECT_NEAR(joint.left_at(40, 8), 3e-3 / (40 * rad_per_count) - 0.4, 0.012);
+  Joint spikes;
+  const double told_s = spikes.run([](StuckEncoder::Sample& sample, double s) {
+    sample.target_counts = static_cast<std::int32_t>(300 * s);
+    sample.torque_nm = std::lround(s / 4e-3) % 10 == 0 ? 14 : 0.5;
+  });
+  EXPECT_LT(told_s, 0.4);
+}
+
+// It stands where it is told to, so it does not go off: however long it was behind before.
+TEST(StuckEncoder, BeginsAnewOnceItsTargetIsBack) {
+  Joint joint;
+  EXPECT_EQ(joint.left_at(40, 0, 0.25), never);
+  EXPECT_EQ(joint.left_at(0, 0, 2), never);
+  EXPECT_FALSE(joint.encoder.shows_nothing());
+  EXPECT_NEAR(joint.left_at(40, 0), 0.3, 0.008);
+  Joint other_way;
+  EXPECT_EQ(other_way.left_at(40, 0, 0.25), never);
+  EXPECT_NEAR(other_way.left_at(-40, 0), 0.3, 0.008);
+  Joint off;
+  EXPECT_EQ(off.left_at(40, 0, 0.25), never);
+  off.now.follows = false;
+  EXPECT_EQ(off.left_at(40, 0, 1), never);
+  off.now.follows = true;
+  EXPECT_NEAR(off.left_at(40, 0), 0.3, 0.008) << "without power it went nowhere";
+  Joint hovers;
+  hovers.now.rad_per_count = 1e-6;
+  EXPECT_EQ(hovers.left_at(1100, 0, 0.8), never);
+  EXPECT_NEAR(hovers.left_at(700, 0), (1.5e-3 - 0.8 * 1.1e-3) / 0.7e-3, 0.02) << "not back before it is within half";
+  Joint held;
+  EXPECT_EQ(held.left_at(40, 4, 0.5), never);
+  held.now.actual_counts += 2;
+  held.stand(0.004);
+  EXPECT_NEAR(held.left_at(40, 8), 3e-3 / (40 * rad_per_count), 0.012);
+  Joint shown;
+  EXPECT_EQ(shown.left_at(40, 0, 0.25), never);
+  shown.now.actual_counts += 2;
+  EXPECT_NEAR(shown.left_at(40, 0), 0.3, 0.008) << "a sign of life";
+}
+
+TEST(StuckEncoder, GivesAJointThatStoodTheSameTime) {
+  Joint joint;
+  joint.stand(10);
+  EXPECT_NEAR(joint.go(1000, 0), 0.308, 0.009);
+  EXPECT_EQ(StuckEncoder::blind_time, Duration::from_ms(100));
+  Joint blind;
+  blind.stand(10);
+  EXPECT_EQ(blind.go(1000, 0, 0, 0.09), never);
+  EXPECT_FALSE(blind.encoder.shows_nothing()) << "90 ms after it was with its target";
+}
+
+// A target that stops near the reading: the joint creeps on, at the gain times so little.
+TEST(StuckEncoder, IsToldThoughItsTargetStandsCloseBy) {
+  EXPECT_NEAR(Joint().left_at(8, 0), 1.5e-3 / (8 * rad_per_count), 0.01);
+  EXPECT_NEAR(Joint().left_at(-16, 0), 1.5e-3 / (16 * rad_per_count), 0.01);
+}
+
+// Between two samples nothing was read: a gap is no time in which the joint showed nothing.
+TEST(StuckEncoder, CountsNoGap) {
+  Joint joint;
+  EXPECT_EQ(joint.left_at(40, 0, 0.1), never);
+  joint.now.t = joint.now.t + Duration::from_s(5);
+  EXPECT_FALSE(joint.encoder.update(joint.now));
+  EXPECT_NEAR(joint.left_at(40, 0), 0.3 - 0.1 - 0.02, 0.009);
 }
 
 // A load that rises faster than any contact's threshold is no proof of one while the position shows nothing.
-TEST(StuckEncoder, ShowsNothingATenthOfASecondAfterItsLastCount) {
+TEST(StuckEncoder, ShowsNothingATenthOfASecondAfterItsLastSign) {
   const auto shows_nothing = [](double share, double s) {
     Joint joint;
-    while (joint.now.t < Time() + Duration::from_s(s)) {
-      joint.now.t = joint.now.t + Duration::from_ms(4);
-      joint.now.target_counts = static_cast<std::int32_t>(1000 * joint.now.t.s());
-      joint.now.actual_counts = static_cast<std::int32_t>(share * 1000 * joint.now.t.s());
-      joint.now.torque_nm = 100 * joint.now.t.s();
-      EXPECT_FALSE(joint.encoder.update(joint.now)) << "its load rises";
-    }
+    EXPECT_EQ(joint.go(1000, share, 100, s), never) << "its load rises";
     return joint.encoder.shows_nothing();
   };
-  EXPECT_FALSE(shows_nothing(0, 0.096));
-  EXPECT_TRUE(shows_nothing(0, 0.112));
-  EXPECT_FALSE(shows_nothing(0.1, 0.112)) << "pressed against something it creeps";
+  EXPECT_FALSE(shows_nothing(0, 0.1));
+  EXPECT_TRUE(shows_nothing(0, 0.12));
+  EXPECT_FALSE(shows_nothing(0.1, 0.12)) << "pressed against something it creeps";
+}
+
+// A roll that froze a count beside its target turns on by it, unseen, until its stop loads it.
+TEST(StuckEncoder, ShowsNothingOneCountOffWhereThatIsFar) {
+  const auto shows_nothing = [](double count_rad, std::int32_t counts, double s) {
+    Joint joint;
+    joint.now.rad_per_count = count_rad;
+    joint.stand(1);
+    EXPECT_EQ(joint.left_at(counts, 0, s), never);
+    return joint.encoder.shows_nothing();
+  };
+  for (const double sign : {-1.0, 1.0}) {
+    EXPECT_TRUE(shows_nothing(sign * 3.07e-3, 1, 0.12));
+    EXPECT_FALSE(shows_nothing(sign * 3.07e-3, 1, 0.08));
+    EXPECT_FALSE(shows_nothing(sign * 3.07e-3, 0, 0.3));
+    EXPECT_FALSE(shows_nothing(sign * rad_per_count, 2, 0.3)) << "a screw's loop holds within two";
+    EXPECT_FALSE(shows_nothing(sign * rad_per_count, 15, 0.3)) << "2 mrad";
+  }
+  Joint turns;
+  turns.now.rad_per_count = 3.07e-3;
+  EXPECT_EQ(turns.run(
+                [](StuckEncoder::Sample& sample, double s) {
+                  sample.target_counts = 2 + static_cast<std::int32_t>(12 * s);
+                  sample.actual_counts = static_cast<std::int32_t>(12 * s);
+                },
+                0.58),
+            never);
+  EXPECT_FALSE(turns.encoder.shows_nothing()) << "a count every 83 ms";
+  Joint joint;
+  joint.now.actual_counts = joint.now.target_counts = 1000;
+  EXPECT_EQ(joint.left_at(15, 0, 0.2), never);
+  EXPECT_EQ(joint.left_at(24, 0, 0.012), never);
+  EXPECT_TRUE(joint.encoder.shows_nothing()) << "behind for long, and now far";
+  EXPECT_EQ(joint.left_at(-24, 0, 0.05), never);
+  EXPECT_FALSE(joint.encoder.shows_nothing()) << "on its other side";
 }
 
 }  // namespace
