@@ -380,9 +380,27 @@ class Judge {
     if (for_nothing && !verdict_.stood_anyway) wrong("held under power for a contact that is none, with a drive that misleads");
   }
 
-  // A contact was told, or holds the arm, and only drives that mislead can have made one: the arm has touched nothing.
+  // A contact was told, or holds the arm, and only drives that mislead can have made one: when the arm came to stand, it touched nothing. What else happened is
+  // nothing that moves it.
   bool touches_nothing() const {
-    return verdict_.force_n == 0 && std::all_of(situation_.causes.begin(), situation_.causes.end(), misleads);
+    const auto makes_none = [](const Cause& c) { return misleads(c) || c.rule->demand == Demand::go_on; };
+    return std::any_of(situation_.causes.begin(), situation_.causes.end(), misleads) &&
+           std::all_of(situation_.causes.begin(), situation_.causes.end(), makes_none) && force_when_it_stood_n() < figures_.touch_n;
+  }
+
+  // The largest from shortly before the arm came to stand. What the jaw held earlier says nothing of it.
+  double force_when_it_stood_n() const {
+    const auto arm_moves = [this](const Moment& moment) {
+      return std::any_of(moment.speed_rad_s.begin(), moment.speed_rad_s.begin() + arm_joint_count,
+                         [this](float rad_s) { return double(rad_s) >= figures_.standing_rad_s; });
+    };
+    const double stood_s = last_s(moments_, 0, arm_moves);
+    const double from_s = std::max(0.0, stood_s - figures_.touched_within_s), to_s = stood_s + figures_.touched_within_s;
+    double force_n = 0;
+    for (const Moment& moment : moments_) {
+      if (motions_.time_s(moment) >= from_s && motions_.time_s(moment) <= to_s) force_n = std::max(force_n, double(moment.force_n));
+    }
+    return force_n;
   }
 
   // The only cause is a joint that seized, and its set-point has hardly moved since: within the two counts by which rounding and a drive that holds differ.

@@ -36,7 +36,9 @@ struct SafetyFigures {
   // By which slew, shoulder and elbow may go while their drive, or their encoder, misleads: the core's window of 0.15 rad, the 0.2 s that it gives, and the ramp, at
   // the slew's 0.42 rad/s and half as much again.
   double misled_rad = 0.5;
-  double unwinding_s = 0.5;  // in which a joint whose motor stands may still unwind its gear
+  double touch_n = 5;             // less is no contact that an arm could feel: 4 N m at its joints
+  double touched_within_s = 0.5;  // of when the arm came to stand
+  double unwinding_s = 0.5;       // in which a joint whose motor stands may still unwind its gear
 };
 
 // `self_stop_s` of a drive that has a deadline for its process data: 100 ms, a SYNC period, and the tick in which it is found.

@@ -299,6 +299,25 @@ TEST(Verdict, AContactThatIsNoneIsNoReasonToHoldADriveThatMisleads) {
   EXPECT_THAT(judged_with(20, "unexpected contact: elbow", true).wrong, IsEmpty());
 }
 
+// What the jaw held long before is no contact that it has met, what goes on beside is none either.
+TEST(Verdict, AContactCountsFromShortlyBeforeTheArmStood) {
+  const auto judged_with = [](int touched_from_ms, int touched_to_ms, const Situation& situation) {
+    Seen seen = Stopping{.stop_ms = 1000, .force_n = 0}.seen();  // it stands at 1240 ms
+    for (int t = touched_from_ms; t < touched_to_ms; ++t) seen.moments[static_cast<std::size_t>(t)].force_n = 30;
+    Ending ending = failed("unexpected contact: elbow");
+    ending.holds = true;
+    return judge(seen, situation, ending);
+  };
+  const Situation stuck = situation_of(cause_of("stuck_encoder elbow"));
+  EXPECT_THAT(judged_with(0, 700, stuck).wrong, testing::Contains(testing::HasSubstr("held under power")));
+  EXPECT_THAT(judged_with(0, 800, stuck).wrong, testing::Not(testing::Contains(testing::HasSubstr("held under power"))));
+  EXPECT_THAT(judged_with(2000, 2100, stuck).wrong, testing::Contains(testing::HasSubstr("held under power")));
+  const Situation beside = situation_of(cause_of("stuck_encoder elbow"), cause_of("error_frames"));
+  EXPECT_THAT(judged_with(0, 0, beside).wrong, testing::Contains(testing::HasSubstr("held under power")));
+  const Situation pushed = situation_of(cause_of("stuck_encoder elbow"), cause_of("obstacle"));
+  EXPECT_THAT(judged_with(0, 0, pushed).wrong, testing::Not(testing::Contains(testing::HasSubstr("held under power"))));
+}
+
 // A seized motor that should have gone somewhere could have been told from a contact; one that was to stay could not. A set-point of two counts is rounding.
 TEST(Verdict, ASeizedJointMayBeTakenForAContactWhereItWasToStay) {
   const auto verdict = [](std::int32_t to, double units_per_count, bool holds = true) {
