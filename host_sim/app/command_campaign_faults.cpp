@@ -62,7 +62,8 @@ int fault_campaign(const CampaignOptions& options) {
   if (options.into != usual_share_of_step) kind += "-into-" + config::number_text(options.into);
   const CampaignFolder folder(options, base, kind);
   catch_interrupts();
-  const MatrixChoice choice{options.kinds, options.steps, options.rows, options.pairs, shard.index, shard.count, options.one_in};
+  const MatrixChoice choice{options.kinds, options.steps, options.rows,   options.pairs,
+                            shard.index,   shard.count,   options.one_in, options.into};
   const std::vector<FaultMoment> moments = survey_moments(base, options.into);
   if (interrupted()) {
     constexpr const char* told = "interrupted while the steps' times were measured: no row was flown";

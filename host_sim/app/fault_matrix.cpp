@@ -6,6 +6,7 @@
 #include <map>
 
 #include "hal/config/fault_text.hpp"
+#include "hal/config/key_text.hpp"
 #include "hal/config/nearest.hpp"
 #include "hal/sim/observers.hpp"
 #include "host_sim/app/copies.hpp"
@@ -21,7 +22,6 @@ namespace {
 
 using mission::Step;
 
-constexpr std::uint64_t sample_seed = 1;
 constexpr double pairs_within_s = 0.5;
 constexpr double after_end_s = 2.5;  // watched on, past every time that a stop may take
 constexpr double longest_s = 300;    // of a mission, after its fault
@@ -50,6 +50,10 @@ std::vector<MatrixRow> single_rows(const std::vector<FaultMoment>& moments, cons
     }
   }
   return rows;
+}
+
+std::uint64_t sample_seed(const MatrixChoice& choice) {
+  return choice.into == usual_share_of_step ? 1 : scenario::bits(1, "into " + config::number_text(choice.into));
 }
 
 // Every pair of rules in a step of every phase; which nodes, which is first, and how far apart, a hash of the pair says.
@@ -268,9 +272,10 @@ std::vector<MatrixRow> matrix_rows(const std::vector<FaultMoment>& moments, cons
   for (const MatrixRow& row : all) names.push_back(row.name());
   config::check_names(choice.rows, names, "--rows");
   std::vector<MatrixRow> mine;
+  const std::uint64_t seed = sample_seed(choice);
   // A sample is drawn by the rows' names: a stride would meet the same kinds at every moment.
   for (std::size_t i = choice.shard - 1; i < all.size(); i += choice.shards) {
-    const bool drawn = choice.one_in <= 1 || scenario::bits(sample_seed, all[i].name()) % choice.one_in == 0;
+    const bool drawn = choice.one_in <= 1 || scenario::bits(seed, all[i].name()) % choice.one_in == 0;
     if (drawn && chosen(choice.rows, all[i].name())) mine.push_back(all[i]);
   }
   return mine;

@@ -30,6 +30,7 @@ struct MatrixChoice {
   bool pairs = false;
   std::size_t shard = 1, shards = 1;  // row i belongs to shard 1 + i mod shards
   std::size_t one_in = 1;             // a sample: of each shard's rows
+  double into = usual_share_of_step;  // of the steps, where the faults are made: each has a sample of its own
 };
 
 // Throws InputError for a kind, step or row that there is not.
