@@ -88,8 +88,7 @@ void FaultSources::collect_contact(const StepTick& tick) {
   if (!joints.valid) return;
   bench.feel(free_guard_, joints.t);
   if (!free_guard_.touched()) return;
-  const bool unseen = does_not_follow(free_guard_) || bench.watch.shows_nothing(free_guard_.joint());
-  const Fault fault = unseen ? Fault::following_error : Fault::unexpected_contact;
+  const Fault fault = bench.meets_nothing(free_guard_) ? Fault::following_error : Fault::unexpected_contact;
   tick.faults.report(fault, static_cast<std::int32_t>(free_guard_.joint()));
 }
 

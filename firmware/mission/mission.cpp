@@ -113,9 +113,11 @@ void Mission::record(const StepTick& tick, const safety::FaultReport& report, Re
   (void)tick.telemetry.events.push_back(event);  // a full record of one tick loses details, never the counts
 }
 
-// Remembers the first fault that ended the mission.
+// Remembers the first fault that ended the mission. A step's failure is what was made of what the arm felt: where a joint turns out on the way back not to follow, that is
+// why it felt so.
 void Mission::give_up(const safety::FaultReport& cause) {
-  if (bench_.course == Course::giving_up || ended()) return;
+  const bool explains = outcome_.fault == Fault::step_failed && cause.fault == Fault::following_error;
+  if (ended() || (bench_.course == Course::giving_up && !explains)) return;
   bench_.course = Course::giving_up;
   outcome_.stage = row(step_).stage;
   outcome_.step = step_;

@@ -141,7 +141,7 @@ Progress PressButton::run_press(const StepTick& tick) {
   if (pressed_) return Progress::done_if(tick.settled(bench.motion.done(), press_time));
   if (bench.motion.planning()) return Progress::running();
   if (!met_something()) sense(tick);
-  if (does_not_follow(guard_)) {
+  if (bench.meets_nothing(guard_)) {
     tick.faults.report(safety::Fault::following_error, static_cast<std::int32_t>(guard_.joint()));
     return Progress::running();
   }

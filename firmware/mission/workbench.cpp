@@ -92,11 +92,15 @@ bool has_seized(const arm::GuardedMotion& guard) {
   // Gear and links of the stiffest joint give way by 2.4 mrad before they carry a contact's torque: the motor goes so far, seven counts of a screw. A
   // count is what an encoder that stands may waver by. The roll's is 3.1 mrad: what it meets hard, and what leans on an arm before it begins to move, look the
   // same as a seized motor. Both lose their power, which is the safer answer.
-  constexpr double stands_counts = 1.5, wavers_counts = 1;
+  constexpr double stands_counts = 1.5, wavers_counts = 1, gives_rad = 0.0024;
   if (!guard.touched()) return false;
   const auto joint = static_cast<Eigen::Index>(guard.joint());
   const double count_rad = arm::rad_per_count(guard.joint(), guard.position_rad()[joint]);
   const double travelled = guard.travelled_rad()[joint] / count_rad, to_travel = guard.to_travel_rad()[joint] / count_rad;
+  // One count that is more than gear and links give way by: a motor that is told to go there, pushes that way and shows nothing of it is not held at once.
+  const double error_rad = guard.error_rad()[joint];
+  const bool pushes_there = error_rad * guard.excess_torque_nm()[joint] > 0 && std::abs(error_rad) > 0.5 * count_rad;
+  if (count_rad > gives_rad && pushes_there && travelled < 0.5) return true;
   return travelled < stands_counts && to_travel > 2 * travelled + wavers_counts;
 }
 
@@ -223,6 +227,10 @@ void Workbench::stay_where_pushed() {
   compliance.reset();
 }
 
+bool Workbench::meets_nothing(const arm::GuardedMotion& guard) const {
+  return does_not_follow(guard) || watch.shows_nothing(guard.joint());
+}
+
 void Workbench::let_off_roll() {
   arm::JointVector rest_rad = motion.target();
   rest_rad[3] = measured_rad()[3];
@@ -245,10 +253,14 @@ void Workbench::guard_back_off(Time now) {
 }
 
 bool Workbench::back_off_does_not_follow() const {
-  // The roll was let off and the jaw is open: what a seized motor still pushes with is no contact.
-  const bool pushes_at_nothing =
-      back_guard.state() == arm::GuardState::overload && back_guard.joint() == Joint::roll && gripper.state() == arm::GripperState::open;
-  return pushes_at_nothing || does_not_follow(back_guard);
+  // The roll was let off and the jaw is open: what a seized motor still pushes with is no contact. Nor is what another joint pushed with before the arm began to
+  // move: the open jaw holds nothing. Who is pinned loses his power, too.
+  constexpr double grown_share = 0.25;
+  const auto joint = static_cast<Eigen::Index>(back_guard.joint());
+  const bool was_there = std::abs(back_guard.excess_torque_nm()[joint]) < grown_share * std::abs(back_guard.baseline_nm()[joint]);
+  const bool pushes_at_nothing = back_guard.state() == arm::GuardState::overload && gripper.state() == arm::GripperState::open &&
+                                 (back_guard.joint() == Joint::roll || was_there);
+  return pushes_at_nothing || meets_nothing(back_guard);
 }
 
 void Workbench::watch_back_off_on_hold(const StepTick& tick) {

@@ -96,6 +96,8 @@ struct Workbench {
 
   // The guard learns of the arm on its motion's way.
   void feel(arm::GuardedMotion& guard, Time t) const;
+  // What it has felt is no contact: the drive's own doing, or the torque of a joint that may run off unseen.
+  bool meets_nothing(const arm::GuardedMotion& guard) const;
 
   // The motion's target and what the arm has given way by. Giving way ends at the joints' limits.
   arm::JointVector pushed_target() const;

@@ -155,6 +155,32 @@ TEST(HasSeized, IsAMotorThatStandsWhileItsTorqueRises) {
   }
 }
 
+// A roll is told to go by one count, 3.1 mrad, and its torque rises at once: the count shows before a gear has wound itself up by so much.
+TEST(HasSeized, IsARollThatShowsNotOneCountOfItsWay) {
+  constexpr double count_rad = 3.14e-3;
+  const auto met = [](int told_counts, int shown_counts, double nm) {
+    arm::GuardedMotion guard(free_motion_guard(limits_of(3)));
+    double t_s = 0;
+    arm::JointVector command_rad = arm::JointVector::Zero(), position_rad = command_rad, torque_nm = command_rad;
+    for (int i = 0; i < 100 && !guard.touched(); ++i) {
+      if (i >= 50) {
+        command_rad[3] = told_counts * count_rad;
+        position_rad[3] = shown_counts * count_rad;
+        torque_nm[3] = nm;
+      }
+      guard.update(Time::from_s(t_s += 0.004), command_rad, position_rad, arm::JointVector::Zero(), torque_nm);
+    }
+    EXPECT_TRUE(guard.touched());
+    return has_seized(guard);
+  };
+  for (const int way : {-1, 1}) {
+    EXPECT_TRUE(met(way, 0, way * 6));
+    EXPECT_FALSE(met(way, 0, way * -6)) << "pushed on";
+    EXPECT_FALSE(met(way, way, way * 6)) << "it went, and met something";
+    EXPECT_FALSE(met(0, 0, way * 6)) << "it was to stay";
+  }
+}
+
 // Somebody leans on an arm that stands.
 TEST(HasSeized, IsNoMotorThatHoldsWhatPushesAtIt) {
   arm::GuardedMotion guard(free_motion_guard(limits_of(25)));

@@ -1,0 +1,60 @@
+// A drive that misleads begins to at the end of a step, while it bears a load: what follows is named after its joint, and no drive keeps its power for a
+// contact that is none.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/hil/operator.hpp"
+
+namespace lf::test {
+namespace {
+
+using mission::Step;
+
+struct Misled {
+  const char* name;
+  std::vector<std::string> (*task)();
+  Step step;
+  double into;        // of the step
+  const char* fault;  // as a scenario has it, without its time
+  Joint joint;
+};
+void PrintTo(const Misled& misled, std::ostream* out) { *out << misled.name; }
+
+class MisledDrive : public testing::TestWithParam<Misled> {};
+
+TEST_P(MisledDrive, IsNamedAndEndsWithoutPower) {
+  const Misled& misled = GetParam();
+  double at_s = 0;
+  {
+    Rig rehearsal(misled.task());
+    rehearsal.start();
+    ASSERT_TRUE(rehearsal.run_to(misled.step)) << rehearsal.story();
+    const double began_s = rehearsal.now().s();
+    while (rehearsal.step_now() == misled.step) rehearsal.step();
+    at_s = began_s + misled.into * (rehearsal.now().s() - began_s);
+  }
+  std::vector<std::string> overrides = misled.task();
+  overrides.push_back("faults=[{at_s: " + std::to_string(at_s) + ", " + misled.fault + "}]");
+  Rig rig(overrides);
+  rig.start();
+  (void)rig.run_to_end();
+  EXPECT_EQ(rig.step_now(), Step::stopped) << rig.story();
+  EXPECT_FALSE(rig.outcome().success);
+  EXPECT_EQ(rig.outcome().fault, safety::Fault::following_error) << rig.story();
+  EXPECT_EQ(rig.outcome().code, static_cast<std::int32_t>(misled.joint)) << rig.story();
+  rig.run_for(1.5);
+  EXPECT_FALSE(rig.any_power()) << rig.story();
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    AtAStepsEnd, MisledDrive,
+    testing::Values(
+        Misled{"SlewEncoderStuckAfterTheAdvance", turn_only, Step::advance, 0.97, "kind: stuck_encoder, node: slew", Joint::slew},
+        Misled{"RollEncoderStuckInTheTurn", turn_only, Step::turn, 0.8, "kind: stuck_encoder, node: roll", Joint::roll},
+        Misled{"ShoulderSeizesAfterTheTurn", turn_only, Step::turn, 0.9, "kind: following, node: shoulder", Joint::shoulder},
+        Misled{"ShoulderEncoderStuckAfterThePress", press_only, Step::press, 0.9, "kind: stuck_encoder, node: shoulder", Joint::shoulder}),
+    [](const testing::TestParamInfo<Misled>& test) { return std::string(test.param.name); });
+
+}  // namespace
+}  // namespace lf::test
