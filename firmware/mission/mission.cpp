@@ -113,10 +113,12 @@ void Mission::record(const StepTick& tick, const safety::FaultReport& report, Re
   (void)tick.telemetry.events.push_back(event);  // a full record of one tick loses details, never the counts
 }
 
-// Remembers the first fault that ended the mission. A step's failure is what was made of what the arm felt: where a joint turns out on the way back not to follow, that is
-// why it felt so.
+// Remembers the first fault that ended the mission. What the arm felt is the exception: where one of its joints turns out on the way back not to follow, that is why it felt
+// so. The task's result keeps what was felt.
 void Mission::give_up(const safety::FaultReport& cause) {
-  const bool explains = outcome_.fault == Fault::step_failed && cause.fault == Fault::following_error;
+  const bool leaves = step_ == Step::abandon || step_ == Step::abandon_back;
+  const bool felt = outcome_.fault == Fault::step_failed && is_felt(static_cast<StepFailure>(outcome_.code));
+  const bool explains = leaves && felt && cause.fault == Fault::following_error && cause.code < static_cast<std::int32_t>(arm_joint_count);
   if (ended() || (bench_.course == Course::giving_up && !explains)) return;
   bench_.course = Course::giving_up;
   outcome_.stage = row(step_).stage;

@@ -184,8 +184,8 @@ void PressButton::watch_on_hold(const StepTick& tick) {
     tick.faults.report(safety::Fault::unexpected_contact, static_cast<std::int32_t>(guard_.joint()));
     return;
   }
-  const bool meant = feel_.touched() && !does_not_follow(guard_);
-  if (!meant) return report_touch(guard_, tick.faults);
+  const bool meant = feel_.touched() && !tick.bench.meets_nothing(guard_);
+  if (!meant) return tick.bench.report_touch(guard_, tick.faults);
   if (guard_.touched()) tick.bench.stay_where_measured();
 }
 

@@ -42,6 +42,13 @@ enum class StepFailure : std::int32_t {
   line_misshapen = 32,  // the laser's line is no bell across: where its middle is cannot be told well enough
 };
 
+// What the arm's joints have told by their torque: a drive that misleads makes one, too.
+constexpr bool is_felt(StepFailure failure) {
+  using enum StepFailure;
+  return failure == early_contact || failure == touched_on_the_way_back || failure == stalled || failure == button_stuck ||
+         failure == button_missing || failure == button_yields;
+}
+
 // What is wrong, in a few words; and what a user can do about it, one sentence, empty where the words say it all.
 const char* name(StepFailure failure);
 const char* remedy(StepFailure failure);

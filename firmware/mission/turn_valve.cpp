@@ -108,7 +108,7 @@ Progress TurnValve::run_advance(const StepTick& tick) {
   if (!motion.is_running() || bench.motion.planning()) return motion;
   bench.feel(guard_, tick.now);
   if (!guard_.touched()) return Progress::running();
-  if (does_not_follow(guard_)) {
+  if (bench.meets_nothing(guard_)) {
     tick.faults.report(safety::Fault::following_error, static_cast<std::int32_t>(guard_.joint()));
     return Progress::running();
   }
@@ -119,7 +119,7 @@ Progress TurnValve::run_advance(const StepTick& tick) {
 void TurnValve::watch_on_hold(const StepTick& tick) {
   const Workbench& bench = tick.bench;
   bench.feel(guard_, tick.now);
-  report_touch(guard_, tick.faults);
+  bench.report_touch(guard_, tick.faults);
 }
 
 Progress TurnValve::run_grip(const StepTick& tick) {

@@ -108,10 +108,15 @@ bool does_not_follow(const arm::GuardedMotion& guard) {
   return lags_without_load(guard) || runs_off(guard) || drives_itself_off(guard) || has_seized(guard);
 }
 
-void report_touch(const arm::GuardedMotion& guard, safety::FaultArbiter& faults) {
-  if (!guard.touched()) return;
-  const safety::Fault fault = does_not_follow(guard) ? safety::Fault::following_error : safety::Fault::unexpected_contact;
-  faults.report(fault, static_cast<std::int32_t>(guard.joint()));
+bool was_behind_before(const arm::GuardedMotion& guard) {
+  // A healthy drive holds its joint within two counts; a guard that begins under a load has learned it as usual.
+  constexpr double healthy_counts = 2.5, grown_share = 0.25;
+  const auto joint = static_cast<Eigen::Index>(guard.joint());
+  const double count_rad = arm::rad_per_count(guard.joint(), guard.position_rad()[joint]);
+  const double load_nm = guard.baseline_nm()[joint], error_rad = guard.error_rad()[joint];
+  const bool grown = std::abs(guard.excess_torque_nm()[joint]) >= grown_share * std::abs(load_nm);
+  return guard.state() == arm::GuardState::overload && !grown && error_rad * load_nm > 0 &&
+         std::abs(error_rad) > healthy_counts * count_rad;
 }
 
 Workbench::Workbench(const ControllerConfig& told)
@@ -228,7 +233,13 @@ void Workbench::stay_where_pushed() {
 }
 
 bool Workbench::meets_nothing(const arm::GuardedMotion& guard) const {
-  return does_not_follow(guard) || watch.shows_nothing(guard.joint());
+  return guard.touched() && (does_not_follow(guard) || watch.shows_nothing(guard.joint()));
+}
+
+void Workbench::report_touch(const arm::GuardedMotion& guard, safety::FaultArbiter& faults) const {
+  if (!guard.touched()) return;
+  const safety::Fault fault = meets_nothing(guard) ? safety::Fault::following_error : safety::Fault::unexpected_contact;
+  faults.report(fault, static_cast<std::int32_t>(guard.joint()));
 }
 
 void Workbench::let_off_roll() {
@@ -253,14 +264,11 @@ void Workbench::guard_back_off(Time now) {
 }
 
 bool Workbench::back_off_does_not_follow() const {
-  // The roll was let off and the jaw is open: what a seized motor still pushes with is no contact. Nor is what another joint pushed with before the arm began to
-  // move: the open jaw holds nothing. Who is pinned loses his power, too.
-  constexpr double grown_share = 0.25;
-  const auto joint = static_cast<Eigen::Index>(back_guard.joint());
-  const bool was_there = std::abs(back_guard.excess_torque_nm()[joint]) < grown_share * std::abs(back_guard.baseline_nm()[joint]);
-  const bool pushes_at_nothing = back_guard.state() == arm::GuardState::overload && gripper.state() == arm::GripperState::open &&
-                                 (back_guard.joint() == Joint::roll || was_there);
-  return pushes_at_nothing || meets_nothing(back_guard);
+  if (gripper.state() != arm::GripperState::open) return meets_nothing(back_guard);
+  // The roll was let off and the jaw is open: what a seized motor still pushes with is no contact. Another joint that is overloaded before the arm leaves, and behind its
+  // target, has seized, or is pinned: it loses its power either way.
+  const bool roll_pushes = back_guard.state() == arm::GuardState::overload && back_guard.joint() == Joint::roll;
+  return roll_pushes || was_behind_before(back_guard) || meets_nothing(back_guard);
 }
 
 void Workbench::watch_back_off_on_hold(const StepTick& tick) {

@@ -45,8 +45,8 @@ bool has_seized(const arm::GuardedMotion& guard);
 // One of them: what was felt is the drive's own doing, and no contact.
 bool does_not_follow(const arm::GuardedMotion& guard);
 
-// Reports what the guard has felt: a contact that is not meant, or a joint that does not follow.
-void report_touch(const arm::GuardedMotion& guard, safety::FaultArbiter& faults);
+// A guard that began under an overload, at a joint that pushes towards its target and is farther behind than a drive that follows.
+bool was_behind_before(const arm::GuardedMotion& guard);
 
 struct StepTick;
 
@@ -98,6 +98,8 @@ struct Workbench {
   void feel(arm::GuardedMotion& guard, Time t) const;
   // What it has felt is no contact: the drive's own doing, or the torque of a joint that may run off unseen.
   bool meets_nothing(const arm::GuardedMotion& guard) const;
+  // Reports what the guard has felt: a contact that is not meant, or a joint that does not follow.
+  void report_touch(const arm::GuardedMotion& guard, safety::FaultArbiter& faults) const;
 
   // The motion's target and what the arm has given way by. Giving way ends at the joints' limits.
   arm::JointVector pushed_target() const;

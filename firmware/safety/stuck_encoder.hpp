@@ -14,20 +14,22 @@ namespace lf::safety {
 
 class StuckEncoder {
  public:
-  // A joint is behind from both on, until it is within half of either.
-  static constexpr std::int64_t behind_counts = 8;
+  // A joint is behind from both on, until it is within half of either. The drive of a healthy one holds it within two counts.
+  static constexpr std::int64_t behind_counts = 3;
   static constexpr double behind_rad = 0.001;
-  // An encoder lives that goes so far towards its target beyond all that it showed before, or so far away from there: one that wavers about its place does not.
-  static constexpr std::int64_t alive_counts = 2, alive_away_counts = 8;
+  // An encoder lives that goes both so far towards its target beyond all that it showed before, or so far away from there: the mean of its last readings, since
+  // one that wavers about its place does not live.
+  static constexpr double alive_counts = 2;
+  static constexpr double alive_rad = 0.00025, away_rad = 0.001;
   // It is told after both: 0.5 s at 3 mrad, 0.3 s from 5 mrad on. A joint that is not held has gone the sum times its loop's gain meanwhile: 0.03 rad at the
   // simulator's 20 a second. One that turns back has to unwind its gear first: 0.2 s and 0.00066 rad s were seen.
   static constexpr Duration least_time = Duration::from_ms(300);
   static constexpr double least_rad_s = 0.0015;
   // Nothing holds a joint for longer short of the end of its torque: its drive winds it up. 1 s at 3 mrad, 0.06 rad at 20 a second.
   static constexpr double held_rad_s = 0.003;
-  static constexpr double load_nm =
-      4;  // a joint that pushes by so much more towards its target than when it last followed may be held by something
-  // So long and so far behind without coming nearer by a count, or going away: no torque proves a contact then. One count of a coarse encoder is so far, too.
+  static constexpr double mean_s = 0.05;
+  static constexpr double usual_s = 1;  // time constant of a following joint's torque: slower than one that meets something winds up
+  // So long and so far behind without a sign: no torque proves a contact then. One count of a coarse encoder is so far, too.
   static constexpr Duration blind_time = Duration::from_ms(100);
   static constexpr double blind_rad = 0.003;
   static constexpr Duration longest_gap = Duration::from_ms(20);  // between samples: what lies beyond is not counted
@@ -36,9 +38,11 @@ class StuckEncoder {
     Time t;
     std::int32_t actual_counts = 0, target_counts = 0;
     double rad_per_count = 0;
-    double torque_nm = 0;          // that the drive gives the joint
-    bool follows = false;          // it has power and is told where to go
-    bool at_torque_limit = false;  // what holds a joint that pushes so much holds it: nothing is summed then, and nothing told
+    double torque_nm = 0;         // that the drive gives the joint
+    double load_nm = 4;           // a joint that pushes by so much more than usual towards its target may be held by something
+    bool follows = false;         // it has power and is told where to go
+    bool holds_much = false;      // what holds a joint that pushes so much holds it: nothing is summed then, and nothing told
+    bool motor_at_limit = false;  // the same, of a motor that gives all that it may
   };
 
   // True while it is stuck.
@@ -51,19 +55,12 @@ class StuckEncoder {
     last_ = now.t;
     way_ = way;
     look(now, turned || !now.follows, lag_rad, dt);
+    if (!now.follows) usual_nm_ = now.torque_nm;
     const bool with_it = std::abs(lag) <= behind_counts / 2 || lag_rad <= behind_rad / 2;
-    const bool ends = with_it || !now.follows || (behind_ && turned);
-    if (ends) behind_ = false;
-    if (!behind_) {
-      const bool moves = std::abs(std::int64_t{now.actual_counts} - shown_.actual_counts) >= alive_counts;
-      if (ends || moves) shows(now);
-      behind_ = std::abs(lag) >= behind_counts && lag_rad >= behind_rad;
-      farthest_counts_ = now.actual_counts;
-    }
-    if (lives(now.actual_counts - farthest_counts_, alive_counts)) {
-      shows(now);
-      farthest_counts_ = now.actual_counts;
-    }
+    if (with_it || !now.follows || turned) behind_ = false;
+    mean_counts_ += (now.actual_counts - mean_counts_) * (behind_ ? dt.s() / (dt.s() + mean_s) : 1);
+    if (!behind_ || lives(now, mean_counts_ - farthest_counts_, alive_counts, alive_rad)) begin_anew(now, dt);
+    behind_ = behind_ || (std::abs(lag) >= behind_counts && lag_rad >= behind_rad);
     return behind_ && is_stuck(now, lag_rad, dt);
   }
 
@@ -71,21 +68,22 @@ class StuckEncoder {
   bool shows_nothing() const { return shows_nothing_; }
 
  private:
-  // A sign of life.
-  void shows(const Sample& now) {
-    shown_ = now;
+  void begin_anew(const Sample& now, Duration dt) {
+    const double s = (behind_for_ + dt).s();
+    usual_nm_ += (now.torque_nm - usual_nm_) * s / (s + usual_s);
+    farthest_counts_ = mean_counts_;
     behind_for_ = Duration();
     behind_rad_s_ = 0;
   }
 
-  bool lives(std::int64_t gone_counts, std::int64_t toward_counts) const {
-    return way_ * gone_counts >= toward_counts || way_ * gone_counts <= -alive_away_counts;
+  bool lives(const Sample& now, double gone_counts, double toward_counts, double toward_rad) const {
+    const double toward = static_cast<double>(way_) * gone_counts, gone_rad = toward * std::abs(now.rad_per_count);
+    return (toward >= toward_counts && gone_rad >= toward_rad) || gone_rad <= -away_rad;
   }
 
   void look(const Sample& now, bool anew, double lag_rad, Duration dt) {
-    const bool moves = lives(now.actual_counts - nearest_counts_, 1);
     blind_for_ = blind_for_ + dt;
-    if (anew || moves || lag_rad < blind_rad / 2) {
+    if (anew || lag_rad < blind_rad / 2 || lives(now, static_cast<double>(now.actual_counts - nearest_counts_), 1, alive_rad / 2)) {
       blind_for_ = Duration();
       nearest_counts_ = now.actual_counts;
     }
@@ -94,9 +92,9 @@ class StuckEncoder {
 
   bool is_stuck(const Sample& now, double lag_rad, Duration dt) {
     const double toward = static_cast<double>(way_) * (now.rad_per_count < 0 ? -1 : 1);
-    const bool held = toward * (now.torque_nm - shown_.torque_nm) >= load_nm;
+    const bool held = toward * (now.torque_nm - usual_nm_) >= now.load_nm;
     behind_for_ = behind_for_ + dt;
-    if (held && now.at_torque_limit) return false;
+    if ((held && now.holds_much) || (now.motor_at_limit && toward * now.torque_nm > 0)) return false;
     behind_rad_s_ += lag_rad * dt.s();
     return behind_for_ >= least_time && behind_rad_s_ >= (held ? held_rad_s : least_rad_s);
   }
@@ -104,9 +102,9 @@ class StuckEncoder {
   Time last_;
   std::int64_t way_ = 1;  // of its target from it, in counts
   // Left behind.
-  Sample shown_;  // when it last followed, or showed a way
   bool behind_ = false;
-  std::int64_t farthest_counts_ = 0;
+  double usual_nm_ = 0;
+  double mean_counts_ = 0, farthest_counts_ = 0;
   Duration behind_for_;
   double behind_rad_s_ = 0;
   // Unseen.

@@ -63,26 +63,26 @@ void Watch::observe_torque(const canopen::Axis& axis, std::size_t joint) {
   joints_.torque_high_nm[joint] = torque.high_nm;
 }
 
-// What takes half of the joint's torque limit, or nearly all that its motor may give, is held by something: near a stroke's end a screw's motor gives its joint less
-// than the half.
-bool Watch::at_torque_limit(const canopen::Axis& axis, std::size_t joint) const {
-  constexpr double free_share = 0.5, motor_share = 0.9;
-  const double motor_permille = axis.setup().max_torque_of(axis.rated_torque_unm());
-  return std::abs(joints_.torque_nm[joint]) >= free_share * limits_.joints[joint].max_torque_nm ||
-         std::abs(axis.torque_permille()) >= motor_share * motor_permille;
-}
-
 void Watch::observe_encoder(const canopen::Axis& axis, std::size_t joint, Time now) {
+  // Of the joint's torque limit, and of what the motor may give: near a stroke's end a screw's motor gives its joint less than half of the limit.
+  constexpr double load_share = 0.15, much_share = 0.5, motor_share = 0.9;
+  const double limit_nm = limits_.joints[joint].max_torque_nm;
   StuckEncoder::Sample sample;
   sample.t = now;
   sample.actual_counts = axis.actual_counts();
   sample.target_counts = axis.target_counts();
   sample.rad_per_count = arm::rad_per_count(static_cast<Joint>(joint), joints_.position_rad[joint]);
   sample.torque_nm = joints_.torque_nm[joint];
+  sample.load_nm = load_share * limit_nm;
   sample.follows = axis.enabled();
-  sample.at_torque_limit = at_torque_limit(axis, joint);
+  sample.holds_much = at_least_nm(joint) >= much_share * limit_nm;
+  sample.motor_at_limit = std::abs(axis.torque_permille()) >= motor_share * axis.setup().max_torque_of(axis.rated_torque_unm());
   const bool stuck = encoders_[joint].update(sample);
   stuck_[joint] = stuck && joint < static_cast<std::size_t>(Joint::roll);
+}
+
+double Watch::at_least_nm(std::size_t joint) const {
+  return arm::TorqueEstimate{joints_.torque_nm[joint], joints_.torque_low_nm[joint], joints_.torque_high_nm[joint]}.at_least_nm();
 }
 
 bool Watch::shows_nothing(Joint joint) const { return encoders_[static_cast<std::size_t>(joint)].shows_nothing(); }
@@ -204,9 +204,7 @@ void Watch::check_joint(std::size_t joint, FaultArbiter& began) {
   tolerated_rad_[joint] = std::min(tolerated_rad_[joint], excursion_rad(joint));
   raise(excursion_rad(joint) > tolerated_rad_[joint] + position_tolerance_rad, joint, {Fault::joint_limit, code}, began);
   check_speed(joint, began);
-  const double at_least_nm =
-      arm::TorqueEstimate{joints_.torque_nm[joint], joints_.torque_low_nm[joint], joints_.torque_high_nm[joint]}.at_least_nm();
-  overload_ticks_[joint] = at_least_nm > limit.max_torque_nm ? overload_ticks_[joint] + 1 : 0;
+  overload_ticks_[joint] = at_least_nm(joint) > limit.max_torque_nm ? overload_ticks_[joint] + 1 : 0;
   raise(overload_ticks_[joint] > overload_ticks, joint, {Fault::overload, code}, began);
 }
 

@@ -64,7 +64,7 @@ class Watch {
   double excursion_rad(std::size_t joint) const;
   bool is_fresh(const canopen::Axis& axis, Time now) const;
   void observe_torque(const canopen::Axis& axis, std::size_t joint);
-  bool at_torque_limit(const canopen::Axis& axis, std::size_t joint) const;
+  double at_least_nm(std::size_t joint) const;  // that its torque surely is
   void observe_encoder(const canopen::Axis& axis, std::size_t joint, Time now);
   void check_bus(const canopen::Network& network, Time now, FaultArbiter& began);
   void check_nodes(const canopen::Network& network, Vigilance vigilance, Time now, FaultArbiter& began);

@@ -159,8 +159,13 @@ RowResult fly_row(const config::Drives& drives, Flight& flight, Watched& watched
   // An end may lead to another one: what held the arm may take its power.
   mission::Step end = flight.mission().step();
   double ended_s = situation.over ? limit_s - after_end_s : longest_s;
+  auto told = std::pair(flight.mission().outcome().fault, flight.mission().outcome().code);
+  std::optional<double> told_s;
   while (true) {
     const double now_s = (flight.now() - begin).s();
+    const auto tells = std::pair(flight.mission().outcome().fault, flight.mission().outcome().code);
+    if (tells != told) told_s = now_s;
+    told = tells;
     if (flight.mission().outcome().ended && flight.mission().step() != end) {
       end = flight.mission().step();
       ended_s = std::max(situation.over ? ended_s : 0, now_s);
@@ -171,6 +176,7 @@ RowResult fly_row(const config::Drives& drives, Flight& flight, Watched& watched
     flight.step();
   }
   judge::Ending ending = ending_of(flight, watched, row, flight.platform().world(), begin, situation.over);
+  ending.told_s = told_s;
   const bool unfelt = !ending.contradicted.empty() && unfelt_push(flight, watched, row, flight.platform().world());
   if (unfelt) ending.contradicted.clear();
   judge::SafetyFigures figures;

@@ -142,9 +142,9 @@ bool names_node(const std::string& reason, const std::string& node) {
 
 bool Cause::named_in(const std::string& told) const {
   const std::string reason = told.substr(0, told.find(" ("));  // without the advice
-  // No press is felt by the jaw's torque.
-  const bool of_a_press = reason.find("the button is stuck") != std::string::npos;
-  if (!(of_a_press && node_name(node) == "jaw") && has_any(reason, rule->named_without_node)) return true;
+  // The arm feels nothing by the jaw's torque.
+  const bool of_the_jaw = node_name(node) == "jaw" && rule->kind.starts_with("torque_");
+  if (!of_the_jaw && has_any(reason, rule->named_without_node)) return true;
   // The output node triggers the camera, too.
   if (node_name(node) == "io" && reason.find("output node lost") != std::string::npos) return true;
   if (node_name(node) == "io" && rule->kind == "drop_frames" && reason.find("camera silent") != std::string::npos) return true;

@@ -380,25 +380,20 @@ class Judge {
     if (for_nothing && !verdict_.stood_anyway) wrong("held under power for a contact that is none, with a drive that misleads");
   }
 
-  // A contact was told, or holds the arm, and only drives that mislead can have made one: when the arm came to stand, it touched nothing. What else happened is
-  // nothing that moves it.
+  // A contact was told, or holds the arm, and nothing but drives that mislead can have made one: when it was told, the arm touched nothing.
   bool touches_nothing() const {
-    const auto makes_none = [](const Cause& c) { return misleads(c) || c.rule->demand == Demand::go_on; };
+    const auto makes_one = [](const Cause& c) { return c.rule->kind == "obstacle" || c.rule->kind == "handle_breaks"; };
     return std::any_of(situation_.causes.begin(), situation_.causes.end(), misleads) &&
-           std::all_of(situation_.causes.begin(), situation_.causes.end(), makes_none) && force_when_it_stood_n() < figures_.touch_n;
+           std::none_of(situation_.causes.begin(), situation_.causes.end(), makes_one) && force_when_told_n() < figures_.touch_n;
   }
 
-  // The largest from shortly before the arm came to stand. What the jaw held earlier says nothing of it.
-  double force_when_it_stood_n() const {
-    const auto arm_moves = [this](const Moment& moment) {
-      return std::any_of(moment.speed_rad_s.begin(), moment.speed_rad_s.begin() + arm_joint_count,
-                         [this](float rad_s) { return double(rad_s) >= figures_.standing_rad_s; });
-    };
-    const double stood_s = last_s(moments_, 0, arm_moves);
-    const double from_s = std::max(0.0, stood_s - figures_.touched_within_s), to_s = stood_s + figures_.touched_within_s;
+  // The largest from shortly before. What the jaw held earlier says nothing of it.
+  double force_when_told_n() const {
+    const double told_s = ending_.told_s.value_or(static_cast<double>(moments_.size()) * ms);
     double force_n = 0;
     for (const Moment& moment : moments_) {
-      if (motions_.time_s(moment) >= from_s && motions_.time_s(moment) <= to_s) force_n = std::max(force_n, double(moment.force_n));
+      const double t_s = motions_.time_s(moment);
+      if (t_s >= told_s - figures_.touched_within_s && t_s <= told_s) force_n = std::max(force_n, double(moment.force_n));
     }
     return force_n;
   }

@@ -37,7 +37,7 @@ struct SafetyFigures {
   // the slew's 0.42 rad/s and half as much again.
   double misled_rad = 0.5;
   double touch_n = 5;             // less is no contact that an arm could feel: 4 N m at its joints
-  double touched_within_s = 0.5;  // of when the arm came to stand
+  double touched_within_s = 0.5;  // before it was told
   double unwinding_s = 0.5;       // in which a joint whose motor stands may still unwind its gear
 };
 
@@ -52,7 +52,8 @@ struct Ending {
   std::string reason;        // of a failure
   std::string contradicted;  // how the truth contradicts a success; empty: it does not
   bool expected_to_end = true;
-  bool holds = false;  // it says that the arm is held under power
+  bool holds = false;            // it says that the arm is held under power
+  std::optional<double> told_s;  // when it said why, since watching began; of its account only the time is taken
 };
 
 struct Situation {

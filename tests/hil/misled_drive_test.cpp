@@ -1,7 +1,8 @@
-// A drive that misleads begins to at the end of a step, while it bears a load: what follows is named after its joint, and no drive keeps its power for a
+// A drive begins to mislead in a step in which its joint bears a load: what follows is named after its joint, and no drive keeps its power for a
 // contact that is none.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 
 #include "tests/hil/operator.hpp"
@@ -38,7 +39,12 @@ TEST_P(MisledDrive, IsNamedAndEndsWithoutPower) {
   overrides.push_back("faults=[{at_s: " + std::to_string(at_s) + ", " + misled.fault + "}]");
   Rig rig(overrides);
   rig.start();
+  while (rig.now().s() < at_s) rig.step();
+  const auto joint = static_cast<std::size_t>(misled.joint);
+  const auto angle_rad = [&] { return rig.world().readings()[joint].position_rad; };
+  const double from_rad = angle_rad();
   (void)rig.run_to_end();
+  EXPECT_LT(std::abs(angle_rad() - from_rad), 0.5) << "it went on unseen";
   EXPECT_EQ(rig.step_now(), Step::stopped) << rig.story();
   EXPECT_FALSE(rig.outcome().success);
   EXPECT_EQ(rig.outcome().fault, safety::Fault::following_error) << rig.story();
@@ -48,7 +54,7 @@ TEST_P(MisledDrive, IsNamedAndEndsWithoutPower) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    AtAStepsEnd, MisledDrive,
+    UnderALoad, MisledDrive,
     testing::Values(
         Misled{"SlewEncoderStuckAfterTheAdvance", turn_only, Step::advance, 0.97, "kind: stuck_encoder, node: slew", Joint::slew},
         Misled{"RollEncoderStuckInTheTurn", turn_only, Step::turn, 0.8, "kind: stuck_encoder, node: roll", Joint::roll},

@@ -16,6 +16,8 @@ TEST(FaultRules, TheAdviceOfAReasonNamesNothing) {
   EXPECT_FALSE(cause_of("torque_high elbow").named_in("step failed: the jaw does not open (The overload: elbow.)"));
   EXPECT_TRUE(cause_of("torque_high slew").named_in("step failed: the button is stuck (It was touched.)"));
   EXPECT_FALSE(cause_of("torque_high jaw").named_in("step failed: the button is stuck (It was touched.)"));
+  EXPECT_FALSE(cause_of("torque_frozen jaw").named_in("step failed: no button there (Or something.)"));
+  EXPECT_FALSE(cause_of("torque_high jaw").named_in("step failed: touched something before the aim (Look.)"));
   EXPECT_FALSE(cause_of("torque_frozen slew").named_in("step failed: the button is stuck (It was touched.)"));
   EXPECT_FALSE(cause_of("following shoulder").named_in("step failed: touched something on the way back (Look.)"));
   EXPECT_FALSE(cause_of("following shoulder").named_in("step failed: touched something before the aim (Look.)"));

@@ -181,6 +181,28 @@ TEST(HasSeized, IsARollThatShowsNotOneCountOfItsWay) {
   }
 }
 
+// A guard begins while the shoulder's motor gives -28 N m. What comes later is a contact, and so is a load on a joint that stands where it is told to.
+TEST(WasBehindBefore, IsAJointThatWasOverloadedAndDidNotFollow) {
+  const auto met = [](double behind_rad, double from_nm, double nm) {
+    arm::GuardedMotion guard(free_motion_guard(limits_of(25)));
+    double t_s = 0;
+    arm::JointVector command_rad = arm::JointVector::Zero(), position_rad = command_rad, torque_nm = command_rad;
+    command_rad[1] = position_rad[1] = 1.0;
+    position_rad[1] -= behind_rad;
+    for (int i = 0; i < 100 && !guard.touched(); ++i) {
+      torque_nm[1] = i < 50 ? from_nm : nm;
+      guard.update(Time::from_s(t_s += 0.004), command_rad, position_rad, arm::JointVector::Zero(), torque_nm);
+    }
+    EXPECT_TRUE(guard.touched());
+    return was_behind_before(guard);
+  };
+  EXPECT_TRUE(met(-0.0005, -28, -28));
+  EXPECT_TRUE(met(0.0005, 28, 28));
+  EXPECT_FALSE(met(0.0005, -28, -28)) << "pushed on towards its target";
+  EXPECT_FALSE(met(-0.0001, -28, -28)) << "it stands where it is told to";
+  EXPECT_FALSE(met(-0.0005, 0, -28)) << "it came later";
+}
+
 // Somebody leans on an arm that stands.
 TEST(HasSeized, IsNoMotorThatHoldsWhatPushesAtIt) {
   arm::GuardedMotion guard(free_motion_guard(limits_of(25)));
