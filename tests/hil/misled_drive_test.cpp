@@ -44,7 +44,9 @@ TEST_P(MisledDrive, IsNamedAndEndsWithoutPower) {
   const auto angle_rad = [&] { return rig.world().readings()[joint].position_rad; };
   const double from_rad = angle_rad();
   (void)rig.run_to_end();
-  EXPECT_LT(std::abs(angle_rad() - from_rad), 0.5) << "it went on unseen";
+  // A roll may turn in its place up to its stop (docs/safety.md).
+  const double farthest_rad = misled.joint == Joint::roll ? 3.15 : 0.5;
+  EXPECT_LT(std::abs(angle_rad() - from_rad), farthest_rad) << "it went on unseen";
   EXPECT_EQ(rig.step_now(), Step::stopped) << rig.story();
   EXPECT_FALSE(rig.outcome().success);
   EXPECT_EQ(rig.outcome().fault, safety::Fault::following_error) << rig.story();
