@@ -398,10 +398,13 @@ class Judge {
     return force_n;
   }
 
-  // The only cause is a joint that seized, and its set-point has hardly moved since: within the two counts by which rounding and a drive that holds differ.
+  // The only drive that misleads is a joint that seized, and its set-point has hardly moved since: within the two counts by which rounding and a drive that holds
+  // differ.
   bool stood_where_it_was_to_stay() const {
-    if (situation_.causes.size() != 1 || situation_.causes[0].rule->kind != "following") return false;
-    const std::size_t joint = node_index(situation_.causes[0].node);
+    const auto& causes = situation_.causes;
+    const auto misled = std::find_if(causes.begin(), causes.end(), misleads);
+    if (std::count_if(causes.begin(), causes.end(), misleads) != 1 || misled->rule->kind != "following") return false;
+    const std::size_t joint = node_index(misled->node);
     if (joint >= joint_count) return false;
     const auto& told = seen_.told_to_go[joint];
     return told && double(told->second) - double(told->first) <= 2 * situation_.units_per_count[joint];

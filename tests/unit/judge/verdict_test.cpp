@@ -344,6 +344,17 @@ TEST(Verdict, ASeizedJointMayBeTakenForAContactWhereItWasToStay) {
   EXPECT_THAT(verdict(2, 1, false).unclear, IsEmpty());
   EXPECT_FALSE(verdict(3, 1, false).stood_anyway);
   EXPECT_THAT(verdict(20, 10).wrong, IsEmpty()) << "of a drive that counts finer";
+  const auto with = [](const char* other) {
+    Seen seen = Stopping{.force_n = 0}.seen();
+    seen.told_to_go[2] = {1000, 1002};
+    Ending ending = failed("unexpected contact: elbow");
+    ending.holds = true;
+    Situation situation = situation_of(cause_of("following elbow"), cause_of(other));
+    situation.units_per_count.fill(1);
+    return judge(seen, situation, ending);
+  };
+  EXPECT_TRUE(with("panel_submit_fails").stood_anyway) << "what else fails moves nothing";
+  EXPECT_FALSE(with("following shoulder").stood_anyway) << "two that seized";
   EXPECT_THAT(verdict(21, 10).wrong, testing::SizeIs(1));
 }
 
