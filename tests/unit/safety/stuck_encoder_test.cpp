@@ -166,18 +166,20 @@ TEST(StuckEncoder, IsHeldByWhatIsMuchForItsMotor) {
   }
 }
 
-// Five to six counts behind on its way, while its weight changes: what it bore long ago is no measure.
+// Behind on its way, while its weight changes: what it bore long ago is no measure.
 TEST(StuckEncoder, IsHeldByMoreThanItBoreWhenItLastMoved) {
-  Joint joint;
-  EXPECT_EQ(joint.run(
-                [](StuckEncoder::Sample& sample, double s) {
-                  sample.target_counts = 6 + static_cast<std::int32_t>(100 * s);
-                  sample.actual_counts = static_cast<std::int32_t>(100 * s);
-                  sample.torque_nm = 2 * s;
-                },
-                4),
-            never);
-  EXPECT_NEAR(joint.left_at(40, 8), 0.3, 0.01);
+  for (const std::int32_t behind : {6, 40}) {
+    Joint joint;
+    EXPECT_EQ(joint.run(
+                  [=](StuckEncoder::Sample& sample, double s) {
+                    sample.target_counts = behind + static_cast<std::int32_t>(100 * s);
+                    sample.actual_counts = static_cast<std::int32_t>(100 * s);
+                    sample.torque_nm = 2 * s;
+                  },
+                  4),
+              never);
+    EXPECT_NEAR(joint.left_at(40, 8), 0.34, 0.06) << behind;
+  }
 }
 
 // A drive winds its motor up while something holds the joint back. One that stays behind, short of the end of its torque, goes on unseen: at the gain of its position loop
