@@ -87,9 +87,7 @@ void FaultSources::collect_contact(const StepTick& tick) {
   const safety::JointStates& joints = bench.watch.joints();
   if (!joints.valid) return;
   bench.feel(free_guard_, joints.t);
-  if (!free_guard_.touched()) return;
-  const Fault fault = bench.meets_nothing(free_guard_) ? Fault::following_error : Fault::unexpected_contact;
-  tick.faults.report(fault, static_cast<std::int32_t>(free_guard_.joint()));
+  bench.report_touch(free_guard_, tick.faults);
 }
 
 void FaultSources::collect_jaw(const StepTick& tick) {

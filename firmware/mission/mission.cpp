@@ -113,8 +113,8 @@ void Mission::record(const StepTick& tick, const safety::FaultReport& report, Re
   (void)tick.telemetry.events.push_back(event);  // a full record of one tick loses details, never the counts
 }
 
-// Remembers the first fault that ended the mission. What the arm felt is the exception: where one of its joints turns out on the way back not to follow, that is why it felt
-// so. The task's result keeps what was felt.
+// Remembers the first fault that ended the mission. One may replace it: a joint that does not follow on the way back explains what the arm felt before. The task's
+// result keeps what was felt.
 void Mission::give_up(const safety::FaultReport& cause) {
   const bool leaves = step_ == Step::abandon || step_ == Step::abandon_back;
   const bool felt = outcome_.fault == Fault::step_failed && is_felt(static_cast<StepFailure>(outcome_.code));

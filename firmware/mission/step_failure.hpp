@@ -42,7 +42,7 @@ enum class StepFailure : std::int32_t {
   line_misshapen = 32,  // the laser's line is no bell across: where its middle is cannot be told well enough
 };
 
-// What the arm's joints have told by their torque: a drive that misleads makes one, too.
+// Told by the torque of the arm's joints. A drive that misleads may have made it.
 constexpr bool is_felt(StepFailure failure) {
   using enum StepFailure;
   return failure == early_contact || failure == touched_on_the_way_back || failure == stalled || failure == button_stuck ||

@@ -97,7 +97,7 @@ bool has_seized(const arm::GuardedMotion& guard) {
   const auto joint = static_cast<Eigen::Index>(guard.joint());
   const double count_rad = arm::rad_per_count(guard.joint(), guard.position_rad()[joint]);
   const double travelled = guard.travelled_rad()[joint] / count_rad, to_travel = guard.to_travel_rad()[joint] / count_rad;
-  // One count that is more than gear and links give way by: a motor that is told to go there, pushes that way and shows nothing of it is not held at once.
+  // Where one count is more than gear and links give way by, a motor that pushes towards its target shows the count before anything can hold it.
   const double error_rad = guard.error_rad()[joint];
   const bool pushes_there = error_rad * guard.excess_torque_nm()[joint] > 0 && std::abs(error_rad) > 0.5 * count_rad;
   if (count_rad > gives_rad && pushes_there && travelled < 0.5) return true;
@@ -109,8 +109,8 @@ bool does_not_follow(const arm::GuardedMotion& guard) {
 }
 
 bool was_behind_before(const arm::GuardedMotion& guard) {
-  // A healthy drive holds its joint within two counts; a guard that begins under a load has learned it as usual.
-  constexpr double healthy_counts = 2.5, grown_share = 0.25;
+  // A healthy drive holds its joint within two counts. A guard that begins under a load takes it for the usual one: what it reads above that has come later.
+  constexpr double healthy_counts = 2.5, grown_share = 0.25;  // an overload that has grown by a quarter is one that the arm met
   const auto joint = static_cast<Eigen::Index>(guard.joint());
   const double count_rad = arm::rad_per_count(guard.joint(), guard.position_rad()[joint]);
   const double load_nm = guard.baseline_nm()[joint], error_rad = guard.error_rad()[joint];
@@ -265,8 +265,8 @@ void Workbench::guard_back_off(Time now) {
 
 bool Workbench::back_off_does_not_follow() const {
   if (gripper.state() != arm::GripperState::open) return meets_nothing(back_guard);
-  // The roll was let off and the jaw is open: what a seized motor still pushes with is no contact. Another joint that is overloaded before the arm leaves, and behind its
-  // target, has seized, or is pinned: it loses its power either way.
+  // The jaw is open and the roll was let off: what its motor still pushes with is no contact. Another joint that was overloaded and behind its target before the arm left has
+  // seized or is pinned. It loses its power either way.
   const bool roll_pushes = back_guard.state() == arm::GuardState::overload && back_guard.joint() == Joint::roll;
   return roll_pushes || was_behind_before(back_guard) || meets_nothing(back_guard);
 }

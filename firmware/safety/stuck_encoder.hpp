@@ -1,4 +1,4 @@
-// A joint that stays behind its target, shows no way towards it, and that nothing holds: what its encoder reports is not where it is.
+// A joint stays behind its target, shows no way towards it, and nothing holds it: then it is not where its encoder says.
 //
 // A drive whose encoder is stuck goes on moving its joint, at the gain of its position loop times the lag, and faster the farther the target is. So the lag is
 // summed while the joint shows nothing: the sum times the gain is the way that the joint has gone unseen. A drive that follows shows a count within 0.1 s.
@@ -14,20 +14,21 @@ namespace lf::safety {
 
 class StuckEncoder {
  public:
-  // A joint is behind from both on, until it is within half of either. The drive of a healthy one holds it within two counts.
+  // A joint is behind once it is off its target by both, until it is back within half of either. A healthy drive holds its joint within two counts.
   static constexpr std::int64_t behind_counts = 3;
   static constexpr double behind_rad = 0.001;
-  // An encoder lives that goes both so far towards its target beyond all that it showed before, or so far away from there: the mean of its last readings, since
-  // one that wavers about its place does not live.
+  // An encoder that works shows a way: towards the target by both, beyond what was shown before, or away from there. A reading that wavers shows none, since the mean
+  // of the last ones is taken: a waver of 20 counts from SYNC to SYNC moves it by less than two.
   static constexpr double alive_counts = 2;
-  static constexpr double alive_rad = 0.00025, away_rad = 0.001;
+  static constexpr double alive_rad = 0.00025;  // two counts of a slew
+  static constexpr double away_rad = 0.001;     // no less than what counts as behind
+  static constexpr double mean_s = 0.05;
   // It is told after both: 0.5 s at 3 mrad, 0.3 s from 5 mrad on. A joint that is not held has gone the sum times its loop's gain meanwhile: 0.03 rad at the
   // simulator's 20 a second. One that turns back has to unwind its gear first: 0.2 s and 0.00066 rad s were seen.
   static constexpr Duration least_time = Duration::from_ms(300);
   static constexpr double least_rad_s = 0.0015;
   // Nothing holds a joint for longer short of the end of its torque: its drive winds it up. 1 s at 3 mrad, 0.06 rad at 20 a second.
   static constexpr double held_rad_s = 0.003;
-  static constexpr double mean_s = 0.05;
   static constexpr double usual_s = 1;  // time constant of a following joint's torque: slower than one that meets something winds up
   // So long and so far behind without a sign: no torque proves a contact then. One count of a coarse encoder is so far, too.
   static constexpr Duration blind_time = Duration::from_ms(100);

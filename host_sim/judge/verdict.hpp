@@ -36,7 +36,7 @@ struct SafetyFigures {
   // By which slew, shoulder and elbow may go while their drive, or their encoder, misleads: the core's window of 0.15 rad, the 0.2 s that it gives, and the ramp, at
   // the slew's 0.42 rad/s and half as much again.
   double misled_rad = 0.5;
-  double touch_n = 5;             // less is no contact that an arm could feel: 4 N m at its joints
+  double touch_n = 5;             // less is no contact that an arm could feel: 4 N m at a joint 0.8 m away
   double touched_within_s = 0.5;  // before it was told
   double unwinding_s = 0.5;       // in which a joint whose motor stands may still unwind its gear
 };
