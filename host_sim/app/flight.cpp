@@ -1,6 +1,15 @@
 #include "host_sim/app/flight.hpp"
 
 namespace lf::app {
+namespace {
+
+// A motor that pushes its joint with the rated torque holds more against a load that pushes back: the gear's friction helps it then.
+double held_nm(const ArmJoint& joint) {
+  const ArmFriction& friction = joint.friction;
+  return joint.rated_torque_nm / friction.efficiency / (friction.back_efficiency > 0 ? friction.back_efficiency : 1);
+}
+
+}  // namespace
 
 Flight::Flight(const scenario::Scenario& scenario, std::uint64_t seed, hal::SimObserver& observer, Sight sight) {
   const scenario::Sample sample = scenario::draw(scenario, seed);
@@ -14,7 +23,7 @@ Flight::Flight(const scenario::Scenario& scenario, std::uint64_t seed, hal::SimO
     const canopen::Ratio& position = nominal.controller.network.drives[i].profile.scale.position;
     units_per_count_[i] = double(position.num) / double(position.den);
     const ArmJoint& joint = sim.world.arm.joints[i];
-    gear_gives_rad_[i] = 0.5 * joint.backlash_rad + joint.rated_torque_nm / sim.world.drive_stiffness_nm_rad[i];
+    gear_gives_rad_[i] = 0.5 * joint.backlash_rad + held_nm(joint) / sim.world.drive_stiffness_nm_rad[i];
   }
   platform_ = std::make_unique<hal::SimPlatform>(sim, observer);
   controller_ = std::make_unique<Controller>(nominal.controller);

@@ -32,6 +32,8 @@ bool JointMotions::moves(const Moment& moment, std::size_t joint, double unwound
     return false;
   if (std::abs(moment.angle_rad[joint] - moment.motor_rad[joint]) > situation_.gear_gives_rad[joint]) return true;
   if (time_s(moment) <= unwound_s) return false;
+  const bool powered = (moment.power & bit_of(joint)) != 0;
+  if (!powered && moment.force_n >= figures_.touch_n) return false;
   const double stood_rad = moments_[std::min(static_cast<std::size_t>(unwound_s / ms), moments_.size() - 1)].angle_rad[joint];
   return std::abs(moment.angle_rad[joint] - stood_rad) > figures_.quivers_rad;
 }

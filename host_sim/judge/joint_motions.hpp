@@ -19,8 +19,8 @@ class JointMotions {
   double time_s(const Moment& moment) const;
   // A motor that runs through its gear's play is faster than its joint, and it is what brakes.
   double motor_speed_rad_s(std::size_t index, std::size_t joint) const;
-  // A joint whose motor stands may be pulled through its gear's play, or unwind it, as by a bar in the jaw: until `unwound_s`, and by what the gear gives. Who
-  // is pushed winds it up by as much as the push.
+  // A joint whose motor stands may be pulled through its gear's play, or unwind it, as by a bar in the jaw: by what the gear gives, until `unwound_s`, and
+  // without power as long as something presses on the arm: a bar slips in the pads when it likes. Who is pushed winds it up by as much as the push.
   bool moves(const Moment& moment, std::size_t joint, double unwound_s) const;
   // One of the joints, a bit each, is faster than what stands, and does not only quiver.
   bool swings(const Moment& moment, std::uint8_t joints) const;

@@ -65,7 +65,7 @@ struct Situation {
   std::array<double, joint_count> deceleration_rad_s2{};
   std::array<double, joint_count> units_per_count{1, 1, 1, 1, 1};  // of each drive's position, for an encoder's count
   std::array<double, joint_count>
-      gear_gives_rad{};  // by which a joint may be off its motor: half of its gear's play, and the wind-up under its motor's rated torque
+      gear_gives_rad{};  // by which a joint may be off its motor: half of its gear's play, and the wind-up under what the rated torque holds
 };
 
 struct Verdict {

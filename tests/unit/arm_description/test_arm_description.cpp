@@ -94,6 +94,11 @@ TEST(ArmUrdf, FingersMirrorEachOther) {
   EXPECT_EQ(arm.joints[4].axis, -arm.finger_b.axis);
 }
 
+// Else a jaw would let go of what it has gripped as its power goes.
+TEST(ArmDescription, EveryGearHoldsWithoutPowerWhatItsDriveCanWindUp) {
+  for (const ArmJoint& joint : load_arm_urdf(urdf_path).joints) EXPECT_GT(joint.holding_torque_nm, joint.effort_nm) << joint.name;
+}
+
 // What the build made of the URDF for the core is what the hosted side reads in it.
 TEST(ArmGeometry, IsWhatTheUrdfSays) {
   const ArmDescription arm = load_arm_urdf(urdf_path);

@@ -107,8 +107,18 @@ TEST(Verdict, AJointWhoseMotorStandsMayBePulledThroughItsPlayForATimeAndNoFarthe
   EXPECT_THAT(judged({.pulled_rad = 0.0039}).wrong, IsEmpty());
   EXPECT_THAT(judged({.pulled_rad = 0.0048}).wrong, ElementsAre(testing::HasSubstr("elbow moves 0.54 s after the stop")));
   EXPECT_THAT(judged({.pulled_rad = 0.0039, .pulled_ms = 800}).wrong, IsEmpty());
-  EXPECT_THAT(judged({.pulled_rad = 0.0039, .pulled_ms = 1100}).wrong,
+  EXPECT_THAT(judged({.force_n = 4, .pulled_rad = 0.0039, .pulled_ms = 1100}).wrong,
               ElementsAre(testing::HasSubstr("elbow moves 1.04 s after the stop")));
+}
+
+// A bar that slips in the pads lets a wound-up joint go whenever it slips.
+TEST(Verdict, AJointWithoutPowerGivesWayToWhatItHoldsAtAnyTimeAndNoFartherThanItsGearGives) {
+  EXPECT_THAT(judged({.force_n = 6, .pulled_rad = 0.0039, .pulled_ms = 1100}).wrong, IsEmpty());
+  EXPECT_THAT(judged({.force_n = 6, .pulled_rad = 0.0048, .pulled_ms = 1100}).wrong,
+              ElementsAre(testing::HasSubstr("elbow moves 1.04 s after the stop")));
+  EXPECT_THAT(judged({.off_ms = 2000, .force_n = 6, .pulled_rad = 0.0039, .pulled_ms = 1100}).wrong,
+              testing::Contains(testing::HasSubstr("elbow moves 1.04 s after the stop")))
+      << "under power";
 }
 
 // It is pulled further than its gear gives, and quivers there at 0.1 rad/s by 0.1 mrad.
