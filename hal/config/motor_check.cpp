@@ -1,5 +1,6 @@
 #include "hal/config/motor_check.hpp"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "firmware/canopen/setup.hpp"
@@ -40,6 +41,23 @@ void check_motor(const JointDriveChoice& choice, std::size_t joint, const ArmJoi
       "of %.4g. "
       "State the motor's own rated torque, without its gear; if this motor is right, correct the rated torque of the arm's description",
       choice.rated_torque_nm, description.rated_torque_nm, expected_nm, ratio);
+  throw InputError(where + ": " + text);
+}
+
+void check_position_unit(const JointDriveChoice& choice, std::size_t joint, const ArmJoint& description,
+                         const canopen::Ratio& units_per_count, const std::string& where) {
+  constexpr double coarsest_rad = 0.001, coarsest_counts = 2;
+  const double counts_per_rad = best_motor_ratio(description, choice.counts_per_rev) * choice.counts_per_rev / (2 * pi);
+  const double counts = double(units_per_count.den) / units_per_count.num;
+  if (counts <= std::max(coarsest_counts, coarsest_rad * counts_per_rad)) return;
+  char text[320];
+  std::snprintf(
+      text, sizeof text,
+      "its profile makes a unit of the drive's positions of %.4g of the arm's counts, %.3g mrad of the %s. At most 1 mrad or two counts "
+      "are "
+      "allowed: a joint that is left behind could not be told from one that follows. Set a finer position unit in the drive and in its "
+      "profile, or check 'counts_per_rev'",
+      counts, 1000 * counts / counts_per_rad, joint_name(joint));
   throw InputError(where + ": " + text);
 }
 

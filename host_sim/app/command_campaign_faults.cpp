@@ -40,15 +40,33 @@ void say(const RowResult& row) {
   std::fprintf(stderr, "%-8s %s\n", verdict, row.row.c_str());
 }
 
-// What is misspelt is told before a mission is flown for its steps' times. A step that the mission has and no walk comes to is told after.
-void check_names_early(const CampaignOptions& options) {
-  std::vector<std::string> kinds, steps{"power-on"};
-  for (const judge::FaultRule& rule : judge::fault_rules()) kinds.push_back(rule.kind);
+std::vector<std::string> names_of_steps() {
+  std::vector<std::string> steps{"power-on"};
   for (std::size_t i = 0; i < mission::step_count; ++i) {
     if (const auto step = static_cast<mission::Step>(i); step != mission::Step::idle) steps.emplace_back(mission::row(step).name);
   }
+  return steps;
+}
+
+// What is misspelt is told before a mission is flown for its steps' times. A step that the mission has and no walk comes to is told after.
+void check_names_early(const CampaignOptions& options) {
+  std::vector<std::string> kinds;
+  for (const judge::FaultRule& rule : judge::fault_rules()) kinds.push_back(rule.kind);
   config::check_names(options.kinds, kinds, "--kinds");
-  config::check_names(options.steps, steps, "--steps");
+  config::check_names(options.steps, names_of_steps(), "--steps");
+}
+
+// Whose times have to be measured; none: of all. A row of another step is misspelt: what is like it is told from all rows.
+std::set<std::string> steps_of(const CampaignOptions& options) {
+  std::set<std::string> steps(options.steps.begin(), options.steps.end());
+  if (!steps.empty()) return steps;
+  const std::vector<std::string> known = names_of_steps();
+  for (const std::string& row : options.rows) {
+    const std::string step = row.substr(0, row.find(':'));
+    if (std::find(known.begin(), known.end(), step) == known.end()) return {};
+    steps.insert(step);
+  }
+  return steps;
 }
 
 }  // namespace
@@ -64,7 +82,7 @@ int fault_campaign(const CampaignOptions& options) {
   catch_interrupts();
   const MatrixChoice choice{options.kinds, options.steps, options.rows,   options.pairs,
                             shard.index,   shard.count,   options.one_in, options.into};
-  const std::vector<FaultMoment> moments = survey_moments(base, options.into);
+  const std::vector<FaultMoment> moments = survey_moments(base, options.into, steps_of(options));
   if (interrupted()) {
     constexpr const char* told = "interrupted while the steps' times were measured: no row was flown";
     std::fprintf(stderr, "lanternfish: %s\n", told);

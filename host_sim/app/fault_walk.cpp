@@ -1,6 +1,8 @@
 #include "host_sim/app/fault_walk.hpp"
 
-#include <set>
+#include <algorithm>
+#include <functional>
+#include <span>
 
 #include "host_sim/app/interrupt.hpp"
 
@@ -32,7 +34,8 @@ struct Stay {
   double begin_s, end_s;
 };
 
-std::vector<Stay> stays_of(FaultWalk walk, const scenario::Scenario& base) {
+// Until `enough` of the stays that are over, or to the walk's end.
+std::vector<Stay> stays_of(FaultWalk walk, const scenario::Scenario& base, const std::function<bool(std::span<const Stay>)>& enough) {
   hal::SimObserver nobody;
   Flight flight(walk.with_its_faults(base), 1, nobody);
   std::vector<Stay> stays;
@@ -41,7 +44,10 @@ std::vector<Stay> stays_of(FaultWalk walk, const scenario::Scenario& base) {
     walk.give_orders(flight);
     flight.step();
     const double now_s = flight.now().s();
-    if (stays.empty() || stays.back().step != flight.mission_step()) stays.push_back({flight.mission_step(), now_s, now_s});
+    if (stays.empty() || stays.back().step != flight.mission_step()) {
+      if (enough(stays)) return stays;
+      stays.push_back({flight.mission_step(), now_s, now_s});
+    }
     stays.back().end_s = now_s;
     const bool back_from_jog = walk.by_hand() && stays.size() > 2 && stays[stays.size() - 2].step == Step::jog;
     const bool ended = flight.mission().outcome().ended && !walk.goes_on_after(flight);
@@ -93,12 +99,20 @@ void FaultWalk::jog(Flight& flight) {
   if (flight.now().s() > waiting_s_ + wait_s) jogged_ = flight.order(jog);
 }
 
-std::vector<FaultMoment> survey_moments(const scenario::Scenario& base, double share_of_step) {
+std::vector<FaultMoment> survey_moments(const scenario::Scenario& base, double share_of_step, const std::set<std::string>& wanted) {
   std::vector<FaultMoment> moments{{"mission", Step::idle, "power-on", power_on_s, power_on_s}};
   std::set<Step> known{Step::idle};
+  const auto enough = [&](std::span<const Stay> stays) {
+    const auto is_known = [&](const std::string& name) {
+      const auto is_it = [&](Step step) { return step != Step::idle && mission::row(step).name == name; };
+      return name == moments.front().name || std::any_of(known.begin(), known.end(), is_it) ||
+             std::any_of(stays.begin(), stays.end(), [&](const Stay& stay) { return is_it(stay.step); });
+    };
+    return !wanted.empty() && std::all_of(wanted.begin(), wanted.end(), is_known);
+  };
   for (const std::string& name : FaultWalk::names()) {
-    if (interrupted()) break;
-    for (const Stay& stay : stays_of(FaultWalk(name), base)) {
+    if (interrupted() || enough({})) break;
+    for (const Stay& stay : stays_of(FaultWalk(name), base, enough)) {
       if (!known.insert(stay.step).second) continue;
       const double in_s = mission::is_end(stay.step) ? into_end_s : share_of_step * (stay.end_s - stay.begin_s);
       moments.push_back({name, stay.step, mission::row(stay.step).name, stay.begin_s + in_s, in_s});

@@ -1,9 +1,11 @@
 // The ways through the mission's table of steps along which faults are made: each step is reached by one of them.
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
+#include "host_sim/app/fault_moment.hpp"
 #include "host_sim/app/flight.hpp"
 
 namespace lf::app {
@@ -39,20 +41,9 @@ class FaultWalk {
   double waiting_s_ = -1;  // since when the mission waits for orders
 };
 
-// When a step of a walk has a fault made in it.
-struct FaultMoment {
-  std::string walk;
-  mission::Step step = mission::Step::idle;
-  std::string name;  // of the step, or "power-on"
-  double at_s = 0;
-  double into_s = 0;  // since the step began
-};
-
-// Of a step's duration: whatever it does is under way.
-inline constexpr double usual_share_of_step = 0.4;
-
 // One moment for each step of the table that can be reached, in the order of the walks and of time: this share of the step's duration in.
-// An interrupt ends it early: what it gives then is of no use.
-std::vector<FaultMoment> survey_moments(const scenario::Scenario& base, double share_of_step = usual_share_of_step);
+// `wanted`: names of steps; the walks end as soon as these are known. Empty: all. An interrupt ends it early: what it gives then is of no use.
+std::vector<FaultMoment> survey_moments(const scenario::Scenario& base, double share_of_step = usual_share_of_step,
+                                        const std::set<std::string>& wanted = {});
 
 }  // namespace lf::app

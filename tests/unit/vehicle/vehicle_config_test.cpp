@@ -242,6 +242,21 @@ TEST(VehicleConfig, PositionsThatDoNotFitADrivesCountAreRefused) {
               testing::Contains(HasSubstr("drives.elbow: its profile makes 1e+06 of the drive's units of one of the arm's counts")));
 }
 
+// Of the slew 7692 counts are a radian, where its screw has the most lever, of the roll 318.
+TEST(VehicleConfig, APositionUnitTooCoarseToTellALagIsRefused) {
+  const TemporaryFolder folder;
+  const auto problems = [&](const std::string& joint, int units_per_rev) {
+    folder.write("coarse.yaml", "title: coarse\nlike: lanternfish\nposition: {units_per_rev: " + std::to_string(units_per_rev) + "}\n");
+    return problems_of(folder.write("v.yaml", "drives: {" + joint + ": {profile: coarse.yaml}}\n"));
+  };
+  EXPECT_THAT(problems("slew", 9), IsEmpty());
+  EXPECT_THAT(problems("slew", 8),
+              ElementsAre(HasSubstr(
+                  "drives.slew: its profile makes a unit of the drive's positions of 8 of the arm's counts, 1.04 mrad of the slew")));
+  EXPECT_THAT(problems("roll", 32), IsEmpty());
+  EXPECT_THAT(problems("roll", 31), ElementsAre(HasSubstr("drives.roll: its profile makes a unit of the drive's positions of 2.06")));
+}
+
 TEST(VehicleConfig, ANodeNumberUsedTwiceNamesBothThatHaveIt) {
   const TemporaryFolder folder;
   EXPECT_THAT(problems_of(folder.write("v.yaml", "drives: {jaw: {node: 3}}\n")),
