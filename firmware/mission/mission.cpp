@@ -116,8 +116,8 @@ void Mission::record(const StepTick& tick, const safety::FaultReport& report, Re
 // Remembers the first fault that ended the mission. One may replace it: a joint that does not follow on the way back explains what the arm felt before. The task's
 // result keeps what was felt.
 void Mission::give_up(const safety::FaultReport& cause) {
-  const bool leaves = step_ == Step::abandon || step_ == Step::abandon_back;
-  const bool felt = outcome_.fault == Fault::step_failed && is_felt(static_cast<StepFailure>(outcome_.code));
+  const bool leaves = step_ == Step::abandon || step_ == Step::abandon_back || step_ == Step::stow;
+  const bool felt = outcome_.fault == Fault::step_failed && may_be_misled(static_cast<StepFailure>(outcome_.code));
   const bool explains = leaves && felt && cause.fault == Fault::following_error && cause.code < static_cast<std::int32_t>(arm_joint_count);
   if (ended() || (bench_.course == Course::giving_up && !explains)) return;
   bench_.course = Course::giving_up;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace lf::mission {
 
@@ -141,8 +142,8 @@ Progress PressButton::run_press(const StepTick& tick) {
   if (pressed_) return Progress::done_if(tick.settled(bench.motion.done(), press_time));
   if (bench.motion.planning()) return Progress::running();
   if (!met_something()) sense(tick);
-  if (bench.meets_nothing(guard_)) {
-    tick.faults.report(safety::Fault::following_error, static_cast<std::int32_t>(guard_.joint()));
+  if (const std::optional<Joint> misled = bench.misled_joint(guard_)) {
+    tick.faults.report(safety::Fault::following_error, static_cast<std::int32_t>(*misled));
     return Progress::running();
   }
   const Progress motion = follow(bench.follow_motion());
@@ -184,7 +185,7 @@ void PressButton::watch_on_hold(const StepTick& tick) {
     tick.faults.report(safety::Fault::unexpected_contact, static_cast<std::int32_t>(guard_.joint()));
     return;
   }
-  const bool meant = feel_.touched() && !tick.bench.meets_nothing(guard_);
+  const bool meant = feel_.touched() && !tick.bench.misled_joint(guard_);
   if (!meant) return tick.bench.report_touch(guard_, tick.faults);
   if (guard_.touched()) tick.bench.stay_where_measured();
 }

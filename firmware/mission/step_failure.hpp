@@ -42,11 +42,11 @@ enum class StepFailure : std::int32_t {
   line_misshapen = 32,  // the laser's line is no bell across: where its middle is cannot be told well enough
 };
 
-// Told by the torque of the arm's joints. A drive that misleads may have made it.
-constexpr bool is_felt(StepFailure failure) {
+// What a joint may have made that is not where its encoder says: told by the arm's torques, or by what the jaw held.
+constexpr bool may_be_misled(StepFailure failure) {
   using enum StepFailure;
   return failure == early_contact || failure == touched_on_the_way_back || failure == stalled || failure == button_stuck ||
-         failure == button_missing || failure == button_yields;
+         failure == button_missing || failure == button_yields || failure == not_gripped || failure == slipped || failure == wrong_angle;
 }
 
 // What is wrong, in a few words; and what a user can do about it, one sentence, empty where the words say it all.

@@ -108,8 +108,8 @@ Progress TurnValve::run_advance(const StepTick& tick) {
   if (!motion.is_running() || bench.motion.planning()) return motion;
   bench.feel(guard_, tick.now);
   if (!guard_.touched()) return Progress::running();
-  if (bench.meets_nothing(guard_)) {
-    tick.faults.report(safety::Fault::following_error, static_cast<std::int32_t>(guard_.joint()));
+  if (const std::optional<Joint> misled = bench.misled_joint(guard_)) {
+    tick.faults.report(safety::Fault::following_error, static_cast<std::int32_t>(*misled));
     return Progress::running();
   }
   bench.stay_where_measured();

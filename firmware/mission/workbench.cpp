@@ -232,14 +232,19 @@ void Workbench::stay_where_pushed() {
   compliance.reset();
 }
 
-bool Workbench::meets_nothing(const arm::GuardedMotion& guard) const {
-  return guard.touched() && (does_not_follow(guard) || watch.shows_nothing(guard.joint()));
+std::optional<Joint> Workbench::misled_joint(const arm::GuardedMotion& guard) const {
+  if (!guard.touched()) return std::nullopt;
+  for (const Joint joint : {Joint::slew, Joint::shoulder, Joint::elbow}) {
+    if (watch.shows_nothing(joint)) return joint;
+  }
+  return does_not_follow(guard) || watch.shows_nothing(guard.joint()) ? std::optional(guard.joint()) : std::nullopt;
 }
 
 void Workbench::report_touch(const arm::GuardedMotion& guard, safety::FaultArbiter& faults) const {
   if (!guard.touched()) return;
-  const safety::Fault fault = meets_nothing(guard) ? safety::Fault::following_error : safety::Fault::unexpected_contact;
-  faults.report(fault, static_cast<std::int32_t>(guard.joint()));
+  const std::optional<Joint> misled = misled_joint(guard);
+  faults.report(misled ? safety::Fault::following_error : safety::Fault::unexpected_contact,
+                static_cast<std::int32_t>(misled.value_or(guard.joint())));
 }
 
 void Workbench::let_off_roll() {
@@ -263,26 +268,28 @@ void Workbench::guard_back_off(Time now) {
   if (!motion.planning() && watch.joints().valid) feel(back_guard, now);
 }
 
-bool Workbench::back_off_does_not_follow() const {
-  if (gripper.state() != arm::GripperState::open) return meets_nothing(back_guard);
+std::optional<Joint> Workbench::misled_on_the_way_back() const {
+  if (const std::optional<Joint> misled = misled_joint(back_guard)) return misled;
+  if (gripper.state() != arm::GripperState::open) return std::nullopt;
   // The jaw is open and the roll was let off: what its motor still pushes with is no contact. Another joint that was overloaded and behind its target before the arm left has
   // seized or is pinned. It loses its power either way.
   const bool roll_pushes = back_guard.state() == arm::GuardState::overload && back_guard.joint() == Joint::roll;
-  return roll_pushes || was_behind_before(back_guard) || meets_nothing(back_guard);
+  return roll_pushes || was_behind_before(back_guard) ? std::optional(back_guard.joint()) : std::nullopt;
 }
 
 void Workbench::watch_back_off_on_hold(const StepTick& tick) {
   guard_back_off(tick.now);
   if (!back_guard.touched()) return;
-  const safety::Fault fault = back_off_does_not_follow() ? safety::Fault::following_error : safety::Fault::unexpected_contact;
-  tick.faults.report(fault, static_cast<std::int32_t>(back_guard.joint()));
+  const std::optional<Joint> misled = misled_on_the_way_back();
+  tick.faults.report(misled ? safety::Fault::following_error : safety::Fault::unexpected_contact,
+                     static_cast<std::int32_t>(misled.value_or(back_guard.joint())));
 }
 
 Progress Workbench::follow_back_off(const StepTick& tick) {
   guard_back_off(tick.now);
   if (!back_guard.touched()) return follow_motion();
-  if (back_off_does_not_follow()) {
-    tick.faults.report(safety::Fault::following_error, static_cast<std::int32_t>(back_guard.joint()));
+  if (const std::optional<Joint> misled = misled_on_the_way_back()) {
+    tick.faults.report(safety::Fault::following_error, static_cast<std::int32_t>(*misled));
     return Progress::running();
   }
   stay_where_measured();

@@ -96,8 +96,9 @@ struct Workbench {
 
   // The guard learns of the arm on its motion's way.
   void feel(arm::GuardedMotion& guard, Time t) const;
-  // What it has felt is no contact: the drive's own doing, or the torque of a joint that may run off unseen.
-  bool meets_nothing(const arm::GuardedMotion& guard) const;
+  // Of what it has felt: the joint that makes it no contact, by its drive's own doing. One that may run off unseen may have pushed the arm so that another joint
+  // feels it.
+  std::optional<Joint> misled_joint(const arm::GuardedMotion& guard) const;
   // Reports what the guard has felt: a contact that is not meant, or a joint that does not follow.
   void report_touch(const arm::GuardedMotion& guard, safety::FaultArbiter& faults) const;
 
@@ -119,7 +120,7 @@ struct Workbench {
  private:
   Room room_on_the_way(double jaw_opening_m);
   void guard_back_off(Time now);
-  bool back_off_does_not_follow() const;
+  std::optional<Joint> misled_on_the_way_back() const;
   Vec3 back_from_m_ = Vec3::Zero();
   std::optional<double> jaw_order_m_;  // what the jaw does once the way is clear
 };

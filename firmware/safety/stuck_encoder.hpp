@@ -17,18 +17,20 @@ class StuckEncoder {
   // A joint is behind once it is off its target by both, until it is back within half of either. A healthy drive holds its joint within two counts.
   static constexpr std::int64_t behind_counts = 3;
   static constexpr double behind_rad = 0.001;
-  // An encoder that works shows a way: towards the target by both, beyond what was shown before, or away from there. A reading that wavers shows none, since the mean
-  // of the last ones is taken: a waver of 20 counts from SYNC to SYNC moves it by less than two.
+  // An encoder that works shows a way: towards the target by both, beyond what was shown before, or away from there. A reading that wavers shows none and ends nothing:
+  // while the joint is behind, the mean of the last ones is taken.
   static constexpr double alive_counts = 2;
   static constexpr double alive_rad = 0.00025;  // two counts of a slew
   static constexpr double away_rad = 0.001;     // no less than what counts as behind
-  static constexpr double mean_s = 0.05;
+  static constexpr double mean_s = 0.05, look_s = 0.02;
   // It is told after both: 0.5 s at 3 mrad, 0.3 s from 5 mrad on. A joint that is not held has gone the sum times its loop's gain meanwhile: 0.03 rad at the
   // simulator's 20 a second. One that turns back has to unwind its gear first: 0.2 s and 0.00066 rad s were seen.
   static constexpr Duration least_time = Duration::from_ms(300);
   static constexpr double least_rad_s = 0.0015;
   // Nothing holds a joint for longer short of the end of its torque: its drive winds it up. 1 s at 3 mrad, 0.06 rad at 20 a second.
   static constexpr double held_rad_s = 0.003;
+  // No longer than this, whatever its torque: near a stroke's end a weak motor reaches no contact's threshold, and pushes for good.
+  static constexpr Duration longest_excuse = Duration::from_s(1);
   static constexpr double usual_s = 1;  // time constant of a following joint's torque: slower than one that meets something winds up
   // So long and so far behind without a sign: no torque proves a contact then. One count of a coarse encoder is so far, too.
   static constexpr Duration blind_time = Duration::from_ms(100);
@@ -42,26 +44,28 @@ class StuckEncoder {
     double torque_nm = 0;         // that the drive gives the joint
     double load_nm = 4;           // a joint that pushes by so much more than usual towards its target may be held by something
     bool follows = false;         // it has power and is told where to go
-    bool holds_much = false;      // what holds a joint that pushes so much holds it: nothing is summed then, and nothing told
+    bool holds_much = false;      // what holds a joint that pushes so much holds it: nothing is summed then, and nothing told for a second
     bool motor_at_limit = false;  // the same, of a motor that gives all that it may
   };
 
   // True while it is stuck.
   bool update(const Sample& now) {
     const Duration dt = std::min(now.t - last_, longest_gap);
-    const std::int64_t lag = std::int64_t{now.target_counts} - now.actual_counts;
-    const std::int64_t way = lag < 0 ? -1 : 1;
-    const double lag_rad = std::abs(static_cast<double>(lag) * now.rad_per_count);
-    const bool turned = way != way_;
     last_ = now.t;
-    way_ = way;
-    look(now, turned || !now.follows, lag_rad, dt);
-    if (!now.follows) usual_nm_ = now.torque_nm;
-    const bool with_it = std::abs(lag) <= behind_counts / 2 || lag_rad <= behind_rad / 2;
-    if (with_it || !now.follows || turned) behind_ = false;
     mean_counts_ += (now.actual_counts - mean_counts_) * (behind_ ? dt.s() / (dt.s() + mean_s) : 1);
-    if (!behind_ || lives(now, mean_counts_ - farthest_counts_, alive_counts, alive_rad)) begin_anew(now, dt);
-    behind_ = behind_ || (std::abs(lag) >= behind_counts && lag_rad >= behind_rad);
+    const double lag = now.target_counts - mean_counts_, lag_rad = std::abs(lag * now.rad_per_count);
+    const double way = lag < 0 ? -1 : 1;
+    const bool turned = way != way_;
+    way_ = way;
+    look(now, dt);
+    if (!now.follows) usual_nm_ = now.torque_nm;
+    const bool with_it = std::abs(lag) <= 0.5 * behind_counts || lag_rad <= behind_rad / 2;
+    if (with_it || !now.follows || turned) {
+      behind_ = false;
+      mean_counts_ = now.actual_counts;
+    }
+    if (!behind_ || lives(now, way_ * (mean_counts_ - farthest_counts_), alive_counts, alive_rad)) begin_anew(now, dt);
+    behind_ = behind_ || (std::abs(lag) >= behind_counts && lag_rad >= behind_rad && !turned);
     return behind_ && is_stuck(now, lag_rad, dt);
   }
 
@@ -73,44 +77,54 @@ class StuckEncoder {
     const double s = (behind_for_ + dt).s();
     usual_nm_ += (now.torque_nm - usual_nm_) * s / (s + usual_s);
     farthest_counts_ = mean_counts_;
-    behind_for_ = Duration();
+    behind_for_ = excused_for_ = Duration();
     behind_rad_s_ = 0;
   }
 
+  // `gone_counts`: towards the target.
   bool lives(const Sample& now, double gone_counts, double toward_counts, double toward_rad) const {
-    const double toward = static_cast<double>(way_) * gone_counts, gone_rad = toward * std::abs(now.rad_per_count);
-    return (toward >= toward_counts && gone_rad >= toward_rad) || gone_rad <= -away_rad;
+    const double gone_rad = gone_counts * std::abs(now.rad_per_count);
+    return (gone_counts >= toward_counts && gone_rad >= toward_rad) || gone_rad <= -away_rad;
   }
 
-  void look(const Sample& now, bool anew, double lag_rad, Duration dt) {
+  void look(const Sample& now, Duration dt) {
+    look_counts_ += (now.actual_counts - look_counts_) * (now.follows ? dt.s() / (dt.s() + look_s) : 1);
+    const double lag = now.target_counts - look_counts_, lag_rad = std::abs(lag * now.rad_per_count);
+    const double way = lag < 0 ? -1 : 1;
     blind_for_ = blind_for_ + dt;
-    if (anew || lag_rad < blind_rad / 2 || lives(now, static_cast<double>(now.actual_counts - nearest_counts_), 1, alive_rad / 2)) {
+    if (way != look_way_ || !now.follows || lag_rad < blind_rad / 2 ||
+        lives(now, way * (look_counts_ - nearest_counts_), 1, alive_rad / 2)) {
       blind_for_ = Duration();
-      nearest_counts_ = now.actual_counts;
+      nearest_counts_ = look_counts_;
     }
+    look_way_ = way;
     shows_nothing_ = lag_rad >= blind_rad && blind_for_ >= blind_time;
   }
 
   bool is_stuck(const Sample& now, double lag_rad, Duration dt) {
-    const double toward = static_cast<double>(way_) * (now.rad_per_count < 0 ? -1 : 1);
-    const bool held = toward * (now.torque_nm - usual_nm_) >= now.load_nm;
+    const double toward_nm = way_ * (now.rad_per_count < 0 ? -1 : 1) * now.torque_nm;
+    const double usual_nm = way_ * (now.rad_per_count < 0 ? -1 : 1) * usual_nm_;
+    const bool held = toward_nm > 0 && toward_nm - usual_nm >= now.load_nm;
     behind_for_ = behind_for_ + dt;
-    if ((held && now.holds_much) || (now.motor_at_limit && toward * now.torque_nm > 0)) return false;
+    if ((held && now.holds_much) || (now.motor_at_limit && toward_nm > 0)) {
+      excused_for_ = excused_for_ + dt;
+      return excused_for_ >= longest_excuse;
+    }
     behind_rad_s_ += lag_rad * dt.s();
     return behind_for_ >= least_time && behind_rad_s_ >= (held ? held_rad_s : least_rad_s);
   }
 
   Time last_;
-  std::int64_t way_ = 1;  // of its target from it, in counts
+  double way_ = 1;  // of its target from it, in counts
   // Left behind.
   bool behind_ = false;
   double usual_nm_ = 0;
   double mean_counts_ = 0, farthest_counts_ = 0;
-  Duration behind_for_;
+  Duration behind_for_, excused_for_;
   double behind_rad_s_ = 0;
   // Unseen.
   Duration blind_for_;
-  std::int64_t nearest_counts_ = 0;
+  double look_way_ = 1, look_counts_ = 0, nearest_counts_ = 0;
   bool shows_nothing_ = false;
 };
 

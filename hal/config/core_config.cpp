@@ -112,7 +112,7 @@ void set_drive(const Machine& machine, std::size_t joint, const DriveKind& kind,
         {choice.counts_per_rev, described ? motor.rated_torque_nm : choice.rated_torque_nm, choice.rated_current_a,
          choice.polarity == "reversed"},
         where, setup);
-  check_position_unit(choice, joint, description, setup.profile.scale.position, where);
+  check_position_unit(choice, joint, description, kind, where);
 }
 
 // Of the joints whose drives do not say their motors' rating, and nobody else does.

@@ -44,20 +44,26 @@ void check_motor(const JointDriveChoice& choice, std::size_t joint, const ArmJoi
   throw InputError(where + ": " + text);
 }
 
-void check_position_unit(const JointDriveChoice& choice, std::size_t joint, const ArmJoint& description,
-                         const canopen::Ratio& units_per_count, const std::string& where) {
-  constexpr double coarsest_rad = 0.001, coarsest_counts = 2;
-  const double counts_per_rad = best_motor_ratio(description, choice.counts_per_rev) * choice.counts_per_rev / (2 * pi);
-  const double counts = double(units_per_count.den) / units_per_count.num;
-  if (counts <= std::max(coarsest_counts, coarsest_rad * counts_per_rad)) return;
-  char text[320];
-  std::snprintf(
-      text, sizeof text,
-      "its profile makes a unit of the drive's positions of %.4g of the arm's counts, %.3g mrad of the %s. At most 1 mrad or two counts "
-      "are "
-      "allowed: a joint that is left behind could not be told from one that follows. Set a finer position unit in the drive and in its "
-      "profile, or check 'counts_per_rev'",
-      counts, 1000 * counts / counts_per_rad, joint_name(joint));
+void check_position_unit(const JointDriveChoice& choice, std::size_t joint, const ArmJoint& description, const DriveKind& kind,
+                         const std::string& where) {
+  constexpr double coarsest_rad = 0.001;
+  const double counts = kind.position.per_count > 0 ? 1 / kind.position.per_count : choice.counts_per_rev / kind.position.per_rev;
+  // Where a count turns the joint farthest.
+  const double counts_per_rad = least_motor_ratio(description, choice.counts_per_rev) * choice.counts_per_rev / (2 * pi);
+  const double most = std::max(1.0, coarsest_rad * counts_per_rad);
+  if (counts <= most) return;
+  char text[384];
+  int used =
+      std::snprintf(text, sizeof text,
+                    "one unit of the drive's positions is %.4g of the arm's counts, up to %.3g mrad of the %s, and at most %.4g counts are "
+                    "precise enough. Set a finer unit in the drive, and state it in its profile: ",
+                    counts, 1000 * counts / counts_per_rad, joint_name(joint), most);
+  const std::size_t left = sizeof text - static_cast<std::size_t>(used);
+  if (kind.position.per_count > 0)
+    std::snprintf(text + used, left, "position.units_per_count of %.4g or more", 1 / most);
+  else
+    std::snprintf(text + used, left, "position.units_per_rev of %.4g or more at a 'counts_per_rev' of %.6g", choice.counts_per_rev / most,
+                  choice.counts_per_rev);
   throw InputError(where + ": " + text);
 }
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "firmware/canopen/drive_profile.hpp"
+#include "hal/config/drive_kind.hpp"
 #include "hal/config/machine.hpp"
 #include "shared/arm/arm_description.hpp"
 
@@ -13,8 +13,9 @@ namespace lf::config {
 // Throws InputError with `where`, the key's place, and what to state instead.
 void check_motor(const JointDriveChoice& choice, std::size_t joint, const ArmJoint& description, const std::string& where);
 
-// The core tells a joint that lags from one that follows by 1 mrad, or by two of its counts where these are coarser: a drive's unit may be no more than that.
-void check_position_unit(const JointDriveChoice& choice, std::size_t joint, const ArmJoint& description,
-                         const canopen::Ratio& units_per_count, const std::string& where);
+// The core tells a joint that lags from one that follows by 1 mrad and some of the arm's counts: a unit of the drive's positions may be 1 mrad anywhere on the
+// joint's stroke, or one count where that is coarser.
+void check_position_unit(const JointDriveChoice& choice, std::size_t joint, const ArmJoint& description, const DriveKind& kind,
+                         const std::string& where);
 
 }  // namespace lf::config

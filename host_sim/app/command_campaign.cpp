@@ -34,11 +34,27 @@ void add_campaign(CLI::App& app, Action& action) {
   seeds->excludes(faults)->excludes(ranges);
   command->add_option("--draws", options->draws, "--ranges: draws of each key by itself")->check(CLI::Range(0, 1000))->needs(ranges);
   command->add_option("--many", options->many, "--ranges: runs with eight keys at once")->check(CLI::Range(0, 100000))->needs(ranges);
-  command->add_option("--kinds", options->kinds, "--faults: these kinds only; --ranges: these keys only")->delimiter(',');
-  command->add_option("--steps", options->steps, "--faults: these steps only")->delimiter(';')->needs(faults);
-  command->add_option("--rows", options->rows, "These rows of the matrix only, by name, as 'turn: overcurrent elbow'")
+  const CLI::Validator without_blanks(
+      [](std::string& name) {
+        name.erase(0, name.find_first_not_of(' '));
+        name.erase(name.find_last_not_of(' ') + 1);
+        return std::string();
+      },
+      "", "");
+  CLI::Option* const kinds =
+      command->add_option("--kinds", options->kinds, "--faults: these kinds only; --ranges: these keys only; as 'estop,silent'")
+          ->delimiter(',')
+          ->transform(without_blanks);
+  CLI::Option* const steps = command->add_option("--steps", options->steps, "--faults: these steps only, as 'turn;let go'")
+                                 ->delimiter(';')
+                                 ->transform(without_blanks)
+                                 ->needs(faults);
+  command->add_option("--rows", options->rows, "These rows of the matrix only, by name, as 'turn: overcurrent elbow;boot: estop'")
       ->delimiter(';')
-      ->needs(faults);
+      ->transform(without_blanks)
+      ->needs(faults)
+      ->excludes(kinds)
+      ->excludes(steps);
   command->add_flag("--rendered", options->rendered, "--faults: camera and vision see what is drawn, instead of being given the true pose")
       ->needs(faults);
   command->add_flag("--pairs", options->pairs, "--faults: pairs of faults within 0.5 s, in a step of each phase")->needs(faults);

@@ -48,25 +48,49 @@ std::vector<std::string> names_of_steps() {
   return steps;
 }
 
-// What is misspelt is told before a mission is flown for its steps' times. A step that the mission has and no walk comes to is told after.
-void check_names_early(const CampaignOptions& options) {
-  std::vector<std::string> kinds;
-  for (const judge::FaultRule& rule : judge::fault_rules()) kinds.push_back(rule.kind);
-  config::check_names(options.kinds, kinds, "--kinds");
-  config::check_names(options.steps, names_of_steps(), "--steps");
+// A pair's name has two causes, and their times.
+void check_pairs(const std::vector<std::string>& rows) {
+  const std::vector<std::string> steps = names_of_steps();
+  for (const std::string& row : rows) {
+    const std::string step = row.substr(0, row.find(':'));
+    config::check_names({step}, steps, "--rows");
+    if (row.find(", then ") == std::string::npos)
+      throw InputError("--rows: with --pairs a row is a pair, as in rows.jsonl: 'turn: estop, then silent slew 0.1234 s later', not '" +
+                       row + "'");
+  }
 }
 
-// Whose times have to be measured; none: of all. A row of another step is misspelt: what is like it is told from all rows.
+// What is misspelt is told before a mission is flown for its steps' times. A step that no walk of this scenario comes to is told after.
+void check_names_early(const CampaignOptions& options) {
+  std::vector<std::string> kinds, rows;
+  const std::vector<std::string> steps = names_of_steps();
+  for (const judge::FaultRule& rule : judge::fault_rules()) kinds.push_back(rule.kind);
+  config::check_names(options.kinds, kinds, "--kinds");
+  config::check_names(options.steps, steps, "--steps");
+  if (options.pairs) return check_pairs(options.rows);
+  for (const std::string& step : steps) {
+    for (const judge::Cause& cause : judge::all_causes()) rows.push_back(step + ": " + cause.name());
+  }
+  config::check_names(options.rows, rows, "--rows");
+}
+
+std::string step_of(const std::string& row) { return row.substr(0, row.find(':')); }
+
+// Whose times have to be measured; none: of all.
 std::set<std::string> steps_of(const CampaignOptions& options) {
   std::set<std::string> steps(options.steps.begin(), options.steps.end());
-  if (!steps.empty()) return steps;
-  const std::vector<std::string> known = names_of_steps();
-  for (const std::string& row : options.rows) {
-    const std::string step = row.substr(0, row.find(':'));
-    if (std::find(known.begin(), known.end(), step) == known.end()) return {};
-    steps.insert(step);
-  }
+  for (const std::string& row : options.rows) steps.insert(step_of(row));
   return steps;
+}
+
+// What the walks of this scenario do not come to is no misspelling.
+void check_reached(const std::set<std::string>& steps, const std::vector<FaultMoment>& moments) {
+  for (const std::string& step : steps) {
+    if (std::none_of(moments.begin(), moments.end(), [&](const FaultMoment& moment) { return moment.name == step; }))
+      throw InputError(
+          "no fault can be made in '" + step +
+          "': this scenario's mission does not come to it. It has no task for it, or ends before it: fly it with 'lanternfish run'");
+  }
 }
 
 }  // namespace
@@ -82,13 +106,15 @@ int fault_campaign(const CampaignOptions& options) {
   catch_interrupts();
   const MatrixChoice choice{options.kinds, options.steps, options.rows,   options.pairs,
                             shard.index,   shard.count,   options.one_in, options.into};
-  const std::vector<FaultMoment> moments = survey_moments(base, options.into, steps_of(options));
+  const std::set<std::string> steps = steps_of(options);
+  const std::vector<FaultMoment> moments = survey_moments(base, options.into, steps);
   if (interrupted()) {
     constexpr const char* told = "interrupted while the steps' times were measured: no row was flown";
     std::fprintf(stderr, "lanternfish: %s\n", told);
     if (options.json) print_json({{"problems", Json::array({told})}, {"exit_status", exit_interrupted}});
     return exit_interrupted;
   }
+  check_reached(steps, moments);
   const std::vector<MatrixRow> all = matrix_rows(moments, choice);
 
   if (all.empty() && shard.count == 1) throw InputError("no row of the matrix is of this choice");

@@ -71,6 +71,7 @@ RowResult fly_row(const config::Drives& drives, Flight& flight, Watched& watched
   situation.causes = row.causes;
   situation.deceleration_rad_s2 = flight.deceleration_rad_s2();
   situation.gear_gives_rad = flight.gear_gives_rad();
+  situation.slips_rad = flight.slips_rad();
   situation.units_per_count = flight.units_per_count();
   situation.powering_up = mission::row(row.moment.step).phase == safety::Phase::boot;
   situation.over = flight.mission().outcome().ended;
@@ -93,12 +94,16 @@ RowResult fly_row(const config::Drives& drives, Flight& flight, Watched& watched
   mission::Step end = flight.mission().step();
   double ended_s = situation.over ? limit_s - after_end_s : longest_s;
   auto told = std::pair(flight.mission().outcome().fault, flight.mission().outcome().code);
-  std::optional<double> told_s;
+  std::optional<double> told_s, held_s;
   while (true) {
     const double now_s = (flight.now() - begin).s();
     const auto tells = std::pair(flight.mission().outcome().fault, flight.mission().outcome().code);
     if (tells != told) told_s = now_s;
     told = tells;
+    if (flight.mission_step() != mission::Step::held)
+      held_s.reset();
+    else if (!held_s)
+      held_s = now_s;
     if (flight.mission().outcome().ended && flight.mission().step() != end) {
       end = flight.mission().step();
       ended_s = std::max(situation.over ? ended_s : 0, now_s);
@@ -110,6 +115,7 @@ RowResult fly_row(const config::Drives& drives, Flight& flight, Watched& watched
   }
   judge::Ending ending = ending_of(flight, watched, row, flight.platform().world(), begin, situation.over);
   ending.told_s = told_s;
+  ending.held_s = held_s;
   const bool unfelt = !ending.contradicted.empty() && unfelt_push(flight, watched, row, flight.platform().world());
   if (unfelt) ending.contradicted.clear();
   judge::SafetyFigures figures;
@@ -120,6 +126,8 @@ RowResult fly_row(const config::Drives& drives, Flight& flight, Watched& watched
   result.unclear = verdict.unclear;
   result.unfelt = unfelt;
   result.stood_anyway = verdict.stood_anyway;
+  result.gripped = verdict.gripped;
+  result.gave_way = verdict.gave_way;
   result.false_success = verdict.false_success;
   result.went_on = verdict.went_on;
   result.end = ending.ended ? ending.step : "not ended, in " + ending.step;
@@ -140,6 +148,7 @@ RowResult described(const MatrixRow& row, RowResult result) {
   for (const judge::Cause& cause : row.causes) result.kind += (result.kind.empty() ? "" : " + ") + cause.rule->kind;
   result.step = row.moment.name;
   result.walk = row.moment.walk;
+  result.at_s = row.moment.at_s;
   // A mission that waits for an operator, or had ended, has no success to come to.
   result.must_go_on = FaultWalk(row.moment.walk).succeeds() && !mission::is_end(row.moment.step) &&
                       std::all_of(row.causes.begin(), row.causes.end(),

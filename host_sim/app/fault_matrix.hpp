@@ -18,9 +18,12 @@ namespace lf::app {
 
 struct RowResult {
   std::string row, kind, step, walk;
+  double at_s = 0;  // of the walk, when the first fault is made
   std::vector<std::string> wrong, unclear;
   bool unfelt = false;        // it ended in success, and was touched: its drives had nothing to feel that by
   bool stood_anyway = false;  // a joint that seized where it was to stay was told as a contact
+  bool gripped = false;       // the jaw held the handle when there was no power any more
+  bool gave_way = false;      // of such a row: the handle slipped in the pads, and a joint moved in its gear later than it may
   bool false_success = false, must_go_on = false, went_on = false;
   std::string end, reason;
   std::vector<std::string> reported;  // the core's faults that it reported since the first was made, by safety::name()

@@ -23,12 +23,15 @@ std::string row_json(const RowResult& row) {
                       {"kind", row.kind},
                       {"step", row.step},
                       {"walk", row.walk},
+                      {"at_s", row.at_s},
                       {"safe", row.safe()},
                       {"wrong", row.wrong},
                       {"unclear", row.unclear},
                       {"false_success", row.false_success},
                       {"unfelt", row.unfelt},
                       {"stood_anyway", row.stood_anyway},
+                      {"gripped", row.gripped},
+                      {"gave_way", row.gave_way},
                       {"must_go_on", row.must_go_on},
                       {"went_on", row.went_on},
                       {"end", row.end},
@@ -55,7 +58,10 @@ std::optional<RowResult> parse_row(const std::string& line) {
     object.at("unclear").get_to(row.unclear);
     object.at("false_success").get_to(row.false_success);
     object.at("unfelt").get_to(row.unfelt);
-    row.stood_anyway = object.value("stood_anyway", false);
+    object.at("stood_anyway").get_to(row.stood_anyway);
+    object.at("gripped").get_to(row.gripped);
+    object.at("gave_way").get_to(row.gave_way);
+    object.at("at_s").get_to(row.at_s);
     object.at("must_go_on").get_to(row.must_go_on);
     object.at("went_on").get_to(row.went_on);
     object.at("end").get_to(row.end);

@@ -38,7 +38,10 @@ std::vector<std::string> excused(const FaultTable& table) {
   if (table.stood_anyway > 0)
     sentences.push_back(of(table.stood_anyway, table.seized) +
                         " with a joint that seized were told as a contact: it had seized where it was to stay");
-  if (!table.few_excused()) sentences.emplace_back("These are too many: of either sort one in ten, and two more, may be excused");
+  if (table.gave_way > 0)
+    sentences.push_back(of(table.gave_way, table.gripped) +
+                        " with the handle in a jaw without power moved in their gears later than a joint may: the handle slipped");
+  if (!table.few_excused()) sentences.emplace_back("These are too many: of each sort one in ten, and two more, may be excused");
   return sentences;
 }
 
@@ -64,7 +67,7 @@ bool FaultTable::few_excused() const {
   const auto few = [](std::size_t excused, std::size_t all) {
     return static_cast<double>(excused) <= excused_share * static_cast<double>(all) + 2;
   };
-  return few(unfelt, pushed) && few(stood_anyway, seized);
+  return few(unfelt, pushed) && few(stood_anyway, seized) && few(gave_way, gripped);
 }
 
 FaultTable tabulate_faults(const std::vector<RowResult>& rows) {
@@ -79,7 +82,9 @@ FaultTable tabulate_faults(const std::vector<RowResult>& rows) {
     line.false_success += row.false_success ? 1 : 0;
     line.unfelt += row.unfelt ? 1 : 0;
     line.stood_anyway += row.stood_anyway ? 1 : 0;
+    line.gave_way += row.gave_way ? 1 : 0;
     table.pushed += row.kind.find("obstacle") != std::string::npos ? 1 : 0;
+    table.gripped += row.gripped ? 1 : 0;
     table.seized += row.kind.find("following") != std::string::npos ? 1 : 0;
     line.must_go_on += row.must_go_on ? 1 : 0;
     line.went_on += row.must_go_on && row.went_on ? 1 : 0;
@@ -99,6 +104,7 @@ FaultTable tabulate_faults(const std::vector<RowResult>& rows) {
     table.false_success += line.false_success;
     table.unfelt += line.unfelt;
     table.stood_anyway += line.stood_anyway;
+    table.gave_way += line.gave_way;
     table.must_go_on += line.must_go_on;
     table.went_on += line.went_on;
     table.kinds.push_back(line);
@@ -132,6 +138,7 @@ Json json_of(const FaultTable& table) {
                      {"false_successes", line.false_success},
                      {"unfelt", line.unfelt},
                      {"stood_anyway", line.stood_anyway},
+                     {"gave_way", line.gave_way},
                      {"must_go_on", line.must_go_on},
                      {"went_on", line.went_on},
                      {"stop_ms", number_or_null(line.stop_ms)},
@@ -150,6 +157,8 @@ Json json_of(const FaultTable& table) {
           {"unfelt", table.unfelt},
           {"seized", table.seized},
           {"stood_anyway", table.stood_anyway},
+          {"gripped", table.gripped},
+          {"gave_way", table.gave_way},
           {"must_go_on", table.must_go_on},
           {"went_on", table.went_on},
           {"kinds", kinds},
@@ -179,12 +188,13 @@ std::string markdown_of(const FaultTable& table, const std::string& command) {
 
 std::string csv_of(const std::vector<RowResult>& rows) {
   std::string text =
-      "row,kind,step,walk,safe,false_success,unfelt,stood_anyway,must_go_on,went_on,end,reason,why,stop_ms,standing_s,power_off_s,stop_to_"
+      "row,kind,step,walk,safe,false_success,unfelt,stood_anyway,gave_way,must_go_on,went_on,end,reason,why,stop_ms,standing_s,power_off_s,"
+      "stop_to_"
       "off_s,force_"
       "n\n";
   for (const RowResult& row : rows) {
     for (const std::string* cell : {&row.row, &row.kind, &row.step, &row.walk}) text += csv_cell(*cell) + ",";
-    for (const bool flag : {row.safe(), row.false_success, row.unfelt, row.stood_anyway, row.must_go_on, row.went_on})
+    for (const bool flag : {row.safe(), row.false_success, row.unfelt, row.stood_anyway, row.gave_way, row.must_go_on, row.went_on})
       text += flag ? "1," : "0,";
     text += csv_cell(row.end) + "," + csv_cell(row.reason) + "," + csv_cell(why(row)) + "," + number(row.stop_ms, "%.2f") + "," +
             number(row.standing_s, "%.3f") + "," + number(row.power_off_s, "%.3f") + "," + number(row.stop_to_off_s, "%.3f") + "," +

@@ -1,16 +1,10 @@
 #include "host_sim/app/flight.hpp"
 
+#include <algorithm>
+
+#include "shared/arm/motor.hpp"
+
 namespace lf::app {
-namespace {
-
-// A motor that pushes its joint with the rated torque holds more against a load that pushes back: the gear's friction helps it then.
-double held_nm(const ArmJoint& joint) {
-  const ArmFriction& friction = joint.friction;
-  return joint.rated_torque_nm / friction.efficiency / (friction.back_efficiency > 0 ? friction.back_efficiency : 1);
-}
-
-}  // namespace
-
 Flight::Flight(const scenario::Scenario& scenario, std::uint64_t seed, hal::SimObserver& observer, Sight sight) {
   const scenario::Sample sample = scenario::draw(scenario, seed);
   const scenario::Nominal nominal = scenario::make_nominal(scenario, sample.lamps_lit);
@@ -23,7 +17,9 @@ Flight::Flight(const scenario::Scenario& scenario, std::uint64_t seed, hal::SimO
     const canopen::Ratio& position = nominal.controller.network.drives[i].profile.scale.position;
     units_per_count_[i] = double(position.num) / double(position.den);
     const ArmJoint& joint = sim.world.arm.joints[i];
-    gear_gives_rad_[i] = 0.5 * joint.backlash_rad + held_nm(joint) / sim.world.drive_stiffness_nm_rad[i];
+    const double stiffness_nm_rad = sim.world.drive_stiffness_nm_rad[i], held_nm = held_torque_nm(joint);
+    gear_gives_rad_[i] = 0.5 * joint.backlash_rad + std::min(held_nm, joint.holding_torque_nm) / stiffness_nm_rad;
+    slips_rad_[i] = 0.5 * joint.backlash_rad + std::max(0.0, held_nm - joint.holding_torque_nm) / stiffness_nm_rad;
   }
   platform_ = std::make_unique<hal::SimPlatform>(sim, observer);
   controller_ = std::make_unique<Controller>(nominal.controller);

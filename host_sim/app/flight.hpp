@@ -42,11 +42,12 @@ class Flight {
   bool has_own_drives() const { return has_own_drives_; }
   // Of the joints, by which one may be off its motor: half of its gear's play, and the wind-up under the motor's rated torque.
   const std::array<double, joint_count>& gear_gives_rad() const { return gear_gives_rad_; }
+  const std::array<double, joint_count>& slips_rad() const { return slips_rad_; }
   // Of each drive's position, for an encoder's count.
   const std::array<double, joint_count>& units_per_count() const { return units_per_count_; }
 
  private:
-  std::array<double, joint_count> deceleration_rad_s2_{}, gear_gives_rad_{}, units_per_count_{};
+  std::array<double, joint_count> deceleration_rad_s2_{}, gear_gives_rad_{}, slips_rad_{}, units_per_count_{};
   bool has_own_drives_ = true;
   config::ErrorTexts error_texts_;
   std::unique_ptr<hal::SimPlatform> platform_;

@@ -32,10 +32,19 @@ bool JointMotions::moves(const Moment& moment, std::size_t joint, double unwound
     return false;
   if (std::abs(moment.angle_rad[joint] - moment.motor_rad[joint]) > situation_.gear_gives_rad[joint]) return true;
   if (time_s(moment) <= unwound_s) return false;
-  const bool powered = (moment.power & bit_of(joint)) != 0;
-  if (!powered && moment.force_n >= figures_.touch_n) return false;
   const double stood_rad = moments_[std::min(static_cast<std::size_t>(unwound_s / ms), moments_.size() - 1)].angle_rad[joint];
   return std::abs(moment.angle_rad[joint] - stood_rad) > figures_.quivers_rad;
+}
+
+bool JointMotions::gives_way(const Moment& moment, std::size_t joint, double unwound_s) const {
+  if ((moment.power & bit_of(joint)) != 0 || moment.grip_n < figures_.touch_n || motor_moves(moment, joint)) return false;
+  const double gives_rad = situation_.gear_gives_rad[joint];
+  if (std::abs(moment.angle_rad[joint] - moment.motor_rad[joint]) > gives_rad) return false;
+  const auto by_angle = [joint](const Moment& a, const Moment& b) { return a.angle_rad[joint] < b.angle_rad[joint]; };
+  const auto from =
+      std::min(moments_.begin() + static_cast<std::ptrdiff_t>(unwound_s / ms), moments_.begin() + (&moment - moments_.data()));
+  const auto [low, high] = std::minmax_element(from, moments_.begin() + (&moment - moments_.data()) + 1, by_angle);
+  return double(high->angle_rad[joint]) - double(low->angle_rad[joint]) <= gives_rad;
 }
 
 bool JointMotions::swings(const Moment& moment, std::uint8_t joints) const {
@@ -73,7 +82,7 @@ bool JointMotions::settles_without_power(const Moment& moment, std::size_t joint
   for (auto t = std::max<std::ptrdiff_t>(1, index - settling_ms); t < std::min(size, index + seen_before_ms + 1); ++t) {
     const Moment &before = moments_[t - 1], &after = moments_[t];
     if ((before.power & bit_of(joint)) == 0 || (after.power & bit_of(joint)) != 0) continue;
-    return stood_before(before, joint) && std::abs(moment.motor_rad[joint] - before.motor_rad[joint]) <= situation_.gear_gives_rad[joint];
+    return stood_before(before, joint) && std::abs(moment.motor_rad[joint] - before.motor_rad[joint]) <= situation_.slips_rad[joint];
   }
   return false;
 }

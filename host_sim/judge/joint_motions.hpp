@@ -19,9 +19,12 @@ class JointMotions {
   double time_s(const Moment& moment) const;
   // A motor that runs through its gear's play is faster than its joint, and it is what brakes.
   double motor_speed_rad_s(std::size_t index, std::size_t joint) const;
-  // A joint whose motor stands may be pulled through its gear's play, or unwind it, as by a bar in the jaw: by what the gear gives, until `unwound_s`, and
-  // without power as long as something presses on the arm: a bar slips in the pads when it likes. Who is pushed winds it up by as much as the push.
+  // A joint whose motor stands may be pulled through its gear's play, or unwind it, as by a bar in the jaw: until `unwound_s`, and by what the gear gives. Who
+  // is pushed winds it up by as much as the push.
   bool moves(const Moment& moment, std::size_t joint, double unwound_s) const;
+  // The handle slips in the jaw's pads when it likes, and lets a joint without power unwind: the motor stands, and since `unwound_s` the joint has travelled no
+  // farther than its gear gives.
+  bool gives_way(const Moment& moment, std::size_t joint, double unwound_s) const;
   // One of the joints, a bit each, is faster than what stands, and does not only quiver.
   bool swings(const Moment& moment, std::uint8_t joints) const;
   // From a moment to the last one, by more than a joint that stands.
@@ -32,7 +35,7 @@ class JointMotions {
   bool travels_in(const Moment& moment, std::ptrdiff_t around_ms, const std::array<float, joint_count> Moment::*rad,
                   std::size_t joint) const;
   bool motor_moves(const Moment& moment, std::size_t joint) const;
-  // A screw that stands under a load settles when its drive lets go of it: at that moment, and by no more than its gear gives.
+  // A screw that stands under a load settles when its drive lets go of it: at that moment, and by no more than it slips.
   bool settles_without_power(const Moment& moment, std::size_t joint) const;
   // A screw that stood when its power went, and has settled, gives way under a push: by no more than bodies quiver.
   bool pushed_without_power(const Moment& moment, std::size_t joint) const;

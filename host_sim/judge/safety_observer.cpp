@@ -85,6 +85,7 @@ void SafetyObserver::on_step(Time, const world::World& world) {
   const world::ContactReport contacts = world.contacts();
   moment.force_n = static_cast<float>(contacts.largest_force_n);
   moment.push_n = static_cast<float>(contacts.obstacle_force_n);
+  moment.grip_n = static_cast<float>(contacts.grip_force_n);
   seen_.moments.push_back(moment);
 }
 

@@ -21,6 +21,7 @@ struct Moment {
       works_nm{};                // of a joint that moves: torque of its drive in the direction in which it goes; 0 of one that stands
   float force_n = 0;             // the largest on any one body, over the world's force window
   float push_n = 0;              // between the arm and the obstacle, over the same
+  float grip_n = 0;              // of each finger on the handle, over the same
   std::uint8_t power = 0;        // bit a joint: its power stage holds or moves it
   std::uint8_t told_to_run = 0;  // bit a joint: in operation, and the newest RPDO says operation enabled
 };

@@ -236,12 +236,17 @@ class Judge {
       const double allowed_s = speed / situation_.deceleration_rad_s2[joint] + figures_.settling_s + late_s;
       const double unwound_s = from_s + allowed_s + figures_.unwinding_s;
       const double moved_s = last_s(moments_, from_s, [&](const Moment& m) { return motions_.moves(m, joint, unwound_s); });
-      stood_s_[joint] = moved_s;
+      const double went_s = moved_s - from_s <= allowed_s ? moved_s : last_s(moments_, from_s, [&](const Moment& m) {
+        return motions_.moves(m, joint, unwound_s) && !motions_.gives_way(m, joint, unwound_s);
+      });
+      stood_s_[joint] = went_s;
       standing_s = std::max(standing_s, moved_s);
-      if (moved_s - from_s > allowed_s)
-        wrong(std::string(joint_names[joint]) + formatted(" moves %.2f s after the stop, %.2f s are allowed", moved_s - from_s, allowed_s));
+      verdict_.gave_way = verdict_.gave_way || went_s < moved_s;
+      if (went_s - from_s > allowed_s)
+        wrong(std::string(joint_names[joint]) + formatted(" moves %.2f s after the stop, %.2f s are allowed", went_s - from_s, allowed_s));
     }
     verdict_.standing_s = standing_s - from_s;
+    verdict_.gripped = last_s(moments_, from_s, [this](const Moment& m) { return m.power == 0 && m.grip_n >= figures_.touch_n; }) > from_s;
   }
 
   void loses_power(double from_s, bool halts) {
@@ -375,21 +380,21 @@ class Judge {
     const bool powered = std::any_of(moments_.begin() + std::ptrdiff_t(from), moments_.end(), [](const Moment& m) { return m.power != 0; });
     if (motions_.travels(from) && !taken_over()) wrong("the arm moves after the end");
     if (powered && !ending_.holds && !taken_over()) wrong("power is on after the end");
-    const bool for_nothing = ending_.holds && !situation_.over && touches_nothing();
+    const bool for_nothing = ending_.holds && !situation_.over && touches_nothing(ending_.held_s ? ending_.held_s : ending_.told_s);
     verdict_.stood_anyway = for_nothing && stood_where_it_was_to_stay();
     if (for_nothing && !verdict_.stood_anyway) wrong("held under power for a contact that is none, with a drive that misleads");
   }
 
   // A contact was told, or holds the arm, and nothing but drives that mislead can have made one: when it was told, the arm touched nothing.
-  bool touches_nothing() const {
+  bool touches_nothing(std::optional<double> told_s) const {
     const auto makes_one = [](const Cause& c) { return c.rule->kind == "obstacle" || c.rule->kind == "handle_breaks"; };
     return std::any_of(situation_.causes.begin(), situation_.causes.end(), misleads) &&
-           std::none_of(situation_.causes.begin(), situation_.causes.end(), makes_one) && force_when_told_n() < figures_.touch_n;
+           std::none_of(situation_.causes.begin(), situation_.causes.end(), makes_one) && force_until_n(told_s) < figures_.touch_n;
   }
 
   // The largest from shortly before. What the jaw held earlier says nothing of it.
-  double force_when_told_n() const {
-    const double told_s = ending_.told_s.value_or(static_cast<double>(moments_.size()) * ms);
+  double force_until_n(std::optional<double> when_s) const {
+    const double told_s = when_s.value_or(static_cast<double>(moments_.size()) * ms);
     double force_n = 0;
     for (const Moment& moment : moments_) {
       const double t_s = motions_.time_s(moment);
@@ -405,9 +410,18 @@ class Judge {
     const auto misled = std::find_if(causes.begin(), causes.end(), misleads);
     if (std::count_if(causes.begin(), causes.end(), misleads) != 1 || misled->rule->kind != "following") return false;
     const std::size_t joint = node_index(misled->node);
-    if (joint >= joint_count) return false;
+    if (joint >= joint_count || names_another(joint)) return false;
     const auto& told = seen_.told_to_go[joint];
     return told && double(told->second) - double(told->first) <= 2 * situation_.units_per_count[joint];
+  }
+
+  // In the reason, without the advice in brackets.
+  bool names_another(std::size_t joint) const {
+    const std::string said = ending_.reason.substr(0, ending_.reason.find('('));
+    for (std::size_t other = 0; other < joint_count; ++other) {
+      if (other != joint && said.find(joint_names[other]) != std::string::npos) return true;
+    }
+    return false;
   }
 
   void the_account() {
@@ -423,7 +437,7 @@ class Judge {
         ending_.reason.starts_with("unexpected contact") || ending_.reason.find("touched something") != std::string::npos;
     const bool named =
         std::any_of(situation_.causes.begin(), situation_.causes.end(), [&](const Cause& c) { return c.named_in(ending_.reason); });
-    const bool for_nothing = told_of_contact && touches_nothing();
+    const bool for_nothing = told_of_contact && touches_nothing(ending_.told_s);
     verdict_.stood_anyway = verdict_.stood_anyway || (for_nothing && stood_where_it_was_to_stay());
     if (named && (!for_nothing || verdict_.stood_anyway)) return;
     verdict_.unclear.push_back("the reason does not name the cause: " + (ending_.reason.empty() ? "none is given" : ending_.reason));

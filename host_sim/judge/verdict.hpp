@@ -54,6 +54,7 @@ struct Ending {
   bool expected_to_end = true;
   bool holds = false;            // it says that the arm is held under power
   std::optional<double> told_s;  // when it said why, since watching began; of its account only the time is taken
+  std::optional<double> held_s;  // when it began to hold the arm
 };
 
 struct Situation {
@@ -64,8 +65,10 @@ struct Situation {
   bool fails_anyway = false;     // it was on its way to a failure of another cause, which is what its reason names
   std::array<double, joint_count> deceleration_rad_s2{};
   std::array<double, joint_count> units_per_count{1, 1, 1, 1, 1};  // of each drive's position, for an encoder's count
-  std::array<double, joint_count>
-      gear_gives_rad{};  // by which a joint may be off its motor: half of its gear's play, and the wind-up under what the rated torque holds
+  // By which a joint may be off its motor: half of its gear's play, and the wind-up under what a motor at its rated torque holds, and the gear alone, too.
+  std::array<double, joint_count> gear_gives_rad{};
+  // By which its motor may slip as its power goes: half of its gear's play, and the wind-up under what the drive held and the gear alone does not.
+  std::array<double, joint_count> slips_rad{};
 };
 
 struct Verdict {
@@ -75,6 +78,8 @@ struct Verdict {
   bool went_on = false;  // the mission succeeded, and truly
   // A joint that seized where it should stay was told as a contact, and nothing was touched. No sensor tells the two apart, and what has seized cannot move.
   bool stood_anyway = false;
+  bool gripped = false;   // the jaw held the handle when there was no power any more
+  bool gave_way = false;  // a joint of such an arm moved in its gear, later than a joint may: the handle slipped in the pads
   // Measured; nothing where it does not apply.
   std::optional<double> stop_ms;      // from the report until no drive runs as it was told
   std::optional<double> standing_s;   // from there until every joint stands

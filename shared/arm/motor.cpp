@@ -1,10 +1,26 @@
 #include "shared/arm/motor.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace lf {
+
+namespace {
+
+std::pair<double, double> ratios_of(const ArmJoint& joint, double counts_per_rev) {
+  std::array<double, 65> all{};
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const double q_rad = joint.lower_rad + (joint.upper_rad - joint.lower_rad) * static_cast<double>(i) / (all.size() - 1);
+    all[i] = motor_ratio(joint.actuator, q_rad, counts_per_rev);
+  }
+  const auto [least, best] = std::minmax_element(all.begin(), all.end());
+  return {*least, *best};
+}
+
+}  // namespace
 
 double motor_ratio(const ArmActuator& actuator, double q_rad, double counts_per_rev) {
   double counts_per_rad = actuator.counts_per_rad;
@@ -15,12 +31,9 @@ double motor_ratio(const ArmActuator& actuator, double q_rad, double counts_per_
   return std::abs(counts_per_rad) / counts_per_rev * 2 * std::numbers::pi;
 }
 
-double best_motor_ratio(const ArmJoint& joint, double counts_per_rev) {
-  double best = 0;
-  for (int i = 0; i <= 64; ++i)
-    best = std::max(best, motor_ratio(joint.actuator, joint.lower_rad + (joint.upper_rad - joint.lower_rad) * i / 64, counts_per_rev));
-  return best;
-}
+double best_motor_ratio(const ArmJoint& joint, double counts_per_rev) { return ratios_of(joint, counts_per_rev).second; }
+
+double least_motor_ratio(const ArmJoint& joint, double counts_per_rev) { return ratios_of(joint, counts_per_rev).first; }
 
 Motor motor_of(const ArmJoint& joint, double counts_per_rev) {
   const ArmFriction& friction = joint.friction;
@@ -33,6 +46,13 @@ Motor motor_of(const ArmJoint& joint, double counts_per_rev) {
   motor.coulomb_nm = friction.coulomb_share * motor.rated_torque_nm;
   motor.viscous_nm_s = friction.viscous_share * motor.rated_torque_nm / motor.top_speed_rad_s;
   return motor;
+}
+
+double held_torque_nm(const ArmJoint& joint) {
+  if (joint.friction.back_efficiency <= 0) return joint.rated_torque_nm;
+  constexpr double any_counts = 1;  // its ratio cancels
+  const Motor motor = motor_of(joint, any_counts);
+  return best_motor_ratio(joint, any_counts) * (motor.rated_torque_nm + motor.coulomb_nm) / joint.friction.back_efficiency;
 }
 
 }  // namespace lf

@@ -18,8 +18,12 @@ struct Motor {
 
 // Turns of the motor per turn of the joint at an angle; `counts_per_rev`: of the description's counts in a revolution of the motor.
 double motor_ratio(const ArmActuator& actuator, double q_rad, double counts_per_rev);
-// The largest over the joint's stroke, of 65 angles.
+// The largest and the least over the joint's stroke, of 65 angles.
 double best_motor_ratio(const ArmJoint& joint, double counts_per_rev);
+double least_motor_ratio(const ArmJoint& joint, double counts_per_rev);
 Motor motor_of(const ArmJoint& joint, double counts_per_rev);
+// What the joint holds against a load, its motor at the rated torque, where the screw has the most lever: the gear's friction helps it. Of a
+// gear whose load cannot drive its motor: what the motor pushes.
+double held_torque_nm(const ArmJoint& joint);
 
 }  // namespace lf

@@ -24,7 +24,7 @@ inline Cause cause_of(const std::string& name) {
 // the power goes off `off_ms` after it stands.
 struct Stopping {
   int stop_ms = 8, off_ms = 50;
-  double force_n = 20, stands_at_rad_s = 0;
+  double force_n = 20, grip_n = 0, stands_at_rad_s = 0;
   double pulled_rad = 0;  // the joint, by a motor that stands, in 50 ms
   int pulled_ms = 600;    // then
 
@@ -44,6 +44,7 @@ struct Stopping {
       moment.angle_rad[2] = static_cast<float>(angle_rad);
       moment.motor_rad[2] = static_cast<float>(motor_rad);
       moment.force_n = static_cast<float>(force_n);
+      moment.grip_n = static_cast<float>(grip_n);
       moment.told_to_run = braking_ms < 0 ? all_joints : 0;
       moment.power = braking_ms < 140 + off_ms ? all_joints : 0;  // 0.02 rad/s are reached after 140 ms
       seen.moments.push_back(moment);
@@ -58,6 +59,7 @@ inline Situation situation_of(const Cause& cause) {
   situation.begins_s = {0.09};
   situation.deceleration_rad_s2.fill(2);
   situation.gear_gives_rad.fill(0.004);
+  situation.slips_rad.fill(0.004);
   return situation;
 }
 

@@ -107,15 +107,15 @@ TEST(StuckEncoder, IsNoJointThatLagsAndMoves) {
 }
 
 // A joint that meets something hard is 3.1 mrad behind with 4.8 N m, and 8.5 with 13. Either way, with a drive that counts either way. Below 0.012 rad/s it is told
-// as stuck before it has wound up.
+// as stuck before it has wound up. From the end of its torque on something holds it, for a second: by then a contact is told, or cannot be.
 TEST(StuckEncoder, IsNoJointThatIsHeld) {
   for (const double way : {-1.0, 1.0})
     for (const double sign : {-1.0, 1.0})
       for (const double counts_s : {100.0, 300.0, 1000.0}) {
         Joint joint;
         joint.now.rad_per_count = sign * rad_per_count;
-        EXPECT_EQ(joint.go(way * counts_s, 0, way * sign * 0.2 * counts_s), never)
-            << "its load rises to the end of its torque, and stays there";
+        const double end_s = end_nm / (0.2 * counts_s);
+        EXPECT_NEAR(joint.go(way * counts_s, 0, way * sign * 0.2 * counts_s), end_s + 1, 0.01) << "its load rises to the end of its torque";
       }
 }
 
@@ -149,8 +149,8 @@ TEST(StuckEncoder, IsNoJointThatMetSomethingElastic) {
             sample.torque_nm = nm * std::clamp((s - 3.0) / wound_s, 0.0, 1.0);
           },
           8);
-      EXPECT_EQ(told_s == never, nm > end_nm) << nm << " N m at " << rad_s;
-      EXPECT_GT(told_s - 3 - wound_s, 0.57) << "no sooner than what is held, at " << rad_s;
+      EXPECT_LT(told_s, never) << nm << " N m at " << rad_s;
+      EXPECT_GT(told_s - 3 - wound_s, nm > end_nm ? 0.98 : 0.57) << nm << " N m at " << rad_s;
     }
   }
 }
@@ -162,7 +162,7 @@ TEST(StuckEncoder, IsHeldByWhatIsMuchForItsMotor) {
   for (const double toward : {-1.0, 1.0}) {
     Joint weak;
     weak.now.motor_at_limit = true;
-    EXPECT_EQ(weak.left_at(40, toward * 2) == never, toward > 0);
+    EXPECT_NEAR(weak.left_at(40, toward * 2), toward > 0 ? 1 : 0.3, 0.01);
   }
 }
 
@@ -255,11 +255,64 @@ TEST(StuckEncoder, IsOneThatWavers) {
             never);
 }
 
+std::int32_t waver(double s, std::int32_t by) {
+  const auto tick = static_cast<std::uint32_t>(std::lround(s / 4e-3));
+  return static_cast<std::int32_t>((tick * 2654435761U >> 16) % (2 * static_cast<std::uint32_t>(by) + 1)) - by;
+}
+
+// Its target stands, closer by than the reading wavers; or a sample now and then is wrong, and as if it were with its target.
+TEST(StuckEncoder, IsOneThatWaversAboutItsTargetOrGlitches) {
+  for (const auto& [counts, by] : {std::pair{9, 8}, {16, 12}, {24, 20}})
+    for (const std::int32_t way : {-1, 1}) {
+      Joint joint;
+      EXPECT_LT(joint.run([counts, by, way](StuckEncoder::Sample& sample, double s) {
+        sample.target_counts = way * counts;
+        sample.actual_counts = waver(s, by);
+      }),
+                4)
+          << counts << " counts off, by " << by;
+    }
+  for (const int every : {20, 70}) {
+    Joint joint;
+    EXPECT_LT(joint.run([every](StuckEncoder::Sample& sample, double s) {
+      sample.target_counts = 77;
+      sample.actual_counts = std::lround(s / 4e-3) % every == 0 ? 77 : 0;
+    }),
+              1)
+        << "one sample of " << every;
+  }
+}
+
+TEST(StuckEncoder, ShowsNothingThoughItWavers) {
+  for (const std::int32_t by : {0, 2, 4, 6}) {
+    Joint joint;
+    int blind = 0;
+    EXPECT_LT(joint.run(
+                  [&](StuckEncoder::Sample& sample, double s) {
+                    sample.target_counts = 40;
+                    sample.actual_counts = waver(s, by);
+                    sample.torque_nm = 14;
+                    if (s > 0.3 && joint.encoder.shows_nothing()) ++blind;
+                  },
+                  1.3),
+              1.3);
+    EXPECT_GT(blind, 0.75 * 0.7 / 4e-3) << "of the samples from 0.3 s on, by " << by;
+  }
+}
+
+// It bore more before, and still pushes away from its target: nothing holds it back.
+TEST(StuckEncoder, IsNotHeldByAWeightThatWentAway) {
+  Joint joint;
+  joint.now.torque_nm = -20;
+  joint.stand(8);
+  EXPECT_NEAR(joint.left_at(40, -14), 0.3, 0.01);
+}
+
 // At the end of its torque it is held: nothing is summed. But that ends no account: of a running motor's blows the first would end it otherwise.
 TEST(StuckEncoder, GoesOnAfterTheEndOfItsTorque) {
   Joint joint;
   EXPECT_EQ(joint.left_at(40, 8, 0.4), never);
-  EXPECT_EQ(joint.left_at(40, 14, 5), never);
+  EXPECT_EQ(joint.left_at(40, 14, 0.9), never);
   EXPECT_TRUE(joint.encoder.shows_nothing()) << "it still shows nothing";
   EXPECT_NEAR(joint.left_at(40, 8), 3e-3 / (40 * rad_per_count) - 0.4, 0.012);
   Joint spikes;
@@ -330,7 +383,7 @@ TEST(StuckEncoder, BeginsAnewOnceItsTargetIsBack) {
   Joint held;
   EXPECT_EQ(held.left_at(40, 5, 0.5), never);
   held.now.actual_counts += 40;
-  held.stand(0.004);
+  held.stand(0.2);
   EXPECT_NEAR(held.left_at(40, 8), 3e-3 / (40 * rad_per_count), 0.012);
   Joint shown;
   EXPECT_EQ(shown.left_at(40, 0, 0.2), never);
@@ -406,7 +459,7 @@ TEST(StuckEncoder, ShowsNothingOneCountOffWhereThatIsFar) {
   EXPECT_FALSE(turns.encoder.shows_nothing()) << "a count every 83 ms";
   Joint joint;
   joint.now.actual_counts = joint.now.target_counts = 1000;
-  EXPECT_EQ(joint.left_at(15, 0, 0.2), never);
+  EXPECT_EQ(joint.left_at(15, 0, 0.3), never);
   EXPECT_EQ(joint.left_at(24, 0, 0.012), never);
   EXPECT_TRUE(joint.encoder.shows_nothing()) << "behind for long, and now far";
   EXPECT_EQ(joint.left_at(-24, 0, 0.05), never);
