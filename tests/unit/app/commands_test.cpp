@@ -1,4 +1,6 @@
 // The sub-commands that stand alone, run as a user runs them.
+#include <gmock/gmock.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -341,7 +343,42 @@ TEST_F(Commands, AKeyThatThereIsNotIsRefusedByARangeCampaign) {
   EXPECT_NE(said.err.find("--kinds: there is no 'valve.friction'; did you mean 'valve.friction_nm'?"), std::string::npos) << said.err;
 }
 
-TEST_F(Commands, ARowThatThereIsNotIsRefused) { EXPECT_EQ(run("campaign default --faults --rows 'deploy: estpo' --out m").status, 2); }
+// Missions were flown for the steps' times first, a blank after the semicolon was a part of the name, and a folder was left.
+TEST_F(Commands, ARowThatThereIsNotIsRefusedBeforeAnythingIsFlown) {
+  const auto refusal = [&](const std::string& arguments) {
+    const Said said = run("campaign " + arguments + " --out early");
+    EXPECT_EQ(said.status, 2) << said.err;
+    EXPECT_FALSE(std::filesystem::exists(folder() / "early"));
+    return said.err;
+  };
+  using testing::HasSubstr;
+  EXPECT_THAT(refusal("default --faults --rows 'deploy: estpo'"), HasSubstr("there is no 'deploy: estpo'; did you mean 'deploy: estop'?"));
+  EXPECT_THAT(refusal("default --faults --rows 'tunr: estop'"), HasSubstr("did you mean 'turn: estop'?"));
+  EXPECT_THAT(refusal("default --faults --pairs --rows 'boot: estop'"), HasSubstr("with --pairs a row is a pair"));
+  EXPECT_THAT(refusal("default --faults --steps boot --rows 'boot: estop'"), HasSubstr("--steps excludes --rows"));
+}
+
+TEST_F(Commands, AStepThatThisMissionDoesNotComeToIsNoMisspelling) {
+  const Said said = run("campaign turn_only --faults --rows 'press: estop' --out m");
+  EXPECT_EQ(said.status, 2);
+  EXPECT_NE(said.err.find("no fault can be made in 'press': this scenario's mission does not come to it"), std::string::npos) << said.err;
+}
+
+// Only the steps that are chosen are measured: at the same time as in the whole campaign.
+TEST_F(Commands, ARowByItselfIsMadeAtItsTimeOfTheWholeMatrix) {
+  ASSERT_EQ(run("campaign default --faults --kinds abort_ordered --one-in 3 --out m --json").status, 0);
+  const auto times = [&](const char* file) {
+    std::map<std::string, double> at_s;
+    std::istringstream lines(text_of(folder() / file / "rows.jsonl"));
+    for (std::string line; std::getline(lines, line);) at_s[Json::parse(line)["row"]] = Json::parse(line)["at_s"];
+    return at_s;
+  };
+  const std::map<std::string, double> whole = times("m");
+  EXPECT_GT(whole.size(), 4u);
+  const auto& [name, at_s] = *std::next(whole.begin(), 2);
+  ASSERT_EQ(run("campaign default --faults --rows '" + name + "; power-on: abort_ordered' --out one").status, 0);
+  EXPECT_EQ(times("one").at(name), at_s) << name;
+}
 
 TEST_F(Commands, AFaultCampaignGoesOnWhereItStopped) {
   const std::string arguments = "campaign default --faults --kinds estop --steps 'boot;deploy' --jobs 1 --out m --json";

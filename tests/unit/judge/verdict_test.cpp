@@ -357,6 +357,17 @@ TEST(Verdict, AContactCountsFromShortlyBeforeItIsTold) {
   EXPECT_TRUE(held_for_nothing(1010, 2900, 30, stuck));
   EXPECT_FALSE(held_for_nothing(900, 950, 6, stuck));
   EXPECT_TRUE(held_for_nothing(900, 950, 4, stuck)) << "no contact that could be felt";
+  // It was given up for something else, and held later.
+  const auto held_at = [&](std::optional<double> held_s) {
+    Seen seen = Stopping{.stop_ms = 1000, .force_n = 0}.seen();
+    for (std::size_t t = 2100; t < 2900; ++t) seen.moments[t].force_n = 30;
+    Ending ending = failed("the jaw holds nothing: elbow");
+    ending.holds = true;
+    ending.held_s = held_s;
+    return judge(seen, stuck, ending).wrong;
+  };
+  EXPECT_THAT(held_at(2), testing::Contains(testing::HasSubstr("held under power")));
+  EXPECT_THAT(held_at(2.4), testing::Not(testing::Contains(testing::HasSubstr("held under power"))));
   const auto beside = [](const char* cause) { return situation_of(cause_of("stuck_encoder elbow"), cause_of(cause)); };
   for (const char* cause : {"error_frames", "camera_fails", "interlock_open", "torque_frozen roll", "vision_silent"})
     EXPECT_TRUE(held_for_nothing(0, 0, 0, beside(cause))) << cause;
@@ -366,10 +377,10 @@ TEST(Verdict, AContactCountsFromShortlyBeforeItIsTold) {
 
 // A seized motor that should have gone somewhere could have been told from a contact; one that was to stay could not. A set-point of two counts is rounding.
 TEST(Verdict, ASeizedJointMayBeTakenForAContactWhereItWasToStay) {
-  const auto verdict = [](std::int32_t to, double units_per_count, bool holds = true) {
+  const auto verdict = [](std::int32_t to, double units_per_count, bool holds = true, const char* told = "unexpected contact: elbow") {
     Seen seen = Stopping{.force_n = 0}.seen();
     seen.told_to_go[2] = {1000, 1000 + to};
-    Ending ending = failed("unexpected contact: elbow");
+    Ending ending = failed(told);
     ending.holds = holds;
     Situation situation = situation_of(cause_of("following elbow"));
     situation.units_per_count.fill(units_per_count);
@@ -381,6 +392,8 @@ TEST(Verdict, ASeizedJointMayBeTakenForAContactWhereItWasToStay) {
   EXPECT_THAT(verdict(3, 1).wrong, ElementsAre(testing::HasSubstr("held under power")));
   EXPECT_THAT(verdict(3, 1).unclear, testing::SizeIs(1));
   EXPECT_FALSE(verdict(3, 1).stood_anyway);
+  EXPECT_FALSE(verdict(2, 1, true, "unexpected contact: slew").stood_anyway) << "another joint's";
+  EXPECT_TRUE(verdict(2, 1, true, "step failed: touched something (see whether the slew is free), in step press").stood_anyway);
   EXPECT_TRUE(verdict(2, 1, false).stood_anyway) << "it does not hold the arm: told as a contact all the same";
   EXPECT_THAT(verdict(2, 1, false).unclear, IsEmpty());
   EXPECT_FALSE(verdict(3, 1, false).stood_anyway);
