@@ -300,6 +300,25 @@ TEST(StuckEncoder, ShowsNothingThoughItWavers) {
   }
 }
 
+// Whoever moves on, however slowly, is held anew.
+TEST(StuckEncoder, IsHeldForASecondFromItsLastSignOfLife) {
+  Joint joint;
+  EXPECT_EQ(joint.left_at(40, 14, 0.8), never);
+  joint.now.actual_counts += 4;
+  EXPECT_EQ(joint.left_at(40, 14, 0.9), never);
+}
+
+// What was carried off without power is where it is when it gets power.
+TEST(StuckEncoder, LooksAnewFromWhereItGetsPower) {
+  Joint joint;
+  joint.now.follows = false;
+  joint.now.actual_counts = joint.now.target_counts = 2000;
+  (void)joint.encoder.update(joint.now);
+  joint.now.follows = true;
+  EXPECT_EQ(joint.left_at(30, 0, 0.12), never);
+  EXPECT_TRUE(joint.encoder.shows_nothing());
+}
+
 // It bore more before, and still pushes away from its target: nothing holds it back.
 TEST(StuckEncoder, IsNotHeldByAWeightThatWentAway) {
   Joint joint;
