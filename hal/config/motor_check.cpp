@@ -12,13 +12,14 @@ namespace lf::config {
 
 void check_motor(const JointDriveChoice& choice, std::size_t joint, const ArmJoint& description, const std::string& where) {
   constexpr double direct_drive = 0.999;  // a ratio of 1, computed
-  char text[320];
+  char text[448];
   const double ratio = best_motor_ratio(description, choice.counts_per_rev);
   if (ratio < direct_drive) {
     std::snprintf(
         text, sizeof text,
         "'counts_per_rev' is %.6g: the motor would turn %.3g times for a turn of the joint, and a gear slows down. It is how many of the "
-        "arm's counts (%.4g to a radian of the %s at most) go to a revolution of the motor, not the encoder's resolution",
+        "arm's counts (%.4g to a radian of the %s at most) go to a revolution of the motor. The encoder's resolution is "
+        "position.units_per_rev of the drive's profile",
         choice.counts_per_rev, ratio, ratio * choice.counts_per_rev / (2 * pi), joint_name(joint));
     throw InputError(where + ": " + text);
   }
