@@ -49,10 +49,11 @@ Motor motor_of(const ArmJoint& joint, double counts_per_rev) {
 }
 
 double held_torque_nm(const ArmJoint& joint) {
-  if (joint.friction.back_efficiency <= 0) return joint.rated_torque_nm;
-  constexpr double any_counts = 1;  // its ratio cancels
-  const Motor motor = motor_of(joint, any_counts);
-  return best_motor_ratio(joint, any_counts) * (motor.rated_torque_nm + motor.coulomb_nm) / joint.friction.back_efficiency;
+  const ArmFriction& friction = joint.friction;
+  if (friction.back_efficiency <= 0) return joint.rated_torque_nm;
+  // The ratio cancels: a motor's rating, and its Coulomb friction, as at its shaft.
+  const double motor_nm = joint.rated_torque_nm / (friction.efficiency * (1 - friction.coulomb_share));
+  return motor_nm * (1 + friction.coulomb_share) / friction.back_efficiency;
 }
 
 }  // namespace lf

@@ -95,13 +95,12 @@ TEST(ArmUrdf, FingersMirrorEachOther) {
   EXPECT_EQ(arm.joints[4].axis, -arm.finger_b.axis);
 }
 
-// A motor pushes its joint with the rated torque through friction, and holds a load through what friction takes off it: a closed form, but for the whole milli
-// newton metres of a motor's rating.
+// A motor pushes its joint with the rated torque through friction, and holds a load through what friction takes off it.
 TEST(ArmDescription, ADriveHoldsMoreThanItPushes) {
   const ArmDescription arm = load_arm_urdf(urdf_path);
   const std::array<double, joint_count> held_nm{56.4, 56.4, 56.4, 9.7, 44.9};
   for (std::size_t i = 0; i < joint_count; ++i) {
-    EXPECT_NEAR(held_torque_nm(arm.joints[i]), held_nm[i], 0.02 * held_nm[i]) << arm.joints[i].name;
+    EXPECT_NEAR(held_torque_nm(arm.joints[i]), held_nm[i], 0.05) << arm.joints[i].name;
     ArmJoint locked = arm.joints[i];
     locked.friction.back_efficiency = 0;
     EXPECT_EQ(held_torque_nm(locked), locked.rated_torque_nm);

@@ -242,7 +242,7 @@ TEST(VehicleConfig, PositionsThatDoNotFitADrivesCountAreRefused) {
               testing::Contains(HasSubstr("drives.elbow: its profile makes 1e+06 of the drive's units of one of the arm's counts")));
 }
 
-// Of the slew 2744 counts are a radian where its screw has the least lever, of the roll 318: a count of the roll is coarser than 1 mrad.
+// Of the slew 2777 counts are a radian where its screw has the least lever, of the roll 318: a count of the roll is coarser than 1 mrad.
 TEST(VehicleConfig, APositionUnitTooCoarseToTellALagIsRefused) {
   const TemporaryFolder folder;
   const auto problems = [&](const std::string& joint, const std::string& scale) {
@@ -250,10 +250,10 @@ TEST(VehicleConfig, APositionUnitTooCoarseToTellALagIsRefused) {
     return problems_of(folder.write("v.yaml", "drives: {" + joint + ": {profile: coarse.yaml}}\n"));
   };
   EXPECT_THAT(problems("slew", "units_per_rev: 24"), IsEmpty());
-  EXPECT_THAT(problems("slew", "units_per_rev: 23"),
-              ElementsAre(AllOf(
-                  HasSubstr("drives.slew: one unit of the drive's positions is 2.783 of the arm's counts, up to 1.01 mrad of the slew"),
-                  HasSubstr("position.units_per_rev of 23.3"), HasSubstr("or more at a 'counts_per_rev' of 64"))));
+  EXPECT_THAT(
+      problems("slew", "units_per_rev: 23"),
+      ElementsAre(AllOf(HasSubstr("drives.slew: one unit of the drive's positions is 2.783 of the arm's counts, up to 1 mrad of the slew"),
+                        HasSubstr("position.units_per_rev of 23.04"), HasSubstr("or more at a 'counts_per_rev' of 64"))));
   EXPECT_THAT(problems("slew", "units_per_count: 0.3"), ElementsAre(HasSubstr("position.units_per_count of 0.36")));
   EXPECT_THAT(problems("roll", "units_per_rev: 64"), IsEmpty());
   EXPECT_THAT(problems("roll", "units_per_rev: 63"), ElementsAre(HasSubstr("and at most 1 counts are precise enough")));
