@@ -232,6 +232,16 @@ void Workbench::stay_where_pushed() {
   compliance.reset();
 }
 
+namespace {
+
+// What a guard felt: the contact of the joint that felt it, or, where there is one, the joint that does not follow.
+void report(std::optional<Joint> misled, Joint felt_by, safety::FaultArbiter& faults) {
+  faults.report(misled ? safety::Fault::following_error : safety::Fault::unexpected_contact,
+                static_cast<std::int32_t>(misled.value_or(felt_by)));
+}
+
+}  // namespace
+
 std::optional<Joint> Workbench::misled_joint(const arm::GuardedMotion& guard) const {
   if (!guard.touched()) return std::nullopt;
   for (const Joint joint : {Joint::slew, Joint::shoulder, Joint::elbow}) {
@@ -242,9 +252,7 @@ std::optional<Joint> Workbench::misled_joint(const arm::GuardedMotion& guard) co
 
 void Workbench::report_touch(const arm::GuardedMotion& guard, safety::FaultArbiter& faults) const {
   if (!guard.touched()) return;
-  const std::optional<Joint> misled = misled_joint(guard);
-  faults.report(misled ? safety::Fault::following_error : safety::Fault::unexpected_contact,
-                static_cast<std::int32_t>(misled.value_or(guard.joint())));
+  report(misled_joint(guard), guard.joint(), faults);
 }
 
 void Workbench::let_off_roll() {
@@ -280,9 +288,7 @@ std::optional<Joint> Workbench::misled_on_the_way_back() const {
 void Workbench::watch_back_off_on_hold(const StepTick& tick) {
   guard_back_off(tick.now);
   if (!back_guard.touched()) return;
-  const std::optional<Joint> misled = misled_on_the_way_back();
-  tick.faults.report(misled ? safety::Fault::following_error : safety::Fault::unexpected_contact,
-                     static_cast<std::int32_t>(misled.value_or(back_guard.joint())));
+  report(misled_on_the_way_back(), back_guard.joint(), tick.faults);
 }
 
 Progress Workbench::follow_back_off(const StepTick& tick) {

@@ -56,8 +56,8 @@ void check_position_unit(const JointDriveChoice& choice, std::size_t joint, cons
   char text[384];
   int used =
       std::snprintf(text, sizeof text,
-                    "one unit of the drive's positions is %.4g of the arm's counts, up to %.3g mrad of the %s, and at most %.4g counts are "
-                    "precise enough. Set a finer unit in the drive, and state it in its profile: ",
+                    "one unit of the drive's positions is %.4g of the arm's counts, up to %.3g mrad of the %s. It may be at most %.4g "
+                    "of them. Set a finer unit in the drive, and state it in its profile: ",
                     counts, 1000 * counts / counts_per_rad, joint_name(joint), most);
   const std::size_t left = sizeof text - static_cast<std::size_t>(used);
   if (kind.position.per_count > 0)

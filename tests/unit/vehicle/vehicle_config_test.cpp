@@ -256,7 +256,7 @@ TEST(VehicleConfig, APositionUnitTooCoarseToTellALagIsRefused) {
                         HasSubstr("position.units_per_rev of 23.04"), HasSubstr("or more at a 'counts_per_rev' of 64"))));
   EXPECT_THAT(problems("slew", "units_per_count: 0.3"), ElementsAre(HasSubstr("position.units_per_count of 0.36")));
   EXPECT_THAT(problems("roll", "units_per_rev: 64"), IsEmpty());
-  EXPECT_THAT(problems("roll", "units_per_rev: 63"), ElementsAre(HasSubstr("and at most 1 counts are precise enough")));
+  EXPECT_THAT(problems("roll", "units_per_rev: 63"), ElementsAre(HasSubstr("It may be at most 1 of them")));
 }
 
 TEST(VehicleConfig, ANodeNumberUsedTwiceNamesBothThatHaveIt) {
