@@ -41,7 +41,8 @@ Motor motor_of(const ArmJoint& joint, double counts_per_rev) {
   const double rated_nm = joint.rated_torque_nm / (ratio * friction.efficiency * (1 - friction.coulomb_share));
   Motor motor;
   motor.rated_torque_nm = 1e-3 * std::max(1.0, std::round(1e3 * rated_nm));
-  motor.peak_torque_nm = motor.rated_torque_nm * joint.effort_nm / joint.rated_torque_nm;
+  const double peak_nm = motor.rated_torque_nm * joint.effort_nm / joint.rated_torque_nm;
+  motor.peak_torque_nm = std::max(peak_nm, motor.rated_torque_nm);  // rounded, equal torques of the joint need not give equal ones here
   motor.top_speed_rad_s = ratio * joint.velocity_rad_s;
   motor.coulomb_nm = friction.coulomb_share * motor.rated_torque_nm;
   motor.viscous_nm_s = friction.viscous_share * motor.rated_torque_nm / motor.top_speed_rad_s;

@@ -107,6 +107,18 @@ TEST(ArmDescription, ADriveHoldsMoreThanItPushes) {
   }
 }
 
+// A joint whose peak torque is its rated one has such a motor, too, whatever the rounding: one whose rating is above its peak is refused.
+TEST(ArmDescription, NoMotorIsRatedAboveItsPeak) {
+  ArmJoint jaw = load_arm_urdf(urdf_path).joints[4];
+  ASSERT_EQ(jaw.effort_nm, jaw.rated_torque_nm);
+  for (int i = 0; i < 4000; ++i) {
+    const double counts_per_rev = 20 + 0.5 * i;
+    const Motor motor = motor_of(jaw, counts_per_rev);
+    ASSERT_GE(motor.peak_torque_nm, motor.rated_torque_nm) << counts_per_rev;
+    ASSERT_NEAR(motor.peak_torque_nm, motor.rated_torque_nm, 1e-12) << counts_per_rev;
+  }
+}
+
 // Else an arm would give way as its power goes, and a jaw let go of what it has gripped.
 TEST(ArmDescription, EveryGearHoldsWithoutPowerWhatItsDriveHolds) {
   for (const ArmJoint& joint : load_arm_urdf(urdf_path).joints) EXPECT_GT(joint.holding_torque_nm, held_torque_nm(joint)) << joint.name;
