@@ -5,8 +5,12 @@
 #include <algorithm>
 
 #include "host_sim/app/range_draws.hpp"
+#include "host_sim/devices/devices_config.hpp"
 #include "host_sim/judge/range_rules.hpp"
+#include "host_sim/optics/config_check.hpp"
+#include "host_sim/scenario/draw.hpp"
 #include "host_sim/scenario/instance.hpp"
+#include "host_sim/world/config_check.hpp"
 #include "shared/input_error.hpp"
 
 namespace lf::app {
@@ -59,6 +63,17 @@ std::vector<std::string> values_of(const Key& key) {
   return values;
 }
 
+// Throws InputError for what would end the run only when it has begun: a world, optics or devices that the simulator does not take.
+void make_world(const scenario::Scenario& scenario) {
+  const scenario::Nominal nominal = scenario::make_nominal(scenario, true);
+  for (const std::uint64_t seed : {1, 2}) {
+    const hal::SimConfig truth = scenario::make_truth(scenario, scenario::draw(scenario, seed), nominal, 1);
+    world::check(truth.world);
+    optics::check(truth.optics);
+    devices::check(truth.devices);
+  }
+}
+
 TEST(RangeRefusals, EachKeyAtTheEndsOfItsRangeIsTakenOrRefusedByName) {
   scenario::Scenario table;
   const std::vector<std::string> drawn = drawn_keys();
@@ -68,7 +83,9 @@ TEST(RangeRefusals, EachKeyAtTheEndsOfItsRangeIsTakenOrRefusedByName) {
     for (const std::string& value : values_of(key)) {
       ++tried;
       try {
-        scenario::check_runnable(scenario::load_scenario("default", {key.path + "=" + value}));
+        const scenario::Scenario scenario = scenario::load_scenario("default", {key.path + "=" + value});
+        scenario::check_runnable(scenario);
+        EXPECT_NO_THROW(make_world(scenario)) << key.path << "=" << value;
       } catch (const InputError& refusal) {
         ++refused;
         std::string text = refusal.what();
@@ -88,7 +105,9 @@ TEST(RangeRefusals, EightKeysAtOnceAreRefusedByNameOfOne) {
     std::vector<std::string> keys;
     for (const std::string& set : row.set) keys.push_back(set.substr(0, set.find('=')));
     try {
-      scenario::check_runnable(scenario::load_scenario("default", row.set));
+      const scenario::Scenario scenario = scenario::load_scenario("default", row.set);
+      scenario::check_runnable(scenario);
+      EXPECT_NO_THROW(make_world(scenario)) << testing::PrintToString(row.set);
     } catch (const InputError& refusal) {
       ++refused;
       EXPECT_TRUE(judge::refusal_names_a_key(keys, refusal.what())) << testing::PrintToString(row.set) << "\n" << refusal.what();
