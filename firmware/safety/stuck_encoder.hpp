@@ -14,7 +14,8 @@ namespace lf::safety {
 
 class StuckEncoder {
  public:
-  // A joint is behind once it is off its target by both, until it is back within half of either. A healthy drive holds its joint within two counts.
+  // A joint is behind once it is off its target by both, until it is back within half of either. A healthy drive holds its joint within two counts. In between,
+  // time and lag stand still.
   static constexpr std::int64_t behind_counts = 3;
   static constexpr double behind_rad = 0.001;
   // An encoder that works shows a way: towards the target by both, beyond what was shown before, or away from there. A reading that wavers shows none and ends nothing:
@@ -23,14 +24,17 @@ class StuckEncoder {
   static constexpr double alive_rad = 0.00025;  // two counts of a slew
   static constexpr double away_rad = 0.001;     // no less than what counts as behind
   static constexpr double mean_s = 0.05, look_s = 0.02;
-  // It is told after both: 0.5 s at 3 mrad, 0.3 s from 5 mrad on. A joint that is not held has gone the sum times its loop's gain meanwhile: 0.03 rad at the
-  // simulator's 20 a second. One that turns back has to unwind its gear first: 0.2 s and 0.00066 rad s were seen.
+  // It is told after both: 0.5 s at 3 mrad, 0.3 s from 5 mrad on. A joint that stood and is not held has gone the sum times its loop's gain meanwhile: 0.03 rad at
+  // the simulator's 20 a second; one whose encoder stops in motion has gone farther, by 0.3 s of that motion's growing lag. One that turns back has to unwind its
+  // gear first: 0.2 s and 0.00066 rad s were seen.
   static constexpr Duration least_time = Duration::from_ms(300);
   static constexpr double least_rad_s = 0.0015;
   // Nothing holds a joint for longer short of the end of its torque: its drive winds it up. 1 s at 3 mrad, 0.06 rad at 20 a second.
   static constexpr double held_rad_s = 0.003;
-  // No longer than this, whatever its torque: near a stroke's end a weak motor reaches no contact's threshold, and pushes for good.
+  // No longer than this in all, whatever its torque, unless it comes so much nearer to its target: near a stroke's end a weak motor reaches no contact's threshold,
+  // and pushes for good. What pins it softly lets it creep or sway by less.
   static constexpr Duration longest_excuse = Duration::from_s(1);
+  static constexpr double excused_rad = 0.003;
   static constexpr double usual_s = 1;  // time constant of a following joint's torque: slower than one that meets something winds up
   // So long and so far behind without a sign: no torque proves a contact then. One count of a coarse encoder is so far, too.
   static constexpr Duration blind_time = Duration::from_ms(100);
@@ -60,13 +64,15 @@ class StuckEncoder {
     look(now, dt);
     if (!now.follows) usual_nm_ = now.torque_nm;
     const bool with_it = std::abs(lag) <= 0.5 * behind_counts || lag_rad <= behind_rad / 2;
-    if (with_it || !now.follows || turned) {
-      behind_ = false;
-      mean_counts_ = now.actual_counts;
+    if (with_it || !now.follows || turned) behind_ = false;
+    if (!behind_ || way_ * (mean_counts_ - excused_from_counts_) * std::abs(now.rad_per_count) >= excused_rad) {
+      excused_from_counts_ = mean_counts_;
+      excused_for_ = Duration();
     }
-    if (!behind_ || lives(now, way_ * (mean_counts_ - farthest_counts_), alive_counts, alive_rad)) begin_anew(now, dt);
-    behind_ = behind_ || (std::abs(lag) >= behind_counts && lag_rad >= behind_rad && !turned);
-    return behind_ && is_stuck(now, lag_rad, dt);
+    if (!behind_ || lives(now, way_ * (mean_counts_ - farthest_counts_))) begin_anew(now, dt);
+    const bool off = std::abs(lag) >= behind_counts && lag_rad >= behind_rad;
+    behind_ = behind_ || off;
+    return behind_ && off && is_stuck(now, lag_rad, dt);
   }
 
   // Its torque may be that of a joint which runs off unseen. An arm that meets something goes on showing counts until it is stopped.
@@ -77,26 +83,32 @@ class StuckEncoder {
     const double s = (behind_for_ + dt).s();
     usual_nm_ += (now.torque_nm - usual_nm_) * s / (s + usual_s);
     farthest_counts_ = mean_counts_;
-    behind_for_ = excused_for_ = Duration();
+    behind_for_ = Duration();
     behind_rad_s_ = 0;
   }
 
   // `gone_counts`: towards the target.
-  bool lives(const Sample& now, double gone_counts, double toward_counts, double toward_rad) const {
+  bool lives(const Sample& now, double gone_counts) const {
     const double gone_rad = gone_counts * std::abs(now.rad_per_count);
-    return (gone_counts >= toward_counts && gone_rad >= toward_rad) || gone_rad <= -away_rad;
+    return (gone_counts >= alive_counts && gone_rad >= alive_rad) || gone_rad <= -away_rad;
   }
 
+  // A reading that never was so near to the target is a sign of life at once, however it wavers: its mean goes on for a tenth of a second after the reading has
+  // stopped. That it goes away is told by the mean.
   void look(const Sample& now, Duration dt) {
     look_counts_ += (now.actual_counts - look_counts_) * (now.follows ? dt.s() / (dt.s() + look_s) : 1);
     const double lag = now.target_counts - look_counts_, lag_rad = std::abs(lag * now.rad_per_count);
-    const double way = lag < 0 ? -1 : 1;
-    blind_for_ = blind_for_ + dt;
-    if (way != look_way_ || !now.follows || lag_rad < blind_rad / 2 ||
-        lives(now, way * (look_counts_ - nearest_counts_), 1, alive_rad / 2)) {
+    const double way = lag < 0 ? -1 : 1, count_rad = std::abs(now.rad_per_count);
+    const double nearer_counts = way * (now.actual_counts - nearest_counts_);
+    const bool away = way * (look_counts_ - look_from_counts_) * count_rad <= -away_rad;
+    const bool anew = way != look_way_ || !now.follows || lag_rad < blind_rad / 2 || away;
+    if (anew || nearer_counts * count_rad >= alive_rad / 2) {
       blind_for_ = Duration();
-      nearest_counts_ = look_counts_;
+      nearest_counts_ = now.actual_counts;
+    } else {
+      blind_for_ = blind_for_ + dt;
     }
+    if (anew || way * (look_counts_ - look_from_counts_) > 0) look_from_counts_ = look_counts_;
     look_way_ = way;
     shows_nothing_ = lag_rad >= blind_rad && blind_for_ >= blind_time;
   }
@@ -120,11 +132,15 @@ class StuckEncoder {
   bool behind_ = false;
   double usual_nm_ = 0;
   double mean_counts_ = 0, farthest_counts_ = 0;
-  Duration behind_for_, excused_for_;
+  Duration behind_for_;
   double behind_rad_s_ = 0;
+  Duration excused_for_;
+  double excused_from_counts_ = 0;
   // Unseen.
   Duration blind_for_;
-  double look_way_ = 1, look_counts_ = 0, nearest_counts_ = 0;
+  double look_way_ = 1;
+  double look_counts_ = 0, look_from_counts_ = 0;  // their mean, and the nearest to the target that it was
+  std::int32_t nearest_counts_ = 0;                // of the readings
   bool shows_nothing_ = false;
 };
 

@@ -7,6 +7,8 @@
 #include <functional>
 #include <utility>
 
+#include "shared/geometry/pose.hpp"
+
 namespace lf::safety {
 namespace {
 
@@ -300,12 +302,131 @@ TEST(StuckEncoder, ShowsNothingThoughItWavers) {
   }
 }
 
-// Whoever moves on, however slowly, is held anew.
-TEST(StuckEncoder, IsHeldForASecondFromItsLastSignOfLife) {
+// At the end of its torque: whoever comes nearer to the target by 3 mrad is held anew, and nobody else. It may creep, or sway to and fro by less.
+TEST(StuckEncoder, IsHeldForASecondInAllUnlessItComesNearer) {
+  for (const double way : {-1.0, 1.0}) {
+    for (const double rad_s : {0.0, 0.4e-3, 2e-3}) {
+      Joint creeps;
+      EXPECT_NEAR(creeps.run([&](StuckEncoder::Sample& sample, double s) {
+        sample.target_counts = static_cast<std::int32_t>(way * 400);
+        sample.actual_counts = static_cast<std::int32_t>(std::lround(way * rad_s * s / rad_per_count));
+        sample.torque_nm = way * 14;
+      }),
+                  1, 0.03)
+          << rad_s;
+    }
+    Joint comes;
+    EXPECT_EQ(comes.run([&](StuckEncoder::Sample& sample, double s) {
+      sample.target_counts = static_cast<std::int32_t>(way * 800);
+      sample.actual_counts = static_cast<std::int32_t>(std::lround(way * 5e-3 * s / rad_per_count));
+      sample.torque_nm = way * 14;
+    }),
+              never)
+        << "5 mrad a second";
+    for (const double hertz : {0.5, 1.0, 2.0}) {
+      Joint sways;
+      EXPECT_NEAR(sways.run([&](StuckEncoder::Sample& sample, double s) {
+        sample.target_counts = static_cast<std::int32_t>(way * 40);
+        sample.actual_counts = static_cast<std::int32_t>(std::lround(0.8e-3 * std::sin(2 * pi * hertz * s) / rad_per_count));
+        sample.torque_nm = way * 14;
+      }),
+                  1, 0.03)
+          << hertz;
+    }
+  }
+}
+
+// A drive that settles within a milliradian after a motion is not behind, however long it stands there.
+TEST(StuckEncoder, IsNoJointThatSettlesWithinAMilliradian) {
+  for (const double off_rad : {0.55e-3, 0.7e-3, 0.9e-3}) {
+    Joint joint;
+    EXPECT_EQ(joint.run([&](StuckEncoder::Sample& sample, double s) {
+      sample.target_counts = static_cast<std::int32_t>(std::min(s, 1.0) * 1000);
+      const double rad = sample.target_counts * rad_per_count;
+      const double lag_rad = s < 1 ? 6e-3 * std::min(1.0, 10 * s) : std::max(off_rad, 6e-3 * std::exp(-20 * (s - 1)));
+      sample.actual_counts = static_cast<std::int32_t>(std::lround((rad - lag_rad) / rad_per_count));
+    }),
+              never)
+        << off_rad;
+  }
+}
+
+// A drive with a position loop of 20 a second and another encoder for its speed, by hand: what docs/safety.md says of the way that nobody sees.
+struct Unseen {
+  double told_s = never, blind_s = never, gone_rad = 0;
+};
+
+// Its reading stops while it follows a target at `rad_s`; of a target that stands, `off_rad` before it.
+Unseen reading_stops(double rad_s, double off_rad, double torque_nm) {
+  constexpr double gain_per_s = 20, top_rad_s = 0.36, dt_s = 4e-3;
   Joint joint;
-  EXPECT_EQ(joint.left_at(40, 14, 0.8), never);
-  joint.now.actual_counts += 4;
-  EXPECT_EQ(joint.left_at(40, 14, 0.9), never);
+  double at_rad = rad_s > 0 ? -rad_s / gain_per_s : 0, target_rad = 0;
+  (void)joint.run(
+      [&](StuckEncoder::Sample& sample, double) {
+        target_rad += rad_s * dt_s;
+        at_rad += rad_s * dt_s;
+        sample.target_counts = static_cast<std::int32_t>(std::lround(target_rad / rad_per_count));
+        sample.actual_counts = static_cast<std::int32_t>(std::lround(at_rad / rad_per_count));
+      },
+      2);
+  const double stopped_rad = at_rad;
+  if (rad_s == 0) target_rad = off_rad;
+  Unseen unseen;
+  unseen.told_s = joint.run([&](StuckEncoder::Sample& sample, double s) {
+    if (unseen.blind_s == never && joint.encoder.shows_nothing()) unseen.blind_s = s - dt_s;
+    target_rad += rad_s * dt_s;
+    at_rad += std::min(top_rad_s, gain_per_s * (target_rad - stopped_rad)) * dt_s;
+    sample.target_counts = static_cast<std::int32_t>(std::lround(target_rad / rad_per_count));
+    sample.torque_nm = torque_nm;
+  });
+  unseen.gone_rad = at_rad - stopped_rad;
+  return unseen;
+}
+
+TEST(StuckEncoder, IsNotHeldAnewByALoadThatFlickers) {
+  Joint joint;
+  EXPECT_NEAR(joint.run([](StuckEncoder::Sample& sample, double s) {
+    sample.target_counts = 10;
+    sample.torque_nm = std::lround(s / 4e-3) % 25 < 20 ? 14 : 8;
+  }),
+              1.25, 0.1);
+}
+
+TEST(StuckEncoder, IsToldBeforeItHasGoneSoFar) {
+  for (const double off_rad : {1.2e-3, 3e-3, 5e-3}) {
+    EXPECT_LT(reading_stops(0, off_rad, 0).gone_rad, 0.035) << off_rad;
+    EXPECT_LT(reading_stops(0, off_rad, 8).gone_rad, 0.07) << off_rad;
+  }
+  const std::pair<double, double> gone[] = {{0.02, 0.05}, {0.05, 0.12}, {0.36, 0.24}};
+  for (const auto& [rad_s, gone_rad] : gone) EXPECT_NEAR(reading_stops(rad_s, 0, 0).gone_rad, gone_rad, 0.01) << rad_s;
+  for (const double rad_s : {0.02, 0.1, 0.36}) {
+    const Unseen pushes = reading_stops(rad_s, 0, 14);
+    EXPECT_LT(pushes.told_s, 1.2) << rad_s;
+    EXPECT_LT(pushes.gone_rad, 0.43) << rad_s;
+  }
+}
+
+// What carries it off, from where it stood or after it has come nearer, is seen.
+TEST(StuckEncoder, ShowsThatItIsPushedAway) {
+  for (const double comes_s : {0.0, 0.3}) {
+    Joint joint;
+    EXPECT_EQ(joint.run(
+                  [&](StuckEncoder::Sample& sample, double s) {
+                    sample.target_counts = 200;
+                    sample.actual_counts =
+                        static_cast<std::int32_t>(std::lround(s < comes_s ? 300 * s : 300 * comes_s - 150 * (s - comes_s)));
+                    if (s > comes_s + 0.15) {
+                      EXPECT_FALSE(joint.encoder.shows_nothing()) << s;
+                    }
+                  },
+                  comes_s + 0.25),
+              never);
+  }
+}
+
+// The mean of its readings goes on for a while when they have stopped in motion. That is no sign of life.
+TEST(StuckEncoder, ShowsNothingATenthOfASecondAfterItStoppedInMotion) {
+  for (const double rad_s : {0.05, 0.1, 0.2, 0.36}) EXPECT_NEAR(reading_stops(rad_s, 0, 0).blind_s, 0.1, 0.013) << rad_s;
 }
 
 // What was carried off without power is where it is when it gets power.
@@ -351,7 +472,8 @@ TEST(StuckEncoder, KnowsCoarseAndFineCounts) {
   };
   Joint coarse = of(3.1e-3);
   EXPECT_EQ(coarse.left_at(7, 0, 0.2), never);
-  EXPECT_NEAR(coarse.left_at(2, 0), 0.1, 0.01) << "not back before one count";
+  EXPECT_EQ(coarse.left_at(2, 0, 1), never) << "its account stands still";
+  EXPECT_NEAR(coarse.left_at(7, 0), 0.1, 0.02) << "not back before one count";
   Joint back = of(3.1e-3);
   EXPECT_EQ(back.left_at(7, 0, 0.2), never);
   EXPECT_EQ(back.left_at(1, 0, 1), never);
@@ -398,12 +520,17 @@ TEST(StuckEncoder, BeginsAnewOnceItsTargetIsBack) {
   Joint hovers;
   hovers.now.rad_per_count = 1e-6;
   EXPECT_EQ(hovers.left_at(1100, 0, 0.8), never);
-  EXPECT_NEAR(hovers.left_at(700, 0), (1.5e-3 - 0.8 * 1.1e-3) / 0.7e-3, 0.02) << "not back before it is within half";
+  EXPECT_EQ(hovers.left_at(700, 0, 2), never) << "its account stands still";
+  EXPECT_NEAR(hovers.left_at(1100, 0), (1.5e-3 - 0.8 * 1.1e-3) / 1.1e-3, 0.02) << "not back before it is within half";
   Joint held;
   EXPECT_EQ(held.left_at(40, 5, 0.5), never);
   held.now.actual_counts += 40;
   held.stand(0.2);
   EXPECT_NEAR(held.left_at(40, 8), 3e-3 / (40 * rad_per_count), 0.012);
+  Joint at_its_limit;
+  EXPECT_EQ(at_its_limit.left_at(40, 14, 0.8), never);
+  EXPECT_EQ(at_its_limit.left_at(0, 0, 0.2), never);
+  EXPECT_NEAR(at_its_limit.left_at(40, 14), 1, 0.01);
   Joint shown;
   EXPECT_EQ(shown.left_at(40, 0, 0.2), never);
   shown.now.actual_counts += 3;
