@@ -125,7 +125,8 @@ Progress PressButton::begin_press(Workbench& bench) {
   config.contact_torque_nm = free_motion_guard(bench.config.mission_limits).contact_torque_nm.cwiseMax(bench.mission().press_torque_nm);
   guard_ = arm::GuardedMotion(config);
   feel_ = ButtonFeel();
-  learned_under_way_ = pushed_under_way_ = false;
+  learned_under_way_ = false;
+  pushed_joint_.reset();
   rest_nm_.reset();
   bottom_m_ = 0;
   bench.job.result().failure = StepFailure::none;
@@ -142,7 +143,7 @@ Progress PressButton::run_press(const StepTick& tick) {
   if (pressed_) return Progress::done_if(tick.settled(bench.motion.done(), press_time));
   if (bench.motion.planning()) return Progress::running();
   if (!met_something()) sense(tick);
-  if (const std::optional<Joint> misled = bench.misled_joint(guard_)) {
+  if (const std::optional<Joint> misled = misled_joint(bench)) {
     tick.faults.report(safety::Fault::following_error, static_cast<std::int32_t>(*misled));
     return Progress::running();
   }
@@ -180,12 +181,12 @@ void PressButton::sense(const StepTick& tick) {
 void PressButton::watch_on_hold(const StepTick& tick) {
   if (pressed_ || met_something()) return;
   sense(tick);
-  if (pushed_under_way_) {
+  const std::optional<Joint> misled = misled_joint(tick.bench);
+  if (pushed_joint_) {
     tick.bench.stay_where_measured();
-    tick.faults.report(safety::Fault::unexpected_contact, static_cast<std::int32_t>(guard_.joint()));
-    return;
+    return report_felt(misled, *pushed_joint_, tick.faults);
   }
-  const bool meant = feel_.touched() && !tick.bench.misled_joint(guard_);
+  const bool meant = feel_.touched() && !misled;
   if (!meant) return tick.bench.report_touch(guard_, tick.faults);
   if (guard_.touched()) tick.bench.stay_where_measured();
 }
@@ -204,8 +205,14 @@ void PressButton::learn_under_way(const Workbench& bench) {
 // What presses on the arm by now would be learned for free motion, and pressed against.
 void PressButton::compare_with_rest() {
   if (!rest_nm_ || guard_.state() != arm::GuardState::free) return;
-  pushed_under_way_ = ((guard_.baseline_nm() - *rest_nm_).cwiseAbs().array() > friction_nm).any();
+  Eigen::Index joint = 0;
+  if ((guard_.baseline_nm() - *rest_nm_).cwiseAbs().maxCoeff(&joint) > friction_nm) pushed_joint_ = static_cast<Joint>(joint);
   rest_nm_.reset();
+}
+
+std::optional<Joint> PressButton::misled_joint(const Workbench& bench) const {
+  const std::optional<Joint> unseen = pushed_joint_ ? bench.unseen_joint() : std::nullopt;
+  return unseen ? unseen : bench.misled_joint(guard_);
 }
 
 // The drives' force along the press is the least-squares one for the torques of slew, shoulder and elbow: the roll has no part in it.
@@ -226,7 +233,7 @@ void PressButton::feel(const StepTick& tick) {
 }
 
 StepFailure PressButton::judge(const Workbench& bench) const {
-  if (pushed_under_way_) return StepFailure::early_contact;
+  if (pushed_joint_) return StepFailure::early_contact;
   const double stroke_m = bench.mission().layout.button_stroke_m;
   if (!feel_.touched()) return guard_.touched() ? StepFailure::early_contact : StepFailure::button_missing;
   if (feel_.touch_depth_m() < -press_face_m) return StepFailure::early_contact;

@@ -35,7 +35,9 @@ class PressButton {
   void sense(const StepTick& tick);
   void learn_under_way(const Workbench& bench);
   void compare_with_rest();
-  bool met_something() const { return guard_.touched() || pushed_under_way_; }
+  bool met_something() const { return guard_.touched() || pushed_joint_; }
+  // The joint by whose own doing it is no button and no contact.
+  std::optional<Joint> misled_joint(const Workbench& bench) const;
   void feel(const StepTick& tick);
   // What stopped the finger, or what it is that nothing did.
   StepFailure judge(const Workbench& bench) const;
@@ -50,7 +52,7 @@ class PressButton {
   StepFailure barrier_ = StepFailure::none;      // what it was, the last time
   bool pressed_ = false;
   bool learned_under_way_ = false;
-  bool pushed_under_way_ = false;            // what was learned there is no friction
+  std::optional<Joint> pushed_joint_;        // what was learned there is no friction, of this joint least
   std::optional<arm::JointVector> rest_nm_;  // what the joints took at rest, until it is compared
   double bottom_m_ = 0;                      // the tip's depth below the face where it is believed to be, at the press's end
 };

@@ -232,27 +232,27 @@ void Workbench::stay_where_pushed() {
   compliance.reset();
 }
 
-namespace {
-
-// What a guard felt: the contact of the joint that felt it, or, where there is one, the joint that does not follow.
-void report(std::optional<Joint> misled, Joint felt_by, safety::FaultArbiter& faults) {
+void report_felt(std::optional<Joint> misled, Joint felt_by, safety::FaultArbiter& faults) {
   faults.report(misled ? safety::Fault::following_error : safety::Fault::unexpected_contact,
                 static_cast<std::int32_t>(misled.value_or(felt_by)));
 }
 
-}  // namespace
-
-std::optional<Joint> Workbench::misled_joint(const arm::GuardedMotion& guard) const {
-  if (!guard.touched()) return std::nullopt;
+std::optional<Joint> Workbench::unseen_joint() const {
   for (const Joint joint : {Joint::slew, Joint::shoulder, Joint::elbow}) {
     if (watch.shows_nothing(joint)) return joint;
   }
+  return std::nullopt;
+}
+
+std::optional<Joint> Workbench::misled_joint(const arm::GuardedMotion& guard) const {
+  if (!guard.touched()) return std::nullopt;
+  if (const std::optional<Joint> unseen = unseen_joint()) return unseen;
   return does_not_follow(guard) || watch.shows_nothing(guard.joint()) ? std::optional(guard.joint()) : std::nullopt;
 }
 
 void Workbench::report_touch(const arm::GuardedMotion& guard, safety::FaultArbiter& faults) const {
   if (!guard.touched()) return;
-  report(misled_joint(guard), guard.joint(), faults);
+  report_felt(misled_joint(guard), guard.joint(), faults);
 }
 
 void Workbench::let_off_roll() {
@@ -288,7 +288,7 @@ std::optional<Joint> Workbench::misled_on_the_way_back() const {
 void Workbench::watch_back_off_on_hold(const StepTick& tick) {
   guard_back_off(tick.now);
   if (!back_guard.touched()) return;
-  report(misled_on_the_way_back(), back_guard.joint(), tick.faults);
+  report_felt(misled_on_the_way_back(), back_guard.joint(), tick.faults);
 }
 
 Progress Workbench::follow_back_off(const StepTick& tick) {

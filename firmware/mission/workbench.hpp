@@ -96,6 +96,8 @@ struct Workbench {
 
   // The guard learns of the arm on its motion's way.
   void feel(arm::GuardedMotion& guard, Time t) const;
+  // The first of slew, shoulder and elbow that may run off unseen.
+  std::optional<Joint> unseen_joint() const;
   // Of what it has felt: the joint that makes it no contact, by its drive's own doing. One that may run off unseen may have pushed the arm so that another joint
   // feels it.
   std::optional<Joint> misled_joint(const arm::GuardedMotion& guard) const;
@@ -141,5 +143,8 @@ struct StepTick {
   // A scan order that finds no room is a port error.
   void send(const ScanCommand& command) const;
 };
+
+// What was felt: the contact of the joint that felt it, or, where there is one, the joint that does not follow.
+void report_felt(std::optional<Joint> misled, Joint felt_by, safety::FaultArbiter& faults);
 
 }  // namespace lf::mission

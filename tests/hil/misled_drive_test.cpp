@@ -84,5 +84,23 @@ TEST(MisledDrive, OfAnotherJointThanTheOneThatFeelsIsNamed) {
   EXPECT_FALSE(rig.any_power()) << rig.story();
 }
 
+// What the arm felt is explained by a joint that does not follow on the way to the parking pose. The task's result keeps what was felt.
+TEST(MisledDrive, OnTheWayToTheParkingPoseExplainsWhatWasFelt) {
+  std::vector<std::string> overrides = press_only();
+  overrides.emplace_back("buttons.stuck=[centre]");
+  Rig felt(overrides);
+  felt.start();
+  (void)felt.run_to_end();
+  ASSERT_EQ(felt.outcome().fault, safety::Fault::step_failed) << felt.story();
+  ASSERT_EQ(felt.outcome().code, static_cast<std::int32_t>(StepFailure::button_stuck)) << felt.story();
+  overrides.emplace_back("faults=[{at_step: stow, after_s: 0.5, kind: stuck_encoder, node: elbow}]");
+  Rig rig(overrides);
+  rig.start();
+  (void)rig.run_to_end();
+  EXPECT_EQ(rig.outcome().fault, safety::Fault::following_error) << rig.story();
+  EXPECT_EQ(rig.outcome().code, static_cast<std::int32_t>(Joint::elbow)) << rig.story();
+  EXPECT_EQ(rig.outcome().step, Step::stow) << rig.story();
+}
+
 }  // namespace
 }  // namespace lf::test
