@@ -1,8 +1,6 @@
 #include "host_sim/app/flight.hpp"
 
-#include <algorithm>
-
-#include "shared/arm/motor.hpp"
+#include "host_sim/judge/gear_limits.hpp"
 
 namespace lf::app {
 Flight::Flight(const scenario::Scenario& scenario, std::uint64_t seed, hal::SimObserver& observer, Sight sight) {
@@ -16,10 +14,9 @@ Flight::Flight(const scenario::Scenario& scenario, std::uint64_t seed, hal::SimO
     has_own_drives_ = has_own_drives_ && sim.devices.drives[i].habit == nullptr;
     const canopen::Ratio& position = nominal.controller.network.drives[i].profile.scale.position;
     units_per_count_[i] = double(position.num) / double(position.den);
-    const ArmJoint& joint = sim.world.arm.joints[i];
-    const double stiffness_nm_rad = sim.world.drive_stiffness_nm_rad[i], held_nm = held_torque_nm(joint);
-    gear_gives_rad_[i] = 0.5 * joint.backlash_rad + std::min(held_nm, joint.holding_torque_nm) / stiffness_nm_rad;
-    slips_rad_[i] = 0.5 * joint.backlash_rad + std::max(0.0, held_nm - joint.holding_torque_nm) / stiffness_nm_rad;
+    const judge::GearLimits gear = judge::gear_limits(sim.world.arm.joints[i], sim.world.drive_stiffness_nm_rad[i]);
+    gear_gives_rad_[i] = gear.gives_rad;
+    slips_rad_[i] = gear.slips_rad;
   }
   platform_ = std::make_unique<hal::SimPlatform>(sim, observer);
   controller_ = std::make_unique<Controller>(nominal.controller);

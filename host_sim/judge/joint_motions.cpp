@@ -37,7 +37,8 @@ bool JointMotions::moves(const Moment& moment, std::size_t joint, double unwound
 }
 
 bool JointMotions::gives_way(const Moment& moment, std::size_t joint, double unwound_s) const {
-  if ((moment.power & bit_of(joint)) != 0 || moment.grip_n < figures_.touch_n || motor_moves(moment, joint)) return false;
+  // One that has power may drag the others.
+  if (moment.power != 0 || moment.grip_n < figures_.touch_n || motor_moves(moment, joint)) return false;
   const double gives_rad = situation_.gear_gives_rad[joint];
   if (std::abs(moment.angle_rad[joint] - moment.motor_rad[joint]) > gives_rad) return false;
   const auto by_angle = [joint](const Moment& a, const Moment& b) { return a.angle_rad[joint] < b.angle_rad[joint]; };

@@ -380,7 +380,10 @@ class Judge {
     const bool powered = std::any_of(moments_.begin() + std::ptrdiff_t(from), moments_.end(), [](const Moment& m) { return m.power != 0; });
     if (motions_.travels(from) && !taken_over()) wrong("the arm moves after the end");
     if (powered && !ending_.holds && !taken_over()) wrong("power is on after the end");
-    const bool for_nothing = ending_.holds && !situation_.over && touches_nothing(ending_.held_s ? ending_.held_s : ending_.told_s);
+    // What a joint that misleads drives the arm into on the way back, after it was told, is its own doing.
+    const bool told_for_nothing = (ending_.told_s || !ending_.held_s) && touches_nothing(ending_.told_s);
+    const bool held_for_nothing = ending_.held_s && touches_nothing(ending_.held_s);
+    const bool for_nothing = ending_.holds && !situation_.over && (told_for_nothing || held_for_nothing);
     verdict_.stood_anyway = for_nothing && stood_where_it_was_to_stay();
     if (for_nothing && !verdict_.stood_anyway) wrong("held under power for a contact that is none, with a drive that misleads");
   }

@@ -35,7 +35,7 @@ TEST(FaultTable, FailsWhereTooFewGoOn) {
   EXPECT_FALSE(tabulate_faults(rows).good());
 }
 
-// One in ten of those that may be, and two more: of 36 obstacles and 180 joints that seize among 5000 rows five and twenty.
+// One in ten of those that may be, and two more: of 36 obstacles, 180 joints that seize and 130 jaws that hold the handle five, twenty and fifteen.
 TEST(FaultTable, FailsWhereManyRowsAreExcused) {
   std::vector<RowResult> rows = safe_rows(5000);
   for (std::size_t i = 36; i < rows.size(); ++i) rows[i].kind = i < 216 ? "following" : "overcurrent";
@@ -49,6 +49,12 @@ TEST(FaultTable, FailsWhereManyRowsAreExcused) {
   EXPECT_FALSE(tabulate_faults(rows).good());
   EXPECT_NE(markdown_of(tabulate_faults(rows), "").find("21 of 180 with a joint that seized"), std::string::npos);
   EXPECT_NE(markdown_of(tabulate_faults(rows), "").find("These are too many"), std::string::npos);
+  rows[56].stood_anyway = false;
+  for (std::size_t i = 300; i < 430; ++i) rows[i].gripped = true;
+  for (std::size_t i = 300; i < 315; ++i) rows[i].gave_way = true;
+  EXPECT_TRUE(tabulate_faults(rows).good());
+  rows[315].gave_way = true;
+  EXPECT_FALSE(tabulate_faults(rows).good());
 }
 
 }  // namespace

@@ -140,6 +140,9 @@ TEST(Verdict, AJointThatGivesWayToTheHandleIsWithoutPowerAndInTheJawAndTravelsOn
   EXPECT_THAT(wrong([](Moment&, std::size_t) {}), IsEmpty());
   EXPECT_THAT(wrong([](Moment& m, std::size_t t) { m.grip_n = t < 1000 ? 100 : 0; }), moves) << "it was let go before";
   EXPECT_THAT(wrong([](Moment& m, std::size_t) { m.power |= 1U << 2; }), moves) << "this joint has power";
+  EXPECT_THAT(wrong([](Moment& m, std::size_t) { m.power |= 1U << 3; }), moves) << "another joint has power, and may drag it";
+  EXPECT_THAT(wrong([](Moment& m, std::size_t t) { m.motor_rad[2] += 0.0019f * std::clamp((float(t) - 1100) / 50, 0.0f, 1.0f); }), moves)
+      << "its motor turns with it";
   EXPECT_THAT(wrong([](Moment& m, std::size_t t) {  // 2.5 mrad more, back and forth: 6.4 in all
                 if (t >= 2000) m.angle_rad[2] -= 0.0064f * std::min(1.0f, float(t - 2000) / 50);
                 if (t >= 2000 && t < 2050) m.speed_rad_s[2] = 0.12f;
@@ -358,16 +361,19 @@ TEST(Verdict, AContactCountsFromShortlyBeforeItIsTold) {
   EXPECT_FALSE(held_for_nothing(900, 950, 6, stuck));
   EXPECT_TRUE(held_for_nothing(900, 950, 4, stuck)) << "no contact that could be felt";
   // It was given up for something else, and held later.
-  const auto held_at = [&](std::optional<double> held_s) {
+  const auto held_at = [&](std::optional<double> held_s, bool touches_when_told = true) {
     Seen seen = Stopping{.stop_ms = 1000, .force_n = 0}.seen();
     for (std::size_t t = 2100; t < 2900; ++t) seen.moments[t].force_n = 30;
+    if (touches_when_told) seen.moments[900].force_n = 6;
     Ending ending = failed("the jaw holds nothing: elbow");
     ending.holds = true;
+    ending.told_s = 1;
     ending.held_s = held_s;
     return judge(seen, stuck, ending).wrong;
   };
   EXPECT_THAT(held_at(2), testing::Contains(testing::HasSubstr("held under power")));
   EXPECT_THAT(held_at(2.4), testing::Not(testing::Contains(testing::HasSubstr("held under power"))));
+  EXPECT_THAT(held_at(2.4, false), testing::Contains(testing::HasSubstr("held under power"))) << "what it met later was its own doing";
   const auto beside = [](const char* cause) { return situation_of(cause_of("stuck_encoder elbow"), cause_of(cause)); };
   for (const char* cause : {"error_frames", "camera_fails", "interlock_open", "torque_frozen roll", "vision_silent"})
     EXPECT_TRUE(held_for_nothing(0, 0, 0, beside(cause))) << cause;
