@@ -146,9 +146,9 @@ class Reader {
     const auto scale = [&](const char* name, const UnitScale& unit) {
       attempt([&] {
         if ((unit.per_count > 0) != (unit.per_rev > 0)) return;
-        source_.refuse(
-            root[name] ? root[name].Mark() : root.Mark(),
-            std::string("'") + name + "' takes one scale, to the encoder's counts or to the motor's revolution: nothing is assumed");
+        source_.refuse(root[name] ? root[name].Mark() : root.Mark(),
+                       std::string("'") + name +
+                           "' takes one scale above 0, in one of the arm's counts or in one revolution of the motor: nothing is assumed");
       });
     };
     scale("position", kind.position);

@@ -1,6 +1,7 @@
 #include "hal/config/motor_check.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "firmware/canopen/setup.hpp"
@@ -9,6 +10,12 @@
 #include "shared/input_error.hpp"
 
 namespace lf::config {
+namespace {
+
+// To four decimals: what is advised is taken.
+double rounded_up(double value) { return std::ceil(value * 1e4) / 1e4; }
+
+}  // namespace
 
 void check_motor(const JointDriveChoice& choice, std::size_t joint, const ArmJoint& description, const std::string& where) {
   constexpr double direct_drive = 0.999;  // a ratio of 1, computed
@@ -18,9 +25,10 @@ void check_motor(const JointDriveChoice& choice, std::size_t joint, const ArmJoi
     std::snprintf(
         text, sizeof text,
         "'counts_per_rev' is %.6g: the motor would turn %.3g times for a turn of the joint, and a gear slows down. It is how many of the "
-        "arm's counts (%.4g to a radian of the %s at most) go to a revolution of the motor. The encoder's resolution is "
+        "arm's counts (%.4g to a radian of the %s at most) go to a revolution of the motor, and at most %.5g. The encoder's resolution is "
         "position.units_per_rev of the drive's profile",
-        choice.counts_per_rev, ratio, ratio * choice.counts_per_rev / (2 * pi), joint_name(joint));
+        choice.counts_per_rev, ratio, ratio * choice.counts_per_rev / (2 * pi), joint_name(joint),
+        std::floor(ratio * choice.counts_per_rev));
     throw InputError(where + ": " + text);
   }
   if (choice.counts_per_rev < fewest_counts_per_rev) {
@@ -53,18 +61,19 @@ void check_position_unit(const JointDriveChoice& choice, std::size_t joint, cons
   const double counts_per_rad = least_motor_ratio(description, choice.counts_per_rev) * choice.counts_per_rev / (2 * pi);
   const double most = std::max(1.0, coarsest_rad * counts_per_rad);
   if (counts <= most) return;
-  char text[384];
-  int used =
-      std::snprintf(text, sizeof text,
-                    "one unit of the drive's positions is %.4g of the arm's counts, up to %.3g mrad of the %s. It may be at most %.4g "
-                    "of them. Set a finer unit in the drive, and state it in its profile: ",
-                    counts, 1000 * counts / counts_per_rad, joint_name(joint), most);
+  char text[512];
+  int used = std::snprintf(
+      text, sizeof text,
+      "one unit of the drive's positions is %.6g of the arm's counts, which is %.4g mrad of the %s where it is most. It may be 1 mrad, or "
+      "one count where that is more: a joint that stays behind could not be told from one that follows. Set a finer unit in the drive, and "
+      "state it in its profile: ",
+      counts, 1000 * counts / counts_per_rad, joint_name(joint));
   const std::size_t left = sizeof text - static_cast<std::size_t>(used);
   if (kind.position.per_count > 0)
-    std::snprintf(text + used, left, "position.units_per_count of %.4g or more", 1 / most);
+    std::snprintf(text + used, left, "position.units_per_count of %.4f or more", rounded_up(1 / most));
   else
-    std::snprintf(text + used, left, "position.units_per_rev of %.4g or more at a 'counts_per_rev' of %.6g", choice.counts_per_rev / most,
-                  choice.counts_per_rev);
+    std::snprintf(text + used, left, "position.units_per_rev of %.4f or more at a 'counts_per_rev' of %.6g",
+                  rounded_up(choice.counts_per_rev / most), choice.counts_per_rev);
   throw InputError(where + ": " + text);
 }
 

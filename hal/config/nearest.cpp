@@ -77,7 +77,7 @@ namespace {
 
 // What there is, where nothing is near and the list is short.
 std::string choices(const std::vector<std::string>& known) {
-  constexpr std::size_t most = 12;
+  constexpr std::size_t most = 60;
   if (known.empty() || known.size() > most) return "";
   std::string text = "; it is one of ";
   for (std::size_t i = 0; i < known.size(); ++i) text += (i == 0 ? "" : i + 1 == known.size() ? " or " : ", ") + known[i];

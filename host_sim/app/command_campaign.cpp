@@ -49,16 +49,20 @@ void add_campaign(CLI::App& app, Action& action) {
                                  ->delimiter(';')
                                  ->transform(without_blanks)
                                  ->needs(faults);
-  command->add_option("--rows", options->rows, "These rows of the matrix only, by name, as 'turn: overcurrent elbow;boot: estop'")
-      ->delimiter(';')
-      ->transform(without_blanks)
-      ->needs(faults)
-      ->excludes(kinds)
-      ->excludes(steps);
+  CLI::Option* const rows =
+      command->add_option("--rows", options->rows, "These rows of the matrix only, by name, as 'turn: overcurrent elbow;boot: estop'")
+          ->delimiter(';')
+          ->transform(without_blanks)
+          ->needs(faults)
+          ->excludes(kinds)
+          ->excludes(steps);
   command->add_flag("--rendered", options->rendered, "--faults: camera and vision see what is drawn, instead of being given the true pose")
       ->needs(faults);
   command->add_flag("--pairs", options->pairs, "--faults: pairs of faults within 0.5 s, in a step of each phase")->needs(faults);
-  command->add_option("--one-in", options->one_in, "--faults: a sample, one row in so many")->check(CLI::Range(1, 100000))->needs(faults);
+  command->add_option("--one-in", options->one_in, "--faults: a sample, one row in so many")
+      ->check(CLI::Range(1, 100000))
+      ->needs(faults)
+      ->excludes(rows);
   command->add_option("--into", options->into, "--faults: how far into each step it is made, as a share of the step")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str()

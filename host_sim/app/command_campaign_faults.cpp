@@ -10,6 +10,7 @@
 #include "host_sim/app/fault_suite.hpp"
 #include "host_sim/app/fault_table.hpp"
 #include "host_sim/app/interrupt.hpp"
+#include "host_sim/app/matrix_rows.hpp"
 #include "host_sim/app/progress_line.hpp"
 #include "host_sim/campaign/utc_time.hpp"
 #include "host_sim/judge/fault_rules.hpp"
@@ -69,7 +70,9 @@ void check_names_early(const CampaignOptions& options) {
   config::check_names(options.steps, steps, "--steps");
   if (options.pairs) return check_pairs(options.rows);
   for (const std::string& step : steps) {
-    for (const judge::Cause& cause : judge::all_causes()) rows.push_back(step + ": " + cause.name());
+    for (const judge::Cause& cause : judge::all_causes()) {
+      if (happens_in(cause, step)) rows.push_back(step + ": " + cause.name());
+    }
   }
   config::check_names(options.rows, rows, "--rows");
 }

@@ -26,17 +26,12 @@ bool chosen(const std::vector<std::string>& names, const std::string& name) {
   return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
 }
 
-// What is true from power-on or not at all happens there only.
-bool happens_in(const judge::Cause& cause, const FaultMoment& moment) {
-  return cause.rule->kind != "limits_refused" || moment.name == "power-on";
-}
-
 std::vector<MatrixRow> single_rows(const std::vector<FaultMoment>& moments, const MatrixChoice& choice) {
   std::vector<MatrixRow> rows;
   for (const FaultMoment& moment : moments) {
     if (!chosen(choice.steps, moment.name)) continue;
     for (const judge::Cause& cause : judge::all_causes()) {
-      if (chosen(choice.kinds, cause.rule->kind) && happens_in(cause, moment)) rows.push_back({moment, {cause}, 0});
+      if (chosen(choice.kinds, cause.rule->kind) && happens_in(cause, moment.name)) rows.push_back({moment, {cause}, 0});
     }
   }
   return rows;
@@ -80,6 +75,8 @@ void check_choice(const std::vector<FaultMoment>& moments, const MatrixChoice& c
 }
 
 }  // namespace
+
+bool happens_in(const judge::Cause& cause, const std::string& step) { return cause.rule->kind != "limits_refused" || step == "power-on"; }
 
 std::string MatrixRow::name() const {
   std::string text = moment.name + ": " + causes.front().name();

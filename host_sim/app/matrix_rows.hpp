@@ -27,6 +27,9 @@ struct MatrixChoice {
   double into = usual_share_of_step;  // of the steps, where the faults are made: each has a sample of its own
 };
 
+// What is true from power-on or not at all happens there only.
+bool happens_in(const judge::Cause& cause, const std::string& step);
+
 // Throws InputError for a kind, step or row that there is not.
 std::vector<MatrixRow> matrix_rows(const std::vector<FaultMoment>& moments, const MatrixChoice& choice);
 

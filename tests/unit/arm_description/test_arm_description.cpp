@@ -192,6 +192,7 @@ INSTANTIATE_TEST_SUITE_P(
                     BadUrdf{"upper=\"1.58665\"", "upper=\"nan\"", "upper=\"nan\" is not a number"},
                     BadUrdf{"upper=\"1.58665\"", "upper=\"15\"", "beyond half a turn"}, BadUrdf{"upper=\"1.58665\"", "", "has no upper"},
                     BadUrdf{"effort=\"100\"", "effort=\"0\"", "effort must be positive"},
+                    BadUrdf{"effort=\"100\"", "effort=\"901\"", "is more than 30 times rated_torque_nm"},
                     BadUrdf{"<mass value=\"3.4\"/>", "<mass value=\"-3.4\"/>", "value must be positive"},
                     BadUrdf{"ixx=\"0.005\"", "ixx=\"-0.005\"", "not positive definite"},
                     BadUrdf{"ixx=\"0.005\"", "ixx=\"0.5\"", "of no real body"},

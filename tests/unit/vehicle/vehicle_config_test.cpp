@@ -227,8 +227,9 @@ TEST(VehicleConfig, ARatingThatNobodyStatesIsNoted) {
 
 TEST(VehicleConfig, CountsThatLeaveNoGearAreRefusedWithTheReason) {
   const TemporaryFolder folder;
-  EXPECT_THAT(problems_of(folder.write("v.yaml", "drives: {elbow: {counts_per_rev: 1000000}}\n")),
-              ElementsAre(HasSubstr("drives.elbow: 'counts_per_rev' is 1e+06: the motor would turn 0.0")));
+  EXPECT_THAT(
+      problems_of(folder.write("v.yaml", "drives: {elbow: {counts_per_rev: 1000000}}\n")),
+      ElementsAre(AllOf(HasSubstr("drives.elbow: 'counts_per_rev' is 1e+06: the motor would turn 0.0"), HasSubstr("and at most "))));
   EXPECT_THAT(problems_of(folder.write("v.yaml", "drives: {elbow: {counts_per_rev: 128}}\n")), IsEmpty());
   EXPECT_THAT(problems_of(folder.write("v.yaml", "drives: {elbow: {counts_per_rev: 1.5}}\n")),
               ElementsAre(HasSubstr("At least 3 counts are needed")));
@@ -252,11 +253,16 @@ TEST(VehicleConfig, APositionUnitTooCoarseToTellALagIsRefused) {
   EXPECT_THAT(problems("slew", "units_per_rev: 24"), IsEmpty());
   EXPECT_THAT(
       problems("slew", "units_per_rev: 23"),
-      ElementsAre(AllOf(HasSubstr("drives.slew: one unit of the drive's positions is 2.783 of the arm's counts, up to 1 mrad of the slew"),
+      ElementsAre(AllOf(HasSubstr("drives.slew: one unit of the drive's positions is 2.78261 of the arm's counts, which is 1.002 mrad"),
                         HasSubstr("position.units_per_rev of 23.04"), HasSubstr("or more at a 'counts_per_rev' of 64"))));
   EXPECT_THAT(problems("slew", "units_per_count: 0.3"), ElementsAre(HasSubstr("position.units_per_count of 0.36")));
+  for (const std::string key : {"units_per_rev", "units_per_count"}) {
+    const std::string refused = problems("slew", key + ": 0.2").front(), before = "position." + key + " of ";
+    const std::string advised = refused.substr(refused.find(before) + before.size(), 7);
+    EXPECT_THAT(problems("slew", key + ": " + advised.substr(0, advised.find(' '))), IsEmpty()) << "what is advised is taken: " << refused;
+  }
   EXPECT_THAT(problems("roll", "units_per_rev: 64"), IsEmpty());
-  EXPECT_THAT(problems("roll", "units_per_rev: 63"), ElementsAre(HasSubstr("It may be at most 1 of them")));
+  EXPECT_THAT(problems("roll", "units_per_rev: 63"), ElementsAre(HasSubstr("or one count where that is more")));
 }
 
 TEST(VehicleConfig, ANodeNumberUsedTwiceNamesBothThatHaveIt) {
