@@ -72,7 +72,7 @@ class StuckEncoder {
     if (!behind_ || lives(now, way_ * (mean_counts_ - farthest_counts_))) begin_anew(now, dt);
     const bool off = std::abs(lag) >= behind_counts && lag_rad >= behind_rad;
     behind_ = behind_ || off;
-    return behind_ && off && is_stuck(now, lag_rad, dt);
+    return off && is_stuck(now, lag_rad, dt);
   }
 
   // Its torque may be that of a joint which runs off unseen. An arm that meets something goes on showing counts until it is stopped.
