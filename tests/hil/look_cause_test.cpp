@@ -89,7 +89,6 @@ TEST(LookCause, AnExposureThatIsTooLong) {
 
 TEST(LookCause, AVehicleDockedHalfAMetreOff) {
   expect_cause("off its nominal place", "Dock again", [](scenario::Scenario& real) { real.panel.nominal_x_m += 0.5; });
-  expect_cause("mm off its nominal place", "Dock again", [](scenario::Scenario& real) { real.panel.nominal_y_m += 0.5; });
   expect_cause("neither marker nor handle is at its place", "dock again", [](scenario::Scenario& real) { real.panel.nominal_y_m -= 0.5; });
 }
 

@@ -60,7 +60,7 @@ TEST(Nearest, ARefusalNamesTheNearestOrTheFewThatThereAre) {
   EXPECT_EQ(refusal("red", few), "");
   EXPECT_EQ(refusal("greeen", few), "--channel: there is no 'greeen'; did you mean 'green'?");
   EXPECT_EQ(refusal("purple", few), "--channel: there is no 'purple'; it is one of grey, red or green");
-  EXPECT_EQ(refusal("purple", std::vector<std::string>(40, "something")), "--channel: there is no 'purple'");
+  EXPECT_EQ(refusal("purple", std::vector<std::string>(80, "something")), "--channel: there is no 'purple'");
 }
 
 }  // namespace lf::config
