@@ -52,7 +52,7 @@ class PressButton {
   StepFailure barrier_ = StepFailure::none;      // what it was, the last time
   bool pressed_ = false;
   bool learned_under_way_ = false;
-  std::optional<Joint> pushed_joint_;        // what was learned there is no friction, of this joint least
+  std::optional<Joint> pushed_joint_;        // its torque changed by more than friction, and most, since rest
   std::optional<arm::JointVector> rest_nm_;  // what the joints took at rest, until it is compared
   double bottom_m_ = 0;                      // the tip's depth below the face where it is believed to be, at the press's end
 };

@@ -21,7 +21,7 @@ void check_drive(const DriveConfig& drive) {
   require(std::isfinite(drive.lower_rad) && std::isfinite(drive.upper_rad) && drive.lower_rad < drive.upper_rad, drive, "no stroke");
   require(positive(drive.rated_torque_nm) && drive.peak_torque_nm >= drive.rated_torque_nm, drive,
           "no rated torque, or one above the peak torque");
-  require(drive.peak_torque_nm <= 30 * drive.rated_torque_nm, drive, "peak torque above 30 times the rated torque");  // 6077 is 16 bits
+  require(drive.peak_torque_nm <= most_peak_of_rating * drive.rated_torque_nm, drive, "peak torque above 30 times the rated torque");
   const GearFriction& friction = drive.friction;
   require(
       std::isfinite(friction.coulomb_nm) && friction.coulomb_nm >= 0 && std::isfinite(friction.viscous_nm_s) && friction.viscous_nm_s >= 0,

@@ -6,9 +6,10 @@
 namespace lf::judge {
 
 struct GearLimits {
-  double gives_rad =
-      0;  // half of the play, and the wind-up by what the drive holds, or by what the gear holds without power where that is less
-  double slips_rad = 0;  // half of the play, and what the gear gives way by as the power goes, where its drive held more than it does
+  // Half of the play, and the wind-up by what the drive holds, or the gear without power where that is less.
+  double gives_rad = 0;
+  // Half of the play, and what a gear that holds less than its drive gives way by as the power goes.
+  double slips_rad = 0;
 };
 
 // `stiffness_nm_rad`: of gear and links, as the world has it. Where the actuator has less lever the joint is wound up less.

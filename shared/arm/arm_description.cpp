@@ -8,6 +8,7 @@
 #include <cstring>
 #include <string_view>
 
+#include "shared/arm/motor.hpp"
 #include "shared/input_error.hpp"
 #include "shared/messages/joint_names.hpp"
 
@@ -255,9 +256,7 @@ void read_drive(const Urdf& urdf, ArmJoint& joint) {
   joint.holding_torque_nm = urdf.not_negative(drive, "holding_torque_nm");
   if (const XMLElement* const friction = e->FirstChildElement("lanternfish:friction")) read_friction(urdf, friction, joint.friction);
   if (joint.rated_torque_nm > joint.effort_nm) urdf.fail(drive, urdf.label(e) + ": rated torque exceeds the peak effort");
-  // 6077 tells thousandths of the rating in 16 bits.
-  constexpr double most_of_rating = 30;
-  if (joint.effort_nm > most_of_rating * joint.rated_torque_nm)
+  if (joint.effort_nm > most_peak_of_rating * joint.rated_torque_nm)
     urdf.fail(drive, urdf.label(e) + ": the limit's effort, the peak torque, is more than 30 times rated_torque_nm");
   if (joint.stiction_rad_s >= joint.velocity_rad_s) urdf.fail(drive, urdf.label(e) + ": it can never move, stiction reaches its top speed");
   if (const XMLElement* const screw = e->FirstChildElement("lanternfish:screw"))

@@ -8,6 +8,9 @@
 
 namespace lf {
 
+// Object 6077 tells thousandths of the rating in 16 bits.
+inline constexpr double most_peak_of_rating = 30;
+
 struct Motor {
   double rated_torque_nm = 0;
   double peak_torque_nm = 0;
