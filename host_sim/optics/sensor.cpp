@@ -12,8 +12,6 @@ namespace {
 
 typedef std::uint8_t Bytes __attribute__((vector_size(32)));
 
-constexpr WordLanes count_up{0, 1, 2, 3, 4, 5, 6, 7};
-
 std::size_t padded(std::size_t size) { return (size + lane_count - 1) / lane_count * lane_count; }
 
 }  // namespace
@@ -53,26 +51,27 @@ float Sensor::vignetting(int u, int v) const {
 
 // Eight pixels a turn; what is left of the row goes through a padded packet.
 void Sensor::expose(const float* grey, int v, const Exposing& exposing, std::uint8_t* pixels) const {
+  static thread_local std::vector<float> deviates;  // kept from row to row
   const std::size_t stride = padded(row_size_), row = static_cast<std::size_t>(v) * stride;
   const float *sensitivity = sensitivity_.data() + row, *dark = dark_.data() + row;
   const float row_level = row_noise_ * exposing.gain * normal_deviate(static_cast<std::uint32_t>(v), exposing.key + 1);
-  const auto number = static_cast<std::uint32_t>(static_cast<std::size_t>(v) * row_size_);
+  deviates.resize(stride);
+  normal_deviates(static_cast<std::uint32_t>(static_cast<std::size_t>(v) * row_size_), row_size_, exposing.key, deviates.data());
   std::size_t i = 0;
   for (; i + lane_count <= row_size_; i += lane_count) {
     const Lanes light = load_lanes(grey + i) * load_lanes(sensitivity + i) * exposing.light;
-    expose_packet(light, load_lanes(dark + i) + row_level, exposing, number + static_cast<std::uint32_t>(i), pixels + i);
+    expose_packet(light, load_lanes(dark + i) + row_level, load_lanes(deviates.data() + i), exposing, pixels + i);
   }
   if (i == row_size_) return;
   std::array<float, lane_count> rest{};
   std::array<std::uint8_t, lane_count> exposed;
   std::copy(grey + i, grey + row_size_, rest.begin());
   const Lanes light = load_lanes(rest.data()) * load_lanes(sensitivity + i) * exposing.light;
-  expose_packet(light, load_lanes(dark + i) + row_level, exposing, number + static_cast<std::uint32_t>(i), exposed.data());
+  expose_packet(light, load_lanes(dark + i) + row_level, load_lanes(deviates.data() + i), exposing, exposed.data());
   std::copy_n(exposed.begin(), row_size_ - i, pixels + i);
 }
 
-void Sensor::expose_packet(Lanes grey, Lanes dark, const Exposing& exposing, std::uint32_t first, std::uint8_t* pixels) const {
-  const Lanes deviate = normal_deviates(count_up + first, exposing.key);
+void Sensor::expose_packet(Lanes grey, Lanes dark, Lanes deviate, const Exposing& exposing, std::uint8_t* pixels) const {
   const float read_variance = read_variance_ * exposing.gain * exposing.gain, variance_per_grey = variance_per_grey_ * exposing.gain;
   const Lanes sigma = sqrt(read_variance + variance_per_grey * max(grey, Lanes{}));
   const Lanes value = clamp(grey + dark + sigma * deviate + 0.5f, 0.f, 255.f);

@@ -31,7 +31,8 @@ class Sensor {
   void expose(const float* grey, int v, const Exposing& exposing, std::uint8_t* pixels) const;
 
  private:
-  void expose_packet(Lanes grey, Lanes dark, const Exposing& exposing, std::uint32_t first, std::uint8_t* pixels) const;
+  // `deviate`: of the noise, in its standard deviations.
+  void expose_packet(Lanes grey, Lanes dark, Lanes deviate, const Exposing& exposing, std::uint8_t* pixels) const;
 
   std::size_t row_size_;
   int width_, height_;

@@ -89,22 +89,25 @@ void Formation::spread(PixelStore& pixels, const std::vector<std::uint8_t>& line
 
 void Formation::expose_row(const PixelStore& pixels, int v, const Speckle& speckle, const Exposing& exposing, std::uint8_t* out) const {
   // Kept from row to row.
-  static thread_local std::vector<float> scratch, row, line, interleaved;
+  static thread_local std::vector<float> scratch, row, line, grains, interleaved;
   const std::size_t channels = pixels.channels;
-  scratch.resize(pixels.stride + 2 * LensSpot::reach()), row.resize(pixels.stride), line.resize(pixels.stride);
+  scratch.resize(pixels.stride + 2 * LensSpot::reach()), row.resize(pixels.stride), line.resize(pixels.stride),
+      grains.resize(pixels.stride);
   interleaved.resize(channels > 1 ? pixels.stride * channels : 0);
   const LensSpot::Packets span = line_span_[static_cast<std::size_t>(v)];
   const std::uint8_t* near = near_line_.data() + static_cast<std::size_t>(v) * packets_a_row_;
-  constexpr WordLanes count_up{0, 1, 2, 3, 4, 5, 6, 7};
   for (std::size_t c = 0; c < channels; ++c) {
     lens_.show(plane_of(pixels, pixels.grey, c), v, {0, static_cast<int>(packets_a_row_)}, scratch.data(), row.data());
     if (span.first < span.end) lens_.show(plane_of(pixels, pixels.laser, c), v, span, scratch.data(), line.data());
-    for (int p = span.first; p < span.end; ++p) {
+    const auto row_number =
+        static_cast<std::uint32_t>((c * static_cast<std::size_t>(pixels.height) + static_cast<std::size_t>(v)) * pixels.stride);
+    for (int p = span.first, end = p; p < span.end; p = end) {
+      while (end < span.end && near[end] == near[p]) ++end;
       if (near[p] == 0) continue;
-      const std::size_t u = static_cast<std::size_t>(p) * lane_count;
-      const auto number =
-          static_cast<std::uint32_t>((c * static_cast<std::size_t>(pixels.height) + static_cast<std::size_t>(v)) * pixels.stride + u);
-      store_lanes(row.data() + u, load_lanes(row.data() + u) + load_lanes(line.data() + u) * speckle.factor(count_up + number));
+      const std::size_t u = static_cast<std::size_t>(p) * lane_count, after = static_cast<std::size_t>(end) * lane_count;
+      speckle.factors(row_number + static_cast<std::uint32_t>(u), after - u, grains.data() + u);
+      for (std::size_t i = u; i < after; i += lane_count)
+        store_lanes(row.data() + i, load_lanes(row.data() + i) + load_lanes(line.data() + i) * load_lanes(grains.data() + i));
     }
     for (std::size_t u = 0; channels > 1 && u < static_cast<std::size_t>(pixels.width); ++u) interleaved[u * channels + c] = row[u];
   }

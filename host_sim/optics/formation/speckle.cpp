@@ -1,7 +1,10 @@
 #include "host_sim/optics/formation/speckle.hpp"
 
+#include <algorithm>
 #include <cmath>
 
+#include "host_sim/optics/formation/normal_deviates.hpp"
+#include "shared/lanes/lanes.hpp"
 #include "shared/random.hpp"
 
 namespace lf::optics {
@@ -24,13 +27,23 @@ Speckle::Speckle(double contrast, std::uint64_t key, const Vec3& emitter_m)
   }
 }
 
-Lanes Speckle::factor(WordLanes pixel) const {
-  Lanes deviate{};
-  for (std::size_t corner = 0; corner < key_.size(); ++corner) {
-    if (share_[corner] > 0.f) deviate += share_[corner] * normal_deviates(pixel, key_[corner]);
+void Speckle::factors(std::uint32_t first, std::size_t count, float* out) const {
+  constexpr std::size_t block = 64;
+  std::array<float, block> sum, deviates;
+  for (std::size_t begin = 0; begin < count; begin += block) {
+    const std::size_t size = std::min(count - begin, block);
+    sum.fill(0);
+    for (std::size_t corner = 0; corner < key_.size(); ++corner) {
+      if (share_[corner] == 0.f) continue;
+      normal_deviates(first + static_cast<std::uint32_t>(begin), size, key_[corner], deviates.data());
+      for (std::size_t i = 0; i < size; i += lane_count)
+        store_lanes(sum.data() + i, load_lanes(sum.data() + i) + share_[corner] * load_lanes(deviates.data() + i));
+    }
+    for (std::size_t i = 0; i < size; i += lane_count) {
+      const Lanes root = max(mean_ + slope_ * load_lanes(sum.data() + i), Lanes{});
+      store_lanes(out + begin + i, root * root * root);
+    }
   }
-  const Lanes root = max(mean_ + slope_ * deviate, Lanes{});
-  return root * root * root;
 }
 
 }  // namespace lf::optics

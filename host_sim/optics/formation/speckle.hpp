@@ -6,9 +6,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
-#include "host_sim/optics/formation/normal_deviates.hpp"
 #include "shared/geometry/pose.hpp"
 
 namespace lf::optics {
@@ -20,8 +20,8 @@ class Speckle {
   // `contrast`: standard deviation of one pixel's light over its mean, 0 to 0.5. `emitter_m`: where the light comes from, in the surface's frame.
   Speckle(double contrast, std::uint64_t key, const Vec3& emitter_m);
 
-  // What the light of the pixels of these numbers is multiplied by.
-  Lanes factor(WordLanes pixel) const;
+  // What the light of `count` pixels, numbered from `first` on, is multiplied by, into `out`: it has room for a multiple of eight.
+  void factors(std::uint32_t first, std::size_t count, float* out) const;
 
  private:
   float mean_, slope_;  // of the gamma distribution's cube root (Wilson and Hilferty, 1931)

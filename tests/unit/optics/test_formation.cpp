@@ -2,10 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "host_sim/optics/formation/halo_pyramid.hpp"
 #include "host_sim/optics/formation/lens_spot.hpp"
+#include "host_sim/optics/formation/normal_deviates.hpp"
 #include "host_sim/optics/formation/speckle.hpp"
+#include "shared/lanes/lanes.hpp"
 
 namespace lf::optics::test {
 namespace {
@@ -122,17 +125,27 @@ TEST(LensSpot, ShowsTheWantedPacketsAlone) {
   }
 }
 
-WordLanes numbers(std::uint32_t first) { return WordLanes{0, 1, 2, 3, 4, 5, 6, 7} + first; }
+TEST(NormalDeviates, AreTheSameInARowAsOneByOne) {
+  for (const std::size_t count : {1, 8, 9, 63, 64, 65, 200}) {
+    std::vector<float> row(count + lane_count);
+    normal_deviates(4'294'967'290U, count, 77, row.data());  // the numbers begin anew after 2^32
+    for (std::size_t i = 0; i < count; ++i)
+      EXPECT_EQ(row[i], normal_deviate(4'294'967'290U + static_cast<std::uint32_t>(i), 77)) << count << " " << i;
+  }
+}
+
+std::vector<float> factors(const Speckle& speckle, std::uint32_t first, std::size_t count) {
+  std::vector<float> factors(count);
+  speckle.factors(first, count, factors.data());
+  return factors;
+}
 
 TEST(Speckle, HasMeanOneAndItsContrast) {
   for (const double contrast : {0.05, 0.18, 0.35}) {
     const Speckle speckle(contrast, 5, {0.1234, 0.5, -0.3});
     double sum = 0, squares = 0;
     const std::uint32_t count = 200'000;
-    for (std::uint32_t i = 0; i < count; i += lane_count) {
-      const Lanes factor = speckle.factor(numbers(i));
-      for (int lane = 0; lane < lane_count; ++lane) sum += factor[lane], squares += double(factor[lane]) * factor[lane];
-    }
+    for (const float factor : factors(speckle, 0, count)) sum += factor, squares += double(factor) * factor;
     const double mean = sum / count;
     EXPECT_NEAR(mean, 1, 4 * contrast / std::sqrt(double(count)) + 2e-3);
     EXPECT_NEAR(std::sqrt(squares / count - mean * mean), contrast, 0.02 * contrast);
@@ -141,10 +154,10 @@ TEST(Speckle, HasMeanOneAndItsContrast) {
 
 double likeness(const Speckle& a, const Speckle& b) {
   double both = 0, first = 0, second = 0;
-  for (std::uint32_t i = 0; i < 40'000; i += lane_count) {
-    const Lanes x = a.factor(numbers(i)) - 1.f, y = b.factor(numbers(i)) - 1.f;
-    for (int lane = 0; lane < lane_count; ++lane)
-      both += double(x[lane]) * y[lane], first += double(x[lane]) * x[lane], second += double(y[lane]) * y[lane];
+  const std::vector<float> of_a = factors(a, 0, 40'000), of_b = factors(b, 0, 40'000);
+  for (std::size_t i = 0; i < of_a.size(); ++i) {
+    const double x = of_a[i] - 1, y = of_b[i] - 1;
+    both += x * y, first += x * x, second += y * y;
   }
   return both / std::sqrt(first * second);
 }
@@ -168,12 +181,10 @@ TEST(Speckle, MovesAStripesCentreOfMassAsMuchAsCoherentLightDoes) {
     const int columns = 4000;
     for (int column = 0; column < columns; ++column) {
       double sum = 0, moment = 0;
-      for (int v = -20; v < 20; v += lane_count) {
-        const Lanes factor = speckle.factor(numbers(static_cast<std::uint32_t>(column * 64 + v + 20)));
-        for (int lane = 0; lane < lane_count; ++lane) {
-          const double light = bell(v + lane, s) * factor[lane];
-          sum += light, moment += light * (v + lane);
-        }
+      const std::vector<float> factor = factors(speckle, static_cast<std::uint32_t>(column * 64), 40);
+      for (int v = -20; v < 20; ++v) {
+        const double light = bell(v, s) * factor[static_cast<std::size_t>(v + 20)];
+        sum += light, moment += light * v;
       }
       squares += moment / sum * moment / sum;
     }
