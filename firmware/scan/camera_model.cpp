@@ -54,4 +54,6 @@ std::optional<Vec2> CameraModel::project(const Vec3& point_m) const {
   return Vec2(c.fx * p.x() + c.cx, c.fy * p.y() + c.cy);
 }
 
+double CameraModel::stretch(const Vec2& at) const { return distort(intrinsics_.distortion, at).jacobian.determinant(); }
+
 }  // namespace lf::scan

@@ -18,6 +18,10 @@ class CameraModel {
   // The pixel of a point in the camera frame; nothing for points not in front of the camera. The pixel may lie outside of the image.
   std::optional<Vec2> project(const Vec3& point_m) const;
 
+  // How much larger than without distortion an area about the ray (x, y, 1) is imaged: the determinant of the distortion's derivatives. Zero where the picture
+  // folds over, negative beyond.
+  double stretch(const Vec2& at) const;
+
   const CameraIntrinsics& intrinsics() const { return intrinsics_; }
 
  private:

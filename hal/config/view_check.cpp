@@ -16,15 +16,7 @@ std::string lens_keys(const Machine& machine) {
   return machine.camera_calibration.empty() ? "'camera.focal_px', 'camera.distortion'" : "the calibration " + machine.camera_calibration;
 }
 
-// How much larger than without distortion an area about the ray (x, y, 1) is imaged; negative where it is turned over. The renderer takes nothing below 0.01.
-constexpr double least_stretch = 0.01;
-double stretch(const scan::CameraModel& model, const Vec2& at) {
-  constexpr double step = 1e-5;
-  const auto pixel = [&](double x, double y) { return model.project(Vec3(x, y, 1)).value_or(Vec2::Zero()); };
-  const Vec2 by_x = (pixel(at.x() + step, at.y()) - pixel(at.x() - step, at.y())) / (2 * step * model.intrinsics().fx);
-  const Vec2 by_y = (pixel(at.x(), at.y() + step) - pixel(at.x(), at.y() - step)) / (2 * step * model.intrinsics().fy);
-  return by_x.x() * by_y.y() - by_x.y() * by_y.x();
-}
+constexpr double least_stretch = 0.01;  // the renderer takes nothing below
 
 // Whether a pixel has a ray, and the picture does not fold over between it and the optical axis: there two rays would share a pixel.
 bool has_one_ray(const scan::CameraModel& model, const Vec2& pixel) {
@@ -33,14 +25,14 @@ bool has_one_ray(const scan::CameraModel& model, const Vec2& pixel) {
   if (!ray) return false;
   const Vec2 end(ray->x() / ray->z(), ray->y() / ray->z());
   for (int i = 1; i <= steps; ++i) {
-    if (!(stretch(model, end * (static_cast<double>(i) / steps)) > least_stretch)) return false;
+    if (!(model.stretch(end * (static_cast<double>(i) / steps)) > least_stretch)) return false;
   }
   return true;
 }
 
 // Looked at all over the picture, and 8 px beyond: the true lens may be off its calibration by 3 px, 0.5 % and some px of distortion.
 bool lacks_rays(const scan::CameraModel& model) {
-  constexpr int step_px = 16, margin_px = 8;  // some 1300 pixels, a few ms
+  constexpr int step_px = 16, margin_px = 8;  // some 1300 pixels
   const CameraIntrinsics& c = model.intrinsics();
   for (int v = -margin_px; v < c.height + margin_px + step_px; v += step_px) {
     for (int u = -margin_px; u < c.width + margin_px + step_px; u += step_px) {

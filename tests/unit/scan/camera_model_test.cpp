@@ -57,6 +57,33 @@ TEST(CameraModelProjection, IsOpenCvs) {
   }
 }
 
+TEST(CameraModelStretch, IsTheAreaThatOpenCvImages) {
+  const CameraModel camera(camera_with(mild));
+  const auto imaged = [](const Vec2& at) {
+    std::vector<cv::Point2d> image;
+    cv::projectPoints(std::vector<cv::Point3d>{{at.x(), at.y(), 1}}, cv::Vec3d(), cv::Vec3d(), cv::Matx33d::eye(),
+                      std::vector<double>(mild.begin(), mild.end()), image);
+    return Vec2(image[0].x, image[0].y);
+  };
+  constexpr double step = 1e-5;
+  for (double x = -1; x <= 1; x += 0.25) {
+    for (double y = -1; y <= 1; y += 0.25) {
+      const Vec2 by_x = (imaged({x + step, y}) - imaged({x - step, y})) / (2 * step),
+                 by_y = (imaged({x, y + step}) - imaged({x, y - step})) / (2 * step);
+      EXPECT_NEAR(camera.stretch({x, y}), by_x.x() * by_y.y() - by_x.y() * by_y.x(), 1e-8) << x << ", " << y;
+    }
+  }
+}
+
+TEST(CameraModelStretch, IsZeroWhereTheFoldBegins) {
+  // r (1 - 0.2 r^2) turns back at r^2 = 1 / 0.6.
+  const CameraModel camera(camera_with({-0.2, 0, 0, 0, 0}));
+  const double fold = std::sqrt(1 / 0.6);
+  EXPECT_GT(camera.stretch({fold - 1e-3, 0}), 0);
+  EXPECT_NEAR(camera.stretch({0, fold}), 0, 1e-12);
+  EXPECT_LT(camera.stretch({0, -fold - 1e-3}), 0);
+}
+
 TEST(CameraModelRays, ProjectBackToTheirPixels) {
   std::mt19937_64 random(2);
   std::uniform_real_distribution<double> share(-1, 1);
