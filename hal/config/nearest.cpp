@@ -1,7 +1,6 @@
 #include "hal/config/nearest.hpp"
 
 #include <algorithm>
-#include <cctype>
 
 #include "shared/input_error.hpp"
 
@@ -9,11 +8,14 @@ namespace lf::config {
 
 namespace {
 
-char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
+char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
 }  // namespace
 
-int edit_distance(std::string_view a, std::string_view b) {
+int edit_distance(std::string_view a, std::string_view b, int most) {
+  // So many edits as the lengths differ by are needed at least.
+  const auto [shorter, longer] = std::minmax({a.size(), b.size()});
+  if (longer - shorter > static_cast<std::size_t>(most)) return most + 1;
   std::vector<int> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) last[j] = static_cast<int>(j);
   for (std::size_t i = 1; i <= a.size(); ++i) {
@@ -24,10 +26,12 @@ int edit_distance(std::string_view a, std::string_view b) {
       if (i > 1 && j > 1 && lower(a[i - 1]) == lower(b[j - 2]) && lower(a[i - 2]) == lower(b[j - 1]))
         row[j] = std::min(row[j], before[j - 2] + 1);
     }
+    // What follows is made from these two rows, and is never less.
+    if (std::min(*std::min_element(row.begin(), row.end()), *std::min_element(last.begin(), last.end())) > most) return most + 1;
     before.swap(last);
     last.swap(row);
   }
-  return last[b.size()];
+  return std::min(last[b.size()], most + 1);
 }
 
 namespace {
@@ -55,11 +59,8 @@ const std::string* nearest(std::string_view word, const std::vector<std::string>
   const std::string* best = nullptr;
   int fewest = 0;
   for (const std::string& name : known) {
-    // So many edits as the lengths differ by are needed at least.
-    const auto [shorter, longer] = std::minmax({word.size(), name.size()});
-    const auto most = static_cast<int>(shorter) / 3;
-    if (static_cast<int>(longer - shorter) > most) continue;
-    const int edits = edit_distance(word, name);
+    const auto most = static_cast<int>(std::min(word.size(), name.size())) / 3;
+    const int edits = edit_distance(word, name, most);
     if (edits <= most && (best == nullptr || edits < fewest)) {
       best = &name;
       fewest = edits;

@@ -7,9 +7,11 @@
 
 namespace lf::config {
 
+inline constexpr int most_edits = 1 << 30;
+
 // Edits between two words: insertions, deletions, substitutions and swaps of neighbours (Damerau-Levenshtein, restricted), letters' case ignored.
-// O(|a| |b|).
-int edit_distance(std::string_view a, std::string_view b);
+// More than `most` are told as `most` + 1. O(|a| |b|).
+int edit_distance(std::string_view a, std::string_view b, int most = most_edits);
 
 // The shortest of `known` that begins with `word`, before an underscore rather than in a name's middle ("sweep_speed", "sweep_speed_rad_s"). Where none does,
 // the nearest if it is near enough to be meant (a third of the shorter one's letters), otherwise none. Equal distances go to the one that comes first.

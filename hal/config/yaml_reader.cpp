@@ -315,7 +315,7 @@ std::string suggest_path(const std::string& path, const std::vector<Key>& table,
   std::vector<std::string> here, elsewhere;
   for (const Key& key : table) {
     if (key.path.starts_with(prefix)) here.push_back(prefix + next_name(key.path, prefix));
-    if (edit_distance(last_name(path), last_name(key.path)) <= 1) elsewhere.push_back(key.path);
+    if (edit_distance(last_name(path), last_name(key.path), 1) <= 1) elsewhere.push_back(key.path);
   }
   std::vector<std::string> names;
   names.reserve(here.size());

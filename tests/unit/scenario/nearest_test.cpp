@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "shared/input_error.hpp"
 
 namespace lf::config {
@@ -14,6 +16,17 @@ TEST(Nearest, CountsEditsAsDamerauLevenshtein) {
   EXPECT_EQ(edit_distance("strat", "start"), 1);     // a swap is one edit
   EXPECT_EQ(edit_distance("kitten", "sitting"), 3);  // the textbook's example
   EXPECT_EQ(edit_distance("Valve", "valve"), 0);
+}
+
+TEST(Nearest, CountsUpToAMostAsItDoesWithout) {
+  const std::vector<std::string> words{"",      "a",    "ab",     "ba",      "valve",       "vavle",       "VALVES",
+                                       "lamps", "lamp", "kitten", "sitting", "friction_nm", "viscous_nm_s"};
+  for (const std::string& a : words) {
+    for (const std::string& b : words) {
+      for (int most = 0; most < 14; ++most)
+        EXPECT_EQ(edit_distance(a, b, most), std::min(edit_distance(a, b), most + 1)) << a << " " << b << " " << most;
+    }
+  }
 }
 
 TEST(Nearest, IsSymmetricAndObeysTheTriangleInequality) {
