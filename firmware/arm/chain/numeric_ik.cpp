@@ -120,6 +120,12 @@ void NumericIk::enter(const Chain& chain, Stage stage) {
   nearest_ = descent_.q();
   nearest_error_ = descent_.error();
   started_near_ = stage == Stage::search && descent_.error() < near_error;
+  if (stage == Stage::search && !config_.search) {
+    searched_ = seed_;
+    searched_error_ = descent_.error();
+    enter(chain, Stage::beyond_limits);
+    return;
+  }
   // A target beyond the chain's whole length needs no search, only the distance.
   const double away_m = (asked_.base_from_tool.translation() - descent_.state().point_m[0]).norm();
   if (stage == Stage::search && chain.joint(0).kind == JointKind::revolute && away_m > chain.length_m() + asked_.position_tolerance_m) {

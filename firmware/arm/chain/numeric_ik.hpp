@@ -20,6 +20,7 @@ struct NumericIkConfig {
   // following a path.
   std::uint32_t max_restarts = 500;
   std::uint64_t random_seed = 1;
+  bool search = true;  // false: it is known that there is no solution, only the reason is wanted
 };
 
 class NumericIk {

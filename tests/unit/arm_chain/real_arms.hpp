@@ -1,10 +1,9 @@
-// The five arms of the project's reference as chains: the numbers of their URDFs, written by hand, and the same in KDL.
+// The five arms of the project's reference as chains: the numbers of their URDFs, written by hand.
 //
 // Oberon 7 (Apache-2.0), Kraft Predator mock-up (Apache-2.0), UR5 (BSD-3), Franka Panda (Apache-2.0) and OpenMANIPULATOR-X (Apache-2.0): facts of
 // their makers' files. Fixed joints before and after a moving one are multiplied in.
 #pragma once
 
-#include <kdl/chain.hpp>
 #include <string>
 #include <vector>
 
@@ -56,24 +55,7 @@ inline Chain chain_of(const RealArm& arm, bool raw_tool = false) {
   }
   Chain chain;
   const Pose tool = raw_tool ? fixed : *tool_with_axes(fixed, arm.approach, arm.opening);
-  if (chain.set(joints, tool) != ChainFault::none) throw std::runtime_error(arm.name);
-  return chain;
-}
-
-// KDL's chain of the file, built as kdl_parser does; its tool frame is the file's own.
-inline KDL::Chain kdl_chain_of(const RealArm& arm) {
-  using KDL::Joint;
-  KDL::Chain chain;
-  for (const UrdfJoint& j : arm.joints) {
-    const KDL::Frame origin(KDL::Rotation::RPY(j.rpy.x(), j.rpy.y(), j.rpy.z()), KDL::Vector(j.xyz.x(), j.xyz.y(), j.xyz.z()));
-    if (j.kind == UrdfJoint::Kind::fixed) {
-      chain.addSegment(KDL::Segment(Joint(Joint::Fixed), origin));
-      continue;
-    }
-    const KDL::Vector axis = origin.M * KDL::Vector(j.axis.x(), j.axis.y(), j.axis.z());
-    const Joint::JointType type = j.kind == UrdfJoint::Kind::prismatic ? Joint::TransAxis : Joint::RotAxis;
-    chain.addSegment(KDL::Segment(Joint(origin.p, axis, type), origin));
-  }
+  chain.set(joints, tool);  // of size 0 on a fault, which no test survives
   return chain;
 }
 

@@ -1,14 +1,32 @@
 // An independent judge of answers: KDL's forward kinematics on the URDF's numbers, and errors in its own words.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <kdl/chain.hpp>
 #include <kdl/chainfksolverpos_recursive.hpp>
 #include <kdl/jntarray.hpp>
-#include <random>
 
 #include "tests/unit/arm_chain/real_arms.hpp"
 
 namespace lf::chain {
+
+// KDL's chain of the file, built as kdl_parser does; its tool frame is the file's own.
+inline KDL::Chain kdl_chain_of(const RealArm& arm) {
+  using KDL::Joint;
+  KDL::Chain chain;
+  for (const UrdfJoint& j : arm.joints) {
+    const KDL::Frame origin(KDL::Rotation::RPY(j.rpy.x(), j.rpy.y(), j.rpy.z()), KDL::Vector(j.xyz.x(), j.xyz.y(), j.xyz.z()));
+    if (j.kind == UrdfJoint::Kind::fixed) {
+      chain.addSegment(KDL::Segment(Joint(Joint::Fixed), origin));
+      continue;
+    }
+    const KDL::Vector axis = origin.M * KDL::Vector(j.axis.x(), j.axis.y(), j.axis.z());
+    const Joint::JointType type = j.kind == UrdfJoint::Kind::prismatic ? Joint::TransAxis : Joint::RotAxis;
+    chain.addSegment(KDL::Segment(Joint(origin.p, axis, type), origin));
+  }
+  return chain;
+}
 
 class Referee {
  public:
@@ -57,37 +75,5 @@ class Referee {
   KDL::Chain chain_;
   KDL::ChainFkSolverPos_recursive fk_;
 };
-
-// Seeded postures within a chain's limits.
-class RandomPostures {
- public:
-  RandomPostures(const Chain& chain, std::uint64_t seed) : chain_(chain), engine_(seed) {}
-  double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
-  JointValues next() {
-    JointValues q = JointValues::Zero();
-    for (std::size_t i = 0; i < chain_.size(); ++i)
-      q[i] = chain_.joint(i).limited ? uniform(chain_.joint(i).lower, chain_.joint(i).upper) : uniform(-pi, pi);
-    return q;
-  }
-  // Within `width` of `q` on each joint, and within the limits.
-  JointValues near(const JointValues& q, double width) {
-    JointValues out = q;
-    for (std::size_t i = 0; i < chain_.size(); ++i) {
-      out[i] += uniform(-width, width);
-      out[i] -= chain_.excess(i, out[i]);
-    }
-    return out;
-  }
-
- private:
-  Chain chain_;
-  std::mt19937_64 engine_;
-};
-
-inline bool within_limits(const Chain& chain, const JointValues& q) {
-  for (std::size_t i = 0; i < chain.size(); ++i)
-    if (chain.excess(i, q[i]) != 0) return false;
-  return q.tail(static_cast<Eigen::Index>(max_joints - chain.size())).isZero(0);
-}
 
 }  // namespace lf::chain

@@ -5,6 +5,7 @@
 
 #include "hal/heap_guard/heap_guard.hpp"
 #include "tests/unit/all_named.hpp"
+#include "tests/unit/arm_chain/random_postures.hpp"
 #include "tests/unit/arm_chain/referee.hpp"
 
 namespace lf::chain {

@@ -3,7 +3,8 @@
 #include <limits>
 
 #include "firmware/arm/chain/ik_task.hpp"
-#include "tests/unit/arm_chain/referee.hpp"
+#include "tests/unit/arm_chain/random_postures.hpp"
+#include "tests/unit/arm_chain/real_arms.hpp"
 
 namespace lf::chain {
 namespace {
