@@ -1,0 +1,350 @@
+#include "firmware/arm/chain/numeric_ik.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "shared/random.hpp"
+
+namespace lf::chain {
+namespace {
+
+constexpr std::uint32_t most_descent_steps = 40;  // 99 % of the descents that arrive do so within 25
+constexpr std::uint32_t most_slide_steps = 24;    // each halves the way, roughly
+constexpr std::uint32_t most_explaining_steps = 120;
+constexpr std::uint32_t explaining_starts = 12;
+constexpr std::uint32_t starts_around_seed = 4;
+constexpr double around_rad = 0.3;
+constexpr double near_error = 0.25;     // the residual's square: half a radian, or half the arm's length
+constexpr double slide_step_rad = 0.5;  // what curvature makes of it is mended in one or two iterations
+constexpr double slide_pull = 1e-4;
+constexpr double slide_gain = 0.02;   // the share of the squared distance that one more step has to save
+constexpr double firm_position = 30;  // weight: at 0.1 rad of missing turn the position gives way by 1e-4 of the arm's length
+constexpr double limit_rounding = 1e-9;
+
+// The slide's measure: the sum of squared travels.
+double distance(const JointValues& a, const JointValues& b) { return (a - b).squaredNorm(); }
+
+}  // namespace
+
+const char* name(IkOutcome outcome) {
+  switch (outcome) {
+    case IkOutcome::solved: return "solved";
+    case IkOutcome::not_a_number: return "not a number";
+    case IkOutcome::out_of_reach: return "out of reach";
+    case IkOutcome::orientation_unreachable: return "orientation unreachable";
+    case IkOutcome::joint_limit: return "joint limit";
+    case IkOutcome::singular: return "singular";
+    case IkOutcome::gave_up: return "gave up";
+  }
+  return "unknown";
+}
+
+std::uint32_t NumericIk::most_iterations(const NumericIkConfig& config) {
+  const std::uint32_t search = (config.max_restarts + 1) * (most_descent_steps + 1) + most_slide_steps + 1;
+  return search + explaining_starts * (4 * (most_explaining_steps + 1) + most_slide_steps + 1);
+}
+
+double NumericIk::uniform(double lower, double upper) {
+  const double unit = static_cast<double>(splitmix64(random_) >> 11) * 0x1p-53;
+  random_ += splitmix64_step;
+  return lower + unit * (upper - lower);
+}
+
+JointValues NumericIk::clamped(const Chain& chain, const JointValues& q) const {
+  JointValues out = q;
+  for (std::size_t i = 0; i < chain.size(); ++i) out[i] -= chain.excess(i, q[i]);
+  return out;
+}
+
+void NumericIk::begin(const Chain& chain, const IkTask& task, const JointValues& seed, const NumericIkConfig& config) {
+  config_ = config;
+  asked_ = task;
+  random_ = config.random_seed;
+  result_ = IkResult();
+  beyond_found_ = false;
+  status_ = IkStatus::running;
+  if (chain.size() == 0 || !task.valid() || !seed.allFinite()) {
+    result_.outcome = IkOutcome::not_a_number;
+    status_ = IkStatus::failed;
+    stage_ = Stage::done;
+    return;
+  }
+  seed_ = clamped(chain, seed);
+  enter(chain, Stage::search);
+}
+
+IkStatus NumericIk::advance(const Chain& chain, std::uint32_t iterations) {
+  for (std::uint32_t i = 0; i < iterations && status_ == IkStatus::running; ++i) step(chain);
+  return status_;
+}
+
+const IkResult& NumericIk::solve(const Chain& chain, const IkTask& task, const JointValues& seed, const NumericIkConfig& config) {
+  begin(chain, task, seed, config);
+  advance(chain, most_iterations(config));
+  return result_;
+}
+
+// One iteration of whatever stage it is.
+void NumericIk::step(const Chain& chain) {
+  ++result_.iterations;
+  if (stage_ == Stage::approach_seed || stage_ == Stage::approach_limits) {
+    slide(chain);
+    return;
+  }
+  const bool searching = stage_ == Stage::search;
+  if (descent_.stalled() || descent_steps_ >= (searching ? most_descent_steps : most_explaining_steps)) {
+    next_start(chain);
+  } else {
+    descent_.iterate(chain, task_);
+    ++descent_steps_;
+  }
+  if (status_ != IkStatus::running) return;
+  keep_nearest();
+  if (descent_.is_met()) arrived(chain);
+}
+
+void NumericIk::enter(const Chain& chain, Stage stage) {
+  stage_ = stage;
+  task_ = asked_;
+  rules_ = Descent::Rules();
+  starts_ = 0;
+  start_limit_ = config_.max_restarts + 1;
+  if (stage != Stage::search) {
+    start_limit_ = config_.max_restarts == 0 ? 1 : explaining_starts;
+    rules_.fall = 1.0001;
+  }
+  rules_.limited = stage != Stage::beyond_limits && stage != Stage::position_beyond_limits;
+  if (stage == Stage::position_beyond_limits || stage == Stage::position) task_.axis = task_.roll = false;
+  if (stage == Stage::orientation) rules_.position_weight = firm_position;
+  start(chain, stage == Stage::search ? seed_ : searched_);
+  nearest_ = descent_.q();
+  nearest_error_ = descent_.error();
+  started_near_ = stage == Stage::search && descent_.error() < near_error;
+  if (stage == Stage::search && !config_.search) {
+    searched_ = seed_;
+    searched_error_ = descent_.error();
+    enter(chain, Stage::beyond_limits);
+    return;
+  }
+  // A target beyond the chain's whole length needs no search, only the distance.
+  const double away_m = (asked_.base_from_tool.translation() - descent_.state().point_m[0]).norm();
+  if (stage == Stage::search && chain.joint(0).kind == JointKind::revolute && away_m > chain.length_m() + asked_.position_tolerance_m) {
+    searched_ = seed_;
+    searched_error_ = descent_.error();
+    enter(chain, Stage::position_beyond_limits);
+    return;
+  }
+  if (descent_.is_met()) arrived(chain);
+}
+
+void NumericIk::start(const Chain& chain, const JointValues& q) {
+  ++starts_;
+  descent_steps_ = 0;
+  descent_.start(chain, task_, rules_, q);
+}
+
+void NumericIk::next_start(const Chain& chain) {
+  if (starts_ >= start_limit_) {
+    exhausted(chain);
+    return;
+  }
+  if (stage_ == Stage::search) ++result_.restarts;
+  if (started_near_ && starts_ <= starts_around_seed)
+    start_around(chain, seed_);
+  else
+    start_at_random(chain);
+}
+
+// The better of two random postures: a fifth fewer iterations on the whole than from the first.
+void NumericIk::start_at_random(const Chain& chain) {
+  Descent other;
+  for (const bool first : {true, false}) {
+    JointValues q = JointValues::Zero();
+    for (std::size_t i = 0; i < chain.size(); ++i) {
+      const ChainJoint& joint = chain.joint(i);
+      q[i] = chain.full_turn(i) ? seed_[i] + uniform(-pi, pi) : uniform(joint.lower, joint.upper);
+    }
+    if (first)
+      start(chain, q);
+    else
+      other.start(chain, task_, rules_, q);
+  }
+  if (other.error() < descent_.error()) descent_ = other;
+}
+
+void NumericIk::start_around(const Chain& chain, const JointValues& q) {
+  JointValues around = q;
+  for (std::size_t i = 0; i < chain.size(); ++i) {
+    const double width = chain.joint(i).kind == JointKind::prismatic ? around_rad * chain.length_m() : around_rad;
+    around[i] += uniform(-width, width);
+  }
+  start(chain, clamped(chain, around));
+}
+
+void NumericIk::keep_nearest() {
+  if (!(descent_.error() < nearest_error_)) return;
+  nearest_error_ = descent_.error();
+  nearest_ = descent_.q();
+}
+
+// A descent has met the stage's task.
+void NumericIk::arrived(const Chain& chain) {
+  const bool free_joints = task_.constraints() < static_cast<int>(chain.size());
+  if (stage_ == Stage::search || stage_ == Stage::beyond_limits || stage_ == Stage::position_beyond_limits) {
+    if (stage_ == Stage::search && !free_joints) {
+      finish(chain, IkOutcome::solved, 0);
+      return;
+    }
+    if (free_joints) {
+      before_slide_ = stage_;
+      stage_ = stage_ == Stage::search ? Stage::approach_seed : Stage::approach_limits;
+      descent_.start(chain, task_, rules_, chain.unwound(descent_.q(), seed_));
+      slide_distance_ = 1e300;
+      descent_steps_ = steps_since_met_ = 0;
+      return;
+    }
+    keep_least_excess(chain);
+    next_start(chain);
+    return;
+  }
+  if (stage_ == Stage::position) {
+    searched_ = descent_.q();
+    enter(chain, Stage::orientation);
+    return;
+  }
+  finish(chain, IkOutcome::solved, 0);  // the last stage found it after all
+}
+
+// One step along the free directions, or one that mends what the step before has bent.
+void NumericIk::slide(const Chain& chain) {
+  const JointValues goal = stage_ == Stage::approach_seed ? seed_ : clamped(chain, descent_.q());
+  if (descent_.is_met()) {
+    const double away = distance(descent_.q(), goal);
+    const bool gained = away < (1 - slide_gain) * slide_distance_;
+    if (away < slide_distance_) {
+      slide_distance_ = away;
+      slide_best_ = descent_.q();
+    }
+    if (!gained || away < limit_rounding * limit_rounding || descent_steps_ >= most_slide_steps) {
+      slid(chain);
+      return;
+    }
+    const JointValues way = goal - descent_.q();
+    const double longest = way.cwiseAbs().maxCoeff();
+    descent_.iterate_toward(chain, task_, descent_.q() + way * std::min(1.0, slide_step_rad / longest), slide_pull);
+    steps_since_met_ = 0;
+    // Where the step itself gains nothing, its mending is spared.
+    if (!(distance(descent_.q(), goal) < (1 - slide_gain) * slide_distance_)) {
+      slid(chain);
+      return;
+    }
+  } else if (steps_since_met_ >= 6 || descent_steps_ >= most_slide_steps) {
+    slid(chain);
+    return;
+  } else {
+    descent_.iterate(chain, task_);
+    ++steps_since_met_;
+  }
+  ++descent_steps_;
+}
+
+void NumericIk::slid(const Chain& chain) {
+  descent_.start(chain, task_, rules_, slide_best_);
+  if (stage_ == Stage::approach_seed) {
+    finish(chain, IkOutcome::solved, 0);
+    return;
+  }
+  stage_ = before_slide_;
+  keep_least_excess(chain);
+  next_start(chain);
+}
+
+// Of a posture that meets the task without limits: by how much does it pass them?
+void NumericIk::keep_least_excess(const Chain& chain) {
+  JointValues q = chain.unwound(descent_.q(), chain.middle());
+  double most = 0;
+  int joint = -1;
+  for (std::size_t i = 0; i < chain.size(); ++i) {
+    const double past = std::abs(chain.excess(i, q[i]));
+    if (past <= most) continue;
+    most = past;
+    joint = static_cast<int>(i);
+  }
+  if (beyond_found_ && most >= least_excess_) return;
+  beyond_found_ = true;
+  least_ = q;
+  least_excess_ = most;
+  least_joint_ = joint;
+}
+
+// No start of the stage has met its task.
+void NumericIk::exhausted(const Chain& chain) {
+  switch (stage_) {
+    case Stage::search:
+      searched_ = nearest_;
+      searched_error_ = nearest_error_;
+      enter(chain, Stage::beyond_limits);
+      return;
+    case Stage::beyond_limits:
+      if (beyond_found_)
+        finish_at_limit(chain);
+      else if (config_.max_restarts == 0)
+        explain_single_descent(chain);
+      else
+        enter(chain, Stage::position_beyond_limits);
+      return;
+    case Stage::position_beyond_limits:
+      if (beyond_found_) {
+        enter(chain, Stage::position);
+        return;
+      }
+      start(chain, nearest_);
+      finish(chain, IkOutcome::out_of_reach,
+             task_error(task_, descent_.state().tool, descent_.state().tool_m).position_m - task_.position_tolerance_m);
+      return;
+    case Stage::position: finish_at_limit(chain); return;
+    case Stage::orientation: {
+      start(chain, nearest_);
+      const TaskError error = task_error(task_, descent_.state().tool, descent_.state().tool_m);
+      const double axis = error.axis_rad - task_.axis_tolerance_rad;
+      const double roll = error.roll_rad - task_.roll_tolerance_rad;
+      finish(chain, IkOutcome::orientation_unreachable, std::max(axis, roll));
+      return;
+    }
+    default: finish(chain, IkOutcome::gave_up, 0); return;
+  }
+}
+
+// One descent from the seed has failed, and so has one without limits: is it the posture that holds it?
+void NumericIk::explain_single_descent(const Chain& chain) {
+  rules_.limited = true;
+  start(chain, searched_);
+  const int here = descent_.rank(chain);
+  JointValues beside = searched_;
+  for (std::size_t i = 0; i < chain.size(); ++i) beside[i] += 0.3 + 0.05 * static_cast<double>(i);
+  start(chain, beside);
+  const int elsewhere = descent_.rank(chain);
+  start(chain, searched_);
+  finish(chain, here < elsewhere ? IkOutcome::singular : IkOutcome::gave_up, 0);
+}
+
+void NumericIk::finish_at_limit(const Chain& chain) {
+  const bool inside = least_excess_ <= limit_rounding;
+  start(chain, inside ? clamped(chain, least_) : least_);
+  result_.joint = inside ? -1 : least_joint_;
+  finish(chain, inside ? IkOutcome::solved : IkOutcome::joint_limit, inside ? 0 : least_excess_);
+}
+
+// The descent stands at the answer.
+void NumericIk::finish(const Chain& chain, IkOutcome outcome, double excess) {
+  result_.outcome = outcome;
+  result_.excess = excess;
+  result_.q = outcome == IkOutcome::joint_limit ? descent_.q() : chain.unwound(descent_.q(), seed_);
+  result_.error = task_error(asked_, descent_.state().tool, descent_.state().tool_m);
+  result_.travel_rad = chain.travel_rad(seed_, result_.q);
+  result_.jump = result_.travel_rad > jump_rad;
+  stage_ = Stage::done;
+  status_ = outcome == IkOutcome::solved ? IkStatus::solved : IkStatus::failed;
+}
+
+}  // namespace lf::chain
