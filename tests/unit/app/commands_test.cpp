@@ -42,7 +42,7 @@ class Commands : public Program {
 
 TEST_F(Commands, EveryCommandHasHelpAndHelpIsNoFailure) {
   for (const char* command : {"", "run", "campaign", "compare", "serve", "render-frames", "scenarios", "reach", "peaks", "plane", "markers",
-                              "ik", "bench", "doctor", "version"}) {
+                              "ik", "check", "bench", "doctor", "version"}) {
     const Said said = run(std::string(command) + " --help");
     EXPECT_EQ(said.status, 0) << command;
     EXPECT_NE(said.out.find("--help"), std::string::npos) << command;
@@ -74,6 +74,38 @@ TEST_F(Commands, RunTellsADrivesErrorInItsMakersWords) {
 TEST_F(Commands, DoctorFindsThisMachineFit) {
   const Json doctor = json_of("doctor");
   EXPECT_EQ(doctor["good"], true) << doctor.dump(2);
+}
+
+// The joints as the maker's page has them, and a reach that no pose of the data sheet's 0.85 m, the flange's 0.0823 m and the wrist's offset exceeds.
+TEST_F(Commands, CheckReadsAnArmOfAnotherMaker) {
+  const std::string ur5 = LANTERNFISH_TEST_DATA "/arms/ur5/ur5.urdf";
+  const Json arm = json_of("check arm " + ur5);
+  ASSERT_EQ(arm["joints"].size(), 6u);
+  EXPECT_EQ(arm["joints"][2]["name"], "elbow_joint");
+  EXPECT_NEAR(arm["joints"][2]["upper"].get<double>(), 3.14159265, 1e-8);
+  EXPECT_EQ(arm["tool_link"], "tool0");
+  EXPECT_EQ(arm["inverse_kinematics"]["family"], "three parallel axes");
+  EXPECT_EQ(arm["inverse_kinematics"]["postures"], 200);
+  EXPECT_EQ(arm["inverse_kinematics"]["found"], 200);
+  EXPECT_GT(arm["reach"]["farthest_m"].get<double>(), 0.8);
+  EXPECT_LT(arm["reach"]["farthest_m"].get<double>(), 1.03);
+  const Said said = run("check arm " + ur5);
+  EXPECT_EQ(said.status, 0) << said.err;
+  for (const char* part : {"6 joints", "shoulder_pan_joint", "three parallel axes", "200 of them are found again"})
+    EXPECT_NE(said.out.find(part), std::string::npos) << part << "\n" << said.out;
+}
+
+TEST_F(Commands, CheckSaysWhatIsWrongWithAnArmAndWhere) {
+  const std::string bad = file("bad.urdf", "<robot name='r'>\n<link name='a'/>\n<link name='a'/>\n</robot>\n");
+  const Json refused = json_of("check arm " + bad, 2);
+  ASSERT_GE(refused["problems"].size(), 1u);
+  EXPECT_NE(refused["problems"][0].get<std::string>().find("bad.urdf:3"), std::string::npos) << refused;
+  EXPECT_EQ(run("check arm absent.urdf").status, 2);
+  const Said ambiguous = run("check arm " LANTERNFISH_TEST_DATA "/arms/open_manipulator_x/open_manipulator_x.urdf");
+  EXPECT_EQ(ambiguous.status, 2);
+  EXPECT_NE(ambiguous.err.find("say which link is the tool"), std::string::npos) << ambiguous.err;
+  EXPECT_EQ(run("check arms " + bad).status, 2);
+  EXPECT_NE(run("check arms " + bad).err.find("did you mean 'arm'?"), std::string::npos);
 }
 
 // Forward again by the published closed form: R = a0 + a1 cos b - a2 cos g + d sin g ... with the angles that ik gave.

@@ -14,8 +14,9 @@ namespace {
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
-const std::vector<std::string> commands{"run",     "campaign", "serve", "render-frames", "scenarios", "reach", "peaks",      "plane",
-                                        "markers", "ik",       "bench", "doctor",        "version",   "help",  "completion", "compare"};
+const std::vector<std::string> commands{"run",        "campaign", "serve", "render-frames", "scenarios", "reach",   "peaks",
+                                        "plane",      "markers",  "ik",    "bench",         "doctor",    "version", "help",
+                                        "completion", "compare",  "check"};
 
 class Help : public Program {
  protected:

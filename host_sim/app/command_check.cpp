@@ -1,0 +1,197 @@
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "firmware/arm/chain/ik.hpp"
+#include "hal/config/arm_chain.hpp"
+#include "hal/config/nearest.hpp"
+#include "host_sim/app/checks.hpp"
+#include "host_sim/app/command.hpp"
+#include "shared/random.hpp"
+#include "shared/urdf/read_urdf.hpp"
+
+namespace lf::app {
+
+namespace {
+
+struct Options {
+  std::string kind, file;
+  config::ArmEnds ends;
+  std::vector<std::string> package_folders;
+  int postures = 200;
+  bool json = false;
+};
+
+// What random postures of an arm say about it.
+struct Trial {
+  chain::IkTask task;  // what was asked of the tool, its pose not set
+  int found = 0;
+  double farthest_m = 0;                                                         // the tool from the first joint
+  Vec3 lower_m = Vec3::Constant(INFINITY), upper_m = Vec3::Constant(-INFINITY);  // the tool, base frame
+};
+
+// What so many joints can hold: four a bar's direction, five an axis to approach along.
+chain::IkTask most_of(std::size_t joints) {
+  chain::IkTask task;
+  task.axis = joints >= 5;
+  task.roll = joints == 4 || joints >= 6;
+  return task;
+}
+
+const char* text_of(const chain::IkTask& task) {
+  if (task.axis) return task.roll ? "position, approach axis and roll" : "position and approach axis";
+  return task.roll ? "position and roll" : "position";
+}
+
+chain::JointValues random_posture(const chain::Chain& arm, std::uint64_t& state) {
+  chain::JointValues q = chain::JointValues::Zero();
+  for (std::size_t i = 0; i < arm.size(); ++i) {
+    const double share = std::ldexp(static_cast<double>(splitmix64(state) >> 11), -53);
+    state += splitmix64_step;
+    const chain::ChainJoint& joint = arm.joint(i);
+    const double lower = joint.limited ? joint.lower : -pi, upper = joint.limited ? joint.upper : pi;
+    q[Eigen::Index(i)] = lower + share * (upper - lower);
+  }
+  return q;
+}
+
+// The tool is put where random postures have it, from the middle of the joints' ranges.
+Trial try_postures(const chain::Chain& arm, int postures) {
+  Trial trial;
+  trial.task = most_of(arm.size());
+  chain::Ik ik(arm);
+  const Vec3 first_joint_m = arm.joint(0).parent_from_joint.translation();
+  std::uint64_t state = 1;
+  for (int i = 0; i < postures; ++i) {
+    chain::IkTask task = trial.task;
+    task.base_from_tool = arm.base_from_tool(random_posture(arm, state));
+    const Vec3 tool_m = task.base_from_tool.translation();
+    trial.lower_m = trial.lower_m.cwiseMin(tool_m), trial.upper_m = trial.upper_m.cwiseMax(tool_m);
+    trial.farthest_m = std::max(trial.farthest_m, (tool_m - first_joint_m).norm());
+    const chain::IkResult& result = ik.solve(task, arm.middle());
+    if (result.ok()) ++trial.found;
+  }
+  return trial;
+}
+
+Json numbers(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+template <typename Number>
+Json or_null(const std::optional<Number>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+const char* kind_of(const urdf::Joint& joint) {
+  switch (joint.type) {
+    case urdf::JointType::revolute: return "revolute";
+    case urdf::JointType::continuous: return "continuous";
+    case urdf::JointType::prismatic: return "prismatic";
+    case urdf::JointType::fixed: break;
+  }
+  return "fixed";
+}
+
+// Axes at joint values 0.
+chain::ChainState at_zero(const chain::Chain& arm) {
+  chain::ChainState state;
+  arm.evaluate(chain::JointValues::Zero(), state);
+  return state;
+}
+
+void answer(const urdf::Reading& reading, const config::ArmChain& arm, const chain::Ik& ik, const Trial& trial, int postures) {
+  const urdf::Mechanism& mechanism = reading.mechanism;
+  const chain::ChainState state = at_zero(arm.chain);
+  Json json{{"file", mechanism.file}, {"name", mechanism.name}, {"base_link", arm.base_link}, {"tool_link", arm.tool_link}};
+  for (std::size_t i = 0; i < arm.joints.size(); ++i) {
+    const urdf::Joint& joint = mechanism.joints[arm.joints[i]];
+    json["joints"].push_back({{"name", joint.name},
+                              {"kind", kind_of(joint)},
+                              {"lower", joint.range ? Json(joint.range->lower) : Json(nullptr)},
+                              {"upper", joint.range ? Json(joint.range->upper) : Json(nullptr)},
+                              {"velocity", or_null(joint.velocity)},
+                              {"effort", or_null(joint.effort)},
+                              {"axis", numbers(state.axis[i])}});
+  }
+  json["tool"] = {{"position_m", numbers(state.tool_m)}, {"approach", numbers(state.tool.col(2))}, {"opening", numbers(state.tool.col(0))}};
+  json["inverse_kinematics"] = {{"family", chain::name(ik.family())},
+                                {"reason", ik.reason()},
+                                {"task", text_of(trial.task)},
+                                {"postures", postures},
+                                {"found", trial.found}};
+  if (postures > 0)
+    json["reach"] = {{"farthest_m", trial.farthest_m}, {"lower_m", numbers(trial.lower_m)}, {"upper_m", numbers(trial.upper_m)}};
+  json["notes"] = Json::array();
+  for (const urdf::Note& note : reading.notes) json["notes"].push_back({{"line", note.line}, {"text", note.text}});
+  print_json(json);
+}
+
+std::string cell(const std::optional<double>& value, const char* unknown) {
+  if (!value) return unknown;
+  char text[32];
+  (void)std::snprintf(text, sizeof text, "%.4g", *value);
+  return text;
+}
+
+void tell(const urdf::Reading& reading, const config::ArmChain& arm, const chain::Ik& ik, const Trial& trial, int postures) {
+  const urdf::Mechanism& mechanism = reading.mechanism;
+  const chain::ChainState state = at_zero(arm.chain);
+  print("%s: %s from %s to %s, %s\n", mechanism.file.c_str(), mechanism.name.c_str(), arm.base_link.c_str(), arm.tool_link.c_str(),
+        count_of(arm.joints.size(), "joint").c_str());
+  print("%-24s %-10s %9s %9s %7s %7s   axis at 0, base frame\n", "joint", "kind", "lower", "upper", "speed", "effort");
+  for (std::size_t i = 0; i < arm.joints.size(); ++i) {
+    const urdf::Joint& joint = mechanism.joints[arm.joints[i]];
+    const std::optional<double> lower = joint.range ? std::optional(joint.range->lower) : std::nullopt,
+                                upper = joint.range ? std::optional(joint.range->upper) : std::nullopt;
+    print("%-24s %-10s %9s %9s %7s %7s   %6.3f %6.3f %6.3f\n", joint.name.c_str(), kind_of(joint), cell(lower, "none").c_str(),
+          cell(upper, "none").c_str(), cell(joint.velocity, "?").c_str(), cell(joint.effort, "?").c_str(), state.axis[i].x(),
+          state.axis[i].y(), state.axis[i].z());
+  }
+  print("angles in rad, rad/s and N m; slides in m, m/s and N; ? where the file does not say\n");
+  print("tool at 0: %.4f %.4f %.4f m; approaches along %.3f %.3f %.3f, opens along %.3f %.3f %.3f\n", state.tool_m.x(), state.tool_m.y(),
+        state.tool_m.z(), state.tool(0, 2), state.tool(1, 2), state.tool(2, 2), state.tool(0, 0), state.tool(1, 0), state.tool(2, 0));
+  print("inverse kinematics: %s. %s\n", chain::name(ik.family()), ik.reason());
+  if (postures > 0) {
+    print("%d random postures: the tool within %.3f m of the first joint, x %.3f to %.3f, y %.3f to %.3f, z %.3f to %.3f m\n", postures,
+          trial.farthest_m, trial.lower_m.x(), trial.upper_m.x(), trial.lower_m.y(), trial.upper_m.y(), trial.lower_m.z(),
+          trial.upper_m.z());
+    print("%d of them are found again from the middle of the ranges, by %s\n", trial.found, text_of(trial.task));
+  }
+  if (!reading.notes.empty()) print("what was assumed, changed or is of no use here:\n");
+  for (const urdf::Note& note : reading.notes) print("  %s\n", reading.told(note).c_str());
+}
+
+int check_arm(const Options& options) {
+  config::check_names({options.kind}, {"arm"}, "check");
+  urdf::ReadOptions how;
+  how.package_folders.assign(options.package_folders.begin(), options.package_folders.end());
+  const urdf::Reading reading = urdf::read_urdf(options.file, how);
+  const config::ArmChain arm = config::arm_chain(reading.mechanism, options.ends);
+  const chain::Ik ik(arm.chain);
+  const Trial trial = try_postures(arm.chain, options.postures);
+  (options.json ? answer : tell)(reading, arm, ik, trial, options.postures);
+  if (trial.found == options.postures) return done;
+  tell_doubts(options.file, {std::to_string(options.postures - trial.found) + " of " + std::to_string(options.postures) +
+                             " random postures are not found again"});
+  return failed;
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, Action& action) {
+  CLI::App* command =
+      app.add_subcommand("check", "Read an arm's URDF strictly: its joints, its inverse kinematics, its reach, and all that was assumed");
+  auto options = std::make_shared<Options>();
+  command->add_option("KIND", options->kind, "What FILE describes: arm")->required();
+  command->add_option("FILE", options->file, "A URDF file")->required();
+  command->add_option("--base", options->ends.base_link, "The link that the arm begins at; the root where it is not given");
+  command->add_option("--tool", options->ends.tool_link, "The link that carries the tool; needed where the arm ends at several");
+  command->add_option("--approach", options->ends.approach, "The tool link's axis along which it approaches: x, -x, y, -y, z or -z");
+  command->add_option("--opening", options->ends.opening, "The tool link's axis along which its fingers open");
+  command->add_option("--packages", options->package_folders,
+                      "A folder that holds the folders of packages, for package:// meshes; can be given again");
+  command->add_option("--postures", options->postures, "Random postures to try")->check(within(0, 100000));
+  command->add_flag("--json", options->json, "Print JSON");
+  command->callback([options, &action] { action = [options] { return check_arm(*options); }; });
+}
+
+}  // namespace lf::app
