@@ -1,7 +1,6 @@
 #include "shared/urdf/motion.hpp"
 
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 
 #include "shared/random.hpp"
@@ -29,11 +28,12 @@ double unit(std::uint64_t& state) {
   return static_cast<double>(bits >> 11) * 0x1p-53;
 }
 
-int rank(const Eigen::MatrixXd& matrix) {
-  if (matrix.cols() == 0) return 0;
-  Eigen::JacobiSVD<Eigen::MatrixXd> svd(matrix);
-  svd.setThreshold(1e-6);  // of the largest: rotations that a file writes with 4 digits are off by 4e-6
-  return static_cast<int>(svd.rank());
+// Of a matrix with columns. The threshold is a share of its largest pivot: rotations that a file writes with 4 digits are off by 4e-6.
+Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposed(const Eigen::MatrixXd& matrix) {
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> result;
+  result.setThreshold(1e-5);
+  result.compute(matrix);
+  return result;
 }
 
 }  // namespace
@@ -92,6 +92,7 @@ Freedom freedom(const Mechanism& mechanism, const std::vector<Step>& path, const
   Freedom result;
   const std::vector<std::size_t> free = mechanism.free_joints(path);
   result.joints = free.size();
+  if (free.empty()) return result;
   constexpr int draws = 8;  // a pose drawn at random is singular with probability 0; the best of several is told
   std::uint64_t state = 1;
   std::vector<double> q(free.size());
@@ -102,13 +103,12 @@ Freedom freedom(const Mechanism& mechanism, const std::vector<Step>& path, const
     }
     const std::vector<double> all = coordinates(mechanism, free, q);
     const Eigen::MatrixXd j = jacobian(mechanism, path, all);
-    result.dimensions = std::max(result.dimensions, rank(j));
-    result.translates = result.translates || rank(j.topRows(3)) == 3;
-    Eigen::Matrix<double, 6, 1> roll = Eigen::Matrix<double, 6, 1>::Zero();
+    const auto whole = decomposed(j);
+    result.dimensions = std::max(result.dimensions, static_cast<int>(whole.rank()));
+    result.translates = result.translates || decomposed(j.topRows(3)).rank() == 3;
+    Eigen::VectorXd roll = Eigen::VectorXd::Zero(6);
     roll.tail<3>() = begin_from_end(mechanism, path, all).linear() * approach;
-    if (j.cols() == 0) continue;
-    const Eigen::VectorXd speeds = j.completeOrthogonalDecomposition().solve(roll);
-    result.rolls = result.rolls || (j * speeds - roll).norm() < 1e-4;  // ten times what rounded rotations leave
+    result.rolls = result.rolls || (j * whole.solve(roll) - roll).norm() < 1e-4;  // ten times what rounded rotations leave
   }
   return result;
 }
