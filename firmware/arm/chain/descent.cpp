@@ -120,7 +120,7 @@ void Descent::step(const Chain& chain, const IkTask& task, const JointValues& q_
 }
 
 void Descent::iterate(const Chain& chain, const IkTask& task) {
-  step(chain, task, q_, 0, damping_per_error * error_ + least_damping);
+  step(chain, task, q_, 0, damping_per_error * error_ + rules_.remaining_damping * std::sqrt(error_) + least_damping);
   if (++since_mark_ < mark_iterations) return;
   stalled_ = !(error_ < error_before_ / rules_.fall);
   error_before_ = error_;

@@ -15,6 +15,9 @@ class Descent {
     bool limited = true;         // false: joints may pass their limits
     double position_weight = 1;  // of the position's rows over the orientation's
     double fall = 4;             // what the error has to be divided by in six iterations
+    // Damping in proportion to the error itself. Where an error is to remain its curvature outweighs the Jacobian's square, and steps without this
+    // go to and fro about the least error.
+    double remaining_damping = 0;
   };
 
   // Begins at `q`. O(joints).

@@ -15,9 +15,11 @@ constexpr std::uint32_t explaining_starts = 12;
 constexpr std::uint32_t starts_around_seed = 4;
 constexpr double around_rad = 0.3;
 constexpr double near_error = 0.25;     // the residual's square: half a radian, or half the arm's length
-constexpr double slide_step_rad = 0.5;  // what curvature makes of it is mended in one or two iterations
+constexpr double slide_step_rad = 0.7;  // what curvature makes of it is mended in one or two iterations
 constexpr double slide_pull = 1e-4;
-constexpr double slide_gain = 0.02;   // the share of the squared distance that one more step has to save
+// The share of the squared distance that a step has to save, for a step that goes all the way. Less than that is left where the way to the seed is
+// within 13 degrees of square to the free directions.
+constexpr double slide_gain = 0.1;
 constexpr double firm_position = 30;  // weight: at 0.1 rad of missing turn the position gives way by 1e-4 of the arm's length
 constexpr double limit_rounding = 1e-9;
 
@@ -40,8 +42,8 @@ const char* name(IkOutcome outcome) {
 }
 
 std::uint32_t NumericIk::most_iterations(const NumericIkConfig& config) {
-  const std::uint32_t search = (config.max_restarts + 1) * (most_descent_steps + 1) + most_slide_steps + 1;
-  return search + explaining_starts * (4 * (most_explaining_steps + 1) + most_slide_steps + 1);
+  const std::uint32_t search = (config.max_restarts + 1) * (most_descent_steps + 2) + most_slide_steps + 2;
+  return search + explaining_starts * (4 * (most_explaining_steps + 2) + 2 * (most_slide_steps + 2));
 }
 
 double NumericIk::uniform(double lower, double upper) {
@@ -69,8 +71,17 @@ void NumericIk::begin(const Chain& chain, const IkTask& task, const JointValues&
     stage_ = Stage::done;
     return;
   }
-  seed_ = clamped(chain, seed);
-  enter(chain, Stage::search);
+  seed_ = searched_ = clamped(chain, seed);
+  enter(chain, first_stage(chain));
+}
+
+// A target beyond the chain's whole length needs no search, only the distance.
+NumericIk::Stage NumericIk::first_stage(const Chain& chain) const {
+  const Vec3 first_m = chain.joint(0).parent_from_joint.translation();
+  const double away_m = (asked_.base_from_tool.translation() - first_m).norm();
+  if (away_m > chain.length_m() + asked_.position_tolerance_m && chain.joint(0).kind == JointKind::revolute)
+    return Stage::position_beyond_limits;
+  return config_.search ? Stage::search : Stage::beyond_limits;
 }
 
 IkStatus NumericIk::advance(const Chain& chain, std::uint32_t iterations) {
@@ -91,6 +102,10 @@ void NumericIk::step(const Chain& chain) {
     slide(chain);
     return;
   }
+  if (descent_.is_met()) {
+    arrived(chain);
+    return;
+  }
   const bool searching = stage_ == Stage::search;
   if (descent_.stalled() || descent_steps_ >= (searching ? most_descent_steps : most_explaining_steps)) {
     next_start(chain);
@@ -98,9 +113,7 @@ void NumericIk::step(const Chain& chain) {
     descent_.iterate(chain, task_);
     ++descent_steps_;
   }
-  if (status_ != IkStatus::running) return;
-  keep_nearest();
-  if (descent_.is_met()) arrived(chain);
+  if (status_ == IkStatus::running) keep_nearest();
 }
 
 void NumericIk::enter(const Chain& chain, Stage stage) {
@@ -112,6 +125,7 @@ void NumericIk::enter(const Chain& chain, Stage stage) {
   if (stage != Stage::search) {
     start_limit_ = config_.max_restarts == 0 ? 1 : explaining_starts;
     rules_.fall = 1.0001;
+    rules_.remaining_damping = 0.5;  // a stretched arm's curvature is at most its length's, which is 1 here
   }
   rules_.limited = stage != Stage::beyond_limits && stage != Stage::position_beyond_limits;
   if (stage == Stage::position_beyond_limits || stage == Stage::position) task_.axis = task_.roll = false;
@@ -120,21 +134,6 @@ void NumericIk::enter(const Chain& chain, Stage stage) {
   nearest_ = descent_.q();
   nearest_error_ = descent_.error();
   started_near_ = stage == Stage::search && descent_.error() < near_error;
-  if (stage == Stage::search && !config_.search) {
-    searched_ = seed_;
-    searched_error_ = descent_.error();
-    enter(chain, Stage::beyond_limits);
-    return;
-  }
-  // A target beyond the chain's whole length needs no search, only the distance.
-  const double away_m = (asked_.base_from_tool.translation() - descent_.state().point_m[0]).norm();
-  if (stage == Stage::search && chain.joint(0).kind == JointKind::revolute && away_m > chain.length_m() + asked_.position_tolerance_m) {
-    searched_ = seed_;
-    searched_error_ = descent_.error();
-    enter(chain, Stage::position_beyond_limits);
-    return;
-  }
-  if (descent_.is_met()) arrived(chain);
 }
 
 void NumericIk::start(const Chain& chain, const JointValues& q) {
@@ -199,7 +198,7 @@ void NumericIk::arrived(const Chain& chain) {
       before_slide_ = stage_;
       stage_ = stage_ == Stage::search ? Stage::approach_seed : Stage::approach_limits;
       descent_.start(chain, task_, rules_, chain.unwound(descent_.q(), seed_));
-      slide_distance_ = 1e300;
+      slide_distance_ = slide_bound_ = 1e300;
       descent_steps_ = steps_since_met_ = 0;
       return;
     }
@@ -220,21 +219,23 @@ void NumericIk::slide(const Chain& chain) {
   const JointValues goal = stage_ == Stage::approach_seed ? seed_ : clamped(chain, descent_.q());
   if (descent_.is_met()) {
     const double away = distance(descent_.q(), goal);
-    const bool gained = away < (1 - slide_gain) * slide_distance_;
+    const bool gained = away < slide_bound_;
     if (away < slide_distance_) {
       slide_distance_ = away;
       slide_best_ = descent_.q();
     }
-    if (!gained || away < limit_rounding * limit_rounding || descent_steps_ >= most_slide_steps) {
+    const JointValues way = goal - descent_.q();
+    const double longest = way.cwiseAbs().maxCoeff();
+    if (!gained || longest < limit_rounding || descent_steps_ >= most_slide_steps) {
       slid(chain);
       return;
     }
-    const JointValues way = goal - descent_.q();
-    const double longest = way.cwiseAbs().maxCoeff();
-    descent_.iterate_toward(chain, task_, descent_.q() + way * std::min(1.0, slide_step_rad / longest), slide_pull);
+    const double share = std::min(1.0, slide_step_rad / longest);
+    slide_bound_ = (1 - slide_gain * share) * slide_distance_;
+    descent_.iterate_toward(chain, task_, descent_.q() + share * way, slide_pull);
     steps_since_met_ = 0;
     // Where the step itself gains nothing, its mending is spared.
-    if (!(distance(descent_.q(), goal) < (1 - slide_gain) * slide_distance_)) {
+    if (distance(descent_.q(), goal) >= slide_bound_) {
       slid(chain);
       return;
     }
@@ -282,7 +283,6 @@ void NumericIk::exhausted(const Chain& chain) {
   switch (stage_) {
     case Stage::search:
       searched_ = nearest_;
-      searched_error_ = nearest_error_;
       enter(chain, Stage::beyond_limits);
       return;
     case Stage::beyond_limits:

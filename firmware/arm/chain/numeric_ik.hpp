@@ -28,8 +28,8 @@ class NumericIk {
   // Takes on a task. The seed is drawn into the limits first; distances are from there. O(joints).
   void begin(const Chain& chain, const IkTask& task, const JointValues& seed, const NumericIkConfig& config = {});
 
-  // Works on for at most `iterations`; the same chain as at begin(). An iteration is one forward kinematics and one linear system of size() equations,
-  // or a start with two forward kinematics. However the iterations are divided into calls, the answer is the same.
+  // Works on for at most `iterations`; the same chain as at begin(). An iteration is one forward kinematics and one linear system of size() equations, or a
+  // start with two forward kinematics, or the change from one search to the next. However the iterations are divided into calls, the answer is the same.
   IkStatus advance(const Chain& chain, std::uint32_t iterations);
 
   // begin() and advance() to the end. Bounded: see most_iterations().
@@ -53,6 +53,7 @@ class NumericIk {
     done,
   };
 
+  Stage first_stage(const Chain& chain) const;
   void step(const Chain& chain);
   void enter(const Chain& chain, Stage stage);
   void next_start(const Chain& chain);
@@ -92,11 +93,10 @@ class NumericIk {
   double nearest_error_ = 0;
   // Of the search: the same, kept for the stages after it.
   JointValues searched_ = JointValues::Zero();
-  double searched_error_ = 0;
   // Best of a slide.
   JointValues slide_best_ = JointValues::Zero();
   double slide_distance_ = 0;
-  TaskError slide_error_;
+  double slide_bound_ = 0;  // what the next step has to come under
   // Of what is reached without limits: the posture that passes them least.
   bool beyond_found_ = false;
   JointValues least_ = JointValues::Zero();

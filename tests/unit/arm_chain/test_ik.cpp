@@ -199,7 +199,7 @@ TEST(Ik, RefusesAsTheNumericSolverDoes) {
     RandomPostures random(ik.chain(), seed + 4);
     NumericIk numeric;
     int refused = 0;
-    for (int k = 0; k < 200; ++k) {
+    for (int k = 0; k < 100; ++k) {
       JointValues q = random.next();
       const auto joint = static_cast<std::size_t>(k) % 4;
       q[joint] = k % 8 < 4 ? ik.chain().joint(joint).upper + past : ik.chain().joint(joint).lower - past;
@@ -213,7 +213,7 @@ TEST(Ik, RefusesAsTheNumericSolverDoes) {
       Referee kdl(arm);
       ASSERT_TRUE(kdl.fulfils(task, a.q));
     }
-    EXPECT_GT(refused, 60);
+    EXPECT_GT(refused, 30);
   }
 }
 

@@ -1,0 +1,12 @@
+// Inverse kinematics of any arm against KDL's solvers: the reference's protocol, 10,000 random reachable poses on each of five arms.
+#pragma once
+
+#include <vector>
+
+#include "tests/bench/row.hpp"
+
+namespace lf::bench {
+
+std::vector<Row> run_chain_bench();
+
+}  // namespace lf::bench
