@@ -125,6 +125,11 @@ void answer(const urdf::Reading& reading, const config::ArmChain& arm, const cha
   print_json(json);
 }
 
+// For people: "0.000", never "-0.000".
+Vec3 shown(const Vec3& v) {
+  return v.unaryExpr([](double x) { return std::abs(x) < 5e-5 ? 0.0 : x; });
+}
+
 std::string cell(const std::optional<double>& value, const char* unknown) {
   if (!value) return unknown;
   char text[32];
@@ -135,20 +140,21 @@ std::string cell(const std::optional<double>& value, const char* unknown) {
 void tell(const urdf::Reading& reading, const config::ArmChain& arm, const chain::Ik& ik, const Trial& trial, int postures) {
   const urdf::Mechanism& mechanism = reading.mechanism;
   const chain::ChainState state = at_zero(arm.chain);
+  const Vec3 tool_m = shown(state.tool_m), approach = shown(state.tool.col(2)), opening = shown(state.tool.col(0));
   print("%s: %s from %s to %s, %s\n", mechanism.file.c_str(), mechanism.name.c_str(), arm.base_link.c_str(), arm.tool_link.c_str(),
         count_of(arm.joints.size(), "joint").c_str());
   print("%-24s %-10s %9s %9s %7s %7s   axis at 0, base frame\n", "joint", "kind", "lower", "upper", "speed", "effort");
   for (std::size_t i = 0; i < arm.joints.size(); ++i) {
     const urdf::Joint& joint = mechanism.joints[arm.joints[i]];
+    const Vec3 axis = shown(state.axis[i]);
     const std::optional<double> lower = joint.range ? std::optional(joint.range->lower) : std::nullopt,
                                 upper = joint.range ? std::optional(joint.range->upper) : std::nullopt;
     print("%-24s %-10s %9s %9s %7s %7s   %6.3f %6.3f %6.3f\n", joint.name.c_str(), kind_of(joint), cell(lower, "none").c_str(),
-          cell(upper, "none").c_str(), cell(joint.velocity, "?").c_str(), cell(joint.effort, "?").c_str(), state.axis[i].x(),
-          state.axis[i].y(), state.axis[i].z());
+          cell(upper, "none").c_str(), cell(joint.velocity, "?").c_str(), cell(joint.effort, "?").c_str(), axis.x(), axis.y(), axis.z());
   }
   print("angles in rad, rad/s and N m; slides in m, m/s and N; ? where the file does not say\n");
-  print("tool at 0: %.4f %.4f %.4f m; approaches along %.3f %.3f %.3f, opens along %.3f %.3f %.3f\n", state.tool_m.x(), state.tool_m.y(),
-        state.tool_m.z(), state.tool(0, 2), state.tool(1, 2), state.tool(2, 2), state.tool(0, 0), state.tool(1, 0), state.tool(2, 0));
+  print("tool at 0: %.4f %.4f %.4f m; approaches along %.3f %.3f %.3f, opens along %.3f %.3f %.3f\n", tool_m.x(), tool_m.y(), tool_m.z(),
+        approach.x(), approach.y(), approach.z(), opening.x(), opening.y(), opening.z());
   print("inverse kinematics: %s. %s\n", chain::name(ik.family()), ik.reason());
   if (postures > 0) {
     print("%d random postures: the tool within %.3f m of the first joint, x %.3f to %.3f, y %.3f to %.3f, z %.3f to %.3f m\n", postures,
