@@ -9,13 +9,15 @@ namespace lf::chain {
 namespace {
 
 constexpr std::uint32_t most_descent_steps = 40;  // 99 % of the descents that arrive do so within 25
-constexpr std::uint32_t most_slide_steps = 24;    // each halves the way, roughly
+constexpr std::uint32_t most_slide_steps = 40;    // nine tenths end within 16
+constexpr std::uint32_t most_mending_steps = 6;
 constexpr std::uint32_t most_explaining_steps = 120;
 constexpr std::uint32_t explaining_starts = 12;
 constexpr std::uint32_t starts_around_seed = 4;
 constexpr double around_rad = 0.3;
 constexpr double near_error = 0.25;     // the residual's square: half a radian, or half the arm's length
 constexpr double slide_step_rad = 0.7;  // what curvature makes of it is mended in one or two iterations
+constexpr double shortest_slide_rad = 0.15;
 constexpr double slide_pull = 1e-4;
 // The share of the squared distance that a step has to save, for a step that goes all the way. Less than that is left where the way to the seed is
 // within 13 degrees of square to the free directions.
@@ -125,10 +127,11 @@ void NumericIk::enter(const Chain& chain, Stage stage) {
   if (stage != Stage::search) {
     start_limit_ = config_.max_restarts == 0 ? 1 : explaining_starts;
     rules_.fall = 1.0001;
-    rules_.remaining_damping = 0.5;  // a stretched arm's curvature is at most its length's, which is 1 here
   }
   rules_.limited = stage != Stage::beyond_limits && stage != Stage::position_beyond_limits;
   if (stage == Stage::position_beyond_limits || stage == Stage::position) task_.axis = task_.roll = false;
+  // Only this search's remaining error is told as it is. A stretched arm's curvature is at most its length's, which is 1 here.
+  if (stage == Stage::position_beyond_limits) rules_.remaining_damping = 0.5;
   if (stage == Stage::orientation) rules_.position_weight = firm_position;
   start(chain, stage == Stage::search ? seed_ : searched_);
   nearest_ = descent_.q();
@@ -199,6 +202,7 @@ void NumericIk::arrived(const Chain& chain) {
       stage_ = stage_ == Stage::search ? Stage::approach_seed : Stage::approach_limits;
       descent_.start(chain, task_, rules_, chain.unwound(descent_.q(), seed_));
       slide_distance_ = slide_bound_ = 1e300;
+      slide_step_ = slide_step_rad;
       descent_steps_ = steps_since_met_ = 0;
       return;
     }
@@ -216,37 +220,36 @@ void NumericIk::arrived(const Chain& chain) {
 
 // One step along the free directions, or one that mends what the step before has bent.
 void NumericIk::slide(const Chain& chain) {
-  const JointValues goal = stage_ == Stage::approach_seed ? seed_ : clamped(chain, descent_.q());
-  if (descent_.is_met()) {
-    const double away = distance(descent_.q(), goal);
-    const bool gained = away < slide_bound_;
-    if (away < slide_distance_) {
-      slide_distance_ = away;
-      slide_best_ = descent_.q();
-    }
-    const JointValues way = goal - descent_.q();
-    const double longest = way.cwiseAbs().maxCoeff();
-    if (!gained || longest < limit_rounding || descent_steps_ >= most_slide_steps) {
-      slid(chain);
-      return;
-    }
-    const double share = std::min(1.0, slide_step_rad / longest);
-    slide_bound_ = (1 - slide_gain * share) * slide_distance_;
-    descent_.iterate_toward(chain, task_, descent_.q() + share * way, slide_pull);
-    steps_since_met_ = 0;
-    // Where the step itself gains nothing, its mending is spared.
-    if (distance(descent_.q(), goal) >= slide_bound_) {
-      slid(chain);
-      return;
-    }
-  } else if (steps_since_met_ >= 6 || descent_steps_ >= most_slide_steps) {
-    slid(chain);
-    return;
-  } else {
+  ++descent_steps_;
+  if (!descent_.is_met() && steps_since_met_ < most_mending_steps) {
     descent_.iterate(chain, task_);
     ++steps_since_met_;
+    return;
   }
-  ++descent_steps_;
+  const JointValues here = descent_.q();
+  const double away = distance(here, stage_ == Stage::approach_seed ? seed_ : clamped(chain, here));
+  const bool gained = descent_.is_met() && away < slide_bound_;
+  if (descent_.is_met() && away < slide_distance_) {
+    slide_distance_ = away;
+    slide_best_ = here;
+  }
+  if (!gained) {  // too far for the curvature, or against a limit: a shorter step from where it was best
+    slide_step_ /= 2;
+    descent_.start(chain, task_, rules_, slide_best_);
+  }
+  const JointValues goal = stage_ == Stage::approach_seed ? seed_ : clamped(chain, slide_best_);
+  const JointValues way = goal - slide_best_;
+  const double longest = way.cwiseAbs().maxCoeff();
+  if (slide_step_ < shortest_slide_rad || longest < limit_rounding || descent_steps_ >= most_slide_steps) {
+    slid(chain);
+    return;
+  }
+  const double share = std::min(1.0, slide_step_ / longest);
+  slide_bound_ = (1 - slide_gain * share) * slide_distance_;
+  descent_.iterate_toward(chain, task_, slide_best_ + share * way, slide_pull);
+  steps_since_met_ = 0;
+  // Where the step itself gains nothing, its mending is spared.
+  if (distance(descent_.q(), goal) >= slide_bound_) slid(chain);
 }
 
 void NumericIk::slid(const Chain& chain) {

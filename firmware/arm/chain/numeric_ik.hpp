@@ -96,6 +96,7 @@ class NumericIk {
   // Best of a slide.
   JointValues slide_best_ = JointValues::Zero();
   double slide_distance_ = 0;
+  double slide_step_ = 0;
   double slide_bound_ = 0;  // what the next step has to come under
   // Of what is reached without limits: the posture that passes them least.
   bool beyond_found_ = false;
