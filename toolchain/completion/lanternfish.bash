@@ -4,7 +4,7 @@ _lanternfish() {
   COMPREPLY=()
   for ((i = 1; i < COMP_CWORD; i++)); do
     case ${COMP_WORDS[i]} in
-      run|campaign|compare|serve|render-frames|scenarios|reach|peaks|plane|markers|ik|bench|doctor|version|help|completion) command=${COMP_WORDS[i]}; break ;;
+      run|campaign|compare|serve|render-frames|scenarios|reach|peaks|plane|markers|ik|check|bench|doctor|version|help|completion) command=${COMP_WORDS[i]}; break ;;
     esac
   done
   case $command in
@@ -130,6 +130,18 @@ _lanternfish() {
       esac
       options='--help --x --y --z --roll --margin --json'
       ;;
+    'check')
+      case $before in
+        --base) compopt -o filenames; COMPREPLY=($(compgen -f -- "$word")); return ;;
+        --tool) compopt -o filenames; COMPREPLY=($(compgen -f -- "$word")); return ;;
+        --approach) compopt -o filenames; COMPREPLY=($(compgen -f -- "$word")); return ;;
+        --opening) compopt -o filenames; COMPREPLY=($(compgen -f -- "$word")); return ;;
+        --packages) compopt -o filenames; COMPREPLY=($(compgen -f -- "$word")); return ;;
+        --postures) :; return ;;
+      esac
+      options='--help --base --tool --approach --opening --packages --postures --json'
+      [[ $word == -* ]] || { compopt -o filenames; COMPREPLY=($(compgen -f -- "$word")); return; }
+      ;;
     'bench')
       options='--help --json'
       [[ $word == -* ]] || { compopt -o filenames; COMPREPLY=($(compgen -f -- "$word")); return; }
@@ -142,14 +154,14 @@ _lanternfish() {
       ;;
     'help')
       options='--help'
-      [[ $word == -* ]] || { COMPREPLY=($(compgen -W "$(printf "%s\n" run campaign compare serve render-frames scenarios reach peaks plane markers ik bench doctor version help completion)" -- "$word")); return; }
+      [[ $word == -* ]] || { COMPREPLY=($(compgen -W "$(printf "%s\n" run campaign compare serve render-frames scenarios reach peaks plane markers ik check bench doctor version help completion)" -- "$word")); return; }
       ;;
     'completion')
       options='--help'
       [[ $word == -* ]] || { COMPREPLY=($(compgen -W "$(printf '%s\n' bash zsh)" -- "$word")); return; }
       ;;
   esac
-  [ -n "$command" ] || options+=' run campaign compare serve render-frames scenarios reach peaks plane markers ik bench doctor version help completion'
+  [ -n "$command" ] || options+=' run campaign compare serve render-frames scenarios reach peaks plane markers ik check bench doctor version help completion'
   COMPREPLY=($(compgen -W "$options" -- "$word"))
 }
 complete -F _lanternfish lanternfish
