@@ -22,7 +22,7 @@ struct System {
     double diagonal[N];
     double inverse[N];
     for (std::size_t j = 0; j < N; ++j) {
-      double scaled[N];  // row j times the diagonal
+      double scaled[N] = {};  // row j times the diagonal
       double d = a[j][j];
       for (std::size_t k = 0; k < j; ++k) {
         scaled[k] = a[j][k] * diagonal[k];
