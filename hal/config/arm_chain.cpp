@@ -32,7 +32,7 @@ std::size_t tool_of(const Mechanism& mechanism, const std::string& name) {
   if (ends.size() == 1) return ends.front();
   std::string names;
   for (const std::size_t end : ends) names += (names.empty() ? "'" : ", '") + mechanism.links[end].name + "'";
-  throw InputError(mechanism.file + ": the arm could end at " + names + ": say which link is the tool");
+  throw InputError(mechanism.file + ": the arm could end at " + names + ": say which link is the tool (--tool LINK)");
 }
 
 chain::ChainJoint chain_joint(const Joint& joint, const Pose& before) {

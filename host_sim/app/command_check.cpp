@@ -16,7 +16,7 @@ namespace {
 
 struct Options {
   std::string kind, file;
-  config::ArmEnds ends;
+  config::ArmEnds ends{.base_link = "", .tool_link = "", .approach = "z", .opening = ""};
   std::vector<std::string> package_folders;
   int postures = 200;
   bool json = false;
@@ -25,7 +25,7 @@ struct Options {
 // What random postures of an arm say about it.
 struct Trial {
   chain::IkTask task;  // what was asked of the tool, its pose not set
-  int found = 0;
+  int found = 0, by_closed_form = 0;
   double farthest_m = 0;                                                         // the tool from the first joint
   Vec3 lower_m = Vec3::Constant(INFINITY), upper_m = Vec3::Constant(-INFINITY);  // the tool, base frame
 };
@@ -55,6 +55,17 @@ chain::JointValues random_posture(const chain::Chain& arm, std::uint64_t& state)
   return q;
 }
 
+// Whatever the solver says of itself.
+bool is_there(const chain::Chain& arm, const chain::IkTask& task, const chain::JointValues& q) {
+  constexpr double near = 1e-6;  // rad, and of the arm's length
+  for (std::size_t i = 0; i < arm.size(); ++i) {
+    if (std::abs(arm.excess(i, q[Eigen::Index(i)])) > 1e-9) return false;
+  }
+  const Pose tool = arm.base_from_tool(q);
+  const chain::TaskError error = chain::task_error(task, tool.linear(), tool.translation());
+  return error.position_m <= near * arm.length_m() && error.orientation_rad <= near;
+}
+
 // The tool is put where random postures have it, from the middle of the joints' ranges.
 Trial try_postures(const chain::Chain& arm, int postures) {
   Trial trial;
@@ -69,7 +80,9 @@ Trial try_postures(const chain::Chain& arm, int postures) {
     trial.lower_m = trial.lower_m.cwiseMin(tool_m), trial.upper_m = trial.upper_m.cwiseMax(tool_m);
     trial.farthest_m = std::max(trial.farthest_m, (tool_m - first_joint_m).norm());
     const chain::IkResult& result = ik.solve(task, arm.middle());
-    if (result.ok()) ++trial.found;
+    if (!result.ok() || !is_there(arm, task, result.q)) continue;
+    ++trial.found;
+    if (result.closed_form) ++trial.by_closed_form;
   }
   return trial;
 }
@@ -117,9 +130,10 @@ void answer(const urdf::Reading& reading, const config::ArmChain& arm, const cha
                                 {"reason", ik.reason()},
                                 {"task", text_of(trial.task)},
                                 {"postures", postures},
-                                {"found", trial.found}};
+                                {"found", trial.found},
+                                {"by_closed_form", trial.by_closed_form}};
   if (postures > 0)
-    json["reach"] = {{"farthest_m", trial.farthest_m}, {"lower_m", numbers(trial.lower_m)}, {"upper_m", numbers(trial.upper_m)}};
+    json["tool_seen"] = {{"farthest_m", trial.farthest_m}, {"lower_m", numbers(trial.lower_m)}, {"upper_m", numbers(trial.upper_m)}};
   json["notes"] = Json::array();
   for (const urdf::Note& note : reading.notes) json["notes"].push_back({{"line", note.line}, {"text", note.text}});
   print_json(json);
@@ -160,13 +174,18 @@ void tell(const urdf::Reading& reading, const config::ArmChain& arm, const chain
     print("%d random postures: the tool within %.3f m of the first joint, x %.3f to %.3f, y %.3f to %.3f, z %.3f to %.3f m\n", postures,
           trial.farthest_m, trial.lower_m.x(), trial.upper_m.x(), trial.lower_m.y(), trial.upper_m.y(), trial.lower_m.z(),
           trial.upper_m.z());
-    print("%d of them are found again from the middle of the ranges, by %s\n", trial.found, text_of(trial.task));
+    print("%d of them are found again from the middle of the ranges, by %s; %d in closed form\n", trial.found, text_of(trial.task),
+          trial.by_closed_form);
   }
   if (!reading.notes.empty()) print("what was assumed, changed or is of no use here:\n");
   for (const urdf::Note& note : reading.notes) print("  %s\n", reading.told(note).c_str());
 }
 
-int check_arm(const Options& options) {
+// An opening that is not given is square to the approach.
+std::string opening_beside(const std::string& approach) { return approach.ends_with('x') ? "y" : "x"; }
+
+int check_arm(Options options) {
+  if (options.ends.opening.empty()) options.ends.opening = opening_beside(options.ends.approach);
   config::check_names({options.kind}, {"arm"}, "check");
   urdf::ReadOptions how;
   how.package_folders.assign(options.package_folders.begin(), options.package_folders.end());
@@ -184,18 +203,20 @@ int check_arm(const Options& options) {
 }  // namespace
 
 void add_check(CLI::App& app, Action& action) {
-  CLI::App* command =
-      app.add_subcommand("check", "Read an arm's URDF strictly: its joints, its inverse kinematics, its reach, and all that was assumed");
+  CLI::App* command = app.add_subcommand(
+      "check", "Read an arm's URDF strictly: its joints, its inverse kinematics, where its tool comes, and all that was assumed");
   auto options = std::make_shared<Options>();
   command->add_option("KIND", options->kind, "What FILE describes: arm")->required();
   command->add_option("FILE", options->file, "A URDF file")->required();
   command->add_option("--base", options->ends.base_link, "The link that the arm begins at; the root where it is not given");
   command->add_option("--tool", options->ends.tool_link, "The link that carries the tool; needed where the arm ends at several");
-  command->add_option("--approach", options->ends.approach, "The tool link's axis along which it approaches: x, -x, y, -y, z or -z");
-  command->add_option("--opening", options->ends.opening, "The tool link's axis along which its fingers open");
+  command->add_option("--approach", options->ends.approach,
+                      "The tool link's axis along which it approaches: x, -x, y, -y, z or -z; z where it is not given");
+  command->add_option("--opening", options->ends.opening,
+                      "The tool link's axis along which its fingers open; x where it is not given, y where x approaches");
   command->add_option("--packages", options->package_folders,
                       "A folder that holds the folders of packages, for package:// meshes; can be given again");
-  command->add_option("--postures", options->postures, "Random postures to try")->check(within(0, 100000));
+  command->add_option("--postures", options->postures, "Random postures to try; 200 where it is not given")->check(within(0, 100000));
   command->add_flag("--json", options->json, "Print JSON");
   command->callback([options, &action] { action = [options] { return check_arm(*options); }; });
 }

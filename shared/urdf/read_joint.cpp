@@ -87,6 +87,9 @@ void read_range(const Element& limit, NamedJoint& named) {
     return;
   }
   joint.range = range;
+  constexpr double rounding_rad = 0.01;  // many files write a whole turn as 6.28 or 6.2832
+  if (!slides && std::max(-range.lower, range.upper) > 2 * pi + rounding_rad)
+    limit.note("goes beyond a whole turn. It is taken in radians; were degrees meant?");
   if (range.lower == range.upper) {
     limit.note("has lower = upper: the joint is taken as fixed there");
     joint.parent_from_joint = joint.parent_from_child(range.lower);

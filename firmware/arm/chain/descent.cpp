@@ -154,18 +154,4 @@ int Descent::rank(const Chain& chain) const {
   return rank;
 }
 
-int Descent::blocked_joint(const Chain& chain) const {
-  std::array<Column, max_joints> j;
-  columns(chain, j);
-  int blocked = -1;
-  double hardest = 0;
-  for (std::size_t i = 0; i < chain.size(); ++i) {
-    const double push = j[i].dot(residual_.value);
-    if (!pushed_out(chain, i, push) || std::abs(push) <= hardest) continue;
-    hardest = std::abs(push);
-    blocked = static_cast<int>(i);
-  }
-  return blocked;
-}
-
 }  // namespace lf::chain

@@ -35,8 +35,6 @@ class Descent {
   bool stalled() const { return stalled_; }
   // The rank of the Jacobian of the task, of at most min(constraints, joints), where it stands now.
   int rank(const Chain& chain) const;
-  // The joint that stands at a limit and is pushed outward hardest; -1 when none is.
-  int blocked_joint(const Chain& chain) const;
 
  private:
   using Column = Eigen::Matrix<double, 6, 1>;

@@ -201,6 +201,7 @@ void NumericIk::arrived(const Chain& chain) {
       before_slide_ = stage_;
       stage_ = stage_ == Stage::search ? Stage::approach_seed : Stage::approach_limits;
       descent_.start(chain, task_, rules_, chain.unwound(descent_.q(), seed_));
+      slide_best_ = descent_.q();
       slide_distance_ = slide_bound_ = 1e300;
       slide_step_ = slide_step_rad;
       descent_steps_ = steps_since_met_ = 0;
@@ -254,11 +255,15 @@ void NumericIk::slide(const Chain& chain) {
 
 void NumericIk::slid(const Chain& chain) {
   descent_.start(chain, task_, rules_, slide_best_);
-  if (stage_ == Stage::approach_seed) {
+  if (stage_ == Stage::approach_seed && descent_.is_met()) {
     finish(chain, IkOutcome::solved, 0);
     return;
   }
   stage_ = before_slide_;
+  if (!descent_.is_met()) {  // whole turns have put it past the tolerance, and it was not mended
+    next_start(chain);
+    return;
+  }
   keep_least_excess(chain);
   next_start(chain);
 }

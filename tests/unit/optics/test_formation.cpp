@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "host_sim/optics/formation/halo_pyramid.hpp"
@@ -134,6 +135,12 @@ TEST(NormalDeviates, AreTheSameInARowAsOneByOne) {
   }
 }
 
+// Written down from the program of 3dcd7c3, which took them eight by eight: a run's digest rests on them.
+TEST(NormalDeviates, AreThoseOfEarlierVersions) {
+  const std::pair<std::uint32_t, float> known[] = {{0, 1.23989463F}, {1, -0.540919244F}, {77, -0.776132584F}, {307199, 0.679600954F}};
+  for (const auto& [number, deviate] : known) EXPECT_FLOAT_EQ(normal_deviate(number, 0x123456789ABCDEF), deviate) << number;
+}
+
 std::vector<float> factors(const Speckle& speckle, std::uint32_t first, std::size_t count) {
   std::vector<float> factors(count);
   speckle.factors(first, count, factors.data());
@@ -150,6 +157,15 @@ TEST(Speckle, HasMeanOneAndItsContrast) {
     EXPECT_NEAR(mean, 1, 4 * contrast / std::sqrt(double(count)) + 2e-3);
     EXPECT_NEAR(std::sqrt(squares / count - mean * mean), contrast, 0.02 * contrast);
   }
+}
+
+TEST(Speckle, IsThatOfEarlierVersions) {
+  const std::vector<float> known{0.832275093F, 1.05430317F,  0.817940772F, 0.949764073F, 0.884888232F,
+                                 1.36553025F,  0.981095672F, 1.08670616F,  0.809469461F, 0.792776287F};
+  const Speckle speckle(0.18, 5, {0.1234, 0.5, -0.3});
+  const std::vector<float> from_60 = factors(speckle, 60, 80), from_0 = factors(speckle, 0, 160);
+  for (std::size_t i = 0; i < known.size(); ++i) EXPECT_FLOAT_EQ(from_60[i], known[i]) << i;
+  for (std::size_t i = 0; i < from_60.size(); ++i) EXPECT_EQ(from_60[i], from_0[60 + i]) << i;
 }
 
 double likeness(const Speckle& a, const Speckle& b) {

@@ -53,6 +53,12 @@ TEST(UrdfTells, AnglesThatLookLikeDegrees) {
       ElementsAre("arm.urdf:7: <origin> of joint 'elbow' has an rpy beyond a whole turn. It is taken in radians; were degrees meant?"));
 }
 
+TEST(UrdfTells, RangesThatLookLikeDegrees) {
+  EXPECT_THAT(notes_of(with(elbow, "upper=\"2\"", "upper=\"90\"")),
+              ElementsAre("arm.urdf:9: <limit> of joint 'elbow' goes beyond a whole turn. It is taken in radians; were degrees meant?"));
+  EXPECT_THAT(notes_of(with(with(elbow, "upper=\"2\"", "upper=\"6.2832\""), "lower=\"-1\"", "lower=\"-6.2832\"")), IsEmpty());
+}
+
 TEST(UrdfReads, EveryFigureOfAJoint) {
   const Joint joint = read_text(with(elbow, "</joint>", "<dynamics damping=\"0.5\" friction=\"0.25\"/></joint>")).joints[0];
   EXPECT_EQ(joint.name, "elbow");

@@ -1,4 +1,4 @@
-// What a mechanism that has been read promises: each sentence of shared/urdf/mechanism.hpp, checked. For tests and the fuzz target.
+// What a mechanism that has been read promises: what of shared/urdf/mechanism.hpp can be checked without the file. For tests and the fuzz target.
 #pragma once
 
 #include <Eigen/Eigenvalues>
