@@ -248,6 +248,9 @@ Reading read_urdf(const std::string& file, const ReadOptions& options) {
   parse(file, text, document);
   const XMLElement* const root = document.RootElement();
   if (root == nullptr) throw InputError(file, 0, "has no element: write a <robot>");
+  if (const XMLElement* const next = root->NextSiblingElement())
+    throw InputError(file, next->GetLineNum(),
+                     "a second element stands beside <" + std::string(root->Name()) + ">: write one robot a file");
   refuse_macros(file, root);
   Report report(file);
   const Element robot(root, report);

@@ -35,6 +35,10 @@ TEST(UrdfRefuses, JointsThatAreNoneOfOurs) {
        {"name=\"elbow\"", "name=\"\"", "arm.urdf:4: joint '' has no name: give one"}});
 }
 
+TEST(UrdfRefuses, ASecondRobot) {
+  EXPECT_THAT(error_of(elbow + elbow), StartsWith("arm.urdf:12: a second element stands beside <robot>: write one robot a file"));
+}
+
 TEST(UrdfRefuses, LinksThatAreNotThere) {
   expect_refused(elbow,
                  {{"<parent link=\"base\"/>", "<parent link=\"bas\"/>",
