@@ -11,6 +11,7 @@ namespace {
 constexpr std::uint32_t most_descent_steps = 40;  // 99 % of the descents that arrive do so within 25
 constexpr std::uint32_t most_slide_steps = 40;    // nine tenths end within 16
 constexpr std::uint32_t most_mending_steps = 6;
+constexpr std::uint32_t most_restarts = 1'000'000;  // so that iterations can be counted in 32 bits
 constexpr std::uint32_t most_explaining_steps = 120;
 constexpr std::uint32_t explaining_starts = 12;
 constexpr std::uint32_t starts_around_seed = 4;
@@ -44,8 +45,9 @@ const char* name(IkOutcome outcome) {
 }
 
 std::uint32_t NumericIk::most_iterations(const NumericIkConfig& config) {
-  const std::uint32_t search = (config.max_restarts + 1) * (most_descent_steps + 2) + most_slide_steps + 2;
-  return search + explaining_starts * (4 * (most_explaining_steps + 2) + 2 * (most_slide_steps + 2));
+  constexpr std::uint32_t slide = most_slide_steps + most_mending_steps + 2;
+  const std::uint32_t search = (std::min(config.max_restarts, most_restarts) + 1) * (most_descent_steps + 2 + slide);
+  return search + explaining_starts * (4 * (most_explaining_steps + 2) + 2 * slide);
 }
 
 double NumericIk::uniform(double lower, double upper) {
@@ -62,6 +64,7 @@ JointValues NumericIk::clamped(const Chain& chain, const JointValues& q) const {
 
 void NumericIk::begin(const Chain& chain, const IkTask& task, const JointValues& seed, const NumericIkConfig& config) {
   config_ = config;
+  config_.max_restarts = std::min(config.max_restarts, most_restarts);
   asked_ = task;
   random_ = config.random_seed;
   result_ = IkResult();
@@ -260,11 +263,8 @@ void NumericIk::slid(const Chain& chain) {
     return;
   }
   stage_ = before_slide_;
-  if (!descent_.is_met()) {  // whole turns have put it past the tolerance, and it was not mended
-    next_start(chain);
-    return;
-  }
-  keep_least_excess(chain);
+  // Whole turns may have put it past the tolerance.
+  if (descent_.is_met()) keep_least_excess(chain);
   next_start(chain);
 }
 

@@ -34,7 +34,7 @@ class NumericIk {
 
   // begin() and advance() to the end. Bounded: see most_iterations().
   const IkResult& solve(const Chain& chain, const IkTask& task, const JointValues& seed, const NumericIkConfig& config = {});
-  // No task takes more iterations than this.
+  // No task takes more iterations than this; at most 10^6 restarts are made.
   static std::uint32_t most_iterations(const NumericIkConfig& config);
 
   IkStatus status() const { return status_; }

@@ -141,6 +141,16 @@ TEST(NumericIk, SaysByHowMuchATargetIsOutOfReach) {
   }
 }
 
+TEST(NumericIkBound, GrowsWithTheRestartsAndDoesNotWrap) {
+  std::uint32_t before = 0;
+  for (const std::uint32_t restarts : {0U, 1U, 500U, 1'000'000U}) {
+    const std::uint32_t most = NumericIk::most_iterations({.max_restarts = restarts});
+    EXPECT_GT(most, before) << restarts;
+    before = most;
+  }
+  EXPECT_EQ(NumericIk::most_iterations({.max_restarts = 0xFFFFFFFF}), before);
+}
+
 TEST(NumericIk, SaysByHowMuchATargetIsTooNear) {
   const StraightArm arm(0.5, 0.2, 0.1);  // nothing within 0.2 m of the shoulder
   const Chain chain = arm.chain();
