@@ -15,12 +15,16 @@ void turn_by(record::ReportPart& part, const ArmJoint& joint, scene::BodyId pare
 }  // namespace
 
 std::vector<record::ReportPart> report_parts_of(const world::WorldConfig& config) {
-  std::vector<record::ReportPart> parts(scene::body_count);
+  std::vector<record::ReportPart> parts(config.scene.size());
   for (std::size_t i = 0; i < parts.size(); ++i) {
     parts[i].name = config.scene[i].name;
     parts[i].shapes = config.scene[i].shapes;
   }
   parts[std::size_t(scene::BodyId::vehicle)].group = record::PartGroup::vehicle;
+  for (std::size_t i = std::size_t(scene::BodyId::obstacle); i < parts.size(); ++i) {
+    parts[i].group = record::PartGroup::panel;
+    parts[i].parent_from_part = config.scene[i].base_from_body;
+  }
   for (std::size_t i = 0; i < joint_count; ++i)
     turn_by(parts[i + 1], config.arm.joints[i], static_cast<scene::BodyId>(i), static_cast<int>(i));
   turn_by(parts[std::size_t(scene::BodyId::finger_b)], config.arm.finger_b, scene::BodyId::wrist, static_cast<int>(Joint::jaw));

@@ -79,14 +79,14 @@ double distance_to_surface_m(const Vec3& point_m, const scene::Shape& shape) {
 }
 
 std::vector<double> cloud_errors_mm(std::span<const CloudPoint> cloud, const scene::Scene& scene, const scene::BodyPoses& poses) {
-  std::array<Pose, scene::body_count> body_from_base;
   constexpr auto first = static_cast<std::size_t>(scene::BodyId::panel);
-  for (std::size_t body = first; body < scene::body_count; ++body) body_from_base[body] = poses[body].inverse();
+  scene::BodyPoses body_from_base;
+  for (const Pose& base_from_body : poses) body_from_base.push_back(base_from_body.inverse());
   std::vector<double> distances;
   distances.reserve(cloud.size());
   for (const CloudPoint& point : cloud) {
     double nearest = std::numeric_limits<double>::infinity();
-    for (std::size_t body = first; body < scene::body_count; ++body) {
+    for (std::size_t body = first; body < scene.size(); ++body) {
       const Vec3 p = body_from_base[body] * point.p_m.cast<double>();
       for (const scene::Shape& shape : scene[body].shapes) nearest = std::min(nearest, distance_to_surface_m(p, shape));
     }

@@ -24,7 +24,7 @@ double handle_error_deg(double found_rad, double true_rad);
 
 // Distance of a point from a shape's surface, both in the body's frame. A capsule is its cylinder and two half spheres; a mesh its triangles.
 double distance_to_surface_m(const Vec3& point_m, const scene::Shape& shape);
-// Distances of the points from the nearest surface of panel, handle and buttons, mm.
+// Distances of the points from the nearest surface of panel, handle, buttons and objects, mm.
 std::vector<double> cloud_errors_mm(std::span<const CloudPoint> cloud, const scene::Scene& scene, const scene::BodyPoses& poses);
 
 // Nearest-rank percentile, NaN without values.

@@ -113,10 +113,7 @@ std::optional<Contradiction> contradiction(std::span<const mission::TaskResult> 
 }
 
 std::string contact_text(const world::UnintendedContact& contact) {
-  static constexpr std::array<const char*, scene::touchable_body_count> names{
-      "vehicle", "slew",   "upper arm",   "forearm",       "wrist",        "finger a", "finger b",
-      "panel",   "handle", "left button", "centre button", "right button", "obstacle"};
-  return formatted("%s and %s at %.2f s, up to %.0f N", names[std::size_t(contact.a)], names[std::size_t(contact.b)], contact.first_s,
+  return formatted("%s and %s at %.2f s, up to %.0f N", contact.name_a.c_str(), contact.name_b.c_str(), contact.first_s,
                    contact.peak_force_n);
 }
 

@@ -44,9 +44,9 @@ Cone Cone::about_sphere(const Vec3& apex, const Vec3& centre, double radius_m) {
 }
 
 // A long shape becomes a row of spheres, each about a slice that is as long as the shape is wide.
-BodyBounds::BodyBounds(const scene::Scene& scene, const std::function<bool(scene::BodyId)>& has) {
+BodyBounds::BodyBounds(const scene::Scene& scene, const std::function<bool(const scene::Body&)>& has) {
   for (std::size_t body = 0; body < scene.size(); ++body) {
-    if (!has(static_cast<scene::BodyId>(body))) continue;
+    if (!has(scene[body])) continue;
     for (const scene::Shape& shape : scene[body].shapes) {
       if (!shape.visible) continue;
       const Box box = box_of(shape);

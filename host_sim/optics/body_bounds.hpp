@@ -23,7 +23,7 @@ struct Cone {
 class BodyBounds {
  public:
   // About the visible shapes of the bodies that `has` names.
-  BodyBounds(const scene::Scene& scene, const std::function<bool(scene::BodyId)>& has);
+  BodyBounds(const scene::Scene& scene, const std::function<bool(const scene::Body&)>& has);
 
   void set_poses(const scene::BodyPoses& base_from_body);
 

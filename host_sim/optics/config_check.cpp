@@ -62,8 +62,8 @@ void check(const CameraConfig& camera) {
   require_range(camera.port->water_index, 1, 3, "camera: port water_index");
 }
 
-void check(const LaserConfig& laser) {
-  require(static_cast<std::size_t>(laser.body) < scene::body_count, "laser: there is no such body");
+void check(const LaserConfig& laser, std::size_t bodies) {
+  require(static_cast<std::size_t>(laser.body) < bodies, "laser: there is no such body");
   require_pose(laser.body_from_laser, "laser: body_from_laser");
   require_range(laser.fan_half_angle_rad, 0.001, 1.5, "laser: fan_half_angle_rad");
   require_range(laser.cone_rad, -1, 1, "laser: cone_rad");
@@ -79,8 +79,8 @@ void check(const LaserConfig& laser) {
   require_range(laser.speckle, 0, 0.5, "laser: speckle");
 }
 
-void check(const LampConfig& lamp) {
-  require(static_cast<std::size_t>(lamp.body) < scene::body_count, "lamp: there is no such body");
+void check(const LampConfig& lamp, std::size_t bodies) {
+  require(static_cast<std::size_t>(lamp.body) < bodies, "lamp: there is no such body");
   require_pose(lamp.body_from_lamp, "lamp: body_from_lamp");
   require_light(lamp.intensity_w_sr, "lamp: intensity_w_sr");
   require_range(lamp.cone_half_angle_rad, 0.01, pi, "lamp: cone_half_angle_rad");
@@ -108,10 +108,11 @@ void check(const WaterConfig& water) {
 void check(const OpticsConfig& config) {
   require(!config.cameras.empty(), "at least one camera is needed");
   require(config.lasers.size() <= 16 && config.lamps.size() <= 15, "at most 16 lasers and 15 lamps");
+  require(config.scene.size() <= scene::max_bodies, "scene: more than 64 bodies");
   require(config.threads >= 1 && config.threads <= 1024, "threads must lie in 1..1024");
   for (const CameraConfig& camera : config.cameras) check(camera);
-  for (const LaserConfig& laser : config.lasers) check(laser);
-  for (const LampConfig& lamp : config.lamps) check(lamp);
+  for (const LaserConfig& laser : config.lasers) check(laser, config.scene.size());
+  for (const LampConfig& lamp : config.lamps) check(lamp, config.scene.size());
   check(config.water);
 }
 

@@ -50,6 +50,7 @@ struct Optics::Impl {
   explicit Impl(const OpticsConfig& config)
       : lasers(config.lasers),
         lamps(config.lamps),
+        body_count(config.scene.size()),
         seed(config.seed),
         edge_sampling(config.edge_sampling),
         water(config.water),
@@ -188,6 +189,7 @@ struct Optics::Impl {
 
   void render(const Shot& shot, Frame& frame) {
     Viewer& viewer = *viewers.at(shot.camera);
+    if (shot.poses.size() != body_count) throw InputError("optics: the poses are not those of the scene's bodies");
     for (const Pose& pose : shot.poses) {
       if (!pose.matrix().allFinite()) throw InputError("optics: a body's pose is not finite");
     }
@@ -227,6 +229,7 @@ struct Optics::Impl {
 
   std::vector<LaserConfig> lasers;
   std::vector<LampConfig> lamps;
+  std::size_t body_count;
   std::uint64_t seed;
   bool edge_sampling;
   Water water;

@@ -115,7 +115,7 @@ struct OpticsConfig {
   std::vector<LaserConfig> lasers;
   std::vector<LampConfig> lamps;
   WaterConfig water;
-  scene::Scene scene;
+  scene::Scene scene = scene::bare_scene();
   std::uint64_t seed = 0;
   int threads = 1;  // the caller's included
   bool edge_sampling = true;
@@ -124,7 +124,7 @@ struct OpticsConfig {
 struct Shot {
   std::size_t camera = 0;
   std::uint64_t frame_number = 0;    // picks the noise
-  scene::BodyPoses poses;            // at mid-exposure
+  scene::BodyPoses poses;            // at mid-exposure; of all bodies of the scene
   double time_s = 0;                 // where the particles have drifted to
   float laser = 1;                   // share of the exposure during which the lasers are on
   float lamps = 0;                   // the lamps

@@ -49,9 +49,9 @@ void set_rays(Rays& rays, const Lanes3& origin, const Lanes3& direction, Lanes n
 struct RayScene::Impl {
   RTCDevice device = nullptr;
   RTCScene top = nullptr;
-  std::array<RTCGeometry, scene::body_count> instances{};
-  std::array<std::int32_t, scene::body_count> first_shape{};
-  std::array<Rotation, scene::body_count> rotations;
+  std::vector<RTCGeometry> instances;  // one a body; nullptr: it has no shape here
+  std::vector<std::int32_t> first_shape;
+  std::vector<Rotation> rotations;
 
   ~Impl() {
     for (RTCGeometry instance : instances) {
@@ -103,21 +103,22 @@ struct RayScene::Impl {
   }
 };
 
-RayScene::RayScene(const scene::Scene& scene, const std::function<bool(scene::BodyId)>& has) : impl_(std::make_unique<Impl>()) {
+RayScene::RayScene(const scene::Scene& scene, const std::function<bool(const scene::Body&)>& has) : impl_(std::make_unique<Impl>()) {
   // One thread builds (two milliseconds); 16-wide coherent occlusion was seen to hang on AVX-512, so AVX2 with packets of eight.
   impl_->device = rtcNewDevice("isa=avx2,threads=1,user_threads=1");
   if (impl_->device == nullptr) throw std::runtime_error("Embree: no device (does this processor have AVX2?)");
   impl_->top = rtcNewScene(impl_->device);
   rtcSetSceneFlags(impl_->top, static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC));
+  impl_->instances.resize(scene.size());
+  impl_->first_shape.resize(scene.size());
+  impl_->rotations.resize(scene.size());
   std::int32_t shapes = 0;
   for (std::size_t body = 0; body < scene.size(); ++body) {
     impl_->first_shape[body] = shapes;
     shapes += static_cast<std::int32_t>(scene[body].shapes.size());
-    if (has(static_cast<scene::BodyId>(body))) impl_->add_body(body, scene[body]);
+    if (has(scene[body])) impl_->add_body(body, scene[body]);
   }
-  scene::BodyPoses poses;
-  poses.fill(Pose::Identity());
-  set_poses(poses);
+  set_poses(scene::poses_at_origin(scene));
   check(impl_->device, "building the scene");
 }
 
@@ -126,7 +127,7 @@ RayScene::RayScene(RayScene&&) noexcept = default;
 RayScene& RayScene::operator=(RayScene&&) noexcept = default;
 
 void RayScene::set_poses(const scene::BodyPoses& base_from_body) {
-  for (std::size_t body = 0; body < base_from_body.size(); ++body) {
+  for (std::size_t body = 0; body < impl_->instances.size(); ++body) {
     impl_->rotations[body] = Rotation(base_from_body[body].linear());
     if (impl_->instances[body] == nullptr) continue;
     const Eigen::Matrix<float, 3, 4> transform = base_from_body[body].matrix().topRows<3>().cast<float>();

@@ -22,7 +22,7 @@ struct HitPacket {
 class RayScene {
  public:
   // Of the bodies that `has` names. Throws InputError for a shape that makes no sense.
-  RayScene(const scene::Scene& scene, const std::function<bool(scene::BodyId)>& has);
+  RayScene(const scene::Scene& scene, const std::function<bool(const scene::Body&)>& has);
   ~RayScene();
   RayScene(RayScene&&) noexcept;
   RayScene& operator=(RayScene&&) noexcept;

@@ -29,10 +29,9 @@ LaneMask clear_of(const RayScene& scene, const Lanes3& light, const SurfacePacke
 }  // namespace
 
 SplitScene::SplitScene(const scene::Scene& scene)
-    : all_(scene, [](scene::BodyId) { return true; }), fixed_(scene, fixed), moving_(scene, moves) {
-  for (std::size_t i = 0; i < scene::body_count; ++i) {
-    const auto body = static_cast<scene::BodyId>(i);
-    if (yields(body)) yielding_.emplace_back(scene, [body](scene::BodyId other) { return other == body; });
+    : all_(scene, [](const scene::Body&) { return true; }), fixed_(scene, fixed), moving_(scene, moves) {
+  for (const scene::Body& body : scene) {
+    if (yields(body)) yielding_.emplace_back(scene, [&body](const scene::Body& other) { return &other == &body; });
   }
 }
 

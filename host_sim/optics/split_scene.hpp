@@ -9,10 +9,13 @@
 
 namespace lf::optics {
 
-// Fixed: the vehicle, which carries the camera, and the panel it is docked to. Yielding: handle and buttons, which rest unless the arm pushes them.
-constexpr bool fixed(scene::BodyId body) { return body == scene::BodyId::vehicle || body == scene::BodyId::panel; }
-constexpr bool yields(scene::BodyId body) { return body >= scene::BodyId::handle; }
-constexpr bool moves(scene::BodyId body) { return !fixed(body) && !yields(body); }
+// Fixed: the vehicle, which carries the camera, the panel it is docked to, and what stands about. Yielding: handle and buttons, which rest unless the arm pushes
+// them.
+inline bool fixed(const scene::Body& body) {
+  return body.role == scene::Role::vehicle || body.role == scene::Role::panel || body.role == scene::Role::object;
+}
+inline bool yields(const scene::Body& body) { return body.role == scene::Role::handle || body.role == scene::Role::button; }
+inline bool moves(const scene::Body& body) { return !fixed(body) && !yields(body); }
 
 inline constexpr float near_m = 0.03f;  // closer to a camera or a light is its own housing
 

@@ -37,18 +37,17 @@ StillView::StillView(const Camera& camera, const Tiles& tiles, const scene::Scen
       kept_(tiles.count()),
       lamp_cones_(tiles.count()) {
   pixels_.resize(camera.width(), camera.height(), camera.channels());
-  for (std::size_t i = 0; i < scene::body_count; ++i) {
-    if (!yields(static_cast<scene::BodyId>(i))) continue;
-    yielding_.push_back({i, BodyBounds(scene, [i](scene::BodyId body) { return static_cast<std::size_t>(body) == i; }), Pose::Identity()});
+  for (std::size_t i = 0; i < scene.size(); ++i) {
+    if (fixed(scene[i])) fixed_.push_back(i);
+    if (!yields(scene[i])) continue;
+    yielding_.push_back({i, BodyBounds(scene, [&](const scene::Body& body) { return &body == &scene[i]; }), Pose::Identity()});
   }
 }
 
 // Marks what is no longer true and takes note of what will be. Returns whether there is any.
 bool StillView::find_stale(const scene::BodyPoses& poses, const std::vector<scene::BodyId>& lamp_bodies, float lamp_share) {
   std::vector<Pose> fixed_poses;
-  for (std::size_t i = 0; i < scene::body_count; ++i) {
-    if (fixed(static_cast<scene::BodyId>(i))) fixed_poses.push_back(poses[i]);
-  }
+  for (const std::size_t body : fixed_) fixed_poses.push_back(poses[body]);
   for (const scene::BodyId body : lamp_bodies) fixed_poses.push_back(poses[static_cast<std::size_t>(body)]);
   const bool all = lamp_bodies != lamp_bodies_ || lamp_share != lamp_share_ ||
                    !std::equal(fixed_poses.begin(), fixed_poses.end(), fixed_poses_.begin(), fixed_poses_.end(), same);

@@ -79,7 +79,8 @@ class StillView {
 
   std::vector<scene::BodyId> lamp_bodies_;
   float lamp_share_ = 0;
-  std::vector<Pose> fixed_poses_;  // of the fixed bodies and the lamps'; empty before the first update
+  std::vector<std::size_t> fixed_;  // bodies
+  std::vector<Pose> fixed_poses_;   // of the fixed bodies and the lamps'; empty before the first update
   std::vector<Yielding> yielding_;
   std::vector<std::uint8_t> stale_;  // a tile
 

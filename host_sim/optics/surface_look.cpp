@@ -56,9 +56,9 @@ SurfaceLook::SurfaceLook(const scene::Scene& scene, float grain) : grain_(grain)
   }
   noise_.resize(static_cast<std::size_t>(tile) * tile);
   for (std::uint32_t i = 0; i < noise_.size(); ++i) noise_[i] = static_cast<float>(hash(i + 1)) / 2147483648.f - 1.f;
-  scene::BodyPoses poses;
-  poses.fill(Pose::Identity());
-  set_poses(poses);
+  rotations_.resize(scene.size());
+  positions_.resize(scene.size());
+  set_poses(scene::poses_at_origin(scene));
 }
 
 void SurfaceLook::set_poses(const scene::BodyPoses& base_from_body) {

@@ -40,8 +40,8 @@ class SurfaceLook {
   std::vector<float> noise_;
   float grain_;
   scene::BodyPoses poses_;
-  std::array<Rotation, scene::body_count> rotations_;
-  std::array<Lanes3, scene::body_count> positions_;
+  std::vector<Rotation> rotations_;  // one a body
+  std::vector<Lanes3> positions_;
 };
 
 }  // namespace lf::optics

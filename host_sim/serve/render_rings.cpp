@@ -1,7 +1,9 @@
 #include "host_sim/serve/render_rings.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <span>
 #include <thread>
 
 #include "hal/vehicle/linux_calls.hpp"
@@ -23,7 +25,8 @@ std::int64_t now_ns() { return hal::linux_calls().monotonic_ns(); }
 ExposurePayload pack(const optics::Shot& shot) {
   ExposurePayload payload;
   double* to = payload.poses.data();
-  for (const Pose& pose : shot.poses) {
+  payload.bodies = std::min(shot.poses.size(), scene::max_bodies);
+  for (const Pose& pose : std::span(shot.poses).first(payload.bodies)) {
     const Mat3 rotation = pose.linear();
     const Vec3 translation = pose.translation();
     std::copy_n(rotation.data(), 9, to);
@@ -44,8 +47,8 @@ optics::Shot unpack(const RecordInfo& info, const ExposurePayload& payload) {
   shot.lamps = static_cast<float>(payload.lamps);
   shot.time_s = payload.time_s;
   const double* from = payload.poses.data();
+  shot.poses.resize(std::min<std::uint64_t>(payload.bodies, scene::max_bodies), Pose::Identity());
   for (Pose& pose : shot.poses) {
-    pose = Pose::Identity();
     pose.linear() = Eigen::Map<const Mat3>(from);
     pose.translation() = Eigen::Map<const Vec3>(from + 9);
     from += 12;

@@ -21,15 +21,16 @@
 
 namespace lf::serve {
 
-inline constexpr std::uint32_t kind_exposure = 1;  // RecordInfo::kind of what follows here
+inline constexpr std::uint32_t kind_exposure = 2;  // RecordInfo::kind of what follows here; 1 had twelve bodies
 
-// base_from_body of every body: rotation column by column, then translation in metres. Doubles, so that the picture is the very one of a single process.
+// base_from_body of each of `bodies` bodies: rotation column by column, then translation in metres. Doubles, so that the picture is the very one of a single process.
 // Then the shares of the exposure during which laser and lamps are on, and the time of its middle, s. Its length and number are the record's.
 struct ExposurePayload {
-  std::array<double, 12 * scene::body_count> poses{};
+  std::array<double, 12 * scene::max_bodies> poses{};
+  std::uint64_t bodies = 0;
   double laser = 0, lamps = 0, time_s = 0;
 };
-ExposurePayload pack(const optics::Shot& shot);
+ExposurePayload pack(const optics::Shot& shot);  // of at most scene::max_bodies bodies
 optics::Shot unpack(const RecordInfo& info, const ExposurePayload& payload);
 
 inline constexpr std::uint32_t exposure_slots = 16;

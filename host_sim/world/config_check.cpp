@@ -60,11 +60,23 @@ void check_arm(const WorldConfig& config) {
   }
 }
 
+void check_scene(const scene::Scene& scene) {
+  const scene::Scene own = scene::bare_scene();
+  expect(scene.size() >= own.size() && scene.size() <= scene::max_bodies, "scene", "must have its 13 own bodies, and 64 at most");
+  for (std::size_t i = 0; i < own.size(); ++i) expect(scene[i].role == own[i].role, "scene", "must begin with its own bodies");
+  for (std::size_t i = own.size(); i < scene.size(); ++i) {
+    const Pose& pose = scene[i].base_from_body;
+    expect(scene[i].role == scene::Role::object, scene[i].name, "must be an object: it follows the scene's own bodies");
+    expect(pose.matrix().allFinite() && pose.linear().isUnitary(1e-6), scene[i].name, "must have a finite rotation and translation");
+  }
+}
+
 }  // namespace
 
 void check(const WorldConfig& config) {
   expect(config.base_from_panel.matrix().allFinite() && config.base_from_panel.linear().isUnitary(1e-6), "base_from_panel",
          "must be a finite rotation and translation");
+  check_scene(config.scene);
   expect(config.vehicle_com_m.allFinite(), "vehicle_com_m", "must be finite");
   check_valve(config.valve);
   static constexpr const char* button_names[] = {"buttons[left]", "buttons[centre]", "buttons[right]"};

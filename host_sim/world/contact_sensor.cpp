@@ -10,12 +10,11 @@
 namespace lf::world {
 namespace {
 
-using scene::BodyId;
+using scene::BodyId, scene::Role;
 
-bool is_finger(BodyId body) { return body == BodyId::finger_a || body == BodyId::finger_b; }
-bool is_beyond_wrist(BodyId body) { return body == BodyId::wrist || is_finger(body); }
-bool is_robot(BodyId body) { return body <= BodyId::finger_b; }
-bool is_handled(BodyId body) { return body >= BodyId::handle && body <= BodyId::button_right; }
+bool is_beyond_wrist(Role body) { return body == Role::hand || body == Role::finger; }
+bool is_robot(Role body) { return body == Role::vehicle || body == Role::link || is_beyond_wrist(body); }
+bool is_handled(Role body) { return body == Role::handle || body == Role::button; }
 
 void add(Wrench& sum, const Vec3& impulse, const Vec3& arm) {
   sum.force_n += impulse;
@@ -46,11 +45,11 @@ void take_contact_impulses(btDispatcher& dispatcher, std::vector<ContactImpulse>
   }
 }
 
-bool contact_is_intended(BodyId a, BodyId b) {
-  return (is_finger(a) && (is_finger(b) || is_handled(b))) || (is_finger(b) && is_handled(a));
+bool contact_is_intended(Role a, Role b) {
+  return (a == Role::finger && (b == Role::finger || is_handled(b))) || (b == Role::finger && is_handled(a));
 }
 
-ContactSensor::ContactSensor(double window_s, double judged_window_s, double step_s, const Vec3& vehicle_com_m)
+ContactSensor::ContactSensor(double window_s, double judged_window_s, double step_s, const Vec3& vehicle_com_m, const scene::Scene& scene)
     : judged_window_s_(judged_window_s),
       step_s_(step_s),
       vehicle_com_m_(vehicle_com_m),
@@ -58,33 +57,37 @@ ContactSensor::ContactSensor(double window_s, double judged_window_s, double ste
       base_(window_s, step_s),
       handle_(window_s, step_s),
       grip_{ForceWindow(window_s, step_s), ForceWindow(window_s, step_s)},
-      on_body_(scene::touchable_body_count, ForceWindow(judged_window_s, step_s)) {}
+      on_body_(scene.size(), ForceWindow(judged_window_s, step_s)),
+      on_body_now_(scene.size()) {
+  for (const scene::Body& body : scene) bodies_.push_back({body.name, body.role});
+}
 
 void ContactSensor::take(const std::vector<ContactImpulse>& impulses, const Pose& base_from_tool, double time_s) {
   Wrench tool, base, handle;
   std::array<Wrench, 2> grip;
-  std::array<Wrench, scene::touchable_body_count> on_body;
+  std::fill(on_body_now_.begin(), on_body_now_.end(), Wrench{});
   const Mat3 tool_from_base = base_from_tool.linear().transpose();
   for (const ContactImpulse& seen : impulses) {
     for (const ContactImpulse& contact : {seen, reversed(seen)}) {
-      if (contact.a == BodyId::handle) add(handle, contact.impulse_n_s, Vec3::Zero());
-      if (!is_robot(contact.a) || is_robot(contact.b)) continue;
+      const Role by = role(contact.a), on = role(contact.b);
+      if (by == Role::handle) add(handle, contact.impulse_n_s, Vec3::Zero());
+      if (!is_robot(by) || is_robot(on)) continue;
       add(base, contact.impulse_n_s, contact.point_m - vehicle_com_m_);
-      add(on_body[std::size_t(contact.b)], -contact.impulse_n_s, Vec3::Zero());
-      if (is_beyond_wrist(contact.a)) {
+      add(on_body_now_[std::size_t(contact.b)], -contact.impulse_n_s, Vec3::Zero());
+      if (is_beyond_wrist(by)) {
         add(tool, tool_from_base * contact.impulse_n_s, tool_from_base * (contact.point_m - base_from_tool.translation()));
       }
-      if (is_finger(contact.a) && contact.b == BodyId::handle) {
+      if (by == Role::finger && on == Role::handle) {
         add(grip[contact.a == BodyId::finger_a ? 0 : 1], tool_from_base * contact.impulse_n_s, Vec3::Zero());
       }
     }
-    if (!contact_is_intended(seen.a, seen.b)) add_to_unintended(seen, time_s);
+    if (!contact_is_intended(role(seen.a), role(seen.b))) add_to_unintended(seen, time_s);
   }
   tool_.add(tool);
   base_.add(base);
   handle_.add(handle);
   for (std::size_t i = 0; i < grip.size(); ++i) grip_[i].add(grip[i]);
-  for (std::size_t i = 0; i < on_body.size(); ++i) on_body_[i].add(on_body[i]);
+  for (std::size_t i = 0; i < on_body_.size(); ++i) on_body_[i].add(on_body_now_[i]);
   for (Unintended& pair : unintended_) {
     pair.force.add(pair.step);
     pair.step = {};
@@ -108,7 +111,7 @@ void ContactSensor::add_to_unintended(const ContactImpulse& contact, double time
   auto found = std::find_if(unintended_.begin(), unintended_.end(),
                             [&](const Unintended& pair) { return pair.contact.a == first && pair.contact.b == second; });
   if (found == unintended_.end()) {
-    unintended_.push_back({{first, second, time_s, 0}, ForceWindow(judged_window_s_, step_s_), {}});
+    unintended_.push_back({{first, second, time_s, 0, name(first), name(second)}, ForceWindow(judged_window_s_, step_s_), {}});
     found = unintended_.end() - 1;
   }
   const Vec3 on_first = contact.a == first ? contact.impulse_n_s : Vec3(-contact.impulse_n_s);

@@ -85,7 +85,7 @@ struct World::Impl {
         panel_shape(make_collision_shape(config.scene[std::size_t(BodyId::panel)], Pose::Identity())),
         valve(config.valve, config.base_from_panel, config.scene[std::size_t(BodyId::handle)], config.step_s),
         buttons{make_button(0), make_button(1), make_button(2)},
-        sensor(config.force_window_s, config.judged_window_s, config.step_s, config.vehicle_com_m) {
+        sensor(config.force_window_s, config.judged_window_s, config.step_s, config.vehicle_com_m, config.scene) {
     arm.part().enter(bullet.get());
     panel = std::make_unique<btRigidBody>(0, nullptr, panel_shape.compound.get());
     panel->setWorldTransform(to_bullet(config.base_from_panel));
@@ -173,6 +173,8 @@ double World::arm_kinetic_energy_j() const { return impl_->arm.kinetic_energy_j(
 
 scene::BodyPoses World::base_from_body() const {
   scene::BodyPoses poses;
+  poses.reserve(impl_->config.scene.size());
+  for (const scene::Body& body : impl_->config.scene) poses.push_back(body.base_from_body);
   for (std::size_t i = 0; i < ArmDescription::link_count; ++i) poses[i] = impl_->arm.base_from_link(i);
   poses[std::size_t(BodyId::panel)] = impl_->config.base_from_panel;
   poses[std::size_t(BodyId::handle)] = impl_->valve.base_from_handle();

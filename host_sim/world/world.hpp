@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "host_sim/world/contact_force.hpp"
@@ -78,6 +79,7 @@ struct UnintendedContact {
   scene::BodyId a{}, b{};   // in their order
   double first_s = 0;       // since the world began
   double peak_force_n = 0;  // over `judged_window_s`
+  std::string name_a, name_b;
 };
 
 // Forces from contacts alone (no weight, no inertia), acting on the robot. Wrenches, handle and grip are averaged over `force_window_s`, the largest and the
@@ -96,7 +98,7 @@ struct ContactReport {
 
 class World {
  public:
-  // Throws InputError when a value is not finite or out of its range, and when the arm starts outside its limits.
+  // Throws InputError when a value is not finite or out of its range, when the scene does not begin with its own bodies, and when the arm starts outside its limits.
   explicit World(const WorldConfig& config);
   ~World();
   World(World&&) noexcept;

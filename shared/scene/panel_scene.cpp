@@ -120,11 +120,7 @@ void add_button(Body& button, const PanelLayout& layout, const Albedo& colour) {
 }  // namespace
 
 Scene make_scene(const ArmDescription& arm, const PanelLayout& layout) {
-  Scene scene;
-  static constexpr std::array<const char*, body_count> names{"vehicle", "slew",        "upper_arm",     "forearm",
-                                                             "wrist",   "finger_a",    "finger_b",      "panel",
-                                                             "handle",  "button_left", "button_centre", "button_right"};
-  for (std::size_t i = 0; i < body_count; ++i) scene[i].name = names[i];
+  Scene scene = bare_scene();
   for (std::size_t i = 0; i < ArmDescription::link_count; ++i) scene[i].shapes = arm.links[i].shapes;
   add_vehicle(scene[std::size_t(BodyId::vehicle)]);
   add_panel(scene[std::size_t(BodyId::panel)], layout);

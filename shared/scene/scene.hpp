@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -28,12 +29,27 @@ struct Shape {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
+// What a body is to the rest: who may touch it, whether it moves, what a camera keeps of it from frame to frame.
+enum class Role : std::uint8_t {
+  vehicle,   // what is bolted to the arm's base
+  link,      // of the arm, before its hand
+  hand,      // carries the fingers
+  finger,    // may touch other fingers, handles and buttons
+  panel,     // stands still while the vehicle is docked
+  handle,    // turns when fingers turn it
+  button,    // slides when fingers press it
+  intruder,  // comes from outside and pushes
+  object,    // anything else that stands about: nothing of the robot may touch it
+};
+
 struct Body {
   std::string name;
   std::vector<Shape> shapes;
+  Role role = Role::object;
+  Pose base_from_body = Pose::Identity();  // of an object; where the others are the world says
 };
 
-// Indices of the bodies in a Scene, which are always in this order. `base_from_body` of each is given by the world at every step.
+// Indices of the bodies that each Scene begins with, in this order. Objects follow them.
 enum class BodyId : std::size_t {
   vehicle,  // what is bolted to the arm's base: skid, camera and lamp housings
   slew,
@@ -47,12 +63,18 @@ enum class BodyId : std::size_t {
   button_left,
   button_centre,
   button_right,
-  obstacle,  // what a fault of the scenario pushes against the arm: met in contacts, but no part of a Scene
+  obstacle,  // what a fault of the scenario pushes against the arm: met in contacts, not seen
 };
-inline constexpr std::size_t body_count = 12;                        // of a Scene
-inline constexpr std::size_t touchable_body_count = body_count + 1;  // in contacts
+inline constexpr std::size_t own_body_count = 13;  // before the objects
+inline constexpr std::size_t max_bodies = 64;      // of a Scene: what a record of the served renderer holds
 
-using Scene = std::array<Body, body_count>;
-using BodyPoses = std::array<Pose, body_count>;  // base_from_body
+using Scene = std::vector<Body>;
+using BodyPoses = std::vector<Pose>;  // base_from_body of each body of a Scene
+
+// The scene's own bodies, named and in their order, without shapes.
+Scene bare_scene();
+
+// All at the base's origin.
+inline BodyPoses poses_at_origin(const Scene& scene) { return BodyPoses(scene.size(), Pose::Identity()); }
 
 }  // namespace lf::scene

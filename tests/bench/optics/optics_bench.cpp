@@ -32,8 +32,7 @@ constexpr double particles_per_l = 3;
 
 // Mid-sweep: the stripe crosses the panel and the handle.
 scene::BodyPoses sweep_poses(const ArmDescription& arm, const PanelLayout& layout, double swept_rad = 0) {
-  scene::BodyPoses poses;
-  poses.fill(Pose::Identity());
+  scene::BodyPoses poses = scene::poses_at_origin(scene::bare_scene());
   const std::array<double, joint_count> q{0, 0.945 + swept_rad, 1.40, 0, 0.3};
   for (std::size_t i = 0; i < joint_count; ++i) poses[i + 1] = poses[i] * turned(arm.joints[i], q[i]);
   poses[std::size_t(BodyId::finger_b)] = poses[std::size_t(BodyId::wrist)] * turned(arm.finger_b, q[4]);

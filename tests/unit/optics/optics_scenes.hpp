@@ -45,16 +45,12 @@ inline scene::Body& body(scene::Scene& scene, scene::BodyId id) { return scene[s
 
 // A plate facing the camera: its near face at x = distance.
 inline scene::Scene plate_scene(double distance_m, float albedo = 0.5f) {
-  scene::Scene scene;
+  scene::Scene scene = scene::bare_scene();
   body(scene, scene::BodyId::panel).shapes.push_back(make_shape(scene::ShapeKind::box, {0.02, 2, 2}, {distance_m + 0.01, 0, 0}, albedo));
   return scene;
 }
 
-inline scene::BodyPoses resting() {
-  scene::BodyPoses poses;
-  poses.fill(Pose::Identity());
-  return poses;
-}
+inline scene::BodyPoses resting() { return scene::poses_at_origin(scene::bare_scene()); }
 
 // Without what lens and sensor do beside the lens's spot.
 inline CameraConfig lossless(CameraConfig camera) {

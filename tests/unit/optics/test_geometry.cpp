@@ -45,7 +45,7 @@ TEST(Geometry, DepthOfATiltedPlateIsThatOfItsPlane) {
 }
 
 TEST(Geometry, DepthOfACylinderIsThatOfItsQuadricWithin60Micrometres) {
-  scene::Scene scene;
+  scene::Scene scene = scene::bare_scene();
   body(scene, scene::BodyId::handle).shapes.push_back(make_shape(scene::ShapeKind::cylinder, {0.03, 0, 0.4}, {0.6, 0, 0}));
   const Frame frame = truth_of(scene, resting());
   int hits = 0;
@@ -82,7 +82,7 @@ TEST(Geometry, TessellationStaysWithin20MicrometresOfCylindersAnd60OfSpheres) {
 }
 
 TEST(Geometry, AMeshIsDrawnWhereItsTrianglesAre) {
-  scene::Scene scene;
+  scene::Scene scene = scene::bare_scene();
   scene::Shape mesh = make_shape(scene::ShapeKind::mesh, Vec3::Zero(), {0.5, 0, 0});
   mesh.vertices_m = {{0, -0.1, -0.1}, {0, 0.1, -0.1}, {0, 0, 0.1}};
   mesh.triangles = {{0, 1, 2}};

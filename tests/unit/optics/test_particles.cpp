@@ -69,7 +69,7 @@ TEST(Particles, DriftWithTheWater) {
 }
 
 struct Darkroom {
-  explicit Darkroom(const WaterConfig& water, scene::Scene scene = {}) : camera(quiet_camera()), bench(scene, water) {
+  explicit Darkroom(const WaterConfig& water, scene::Scene scene = scene::bare_scene()) : camera(quiet_camera()), bench(scene, water) {
     pixels.resize(camera.width(), camera.height(), 1);
     std::fill(pixels.depth_m.begin(), pixels.depth_m.end(), std::numeric_limits<float>::infinity());
   }

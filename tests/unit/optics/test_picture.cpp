@@ -218,7 +218,7 @@ TEST(Picture, SkirtIsThinnerOnTheFarSide) {
 TEST(Picture, GlowEndsWhereTheSheetMeetsSomething) {
   // A wall that stops the sheet halfway: beyond it no water is lit.
   const auto lit_water = [](bool wall) {
-    scene::Scene bodies;
+    scene::Scene bodies = scene::bare_scene();
     if (wall) body(bodies, scene::BodyId::panel).shapes.push_back(make_shape(scene::ShapeKind::box, {0.3, 0.3, 0.01}, {0.6, 0, 0.2}));
     WaterConfig water;
     water.attenuation_per_m = 1;

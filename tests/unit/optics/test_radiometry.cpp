@@ -137,7 +137,7 @@ TEST(Radiometry, AnAbsorberIsDark) {
   WaterConfig water;
   water.attenuation_per_m = 2;
   water.scattering_share = 0;
-  scene::Scene nothing;
+  scene::Scene nothing = scene::bare_scene();
   Bench bench(nothing, water);
   bench.add(vehicle_laser(sheet({0.3, 0, 0.4}, {0.2, 0, -1}, Vec3::UnitY())));
   EXPECT_EQ(middle(bench), 0);
@@ -146,7 +146,7 @@ TEST(Radiometry, AnAbsorberIsDark) {
 TEST(Radiometry, OpenWaterGathersTowardItsOwnColour) {
   const Middle middle;
   WaterConfig water;
-  scene::Scene nothing;
+  scene::Scene nothing = scene::bare_scene();
   Bench bench(nothing, water);
   EXPECT_NEAR(middle(bench), water.water_w_m2_sr[1], 0.01 * water.water_w_m2_sr[1]);
 }

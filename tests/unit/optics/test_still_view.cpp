@@ -30,20 +30,20 @@ void compare_with_fresh(OpticsConfig config, std::uint32_t seed, int frames) {
   config.threads = 2;
   Optics kept(config);
   Frame frame, fresh_frame;
-  scene::BodyPoses drift = resting(), undrifted;
+  scene::BodyPoses drift = resting(), undrifted = resting();
   for (int i = 0; i < frames; ++i) {
     SCOPED_TRACE("seed " + std::to_string(seed) + ", frame " + std::to_string(i));
     Shot shot;
     shot.frame_number = static_cast<std::uint64_t>(i);
     const scene::BodyPoses now = mission.random_poses(random);
     const bool touched = random() % 2 == 0;  // handle and buttons
-    for (std::size_t body = 0; body < scene::body_count; ++body) {
-      if (i == 0 || touched || !yields(static_cast<scene::BodyId>(body))) undrifted[body] = now[body];
+    for (std::size_t body = 0; body < mission.scene.size(); ++body) {
+      if (i == 0 || touched || !yields(mission.scene[body])) undrifted[body] = now[body];
     }
     shot.poses = undrifted;
     if (i % 7 == 5) drift[std::size_t(scene::BodyId::panel)] = Eigen::Translation3d(1e-9 * i, 0, 0) * Pose::Identity();
     if (i % 11 == 9) drift[std::size_t(scene::BodyId::vehicle)] = Eigen::Translation3d(0, 1e-3 * i, 0) * Pose::Identity();
-    for (std::size_t body = 0; body < scene::body_count; ++body) shot.poses[body] = drift[body] * shot.poses[body];
+    for (std::size_t body = 0; body < mission.scene.size(); ++body) shot.poses[body] = drift[body] * shot.poses[body];
     shot.laser = random() % 3 != 0 ? 1.f : 0.f;
     shot.lamps = random() % 3 == 0 ? (random() % 2 == 0 ? 1.f : 0.4f) : 0.f;
     shot.time_s = i;

@@ -149,6 +149,7 @@ TEST(OverheardOutputs, an_open_interlock_keeps_the_laser_out_of_the_picture) {
 TEST(RenderRings, shots_arrive_bit_for_bit) {
   optics::Shot shot;
   shot.laser = 0.8f, shot.lamps = 0.3f, shot.time_s = 12.3456789;
+  shot.poses = scene::BodyPoses(scene::max_bodies);
   scene::BodyPoses& poses = shot.poses;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     poses[i] = Pose::Identity();
@@ -159,6 +160,7 @@ TEST(RenderRings, shots_arrive_bit_for_bit) {
   info.sequence = 77;
   info.exposure_ns = 2'500'000;
   const optics::Shot back = unpack(info, pack(shot));
+  ASSERT_EQ(back.poses.size(), poses.size());
   for (std::size_t i = 0; i < poses.size(); ++i) EXPECT_EQ(back.poses[i].matrix(), poses[i].matrix());
   EXPECT_EQ(back.laser, 0.8f);
   EXPECT_EQ(back.lamps, 0.3f);
@@ -177,7 +179,7 @@ TEST(RenderRings, an_order_crosses_the_file_and_nothing_comes_back_by_itself) {
     ExposurePayload payload;
     EXPECT_EQ(reader.take(info, std::as_writable_bytes(std::span(&payload, 1))), FrameRingReader::Answer::empty);
     PictureOrder order;
-    for (Pose& pose : order.shot.poses) pose = Pose::Identity();
+    order.shot.poses = scene::poses_at_origin(scene::bare_scene());
     order.shot.poses[3].translation() = Vec3(1, 2, 3);
     order.info.sequence = 42;
     order.info.flags = frame_laser;
@@ -233,8 +235,7 @@ struct CameraOnItsOwn {
   // One exposure from 4 ms on; the laser is on before `laser_off_ms`, the lamps from `lamps_on_ms` on. Returns when the picture came, ms.
   int expose(Duration exposure, int laser_off_ms, int lamps_on_ms) {
     Pace pace(Time{});
-    scene::BodyPoses poses;
-    poses.fill(Pose::Identity());
+    scene::BodyPoses poses = scene::poses_at_origin(scene::bare_scene());
     for (int t = 1; t < 100; ++t) {
       if (t == 4) camera.expose({ms(4), exposure, 1, true, false});
       poses[0].translation().x() = t;
@@ -301,7 +302,7 @@ class RemoteRendererTest : public testing::Test {
   ~RemoteRendererTest() override { std::filesystem::remove(file); }
   bool submit(std::uint32_t sequence, Time start) {
     PictureOrder order;
-    for (Pose& pose : order.shot.poses) pose = Pose::Identity();
+    order.shot.poses = scene::poses_at_origin(scene::bare_scene());
     order.info.sequence = sequence;
     order.info.start_ns = start.ns();
     return remote.submit(order);

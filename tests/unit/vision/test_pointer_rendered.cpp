@@ -47,7 +47,7 @@ TEST_P(RenderedPointer, IsReadOverTheWholeCircle) {
     shot.lamps = GetParam().lamps;
     shot.laser = false;
     shot.poses = mission.poses({0, 0.945, 0.92, 0, 0}, 0, 0);  // the sweep's end, where stills are taken
-    for (std::size_t i = std::size_t(scene::BodyId::panel); i < scene::body_count; ++i)
+    for (std::size_t i = std::size_t(scene::BodyId::panel); i < mission.scene.size(); ++i)
       shot.poses[i] = panel * mission.layout.nominal_base_from_panel().inverse() * shot.poses[i];
     shot.poses[std::size_t(scene::BodyId::handle)] = panel * Eigen::AngleAxisd(angle_rad, Vec3::UnitZ());
     optics::Frame frame;

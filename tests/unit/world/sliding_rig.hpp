@@ -20,7 +20,7 @@ inline scene::Body box_body(const Vec3& size_m, const Pose& body_from_shape = Po
   shape.size_m = size_m;
   shape.body_from_shape = body_from_shape;
   shape.friction = friction;
-  return {"box", {shape}};
+  return {"box", {shape}, scene::Role::object, Pose::Identity()};
 }
 
 // A fixed structure: infinite mass.

@@ -236,7 +236,7 @@ TEST(FrictionOfAShape, isThatOfTheTwoShapesThatTouch) {
 // A blow of 5 N s within 20 ms: a sensor of 20 ms shows 250 N, over the 50 ms that are judged it is 100.
 TEST(ContactSensor, averagesWrenchesAndJudgedForcesOverTheirOwnWindows) {
   using scene::BodyId;
-  ContactSensor sensor(0.02, 0.05, 0.001, Vec3::Zero());
+  ContactSensor sensor(0.02, 0.05, 0.001, Vec3::Zero(), scene::bare_scene());
   for (int i = 0; i < 20; ++i) sensor.take({{BodyId::wrist, BodyId::panel, Vec3::Zero(), Vec3(0.25, 0, 0)}}, Pose::Identity(), i * 0.001);
   EXPECT_NEAR(sensor.report().base_wrench.force_n.norm(), 250, 1e-9);
   EXPECT_NEAR(sensor.report().largest_force_n, 100, 1e-9);
@@ -251,7 +251,7 @@ TEST(ContactSensor, averagesWrenchesAndJudgedForcesOverTheirOwnWindows) {
 TEST(ContactSensor, opposedForcesDoNotCancelAndASqueezeDoes) {
   using scene::BodyId;
   const auto seen = [](std::vector<ContactImpulse> impulses) {
-    ContactSensor sensor(0.05, 0.05, 0.001, Vec3::Zero());
+    ContactSensor sensor(0.05, 0.05, 0.001, Vec3::Zero(), scene::bare_scene());
     for (int i = 0; i < 50; ++i) sensor.take(impulses, Pose::Identity(), i * 0.001);
     return sensor.report();
   };
