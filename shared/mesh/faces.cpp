@@ -85,6 +85,10 @@ void refuse_too_many_vertices(std::uint64_t count, const std::string& file, int 
                        " are read: decimate it in a mesh editor, or split it");
 }
 
+void refuse_too_many_corners(std::size_t count, const std::string& file, int line) {
+  if (count > 2) refuse_too_many_triangles(count - 2, file, line);
+}
+
 void Faces::add(std::span<const std::uint32_t> corners, int line) {
   const std::size_t number = faces_.size() + 1;
   if (corners.size() < 3)

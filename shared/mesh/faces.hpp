@@ -13,6 +13,9 @@ namespace lf::mesh {
 void refuse_too_many_triangles(std::uint64_t count, const std::string& file, int line);
 void refuse_too_many_vertices(std::uint64_t count, const std::string& file, int line);
 
+// The same while the corners of one face are read: their count may be anything.
+void refuse_too_many_corners(std::size_t count, const std::string& file, int line);
+
 class Faces {
  public:
   // `first_index`: what the file's format counts vertices from. It is taken off the corners already; messages have it.

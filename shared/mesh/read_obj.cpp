@@ -111,8 +111,10 @@ class ObjReader {
 
   void read_face(Words words) {
     corners_.clear();
-    for (std::string_view word = words.next(); !word.empty() && !word.starts_with('#'); word = words.next())
+    for (std::string_view word = words.next(); !word.empty() && !word.starts_with('#'); word = words.next()) {
       corners_.push_back(corner(word));
+      refuse_too_many_corners(corners_.size(), reading_.file, line_);
+    }
     faces_.add(corners_, line_);
   }
 

@@ -251,8 +251,10 @@ class PlyReader {
         continue;
       }
       // Not reserved: the count may be anything.
-      for (std::uint32_t left = count(property, values); left > 0; --left)
+      for (std::uint32_t left = count(property, values); left > 0; --left) {
         corners_.push_back(whole(values.take(property.type), "a face's index of a vertex", values.line()));
+        refuse_too_many_corners(corners_.size(), reading_.file, values.line());
+      }
     }
     faces_.add(corners_, values.line());
   }

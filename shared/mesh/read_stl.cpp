@@ -103,7 +103,15 @@ class Tokens {
       words_ = Words(lines_.line());
     }
   }
-  void skip_line() { words_ = Words(""); }
+  // Of a solid: the rest of its line. A facet there would be dropped without a word.
+  void skip_name() {
+    std::string_view before;
+    for (std::string_view word = words_.next(); !word.empty(); word = words_.next()) {
+      if (lower_case(before) == "facet" && lower_case(word) == "normal")
+        throw InputError(file_, line(), "has a facet in the line of a solid's name: begin it in a line of its own");
+      before = word;
+    }
+  }
   void need(std::string_view keyword) {
     const std::string_view word = next();
     if (lower_case(word) != keyword) refuse(word, keyword);
@@ -115,7 +123,6 @@ class Tokens {
                      "has " + shown(word) + " where '" + std::string(wanted) + "' has to stand: it is damaged, or no STL; export it anew");
   }
   int line() const { return lines_.number(); }
-  bool is_cut() const { return lines_.is_cut(); }
 
  private:
   Lines lines_;
@@ -159,11 +166,11 @@ void read_text(std::string_view text, Reading& reading) {
   int solids = 0;
   for (std::string_view word = tokens.next(); !word.empty(); word = tokens.next()) {
     if (lower_case(word) != "solid") tokens.refuse(word, "solid");
-    tokens.skip_line();  // its name
+    tokens.skip_name();
     ++solids;
     for (word = tokens.next(); lower_case(word) == "facet"; word = tokens.next()) read_facet(tokens, soup, reading.file);
     if (lower_case(word) != "endsolid") tokens.refuse(word, "facet or endsolid");
-    tokens.skip_line();
+    tokens.skip_name();
   }
   if (solids > 1) reading.notes.push_back({0, "its " + std::to_string(solids) + " solids are merged into one mesh"});
   soup.finish();

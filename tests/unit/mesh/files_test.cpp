@@ -109,6 +109,9 @@ TEST(MeshFile, OfTooManyTrianglesIsRefused) {
   EXPECT_EQ(error_of("a.obj", text + "f 1 2 3\n"),
             "a.obj:2000005: has 2000001 triangles or more; 2000000 are read: decimate it in a mesh editor, or split it");
   EXPECT_EQ(parse_mesh("a.obj", text).mesh.triangles.size(), most_triangles);
+  text = "v 0 0 0\nf";
+  for (std::size_t i = 0; i < most_triangles + 3; ++i) text += " 1";
+  EXPECT_THAT(error_of("a.obj", text + " x"), StartsWith("a.obj:2: has 2000001 triangles or more")) << "in one face";
 }
 
 // Each shorter file, in a buffer of its own, so that a sanitizer sees what reads past its end.

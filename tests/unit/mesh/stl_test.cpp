@@ -91,6 +91,8 @@ TEST(Stl, TextThatIsDamagedIsRefusedWithItsLine) {
                            {with(one_facet, "normal 0 0 1", "normal 0 0"), ":3: has 'outer' where 'a number of the normal' has to stand"},
                            {with(one_facet, "endsolid a part\n", ""), ":8: ends where 'facet or endsolid' has to stand: it was cut off"},
                            {one_facet + "v 0 0 0\n", ":10: has 'v' where 'solid' has to stand"},
+                           {with(one_facet, "solid a part\n", "solid a part "),
+                            ":1: has a facet in the line of a solid's name: begin it in a line of its own"},
                            {"solid nothing\nendsolid\n", ": has no triangles"}});
 }
 
