@@ -1,0 +1,105 @@
+#include "shared/mesh/read_mesh.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "shared/input_error.hpp"
+#include "shared/mesh/format.hpp"
+#include "shared/mesh/read_obj.hpp"
+#include "shared/mesh/read_ply.hpp"
+#include "shared/mesh/read_stl.hpp"
+#include "shared/mesh/text.hpp"
+#include "shared/unreadable_file.hpp"
+
+namespace lf::mesh {
+namespace {
+
+void refuse_too_large(std::uintmax_t size, const std::string& file) {
+  if (size > most_bytes)
+    throw InputError(file, 0,
+                     "has " + std::to_string(size >> 20) + " MB; " + std::to_string(most_bytes >> 20) +
+                         " MB are read: decimate it in a mesh editor, or export it in binary");
+}
+
+std::string load(const std::string& file) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) {
+    if (std::filesystem::exists(file, error) && !std::filesystem::is_directory(file, error))
+      throw InputError(file, 0, "is no regular file: copy it into one");
+    throw unreadable(file);
+  }
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  std::ifstream stream(file, std::ios::binary);
+  if (error || !stream) throw unreadable(file);
+  refuse_too_large(size, file);
+  std::string bytes(size, '\0');
+  stream.read(bytes.data(), static_cast<std::streamsize>(size));
+  bytes.resize(static_cast<std::size_t>(stream.gcount()));
+  return bytes;
+}
+
+void check_scale(const Vec3& scale, const std::string& file) {
+  // From a thousandth of a micrometre to a thousand kilometres.
+  for (const double factor : scale)
+    if (!(std::abs(factor) >= 1e-9 && std::abs(factor) <= 1e6))
+      throw InputError(file, 0, "has the scale " + shown(scale) + ": each factor has to be from 1e-9 to 1e6; 0.001 for millimetres");
+}
+
+// From the file's unit to metres.
+void apply_scale(const Vec3& scale, Reading& reading) {
+  for (Vec3& vertex : reading.mesh.vertices_m) vertex = vertex.cwiseProduct(scale);
+  const bool is_scaled = scale != Vec3::Ones();
+  reading.notes.push_back({0, std::string("states no unit and no axes: its numbers are taken as metres") +
+                                  (is_scaled ? " after the scale " + shown(scale) : "") + ", and its axes as they are"});
+  if (scale.prod() > 0) return;
+  for (Triangle& triangle : reading.mesh.triangles) std::swap(triangle[1], triangle[2]);
+  reading.notes.push_back({0, "is mirrored by its scale: its triangles are turned, so that their outside stays outside"});
+}
+
+void check_size(const Reading& reading) {
+  const std::vector<Vec3>& vertices = reading.mesh.vertices_m;
+  Vec3 least = vertices.front(), most = vertices.front();
+  for (const Vec3& vertex : vertices) {
+    least = least.cwiseMin(vertex);
+    most = most.cwiseMax(vertex);
+  }
+  const double side_m = (most - least).maxCoeff(), farthest_m = std::max(least.cwiseAbs().maxCoeff(), most.cwiseAbs().maxCoeff());
+  if (side_m > most_side_m)
+    throw InputError(
+        reading.file, 0,
+        "is " + shown(side_m) + " m long, more than " + shown(most_side_m) + " m: is it in millimetres? Then give it scale: 0.001");
+  if (side_m < least_side_m)
+    throw InputError(reading.file, 0,
+                     "is " + shown(side_m) + " m long, less than 1 mm: was it scaled from millimetres twice? Then give it scale: 1000");
+  if (farthest_m > most_coordinate_m)
+    throw InputError(reading.file, 0, "lies " + shown(farthest_m) + " m from its origin: move it there in a mesh editor");
+}
+
+}  // namespace
+
+std::string Reading::told(const Note& note) const { return InputError(file, note.line, note.text).what(); }
+
+Reading read_mesh(const std::string& file, const Vec3& scale) { return parse_mesh(file, load(file), scale); }
+
+Reading parse_mesh(const std::string& file, std::string_view bytes, const Vec3& scale) {
+  check_scale(scale, file);
+  refuse_too_large(bytes.size(), file);
+  if (bytes.empty()) throw InputError(file, 0, "is empty: export the mesh anew");
+  if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);  // that a text is UTF-8
+  Reading reading;
+  reading.file = file;
+  switch (format_of(file, bytes)) {
+    case Format::obj: read_obj(bytes, reading); break;
+    case Format::stl: read_stl(bytes, reading); break;
+    case Format::ply: read_ply(bytes, reading); break;
+  }
+  if (reading.mesh.triangles.empty())
+    throw InputError(file, 0, "has no triangles: was the file cut off, or is it a cloud of points? Export a mesh");
+  apply_scale(scale, reading);
+  check_size(reading);
+  return reading;
+}
+
+}  // namespace lf::mesh
