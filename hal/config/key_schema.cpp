@@ -96,4 +96,17 @@ std::string key_schema(const Keys& table, const std::string& title) {
   return schema.dump(2) + "\n";
 }
 
+std::string list_file_schema(const std::string& list, const Keys& item, const std::vector<std::string>& required, std::int64_t version,
+                             const std::string& title) {
+  Json items = nested_schema(item);
+  items["required"] = required;
+  const Json schema{{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+                    {"title", title},
+                    {"type", "object"},
+                    {"additionalProperties", false},
+                    {"properties", {{"version", {{"const", version}}}, {list, list_schema(items, 0)}}},
+                    {"required", {"version"}}};
+  return schema.dump(2) + "\n";
+}
+
 }  // namespace lf::config

@@ -5,8 +5,10 @@
 #include "firmware/arm/chain/ik.hpp"
 #include "hal/config/arm_chain.hpp"
 #include "hal/config/nearest.hpp"
+#include "host_sim/app/check_scene.hpp"
 #include "host_sim/app/checks.hpp"
 #include "host_sim/app/command.hpp"
+#include "shared/input_error.hpp"
 #include "shared/random.hpp"
 #include "shared/urdf/read_urdf.hpp"
 
@@ -18,6 +20,7 @@ struct Options {
   std::string kind, file;
   config::ArmEnds ends{.base_link = "", .tool_link = "", .approach = "z", .opening = ""};
   std::vector<std::string> package_folders;
+  std::string picture;
   int postures = 200;
   bool json = false;
 };
@@ -186,7 +189,6 @@ std::string opening_beside(const std::string& approach) { return approach.ends_w
 
 int check_arm(Options options) {
   if (options.ends.opening.empty()) options.ends.opening = opening_beside(options.ends.approach);
-  config::check_names({options.kind}, {"arm"}, "check");
   urdf::ReadOptions how;
   how.package_folders.assign(options.package_folders.begin(), options.package_folders.end());
   const urdf::Reading reading = urdf::read_urdf(options.file, how);
@@ -200,14 +202,32 @@ int check_arm(Options options) {
   return failed;
 }
 
+// An option that the kind does not take.
+void refuse_other_options(const CLI::App& command, const std::string& kind, const std::vector<std::string>& options) {
+  for (const std::string& option : options) {
+    if (command.count(option) > 0) throw InputError("check " + kind + " takes no " + option);
+  }
+}
+
+int check(const CLI::App& command, const Options& options) {
+  config::check_names({options.kind}, {"arm", "scene"}, "check");
+  if (options.kind == "scene") {
+    refuse_other_options(command, options.kind, {"--base", "--tool", "--approach", "--opening", "--packages", "--postures"});
+    return check_scene(options.file, options.picture, options.json);
+  }
+  refuse_other_options(command, options.kind, {"--picture"});
+  return check_arm(options);
+}
+
 }  // namespace
 
 void add_check(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand(
-      "check", "Read an arm's URDF strictly: its joints, its inverse kinematics, where its tool comes, and all that was assumed");
+  CLI::App* command = app.add_subcommand("check",
+                                         "Read a file strictly and tell what is in it and all that was assumed: an arm's URDF, with its "
+                                         "joints, its inverse kinematics and where its tool comes; or a scene");
   auto options = std::make_shared<Options>();
-  command->add_option("KIND", options->kind, "What FILE describes: arm")->required();
-  command->add_option("FILE", options->file, "A URDF file")->required();
+  command->add_option("KIND", options->kind, "What FILE describes: arm or scene")->required();
+  command->add_option("FILE", options->file, "An arm's URDF file, or a scene's YAML file")->required();
   command->add_option("--base", options->ends.base_link, "The link that the arm begins at; the root where it is not given");
   command->add_option("--tool", options->ends.tool_link, "The link that carries the tool; needed where the arm ends at several");
   command->add_option("--approach", options->ends.approach,
@@ -217,8 +237,9 @@ void add_check(CLI::App& app, Action& action) {
   command->add_option("--packages", options->package_folders,
                       "A folder that holds the folders of packages, for package:// meshes; can be given again");
   command->add_option("--postures", options->postures, "Random postures to try; 200 where it is not given")->check(within(0, 100000));
+  command->add_option("--picture", options->picture, "scene: draw it with the default robot and panel, a .png file")->check(check_png);
   command->add_flag("--json", options->json, "Print JSON");
-  command->callback([options, &action] { action = [options] { return check_arm(*options); }; });
+  command->callback([options, command, &action] { action = [options, command] { return check(*command, *options); }; });
 }
 
 }  // namespace lf::app

@@ -5,6 +5,7 @@
 #include "host_sim/scenario/describe.hpp"
 #include "host_sim/scenario/instance.hpp"
 #include "host_sim/scenario/scenario.hpp"
+#include "host_sim/scenario/scene_file.hpp"
 
 namespace lf::app {
 
@@ -17,6 +18,8 @@ struct Options {
   bool schema = false;
   bool keys = false;
   bool faults = false;
+  bool scene_schema = false;
+  bool scene_keys = false;
 };
 
 int list(bool json) {
@@ -37,6 +40,10 @@ int scenarios(const Options& options) {
     print("%s", scenario::json_schema().c_str());
   } else if (options.keys) {
     print("%s", scenario::keys_markdown().c_str());
+  } else if (options.scene_schema) {
+    print("%s", scenario::scene_schema().c_str());
+  } else if (options.scene_keys) {
+    print("%s", scenario::scene_keys_markdown().c_str());
   } else if (options.faults) {
     print("%s", config::fault_kinds_markdown().c_str());
   } else if (options.name.empty()) {
@@ -64,6 +71,8 @@ void add_scenarios(CLI::App& app, Action& action) {
   command->add_flag("--schema", options->schema, "Print the JSON Schema of scenario files");
   command->add_flag("--keys", options->keys, "Print the table of all keys (Markdown)");
   command->add_flag("--faults", options->faults, "Print the table of all kinds of faults (Markdown)");
+  command->add_flag("--scene-schema", options->scene_schema, "Print the JSON Schema of a scene's file");
+  command->add_flag("--scene-keys", options->scene_keys, "Print the table of the keys of a scene's object (Markdown)");
   command->add_flag("--json", options->json, "Print JSON");
   command->callback([options, &action] { action = [options] { return scenarios(*options); }; });
 }

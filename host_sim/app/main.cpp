@@ -35,6 +35,7 @@ void add_commands(CLI::App& app, Action& action) {
   add_markers(app, action);
   add_ik(app, action);
   add_check(app, action);
+  add_new(app, action);
   add_bench(app, action);
   add_doctor(app, action);
   add_version(app, action);

@@ -1,10 +1,14 @@
 #include "host_sim/app/run_experiment.hpp"
 
+#include <fstream>
+#include <iterator>
+
 #include "hal/config/drive_kind.hpp"
 #include "hal/config/share.hpp"
-#include "hal/config/text_file.hpp"
 #include "host_sim/scenario/describe.hpp"
 #include "host_sim/scenario/instance.hpp"
+#include "host_sim/scenario/scene_file.hpp"
+#include "shared/input_error.hpp"
 
 namespace lf::app {
 
@@ -23,6 +27,12 @@ std::vector<UsedFile> used_files(const scenario::Scenario& scenario) {
   for (const std::string& file : {scenario.arm.urdf, scenario.safety.limits, std::string(scenario::homing_file)})
     files.push_back({file, config::find_file(file, folder)});
   files.push_back({scenario::drive_objects_file, config::share_folder() / scenario::drive_objects_file});
+  if (!scenario.scene.empty()) {
+    const fs::path scene = config::find_file(scenario.scene, folder);
+    files.push_back({scenario.scene, scene});
+    for (const fs::path& mesh : scenario::scene_of(scenario).meshes)
+      files.push_back({mesh.lexically_relative(scene.parent_path()).string() + " of " + scenario.scene, mesh});
+  }
   const std::string& tighter = scenario.safety.mission_limits;
   if (!tighter.empty()) files.push_back({tighter, config::find_file(tighter, folder)});
   for (std::size_t joint = 0; joint < joint_count; ++joint) {
@@ -31,6 +41,13 @@ std::vector<UsedFile> used_files(const scenario::Scenario& scenario) {
     for (const std::string& base : kind.like) files.push_back({fs::path(base).filename().string(), base});
   }
   return files;
+}
+
+std::string whole_file(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  if (file.bad() || !file.is_open()) throw InputError(path.string() + ": cannot be read");
+  return bytes;
 }
 
 bool climbs(const fs::path& relative) { return relative.empty() || relative.is_absolute() || *relative.begin() == ".."; }
@@ -65,10 +82,11 @@ void keep_scenario(const scenario::Scenario& scenario, const record::RunFolder& 
   const fs::path folder = fs::path(scenario.file).parent_path();
   for (const UsedFile& file : used_files(scenario)) {
     const fs::path relative = beside(file.path, folder);
-    if (!relative.empty()) run.write(relative.string(), config::read_text_file(file.path));
+    if (!relative.empty()) run.write(relative.string(), whole_file(file.path));
   }
   scenario::Scenario kept = scenario;
   name_whole(kept.arm.urdf, folder);
+  name_whole(kept.scene, folder);
   name_whole(kept.safety.limits, folder);
   name_whole(kept.safety.mission_limits, folder);
   if (kept.drives.profile.find('/') != std::string::npos) name_whole(kept.drives.profile, folder);

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <vector>
 
+#include "host_sim/app/triangle_tree.hpp"
 #include "host_sim/campaign/statistics/percentile.hpp"
 
 namespace lf::app {
@@ -19,20 +22,6 @@ double box_distance(const Vec3& p, const Vec3& half) {
 double cylinder_distance(const Vec3& p, double radius, double half_height) {
   const Vec2 q(p.head<2>().norm() - radius, std::abs(p.z()) - half_height);
   return q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0);
-}
-
-double segment_distance(const Vec3& p, const Vec3& a, const Vec3& b) {
-  const Vec3 along = b - a;
-  const double t = along.squaredNorm() > 0 ? std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0) : 0.0;
-  return (p - a - t * along).norm();
-}
-
-// To the plane where the point lies over the triangle, else to its nearest side.
-double triangle_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 normal = (b - a).cross(c - a);
-  const auto inside_of = [&](const Vec3& from, const Vec3& to) { return normal.dot((to - from).cross(p - from)) >= 0; };
-  if (normal.squaredNorm() > 0 && inside_of(a, b) && inside_of(b, c) && inside_of(c, a)) return std::abs(normal.normalized().dot(p - a));
-  return std::min({segment_distance(p, a, b), segment_distance(p, b, c), segment_distance(p, c, a)});
 }
 
 }  // namespace
@@ -74,7 +63,7 @@ double distance_to_surface_m(const Vec3& point_m, const scene::Shape& shape) {
   double nearest = std::numeric_limits<double>::infinity();
   for (const auto& triangle : shape.triangles)
     nearest = std::min(nearest,
-                       triangle_distance(p, shape.vertices_m[triangle[0]], shape.vertices_m[triangle[1]], shape.vertices_m[triangle[2]]));
+                       triangle_distance_m(p, shape.vertices_m[triangle[0]], shape.vertices_m[triangle[1]], shape.vertices_m[triangle[2]]));
   return nearest;
 }
 
@@ -82,13 +71,24 @@ std::vector<double> cloud_errors_mm(std::span<const CloudPoint> cloud, const sce
   constexpr auto first = static_cast<std::size_t>(scene::BodyId::panel);
   scene::BodyPoses body_from_base;
   for (const Pose& base_from_body : poses) body_from_base.push_back(base_from_body.inverse());
+  std::vector<std::vector<std::optional<TriangleTree>>> meshes(scene.size());  // of each body's shapes
+  for (std::size_t body = first; body < scene.size(); ++body) {
+    for (const scene::Shape& shape : scene[body].shapes) {
+      auto& tree = meshes[body].emplace_back();
+      if (shape.kind == scene::ShapeKind::mesh) tree.emplace(shape.vertices_m, shape.triangles);
+    }
+  }
   std::vector<double> distances;
   distances.reserve(cloud.size());
   for (const CloudPoint& point : cloud) {
     double nearest = std::numeric_limits<double>::infinity();
     for (std::size_t body = first; body < scene.size(); ++body) {
       const Vec3 p = body_from_base[body] * point.p_m.cast<double>();
-      for (const scene::Shape& shape : scene[body].shapes) nearest = std::min(nearest, distance_to_surface_m(p, shape));
+      for (std::size_t i = 0; i < scene[body].shapes.size(); ++i) {
+        const scene::Shape& shape = scene[body].shapes[i];
+        const std::optional<TriangleTree>& mesh = meshes[body][i];
+        nearest = mesh ? mesh->nearest_m(shape.body_from_shape.inverse() * p, nearest) : std::min(nearest, distance_to_surface_m(p, shape));
+      }
     }
     distances.push_back(1e3 * nearest);
   }

@@ -51,7 +51,7 @@ fs::path find_scenario(const std::string& file_or_name) {
 // A profile's name without an ending is a shipped one's.
 bool names_a_file(const std::string& path, const std::string& value) {
   if (path.starts_with("drives.") && path.ends_with("profile")) return looks_like_a_file(value);
-  return path == "arm.urdf" || path == "safety.limits" || path == "safety.mission_limits";
+  return path == "arm.urdf" || path == "scene" || path == "safety.limits" || path == "safety.mission_limits";
 }
 
 // Whoever types a name means the present folder; in the scenario's file a name means the file's own.

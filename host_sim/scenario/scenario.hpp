@@ -179,6 +179,7 @@ struct Scenario {
   std::string file;  // where it was read
   std::string description;
   double time_limit_s = 400;
+  std::string scene;  // a file of what else stands about; empty: nothing
   PanelLayout panel;
   Docking docking;
   Valve valve;

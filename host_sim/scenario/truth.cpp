@@ -12,6 +12,7 @@
 #include "host_sim/optics/formation/gaussian_taps.hpp"
 #include "host_sim/scenario/bounds.hpp"
 #include "host_sim/scenario/instance.hpp"
+#include "host_sim/scenario/scene_file.hpp"
 #include "shared/arm/arm_description.hpp"
 #include "shared/input_error.hpp"
 #include "shared/random.hpp"
@@ -91,6 +92,7 @@ world::WorldConfig world_config(const Scenario& scenario, const Sample& sample) 
   world.scene = scene::make_scene(world.arm, world.layout);
   move_marker(world.scene[std::size_t(scene::BodyId::panel)], sample);
   world.base_from_panel = true_base_from_panel(scenario.panel, sample);
+  for (scene::Body& object : placed_objects(scene_of(scenario), world.base_from_panel)) world.scene.push_back(std::move(object));
   world.valve.start_rad = sample.valve_start_rad;
   world.valve.friction_nm = sample.valve_friction_nm;
   world.valve.viscous_nm_s = scenario.valve.viscous_nm_s;
@@ -335,6 +337,11 @@ void check_runnable(const Scenario& scenario) {
   std::vector<std::string> problems;
   add_job_problems(scenario, problems);
   if (!problems.empty()) throw InputError(joined(problems));
+  try {
+    (void)scene_of(scenario);
+  } catch (const InputError& problem) {
+    problems.emplace_back(problem.what());
+  }
   const ArmDescription arm = true_arm(scenario);
   for (std::size_t joint = 0; joint < joint_count; ++joint) {
     devices::DriveConfig drive;

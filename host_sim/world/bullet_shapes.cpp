@@ -9,13 +9,8 @@
 #include "host_sim/world/bullet_types.hpp"
 
 namespace lf::world {
-namespace {
 
-// Rounds the edges of boxes, cylinders and hulls inside their true surface. Bullet's 40 mm would swallow a 12.6 mm handle; below about
-// 0.1 mm GJK loses the closest points of touching faces.
-constexpr double edge_radius_m = 0.0005;
-
-std::unique_ptr<btCollisionShape> convex_shape(const scene::Shape& shape) {
+std::unique_ptr<btCollisionShape> make_convex_shape(const scene::Shape& shape) {
   using scene::ShapeKind;
   const Vec3& size = shape.size_m;
   std::unique_ptr<btCollisionShape> made;
@@ -36,14 +31,12 @@ std::unique_ptr<btCollisionShape> convex_shape(const scene::Shape& shape) {
   return made;
 }
 
-}  // namespace
-
 CollisionShape make_collision_shape(const scene::Body& body, const Pose& body_from_frame) {
   CollisionShape made;
   made.compound = std::make_unique<btCompoundShape>();
   for (const scene::Shape& shape : body.shapes) {
     if (!shape.collides) continue;
-    made.children.push_back(convex_shape(shape));
+    made.children.push_back(make_convex_shape(shape));
     made.compound->addChildShape(to_bullet(Pose(body_from_frame.inverse() * shape.body_from_shape)), made.children.back().get());
     made.frictions.push_back(shape.friction);
   }
@@ -56,6 +49,8 @@ CollisionShape make_collision_shape(const scene::Body& body, const Pose& body_fr
   return made;
 }
 
-double friction_of(const btCollisionShape& shape, int child) { return static_cast<const double*>(shape.getUserPointer())[child]; }
+double friction_of(const btCollisionShape& shape, int child) {
+  return static_cast<const double*>(shape.getUserPointer())[shape.isCompound() ? child : 0];  // a mesh's points count triangles
+}
 
 }  // namespace lf::world

@@ -11,6 +11,10 @@
 
 namespace lf::world {
 
+// Rounds the edges of boxes, cylinders, hulls and meshes inside their true surface. Bullet's 40 mm would swallow a 12.6 mm handle; below about
+// 0.1 mm GJK loses the closest points of touching faces.
+inline constexpr double edge_radius_m = 0.0005;
+
 // A compound and the shapes it is made of, which it does not own by itself. A point that touches nothing has no friction.
 struct CollisionShape {
   std::unique_ptr<btCompoundShape> compound;
@@ -18,7 +22,10 @@ struct CollisionShape {
   std::vector<double> frictions;  // of each child; the compound's user pointer leads here
 };
 
-// Friction of the compound's child `child`. `shape` is one that make_collision_shape made.
+// A single shape, a mesh as its convex hull.
+std::unique_ptr<btCollisionShape> make_convex_shape(const scene::Shape& shape);
+
+// Friction of a compound's child `child`, which make_collision_shape made, or of a shape by itself: its user pointer leads to one, or to as many.
 double friction_of(const btCollisionShape& shape, int child);
 
 // The shapes of `body` with `collides`, seen from `body_from_frame`; a point that touches nothing when there is none.

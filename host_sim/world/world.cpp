@@ -2,8 +2,10 @@
 
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
+#include <string>
 
 #include "host_sim/world/arm_body.hpp"
 #include "host_sim/world/bullet_types.hpp"
@@ -11,8 +13,10 @@
 #include "host_sim/world/button_body.hpp"
 #include "host_sim/world/config_check.hpp"
 #include "host_sim/world/contact_sensor.hpp"
+#include "host_sim/world/fixed_object.hpp"
 #include "host_sim/world/obstacle.hpp"
 #include "host_sim/world/valve_body.hpp"
+#include "shared/input_error.hpp"
 
 namespace lf::world {
 namespace {
@@ -22,6 +26,9 @@ using scene::BodyId;
 // The valve and the buttons join the simulation when the arm comes this near, and leave it once they rest and it is gone: at rest they change nothing. The arm
 // moves by less than 2 mm a step.
 constexpr double near_m = 0.02;
+
+// Objects may touch the robot where it starts, no more.
+constexpr double start_gap_m = 0.001;
 
 const WorldConfig& checked(const WorldConfig& config) {
   check(config);
@@ -71,6 +78,7 @@ struct World::Impl {
   std::unique_ptr<btRigidBody> panel;
   ValveBody valve;
   std::array<ButtonBody, PanelLayout::button_count> buttons;
+  std::vector<std::unique_ptr<FixedObject>> objects;
   ContactSensor sensor;
   std::vector<ContactImpulse> impulses;
   std::unique_ptr<Obstacle> obstacle;
@@ -91,10 +99,24 @@ struct World::Impl {
     panel->setWorldTransform(to_bullet(config.base_from_panel));
     panel->setUserIndex(int(BodyId::panel));
     bullet.get().addCollisionObject(panel.get());
+    for (std::size_t i = scene::own_body_count; i < config.scene.size(); ++i)
+      objects.push_back(std::make_unique<FixedObject>(bullet.get(), config.scene[i], config.scene[i].base_from_body, int(i)));
+    if (!objects.empty()) refuse_overlaps();
+  }
+
+  void refuse_overlaps() {
+    bullet.get().performDiscreteCollisionDetection();
+    for (const auto& [a, b, depth_m] : overlaps(*bullet.get().getDispatcher())) {
+      const scene::Body &robot = config.scene[std::size_t(std::min(a, b))], &object = config.scene[std::size_t(std::max(a, b))];
+      if (object.role != scene::Role::object || robot.role == scene::Role::panel || depth_m < start_gap_m) continue;
+      throw InputError("scene: '" + object.name + "' stands " + std::to_string(std::lround(1e3 * depth_m)) + " mm deep in the " +
+                       robot.name + " where the arm starts: move it");
+    }
   }
 
   ~Impl() {
     obstacle.reset();
+    objects.clear();
     for (ButtonBody& button : buttons) button.part().leave(bullet.get());
     valve.part().leave(bullet.get());
     bullet.get().removeCollisionObject(panel.get());

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 
 namespace lf::app {
 
@@ -64,6 +66,59 @@ TEST(Scoring, DistancesToSpheresCapsulesAndMeshes) {
                     {2, 3, 7}, {2, 7, 6}, {0, 2, 6}, {0, 6, 4}, {1, 5, 7}, {1, 7, 3}};
   for (const Vec3& p : {Vec3(3, 0, 0), Vec3(3, 3, 0), Vec3(3, -3, 3), Vec3(0.2, 0.5, 0.4), Vec3(-0.9, 0.1, 0)})
     EXPECT_NEAR(distance_to_surface_m(p, mesh), distance_to_surface_m(p, box), 1e-12) << p.transpose();
+}
+
+// A bumpy ball of 2 * 40 * 80 triangles, about the origin.
+scene::Shape bumpy_ball() {
+  constexpr std::uint32_t rows = 41, columns = 80;
+  scene::Shape ball;
+  ball.kind = scene::ShapeKind::mesh;
+  for (std::uint32_t row = 0; row < rows; ++row) {
+    for (std::uint32_t column = 0; column < columns; ++column) {
+      const double latitude = pi * (row / (rows - 1.0) - 0.5), longitude = 2 * pi * column / columns;
+      const double radius = 0.1 * (1 + 0.2 * std::sin(3 * longitude) * std::cos(4 * latitude));
+      ball.vertices_m.emplace_back(radius * std::cos(latitude) * std::cos(longitude), radius * std::cos(latitude) * std::sin(longitude),
+                                   radius * std::sin(latitude));
+    }
+  }
+  for (std::uint32_t row = 0; row + 1 < rows; ++row) {
+    for (std::uint32_t column = 0; column < columns; ++column) {
+      const std::uint32_t a = row * columns + column, b = row * columns + (column + 1) % columns;
+      ball.triangles.push_back({a, b, b + columns});
+      ball.triangles.push_back({a, b + columns, a + columns});
+    }
+  }
+  return ball;
+}
+
+// The tree finds what looking at every triangle finds.
+TEST(Scoring, CloudErrorsAreDistancesToTheNearestSurfaceAndMeshesAreSurface) {
+  constexpr std::uint64_t seed = 31;
+  scene::Scene scene = scene::bare_scene();
+  scene::Body ball;
+  ball.shapes.push_back(bumpy_ball());
+  ball.shapes[0].body_from_shape = Pose(Eigen::Translation3d(0.01, -0.02, 0.03) * Eigen::AngleAxisd(0.4, Vec3(1, 2, 3).normalized()));
+  scene.push_back(ball);
+  scene::BodyPoses poses = scene::poses_at_origin(scene);
+  poses.back() = Pose(Eigen::Translation3d(0.3, 0.1, 0.2) * Eigen::AngleAxisd(1.1, Vec3::UnitY()));
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<float> place(-0.3F, 0.8F);
+  std::vector<CloudPoint> cloud(300);
+  for (CloudPoint& point : cloud) point.p_m = Eigen::Vector3f(place(random), place(random), place(random));
+  const std::vector<double> errors = cloud_errors_mm(cloud, scene, poses);
+  ASSERT_EQ(errors.size(), cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Vec3 p = poses.back().inverse() * cloud[i].p_m.cast<double>();
+    EXPECT_NEAR(errors[i], 1e3 * distance_to_surface_m(p, ball.shapes[0]), 1e-9) << "seed " << seed << ", point " << i;
+  }
+  // With a plate nearer than the ball the plate counts.
+  scene::Shape plate;
+  plate.kind = scene::ShapeKind::box;
+  plate.size_m = Vec3(4, 4, 0.1);
+  scene[std::size_t(scene::BodyId::panel)].shapes = {plate};
+  const std::vector<double> both = cloud_errors_mm(cloud, scene, poses);
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    EXPECT_NEAR(both[i], std::min(errors[i], 1e3 * distance_to_surface_m(cloud[i].p_m.cast<double>(), plate)), 1e-9);
 }
 
 TEST(Scoring, PercentilesAreNearestRank) {

@@ -67,6 +67,35 @@ TEST(StillView, KeptOrMadeAnewGivesTheSameBytesInColourThroughAPort) {
   compare_with_fresh(config, 12, 12);
 }
 
+// What stands about is kept with panel and vehicle, is seen, and throws its shadow.
+TEST(StillView, AnObjectOfTheSceneIsSeenAndThrowsItsShadow) {
+  const MissionScene mission;
+  OpticsConfig config = mission.config();
+  scene::Body post;
+  post.name = "post";
+  post.shapes.push_back(make_shape(scene::ShapeKind::box, {0.05, 0.05, 0.05}, Vec3::Zero(), 0.8f));
+  post.base_from_body = mission.layout.nominal_base_from_panel() * Eigen::Translation3d(-0.1, -0.15, 0.1);
+  Shot shot;
+  shot.poses = mission.poses({0, 0.3, 1.9, 0, 0.1}, 0, 0);
+  shot.lamps = 1;
+  shot.laser = 0;
+  shot.truth = true;
+  Frame without, with;
+  Optics(config).render(shot, without);
+  config.scene.push_back(post);
+  EXPECT_THROW(Optics(config).render(shot, with), InputError) << "a pose is missing";
+  shot.poses.push_back(post.base_from_body);
+  Optics(config).render(shot, with);
+  const auto label = static_cast<std::uint16_t>(1 + scene::own_body_count);
+  int seen = 0, darker = 0;
+  for (std::size_t i = 0; i < with.object.size(); ++i) {
+    seen += with.object[i] == label;
+    darker += with.object[i] == without.object[i] && with.pixels[i] + 20 < without.pixels[i];
+  }
+  EXPECT_GT(seen, 100);
+  EXPECT_GT(darker, 100);
+}
+
 TEST(StillView, TwoCamerasKeepTheirOwn) {
   OpticsConfig config = MissionScene().config();
   config.cameras.push_back(config.cameras[0]);

@@ -1,0 +1,96 @@
+#include "host_sim/app/check_scene.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "host_sim/app/command.hpp"
+#include "host_sim/optics/outside_view.hpp"
+#include "host_sim/record/file_sink.hpp"
+#include "host_sim/record/png.hpp"
+#include "host_sim/scenario/instance.hpp"
+#include "host_sim/scenario/scene_file.hpp"
+#include "host_sim/world/world.hpp"
+
+namespace lf::app {
+namespace {
+
+const char* name_of(scene::ShapeKind kind) {
+  switch (kind) {
+    case scene::ShapeKind::box: return "box";
+    case scene::ShapeKind::cylinder: return "cylinder";
+    case scene::ShapeKind::capsule: return "capsule";
+    case scene::ShapeKind::sphere: return "sphere";
+    case scene::ShapeKind::mesh: break;
+  }
+  return "mesh";
+}
+
+Json list(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+Json json_of(const scenario::SceneFile::Placed& object) {
+  const scene::Shape& shape = object.body.shapes.front();
+  const scenario::Extent extent = scenario::extent_of(object.body);
+  Json json{{"name", object.body.name},
+            {"kind", name_of(shape.kind)},
+            {"on", object.on_vehicle ? "vehicle" : "panel"},
+            {"position_m", list(object.body.base_from_body.translation())},
+            {"least_m", list(extent.least_m)},
+            {"most_m", list(extent.most_m)},
+            {"albedo", shape.albedo},
+            {"friction", shape.friction}};
+  if (shape.kind == scene::ShapeKind::mesh) json["triangles"] = shape.triangles.size();
+  return json;
+}
+
+void tell(const scenario::SceneFile::Placed& object) {
+  const scene::Shape& shape = object.body.shapes.front();
+  const scenario::Extent extent = scenario::extent_of(object.body);
+  const std::string triangles = shape.kind == scene::ShapeKind::mesh ? ", " + count_of(shape.triangles.size(), "triangle") : "";
+  print("  %-16s %s on the %s, x %.3f to %.3f, y %.3f to %.3f, z %.3f to %.3f m%s\n", object.body.name.c_str(), name_of(shape.kind),
+        object.on_vehicle ? "vehicle" : "panel", extent.least_m.x(), extent.most_m.x(), extent.least_m.y(), extent.most_m.y(),
+        extent.least_m.z(), extent.most_m.z(), triangles.c_str());
+}
+
+// The default scenario with the scene, every error of docking and mounting at the middle of its spread: what a run would begin with.
+void draw(const std::string& file, const std::string& picture) {
+  const scenario::Scenario scenario =
+      scenario::load_scenario("default", {"scene=" + Json(std::filesystem::absolute(file).string()).dump()});
+  const scenario::Sample sample = scenario::draw(scenario, 1);
+  const scenario::Nominal nominal = scenario::make_nominal(scenario, sample.lamps_lit);
+  const hal::SimConfig sim = scenario::make_truth(scenario, sample, nominal, 1);
+  const world::World world(sim.world);
+  optics::Optics camera(optics::outside_view(sim.optics, optics::OutsideView{}));
+  optics::Shot shot;
+  shot.poses = world.base_from_body();
+  shot.lamps = 1;
+  shot.laser = 0;
+  optics::Frame frame;
+  camera.render(shot, frame);
+  record::RgbImage image(frame.width, frame.height);
+  image.pixels = frame.pixels;
+  const std::vector<std::uint8_t> png = record::encode_png(image);
+  record::write_file_atomically(picture, {reinterpret_cast<const char*>(png.data()), png.size()});
+}
+
+}  // namespace
+
+int check_scene(const std::string& file, const std::string& picture, bool json) {
+  const scenario::SceneFile scene = scenario::read_scene_file(file);
+  if (!picture.empty()) draw(file, picture);
+  if (json) {
+    Json objects = Json::array();
+    for (const scenario::SceneFile::Placed& object : scene.objects) objects.push_back(json_of(object));
+    Json document{{"file", file}, {"objects", objects}, {"notes", scene.notes}};
+    if (!picture.empty()) document["picture"] = picture;
+    print_json(document);
+    return done;
+  }
+  print("%s: %s\n", file.c_str(), count_of(scene.objects.size(), "object").c_str());
+  for (const scenario::SceneFile::Placed& object : scene.objects) tell(object);
+  if (!scene.notes.empty()) print("what was assumed, changed or is of no use here:\n");
+  for (const std::string& note : scene.notes) print("  %s\n", note.c_str());
+  if (!picture.empty()) print("picture: %s\n", picture.c_str());
+  return done;
+}
+
+}  // namespace lf::app

@@ -1,0 +1,88 @@
+#include <filesystem>
+#include <memory>
+#include <sstream>
+
+#include "hal/config/nearest.hpp"
+#include "host_sim/app/command.hpp"
+#include "host_sim/app/new_file.hpp"
+#include "host_sim/record/file_sink.hpp"
+#include "host_sim/scenario/describe.hpp"
+#include "host_sim/scenario/scenario.hpp"
+#include "shared/input_error.hpp"
+
+namespace lf::app {
+
+namespace fs = std::filesystem;
+
+std::string new_scenario() {
+  std::string text =
+      "# A mission of your own: `lanternfish run ./THIS_FILE --seed 1` flies it as it stands. Each line below that begins with '#' has a "
+      "key and its default:\n"
+      "# take the '#' away, and that of the group it is in, to change it. docs/scenarios.md explains them.\n\n"
+      "description: a mission of my own\n\n"
+      "tasks:\n"
+      "  - turn_valve: {to_deg: 90}\n"
+      "  - press_buttons: {order: [left, centre, right]}\n\n";
+  std::istringstream lines(scenario::scenario_yaml(scenario::Scenario{}));
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("description:") && !line.starts_with("tasks:")) text += "#" + line + "\n";
+  }
+  return text;
+}
+
+std::string new_scene() {
+  return "# What else stands about: name this file with `scene:` in a scenario, or fly `lanternfish run default --set scene=THIS_FILE`.\n"
+         "# `lanternfish check scene THIS_FILE --picture scene.png` tells and draws it. docs/scenarios.md has every key.\n"
+         "# Places on the panel: x to the right, y up, z toward the robot, from the valve's base. On the vehicle: x toward the panel, y "
+         "right, z down, from the\n"
+         "# arm's base.\n"
+         "version: 1\n"
+         "objects:\n"
+         "  - name: pipe\n"
+         "    kind: cylinder              # box (size_m), sphere (radius_m), cylinder and capsule (radius_m, length_m), mesh (file, "
+         "scale)\n"
+         "    radius_m: 0.02\n"
+         "    length_m: 0.7               # along its z\n"
+         "    on: panel                   # or vehicle\n"
+         "    position_m: [0, -0.3, 0.05]\n"
+         "    turn_deg: [0, 90, 0]        # about x, then y, then z\n"
+         "    albedo: [0.35, 0.36, 0.38]  # red, green, blue\n"
+         "    friction: 0.6\n"
+         "#  - name: rock\n"
+         "#    kind: mesh\n"
+         "#    file: rock.stl             # OBJ, STL or PLY, closed; relative to this file\n"
+         "#    scale: 0.001               # metres for one of its units\n"
+         "#    position_m: [-0.27, -0.18, 0.03]\n";
+}
+
+namespace {
+
+struct Options {
+  std::string kind, name;
+};
+
+int make(const Options& options) {
+  config::check_names({options.kind}, {"scenario", "scene"}, "new");
+  const bool has_ending = options.name.ends_with(".yaml") || options.name.ends_with(".yml");
+  const fs::path file = has_ending ? options.name : options.name + ".yaml";
+  std::error_code none;
+  if (fs::exists(file, none)) throw InputError(file.string() + ": is there already: another name, or take it away");
+  std::string text = options.kind == "scene" ? new_scene() : new_scenario();
+  const std::string place = "THIS_FILE";
+  for (std::size_t at = text.find(place); at != std::string::npos; at = text.find(place)) text.replace(at, place.size(), file.filename());
+  record::write_file_atomically(file, text);
+  print("%s\n", file.c_str());
+  return done;
+}
+
+}  // namespace
+
+void add_new(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand("new", "Write a file of your own to begin with: commented, and fit to fly as it is");
+  auto options = std::make_shared<Options>();
+  command->add_option("KIND", options->kind, "What to write: scenario or scene")->required();
+  command->add_option("NAME", options->name, "The file; .yaml is added where it has no ending")->required();
+  command->callback([options, &action] { action = [options] { return make(*options); }; });
+}
+
+}  // namespace lf::app
