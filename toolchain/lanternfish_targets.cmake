@@ -109,7 +109,7 @@ endfunction()
 
 # The programs' sources, most of which read the command line's and JSON's headers: half of the time that they take.
 function(lanternfish_precompile_program target)
-  lanternfish_precompile(${target} program ${precompiled_hosted} <CLI/CLI.hpp> <nlohmann/json.hpp>)
+  lanternfish_precompile(${target} program ${precompiled_hosted} <CLI/App.hpp> <nlohmann/json.hpp>)
 endfunction()
 
 # Of tests that compute little: their files compile in two thirds of the time.

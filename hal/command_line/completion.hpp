@@ -1,7 +1,7 @@
 // Completion scripts for bash and zsh, made of a program's table of commands and options.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include <CLI/App.hpp>
 #include <map>
 #include <string>
 

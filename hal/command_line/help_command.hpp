@@ -1,7 +1,7 @@
 // The commands that explain a program's others: `help` and `completion`.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include <CLI/App.hpp>
 #include <functional>
 #include <map>
 #include <string>

@@ -1,7 +1,7 @@
 // Manual pages in man(7): the commands and options from the program's own table, the prose around them from its author.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include <CLI/App.hpp>
 #include <string>
 #include <vector>
 

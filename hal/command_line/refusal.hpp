@@ -1,7 +1,7 @@
 // What a command line is refused for, in one line.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include <CLI/App.hpp>
 #include <string>
 
 namespace lf::command_line {

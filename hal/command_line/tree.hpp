@@ -1,7 +1,7 @@
 // A program's commands and options as their users see them: what help, manual pages and completion are made of.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include <CLI/App.hpp>
 #include <string>
 #include <vector>
 

@@ -2,7 +2,7 @@
 // Exit status: 0 done (of an order: it was taken), 1 the job failed or an order was refused, 2 bad input, 3 this machine lacks something.
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
+#include <CLI/App.hpp>
 #include <algorithm>
 #include <cerrno>
 #include <csignal>

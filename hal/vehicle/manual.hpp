@@ -1,7 +1,7 @@
 // The pages of the manual that `lanternfishd help --man` prints: lanternfishd(8) and lanternfish-vehicle(5). docs/man holds them.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include <CLI/App.hpp>
 
 #include "hal/command_line/help_command.hpp"
 

@@ -3,7 +3,7 @@
 // stdout carries the answer (with --json one JSON document and nothing else), stderr everything said on the way.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include <CLI/App.hpp>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <stdexcept>

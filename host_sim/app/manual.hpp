@@ -1,7 +1,7 @@
 // The pages of the manual that `lanternfish help --man` prints: lanternfish(1) and lanternfish-scenario(5). docs/man holds them.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include <CLI/App.hpp>
 #include <string>
 
 #include "hal/command_line/help_command.hpp"
