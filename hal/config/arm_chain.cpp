@@ -1,8 +1,11 @@
 #include "hal/config/arm_chain.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "shared/input_error.hpp"
+#include "shared/random.hpp"
 
 namespace lf::config {
 
@@ -45,7 +48,35 @@ chain::ChainJoint chain_joint(const Joint& joint, const Pose& before) {
   return out;
 }
 
+// A joint moves the tool point where that is off its axis. In a posture drawn at random it is, if it ever is.
+bool moves_its_tool(const chain::Chain& arm) {
+  constexpr int postures = 8;
+  constexpr double least_m = 1e-6;  // what files with few digits leave of an axis through the tool
+  std::uint64_t state = 1;
+  for (int k = 0; k < postures; ++k) {
+    const chain::Jacobian jacobian = arm.jacobian(random_posture(arm, state));
+    for (std::size_t i = 0; i < arm.size(); ++i) {
+      const chain::ChainJoint& joint = arm.joint(i);
+      const double range = joint.limited ? std::min(1.0, joint.upper - joint.lower) : 1;
+      if (jacobian.col(Eigen::Index(i)).head<3>().norm() * range > least_m) return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
+
+chain::JointValues random_posture(const chain::Chain& arm, std::uint64_t& state) {
+  chain::JointValues q = chain::JointValues::Zero();
+  for (std::size_t i = 0; i < arm.size(); ++i) {
+    const double share = std::ldexp(static_cast<double>(splitmix64(state) >> 11), -53);
+    state += splitmix64_step;
+    const chain::ChainJoint& joint = arm.joint(i);
+    const double lower = joint.limited ? joint.lower : -pi, upper = joint.limited ? joint.upper : pi;
+    q[Eigen::Index(i)] = lower + share * (upper - lower);
+  }
+  return q;
+}
 
 ArmChain arm_chain(const Mechanism& mechanism, const ArmEnds& ends) {
   const std::size_t base = ends.base_link.empty() ? Mechanism::root : mechanism.link(ends.base_link);
@@ -79,6 +110,10 @@ ArmChain arm_chain(const Mechanism& mechanism, const ArmEnds& ends) {
   tool_axes.linear() = urdf::tool_axes(ends.approach, ends.opening);
   const auto fault = arm.chain.set({joints.data(), arm.joints.size()}, since * tool_axes);
   if (fault != chain::ChainFault::none) throw InputError(mechanism.file + ": no chain can be made of it: " + chain::name(fault));
+  if (!moves_its_tool(arm.chain))
+    refuse(mechanism, mechanism.links[tool].line,
+           "the tool cannot move: link '" + arm.tool_link + "' has its origin on the axis of each joint from '" + arm.base_link +
+               "' on. Choose a tool link farther out (--tool LINK)");
   return arm;
 }
 

@@ -1,6 +1,7 @@
 // The core's chain of the joints between two links of a URDF file.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,11 @@ struct ArmChain {
 };
 
 // Joints that do not move are folded into the poses between the others. Throws InputError, with file and line where there is one: for a link or an axis that
-// there is not, a tool link that is not carried by the base link, a joint on the way that mimics another, no joint that moves, or more than chain::max_joints.
+// there is not, a tool link that is not carried by the base link, a joint on the way that mimics another, no joint that moves, or more than chain::max_joints,
+// and for a tool that none of them moves.
 ArmChain arm_chain(const urdf::Mechanism& mechanism, const ArmEnds& ends);
+
+// A posture drawn evenly from the joints' ranges, -pi to pi where a joint has none. The same for the same `state`, which it advances.
+chain::JointValues random_posture(const chain::Chain& arm, std::uint64_t& state);
 
 }  // namespace lf::config

@@ -38,6 +38,15 @@ std::string check_positive(const std::string& text) {
   return number && *number > 0 ? "" : "takes a number above 0, not " + text;
 }
 
+std::string check_filled(const std::string& text) {
+  return text.find_first_not_of(" \t") != std::string::npos ? "" : "is empty: give it a value, or leave the option out";
+}
+
+std::string check_folder(const std::string& text) {
+  std::error_code error;
+  return std::filesystem::is_directory(text, error) ? "" : "takes a folder that is there, not '" + text + "': correct its path, or make it";
+}
+
 std::string check_png(const std::string& text) {
   std::string ending = std::filesystem::path(text).extension().string();
   for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));

@@ -12,6 +12,10 @@ namespace lf::app {
 std::string check_seed(const std::string& text);
 // A finite number above 0.
 std::string check_positive(const std::string& text);
+// Not empty: a shell's variable that is not set.
+std::string check_filled(const std::string& text);
+// A folder that is there.
+std::string check_folder(const std::string& text);
 // A file's name that ends in .png, or has no ending.
 std::string check_png(const std::string& text);
 // A finite number from `low` to `high`.

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -9,7 +10,6 @@
 #include "host_sim/app/checks.hpp"
 #include "host_sim/app/command.hpp"
 #include "shared/input_error.hpp"
-#include "shared/random.hpp"
 #include "shared/urdf/read_urdf.hpp"
 
 namespace lf::app {
@@ -18,11 +18,11 @@ namespace {
 
 struct Options {
   std::string kind, file;
-  config::ArmEnds ends{.base_link = "", .tool_link = "", .approach = "z", .opening = ""};
+  config::ArmEnds ends{.base_link = "", .tool_link = "", .approach = "", .opening = ""};  // empty: not given
   std::vector<std::string> package_folders;
   std::string picture;
   int postures = 200;
-  bool json = false;
+  bool ignore_missing = false, json = false;
 };
 
 // What random postures of an arm say about it.
@@ -46,18 +46,6 @@ const char* text_of(const chain::IkTask& task) {
   return task.roll ? "position and roll" : "position";
 }
 
-chain::JointValues random_posture(const chain::Chain& arm, std::uint64_t& state) {
-  chain::JointValues q = chain::JointValues::Zero();
-  for (std::size_t i = 0; i < arm.size(); ++i) {
-    const double share = std::ldexp(static_cast<double>(splitmix64(state) >> 11), -53);
-    state += splitmix64_step;
-    const chain::ChainJoint& joint = arm.joint(i);
-    const double lower = joint.limited ? joint.lower : -pi, upper = joint.limited ? joint.upper : pi;
-    q[Eigen::Index(i)] = lower + share * (upper - lower);
-  }
-  return q;
-}
-
 // Whatever the solver says of itself.
 bool is_there(const chain::Chain& arm, const chain::IkTask& task, const chain::JointValues& q) {
   constexpr double near = 1e-6;  // rad, and of the arm's length
@@ -78,7 +66,7 @@ Trial try_postures(const chain::Chain& arm, int postures) {
   std::uint64_t state = 1;
   for (int i = 0; i < postures; ++i) {
     chain::IkTask task = trial.task;
-    task.base_from_tool = arm.base_from_tool(random_posture(arm, state));
+    task.base_from_tool = arm.base_from_tool(config::random_posture(arm, state));
     const Vec3 tool_m = task.base_from_tool.translation();
     trial.lower_m = trial.lower_m.cwiseMin(tool_m), trial.upper_m = trial.upper_m.cwiseMax(tool_m);
     trial.farthest_m = std::max(trial.farthest_m, (tool_m - first_joint_m).norm());
@@ -184,15 +172,37 @@ void tell(const urdf::Reading& reading, const config::ArmChain& arm, const chain
   for (const urdf::Note& note : reading.notes) print("  %s\n", reading.told(note).c_str());
 }
 
-// An opening that is not given is square to the approach.
-std::string opening_beside(const std::string& approach) { return approach.ends_with('x') ? "y" : "x"; }
+// The ends with what is assumed where the user says nothing: the tool approaches along its z, and opens square to that.
+config::ArmEnds assumed_ends(config::ArmEnds given) {
+  if (given.approach.empty()) given.approach = "z";
+  if (given.opening.empty()) given.opening = given.approach.ends_with('x') ? "y" : "x";
+  return given;
+}
 
-int check_arm(Options options) {
-  if (options.ends.opening.empty()) options.ends.opening = opening_beside(options.ends.approach);
+// Each of these, as a note at its link.
+void note_assumptions(const config::ArmEnds& given, const config::ArmEnds& used, const config::ArmChain& arm, urdf::Reading& reading) {
+  const int base_line = reading.mechanism.links[reading.mechanism.link(arm.base_link)].line;
+  const int tool_line = reading.mechanism.links[reading.mechanism.link(arm.tool_link)].line;
+  const std::string tool = "link '" + arm.tool_link + "'";
+  if (given.base_link.empty())
+    reading.notes.push_back({base_line, "the arm is taken to begin at the root '" + arm.base_link + "' (--base)"});
+  if (given.tool_link.empty())
+    reading.notes.push_back({tool_line, tool + " is taken to carry the tool: the arm ends there alone (--tool)"});
+  if (given.approach.empty())
+    reading.notes.push_back({tool_line, tool + " is taken to approach along its " + used.approach + " (--approach)"});
+  if (given.opening.empty())
+    reading.notes.push_back({tool_line, tool + " is taken to have fingers that open along its " + used.opening + " (--opening)"});
+  std::stable_sort(reading.notes.begin(), reading.notes.end(), [](const urdf::Note& a, const urdf::Note& b) { return a.line < b.line; });
+}
+
+int check_arm(const Options& options) {
   urdf::ReadOptions how;
   how.package_folders.assign(options.package_folders.begin(), options.package_folders.end());
-  const urdf::Reading reading = urdf::read_urdf(options.file, how);
-  const config::ArmChain arm = config::arm_chain(reading.mechanism, options.ends);
+  how.ignore_missing_meshes = options.ignore_missing;
+  urdf::Reading reading = urdf::read_urdf(options.file, how);
+  const config::ArmEnds ends = assumed_ends(options.ends);
+  const config::ArmChain arm = config::arm_chain(reading.mechanism, ends);
+  note_assumptions(options.ends, ends, arm, reading);
   const chain::Ik ik(arm.chain);
   const Trial trial = try_postures(arm.chain, options.postures);
   (options.json ? answer : tell)(reading, arm, ik, trial, options.postures);
@@ -212,7 +222,8 @@ void refuse_other_options(const CLI::App& command, const std::string& kind, cons
 int check(const CLI::App& command, const Options& options) {
   config::check_names({options.kind}, {"arm", "scene"}, "check");
   if (options.kind == "scene") {
-    refuse_other_options(command, options.kind, {"--base", "--tool", "--approach", "--opening", "--packages", "--postures"});
+    refuse_other_options(command, options.kind,
+                         {"--base", "--tool", "--approach", "--opening", "--packages", "--ignore-missing", "--postures"});
     return check_scene(options.file, options.picture, options.json);
   }
   refuse_other_options(command, options.kind, {"--picture"});
@@ -228,14 +239,24 @@ void add_check(CLI::App& app, Action& action) {
   auto options = std::make_shared<Options>();
   command->add_option("KIND", options->kind, "What FILE describes: arm or scene")->required();
   command->add_option("FILE", options->file, "An arm's URDF file, or a scene's YAML file")->required();
-  command->add_option("--base", options->ends.base_link, "The link that the arm begins at; the root where it is not given");
-  command->add_option("--tool", options->ends.tool_link, "The link that carries the tool; needed where the arm ends at several");
-  command->add_option("--approach", options->ends.approach,
-                      "The tool link's axis along which it approaches: x, -x, y, -y, z or -z; z where it is not given");
-  command->add_option("--opening", options->ends.opening,
-                      "The tool link's axis along which its fingers open; x where it is not given, y where x approaches");
-  command->add_option("--packages", options->package_folders,
-                      "A folder that holds the folders of packages, for package:// meshes; can be given again");
+  command->add_option("--base", options->ends.base_link, "The link that the arm begins at; the root where it is not given")
+      ->check(check_filled);
+  command->add_option("--tool", options->ends.tool_link, "The link that carries the tool; needed where the arm ends at several")
+      ->check(check_filled);
+  command
+      ->add_option("--approach", options->ends.approach,
+                   "The tool link's axis along which it approaches: x, -x, y, -y, z or -z; z where it is not given")
+      ->check(check_filled);
+  command
+      ->add_option("--opening", options->ends.opening,
+                   "The tool link's axis along which its fingers open; x where it is not given, y where x approaches")
+      ->check(check_filled);
+  command
+      ->add_option("--packages", options->package_folders,
+                   "A folder that holds the folders of packages, for package:// meshes; can be given again")
+      ->allow_extra_args(false)
+      ->check(check_folder);
+  command->add_flag("--ignore-missing", options->ignore_missing, "Leave out collision shapes whose mesh is missing, and say so");
   command->add_option("--postures", options->postures, "Random postures to try; 200 where it is not given")->check(within(0, 100000));
   command->add_option("--picture", options->picture, "scene: draw it with the default robot and panel, a .png file")->check(check_png);
   command->add_flag("--json", options->json, "Print JSON");

@@ -305,7 +305,9 @@ Pose Element::origin() const {
   if (origin->has("xyz")) origin->numbers("xyz", std::span(pose.translation().data(), 3), a_length);
   Vec3 rpy = Vec3::Zero();
   if (!origin->has("rpy") || !origin->numbers("rpy", std::span(rpy.data(), 3), an_angle)) return pose;
-  if (rpy.cwiseAbs().maxCoeff() > 2 * pi) origin->note("has an rpy beyond a whole turn. It is taken in radians; were degrees meant?");
+  constexpr double rounding_rad = 0.01;  // half a turn is written as 3.142 or 3.15, too
+  if (rpy.cwiseAbs().maxCoeff() > pi + rounding_rad)
+    origin->note("has an rpy beyond half a turn. It is taken in radians; were degrees meant?");
   // Four digits of pi/2 leave axes 4e-6 rad off a right angle: told, not mended. Ten digits leave 2e-10, which nobody can measure.
   if (name() != "joint") return turned(pose, rpy);
   for (const double angle : rpy) {

@@ -121,7 +121,7 @@ struct Joint {
   Pose parent_from_joint = Pose::Identity();  // at coordinate 0
   Vec3 axis =
       Vec3::UnitX();  // unit, in the joint's frame; the child turns about it, or slides along it. Of no use where the joint is fixed
-  std::optional<Range> range;      // revolute and prismatic, lower < upper; the range need not hold 0
+  std::optional<Range> range;      // revolute and prismatic, lower < upper, soft limits included; the range need not hold 0
   std::optional<double> effort;    // N m or N, above 0; nothing when the file writes what stands for "not known"
   std::optional<double> velocity;  // rad/s or m/s, above 0; the same
   Dynamics dynamics;

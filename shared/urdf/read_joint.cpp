@@ -128,6 +128,33 @@ void read_limit(const Element& e, NamedJoint& named) {
   joint.velocity = rating(*limit, "velocity", most_speed);
 }
 
+// The tighter of hard and soft limits, as MoveIt and TRAC-IK have it. The specification's 0 for a soft limit that is not given would hold the joint still.
+void read_soft_limits(const Element& e, Joint& joint) {
+  const auto safety = e.child("safety_controller");
+  if (!safety) return;
+  safety->check({.attributes = {"soft_lower_limit", "soft_upper_limit", "k_position", "k_velocity"}});
+  for (const char* const gain : {"k_position", "k_velocity"}) safety->number(gain, 0, any_number);
+  const std::size_t before = safety->report().problems();
+  const double lower = safety->number("soft_lower_limit", -1e15, any_number), upper = safety->number("soft_upper_limit", 1e15, any_number);
+  if (safety->report().problems() != before) return;
+  if (!joint.moves() || joint.type == JointType::continuous) {
+    safety->note(std::string("is not used: the joint is ") + (joint.moves() ? "continuous" : "fixed"));
+    return;
+  }
+  if (!joint.range) return;  // refused already
+  const Range soft{std::max(lower, joint.range->lower), std::min(upper, joint.range->upper)};
+  if (soft.lower >= soft.upper) {
+    safety->problem("leaves no range between its soft limits and those of <limit>: correct them");
+  } else if (soft.lower == joint.range->lower && soft.upper == joint.range->upper) {
+    safety->note("is not used: it has no soft limit within those of <limit>");
+  } else {
+    safety->note("has soft limits that are used: the range is from " + std::to_string(soft.lower) + " to " + std::to_string(soft.upper) +
+                 ", that of <limit> from " + std::to_string(joint.range->lower) + " to " + std::to_string(joint.range->upper));
+    if (joint.range->holds(0) && !soft.holds(0)) safety->note("does not hold 0: the joint cannot stand there");
+    joint.range = soft;
+  }
+}
+
 void read_dynamics(const Element& e, Joint& joint) {
   const auto dynamics = e.child("dynamics");
   if (!dynamics) return;
@@ -193,8 +220,8 @@ void compare_ranges(const std::vector<NamedJoint>& joints, const NamedJoint& nam
 
 NamedJoint read_joint(const Element& element) {
   element.check({.attributes = {"name", "type"},
-                 .once = {"parent", "child", "origin", "axis", "limit", "dynamics", "mimic"},
-                 .unused = {"safety_controller", "calibration", "hardwareInterface"},
+                 .once = {"parent", "child", "origin", "axis", "limit", "safety_controller", "dynamics", "mimic"},
+                 .unused = {"calibration", "hardwareInterface"},
                  .ours = {"drive", "friction", "screw", "gear"}});
   NamedJoint named{element, {}, {}, {}, {}, 0, false};
   Joint& joint = named.joint;
@@ -207,6 +234,7 @@ NamedJoint read_joint(const Element& element) {
   read_axis(element, joint);
   read_dynamics(element, joint);
   read_limit(element, named);
+  read_soft_limits(element, joint);
   read_mimic(element, named);
   joint.extensions = element.extensions();
   return named;

@@ -50,7 +50,7 @@ std::optional<Geometry> read_mesh(const Element& mesh, const ReadOptions& option
     if (found.missing && (is_visual || options.ignore_missing_meshes))
       mesh.note(found.problem + ". The " + (is_visual ? "visual" : "collision") + " is left out");
     else
-      mesh.problem(found.problem);
+      mesh.problem(found.problem + (found.missing ? ", or leave it out (--ignore-missing)" : ""));
     return std::nullopt;
   }
   if (!found.remark.empty()) mesh.note(found.remark);

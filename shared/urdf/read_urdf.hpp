@@ -2,15 +2,16 @@
 //
 // Source: wiki.ros.org/urdf/XML, and what files of real arms hold. Where the specification leaves a choice, this reader does as urdfdom does and says so.
 //
-// Used:    robot, link, inertial, visual, collision, geometry {box, cylinder, sphere, mesh}, material, color, joint {origin, parent, child, axis, limit, dynamics,
-//          mimic}, and this project's own elements (<lanternfish:...>).
-// Told:    what is valid and of no use here (transmission, gazebo, ros2_control, sensor, safety_controller, calibration, texture, elements and attributes with
+// Used:    robot, link, inertial, visual, collision, geometry {box, cylinder, sphere, mesh}, material, color, joint {origin, parent, child, axis, limit,
+//          safety_controller's soft limits, dynamics, mimic}, and this project's own elements (<lanternfish:...>).
+// Told:    what is valid and of no use here (transmission, gazebo, ros2_control, sensor, calibration, texture, elements and attributes with
 //          another prefix), every default that was assumed, and every number that was changed or means "not known".
 // Refused: everything else, and every number that cannot be. Numbers are read with a decimal point whatever the locale, and to their last character.
 //
 //   joint types     revolute, continuous, prismatic, fixed. A range of no width makes a joint fixed, where it stands.
 //   axis            made a unit vector; told when it was none. 1 0 0 where the file has none.
 //   origin          of several the first. Nothing is rounded to right angles: rpy is yaw after pitch after roll about fixed axes, R = Rz Ry Rx.
+//   limits          the tighter of <limit> and a safety_controller's soft limits, told. A soft limit that is not given is none.
 //   effort, speed   0 and 1000 stand for "not known" in many files: they become nothing.
 //   inertial        mass 0 with inertia 0 is no inertial.
 //   mesh            package://NAME/PATH and model://NAME/PATH are looked for in the given folders, then from the file's folder upward, then beside the file.

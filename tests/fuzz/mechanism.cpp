@@ -2,9 +2,9 @@
 #include <sstream>
 
 #include "shared/input_error.hpp"
-#include "shared/urdf/motion.hpp"
 #include "shared/urdf/read_urdf.hpp"
 #include "tests/fuzz/input.hpp"
+#include "tests/unit/urdf/motion.hpp"
 #include "tests/unit/urdf/valid_mechanism.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -139,7 +139,7 @@ _lanternfish() {
         --packages) compopt -o filenames; COMPREPLY=($(compgen -f -- "$word")); return ;;
         --postures) :; return ;;
       esac
-      options='--help --base --tool --approach --opening --packages --postures --json'
+      options='--help --base --tool --approach --opening --packages --ignore-missing --postures --json'
       [[ $word == -* ]] || { compopt -o filenames; COMPREPLY=($(compgen -f -- "$word")); return; }
       ;;
     'bench')

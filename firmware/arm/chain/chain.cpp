@@ -8,6 +8,7 @@ namespace {
 
 constexpr double orthonormal = 1e-6;  // ten-digit rpy give 1e-10; a scaled or sheared matrix is far above
 constexpr double turn_rad = 2 * pi;
+constexpr double least_lever = 0.1;     // of the length
 constexpr double rounding_rad = 1e-12;  // what adding whole turns makes of an angle at its limit
 
 bool is_finite(const Pose& pose) { return pose.matrix().allFinite(); }
@@ -63,6 +64,7 @@ ChainFault Chain::set(std::span<const ChainJoint> joints, const Pose& last_from_
   *this = Chain();
   size_ = joints.size();
   Mat3 link_from_aligned = Mat3::Identity();  // of the link before
+  bool turns = false;                         // this joint or one before
   for (std::size_t i = 0; i < size_; ++i) {
     ChainJoint& joint = joints_[i];
     joint = joints[i];
@@ -73,13 +75,21 @@ ChainFault Chain::set(std::span<const ChainJoint> joints, const Pose& last_from_
     aligned_from_link_[i] = aligned.transpose();
     link_from_aligned = aligned;
     full_turn_[i] = joint.kind == JointKind::revolute && (!joint.limited || joint.upper - joint.lower >= turn_rad - 1e-9);
-    if (i > 0) length_m_ += joint.parent_from_joint.translation().norm();
-    if (joint.kind == JointKind::prismatic) length_m_ += std::max(std::abs(joint.lower), std::abs(joint.upper));
+    const bool slides = joint.kind == JointKind::prismatic;
+    const double part_m =
+        (i > 0 ? joint.parent_from_joint.translation().norm() : 0) + (slides ? std::max(std::abs(joint.lower), std::abs(joint.upper)) : 0);
+    length_m_ += part_m;
+    if (turns) lever_m_ += part_m;
+    turns = turns || !slides;
   }
   tool_.rotation = link_from_aligned.transpose() * last_from_tool.linear();
   tool_.translation_m = link_from_aligned.transpose() * last_from_tool.translation();
   length_m_ += last_from_tool.translation().norm();
   length_m_ = std::max(length_m_, 1e-3);  // a pan-tilt head without a tool still divides by it
+  if (turns) lever_m_ += last_from_tool.translation().norm();
+  lever_m_ = std::max(lever_m_, least_lever * length_m_);
+  for (std::size_t i = 0; i < size_; ++i)
+    if (joints_[i].kind == JointKind::prismatic) weights_[i] = 1 / lever_m_;
   return ChainFault::none;
 }
 
@@ -158,6 +168,10 @@ double Chain::excess(std::size_t i, double value) const {
   return value < joint.lower ? value - joint.lower : 0;
 }
 
+double Chain::drawn_in(std::size_t i, double value) const {
+  return joints_[i].limited ? std::clamp(value, joints_[i].lower, joints_[i].upper) : value;
+}
+
 JointValues Chain::unwound(const JointValues& q, const JointValues& near) const {
   JointValues out = q;
   for (std::size_t i = 0; i < size_; ++i) {
@@ -170,17 +184,14 @@ JointValues Chain::unwound(const JointValues& q, const JointValues& near) const 
     const double back = std::ceil((std::abs(past) - rounding_rad) / turn_rad);
     const double other = q[i] + turn_rad * (turns - std::copysign(back, past));
     if (std::abs(excess(i, other)) < std::abs(past)) out[i] = other;
-    if (std::abs(excess(i, out[i])) < rounding_rad) out[i] -= excess(i, out[i]);
+    if (std::abs(excess(i, out[i])) < rounding_rad) out[i] = drawn_in(i, out[i]);
   }
   return out;
 }
 
 double Chain::travel_rad(const JointValues& from, const JointValues& to) const {
   double travel = 0;
-  for (std::size_t i = 0; i < size_; ++i) {
-    const double one = std::abs(to[i] - from[i]);
-    travel = std::max(travel, joints_[i].kind == JointKind::prismatic ? one / length_m_ : one);
-  }
+  for (std::size_t i = 0; i < size_; ++i) travel = std::max(travel, weights_[i] * std::abs(to[i] - from[i]));
   return travel;
 }
 

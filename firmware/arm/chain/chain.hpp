@@ -62,6 +62,11 @@ class Chain {
   // No tool point is farther than this from the first joint's origin: the origins' and the tool's distances and the slides' strokes added up.
   // The first origin does not count.
   double length_m() const { return length_m_; }
+  // No revolute joint has the tool point farther from its axis: length_m() without what lies before the first of them. At least a tenth of length_m(), so
+  // that on a gantry with a short wrist, or with none, not every stroke is a long way.
+  double lever_m() const { return lever_m_; }
+  // What makes joints comparable, per unit of each: 1 where a joint turns, 1 / lever_m() where it slides.
+  const JointValues& weights() const { return weights_; }
   // The middle of each joint's range; 0 where it has none.
   JointValues middle() const;
   // True where a full turn lies within the range, so that the joint reaches every angle.
@@ -77,10 +82,13 @@ class Chain {
 
   // How far `value` is past joint i's limits: 0 inside, negative below, positive above.
   double excess(std::size_t i, double value) const;
+  // `value` drawn to the nearest end of joint i's range, and exactly there.
+  double drawn_in(std::size_t i, double value) const;
   // The same posture with each revolute joint turned by whole turns to where it is nearest to `near` within its limits. Where no whole turn is within the
   // limits it is the one that passes them least.
   JointValues unwound(const JointValues& q, const JointValues& near) const;
-  // The largest travel of a joint between two postures, rad. A slide's is divided by length_m().
+  // The largest travel of a joint between two postures, rad. A slide's is divided by lever_m(): then it moves the tool point as far as so many rad of the
+  // joint with the longest lever. Whatever the joints are, the tool point moves by at most size() * lever_m() times this.
   double travel_rad(const JointValues& from, const JointValues& to) const;
 
  private:
@@ -102,6 +110,8 @@ class Chain {
   std::array<bool, max_joints> full_turn_{};
   std::size_t size_ = 0;
   double length_m_ = 0;
+  double lever_m_ = 0;
+  JointValues weights_ = JointValues::Ones();
 };
 
 }  // namespace lf::chain

@@ -89,12 +89,13 @@ void Descent::find_step(const Chain& chain, const JointValues& q_near, double pu
   for (std::size_t i = chain.size(); i < N; ++i) j[i].setZero();
   System<N> system;
   for (std::size_t i = 0; i < N; ++i) {
-    const double push = j[i].dot(residual_.value) + pull * (q_near[i] - q_[i]);
+    const double square = chain.weights()[i] * chain.weights()[i];
+    const double push = j[i].dot(residual_.value) + pull * square * (q_near[i] - q_[i]);
     const bool still = i >= chain.size() || pushed_out(chain, i, push);
     if (still) j[i].setZero();
     system.b[i] = still ? 0 : push;
     for (std::size_t c = 0; c <= i; ++c) system.a[i][c] = j[i].dot(j[c]);
-    system.a[i][i] += still ? 1 : damping + pull;
+    system.a[i][i] += still ? 1 : (damping + pull) * square;
   }
   system.solve();
   for (std::size_t i = 0; i < N; ++i) d[i] = system.b[i];
@@ -109,7 +110,7 @@ void Descent::step(const Chain& chain, const IkTask& task, const JointValues& q_
     case 8: find_step<8>(chain, q_near, pull, damping, d); break;
     default: find_step<4>(chain, q_near, pull, damping, d); break;
   }
-  const double largest = d.cwiseAbs().maxCoeff();
+  const double largest = d.cwiseProduct(chain.weights()).cwiseAbs().maxCoeff();
   if (largest > largest_step_rad) d *= largest_step_rad / largest;
   q_ += d;
   if (rules_.limited) {
@@ -134,6 +135,7 @@ void Descent::iterate_toward(const Chain& chain, const IkTask& task, const Joint
 int Descent::rank(const Chain& chain) const {
   std::array<Column, max_joints> j;
   columns(chain, j);
+  for (std::size_t i = 0; i < chain.size(); ++i) j[i] /= chain.weights()[i];
   // Gram and Schmidt, the longest column first.
   int rank = 0;
   std::array<bool, max_joints> used{};

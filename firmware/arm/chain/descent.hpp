@@ -1,7 +1,7 @@
 // One descent of the numeric inverse kinematics: Levenberg and Marquardt's method from one start, an iteration at a time.
 //
 // The damping is in proportion to the squared error (Sugihara, IEEE T-RO 27(5), 2011), so that far from the target a step is a gradient's, near it
-// Newton's. A joint that stands at its limit and is pushed outward leaves the step. A joint whose range holds a full turn runs free and is unwound
+// Newton's. Joints weigh as in Chain::weights(), so that a slide takes part alike on an arm of any size. A joint that stands at its limit and is pushed outward leaves the step. A joint whose range holds a full turn runs free and is unwound
 // at the end.
 #pragma once
 

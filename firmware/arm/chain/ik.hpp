@@ -21,29 +21,60 @@ class Ik {
 
   // Takes on a task; as NumericIk::begin().
   void begin(const IkTask& task, const JointValues& seed, const NumericIkConfig& config = {});
-  // Works on for at most `iterations`, which are the numeric solver's; all of a closed form with its polishing counts as one, and takes the time of
-  // five. However the iterations are divided into calls, the answer is the same.
+  // Works on for at most `iterations` of NumericIk's size. A closed form's postures are computed in one piece that counts as form_iterations: a call may
+  // run over by all but one of them, and the calls after it do so much less. To polish a posture counts one for its start and one a step. However the
+  // iterations are divided into calls, the answer is the same.
   IkStatus advance(std::uint32_t iterations);
   const IkResult& solve(const IkTask& task, const JointValues& seed, const NumericIkConfig& config = {});
+  // No task takes more iterations than this.
+  static std::uint32_t most_iterations(const NumericIkConfig& config);
+  static constexpr std::uint32_t form_iterations = 5;
 
   IkStatus status() const { return status_; }
-  const IkResult& result() const { return status_from_numeric_ ? numeric_.result() : result_; }
+  // Complete once solved or failed.
+  const IkResult& result() const { return result_; }
 
  private:
-  bool solve_closed();
-  bool polish(const JointValues& q, bool limited, JointValues& out);
-  void finish(IkOutcome outcome, const JointValues& q, int joint, double excess);
+  enum class Stage : std::uint8_t {
+    form,    // all postures, by the closed form
+    within,  // the nearest within the limits is polished, and so on
+    beyond,  // none is: which passes its limits least?
+    numeric,
+  };
+
+  void step();
+  void find_postures();
+  void next_posture();
+  void next_within();
+  void next_beyond();
+  void polish();
+  void polished();
+  void keep_least_excess();
+  void begin_numeric();
+  void finish(IkOutcome outcome, const JointValues& posture, double excess);
 
   Chain chain_;
   AxisGeometry geometry_;
   NumericIk numeric_;
   IkTask task_;
   NumericIkConfig config_;
-  JointValues seed_ = JointValues::Zero();
+  JointValues given_ = JointValues::Zero();  // the seed
   IkResult result_;
   IkStatus status_ = IkStatus::idle;
-  bool closed_next_ = false;
-  bool status_from_numeric_ = false;
+  Stage stage_ = Stage::numeric;
+  std::uint32_t owed_ = 0;  // iterations that a piece of work took beyond its call's
+  // Of the closed form: its postures with their travel and what they pass limits by, those that were polished, and the one that is.
+  Postures postures_;
+  std::array<double, Postures::capacity> travel_rad_{}, excess_{};
+  std::array<bool, Postures::capacity> tried_{};
+  std::size_t posture_ = 0;
+  Descent polish_;
+  std::uint32_t polish_steps_ = 0;
+  // Of those beyond the limits: the one that passes them least.
+  int least_joint_ = -1;
+  double least_excess_ = 0;
+  JointValues least_ = JointValues::Zero();
+  TaskError least_error_;
 };
 
 }  // namespace lf::chain

@@ -15,6 +15,7 @@ constexpr std::uint32_t most_restarts = 1'000'000;  // so that iterations can be
 constexpr std::uint32_t most_explaining_steps = 120;
 constexpr std::uint32_t explaining_starts = 12;
 constexpr std::uint32_t starts_around_seed = 4;
+constexpr std::uint32_t starts_staying = 20;
 constexpr double around_rad = 0.3;
 constexpr double near_error = 0.25;     // the residual's square: half a radian, or half the arm's length
 constexpr double slide_step_rad = 0.7;  // what curvature makes of it is mended in one or two iterations
@@ -27,22 +28,11 @@ constexpr double firm_position = 30;  // weight: at 0.1 rad of missing turn the 
 constexpr double limit_rounding = 1e-9;
 
 // The slide's measure: the sum of squared travels.
-double distance(const JointValues& a, const JointValues& b) { return (a - b).squaredNorm(); }
+double distance(const Chain& chain, const JointValues& a, const JointValues& b) {
+  return (a - b).cwiseProduct(chain.weights()).squaredNorm();
+}
 
 }  // namespace
-
-const char* name(IkOutcome outcome) {
-  switch (outcome) {
-    case IkOutcome::solved: return "solved";
-    case IkOutcome::not_a_number: return "not a number";
-    case IkOutcome::out_of_reach: return "out of reach";
-    case IkOutcome::orientation_unreachable: return "orientation unreachable";
-    case IkOutcome::joint_limit: return "joint limit";
-    case IkOutcome::singular: return "singular";
-    case IkOutcome::gave_up: return "gave up";
-  }
-  return "unknown";
-}
 
 std::uint32_t NumericIk::most_iterations(const NumericIkConfig& config) {
   constexpr std::uint32_t slide = most_slide_steps + most_mending_steps + 2;
@@ -56,12 +46,6 @@ double NumericIk::uniform(double lower, double upper) {
   return lower + unit * (upper - lower);
 }
 
-JointValues NumericIk::clamped(const Chain& chain, const JointValues& q) const {
-  JointValues out = q;
-  for (std::size_t i = 0; i < chain.size(); ++i) out[i] -= chain.excess(i, q[i]);
-  return out;
-}
-
 void NumericIk::begin(const Chain& chain, const IkTask& task, const JointValues& seed, const NumericIkConfig& config) {
   config_ = config;
   config_.max_restarts = std::min(config.max_restarts, most_restarts);
@@ -70,13 +54,15 @@ void NumericIk::begin(const Chain& chain, const IkTask& task, const JointValues&
   result_ = IkResult();
   beyond_found_ = false;
   status_ = IkStatus::running;
-  if (chain.size() == 0 || !task.valid() || !seed.allFinite()) {
-    result_.outcome = IkOutcome::not_a_number;
+  given_ = seed;
+  seed_ = searched_ = drawn_in(chain, seed);
+  if (chain.size() == 0 || !task.valid() || !usable(seed)) {
+    conclude(chain, given_, false, IkOutcome::not_a_number, 0, seed_, result_);
     status_ = IkStatus::failed;
     stage_ = Stage::done;
     return;
   }
-  seed_ = searched_ = clamped(chain, seed);
+  far_found_ = false;
   enter(chain, first_stage(chain));
 }
 
@@ -84,8 +70,7 @@ void NumericIk::begin(const Chain& chain, const IkTask& task, const JointValues&
 NumericIk::Stage NumericIk::first_stage(const Chain& chain) const {
   const Vec3 first_m = chain.joint(0).parent_from_joint.translation();
   const double away_m = (asked_.base_from_tool.translation() - first_m).norm();
-  if (away_m > chain.length_m() + asked_.position_tolerance_m && chain.joint(0).kind == JointKind::revolute)
-    return Stage::position_beyond_limits;
+  if (away_m > chain.length_m() + asked_.position_tolerance_m) return Stage::position_beyond_limits;
   return config_.search ? Stage::search : Stage::beyond_limits;
 }
 
@@ -126,7 +111,7 @@ void NumericIk::enter(const Chain& chain, Stage stage) {
   task_ = asked_;
   rules_ = Descent::Rules();
   starts_ = 0;
-  start_limit_ = config_.max_restarts + 1;
+  start_limit_ = (config_.stay ? std::min(config_.max_restarts, starts_staying) : config_.max_restarts) + 1;
   if (stage != Stage::search) {
     start_limit_ = config_.max_restarts == 0 ? 1 : explaining_starts;
     rules_.fall = 1.0001;
@@ -154,7 +139,8 @@ void NumericIk::next_start(const Chain& chain) {
     return;
   }
   if (stage_ == Stage::search) ++result_.restarts;
-  if (started_near_ && starts_ <= starts_around_seed)
+  const bool staying = stage_ == Stage::search && config_.stay;
+  if (staying || (started_near_ && starts_ <= starts_around_seed))
     start_around(chain, seed_);
   else
     start_at_random(chain);
@@ -180,10 +166,10 @@ void NumericIk::start_at_random(const Chain& chain) {
 void NumericIk::start_around(const Chain& chain, const JointValues& q) {
   JointValues around = q;
   for (std::size_t i = 0; i < chain.size(); ++i) {
-    const double width = chain.joint(i).kind == JointKind::prismatic ? around_rad * chain.length_m() : around_rad;
+    const double width = around_rad / chain.weights()[i];
     around[i] += uniform(-width, width);
   }
-  start(chain, clamped(chain, around));
+  start(chain, drawn_in(chain, around));
 }
 
 void NumericIk::keep_nearest() {
@@ -197,13 +183,13 @@ void NumericIk::arrived(const Chain& chain) {
   const bool free_joints = task_.constraints() < static_cast<int>(chain.size());
   if (stage_ == Stage::search || stage_ == Stage::beyond_limits || stage_ == Stage::position_beyond_limits) {
     if (stage_ == Stage::search && !free_joints) {
-      finish(chain, IkOutcome::solved, 0);
+      found(chain);
       return;
     }
     if (free_joints) {
       before_slide_ = stage_;
       stage_ = stage_ == Stage::search ? Stage::approach_seed : Stage::approach_limits;
-      descent_.start(chain, task_, rules_, chain.unwound(descent_.q(), seed_));
+      descent_.start(chain, task_, rules_, chain.unwound(descent_.q(), given_));
       slide_best_ = descent_.q();
       slide_distance_ = slide_bound_ = 1e300;
       slide_step_ = slide_step_rad;
@@ -222,6 +208,21 @@ void NumericIk::arrived(const Chain& chain) {
   finish(chain, IkOutcome::solved, 0);  // the last stage found it after all
 }
 
+// A solution within the limits. Where the arm is to stay one that jumps is kept aside, the nearest of them, and the search goes on.
+void NumericIk::found(const Chain& chain) {
+  const double travel_rad = chain.travel_rad(given_, chain.unwound(descent_.q(), given_));
+  if (!config_.stay || travel_rad <= jump_rad) {
+    finish(chain, IkOutcome::solved, 0);
+    return;
+  }
+  if (!far_found_ || travel_rad < far_rad_) {
+    far_found_ = true;
+    far_rad_ = travel_rad;
+    far_ = descent_.q();
+  }
+  next_start(chain);
+}
+
 // One step along the free directions, or one that mends what the step before has bent.
 void NumericIk::slide(const Chain& chain) {
   ++descent_steps_;
@@ -231,7 +232,7 @@ void NumericIk::slide(const Chain& chain) {
     return;
   }
   const JointValues here = descent_.q();
-  const double away = distance(here, stage_ == Stage::approach_seed ? seed_ : clamped(chain, here));
+  const double away = distance(chain, here, stage_ == Stage::approach_seed ? seed_ : drawn_in(chain, here));
   const bool gained = descent_.is_met() && away < slide_bound_;
   if (descent_.is_met() && away < slide_distance_) {
     slide_distance_ = away;
@@ -241,9 +242,9 @@ void NumericIk::slide(const Chain& chain) {
     slide_step_ /= 2;
     descent_.start(chain, task_, rules_, slide_best_);
   }
-  const JointValues goal = stage_ == Stage::approach_seed ? seed_ : clamped(chain, slide_best_);
+  const JointValues goal = stage_ == Stage::approach_seed ? seed_ : drawn_in(chain, slide_best_);
   const JointValues way = goal - slide_best_;
-  const double longest = way.cwiseAbs().maxCoeff();
+  const double longest = way.cwiseProduct(chain.weights()).cwiseAbs().maxCoeff();
   if (slide_step_ < shortest_slide_rad || longest < limit_rounding || descent_steps_ >= most_slide_steps) {
     slid(chain);
     return;
@@ -253,16 +254,17 @@ void NumericIk::slide(const Chain& chain) {
   descent_.iterate_toward(chain, task_, slide_best_ + share * way, slide_pull);
   steps_since_met_ = 0;
   // Where the step itself gains nothing, its mending is spared.
-  if (distance(descent_.q(), goal) >= slide_bound_) slid(chain);
+  if (distance(chain, descent_.q(), goal) >= slide_bound_) slid(chain);
 }
 
 void NumericIk::slid(const Chain& chain) {
   descent_.start(chain, task_, rules_, slide_best_);
-  if (stage_ == Stage::approach_seed && descent_.is_met()) {
-    finish(chain, IkOutcome::solved, 0);
+  const bool approached_seed = stage_ == Stage::approach_seed;
+  stage_ = before_slide_;
+  if (approached_seed && descent_.is_met()) {
+    found(chain);
     return;
   }
-  stage_ = before_slide_;
   // Whole turns may have put it past the tolerance.
   if (descent_.is_met()) keep_least_excess(chain);
   next_start(chain);
@@ -290,6 +292,11 @@ void NumericIk::keep_least_excess(const Chain& chain) {
 void NumericIk::exhausted(const Chain& chain) {
   switch (stage_) {
     case Stage::search:
+      if (far_found_) {
+        start(chain, far_);
+        finish(chain, IkOutcome::solved, 0);  // and a jump, which conclude() refuses
+        return;
+      }
       searched_ = nearest_;
       enter(chain, Stage::beyond_limits);
       return;
@@ -338,21 +345,18 @@ void NumericIk::explain_single_descent(const Chain& chain) {
 
 void NumericIk::finish_at_limit(const Chain& chain) {
   const bool inside = least_excess_ <= limit_rounding;
-  start(chain, inside ? clamped(chain, least_) : least_);
+  start(chain, inside ? drawn_in(chain, least_) : least_);
   result_.joint = inside ? -1 : least_joint_;
   finish(chain, inside ? IkOutcome::solved : IkOutcome::joint_limit, inside ? 0 : least_excess_);
 }
 
 // The descent stands at the answer.
 void NumericIk::finish(const Chain& chain, IkOutcome outcome, double excess) {
-  result_.outcome = outcome;
-  result_.excess = excess;
-  result_.q = outcome == IkOutcome::joint_limit ? descent_.q() : chain.unwound(descent_.q(), seed_);
+  const JointValues posture = outcome == IkOutcome::joint_limit ? descent_.q() : chain.unwound(descent_.q(), given_);
   result_.error = task_error(asked_, descent_.state().tool, descent_.state().tool_m);
-  result_.travel_rad = chain.travel_rad(seed_, result_.q);
-  result_.jump = result_.travel_rad > jump_rad;
+  conclude(chain, given_, config_.stay, outcome, excess, posture, result_);
   stage_ = Stage::done;
-  status_ = outcome == IkOutcome::solved ? IkStatus::solved : IkStatus::failed;
+  status_ = result_.ok() ? IkStatus::solved : IkStatus::failed;
 }
 
 }  // namespace lf::chain

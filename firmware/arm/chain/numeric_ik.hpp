@@ -16,20 +16,26 @@
 namespace lf::chain {
 
 struct NumericIkConfig {
-  // The hardest of 10,000 random poses on each of five arms needed 32 (`lanternfish bench chain`). 0: the seed's own descent or nothing, for
-  // following a path.
+  // How much work is allowed, and nothing else. The hardest of 10,000 random poses on each of five arms needed 32 (`lanternfish bench chain`).
+  // 0: one descent from the seed, and one for each reason. A descent takes steps of up to 1.5 rad, so that its answer, or a closed form's, may be on another
+  // branch all the same: that is what `stay` is for.
   std::uint32_t max_restarts = 500;
   std::uint64_t random_seed = 1;
   bool search = true;  // false: it is known that there is no solution, only the reason is wanted
+  // For following a path: only an answer within jump_rad of the seed, in Chain::travel_rad(), will do, else the outcome is jump_needed, or why there is none. So
+  // near, postures of two branches are both continuous with the seed: they part only at a singular posture, and there either is a short motion.
+  // Starts are made around the seed alone, 20 restarts at most. Where there are several closed forms the nearest is taken, as always.
+  bool stay = false;
 };
 
 class NumericIk {
  public:
-  // Takes on a task. The seed is drawn into the limits first; distances are from there. O(joints).
+  // Takes on a task. Descents begin at the seed drawn into its limits. The travel is measured from the seed as it is given: from where the arm is. O(joints).
   void begin(const Chain& chain, const IkTask& task, const JointValues& seed, const NumericIkConfig& config = {});
 
   // Works on for at most `iterations`; the same chain as at begin(). An iteration is one forward kinematics and one linear system of size() equations, or a
-  // start with two forward kinematics, or the change from one search to the next. However the iterations are divided into calls, the answer is the same.
+  // start with two forward kinematics, or the change from one search to the next with at most four. However the iterations are divided into calls, the
+  // answer is the same.
   IkStatus advance(const Chain& chain, std::uint32_t iterations);
 
   // begin() and advance() to the end. Bounded: see most_iterations().
@@ -62,6 +68,7 @@ class NumericIk {
   void start_around(const Chain& chain, const JointValues& q);
   void keep_nearest();
   void arrived(const Chain& chain);
+  void found(const Chain& chain);
   void exhausted(const Chain& chain);
   void slide(const Chain& chain);
   void slid(const Chain& chain);
@@ -69,13 +76,13 @@ class NumericIk {
   void explain_single_descent(const Chain& chain);
   void finish_at_limit(const Chain& chain);
   void finish(const Chain& chain, IkOutcome outcome, double excess);
-  JointValues clamped(const Chain& chain, const JointValues& q) const;
   double uniform(double lower, double upper);
 
   NumericIkConfig config_;
   IkTask asked_;
-  IkTask task_;  // of the stage
-  JointValues seed_ = JointValues::Zero();
+  IkTask task_;                              // of the stage
+  JointValues given_ = JointValues::Zero();  // the seed
+  JointValues seed_ = JointValues::Zero();   // within the limits
   Descent::Rules rules_;
   Descent descent_;
   IkResult result_;
@@ -93,6 +100,10 @@ class NumericIk {
   double nearest_error_ = 0;
   // Of the search: the same, kept for the stages after it.
   JointValues searched_ = JointValues::Zero();
+  // Of the search, where the arm is to stay: the nearest solution that jumps.
+  bool far_found_ = false;
+  JointValues far_ = JointValues::Zero();
+  double far_rad_ = 0;
   // Best of a slide.
   JointValues slide_best_ = JointValues::Zero();
   double slide_distance_ = 0;

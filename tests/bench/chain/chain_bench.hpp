@@ -1,4 +1,5 @@
-// Inverse kinematics of any arm against KDL's solvers: the reference's protocol, 10,000 random reachable poses on each of five arms.
+// Inverse kinematics of any arm against KDL's solvers: the reference's protocol, 10,000 random reachable poses on each of five arms. And as many for each of
+// the tasks that ask for less than a pose.
 #pragma once
 
 #include <vector>

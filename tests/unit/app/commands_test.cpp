@@ -114,6 +114,48 @@ TEST_F(Commands, CheckSaysWhatIsWrongWithAnArmAndWhere) {
   EXPECT_NE(run("check arms " + bad).err.find("did you mean 'arm'?"), std::string::npos);
 }
 
+TEST_F(Commands, CheckTellsEachEndAndAxisThatItAssumed) {
+  const std::string ur5 = LANTERNFISH_TEST_DATA "/arms/ur5/ur5.urdf";
+  const auto notes = [&](const std::string& options) { return json_of("check arm --postures 1 " + options + " " + ur5)["notes"].dump(); };
+  const std::string assumed = notes("");
+  for (const char* part : {"begin at the root 'base_link' (--base)", "'tool0' is taken to carry the tool",
+                           "approach along its z (--approach)", "open along its x (--opening)"})
+    EXPECT_NE(assumed.find(part), std::string::npos) << part << "\n" << assumed;
+  EXPECT_NE(notes("--approach x").find("open along its y (--opening)"), std::string::npos);
+  const std::string given = notes("--base base_link --tool tool0 --approach x --opening z");
+  EXPECT_EQ(given.find("is taken"), std::string::npos) << given;
+}
+
+TEST_F(Commands, CheckRefusesWhatLeavesItNothingToLookAt) {
+  const std::string ur5 = LANTERNFISH_TEST_DATA "/arms/ur5/ur5.urdf";
+  for (const char* option : {"--tool", "--base", "--approach", "--opening"}) {
+    const Said said = run("check arm " + std::string(option) + " '' " + ur5);
+    EXPECT_EQ(said.status, 2) << option;
+    EXPECT_NE(said.err.find("is empty: give it a value, or leave the option out"), std::string::npos) << said.err;
+  }
+  const Said folder = run("check arm --packages absent " + ur5);
+  EXPECT_EQ(folder.status, 2);
+  EXPECT_NE(folder.err.find("takes a folder that is there, not 'absent'"), std::string::npos) << folder.err;
+  EXPECT_EQ(run("check arm --postures 1 --packages " LANTERNFISH_TEST_DATA " " + ur5).status, 0) << "the file is not another folder";
+  const std::string turning = file("turning.urdf",
+                                   "<robot name='r'>\n<link name='a'/>\n<link name='b'/>\n<joint name='j' type='continuous'>\n<parent "
+                                   "link='a'/><child link='b'/><axis xyz='0 0 1'/></joint>\n</robot>\n");
+  const Said still = run("check arm " + turning);
+  EXPECT_EQ(still.status, 2);
+  EXPECT_NE(still.err.find("turning.urdf:3: the tool cannot move"), std::string::npos) << still.err;
+}
+
+TEST_F(Commands, CheckLeavesOutMissingMeshesWhereItIsTold) {
+  const std::string arm = file("meshes.urdf",
+                               "<robot name='r'>\n<link name='a'/>\n<link name='b'><collision><geometry><mesh "
+                               "filename='absent.stl'/></geometry></collision></link>\n<joint name='j' type='prismatic'>\n<parent "
+                               "link='a'/><child link='b'/><limit lower='0' upper='1' effort='1' velocity='1'/></joint>\n</robot>\n");
+  EXPECT_EQ(run("check arm " + arm).status, 2);
+  const Said said = run("check arm --ignore-missing " + arm);
+  EXPECT_EQ(said.status, 0) << said.err;
+  EXPECT_NE(said.out.find("The collision is left out"), std::string::npos) << said.out;
+}
+
 TEST_F(Commands, CheckTellsAndDrawsAScene) {
   const std::string shipped = LANTERNFISH_SOURCE_DIR "/shared/scenarios/scenes/clutter.yaml";
   const std::string picture = file("scene.png", "");

@@ -211,7 +211,7 @@ TEST(Ik, RefusesAsTheNumericSolverDoes) {
       ++refused;
       ASSERT_LE(a.excess, b.excess + 1e-6) << arm.name << " " << k << ": of all postures the one that passes least";
       Referee kdl(arm);
-      ASSERT_TRUE(kdl.fulfils(task, a.q));
+      ASSERT_TRUE(kdl.fulfils(task, a.nearest));
     }
     EXPECT_GT(refused, 30);
   }
@@ -274,7 +274,7 @@ TEST(Ik, AnswersTheSameHoweverItsWorkIsDivided) {
       divided.begin(task, ik.chain().middle());
       while (divided.advance(3) == IkStatus::running) continue;
       ASSERT_EQ(divided.result().outcome, whole.outcome);
-      ASSERT_TRUE(divided.result().q == whole.q) << arm.name << " " << k;
+      ASSERT_TRUE(divided.result().nearest == whole.nearest) << arm.name << " " << k;
       ASSERT_EQ(divided.result().excess, whole.excess);
     }
   }

@@ -14,7 +14,7 @@ namespace {
 constexpr std::uint64_t seed = 20261129;
 
 TEST(NumericIkNames, OfEachOutcome) {
-  test::expect_all_named<IkOutcome>(7, [](IkOutcome o) { return name(o); });
+  test::expect_all_named<IkOutcome>(8, [](IkOutcome o) { return name(o); });
 }
 
 class Protocol : public testing::TestWithParam<Mask> {};
@@ -114,7 +114,7 @@ TEST(NumericIk, AnswersTheSameHoweverItsWorkIsDivided) {
       while (divided.advance(chain, part) == IkStatus::running) ++calls;
       const IkResult& parts = divided.result();
       ASSERT_EQ(parts.outcome, whole.outcome);
-      ASSERT_TRUE(parts.q == whole.q) << "to the last bit";
+      ASSERT_TRUE(parts.nearest == whole.nearest) << "to the last bit";
       ASSERT_EQ(parts.excess, whole.excess);
       ASSERT_EQ(parts.iterations, whole.iterations);
       ASSERT_LE(calls, whole.iterations / part + 1);
@@ -203,8 +203,9 @@ TEST(NumericIk, NamesTheJointThatWouldHaveToPassItsLimit) {
       }
       ++refused;
       ASSERT_EQ(result.outcome, IkOutcome::joint_limit) << arm.name << k << " " << name(result.outcome);
-      ASSERT_TRUE(kdl.fulfils(task, result.q)) << "what would be needed";
-      ASSERT_NEAR(std::abs(chain.excess(static_cast<std::size_t>(result.joint), result.q[result.joint])), result.excess, 1e-12);
+      ASSERT_TRUE(kdl.fulfils(task, result.nearest)) << "what would be needed";
+      ASSERT_EQ(result.q, chain.middle());
+      ASSERT_NEAR(std::abs(chain.excess(static_cast<std::size_t>(result.joint), result.nearest[result.joint])), result.excess, 1e-12);
       ASSERT_LT(result.excess, past + 1e-6);
       named += result.joint == static_cast<int>(joint) && std::abs(result.excess - past) < 1e-6 ? 1 : 0;
     }

@@ -110,6 +110,16 @@ TEST(ArmChain, IsRefusedWithTheCause) {
   EXPECT_TRUE(says(mimics, "open_manipulator_x.urdf:1")) << mimics;
 }
 
+TEST(ArmChain, WhoseToolCannotMoveIsRefused) {
+  const urdf::Mechanism ur5 = mechanism_of("ur5");
+  // The first link turns about its own origin; the second's joint is 0.1 m beside it.
+  const std::string said = refusal(ur5, {.base_link = "", .tool_link = "shoulder_link"});
+  EXPECT_NE(said.find("the tool cannot move: link 'shoulder_link' has its origin on the axis of each joint from 'base_link' on"),
+            std::string::npos)
+      << said;
+  EXPECT_EQ(refusal(ur5, {.base_link = "", .tool_link = "forearm_link"}), "");
+}
+
 TEST(ArmChain, OfTooManyJointsIsRefusedWithTheLimitAndTheCount) {
   for (const int count : {8, 9, 30}) {
     std::string text = "<robot name=\"snake\">\n<link name=\"l0\"/>\n";

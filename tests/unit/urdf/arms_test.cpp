@@ -2,7 +2,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "shared/urdf/motion.hpp"
+#include "tests/unit/urdf/motion.hpp"
 #include "tests/unit/urdf/urdf_text.hpp"
 #include "tests/unit/urdf/valid_mechanism.hpp"
 

@@ -1,6 +1,7 @@
 // The tree: its order, the ways in it, and how its links move.
-#include "shared/urdf/motion.hpp"
+#include "tests/unit/urdf/motion.hpp"
 #include "tests/unit/urdf/urdf_text.hpp"
+#include "tests/unit/urdf/valid_mechanism.hpp"
 
 namespace lf::urdf::test {
 namespace {
@@ -41,6 +42,34 @@ TEST(Mechanism, ChildrenComeInTheOrderOfTheirJoints) {
   EXPECT_EQ(mechanism.link("left"), 1u);
   EXPECT_EQ(mechanism.link("tip"), 2u);
   EXPECT_EQ(mechanism.link("right"), 3u);
+}
+
+// The judge of the mutated and fuzzed files tells what is not as the header says.
+TEST(ValidMechanism, TellsAnotherOrderAndBrokenExtensions) {
+  EXPECT_EQ(fault_of(tree()), "");
+  Mechanism exchanged = tree();
+  std::swap(exchanged.joints[0].line, exchanged.joints[2].line);
+  EXPECT_EQ(fault_of(exchanged), "children come in the order of their joints in the file");
+  Mechanism broad = tree();  // root, left, right, tip
+  std::swap(broad.links[2], broad.links[3]);
+  std::swap(broad.joints[1], broad.joints[2]);
+  broad.joints[1].child = 2, broad.joints[2].child = 3;
+  EXPECT_EQ(fault_of(broad), "links come depth first");
+  const Extension good{"gear", 7, {{"rad_per_count", 0.1}}};
+  const auto with_extensions = [](const std::vector<Extension>& extensions) {
+    Mechanism mechanism = tree();
+    mechanism.joints[1].extensions = extensions;
+    return fault_of(mechanism);
+  };
+  EXPECT_EQ(with_extensions({good}), "");
+  EXPECT_EQ(with_extensions({good, good}), "an extension comes once");
+  EXPECT_EQ(with_extensions({{"gear", 0, good.numbers}}), "an extension has a name and a line");
+  EXPECT_EQ(with_extensions({{"gear", 7, {}}}), "an extension holds numbers");
+  EXPECT_EQ(with_extensions({{"gear", 7, {{"rad_per_count", std::nan("")}}}}),
+            "an extension's numbers are finite, each under a key of its own");
+  Mechanism shape = read_text(body);
+  shape.links[0].collisions[0].extensions = {good, good};
+  EXPECT_EQ(fault_of(shape), "an extension comes once");
 }
 
 TEST(Mechanism, FindsTheWayBetweenAnyTwoLinks) {

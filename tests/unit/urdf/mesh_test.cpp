@@ -89,7 +89,7 @@ TEST_F(MeshFiles, ThatAreMissingAreRefusedWithTheRemedy) {
   EXPECT_EQ(
       error(meshed("../meshes/a.stl")),
       ":4: <mesh> of link 'base' names '../meshes/a.stl', which is not there: correct the name, add the file, or put a box, cylinder or "
-      "sphere in its place");
+      "sphere in its place, or leave it out (--ignore-missing)");
   EXPECT_THAT(error(meshed("package://pkg/meshes/a.stl")),
               HasSubstr("and package 'pkg' is neither in the given package folders nor in a folder above this file"));
   EXPECT_THAT(error(meshed("..\\meshes\\a.stl")), HasSubstr("which is not there: write / instead of \\"));

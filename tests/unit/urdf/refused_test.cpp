@@ -165,7 +165,8 @@ TEST(UrdfRefuses, WhatIsUnknown) {
       {{"upper=\"2\"", "uper=\"2\"",
         "arm.urdf:9: <limit> of joint 'elbow' has an unknown attribute 'uper': it may have lower, upper, effort and velocity"},
        {"<axis", "<axes/><axis",
-        "arm.urdf:8: <axes> of joint 'elbow' is not known here: <joint> may hold parent, child, origin, axis, limit, dynamics and mimic"},
+        "arm.urdf:8: <axes> of joint 'elbow' is not known here: <joint> may hold parent, child, origin, axis, limit, safety_controller, "
+        "dynamics and mimic"},
        {"<link name=\"arm\"/>", "<link name=\"arm\"/><loop_joint name=\"l\"/>",
         "arm.urdf:3: <loop_joint> 'l' is not known here: <robot> may hold link, joint and material"},
        {"<robot name=\"r\">", "<robot name=\"r\" version=\"2.0\">", "arm.urdf:1: robot 'r' has version '2.0': this reader knows 1.0"}});

@@ -13,11 +13,12 @@ TEST(UrdfTells, WhatOtherProgramsUse) {
                                          "reference=\"arm\"><kp>1</kp></gazebo>\n<ros2_control name=\"c\" type=\"system\"/>\n"
                                          "<drake:joint name=\"d\"/>\n"),
                                 "</joint>", "<safety_controller k_velocity=\"1\"/><calibration rising=\"0\"/></joint>");
-  EXPECT_THAT(notes_of(text),
-              ElementsAre("arm.urdf:10: <safety_controller> of joint 'elbow' is not used",
-                          "arm.urdf:10: <calibration> of joint 'elbow' is not used", "arm.urdf:11: <transmission> 't' is not used",
-                          "arm.urdf:12: <gazebo> is not used", "arm.urdf:13: <ros2_control> 'c' is not used",
-                          "arm.urdf:14: <drake:joint> 'd' is another program's and is not used"));
+  EXPECT_THAT(
+      notes_of(text),
+      ElementsAre("arm.urdf:10: <calibration> of joint 'elbow' is not used",
+                  "arm.urdf:10: <safety_controller> of joint 'elbow' is not used: it has no soft limit within those of <limit>",
+                  "arm.urdf:11: <transmission> 't' is not used", "arm.urdf:12: <gazebo> is not used",
+                  "arm.urdf:13: <ros2_control> 'c' is not used", "arm.urdf:14: <drake:joint> 'd' is another program's and is not used"));
 }
 
 TEST(UrdfTells, AttributesOfOtherPrograms) {
@@ -48,9 +49,35 @@ TEST(UrdfTells, DefaultsThatWereAssumed) {
 }
 
 TEST(UrdfTells, AnglesThatLookLikeDegrees) {
-  EXPECT_THAT(
-      notes_of(with(elbow, "rpy=\"0 0 0\"", "rpy=\"0 45 0\"")),
-      ElementsAre("arm.urdf:7: <origin> of joint 'elbow' has an rpy beyond a whole turn. It is taken in radians; were degrees meant?"));
+  const std::string told =
+      "arm.urdf:7: <origin> of joint 'elbow' has an rpy beyond half a turn. It is taken in radians; were degrees meant?";
+  for (const char* const angle : {"90", "45", "-5", "3.2"})
+    EXPECT_THAT(notes_of(with(elbow, "rpy=\"0 0 0\"", "rpy=\"0 " + std::string(angle) + " 0\"")), ElementsAre(told)) << angle;
+  for (const char* const half_turn : {"3.141592653589793", "-3.14159265359"})
+    EXPECT_THAT(notes_of(with(elbow, "rpy=\"0 0 0\"", "rpy=\"0 0 " + std::string(half_turn) + "\"")), IsEmpty()) << half_turn;
+}
+
+// As MoveIt and TRAC-IK take them.
+TEST(UrdfTells, SoftLimitsThatAreTighter) {
+  const auto soft = [](const std::string& keys) {
+    return with(elbow, "</joint>", "<safety_controller k_velocity=\"9\" " + keys + "/></joint>");
+  };
+  const std::string begin = "arm.urdf:10: <safety_controller> of joint 'elbow' ";
+  const std::string both = soft("k_position=\"20\" soft_lower_limit=\"-0.5\" soft_upper_limit=\"1.5\"");
+  EXPECT_EQ(read_text(both).joints[0].range->lower, -0.5);
+  EXPECT_EQ(read_text(both).joints[0].range->upper, 1.5);
+  EXPECT_THAT(notes_of(both),
+              ElementsAre(begin + "has soft limits that are used: the range is from -0.500000 to 1.500000, that of <limit> from "
+                                  "-1.000000 to 2.000000"));
+  // One that is not given is none; the specification's 0 would hold the joint still.
+  EXPECT_EQ(read_text(soft("soft_lower_limit=\"-0.5\"")).joints[0].range->upper, 2);
+  const std::string wider = soft("soft_lower_limit=\"-3\" soft_upper_limit=\"3\"");
+  EXPECT_EQ(read_text(wider).joints[0].range->lower, -1);
+  EXPECT_THAT(notes_of(wider), ElementsAre(begin + "is not used: it has no soft limit within those of <limit>"));
+  EXPECT_EQ(notes_of(soft("soft_lower_limit=\"0.5\"")).back(), begin + "does not hold 0: the joint cannot stand there");
+  EXPECT_EQ(error_of(soft("soft_lower_limit=\"3\"")), begin + "leaves no range between its soft limits and those of <limit>: correct them");
+  EXPECT_NE(error_of(soft("soft_lower=\"3\"")).find("has an unknown attribute 'soft_lower'"), std::string::npos);
+  EXPECT_THAT(notes_of(with(soft(""), "revolute", "continuous")).back(), begin + "is not used: the joint is continuous");
 }
 
 TEST(UrdfTells, RangesThatLookLikeDegrees) {

@@ -1,7 +1,7 @@
 // The thirteen traps that files of real arms hold.
 #include <Eigen/Geometry>
 
-#include "shared/urdf/motion.hpp"
+#include "tests/unit/urdf/motion.hpp"
 #include "tests/unit/urdf/urdf_text.hpp"
 
 namespace lf::urdf::test {

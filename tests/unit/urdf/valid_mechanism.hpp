@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "shared/urdf/mechanism.hpp"
 
@@ -28,19 +29,35 @@ inline std::string fault_of(const Geometry& geometry) {
   return mesh.scale.allFinite() && mesh.scale.cwiseAbs().minCoeff() > 0 && mesh.metres_per_unit > 0 ? "" : "a mesh has a size";
 }
 
+inline std::string fault_of(const std::vector<Extension>& extensions) {
+  std::set<std::string> elements;
+  for (const Extension& extension : extensions) {
+    if (extension.element.empty() || extension.line <= 0) return "an extension has a name and a line";
+    if (!elements.insert(extension.element).second) return "an extension comes once";
+    std::set<std::string> keys;
+    if (extension.numbers.empty()) return "an extension holds numbers";
+    for (const auto& [key, value] : extension.numbers)
+      if (key.empty() || !keys.insert(key).second || !std::isfinite(value))
+        return "an extension's numbers are finite, each under a key of its own";
+  }
+  return "";
+}
+
 inline std::string fault_of(const Link& link) {
   if (link.name.empty() || link.line <= 0) return "a link has a name and a line";
   for (const Visual& visual : link.visuals) {
-    if (!is_pose(visual.link_from_shape)) return "a visual has a place";
+    if (!is_pose(visual.link_from_shape) || visual.line <= 0) return "a visual has a place and a line";
     if (const std::string fault = fault_of(visual.geometry); !fault.empty()) return fault;
     if (!visual.rgba) continue;
     for (const float part : *visual.rgba)
       if (!(part >= 0 && part <= 1)) return "a colour is from 0 to 1";
   }
   for (const Collision& collision : link.collisions) {
-    if (!is_pose(collision.link_from_shape)) return "a collision has a place";
+    if (!is_pose(collision.link_from_shape) || collision.line <= 0) return "a collision has a place and a line";
+    if (const std::string fault = fault_of(collision.extensions); !fault.empty()) return fault;
     if (const std::string fault = fault_of(collision.geometry); !fault.empty()) return fault;
   }
+  if (const std::string fault = fault_of(link.extensions); !fault.empty()) return fault;
   if (!link.inertial) return "";
   if (!(link.inertial->mass_kg > 0) || !is_pose(link.inertial->link_from_com)) return "a mass is above 0, and somewhere";
   const Mat3& inertia = link.inertial->inertia_kg_m2;
@@ -61,6 +78,20 @@ inline std::string fault_of(const Joint& joint) {
     if (rating && !(*rating > 0 && std::isfinite(*rating))) return "a rating is above 0";
   if (!(joint.dynamics.damping >= 0 && joint.dynamics.friction >= 0)) return "losses are not negative";
   if (joint.mimic && !joint.moves()) return "what mimics moves";
+  return fault_of(joint.extensions);
+}
+
+// Depth first, and children in the order of their joints in the file, which their lines tell: two joints may stand in one line.
+inline std::string fault_of_order(const std::vector<Joint>& joints) {
+  std::vector<std::size_t> way{Mechanism::root};     // from the root to the link before
+  std::vector<int> last_line(joints.size() + 1, 0);  // of the joints that a link carries so far
+  for (const Joint& joint : joints) {
+    while (!way.empty() && way.back() != joint.parent) way.pop_back();
+    if (way.empty()) return "links come depth first";
+    if (joint.line < last_line[joint.parent]) return "children come in the order of their joints in the file";
+    last_line[joint.parent] = joint.line;
+    way.push_back(joint.child);
+  }
   return "";
 }
 
@@ -85,6 +116,7 @@ inline std::string fault_of(const Mechanism& mechanism) {
     const Mimic driver = mechanism.driver(i);
     if (mechanism.joints[driver.joint].mimic) return "a driver is free";
   }
+  if (const std::string fault = fault_of_order(mechanism.joints); !fault.empty()) return fault;
   const std::size_t last = mechanism.links.size() - 1;
   std::size_t at = last;
   for (const Step& step : mechanism.path(last, Mechanism::root)) {

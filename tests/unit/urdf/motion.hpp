@@ -1,4 +1,4 @@
-// Where the links of a mechanism are, and how they move, for given coordinates. For checks, tests and tools of the hosted side: it allocates. The core has its own.
+// Where the links of a mechanism are, and how they move, for given coordinates: a second kinematics beside the core's, for tests and the fuzz target.
 #pragma once
 
 #include <span>

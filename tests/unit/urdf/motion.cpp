@@ -1,4 +1,4 @@
-#include "shared/urdf/motion.hpp"
+#include "tests/unit/urdf/motion.hpp"
 
 #include <Eigen/QR>
 #include <algorithm>
