@@ -226,6 +226,7 @@ std::vector<std::string> sentences(const MeshFaults& faults) {
 }
 
 void require_solid(const Mesh& mesh, const std::string& name) {
+  if (mesh.triangles.empty()) throw InputError(name, 0, "has no triangles: export the mesh anew");
   std::string message;
   for (const std::string& sentence : sentences(judge(mesh)))
     message.append(message.empty() ? "" : "\n").append(name).append(": ").append(sentence);

@@ -44,28 +44,28 @@ struct Found {
   Place first;  // the one with the lowest indices, when there is any
 };
 
-// One cause is told once: edges are those between triangles that are neither duplicates nor have a vertex twice.
+// One cause is told once: edges are those between triangles that are neither duplicates nor have a vertex twice. Surfaces that cross each other are not sought.
 struct MeshFaults {
   Found<EdgePlace> open_edges;           // of one triangle
   std::size_t open_edges_that_meet = 0;  // of these: that lie upon another, end on end
   Found<EdgePlace> crowded_edges;        // of more than two
   Found<EdgePlace> inconsistent_edges;   // of two that go along it in the same direction: one of them is turned over
-  Found<TrianglePlace>
-      inside_out_shells;  // with their first triangle; sought when every edge is right. Inside the box of another shell they are cavities
-  Found<TrianglePlace>
-      degenerate;  // a vertex twice, or a height below the longest side's last bit in single precision, in which rays are cast
+  // Of negative volume, or of none, with their first triangle. They are sought when every edge is right, and are cavities inside the box of a larger shell.
+  Found<TrianglePlace> inside_out_shells;
+  // A vertex twice, or a height below the longest side's last bit in single precision, in which rays are cast.
+  Found<TrianglePlace> degenerate;
   Found<TrianglePlace> duplicates;     // the vertices of an earlier triangle, in any order
   Found<VertexPlace> unused_vertices;  // which still widen bounds and hulls
 
   bool any() const;
 };
-// O(n log n). Which shell is inside which is not asked of more than 2000 shells: any that is inside out is then taken for a cavity, unless all of them together are.
+// O(n log n). Of more than 2000 shells it is not asked which is inside which: one of negative volume is then a cavity, unless the sum is negative, too.
 MeshFaults judge(const Mesh& mesh);
 
 // One sentence a fault, with its first place and the remedy. Triangles count from 1. Empty without faults.
 std::vector<std::string> sentences(const MeshFaults& faults);
 
-// Throws InputError, "name: sentence" a line, when the mesh has any fault: every fault at once.
+// Throws InputError, "name: sentence" a line, when the mesh has any fault, or no triangle: every fault at once.
 void require_solid(const Mesh& mesh, const std::string& name);
 
 }  // namespace lf::mesh

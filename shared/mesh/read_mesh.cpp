@@ -51,11 +51,11 @@ void check_scale(const Vec3& scale, const std::string& file) {
 void apply_scale(const Vec3& scale, Reading& reading) {
   for (Vec3& vertex : reading.mesh.vertices_m) vertex = vertex.cwiseProduct(scale);
   const bool is_scaled = scale != Vec3::Ones();
-  reading.notes.push_back({0, std::string("states no unit and no axes: its numbers are taken as metres") +
-                                  (is_scaled ? " after the scale " + shown(scale) : "") + ", and its axes as they are"});
+  reading.note(0, std::string("states no unit and no axes: its numbers are taken as metres") +
+                      (is_scaled ? " after the scale " + shown(scale) : "") + ", and its axes as they are");
   if (scale.prod() > 0) return;
   for (Triangle& triangle : reading.mesh.triangles) std::swap(triangle[1], triangle[2]);
-  reading.notes.push_back({0, "is mirrored by its scale: its triangles are turned, so that their outside stays outside"});
+  reading.note(0, "is mirrored by its scale: its triangles are turned, so that their outside stays outside");
 }
 
 void check_size(const Reading& reading) {
@@ -78,6 +78,8 @@ void check_size(const Reading& reading) {
 }
 
 }  // namespace
+
+void Reading::note(int line, const std::string& text) { notes.push_back({line, text}); }
 
 std::string Reading::told(const Note& note) const { return InputError(file, note.line, note.text).what(); }
 

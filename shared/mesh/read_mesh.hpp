@@ -43,6 +43,7 @@ struct Reading {
   Mesh mesh;
   std::vector<Note> notes;  // what was assumed, changed or not used
 
+  void note(int line, const std::string& text);
   // "file:line: text".
   std::string told(const Note& note) const;
 };

@@ -48,7 +48,7 @@ class ObjReader {
       line_ = lines_.number();
       read_statement(whole_statement());
     }
-    if (lines_.is_cut()) reading_.notes.push_back({line_, "has no end of line, and is the last: was it cut off?"});
+    if (lines_.is_cut()) reading_.note(line_, "has no end of line, and is the last: was it cut off?");
     // Behind all vertices: a face may be stated before them.
     reading_.mesh.triangles = faces_.triangles(reading_.mesh.vertices_m);
     tell();
@@ -143,12 +143,10 @@ class ObjReader {
   void tell_unused(std::string_view what) { first_line_.try_emplace(what, line_); }
 
   void tell() {
-    std::vector<Note>& notes = reading_.notes;
-    for (const auto& [what, line] : first_line_) notes.push_back({line, "not used: " + std::string(what)});
-    std::stable_sort(notes.begin(), notes.end(), [](const Note& a, const Note& b) { return a.line < b.line; });
+    for (const auto& [what, line] : first_line_) reading_.note(line, "not used: " + std::string(what));
+    std::stable_sort(reading_.notes.begin(), reading_.notes.end(), [](const Note& a, const Note& b) { return a.line < b.line; });
     if (objects_ > 1 || groups_ > 1)
-      notes.push_back(
-          {0, "its " + counted(objects_, "object") + " (o) and " + counted(groups_, "group") + " (g) are merged into one mesh"});
+      reading_.note(0, "its " + counted(objects_, "object") + " (o) and " + counted(groups_, "group") + " (g) are merged into one mesh");
   }
 
   [[noreturn]] void refuse(const std::string& text) const { throw InputError(reading_.file, line_, text); }

@@ -197,7 +197,7 @@ class PlyReader {
       }
     }
     const int line = values.line();
-    if (values.finish()) reading_.notes.push_back({line, "has no end of line, and is the last: was it cut off?"});
+    if (values.finish()) reading_.note(line, "has no end of line, and is the last: was it cut off?");
   }
 
   template <class Values>
@@ -259,7 +259,7 @@ class PlyReader {
     faces_.add(corners_, values.line());
   }
 
-  void tell_unused(int line, const std::string& what) { reading_.notes.push_back({line, "not used: " + what}); }
+  void tell_unused(int line, const std::string& what) { reading_.note(line, "not used: " + what); }
 
   const PlyHeader& header_;
   Reading& reading_;

@@ -38,9 +38,9 @@ class Soup {
 
   void finish() {
     if (contrary_ > 0)
-      reading_.notes.push_back({first_contrary_.line, "the normal of triangle " + std::to_string(first_contrary_.number) +
-                                                          (contrary_ > 1 ? " (and " + std::to_string(contrary_ - 1) + " more)" : "") +
-                                                          " does not agree with the order of its corners, which is what counts here"});
+      reading_.note(first_contrary_.line, "the normal of triangle " + std::to_string(first_contrary_.number) +
+                                              (contrary_ > 1 ? " (and " + std::to_string(contrary_ - 1) + " more)" : "") +
+                                              " does not agree with the order of its corners, which is what counts here");
     merge_vertices(reading_.mesh);
   }
 
@@ -86,7 +86,7 @@ void read_binary(std::string_view bytes, Reading& reading) {
     soup.add(vectors[0], {vectors[1], vectors[2], vectors[3]}, 0);
     has_attributes = has_attributes || at[48] != 0 || at[49] != 0;
   }
-  if (has_attributes) reading.notes.push_back({0, "not used: its triangles' attributes (colours)"});
+  if (has_attributes) reading.note(0, "not used: its triangles' attributes (colours)");
   soup.finish();
 }
 
@@ -172,7 +172,7 @@ void read_text(std::string_view text, Reading& reading) {
     if (lower_case(word) != "endsolid") tokens.refuse(word, "facet or endsolid");
     tokens.skip_name();
   }
-  if (solids > 1) reading.notes.push_back({0, "its " + std::to_string(solids) + " solids are merged into one mesh"});
+  if (solids > 1) reading.note(0, "its " + std::to_string(solids) + " solids are merged into one mesh");
   soup.finish();
 }
 

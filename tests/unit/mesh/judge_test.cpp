@@ -129,7 +129,24 @@ TEST(Judge, TellsEdgesThatAreOnlyNotMerged) {
   EXPECT_THAT(counts_of(mesh), ElementsAre(0, 0, 0, 0, 0, 0, 0));
 }
 
-TEST(Judge, HasNoFaultInAnEmptyMesh) { EXPECT_FALSE(judge({}).any()); }
+TEST(RequireSolid, RefusesAnEmptyMesh) {
+  EXPECT_FALSE(judge({}).any());
+  EXPECT_EQ(lf::test::message_of<InputError>([] { require_solid({}, "pump"); }), "pump: has no triangles: export the mesh anew");
+}
+
+// Their shells are not compared one by one.
+TEST(Judge, BearsManyShells) {
+  Mesh mesh = box({1, 1, 1});
+  const Mesh one = box({0.5, 0.5, 0.5});
+  for (int i = 1; i < 2100; ++i) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices_m.size());
+    for (const Vec3& vertex : one.vertices_m) mesh.vertices_m.push_back(vertex + Vec3(i, 0, 0));
+    for (const Triangle& t : one.triangles) mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  }
+  EXPECT_EQ(measure(mesh).shells, 2100U);
+  EXPECT_FALSE(judge(mesh).any());
+  EXPECT_EQ(judge(inside_out(mesh)).inside_out_shells.count, 2100U);
+}
 
 TEST(RequireSolid, TellsAllFaultsAtOnceWithTheRemedies) {
   Mesh mesh = joined(box({1, 1, 1}), inside_out(tetrahedron()), Vec3(5, 0, 0));
