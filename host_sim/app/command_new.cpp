@@ -23,7 +23,8 @@ std::string new_scenario() {
       "tasks:\n"
       "  - turn_valve: {to_deg: 90}\n"
       "  - press_buttons: {order: [left, centre, right]}\n\n";
-  std::istringstream lines(scenario::scenario_yaml(scenario::Scenario{}));
+  const scenario::Scenario defaults;
+  std::istringstream lines(scenario::scenario_yaml(defaults));
   for (std::string line; std::getline(lines, line);) {
     if (!line.starts_with("description:") && !line.starts_with("tasks:")) text += "#" + line + "\n";
   }

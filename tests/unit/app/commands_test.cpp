@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -76,130 +74,6 @@ TEST_F(Commands, RunTellsADrivesErrorInItsMakersWords) {
 TEST_F(Commands, DoctorFindsThisMachineFit) {
   const Json doctor = json_of("doctor");
   EXPECT_EQ(doctor["good"], true) << doctor.dump(2);
-}
-
-// The joints as the maker's page has them, and the tool within the 0.950 m that 50,000 random postures come to.
-TEST_F(Commands, CheckReadsAnArmOfAnotherMaker) {
-  const std::string ur5 = LANTERNFISH_TEST_DATA "/arms/ur5/ur5.urdf";
-  const Json arm = json_of("check arm " + ur5);
-  ASSERT_EQ(arm["joints"].size(), 6u);
-  EXPECT_EQ(arm["joints"][2]["name"], "elbow_joint");
-  EXPECT_NEAR(arm["joints"][2]["upper"].get<double>(), 3.14159265, 1e-8);
-  EXPECT_EQ(arm["tool_link"], "tool0");
-  EXPECT_EQ(arm["inverse_kinematics"]["family"], "three parallel axes");
-  EXPECT_EQ(arm["inverse_kinematics"]["postures"], 200);
-  EXPECT_EQ(arm["inverse_kinematics"]["found"], 200);
-  EXPECT_EQ(arm["inverse_kinematics"]["by_closed_form"], 200);
-  EXPECT_GT(arm["tool_seen"]["farthest_m"].get<double>(), 0.9);
-  EXPECT_LT(arm["tool_seen"]["farthest_m"].get<double>(), 0.96);
-  const Said said = run("check arm " + ur5);
-  EXPECT_EQ(said.status, 0) << said.err;
-  for (const char* part : {"6 joints", "shoulder_pan_joint", "three parallel axes", "200 of them are found again"})
-    EXPECT_NE(said.out.find(part), std::string::npos) << part << "\n" << said.out;
-}
-
-TEST_F(Commands, CheckSaysWhatIsWrongWithAnArmAndWhere) {
-  const std::string bad = file("bad.urdf", "<robot name='r'>\n<link name='a'/>\n<link name='a'/>\n</robot>\n");
-  const Json refused = json_of("check arm " + bad, 2);
-  ASSERT_GE(refused["problems"].size(), 1u);
-  EXPECT_NE(refused["problems"][0].get<std::string>().find("bad.urdf:3"), std::string::npos) << refused;
-  EXPECT_EQ(run("check arm absent.urdf").status, 2);
-  const Said ambiguous = run("check arm " LANTERNFISH_TEST_DATA "/arms/open_manipulator_x/open_manipulator_x.urdf");
-  EXPECT_EQ(ambiguous.status, 2);
-  EXPECT_NE(ambiguous.err.find("say which link is the tool"), std::string::npos) << ambiguous.err;
-  // An opening square to the approach is found where none is given.
-  EXPECT_EQ(run("check arm --approach x " LANTERNFISH_TEST_DATA "/arms/ur5/ur5.urdf").status, 0);
-  EXPECT_EQ(run("check arm --approach x --opening=-x " LANTERNFISH_TEST_DATA "/arms/ur5/ur5.urdf").status, 2);
-  EXPECT_EQ(run("check arms " + bad).status, 2);
-  EXPECT_NE(run("check arms " + bad).err.find("did you mean 'arm'?"), std::string::npos);
-}
-
-TEST_F(Commands, CheckTellsEachEndAndAxisThatItAssumed) {
-  const std::string ur5 = LANTERNFISH_TEST_DATA "/arms/ur5/ur5.urdf";
-  const auto notes = [&](const std::string& options) { return json_of("check arm --postures 1 " + options + " " + ur5)["notes"].dump(); };
-  const std::string assumed = notes("");
-  for (const char* part : {"begin at the root 'base_link' (--base)", "'tool0' is taken to carry the tool",
-                           "approach along its z (--approach)", "open along its x (--opening)"})
-    EXPECT_NE(assumed.find(part), std::string::npos) << part << "\n" << assumed;
-  EXPECT_NE(notes("--approach x").find("open along its y (--opening)"), std::string::npos);
-  const std::string given = notes("--base base_link --tool tool0 --approach x --opening z");
-  EXPECT_EQ(given.find("is taken"), std::string::npos) << given;
-}
-
-TEST_F(Commands, CheckRefusesWhatLeavesItNothingToLookAt) {
-  const std::string ur5 = LANTERNFISH_TEST_DATA "/arms/ur5/ur5.urdf";
-  for (const char* option : {"--tool", "--base", "--approach", "--opening"}) {
-    const Said said = run("check arm " + std::string(option) + " '' " + ur5);
-    EXPECT_EQ(said.status, 2) << option;
-    EXPECT_NE(said.err.find("is empty: give it a value, or leave the option out"), std::string::npos) << said.err;
-  }
-  const Said folder = run("check arm --packages absent " + ur5);
-  EXPECT_EQ(folder.status, 2);
-  EXPECT_NE(folder.err.find("takes a folder that is there, not 'absent'"), std::string::npos) << folder.err;
-  EXPECT_EQ(run("check arm --postures 1 --packages " LANTERNFISH_TEST_DATA " " + ur5).status, 0) << "the file is not another folder";
-  const std::string turning = file("turning.urdf",
-                                   "<robot name='r'>\n<link name='a'/>\n<link name='b'/>\n<joint name='j' type='continuous'>\n<parent "
-                                   "link='a'/><child link='b'/><axis xyz='0 0 1'/></joint>\n</robot>\n");
-  const Said still = run("check arm " + turning);
-  EXPECT_EQ(still.status, 2);
-  EXPECT_NE(still.err.find("turning.urdf:3: the tool cannot move"), std::string::npos) << still.err;
-}
-
-TEST_F(Commands, CheckLeavesOutMissingMeshesWhereItIsTold) {
-  const std::string arm = file("meshes.urdf",
-                               "<robot name='r'>\n<link name='a'/>\n<link name='b'><collision><geometry><mesh "
-                               "filename='absent.stl'/></geometry></collision></link>\n<joint name='j' type='prismatic'>\n<parent "
-                               "link='a'/><child link='b'/><limit lower='0' upper='1' effort='1' velocity='1'/></joint>\n</robot>\n");
-  EXPECT_EQ(run("check arm " + arm).status, 2);
-  const Said said = run("check arm --ignore-missing " + arm);
-  EXPECT_EQ(said.status, 0) << said.err;
-  EXPECT_NE(said.out.find("The collision is left out"), std::string::npos) << said.out;
-}
-
-TEST_F(Commands, CheckTellsAndDrawsAScene) {
-  const std::string shipped = LANTERNFISH_SOURCE_DIR "/shared/scenarios/scenes/clutter.yaml";
-  const std::string picture = file("scene.png", "");
-  const Json scene = json_of("check scene " + shipped + " --picture " + picture);
-  ASSERT_EQ(scene["objects"].size(), 3u);
-  EXPECT_EQ(scene["objects"][0]["name"], "pipe");
-  EXPECT_NEAR(scene["objects"][0]["most_m"][0].get<double>(), 0.35, 1e-9);
-  EXPECT_EQ(scene["objects"][2]["triangles"], 320);
-  EXPECT_GT(std::filesystem::file_size(picture), 100'000u);
-  const Said said = run("check scene " + shipped);
-  EXPECT_EQ(said.status, 0) << said.err;
-  for (const char* part : {"3 objects", "grab bar", "320 triangles", "metres"})
-    EXPECT_NE(said.out.find(part), std::string::npos) << part << "\n" << said.out;
-
-  const std::string bad = file("bad.yaml", "version: 1\nobjects:\n  - {name: a, kind: box}\n  - {name: a, kind: sphere, radius_m: 9}\n");
-  const Json refused = json_of("check scene " + bad, 2);
-  EXPECT_EQ(refused["problems"].size(), 2u) << refused;
-  EXPECT_EQ(run("check scene " + bad + " --tool a").status, 2);
-  EXPECT_EQ(run("check arm " LANTERNFISH_TEST_DATA "/arms/ur5/ur5.urdf --picture a.png").status, 2);
-}
-
-// What it writes is taken as it stands, and with every '#' taken away it is the default scenario.
-TEST_F(Commands, NewWritesFilesThatAreTaken) {
-  const std::string mission = file("unused", "") + "_mission";
-  EXPECT_EQ(run("new scenario " + mission).status, 0);
-  EXPECT_EQ(run("scenarios " + mission + ".yaml").status, 0);
-  const Said again = run("new scenario " + mission);
-  EXPECT_EQ(again.status, 2);
-  EXPECT_NE(again.err.find("is there already"), std::string::npos) << again.err;
-  EXPECT_EQ(run("new scene " + mission + "_scene.yaml").status, 0);
-  EXPECT_EQ(json_of("check scene " + mission + "_scene.yaml")["objects"].size(), 1u);
-  EXPECT_EQ(run("new machine " + mission).status, 2);
-
-  std::ifstream written(mission + ".yaml");
-  std::string whole;
-  for (std::string line; std::getline(written, line);) {
-    if (!line.starts_with("# ") || line.starts_with("#  ")) whole += (line.starts_with("#") ? line.substr(1) : line) + "\n";
-  }
-  const std::string uncommented = file("uncommented.yaml", whole);
-  const auto keys_of = [&](const std::string& scenario) {
-    std::string text = json_of("scenarios " + scenario)["yaml"];
-    return text.substr(text.find("time_limit_s"));  // after the description
-  };
-  EXPECT_EQ(keys_of(uncommented), keys_of("default"));
 }
 
 // Forward again by the published closed form: R = a0 + a1 cos b - a2 cos g + d sin g ... with the angles that ik gave.
