@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <random>
 
 #include "shared/input_error.hpp"
 
@@ -173,6 +174,44 @@ TEST(SceneFile, AnOpenMeshIsRefused) {
   } catch (const InputError& problem) {
     EXPECT_THAT(problem.what(), HasSubstr("open"));
   }
+}
+
+// Letters dropped, doubled and swapped, lines dropped and doubled, values of other kinds and sizes: each is read or refused with the file's name.
+TEST(SceneFile, AChangedFileIsReadOrRefused) {
+  constexpr std::uint64_t seed = 11;
+  const Folder folder;
+  folder.write("boulder.obj", tetrahedron);
+  std::ifstream in(std::string(LANTERNFISH_SOURCE_DIR) + "/shared/scenarios/scenes/clutter.yaml", std::ios::binary);
+  const std::string shipped{std::istreambuf_iterator<char>(in), {}};
+  const char* const values[] = {".nan",      "-.inf",   "1e300",  "-1", "''", "[]", "{}", "[1, 2]", "true", "~", "../../boulder.obj",
+                                "/dev/null", "&a [*a]", "!!int 3"};
+  std::mt19937_64 random(seed);
+  const auto below = [&](std::size_t n) { return std::uniform_int_distribution<std::size_t>(0, n - 1)(random); };
+  int refused = 0;
+  for (int i = 0; i < 400; ++i) {
+    std::string text = shipped;
+    for (std::size_t change = 0; change <= below(3); ++change) {
+      const std::size_t at = below(text.size());
+      const std::size_t begin = text.rfind('\n', at) + 1, end = std::min(text.find('\n', at), text.size() - 1) + 1;
+      switch (below(5)) {
+        case 0: text.erase(at, 1); break;
+        case 1: text.insert(at, 1, "\t:{}[]-#&*!|>'\"%@\0\xff"[below(19)]); break;
+        case 2: text.erase(begin, end - begin); break;
+        case 3: text.insert(begin, text.substr(begin, end - begin)); break;
+        default:
+          if (const std::size_t colon = text.find(": ", begin); colon < end)
+            text.replace(colon + 2, end - colon - 3, values[below(std::size(values))]);
+      }
+      if (text.empty()) text = "\n";
+    }
+    try {
+      (void)read_scene_file(folder.write("scene.yaml", text));
+    } catch (const InputError& problem) {
+      ++refused;
+      EXPECT_THAT(problem.what(), HasSubstr("scene.yaml")) << "seed " << seed << ", change " << i;
+    }
+  }
+  EXPECT_GT(refused, 200) << "seed " << seed;
 }
 
 TEST(SceneFile, HoldsNoMoreThanAScene) {

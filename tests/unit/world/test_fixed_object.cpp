@@ -63,7 +63,7 @@ Stopped slide_into(const scene::Body& thing, const Pose& pose, double y_m = 0) {
 
 // Both as a box and as its triangles: the whole momentum, at the face that is met, at any pose that shows the sled the same face.
 TEST(FixedObject, StopsASledAtItsFaceWithItsMomentum) {
-  scene::Body box = box_body(Vec3(0.2, 0.4, 0.4));
+  const scene::Body box = box_body(Vec3(0.2, 0.4, 0.4));
   const scene::Body mesh = mesh_body({{Vec3(0.2, 0.4, 0.4), Vec3::Zero()}});
   for (const double quarter : {0.0, 1.0, 2.0}) {
     Pose pose = at({0.1 + 0.02, 0, 0});
