@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "shared/input_error.hpp"
 #include "shared/mesh/read_mesh.hpp"
@@ -21,8 +22,9 @@ class Fan {
       least = least.cwiseMin(at(i));
       most = most.cwiseMax(at(i));
     }
-    // Text of six digits is off by 1e-6 of the coordinate. A ten-thousandth of the face is what a modeller's own planes are off by.
-    tolerance_ = 1e-4 * (most - least).maxCoeff() + 2e-6 * std::max(least.cwiseAbs().maxCoeff(), most.cwiseAbs().maxCoeff());
+    extent_ = (most - least).maxCoeff();
+    // Text of six digits is off by 1e-6 of the coordinate, and of the face.
+    rounding_ = 1e-6 * extent_ + 2e-6 * std::max(least.cwiseAbs().maxCoeff(), most.cwiseAbs().maxCoeff());
     // Newell's normal: of any polygon, its length twice the area.
     Vec3 normal = Vec3::Zero();
     for (std::size_t i = 1; i + 1 < size(); ++i) normal += (at(i) - at(0)).cross(at(i + 1) - at(0));
@@ -34,15 +36,16 @@ class Fan {
   // What keeps the face from being a fan; "" when nothing does.
   std::string fault() {
     if (!is_flat_) return "has no area";
+    // A ten-thousandth of the face is what a modeller's own planes are off by.
     for (std::size_t i = 0; i < size(); ++i)
-      if (std::abs(normal_.dot(at(i) - at(0))) > tolerance_) return "is not planar";
+      if (std::abs(normal_.dot(at(i) - at(0))) > 1e-4 * extent_ + rounding_) return "is not planar";
     double turned_rad = 0;
-    turns_.resize(size());
+    heights_.resize(size());
     for (std::size_t i = 0; i < size(); ++i) {
       const Vec3 before = at(i) - at(i + size() - 1), after = at(i + 1) - at(i);
-      const double sine = normal_.dot(before.cross(after)), cosine = before.dot(after), chord_m = (before + after).norm();
-      turns_[i] = sine > tolerance_ * chord_m;
-      if (sine < -tolerance_ * chord_m || (!turns_[i] && cosine <= 0)) return "is not convex";
+      const double sine = normal_.dot(before.cross(after)), cosine = before.dot(after), chord = (before + after).norm();
+      heights_[i] = chord > 0 ? sine / chord : 0;
+      if (heights_[i] < -rounding_ || (heights_[i] <= rounding_ && cosine <= 0)) return "is not convex";
       turned_rad += std::atan2(sine, cosine);
     }
     // A star turns to the left at each corner, too, but twice around.
@@ -52,8 +55,10 @@ class Fan {
 
   // Where the fan begins: a triangle of it would have no area where a neighbour of that corner lies on a straight line. Nothing when there is no such corner.
   std::optional<std::size_t> apex() const {
-    for (std::size_t i = 0; i < size(); ++i)
-      if (turns_[(i + 1) % size()] && turns_[(i + size() - 1) % size()]) return i;
+    // Of a circle of a thousand corners each is within the rounding.
+    for (const double least_height : {rounding_, 1e-7 * extent_})
+      for (std::size_t i = 0; i < size(); ++i)
+        if (std::min(heights_[(i + 1) % size()], heights_[(i + size() - 1) % size()]) > least_height) return i;
     return std::nullopt;
   }
 
@@ -63,10 +68,10 @@ class Fan {
 
   std::span<const std::uint32_t> corners_;
   const std::vector<Vec3>& vertices_;
-  double tolerance_ = 0;
+  double extent_ = 0, rounding_ = 0;
   bool is_flat_ = false;
   Vec3 normal_ = Vec3::Zero();
-  std::vector<char> turns_;
+  std::vector<double> heights_;  // of each corner over the line between its neighbours
 };
 
 }  // namespace

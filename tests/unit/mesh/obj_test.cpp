@@ -51,11 +51,16 @@ TEST(Obj, IndicesOutOfRangeAreRefusedWithTheirLine) {
 TEST(Obj, PlanarConvexFacesBecomeFans) {
   EXPECT_EQ(read(square + "f 1 2 3 4\n").triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
   EXPECT_EQ(read(square + "f 4 3 2 1\n").triangles, (std::vector<Triangle>{{3, 2, 1}, {3, 1, 0}})) << "with its own sense of turning";
-  std::string ring;
-  for (int i = 0; i < 30; ++i) ring += "v " + exact(Vec3(std::cos(2 * pi * i / 30), std::sin(2 * pi * i / 30), 0.3)) + "\n";
-  ring += "f";
-  for (int i = 1; i <= 30; ++i) ring += " " + std::to_string(i);
-  EXPECT_EQ(read(ring + "\n").triangles.size(), 28U);
+  for (const std::size_t n : {30U, 512U, 2000U}) {
+    std::string ring, face = "f";
+    for (std::size_t i = 0; i < n; ++i) {
+      const double angle = 2 * pi * static_cast<double>(i) / static_cast<double>(n);
+      ring += "v " + exact(Vec3(3 + std::cos(angle), std::sin(angle), 0.3)) + "\n";
+      face += " " + std::to_string(i + 1);
+    }
+    EXPECT_EQ(read(ring + face + "\n").triangles.size(), n - 2);
+  }
+  EXPECT_EQ(read("v 0 0 0\nv 1 0 0\nv 1 0.00005 0\nv 0 0.00005 0\nf 1 2 3 4\n").triangles.size(), 2U) << "the edge of a thin sheet";
 }
 
 // A T-junction's vertex, or an edge that a neighbour has divided.
