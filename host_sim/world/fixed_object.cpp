@@ -6,6 +6,12 @@
 #include "host_sim/world/bullet_types.hpp"
 
 namespace lf::world {
+namespace {
+
+// Triangles have no inside into which Bullet could put the margin: it stands out of the surface.
+constexpr double mesh_margin_m = 0.0001;
+
+}  // namespace
 
 FixedObject::FixedObject(btMultiBodyDynamicsWorld& world, const scene::Body& body, const Pose& base_from_body, int scene_body)
     : world_(world) {
@@ -21,7 +27,7 @@ FixedObject::FixedObject(btMultiBodyDynamicsWorld& world, const scene::Body& bod
           static_cast<int>(shape.triangles.size()), part->indices.data(), static_cast<int>(3 * sizeof(int)),
           static_cast<int>(part->vertices_m.size()), &part->vertices_m.front()[0], static_cast<int>(sizeof(btVector3)));
       part->shape = std::make_unique<btBvhTriangleMeshShape>(part->triangles.get(), true);
-      part->shape->setMargin(edge_radius_m);
+      part->shape->setMargin(mesh_margin_m);
     } else {
       part->shape = make_convex_shape(shape);
     }

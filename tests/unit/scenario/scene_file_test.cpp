@@ -155,7 +155,8 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"version: 1\nobjects:\n  - {name: a, kind: box, size_m: [1, .nan, 1]}\n", "must be a finite number"},
         Bad{"version: 1\nobjects:\n  - {name: a, kind: box, size_m: [1, -1, 1]}\n", "out of its range"},
         Bad{"version: 1\nobjects:\n  - {name: a, kind: sphere, radius_m: 0.1, albedo: [0, 0, 1.5]}\n", "out of its range 0 to 1"},
-        Bad{"version: 1\nobjects:\n  - {name: a, kind: sphere, radius_m: 0.1, on: arm}\n", "objects[0].on' has no 'arm'"},
+        Bad{"version: 1\nobjects:\n  - {name: a, kind: sphere, radius_m: 0.1, on: arm}\n",
+            "objects[0].on' takes one of panel or vehicle, not 'arm'"},
         Bad{"version: 1\nobjects:\n  - {name: handle, kind: sphere, radius_m: 0.1}\n", "there is another 'handle'"},
         Bad{"version: 1\nobjects:\n  - {name: a, kind: mesh, file: none.obj}\n", "none.obj"},
         Bad{"version: 1\nobjects:\n  - {name: a, kind: sphere, radius_m: 0.1}\n  - {name: a, kind: sphere, radius_m: 0.1}\n", ":4: "}));
