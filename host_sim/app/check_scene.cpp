@@ -14,30 +14,15 @@
 namespace lf::app {
 namespace {
 
-const char* name_of(scene::ShapeKind kind) {
-  switch (kind) {
-    case scene::ShapeKind::box: return "box";
-    case scene::ShapeKind::cylinder: return "cylinder";
-    case scene::ShapeKind::capsule: return "capsule";
-    case scene::ShapeKind::sphere: return "sphere";
-    case scene::ShapeKind::mesh: break;
-  }
-  return "mesh";
-}
-
 Json list(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 Json json_of(const scenario::SceneFile::Placed& object) {
   const scene::Shape& shape = object.body.shapes.front();
   const scenario::Extent extent = scenario::extent_of(object.body);
-  Json json{{"name", object.body.name},
-            {"kind", name_of(shape.kind)},
-            {"on", object.on_vehicle ? "vehicle" : "panel"},
-            {"position_m", list(object.body.base_from_body.translation())},
-            {"least_m", list(extent.least_m)},
-            {"most_m", list(extent.most_m)},
-            {"albedo", shape.albedo},
-            {"friction", shape.friction}};
+  Json json{{"name", object.body.name},        {"kind", object.said.kind},
+            {"frame", object.said.frame},      {"position_m", list(object.body.base_from_body.translation())},
+            {"least_m", list(extent.least_m)}, {"most_m", list(extent.most_m)},
+            {"albedo", shape.albedo},          {"friction", shape.friction}};
   if (shape.kind == scene::ShapeKind::mesh) json["triangles"] = shape.triangles.size();
   return json;
 }
@@ -46,16 +31,23 @@ void tell(const scenario::SceneFile::Placed& object) {
   const scene::Shape& shape = object.body.shapes.front();
   const scenario::Extent extent = scenario::extent_of(object.body);
   const std::string triangles = shape.kind == scene::ShapeKind::mesh ? ", " + count_of(shape.triangles.size(), "triangle") : "";
-  print("  %-16s %s on the %s, x %.3f to %.3f, y %.3f to %.3f, z %.3f to %.3f m%s\n", object.body.name.c_str(), name_of(shape.kind),
-        object.on_vehicle ? "vehicle" : "panel", extent.least_m.x(), extent.most_m.x(), extent.least_m.y(), extent.most_m.y(),
-        extent.least_m.z(), extent.most_m.z(), triangles.c_str());
+  print("  %-16s %s on the %s, x %.3f to %.3f, y %.3f to %.3f, z %.3f to %.3f m%s\n", object.body.name.c_str(), object.said.kind.c_str(),
+        object.said.frame.c_str(), extent.least_m.x(), extent.most_m.x(), extent.least_m.y(), extent.most_m.y(), extent.least_m.z(),
+        extent.most_m.z(), triangles.c_str());
 }
 
-// The default scenario with the scene, every error of docking and mounting at the middle of its spread: what a run would begin with.
-void draw(const std::string& file, const std::string& picture) {
+// The default scenario with the scene. Throws InputError where an object stands in the robot, wherever the panel may be docked.
+scenario::Scenario among(const std::string& file) {
   const scenario::Scenario scenario =
       scenario::load_scenario("default", {"scene=" + Json(std::filesystem::absolute(file).string()).dump()});
-  const scenario::Sample sample = scenario::draw(scenario, 1);
+  scenario::check_runnable(scenario);
+  return scenario;
+}
+
+// What a run begins with where the vehicle is docked exactly.
+void draw(const scenario::Scenario& scenario, const std::string& picture) {
+  scenario::Sample sample = scenario::draw(scenario, 1);
+  sample.docking_shift_m = sample.docking_turn_rad = Vec3::Zero();
   const scenario::Nominal nominal = scenario::make_nominal(scenario, sample.lamps_lit);
   const hal::SimConfig sim = scenario::make_truth(scenario, sample, nominal, 1);
   const world::World world(sim.world);
@@ -75,8 +67,9 @@ void draw(const std::string& file, const std::string& picture) {
 }  // namespace
 
 int check_scene(const std::string& file, const std::string& picture, bool json) {
-  const scenario::SceneFile scene = scenario::read_scene_file(file);
-  if (!picture.empty()) draw(file, picture);
+  const scenario::Scenario scenario = among(file);
+  const scenario::SceneFile& scene = *scenario.objects;
+  if (!picture.empty()) draw(scenario, picture);
   if (json) {
     Json objects = Json::array();
     for (const scenario::SceneFile::Placed& object : scene.objects) objects.push_back(json_of(object));

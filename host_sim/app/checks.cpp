@@ -1,5 +1,6 @@
 #include "host_sim/app/checks.hpp"
 
+#include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -40,6 +41,11 @@ std::string check_positive(const std::string& text) {
 
 std::string check_filled(const std::string& text) {
   return text.find_first_not_of(" \t") != std::string::npos ? "" : "is empty: give it a value, or leave the option out";
+}
+
+std::string check_printable(const std::string& text) {
+  const bool printable = std::none_of(text.begin(), text.end(), [](unsigned char letter) { return letter < ' ' || letter == 0x7F; });
+  return printable ? check_filled(text) : "has a letter that cannot be printed";
 }
 
 std::string check_folder(const std::string& text) {

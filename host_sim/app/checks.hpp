@@ -14,6 +14,8 @@ std::string check_seed(const std::string& text);
 std::string check_positive(const std::string& text);
 // Not empty: a shell's variable that is not set.
 std::string check_filled(const std::string& text);
+// A file's name without control characters.
+std::string check_printable(const std::string& text);
 // A folder that is there.
 std::string check_folder(const std::string& text);
 // A file's name that ends in .png, or has no ending.

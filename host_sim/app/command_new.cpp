@@ -3,8 +3,10 @@
 #include <sstream>
 
 #include "hal/config/nearest.hpp"
+#include "host_sim/app/checks.hpp"
 #include "host_sim/app/command.hpp"
 #include "host_sim/app/new_file.hpp"
+#include "host_sim/app/shell_word.hpp"
 #include "host_sim/record/file_sink.hpp"
 #include "host_sim/scenario/describe.hpp"
 #include "host_sim/scenario/scenario.hpp"
@@ -16,7 +18,7 @@ namespace fs = std::filesystem;
 
 std::string new_scenario() {
   std::string text =
-      "# A mission of your own: `lanternfish run ./THIS_FILE --seed 1` flies it as it stands. Each line below that begins with '#' has a "
+      "# A mission of your own: `lanternfish run THIS_FILE --seed 1` flies it as it stands. Each line below that begins with '#' has a "
       "key and its default:\n"
       "# take the '#' away, and that of the group it is in, to change it. docs/scenarios.md explains them.\n\n"
       "description: a mission of my own\n\n"
@@ -44,7 +46,7 @@ std::string new_scene() {
          "scale)\n"
          "    radius_m: 0.02\n"
          "    length_m: 0.7               # along its z\n"
-         "    on: panel                   # or vehicle\n"
+         "    frame: panel                   # or vehicle\n"
          "    position_m: [0, -0.3, 0.05]\n"
          "    turn_deg: [0, 90, 0]        # about x, then y, then z\n"
          "    albedo: [0.35, 0.36, 0.38]  # red, green, blue\n"
@@ -64,13 +66,18 @@ struct Options {
 
 int make(const Options& options) {
   config::check_names({options.kind}, {"scenario", "scene"}, "new");
-  const bool has_ending = options.name.ends_with(".yaml") || options.name.ends_with(".yml");
-  const fs::path file = has_ending ? options.name : options.name + ".yaml";
+  fs::path file = options.name;
+  if (!file.has_filename() || file.filename() == "." || file.filename() == "..")
+    throw InputError("'" + options.name + "' names a folder: give a file");
+  if (!file.has_extension()) file += ".yaml";
+  if (file.extension() != ".yaml" && file.extension() != ".yml")
+    throw InputError("'" + options.name + "' ends in " + file.extension().string() + ": a " + options.kind + " ends in .yaml");
   std::error_code none;
-  if (fs::exists(file, none)) throw InputError(file.string() + ": is there already: another name, or take it away");
+  if (fs::exists(fs::symlink_status(file, none))) throw InputError(file.string() + ": is there already: another name, or take it away");
   std::string text = options.kind == "scene" ? new_scene() : new_scenario();
-  const std::string place = "THIS_FILE";
-  for (std::size_t at = text.find(place); at != std::string::npos; at = text.find(place)) text.replace(at, place.size(), file.filename());
+  const std::string place = "THIS_FILE", word = shell_word(file.string());
+  for (std::size_t at = text.find(place); at != std::string::npos; at = text.find(place, at + word.size()))
+    text.replace(at, place.size(), word);
   record::write_file_atomically(file, text);
   print("%s\n", file.c_str());
   return done;
@@ -82,7 +89,9 @@ void add_new(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("new", "Write a file of your own to begin with: commented, and fit to fly as it is");
   auto options = std::make_shared<Options>();
   command->add_option("KIND", options->kind, "What to write: scenario or scene")->required();
-  command->add_option("NAME", options->name, "The file; .yaml is added where it has no ending")->required();
+  command->add_option("NAME", options->name, "The file, which ends in .yaml; that is added where it has no ending")
+      ->required()
+      ->check(check_printable);
   command->callback([options, &action] { action = [options] { return make(*options); }; });
 }
 

@@ -60,7 +60,9 @@ bool unfelt_push(const Flight& flight, const Watched& watched, const MatrixRow& 
   if (!pushed) return false;
   const auto& results = flight.mission().tasks();
   world::ContactReport contacts = world.contacts();
-  std::erase_if(contacts.unintended, [](const world::UnintendedContact& touch) { return touch.b == scene::BodyId::obstacle; });
+  std::erase_if(contacts.unintended, [](const world::UnintendedContact& touch) {
+    return touch.a == scene::BodyId::obstacle || touch.b == scene::BodyId::obstacle;
+  });
   if (judge::contradiction({results.data(), results.size()}, watched.truth.tasks(), judge::task_truth(world), contacts)) return false;
   return !judge::felt_a_push(watched.safety.seen());
 }

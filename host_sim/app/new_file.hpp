@@ -1,4 +1,4 @@
-// What `lanternfish new` writes: THIS_FILE stands for the file's own name.
+// What `lanternfish new` writes: THIS_FILE stands for the file, as a shell reads it.
 #pragma once
 
 #include <string>

@@ -1,10 +1,12 @@
 #include "host_sim/app/run_experiment.hpp"
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 
 #include "hal/config/drive_kind.hpp"
 #include "hal/config/share.hpp"
+#include "hal/config/text_file.hpp"
 #include "host_sim/scenario/describe.hpp"
 #include "host_sim/scenario/instance.hpp"
 #include "host_sim/scenario/scene_file.hpp"
@@ -27,11 +29,12 @@ std::vector<UsedFile> used_files(const scenario::Scenario& scenario) {
   for (const std::string& file : {scenario.arm.urdf, scenario.safety.limits, std::string(scenario::homing_file)})
     files.push_back({file, config::find_file(file, folder)});
   files.push_back({scenario::drive_objects_file, config::share_folder() / scenario::drive_objects_file});
-  if (!scenario.scene.empty()) {
+  if (scenario.objects) {
     const fs::path scene = config::find_file(scenario.scene, folder);
     files.push_back({scenario.scene, scene});
-    for (const fs::path& mesh : scenario::scene_of(scenario).meshes)
-      files.push_back({mesh.lexically_relative(scene.parent_path()).string() + " of " + scenario.scene, mesh});
+    for (const scenario::SceneFile::Placed& object : scenario.objects->objects) {
+      if (!object.mesh.empty()) files.push_back({object.said.file + " of " + scenario.scene, object.mesh});
+    }
   }
   const std::string& tighter = scenario.safety.mission_limits;
   if (!tighter.empty()) files.push_back({tighter, config::find_file(tighter, folder)});
@@ -64,6 +67,25 @@ void name_whole(std::string& name, const fs::path& folder) {
   if (!name.empty() && climbs(fs::path(name).lexically_normal())) name = fs::absolute(config::find_file(name, folder)).lexically_normal();
 }
 
+bool is_of_scene(const fs::path& file, const scenario::Scenario& scenario) {
+  if (!scenario.objects) return false;
+  const auto& objects = scenario.objects->objects;
+  return file == config::find_file(scenario.scene, fs::path(scenario.file).parent_path()) ||
+         std::any_of(objects.begin(), objects.end(), [&](const auto& object) { return object.mesh == file; });
+}
+
+// With its meshes, which may lie anywhere, in a folder of its own. Returns its name.
+std::string keep_scene(const scenario::SceneFile& scene, const record::RunFolder& run) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const fs::path& mesh = scene.objects[i].mesh;
+    names.push_back(mesh.empty() ? "" : "mesh_" + std::to_string(i + 1) + mesh.extension().string());
+    if (!mesh.empty()) run.write("scene/" + names.back(), whole_file(mesh));
+  }
+  run.write("scene/scene.yaml", scenario::scene_yaml(scene, names));
+  return "scene/scene.yaml";
+}
+
 }  // namespace
 
 record::Experiment experiment_of(const scenario::Scenario& scenario) {
@@ -81,12 +103,13 @@ record::Experiment experiment_of(const scenario::Scenario& scenario, std::uint64
 void keep_scenario(const scenario::Scenario& scenario, const record::RunFolder& run) {
   const fs::path folder = fs::path(scenario.file).parent_path();
   for (const UsedFile& file : used_files(scenario)) {
+    if (is_of_scene(file.path, scenario)) continue;  // keep_scene has it
     const fs::path relative = beside(file.path, folder);
-    if (!relative.empty()) run.write(relative.string(), whole_file(file.path));
+    if (!relative.empty()) run.write(relative.string(), config::read_text_file(file.path));
   }
   scenario::Scenario kept = scenario;
+  if (scenario.objects) kept.scene = keep_scene(*scenario.objects, run);
   name_whole(kept.arm.urdf, folder);
-  name_whole(kept.scene, folder);
   name_whole(kept.safety.limits, folder);
   name_whole(kept.safety.mission_limits, folder);
   if (kept.drives.profile.find('/') != std::string::npos) name_whole(kept.drives.profile, folder);

@@ -108,7 +108,7 @@ void check(const WaterConfig& water) {
 void check(const OpticsConfig& config) {
   require(!config.cameras.empty(), "at least one camera is needed");
   require(config.lasers.size() <= 16 && config.lamps.size() <= 15, "at most 16 lasers and 15 lamps");
-  require(config.scene.size() <= scene::max_bodies, "scene: more than 64 bodies");
+  require(config.scene.size() <= scene::max_bodies, "scene: more than " + std::to_string(scene::max_bodies) + " bodies");
   require(config.threads >= 1 && config.threads <= 1024, "threads must lie in 1..1024");
   for (const CameraConfig& camera : config.cameras) check(camera);
   for (const LaserConfig& laser : config.lasers) check(laser, config.scene.size());

@@ -60,8 +60,17 @@ bool FileSink::close() noexcept {
 
 std::string FileSink::error() const { return ok() ? "" : path_.string() + ": " + cause(error_number_); }
 
-void write_file_atomically(const std::filesystem::path& path, std::string_view bytes) {
-  if (std::filesystem::is_directory(path)) throw InputError(path.string(), 0, "is a folder, not a file");
+void write_file_atomically(const std::filesystem::path& named, std::string_view bytes) {
+  std::error_code unknown;
+  // What a link leads to is written, and the link stays.
+  const bool is_link = std::filesystem::is_symlink(named, unknown);
+  const std::filesystem::path path = is_link ? std::filesystem::weakly_canonical(named, unknown) : named;
+  const std::filesystem::file_status there = std::filesystem::status(path, unknown);
+  if (std::filesystem::is_directory(there)) throw InputError(named.string(), 0, "is a folder, not a file");
+  if (unknown && unknown != std::errc::no_such_file_or_directory)
+    throw InputError(named.string(), 0, "cannot be a file: " + unknown.message());
+  if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there))
+    throw InputError(named.string(), 0, "is there and no regular file: it would be replaced");
   std::filesystem::path partial = path;
   partial += ".partial";
   FileSink sink(partial, path);

@@ -30,6 +30,7 @@ bool a_run_writes(const fs::path& file, const Experiment& experiment) {
   if (std::find(run_files.begin(), run_files.end(), file.generic_string()) != run_files.end()) return true;
   const fs::path folder = file.parent_path();
   if (file.extension() == ".png" && (folder == "images" || folder == "raw")) return true;
+  if (folder == "scene" && (file.filename() == "scene.yaml" || file.stem().string().starts_with("mesh_"))) return true;
   return std::any_of(experiment.begin(), experiment.end(), [&](const auto& entry) {
     return entry.first.starts_with("file ") && fs::path(entry.first.substr(5)).filename() == file.filename();
   });

@@ -157,8 +157,7 @@ std::vector<Key> keys(Scenario& scenario) {
   all.push_back(key("description", "", 0, 0, &scenario.description, "one line that `lanternfish scenarios` shows"));
   all.push_back(key("time_limit_s", "s", 1, 7200, &scenario.time_limit_s, "simulated time after which the run is given up"));
   all.push_back(key("tasks", "", 0, 0, &scenario.tasks, "the job, in order"));
-  all.push_back(
-      key("scene", "", 0, 0, &scenario.scene, "a file of what else stands about; relative to the scenario's folder; empty: nothing"));
+  all.push_back(key("scene", "", 0, 0, &scenario.scene, "a file of what else stands about; found as arm.urdf is; empty: nothing"));
   add_place(all, scenario);
   config::add_panel(all, scenario.panel);
   add_sight(all, scenario);

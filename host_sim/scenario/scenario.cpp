@@ -16,6 +16,7 @@
 #include "host_sim/scenario/bounds.hpp"
 #include "host_sim/scenario/instance.hpp"
 #include "host_sim/scenario/keys.hpp"
+#include "host_sim/scenario/scene_file.hpp"
 #include "shared/input_error.hpp"
 
 namespace lf::scenario {
@@ -145,6 +146,15 @@ void check_together(const Scenario& s, const std::string& where, std::vector<std
   }
 }
 
+void read_scene(Scenario& scenario, std::vector<std::string>& problems) {
+  if (scenario.scene.empty()) return;
+  try {
+    scenario.objects = std::make_shared<const SceneFile>(read_scene_file(config::named_file(scenario.file, "scene", scenario.scene)));
+  } catch (const InputError& problem) {
+    problems.emplace_back(problem.what());
+  }
+}
+
 }  // namespace
 
 Latency::Latency() {
@@ -182,6 +192,7 @@ Scenario load_scenario(const std::string& file_or_name, const std::vector<std::s
       problems.emplace_back(problem.what());
     }
   }
+  read_scene(scenario, problems);
   check_together(scenario, overrides.empty() ? source.name() : source.name() + " with --set", problems);
   if (problems.empty()) return scenario;
   if (!scenario.tasks.empty()) add_job_problems(scenario, problems);

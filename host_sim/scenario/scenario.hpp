@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,8 @@
 #include "shared/panel/panel_layout.hpp"
 
 namespace lf::scenario {
+
+struct SceneFile;
 
 using config::Chance;
 using config::Fault;
@@ -179,7 +182,8 @@ struct Scenario {
   std::string file;  // where it was read
   std::string description;
   double time_limit_s = 400;
-  std::string scene;  // a file of what else stands about; empty: nothing
+  std::string scene;                         // a file of what else stands about; empty: nothing
+  std::shared_ptr<const SceneFile> objects;  // what it says; null where there is none
   PanelLayout panel;
   Docking docking;
   Valve valve;

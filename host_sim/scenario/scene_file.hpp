@@ -8,13 +8,12 @@
 #include <vector>
 
 #include "hal/config/key.hpp"
-#include "host_sim/scenario/scenario.hpp"
 #include "shared/geometry/pose.hpp"
 #include "shared/scene/scene.hpp"
 
 namespace lf::scenario {
 
-// One thing that does not move.
+// One thing that does not move, as the file says it.
 struct SceneObject {
   std::string name;
   std::string kind = "box";
@@ -23,7 +22,7 @@ struct SceneObject {
   double length_m = 0.1;                        // cylinder, and capsule without its caps; along z
   std::string file;                             // mesh
   double scale = 1;                             // mesh: metres for one of the file's units
-  std::string on = "panel";                     // what it stands on, in whose frame its place is
+  std::string frame = "panel";                  // what it stands on, in whose frame its place is
   std::array<double, 3> position_m{};
   std::array<double, 3> turn_deg{};  // about the frame's x, then y, then z, as a URDF's rpy
   std::array<double, 3> albedo{0.5, 0.5, 0.5};
@@ -32,15 +31,15 @@ struct SceneObject {
 
 struct SceneFile {
   struct Placed {
-    scene::Body body;  // at `frame_from_body`
-    bool on_vehicle = false;
+    SceneObject said;
+    scene::Body body;            // in the frame of what it stands on
+    std::filesystem::path mesh;  // the file that was read; empty where it is none
   };
   std::vector<Placed> objects;
-  std::vector<std::filesystem::path> meshes;  // the files that it reads, each once
-  std::vector<std::string> notes;             // what was assumed of the meshes, changed or not used: "file:line: text"
+  std::vector<std::string> notes;  // what was assumed of the meshes, changed or not used: "file:line: text"
 };
 
-// Of a body, in the frame that it is placed in; of spheres, cylinders and capsules that of a box about them.
+// Of a body, in the frame that it is placed in.
 struct Extent {
   Vec3 least_m = Vec3::Zero(), most_m = Vec3::Zero();
 };
@@ -56,10 +55,10 @@ std::string scene_keys_markdown();
 // scene's own bodies, a key that is another kind's, a mesh that cannot be read or encloses no volume, more than scene::max_bodies bodies.
 SceneFile read_scene_file(const std::filesystem::path& file);
 
-// The file that the scenario's `scene` names; without objects where it names none.
-SceneFile scene_of(const Scenario& scenario);
-
 // Those objects, where the panel stands at `base_from_panel`.
 std::vector<scene::Body> placed_objects(const SceneFile& scene, const Pose& base_from_panel);
+
+// The scene as a file of its own, with each mesh under the name that `mesh_name` gives to its place in the list.
+std::string scene_yaml(const SceneFile& scene, const std::vector<std::string>& mesh_names);
 
 }  // namespace lf::scenario

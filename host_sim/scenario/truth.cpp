@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <sstream>
 
 #include "hal/config/drive_kind.hpp"
 #include "hal/config/fault_kinds.hpp"
@@ -92,7 +93,9 @@ world::WorldConfig world_config(const Scenario& scenario, const Sample& sample) 
   world.scene = scene::make_scene(world.arm, world.layout);
   move_marker(world.scene[std::size_t(scene::BodyId::panel)], sample);
   world.base_from_panel = true_base_from_panel(scenario.panel, sample);
-  for (scene::Body& object : placed_objects(scene_of(scenario), world.base_from_panel)) world.scene.push_back(std::move(object));
+  if (scenario.objects) {
+    for (scene::Body& object : placed_objects(*scenario.objects, world.base_from_panel)) world.scene.push_back(std::move(object));
+  }
   world.valve.start_rad = sample.valve_start_rad;
   world.valve.friction_nm = sample.valve_friction_nm;
   world.valve.viscous_nm_s = scenario.valve.viscous_nm_s;
@@ -331,17 +334,35 @@ devices::DevicesConfig device_config(const Scenario& scenario, const Sample& sam
   return config;
 }
 
+// Where the panel may be docked, the objects on it are, too: at each corner of the docking's shifts and with none.
+void add_clashes(const Scenario& scenario, std::vector<std::string>& problems) {
+  if (!scenario.objects) return;
+  const Docking& docking = scenario.docking;
+  for (unsigned corner = 0; corner <= 8; ++corner) {
+    Sample sample = draw(scenario, 1);
+    const auto end = [&](const Spread& spread, unsigned bit) { return (corner & bit) != 0 ? spread.max : spread.min; };
+    sample.docking_turn_rad = Vec3::Zero();
+    sample.docking_shift_m = corner == 8 ? Vec3::Zero() : Vec3(end(docking.x_m, 1), end(docking.y_m, 2), end(docking.z_m, 4));
+    try {
+      (void)world::World(world_config(scenario, sample));
+    } catch (const InputError& problem) {
+      char text[160];
+      const Vec3 mm = 1e3 * sample.docking_shift_m;
+      std::snprintf(text, sizeof text, " (the panel docked %.0f, %.0f, %.0f mm off its place)", mm.x(), mm.y(), mm.z());
+      std::istringstream lines(problem.what());
+      for (std::string line; std::getline(lines, line);) problems.push_back(scenario.file + ": " + line + text);
+      return;
+    }
+  }
+}
+
 }  // namespace
 
 void check_runnable(const Scenario& scenario) {
   std::vector<std::string> problems;
   add_job_problems(scenario, problems);
   if (!problems.empty()) throw InputError(joined(problems));
-  try {
-    (void)scene_of(scenario);
-  } catch (const InputError& problem) {
-    problems.emplace_back(problem.what());
-  }
+  add_clashes(scenario, problems);
   const ArmDescription arm = true_arm(scenario);
   for (std::size_t joint = 0; joint < joint_count; ++joint) {
     devices::DriveConfig drive;

@@ -11,7 +11,7 @@
 
 namespace lf::world {
 
-// Rounds the edges of boxes, cylinders, hulls and meshes inside their true surface. Bullet's 40 mm would swallow a 12.6 mm handle; below about
+// Rounds the edges of boxes, cylinders and hulls inside their true surface. Bullet's 40 mm would swallow a 12.6 mm handle; below about
 // 0.1 mm GJK loses the closest points of touching faces.
 inline constexpr double edge_radius_m = 0.0005;
 

@@ -11,11 +11,14 @@ namespace {
 
 using scene::BodyId;
 
-// Whether two bodies can ever meet: not neighbours in the arm's chain, whose shapes overlap at the joint, nor what stands still together.
+// Whether two bodies can ever meet: not neighbours in the arm's chain, whose shapes overlap at the joint, nor what stands still together. Objects stand still, as vehicle
+// and panel do, and meet all that moves.
 bool can_meet(int first, int second) {
   if (first < 0 || second < 0 || first == second) return false;
   const auto a = BodyId(std::min(first, second));
   const auto b = BodyId(std::max(first, second));
+  const bool b_is_object = std::size_t(b) >= scene::own_body_count;
+  if (b_is_object) return a != BodyId::vehicle && a != BodyId::panel && std::size_t(a) < scene::own_body_count;
   if (a >= BodyId::panel) return false;                          // panel, what is set in it, and an obstacle
   if (a == BodyId::vehicle && b >= BodyId::panel) return false;  // docked
   if (a <= BodyId::forearm && int(b) == int(a) + 1) return false;

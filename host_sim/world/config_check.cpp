@@ -62,7 +62,8 @@ void check_arm(const WorldConfig& config) {
 
 void check_scene(const scene::Scene& scene) {
   const scene::Scene own = scene::bare_scene();
-  expect(scene.size() >= own.size() && scene.size() <= scene::max_bodies, "scene", "must have its 13 own bodies, and 64 at most");
+  expect(scene.size() >= own.size() && scene.size() <= scene::max_bodies, "scene",
+         "must have its " + std::to_string(own.size()) + " own bodies, and " + std::to_string(scene::max_bodies) + " at most");
   for (std::size_t i = 0; i < own.size(); ++i) expect(scene[i].role == own[i].role, "scene", "must begin with its own bodies");
   for (std::size_t i = own.size(); i < scene.size(); ++i) {
     const Pose& pose = scene[i].base_from_body;

@@ -45,18 +45,6 @@ void take_contact_impulses(btDispatcher& dispatcher, std::vector<ContactImpulse>
   }
 }
 
-std::vector<Overlap> overlaps(btDispatcher& dispatcher) {
-  std::vector<Overlap> found;
-  for (int m = 0; m < dispatcher.getNumManifolds(); ++m) {
-    const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(m);
-    const int a = manifold.getBody0()->getUserIndex(), b = manifold.getBody1()->getUserIndex();
-    double depth_m = 0;
-    for (int c = 0; c < manifold.getNumContacts(); ++c) depth_m = std::max(depth_m, -manifold.getContactPoint(c).getDistance());
-    if (a >= 0 && b >= 0 && depth_m > 0) found.push_back({BodyId(a), BodyId(b), depth_m});
-  }
-  return found;
-}
-
 bool contact_is_intended(Role a, Role b) {
   return (a == Role::finger && (b == Role::finger || is_handled(b))) || (b == Role::finger && is_handled(a));
 }

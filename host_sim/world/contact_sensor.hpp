@@ -23,13 +23,6 @@ struct ContactImpulse {
 // solve again. Colliders whose user index is not a body of the scene are left out.
 void take_contact_impulses(btDispatcher& dispatcher, std::vector<ContactImpulse>& impulses);
 
-// Two bodies of the scene that overlap, by how much at their deepest point.
-struct Overlap {
-  scene::BodyId a{}, b{};
-  double depth_m = 0;
-};
-std::vector<Overlap> overlaps(btDispatcher& dispatcher);
-
 // Fingers may touch each other, handles and buttons; handles and buttons never touch the panel they are set in.
 bool contact_is_intended(scene::Role a, scene::Role b);
 

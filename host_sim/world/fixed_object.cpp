@@ -41,6 +41,12 @@ FixedObject::FixedObject(btMultiBodyDynamicsWorld& world, const scene::Body& bod
   }
 }
 
+std::vector<btCollisionObject*> FixedObject::colliders() const {
+  std::vector<btCollisionObject*> all;
+  for (const auto& part : parts_) all.push_back(part->body.get());
+  return all;
+}
+
 FixedObject::~FixedObject() {
   for (const auto& part : parts_) world_.removeCollisionObject(part->body.get());
 }

@@ -22,6 +22,9 @@ class FixedObject {
   FixedObject(const FixedObject&) = delete;
   FixedObject& operator=(const FixedObject&) = delete;
 
+  // One a colliding shape.
+  std::vector<btCollisionObject*> colliders() const;
+
  private:
   // In the order in which they need each other.
   struct Part {

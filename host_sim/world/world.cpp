@@ -15,6 +15,7 @@
 #include "host_sim/world/contact_sensor.hpp"
 #include "host_sim/world/fixed_object.hpp"
 #include "host_sim/world/obstacle.hpp"
+#include "host_sim/world/start_clash.hpp"
 #include "host_sim/world/valve_body.hpp"
 #include "shared/input_error.hpp"
 
@@ -27,7 +28,7 @@ using scene::BodyId;
 // moves by less than 2 mm a step.
 constexpr double near_m = 0.02;
 
-// Objects may touch the robot where it starts, no more.
+// Objects may touch the robot, the handle and the buttons as a run begins, no more.
 constexpr double start_gap_m = 0.001;
 
 const WorldConfig& checked(const WorldConfig& config) {
@@ -101,17 +102,40 @@ struct World::Impl {
     bullet.get().addCollisionObject(panel.get());
     for (std::size_t i = scene::own_body_count; i < config.scene.size(); ++i)
       objects.push_back(std::make_unique<FixedObject>(bullet.get(), config.scene[i], config.scene[i].base_from_body, int(i)));
-    if (!objects.empty()) refuse_overlaps();
   }
 
-  void refuse_overlaps() {
-    bullet.get().performDiscreteCollisionDetection();
-    for (const auto& [a, b, depth_m] : overlaps(*bullet.get().getDispatcher())) {
-      const scene::Body &robot = config.scene[std::size_t(std::min(a, b))], &object = config.scene[std::size_t(std::max(a, b))];
-      if (object.role != scene::Role::object || robot.role == scene::Role::panel || depth_m < start_gap_m) continue;
-      throw InputError("scene: '" + object.name + "' stands " + std::to_string(std::lround(1e3 * depth_m)) + " mm deep in the " +
-                       robot.name + " where the arm starts: move it");
+  // What an object may not stand in as the world begins: all but the panel, in which it may be set, and what a fault brings later.
+  std::vector<const btCollisionObject*> not_to_stand_in() const {
+    std::vector<const btCollisionObject*> all;
+    const auto add = [&](const MultibodyPart& part) {
+      for (const auto& collider : part.colliders()) {
+        if (collider->getUserIndex() >= 0) all.push_back(collider.get());
+      }
+    };
+    add(arm.part());
+    add(valve.part());
+    for (const ButtonBody& button : buttons) add(button.part());
+    return all;
+  }
+
+  void refuse_clashes(const scene::BodyPoses& base_from_body) {
+    std::string problems;
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+      const scene::Body& object = config.scene[scene::own_body_count + i];
+      for (const btCollisionObject* other : not_to_stand_in()) {
+        double depth_m = 0;
+        for (btCollisionObject* part : objects[i]->colliders()) depth_m = std::max(depth_m, overlap_m(bullet.get(), *part, *other));
+        const auto index = std::size_t(other->getUserIndex());
+        const scene::Body& stood_in = config.scene[index];
+        const bool inside = is_inside(stood_in, base_from_body[index], object);
+        if (depth_m < start_gap_m && !inside) continue;
+        problems += (problems.empty() ? "" : "\n") +
+                    ("scene: '" + object.name + "' stands in the " + stood_in.name + " as a run begins" +
+                     (inside ? ", which is all inside of it" : ", by " + std::to_string(std::lround(1e3 * depth_m)) + " mm") + ": move it");
+        break;
+      }
     }
+    if (!problems.empty()) throw InputError(problems);
   }
 
   ~Impl() {
@@ -165,7 +189,7 @@ struct World::Impl {
   }
 };
 
-World::World(const WorldConfig& config) : impl_(std::make_unique<Impl>(config)) {}
+World::World(const WorldConfig& config) : impl_(std::make_unique<Impl>(config)) { impl_->refuse_clashes(base_from_body()); }
 World::~World() = default;
 World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;

@@ -98,7 +98,8 @@ struct ContactReport {
 
 class World {
  public:
-  // Throws InputError when a value is not finite or out of its range, when the scene does not begin with its own bodies, and when the arm starts outside its limits.
+  // Throws InputError when a value is not finite or out of its range, when the scene does not begin with its own bodies, when the arm starts outside its limits, and when an
+  // object stands in the robot, the handle or a button.
   explicit World(const WorldConfig& config);
   ~World();
   World(World&&) noexcept;

@@ -58,7 +58,10 @@ void apply_scale(const Vec3& scale, Reading& reading) {
   reading.note(0, "is mirrored by its scale: its triangles are turned, so that their outside stays outside");
 }
 
-void check_size(const Reading& reading) {
+// "0.001", or "(0.001, 0.001, 0.002)".
+std::string factor(const Vec3& scale) { return scale.x() == scale.y() && scale.y() == scale.z() ? shown(scale.x()) : shown(scale); }
+
+void check_size(const Reading& reading, const Vec3& scale) {
   const std::vector<Vec3>& vertices = reading.mesh.vertices_m;
   Vec3 least = vertices.front(), most = vertices.front();
   for (const Vec3& vertex : vertices) {
@@ -67,12 +70,13 @@ void check_size(const Reading& reading) {
   }
   const double side_m = (most - least).maxCoeff(), farthest_m = std::max(least.cwiseAbs().maxCoeff(), most.cwiseAbs().maxCoeff());
   if (side_m > most_side_m)
-    throw InputError(
-        reading.file, 0,
-        "is " + shown(side_m) + " m long, more than " + shown(most_side_m) + " m: is it in millimetres? Then give it scale: 0.001");
+    throw InputError(reading.file, 0,
+                     "is " + shown(side_m) + " m long, more than " + shown(most_side_m) +
+                         " m: is it in millimetres? Then give it scale: " + factor(0.001 * scale));
   if (side_m < least_side_m)
     throw InputError(reading.file, 0,
-                     "is " + shown(side_m) + " m long, less than 1 mm: was it scaled from millimetres twice? Then give it scale: 1000");
+                     "is " + shown(side_m) +
+                         " m long, less than 1 mm: was it scaled from millimetres twice? Then give it scale: " + factor(1000 * scale));
   if (farthest_m > most_coordinate_m)
     throw InputError(reading.file, 0, "lies " + shown(farthest_m) + " m from its origin: move it there in a mesh editor");
 }
@@ -100,7 +104,7 @@ Reading parse_mesh(const std::string& file, std::string_view bytes, const Vec3& 
   if (reading.mesh.triangles.empty())
     throw InputError(file, 0, "has no triangles: was the file cut off, or is it a cloud of points? Export a mesh");
   apply_scale(scale, reading);
-  check_size(reading);
+  check_size(reading, scale);
   return reading;
 }
 

@@ -4,7 +4,7 @@ _lanternfish() {
   COMPREPLY=()
   for ((i = 1; i < COMP_CWORD; i++)); do
     case ${COMP_WORDS[i]} in
-      run|campaign|compare|serve|render-frames|scenarios|reach|peaks|plane|markers|ik|check|bench|doctor|version|help|completion) command=${COMP_WORDS[i]}; break ;;
+      run|campaign|compare|serve|render-frames|scenarios|reach|peaks|plane|markers|ik|check|new|bench|doctor|version|help|completion) command=${COMP_WORDS[i]}; break ;;
     esac
   done
   case $command in
@@ -78,7 +78,7 @@ _lanternfish() {
       case $before in
         --set) compopt -o nospace; COMPREPLY=($(compgen -W "$(lanternfish scenarios --keys 2>/dev/null | sed -n "s/^| .\([a-z_.]*\). | .*/\1=/p")" -- "$word")); return ;;
       esac
-      options='--help --set --schema --keys --faults --json'
+      options='--help --set --schema --keys --faults --scene-schema --scene-keys --json'
       [[ $word == -* ]] || { COMPREPLY=($(compgen -W "$(lanternfish scenarios 2>/dev/null | cut -d" " -f1)" -- "$word")); COMPREPLY+=($(compgen -f -- "$word")); return; }
       ;;
     'reach')
@@ -138,8 +138,13 @@ _lanternfish() {
         --opening) compopt -o filenames; COMPREPLY=($(compgen -f -- "$word")); return ;;
         --packages) compopt -o filenames; COMPREPLY=($(compgen -f -- "$word")); return ;;
         --postures) :; return ;;
+        --picture) compopt -o filenames; COMPREPLY=($(compgen -f -- "$word")); return ;;
       esac
-      options='--help --base --tool --approach --opening --packages --ignore-missing --postures --json'
+      options='--help --base --tool --approach --opening --packages --ignore-missing --postures --picture --json'
+      [[ $word == -* ]] || { compopt -o filenames; COMPREPLY=($(compgen -f -- "$word")); return; }
+      ;;
+    'new')
+      options='--help'
       [[ $word == -* ]] || { compopt -o filenames; COMPREPLY=($(compgen -f -- "$word")); return; }
       ;;
     'bench')
@@ -154,14 +159,14 @@ _lanternfish() {
       ;;
     'help')
       options='--help'
-      [[ $word == -* ]] || { COMPREPLY=($(compgen -W "$(printf "%s\n" run campaign compare serve render-frames scenarios reach peaks plane markers ik check bench doctor version help completion)" -- "$word")); return; }
+      [[ $word == -* ]] || { COMPREPLY=($(compgen -W "$(printf "%s\n" run campaign compare serve render-frames scenarios reach peaks plane markers ik check new bench doctor version help completion)" -- "$word")); return; }
       ;;
     'completion')
       options='--help'
       [[ $word == -* ]] || { COMPREPLY=($(compgen -W "$(printf '%s\n' bash zsh)" -- "$word")); return; }
       ;;
   esac
-  [ -n "$command" ] || options+=' run campaign compare serve render-frames scenarios reach peaks plane markers ik check bench doctor version help completion'
+  [ -n "$command" ] || options+=' run campaign compare serve render-frames scenarios reach peaks plane markers ik check new bench doctor version help completion'
   COMPREPLY=($(compgen -W "$options" -- "$word"))
 }
 complete -F _lanternfish lanternfish

@@ -28,6 +28,17 @@ std::vector<Pose> poses_of(const std::vector<record::ReportPart>& parts, const s
   return poses;
 }
 
+// The nominal world and a post beside the panel.
+world::WorldConfig with_a_post() {
+  world::WorldConfig config = world::nominal_config();
+  scene::Body post;
+  post.name = "post";
+  post.shapes.emplace_back().size_m = Vec3(0.05, 0.1, 0.3);
+  post.base_from_body = Pose(Eigen::Translation3d(0.45, -0.6, 0.5) * Eigen::AngleAxisd(0.3, Vec3::UnitX()));
+  config.scene.push_back(post);
+  return config;
+}
+
 void expect_parts_where_the_bodies_are(const world::World& world, const std::vector<record::ReportPart>& parts) {
   std::vector<double> coordinates;
   for (const JointReading& joint : world.readings()) coordinates.push_back(joint.position_rad);
@@ -45,7 +56,7 @@ void expect_parts_where_the_bodies_are(const world::World& world, const std::vec
 }
 
 TEST(ReportParts, StandWhereTheBodiesDoAsTheArmMoves) {
-  world::WorldConfig config = world::nominal_config();
+  world::WorldConfig config = with_a_post();
   config.valve.start_rad = 0.4;
   const std::vector<record::ReportPart> parts = report_parts_of(config);
   world::World world(config);
@@ -58,7 +69,7 @@ TEST(ReportParts, StandWhereTheBodiesDoAsTheArmMoves) {
 }
 
 TEST(ReportParts, HaveTheWorldsShapes) {
-  const world::WorldConfig config = world::nominal_config();
+  const world::WorldConfig config = with_a_post();
   const std::vector<record::ReportPart> parts = report_parts_of(config);
   ASSERT_EQ(parts.size(), config.scene.size());
   for (std::size_t i = 0; i < parts.size(); ++i) {

@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
 
 #include "tests/unit/app/program.hpp"
 
@@ -23,14 +25,19 @@ class SceneFiles : public Program {
 };
 
 TEST_F(SceneFiles, AreToldAndDrawnByCheck) {
-  const std::string shipped = LANTERNFISH_SOURCE_DIR "/shared/scenarios/scenes/clutter.yaml";
+  const std::string shipped = LANTERNFISH_SOURCE_DIR "/shared/scenes/clutter.yaml";
   const std::string picture = file("scene.png", "");
   const Json scene = json_of("check scene " + shipped + " --picture " + picture);
   ASSERT_EQ(scene["objects"].size(), 3u);
   EXPECT_EQ(scene["objects"][0]["name"], "pipe");
   EXPECT_NEAR(scene["objects"][0]["most_m"][0].get<double>(), 0.35, 1e-9);
   EXPECT_EQ(scene["objects"][2]["triangles"], 320);
-  EXPECT_GT(std::filesystem::file_size(picture), 100'000u);
+  // It differs from that of an empty scene where the objects and their shadows are.
+  const std::string empty = file("empty.yaml", "version: 1\n"), without = file("without.png", "");
+  EXPECT_EQ(run("check scene " + empty + " --picture " + without).status, 0);
+  cv::Mat difference;
+  cv::absdiff(cv::imread(picture), cv::imread(without), difference);
+  EXPECT_GT(cv::countNonZero(difference.reshape(1) > 40), 5'000);
   const Said said = run("check scene " + shipped);
   EXPECT_EQ(said.status, 0) << said.err;
   for (const char* part : {"3 objects", "grab bar", "320 triangles", "metres"})
@@ -41,6 +48,43 @@ TEST_F(SceneFiles, AreToldAndDrawnByCheck) {
   EXPECT_EQ(refused["problems"].size(), 2u) << refused;
   EXPECT_EQ(run("check scene " + bad + " --tool a").status, 2);
   EXPECT_EQ(run("check arm " LANTERNFISH_TEST_DATA "/arms/ur5/ur5.urdf --picture a.png").status, 2);
+}
+
+// The scenario that a run keeps finds its scene again, a shipped one and one's own with its mesh.
+TEST_F(SceneFiles, AreKeptWithTheRun) {
+  std::filesystem::create_directories(folder() / "things" / "meshes");
+  std::filesystem::copy_file(LANTERNFISH_SOURCE_DIR "/shared/scenes/boulder.obj", folder() / "things" / "meshes" / "my rock.obj");
+  (void)file("things/dock.yaml",
+             "version: 1\nobjects: [{name: rock, kind: mesh, file: meshes/my rock.obj, scale: 0.001, position_m: [0, -0.3, 0]}]\n");
+  const std::string own = file("own.yaml", "scene: things/dock.yaml\n");
+  const std::string few = " --quiet --no-outside --set time_limit_s=1 --out ";
+  EXPECT_EQ(run("run " + own + few + (folder() / "of_own").string()).status, 1) << "a second is too short";
+  EXPECT_EQ(run("run cluttered" + few + (folder() / "of_shipped").string()).status, 1);
+  EXPECT_EQ(text_of(folder() / "of_own" / "scene" / "mesh_1.obj"), text_of(LANTERNFISH_SOURCE_DIR "/shared/scenes/boulder.obj"));
+  const std::string experiment = text_of(folder() / "of_own" / "experiment.json");
+  EXPECT_NE(experiment.find("file things/dock.yaml"), std::string::npos);
+  EXPECT_NE(experiment.find("file meshes/my rock.obj of things/dock.yaml"), std::string::npos);
+  // Another mesh under the same name is another experiment.
+  (void)file("things/meshes/my rock.obj", "v 0 0 0\nv 100 0 0\nv 0 100 0\nv 0 0 100\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+  EXPECT_NE(run("run " + own + few + (folder() / "of_own").string()).err.find("my rock.obj"), std::string::npos);
+  std::filesystem::remove_all(folder() / "things");
+  for (const char* kept : {"of_own", "of_shipped"}) {
+    const Said again = run("scenarios " + (folder() / kept / "scenario.yaml").string());
+    EXPECT_EQ(again.status, 0) << again.err;
+  }
+  EXPECT_EQ(run("scenarios " + own).status, 2) << "its scene is gone";
+}
+
+// What stands in the arm's way is met, and told by its name.
+TEST_F(SceneFiles, AreMetByTheArm) {
+  const std::string wall = file(
+      "wall.yaml", "version: 1\nobjects: [{name: wall, kind: box, size_m: [0.02, 1, 1], frame: vehicle, position_m: [0.36, 0, 0.4]}]\n");
+  const std::string out = (folder() / "out").string();
+  const Said said = run("run default --quiet --no-outside --set time_limit_s=20 --set scene=" + wall + " --out " + out);
+  EXPECT_EQ(said.status, 1) << said.err;
+  const Json result = Json::parse(text_of(folder() / "out" / "result.json"));
+  EXPECT_GT(result["contact"]["unintended_contacts"], 0);
+  EXPECT_NE(text_of(folder() / "out" / "report.html").find(" and wall at "), std::string::npos);
 }
 
 // What it writes is taken as it stands, and with every '#' taken away it is the default scenario.
@@ -54,6 +98,9 @@ TEST_F(SceneFiles, AndScenariosThatNewWritesAreTaken) {
   EXPECT_EQ(run("new scene " + mission + "_scene.yaml").status, 0);
   EXPECT_EQ(json_of("check scene " + mission + "_scene.yaml")["objects"].size(), 1u);
   EXPECT_EQ(run("new machine " + mission).status, 2);
+  EXPECT_EQ(run("new scene ''").status, 2);
+  EXPECT_EQ(run("new scene \"$(printf 'a\\nb')\"").status, 2) << "a name that would break the file's comments";
+  EXPECT_EQ(run("new scene " + mission + "_THIS_FILE").status, 0);
 
   std::ifstream written(mission + ".yaml");
   std::string whole;

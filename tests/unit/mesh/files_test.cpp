@@ -81,7 +81,7 @@ TEST(MeshFile, OfAnotherUnitIsRefusedWithTheScale) {
   Mesh mesh = box({340, 200, 100});
   EXPECT_EQ(error_of("a.obj", obj_of(mesh)), "a.obj: is 340 m long, more than 100 m: is it in millimetres? Then give it scale: 0.001");
   EXPECT_EQ(error_of("a.obj", obj_of(mesh), Vec3::Constant(1e-6)),
-            "a.obj: is 0.00034 m long, less than 1 mm: was it scaled from millimetres twice? Then give it scale: 1000");
+            "a.obj: is 0.00034 m long, less than 1 mm: was it scaled from millimetres twice? Then give it scale: 0.001");
   const Reading reading = parse_mesh("a.obj", obj_of(mesh), Vec3::Constant(0.001));
   EXPECT_EQ(reading.mesh.vertices_m.back(), Vec3(340 * 0.001, 200 * 0.001, 100 * 0.001));
   EXPECT_EQ(reading.notes.at(0).text,

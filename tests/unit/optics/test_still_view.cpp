@@ -1,6 +1,7 @@
 // A frame is a kept still view with moving bodies and laser put in: it must be the frame that would be made from nothing.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 
 #include "host_sim/optics/still_view.hpp"
@@ -23,6 +24,15 @@ void expect_same(const Frame& a, const Frame& b) {
   EXPECT_TRUE(same_bytes(a.stripe_grey, b.stripe_grey));
 }
 
+// What stands about before the panel.
+scene::Body post_before(const MissionScene& mission) {
+  scene::Body post;
+  post.name = "post";
+  post.shapes.push_back(make_shape(scene::ShapeKind::box, {0.05, 0.05, 0.05}, Vec3::Zero(), 0.8f));
+  post.base_from_body = mission.layout.nominal_base_from_panel() * Eigen::Translation3d(-0.1, -0.15, 0.1);
+  return post;
+}
+
 // Any order of arm poses, handle and buttons, laser and lamps; now and then the panel itself moves, or a lamp's body.
 void compare_with_fresh(OpticsConfig config, std::uint32_t seed, int frames) {
   const MissionScene mission;
@@ -30,20 +40,22 @@ void compare_with_fresh(OpticsConfig config, std::uint32_t seed, int frames) {
   config.threads = 2;
   Optics kept(config);
   Frame frame, fresh_frame;
-  scene::BodyPoses drift = resting(), undrifted = resting();
+  config.scene.push_back(post_before(mission));
+  scene::BodyPoses drift = scene::poses_at_origin(config.scene), undrifted = drift;
   for (int i = 0; i < frames; ++i) {
     SCOPED_TRACE("seed " + std::to_string(seed) + ", frame " + std::to_string(i));
     Shot shot;
     shot.frame_number = static_cast<std::uint64_t>(i);
-    const scene::BodyPoses now = mission.random_poses(random);
+    scene::BodyPoses now = mission.random_poses(random);
+    now.push_back(config.scene.back().base_from_body);
     const bool touched = random() % 2 == 0;  // handle and buttons
-    for (std::size_t body = 0; body < mission.scene.size(); ++body) {
-      if (i == 0 || touched || !yields(mission.scene[body])) undrifted[body] = now[body];
+    for (std::size_t body = 0; body < config.scene.size(); ++body) {
+      if (i == 0 || touched || !yields(config.scene[body])) undrifted[body] = now[body];
     }
     shot.poses = undrifted;
     if (i % 7 == 5) drift[std::size_t(scene::BodyId::panel)] = Eigen::Translation3d(1e-9 * i, 0, 0) * Pose::Identity();
     if (i % 11 == 9) drift[std::size_t(scene::BodyId::vehicle)] = Eigen::Translation3d(0, 1e-3 * i, 0) * Pose::Identity();
-    for (std::size_t body = 0; body < mission.scene.size(); ++body) shot.poses[body] = drift[body] * shot.poses[body];
+    for (std::size_t body = 0; body < config.scene.size(); ++body) shot.poses[body] = drift[body] * shot.poses[body];
     shot.laser = random() % 3 != 0 ? 1.f : 0.f;
     shot.lamps = random() % 3 == 0 ? (random() % 2 == 0 ? 1.f : 0.4f) : 0.f;
     shot.time_s = i;
@@ -67,14 +79,10 @@ TEST(StillView, KeptOrMadeAnewGivesTheSameBytesInColourThroughAPort) {
   compare_with_fresh(config, 12, 12);
 }
 
-// What stands about is kept with panel and vehicle, is seen, and throws its shadow.
-TEST(StillView, AnObjectOfTheSceneIsSeenAndThrowsItsShadow) {
+TEST(StillView, AnObjectOfTheSceneIsSeenThrowsItsShadowAndBearsTheStripe) {
   const MissionScene mission;
   OpticsConfig config = mission.config();
-  scene::Body post;
-  post.name = "post";
-  post.shapes.push_back(make_shape(scene::ShapeKind::box, {0.05, 0.05, 0.05}, Vec3::Zero(), 0.8f));
-  post.base_from_body = mission.layout.nominal_base_from_panel() * Eigen::Translation3d(-0.1, -0.15, 0.1);
+  const scene::Body post = post_before(mission);
   Shot shot;
   shot.poses = mission.poses({0, 0.3, 1.9, 0, 0.1}, 0, 0);
   shot.lamps = 1;
@@ -94,6 +102,21 @@ TEST(StillView, AnObjectOfTheSceneIsSeenAndThrowsItsShadow) {
   }
   EXPECT_GT(seen, 100);
   EXPECT_GT(darker, 100);
+
+  // Over a sweep the stripe comes by the object, and its true middle lies there.
+  int stripes = 0;
+  shot.lamps = 0, shot.laser = 1;
+  Optics camera(config);
+  for (double shoulder_rad = 0.7; shoulder_rad < 1.3; shoulder_rad += 0.02) {
+    shot.poses = mission.poses({0, shoulder_rad, 1.40, 0, 0.3}, 0, 0);
+    shot.poses.push_back(post.base_from_body);
+    camera.render(shot, with);
+    for (std::int32_t u = 0; u < with.width; ++u) {
+      const float v = with.stripe_v[static_cast<std::size_t>(u)];
+      if (std::isfinite(v)) stripes += with.object[static_cast<std::size_t>(std::lround(v) * with.width + u)] == label;
+    }
+  }
+  EXPECT_GT(stripes, 50);
 }
 
 TEST(StillView, TwoCamerasKeepTheirOwn) {

@@ -123,19 +123,63 @@ TEST(FixedObject, IsToldByItsNameWhenTheArmHitsIt) {
   EXPECT_TRUE(world.base_from_body().back().isApprox(post.base_from_body));
 }
 
-TEST(FixedObject, IsRefusedWhereTheArmStarts) {
+std::string refusal_of(scene::Body thing, const Vec3& place_m) {
   WorldConfig config = nominal_config();
-  scene::Body post = box_body(Vec3::Constant(0.1));
-  post.name = "post";
-  post.base_from_body.translation() = World(config).base_from_tool().translation();
-  config.scene.push_back(post);
+  thing.base_from_body.translation() = place_m;
+  config.scene.push_back(thing);
   try {
     World world(config);
-    FAIL() << "taken";
+    return "";
   } catch (const InputError& problem) {
-    EXPECT_NE(std::string(problem.what()).find("'post' stands"), std::string::npos) << problem.what();
-    EXPECT_NE(std::string(problem.what()).find("where the arm starts: move it"), std::string::npos) << problem.what();
+    return problem.what();
   }
+}
+
+// In what moves and in what carries the camera; in the panel it may be set.
+TEST(FixedObject, IsRefusedWhereItStandsInTheRobotTheHandleOrAButton) {
+  const WorldConfig config = nominal_config();
+  const Vec3 tool_m = World(config).base_from_tool().translation();
+  scene::Body post = box_body(Vec3::Constant(0.1));
+  post.name = "post";
+  EXPECT_EQ(refusal_of(post, tool_m).rfind("scene: 'post' stands in the ", 0), 0u) << refusal_of(post, tool_m);
+  EXPECT_NE(refusal_of(post, Vec3(-0.37, 0, -0.115)).find("in the vehicle"), std::string::npos);
+  EXPECT_NE(refusal_of(post, config.base_from_panel * Vec3(0, 0, 0.1)).find("in the handle"), std::string::npos);
+  scene::Body cube = box_body(Vec3::Constant(0.04));
+  EXPECT_NE(refusal_of(cube, config.base_from_panel * Vec3(0.067, 0.141, 0.02)).find("in the right button"), std::string::npos);
+  EXPECT_EQ(refusal_of(post, config.base_from_panel * Vec3(0.3, -0.2, 0)), "");
+}
+
+// Bullet takes a mesh for a surface: what is all inside of it touches nothing.
+TEST(FixedObject, IsRefusedWhereTheRobotIsInsideOfIt) {
+  scene::Body room = mesh_body({{Vec3::Constant(8), Vec3::Zero()}});
+  room.name = "room";
+  EXPECT_NE(refusal_of(room, Vec3::Zero()).find("which is all inside of it"), std::string::npos) << refusal_of(room, Vec3::Zero());
+  EXPECT_EQ(refusal_of(room, Vec3(0, 0, 6)), "");
+}
+
+// A bar that is turned meets what stands in its way: it is held there, and both are told.
+TEST(FixedObject, StandsInTheHandlesWay) {
+  WorldConfig config = nominal_config();
+  config.valve.friction_nm = 0.5;
+  config.valve.detent_nm = 0;
+  scene::Body bead = box_body(Vec3(0.006, 0.006, 0.02));
+  bead.name = "bead";
+  bead.base_from_body = config.base_from_panel * Eigen::Translation3d(0.030, 0.030, 0.100);  // in the circle of the bar's ends
+  config.scene.push_back(bead);
+  config.start_rad = {0, 1.307, 1.151, pi / 2, 0.1};  // about the bar, as in the test of forces
+  config.base_from_panel.translation() += Vec3(0, 0.002, 0);
+  World world(config);
+  Script script(world, config.start_rad);
+  script.targets_rad[4] = -0.05;
+  script.run(1.5);
+  for (const double sign : {-1.0, 1.0}) {  // the bead is met one way round at the latest
+    script.targets_rad[3] = pi / 2 + sign * 1.4;
+    script.run(5.0);
+  }
+  bool met = false;
+  for (const UnintendedContact& contact : world.contacts().unintended)
+    met = met || (contact.name_a == "handle" && contact.name_b == "bead");
+  EXPECT_TRUE(met);
 }
 
 TEST(FixedObject, FollowsTheScenesOwnBodies) {
@@ -147,8 +191,16 @@ TEST(FixedObject, FollowsTheScenesOwnBodies) {
   EXPECT_THROW(World{config}, InputError);
   config = nominal_config();
   config.scene.push_back(box_body(Vec3::Constant(0.1)));
+  config.scene.back().base_from_body.translation() = Vec3(0, 0, 5);
+  EXPECT_NO_THROW(World{config});
+  config.scene.back().role = scene::Role::finger;
+  EXPECT_THROW(World{config}, InputError) << "another finger";
+  config.scene.back().role = scene::Role::object;
   config.scene.back().base_from_body.translation().x() = std::nan("");
   EXPECT_THROW(World{config}, InputError);
+  config.scene.back().base_from_body = at({0, 0, 5});
+  while (config.scene.size() <= scene::max_bodies) config.scene.push_back(config.scene.back());
+  EXPECT_THROW(World{config}, InputError) << "one too many";
 }
 
 }  // namespace
