@@ -24,6 +24,8 @@ constexpr double slide_pull = 1e-4;
 // The share of the squared distance that a step has to save, for a step that goes all the way. Less than that is left where the way to the seed is
 // within 13 degrees of square to the free directions.
 constexpr double slide_gain = 0.1;
+// For the searches that tell the error that remains as it is. A stretched arm's curvature is at most its length's, which is 1 here.
+constexpr double curvature = 0.5;
 constexpr double firm_position = 30;  // weight: at 0.1 rad of missing turn the position gives way by 1e-4 of the arm's length
 constexpr double limit_rounding = 1e-9;
 
@@ -118,8 +120,7 @@ void NumericIk::enter(const Chain& chain, Stage stage) {
   }
   rules_.limited = stage != Stage::beyond_limits && stage != Stage::position_beyond_limits;
   if (stage == Stage::position_beyond_limits || stage == Stage::position) task_.axis = task_.roll = false;
-  // Only this search's remaining error is told as it is. A stretched arm's curvature is at most its length's, which is 1 here.
-  if (stage == Stage::position_beyond_limits) rules_.remaining_damping = 0.5;
+  if (stage == Stage::position_beyond_limits) rules_.remaining_damping = curvature;
   if (stage == Stage::orientation) rules_.position_weight = firm_position;
   start(chain, stage == Stage::search ? seed_ : searched_);
   nearest_ = descent_.q();
@@ -130,6 +131,8 @@ void NumericIk::enter(const Chain& chain, Stage stage) {
 void NumericIk::start(const Chain& chain, const JointValues& q) {
   ++starts_;
   descent_steps_ = 0;
+  // In turns: a position at the border of reach is met without it, and one beyond the border comes nearer with it, 3 % in the mean of 103.
+  if (stage_ == Stage::position) rules_.remaining_damping = starts_ % 2 == 0 ? curvature : 0;
   descent_.start(chain, task_, rules_, q);
 }
 
@@ -196,6 +199,7 @@ void NumericIk::arrived(const Chain& chain) {
       descent_steps_ = steps_since_met_ = 0;
       return;
     }
+    descent_.start(chain, task_, rules_, chain.unwound(descent_.q(), chain.middle()));
     keep_least_excess(chain);
     next_start(chain);
     return;
@@ -258,21 +262,21 @@ void NumericIk::slide(const Chain& chain) {
 }
 
 void NumericIk::slid(const Chain& chain) {
-  descent_.start(chain, task_, rules_, slide_best_);
   const bool approached_seed = stage_ == Stage::approach_seed;
+  descent_.start(chain, task_, rules_, approached_seed ? slide_best_ : chain.unwound(slide_best_, chain.middle()));
   stage_ = before_slide_;
   if (approached_seed && descent_.is_met()) {
     found(chain);
     return;
   }
-  // Whole turns may have put it past the tolerance.
-  if (descent_.is_met()) keep_least_excess(chain);
+  keep_least_excess(chain);
   next_start(chain);
 }
 
-// Of a posture that meets the task without limits: by how much does it pass them?
+// Of an unwound posture that meets the stage's task without limits: by how much does it pass them?
 void NumericIk::keep_least_excess(const Chain& chain) {
-  JointValues q = chain.unwound(descent_.q(), chain.middle());
+  if (!descent_.is_met()) return;  // whole turns may have put it past the tolerance
+  const JointValues& q = descent_.q();
   double most = 0;
   int joint = -1;
   for (std::size_t i = 0; i < chain.size(); ++i) {
@@ -313,11 +317,9 @@ void NumericIk::exhausted(const Chain& chain) {
         enter(chain, Stage::position);
         return;
       }
-      start(chain, nearest_);
-      finish(chain, IkOutcome::out_of_reach,
-             task_error(task_, descent_.state().tool, descent_.state().tool_m).position_m - task_.position_tolerance_m);
+      finish_out_of_reach(chain);
       return;
-    case Stage::position: finish_at_limit(chain); return;
+    case Stage::position: explain_position(chain); return;
     case Stage::orientation: {
       start(chain, nearest_);
       const TaskError error = task_error(task_, descent_.state().tool, descent_.state().tool_m);
@@ -343,11 +345,46 @@ void NumericIk::explain_single_descent(const Chain& chain) {
   finish(chain, here < elsewhere ? IkOutcome::singular : IkOutcome::gave_up, 0);
 }
 
+// The position alone is met past the limits, and no descent within them has met it. That is one of three things.
+void NumericIk::explain_position(const Chain& chain) {
+  if (least_excess_ <= limit_rounding) {
+    start(chain, drawn_in(chain, least_));
+    if (descent_.is_met()) {
+      searched_ = descent_.q();
+      enter(chain, Stage::orientation);
+      return;
+    }
+  }
+  const IkTask position = task_;
+  task_ = asked_;
+  start(chain, least_);
+  if (descent_.is_met()) {
+    finish_at_limit(chain);
+    return;
+  }
+  task_ = position;
+  finish_out_of_reach(chain);
+}
+
+// `least_` does all that is asked. Where it passes the limits by rounding alone it is a solution, if it still does so drawn into them.
 void NumericIk::finish_at_limit(const Chain& chain) {
-  const bool inside = least_excess_ <= limit_rounding;
-  start(chain, inside ? drawn_in(chain, least_) : least_);
-  result_.joint = inside ? -1 : least_joint_;
-  finish(chain, inside ? IkOutcome::solved : IkOutcome::joint_limit, inside ? 0 : least_excess_);
+  if (least_excess_ <= limit_rounding) {
+    start(chain, drawn_in(chain, least_));
+    if (descent_.is_met()) {
+      finish(chain, IkOutcome::solved, 0);
+      return;
+    }
+  }
+  start(chain, least_);
+  result_.joint = least_joint_;
+  finish(chain, IkOutcome::joint_limit, least_excess_);
+}
+
+// Where the stage, which asked for the position alone, came nearest.
+void NumericIk::finish_out_of_reach(const Chain& chain) {
+  start(chain, nearest_);
+  const TaskError error = task_error(task_, descent_.state().tool, descent_.state().tool_m);
+  finish(chain, IkOutcome::out_of_reach, error.position_m - task_.position_tolerance_m);
 }
 
 // The descent stands at the answer.

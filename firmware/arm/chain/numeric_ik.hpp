@@ -74,7 +74,9 @@ class NumericIk {
   void slid(const Chain& chain);
   void keep_least_excess(const Chain& chain);
   void explain_single_descent(const Chain& chain);
+  void explain_position(const Chain& chain);
   void finish_at_limit(const Chain& chain);
+  void finish_out_of_reach(const Chain& chain);
   void finish(const Chain& chain, IkOutcome outcome, double excess);
   double uniform(double lower, double upper);
 

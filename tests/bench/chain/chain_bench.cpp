@@ -7,6 +7,7 @@
 
 #include "tests/unit/arm_chain/plain_kinematics.hpp"
 #include "tests/unit/arm_chain/protocol.hpp"
+#include "tests/unit/arm_chain/random_arms.hpp"
 
 namespace lf::bench {
 namespace {
@@ -14,8 +15,9 @@ namespace {
 using namespace lf::chain;
 
 constexpr int poses = 10'000;
-constexpr int peer_poses = 1'000;  // KDL takes 0.2 ms a pose: the whole is to take seconds
-constexpr int rounds = 3;          // of each, in turns: the best mean of a round counts
+constexpr int peer_poses = 1'000;                    // KDL takes 0.2 ms a pose: the whole is to take seconds
+constexpr int random_arms = 400, random_poses = 50;  // of each make, on each arm
+constexpr int rounds = 3;                            // of each, in turns: the best mean of a round counts
 // KDL's LMA ends at this norm of all six errors, equally weighted: m and rad.
 constexpr double peer_precision = 1e-5;
 constexpr std::uint64_t seed = 20261127;
@@ -123,35 +125,71 @@ Row run(const Case& c) {
   return {c.name, ours.mean_us, theirs.mean_us, "KDL ChainIkSolverPos_LMA", theirs.mean_us / ours.mean_us, "us", note};
 }
 
-// KDL has no such tasks: what is asked is the peer. Made and judged by kinematics that share nothing with the solvers.
+// Tasks for which there is no peer: what is asked is the peer. Made and judged by kinematics that share nothing with the solvers.
+class Asked {
+ public:
+  void ask(const PlainKinematics& judge, Ik& ik, const Mask& mask, const JointValues& q) {
+    const IkTask task = task_of(mask, judge.pose(q));
+    const double begin = microseconds();
+    const IkResult& result = ik.solve(task, ik.chain().middle());
+    times_us_.push_back(microseconds() - begin);
+    most_restarts_ = std::max(most_restarts_, result.restarts);
+    most_iterations_ = std::max(most_iterations_, result.iterations);
+    iterations_ += result.iterations;
+    if (!result.ok()) {
+      refused_ += std::string(", ") + lf::chain::name(result.outcome);
+      return;
+    }
+    ++solved_;
+    closed_ += result.closed_form ? 1 : 0;
+    wrong_ += judge.fulfils(task, result.q) && within_limits(ik.chain(), result.q) ? 0 : 1;
+  }
+
+  Row row(const std::string& title) {
+    const auto asked = static_cast<double>(times_us_.size());
+    Times times;
+    times.take_better(times_us_);
+    char note[200];
+    std::snprintf(note, sizeof note,
+                  "%d wrong, %d in closed form, mean %.1f us, p99 %.1f us, iterations %.1f, at most %u, restarts at most %u", wrong_,
+                  closed_, times.mean_us, times.p99_us, iterations_ / asked, most_iterations_, most_restarts_);
+    return {title,
+            1.0 * solved_,
+            asked,
+            "asked",
+            solved_ / asked,
+            "poses",
+            refused_.empty() ? note : note + ("; refused: " + refused_.substr(2))};
+  }
+
+ private:
+  std::vector<double> times_us_;
+  int solved_ = 0, wrong_ = 0, closed_ = 0;
+  std::uint32_t most_restarts_ = 0, most_iterations_ = 0;
+  double iterations_ = 0;
+  std::string refused_;  // why, one by one
+};
+
 Row run_masked(const RealArm& arm, const Mask& mask) {
   const PlainKinematics judge(arm);
   Ik ik(chain_of(arm));
   RandomPostures random(ik.chain(), seed);
-  std::vector<double> times_us;
-  int solved = 0, wrong = 0, closed = 0;
-  std::uint32_t most_restarts = 0, most_iterations = 0;
-  double iterations = 0;
-  for (int k = 0; k < poses; ++k) {
-    const IkTask task = task_of(mask, judge.pose(random.next()));
-    const double begin = microseconds();
-    const IkResult& result = ik.solve(task, ik.chain().middle());
-    times_us.push_back(microseconds() - begin);
-    most_restarts = std::max(most_restarts, result.restarts);
-    most_iterations = std::max(most_iterations, result.iterations);
-    iterations += result.iterations;
-    if (!result.ok()) continue;
-    ++solved;
-    closed += result.closed_form ? 1 : 0;
-    wrong += judge.fulfils(task, result.q) && within_limits(ik.chain(), result.q) ? 0 : 1;
+  Asked asked;
+  for (int k = 0; k < poses; ++k) asked.ask(judge, ik, mask, random.next());
+  return asked.row(arm.name + " " + mask.name);
+}
+
+Row run_random(Make make) {
+  RandomArms made(make, seed);
+  Asked asked;
+  for (int n = 0; n < random_arms; ++n) {
+    const RealArm arm = made.next();
+    const PlainKinematics judge(arm);
+    Ik ik(chain_of(arm));
+    RandomPostures random(ik.chain(), seed);
+    for (int k = 0; k < random_poses; ++k) asked.ask(judge, ik, mask_for(ik.chain().size()), random.next());
   }
-  Times times;
-  times.take_better(times_us);
-  char note[200];
-  std::snprintf(note, sizeof note,
-                "%d wrong, %d in closed form, mean %.1f us, p99 %.1f us, iterations %.1f, at most %u, restarts at most %u", wrong, closed,
-                times.mean_us, times.p99_us, iterations / poses, most_iterations, most_restarts);
-  return {arm.name + " " + mask.name, 1.0 * solved, 1.0 * poses, "asked", 1.0 * solved / poses, "poses", note};
+  return asked.row(std::string("random arms, ") + lf::chain::name(make));
 }
 
 }  // namespace
@@ -167,6 +205,7 @@ std::vector<Row> run_chain_bench() {
   }
   for (const RealArm& arm : arms)
     for (const Mask& mask : {masks[1], masks[2], masks[3]}) rows.push_back(run_masked(arm, mask));
+  for (const Make make : makes) rows.push_back(run_random(make));
   return rows;
 }
 

@@ -37,6 +37,9 @@ inline constexpr Mask masks[] = {{"pose", "Pose", true, true},
                                  {"pose to 1e-5", "PoseTo1e5", true, true, 1e-5, 1e-5, 1e-5},
                                  {"pose within 1 mm, 0.2 and 0.05 rad", "PoseWithinWideTolerances", true, true, 1e-3, 0.2, 0.05}};
 
+// What so many joints can hold.
+inline const Mask& mask_for(std::size_t joints) { return masks[joints >= 6 ? 0 : joints == 5 ? 2 : joints == 4 ? 3 : 1]; }
+
 inline void PrintTo(const Mask& mask, std::ostream* out) { *out << mask.name; }
 
 struct Tally {

@@ -103,8 +103,16 @@ void judge(const RealArm& arm, const Chain& chain, const Question& asked, const 
   }
   ASSERT_EQ(result.q, harmless(arm, asked.seed)) << name(result.outcome);
   if (result.outcome == IkOutcome::joint_limit) {
+    ASSERT_GT(result.excess, 0);
     ASSERT_NEAR(std::abs(chain.excess(static_cast<std::size_t>(result.joint), result.nearest[result.joint])), result.excess, 1e-12);
-    ASSERT_TRUE(PlainKinematics(arm).fulfils(asked.task, result.nearest) || asked.task.axis || asked.task.roll);
+    ASSERT_TRUE(PlainKinematics(arm).fulfils(asked.task, result.nearest));
+  }
+  if (result.outcome == IkOutcome::out_of_reach) {
+    IkTask position = asked.task;
+    position.axis = position.roll = false;
+    position.position_tolerance_m += result.excess + 1e-9;
+    ASSERT_GT(result.excess, 0);
+    ASSERT_TRUE(PlainKinematics(arm).fulfils(position, result.nearest));
   }
   if (result.outcome == IkOutcome::jump_needed) {
     ASSERT_TRUE(asked.config.stay);

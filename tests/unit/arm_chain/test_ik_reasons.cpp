@@ -1,6 +1,7 @@
 // Reasons that can be proved, against closed forms. The rest are found: ik_result.hpp.
 #include <gtest/gtest.h>
 
+#include "tests/unit/arm_chain/plain_kinematics.hpp"
 #include "tests/unit/arm_chain/protocol.hpp"
 #include "tests/unit/arm_chain/random_arms.hpp"
 
@@ -89,6 +90,54 @@ TEST(IkReasons, AnApproachOutOfAPlanarArmsPlaneMissesByItsAngleToThePlane) {
       // The position is held firmly, not rigidly: it gives way by a thousandth of the arm for a hundredth of the angle.
       ASSERT_NEAR(result.excess, out_rad, 0.03 * out_rad);
       ASSERT_LE(result.excess, out_rad + 1e-6);
+    }
+  }
+}
+
+// Three slides along x, y and z and a yaw: what a slide lacks the tool lacks, and the tool's axis stays upright.
+RealArm gantry() {
+  const auto slide = [](const Vec3& axis) { return UrdfJoint{UrdfJoint::Kind::prismatic, {0, 0, 0}, {0, 0, 0}, axis, -0.5, 0.5}; };
+  return {"gantry",
+          {slide(Vec3::UnitX()),
+           slide(Vec3::UnitY()),
+           slide(Vec3::UnitZ()),
+           {UrdfJoint::Kind::revolute, {0, 0, 0}, {0, 0, 0}, Vec3::UnitZ(), -3, 3},
+           {UrdfJoint::Kind::fixed, {0, 0, 0.1}, {0, 0, 0}}}};
+}
+
+// A slide past its end would put the tool there, but not so turned: it would not do the task, so the reason is not its limit.
+TEST(IkReasons, ALimitIsTheReasonOnlyWherePassingItDoesTheWholeTask) {
+  SCOPED_TRACE(testing::Message() << "seed " << seed);
+  const Chain chain = chain_of(gantry());
+  const PlainKinematics judge(gantry());
+  RandomPostures random(chain, seed);
+  Ik ik(chain);
+  NumericIk numeric;
+  for (int k = 0; k < 200; ++k) {
+    SCOPED_TRACE(k);
+    const double beyond = random.uniform(0.01, 2), tilt_rad = random.uniform(0.1, 1);
+    const int joint = k % 3;
+    JointValues q = random.next();
+    q[joint] = k % 2 == 0 ? 0.5 + beyond : -0.5 - beyond;
+    const Pose tool = judge.pose(q);
+    Pose tilted = tool;
+    tilted.rotate(Eigen::AngleAxisd(tilt_rad, Vec3::UnitX()));
+    for (const std::uint32_t restarts : {0U, 20U}) {
+      const NumericIkConfig config{.max_restarts = restarts};
+      const IkTask there = task_of(masks[1], tilted), turned = task_of(masks[2], tilted);
+      for (const IkResult& result : {ik.solve(there, chain.middle(), config), numeric.solve(chain, there, chain.middle(), config)}) {
+        ASSERT_EQ(result.outcome, IkOutcome::joint_limit) << name(result.outcome);
+        ASSERT_EQ(result.joint, joint);
+        ASSERT_NEAR(result.excess, beyond, 1e-6);
+        ASSERT_TRUE(judge.fulfils(there, result.nearest));
+      }
+      for (const IkResult& result : {ik.solve(turned, chain.middle(), config), numeric.solve(chain, turned, chain.middle(), config)}) {
+        if (restarts == 0 && result.outcome == IkOutcome::gave_up) continue;
+        ASSERT_EQ(result.outcome, IkOutcome::out_of_reach) << name(result.outcome);
+        ASSERT_GE(result.excess, beyond - 1e-9);
+        ASSERT_LE(result.excess, 1.0001 * beyond) << "a descent ends where six iterations save less than that share";
+        ASSERT_TRUE(within_limits(chain, result.nearest));
+      }
     }
   }
 }
