@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "hal/config/text_file.hpp"
 #include "host_sim/app/command.hpp"
 #include "host_sim/optics/outside_view.hpp"
 #include "host_sim/record/file_sink.hpp"
@@ -38,6 +39,7 @@ void tell(const scenario::SceneFile::Placed& object) {
 
 // The default scenario with the scene. Throws InputError where an object stands in the robot, wherever the panel may be docked.
 scenario::Scenario among(const std::string& file) {
+  (void)config::read_text_file(file);  // says of one that is not there what the scenario's key would not
   const scenario::Scenario scenario =
       scenario::load_scenario("default", {"scene=" + Json(std::filesystem::absolute(file).string()).dump()});
   scenario::check_runnable(scenario);

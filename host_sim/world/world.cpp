@@ -131,7 +131,7 @@ struct World::Impl {
         if (depth_m < start_gap_m && !inside) continue;
         problems += (problems.empty() ? "" : "\n") +
                     ("scene: '" + object.name + "' stands in the " + stood_in.name + " as a run begins" +
-                     (inside ? ", which is all inside of it" : ", by " + std::to_string(std::lround(1e3 * depth_m)) + " mm") + ": move it");
+                     (inside ? ", which lies inside of it" : ", by " + std::to_string(std::lround(1e3 * depth_m)) + " mm") + ": move it");
         break;
       }
     }

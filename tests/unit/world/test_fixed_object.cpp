@@ -153,7 +153,7 @@ TEST(FixedObject, IsRefusedWhereItStandsInTheRobotTheHandleOrAButton) {
 TEST(FixedObject, IsRefusedWhereTheRobotIsInsideOfIt) {
   scene::Body room = mesh_body({{Vec3::Constant(8), Vec3::Zero()}});
   room.name = "room";
-  EXPECT_NE(refusal_of(room, Vec3::Zero()).find("which is all inside of it"), std::string::npos) << refusal_of(room, Vec3::Zero());
+  EXPECT_NE(refusal_of(room, Vec3::Zero()).find("which lies inside of it"), std::string::npos) << refusal_of(room, Vec3::Zero());
   EXPECT_EQ(refusal_of(room, Vec3(0, 0, 6)), "");
 }
 
