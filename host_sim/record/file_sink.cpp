@@ -67,8 +67,6 @@ void write_file_atomically(const std::filesystem::path& named, std::string_view 
   const std::filesystem::path path = is_link ? std::filesystem::weakly_canonical(named, unknown) : named;
   const std::filesystem::file_status there = std::filesystem::status(path, unknown);
   if (std::filesystem::is_directory(there)) throw InputError(named.string(), 0, "is a folder, not a file");
-  if (unknown && unknown != std::errc::no_such_file_or_directory)
-    throw InputError(named.string(), 0, "cannot be a file: " + unknown.message());
   if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there))
     throw InputError(named.string(), 0, "is there and no regular file: it would be replaced");
   std::filesystem::path partial = path;

@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 
@@ -81,6 +82,19 @@ TEST(CandumpLog, OnAFullDiskStopsAndCountsOnlyWhatWasTaken) {
   EXPECT_FALSE(log.close());
   EXPECT_THAT(log.sink().error(), HasSubstr("No space left"));
   EXPECT_LT(log.frames(), 10'000u);
+}
+
+// A file is written beside and renamed: that would take a link's or a device's place.
+TEST(AtomicWrite, FollowsALinkAndRefusesWhatIsNoFile) {
+  const TemporaryFolder temporary;
+  (void)temporary.write("target.txt", "old");
+  std::filesystem::create_symlink("target.txt", temporary.path() / "link.txt");
+  write_file_atomically(temporary.path() / "link.txt", "new");
+  EXPECT_TRUE(std::filesystem::is_symlink(temporary.path() / "link.txt"));
+  EXPECT_EQ(temporary.read("target.txt"), "new");
+  ASSERT_EQ(::mkfifo((temporary.path() / "pipe").c_str(), 0600), 0);
+  EXPECT_THAT(message_of<InputError>([&] { write_file_atomically(temporary.path() / "pipe", "new"); }), HasSubstr("no regular file"));
+  EXPECT_TRUE(std::filesystem::is_fifo(temporary.path() / "pipe"));
 }
 
 TEST(AtomicWrite, OnAFullDiskThrowsOneLineAndKeepsTheOldFile) {
