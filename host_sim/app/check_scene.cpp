@@ -1,6 +1,5 @@
 #include "host_sim/app/check_scene.hpp"
 
-#include <algorithm>
 #include <filesystem>
 
 #include "hal/config/text_file.hpp"
@@ -39,7 +38,7 @@ void tell(const scenario::SceneFile::Placed& object) {
 
 // The default scenario with the scene. Throws InputError where an object stands in the robot, wherever the panel may be docked.
 scenario::Scenario among(const std::string& file) {
-  (void)config::read_text_file(file);  // says of one that is not there what the scenario's key would not
+  (void)config::read_text_file(file);  // a missing file is told by its own name, not by the scenario's key
   const scenario::Scenario scenario =
       scenario::load_scenario("default", {"scene=" + Json(std::filesystem::absolute(file).string()).dump()});
   scenario::check_runnable(scenario);

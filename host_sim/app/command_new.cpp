@@ -5,7 +5,6 @@
 #include "hal/config/nearest.hpp"
 #include "host_sim/app/checks.hpp"
 #include "host_sim/app/command.hpp"
-#include "host_sim/app/new_file.hpp"
 #include "host_sim/app/shell_word.hpp"
 #include "host_sim/record/file_sink.hpp"
 #include "host_sim/scenario/describe.hpp"
@@ -16,6 +15,11 @@ namespace lf::app {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+// THIS_FILE stands for the file, as a shell reads it.
+
+// Every key but the job has its default, commented out.
 std::string new_scenario() {
   std::string text =
       "# A mission of your own: `lanternfish run THIS_FILE --seed 1` flies it as it stands. Each line below that begins with '#' has a "
@@ -46,7 +50,7 @@ std::string new_scene() {
          "scale)\n"
          "    radius_m: 0.02\n"
          "    length_m: 0.7               # along its z\n"
-         "    frame: panel                   # or vehicle\n"
+         "    frame: panel                # or vehicle\n"
          "    position_m: [0, -0.3, 0.05]\n"
          "    turn_deg: [0, 90, 0]        # about x, then y, then z\n"
          "    albedo: [0.35, 0.36, 0.38]  # red, green, blue\n"
@@ -57,8 +61,6 @@ std::string new_scene() {
          "#    scale: 0.001               # metres for one of its units\n"
          "#    position_m: [-0.27, -0.18, 0.03]\n";
 }
-
-namespace {
 
 struct Options {
   std::string kind, name;
@@ -86,7 +88,8 @@ int make(const Options& options) {
 }  // namespace
 
 void add_new(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("new", "Write a file of your own to begin with: commented, and fit to fly as it is");
+  CLI::App* command =
+      app.add_subcommand("new", "Write a commented file of your own to begin with: a scenario that flies as it stands, or a scene");
   auto options = std::make_shared<Options>();
   command->add_option("KIND", options->kind, "What to write: scenario or scene")->required();
   command->add_option("NAME", options->name, "The file, which ends in .yaml; that is added where it has no ending")

@@ -1,8 +1,6 @@
 #include "host_sim/app/run_experiment.hpp"
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 
 #include "hal/config/drive_kind.hpp"
 #include "hal/config/share.hpp"
@@ -10,7 +8,6 @@
 #include "host_sim/scenario/describe.hpp"
 #include "host_sim/scenario/instance.hpp"
 #include "host_sim/scenario/scene_file.hpp"
-#include "shared/input_error.hpp"
 
 namespace lf::app {
 
@@ -46,13 +43,6 @@ std::vector<UsedFile> used_files(const scenario::Scenario& scenario) {
   return files;
 }
 
-std::string whole_file(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (file.bad() || !file.is_open()) throw InputError(path.string() + ": cannot be read");
-  return bytes;
-}
-
 bool climbs(const fs::path& relative) { return relative.empty() || relative.is_absolute() || *relative.begin() == ".."; }
 
 // A file that lies beside the scenario or below it, as the path from there; empty for a shipped one, and for one anywhere else.
@@ -80,7 +70,7 @@ std::string keep_scene(const scenario::SceneFile& scene, const record::RunFolder
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const fs::path& mesh = scene.objects[i].mesh;
     names.push_back(mesh.empty() ? "" : "mesh_" + std::to_string(i + 1) + mesh.extension().string());
-    if (!mesh.empty()) run.write("scene/" + names.back(), whole_file(mesh));
+    if (!mesh.empty()) run.write("scene/" + names.back(), record::bytes_of(mesh));
   }
   run.write("scene/scene.yaml", scenario::scene_yaml(scene, names));
   return "scene/scene.yaml";

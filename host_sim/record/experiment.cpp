@@ -19,12 +19,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t most_clauses = 6;  // of a message
 
-std::string bytes_of(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file || fs::is_directory(path)) throw unreadable(path);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 std::string changed(const std::string& name, const std::map<std::string, std::string>& before,
                     const std::map<std::string, std::string>& now) {
   const auto was = before.find(name), is = now.find(name);
@@ -43,6 +37,12 @@ void add_scenario(const std::string& before, const std::string& now, std::vector
 }
 
 }  // namespace
+
+std::string bytes_of(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file || fs::is_directory(path)) throw unreadable(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
 
 // A line is "  key: value  # what it means", and a group is "group:" with its keys indented.
 std::map<std::string, std::string> scenario_keys(const std::string& yaml) {

@@ -18,7 +18,8 @@ inline constexpr const char* experiment_file = "experiment.json";
 // SHA-256 over everything in it, 64 hex digits.
 std::string hash_of(const Experiment& experiment);
 
-// Of a file's bytes. Throws InputError when it cannot be read.
+// A file's bytes, and the hash of them. Throw InputError when it cannot be read.
+std::string bytes_of(const std::filesystem::path& path);
 std::string file_hash(const std::filesystem::path& path);
 
 // How `theirs` differs from `ours`, one clause each: "valve.friction_nm was 2, is 3". Empty when they are the same.

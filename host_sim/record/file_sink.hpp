@@ -44,7 +44,7 @@ class FileSink {
 };
 
 // Writes a whole file beside its final name and renames it there, so that a reader never sees half of it.
-// Throws InputError when it cannot be opened, RecordError when it cannot be written; the half-written one is removed.
+// A link stays, and what it leads to is written. Throws InputError when it cannot be opened and for what is there and no regular file, RecordError when it cannot be written; the half-written one is removed.
 void write_file_atomically(const std::filesystem::path& path, std::string_view bytes);
 
 }  // namespace lf::record

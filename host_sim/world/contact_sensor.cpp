@@ -69,15 +69,15 @@ void ContactSensor::take(const std::vector<ContactImpulse>& impulses, const Pose
   const Mat3 tool_from_base = base_from_tool.linear().transpose();
   for (const ContactImpulse& seen : impulses) {
     for (const ContactImpulse& contact : {seen, reversed(seen)}) {
-      const Role by = role(contact.a), on = role(contact.b);
-      if (by == Role::handle) add(handle, contact.impulse_n_s, Vec3::Zero());
-      if (!is_robot(by) || is_robot(on)) continue;
+      const Role own = role(contact.a), other = role(contact.b);
+      if (own == Role::handle) add(handle, contact.impulse_n_s, Vec3::Zero());
+      if (!is_robot(own) || is_robot(other)) continue;
       add(base, contact.impulse_n_s, contact.point_m - vehicle_com_m_);
       add(on_body_now_[std::size_t(contact.b)], -contact.impulse_n_s, Vec3::Zero());
-      if (is_beyond_wrist(by)) {
+      if (is_beyond_wrist(own)) {
         add(tool, tool_from_base * contact.impulse_n_s, tool_from_base * (contact.point_m - base_from_tool.translation()));
       }
-      if (by == Role::finger && on == Role::handle) {
+      if (own == Role::finger && other == Role::handle) {
         add(grip[contact.a == BodyId::finger_a ? 0 : 1], tool_from_base * contact.impulse_n_s, Vec3::Zero());
       }
     }

@@ -23,6 +23,12 @@ Vec3 middle_of(const scene::Shape& shape) {
   return shape.body_from_shape * Vec3(sum / double(shape.vertices_m.size()));
 }
 
+Eigen::AlignedBox3d bounds_of(const scene::Shape& mesh) {
+  Eigen::AlignedBox3d bounds;
+  for (const Vec3& vertex : mesh.vertices_m) bounds.extend(vertex);
+  return bounds;
+}
+
 }  // namespace
 
 double overlap_m(btMultiBodyDynamicsWorld& world, const btCollisionObject& a, const btCollisionObject& b) {
@@ -35,10 +41,12 @@ double overlap_m(btMultiBodyDynamicsWorld& world, const btCollisionObject& a, co
 bool is_inside(const scene::Body& body, const Pose& base_from_body, const scene::Body& object) {
   for (const scene::Shape& mesh : object.shapes) {
     if (!mesh.collides || mesh.kind != scene::ShapeKind::mesh) continue;
+    const Eigen::AlignedBox3d bounds = bounds_of(mesh);
     const Pose mesh_from_body = (object.base_from_body * mesh.body_from_shape).inverse() * base_from_body;
     for (const scene::Shape& shape : body.shapes) {
-      constexpr double half = 0.5;  // 1 inside and 0 outside of a closed mesh
-      if (shape.collides && mesh::winding_number(mesh.vertices_m, mesh.triangles, mesh_from_body * middle_of(shape)) > half) return true;
+      const Vec3 middle = mesh_from_body * middle_of(shape);
+      if (!shape.collides || !bounds.contains(middle)) continue;  // mostly: a large mesh is gone through for the rest alone
+      if (mesh::winding_number(mesh.vertices_m, mesh.triangles, middle) > 0.5) return true;  // between 0 outside and 1 inside
     }
   }
   return false;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 
 #include "shared/input_error.hpp"
 #include "shared/mesh/format.hpp"
@@ -11,7 +10,7 @@
 #include "shared/mesh/read_ply.hpp"
 #include "shared/mesh/read_stl.hpp"
 #include "shared/mesh/text.hpp"
-#include "shared/unreadable_file.hpp"
+#include "shared/regular_file.hpp"
 
 namespace lf::mesh {
 namespace {
@@ -23,21 +22,12 @@ void refuse_too_large(std::uintmax_t size, const std::string& file) {
                          " MB are read: decimate it in a mesh editor, or export it in binary");
 }
 
+// One that is too large is refused by its size, before it is read.
 std::string load(const std::string& file) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error)) {
-    if (std::filesystem::exists(file, error) && !std::filesystem::is_directory(file, error))
-      throw InputError(file, 0, "is no regular file: copy it into one");
-    throw unreadable(file);
-  }
-  const std::uintmax_t size = std::filesystem::file_size(file, error);
-  std::ifstream stream(file, std::ios::binary);
-  if (error || !stream) throw unreadable(file);
-  refuse_too_large(size, file);
-  std::string bytes(size, '\0');
-  stream.read(bytes.data(), static_cast<std::streamsize>(size));
-  bytes.resize(static_cast<std::size_t>(stream.gcount()));
-  return bytes;
+  std::error_code unknown;
+  const std::uintmax_t size = std::filesystem::file_size(file, unknown);
+  if (!unknown) refuse_too_large(size, file);
+  return bytes_of_regular_file(file, most_bytes);
 }
 
 void check_scale(const Vec3& scale, const std::string& file) {

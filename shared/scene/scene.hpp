@@ -66,7 +66,7 @@ enum class BodyId : std::size_t {
   obstacle,  // what a fault of the scenario pushes against the arm: met in contacts, not seen
 };
 inline constexpr std::size_t own_body_count = 13;  // before the objects
-inline constexpr std::size_t max_bodies = 64;      // of a Scene: what a record of the served renderer holds
+inline constexpr std::size_t max_bodies = 64;      // of a Scene: a record of the served renderer has 6 kB of poses then
 
 using Scene = std::vector<Body>;
 using BodyPoses = std::vector<Pose>;  // base_from_body of each body of a Scene

@@ -1,12 +1,10 @@
 #include "shared/urdf/read_urdf.hpp"
 
 #include <algorithm>
-#include <array>
-#include <fstream>
 #include <map>
 
 #include "shared/input_error.hpp"
-#include "shared/unreadable_file.hpp"
+#include "shared/regular_file.hpp"
 #include "shared/urdf/element.hpp"
 #include "shared/urdf/read_joint.hpp"
 #include "shared/urdf/read_link.hpp"
@@ -20,18 +18,7 @@ constexpr std::size_t most_bytes = std::size_t{16} << 20;  // a URDF of 100 link
 constexpr std::size_t most_links = 4096;
 
 std::string load(const std::string& file) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error)) {
-    if (std::filesystem::exists(file, error) && !std::filesystem::is_directory(file, error))
-      throw InputError(file, 0, "is no regular file: copy it into one");
-    throw unreadable(file);
-  }
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw unreadable(file);
-  std::string text;
-  std::array<char, 65536> piece{};
-  while (text.size() <= most_bytes && (stream.read(piece.data(), piece.size()) || stream.gcount() > 0))
-    text.append(piece.data(), static_cast<std::size_t>(stream.gcount()));
+  std::string text = bytes_of_regular_file(file, most_bytes);
   if (text.size() > most_bytes) throw InputError(file, 0, "has more than 16 MB: is it a URDF? Meshes belong into files of their own");
   if (text.empty()) throw InputError(file, 0, "is empty: write a <robot>");
   return text;

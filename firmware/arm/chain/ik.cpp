@@ -35,6 +35,7 @@ void Ik::begin(const IkTask& task, const JointValues& seed, const NumericIkConfi
   config_ = config;
   given_ = seed;
   result_ = IkResult();
+  result_.q = result_.nearest = drawn_in(chain_, seed);  // until there is an answer
   status_ = IkStatus::running;
   stage_ = Stage::form;
   owed_ = 0;

@@ -1,6 +1,7 @@
 #include "firmware/arm/chain/ik_result.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace lf::chain {
 namespace {
@@ -40,14 +41,15 @@ void conclude(const Chain& chain, const JointValues& seed, bool stay, IkOutcome 
               IkResult& result) {
   result.outcome = outcome;
   result.excess = excess;
-  result.nearest = posture;
+  // A joint that turns round may have been left a rounding past its limits.
+  result.nearest = outcome == IkOutcome::solved ? drawn_in(chain, posture) : posture;
   const double travel_rad = chain.travel_rad(seed, posture);
   if (outcome == IkOutcome::solved && stay && travel_rad > jump_rad) {
     result.outcome = IkOutcome::jump_needed;
     result.excess = travel_rad - jump_rad;
   }
-  result.q = result.outcome == IkOutcome::solved ? posture : drawn_in(chain, seed);
-  result.travel_rad = seed.allFinite() ? chain.travel_rad(seed, result.q) : 0;
+  result.q = result.outcome == IkOutcome::solved ? result.nearest : drawn_in(chain, seed);
+  result.travel_rad = seed.allFinite() ? chain.travel_rad(seed, result.q) : std::numeric_limits<double>::infinity();
   result.jump = result.travel_rad > jump_rad;
 }
 

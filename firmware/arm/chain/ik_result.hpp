@@ -30,7 +30,7 @@ inline constexpr double largest_value = 1e6;
 
 struct IkResult {
   IkOutcome outcome = IkOutcome::gave_up;
-  // What may be commanded: always finite and within the limits. Solved: the answer. Failed: the seed, each joint drawn into its limits; a joint
+  // Always finite and within the limits, before there is an answer, too. Solved: the answer. Failed, or running: the seed, each joint drawn into its limits; a joint
   // whose seed is no number, or beyond largest_value, at the middle of its range.
   JointValues q = JointValues::Zero();
   // The posture that `error`, `excess` and `joint` speak of. Solved: q. Failed: not to be commanded, as it may be past limits or far away: what
@@ -39,8 +39,8 @@ struct IkResult {
   double excess = 0;
   int joint = -1;   // joint_limit: which
   TaskError error;  // what is left at `nearest`
-  double travel_rad =
-      0;  // Chain::travel_rad() from the seed as it was given, also where that is past limits, to q; 0 of a seed that is no number
+  // Chain::travel_rad() from the seed as it was given, also where that is past limits, to q; infinite of a seed that is no number.
+  double travel_rad = 0;
   bool jump = false;  // travel_rad > jump_rad
   bool closed_form = false;
   std::uint32_t iterations = 0;  // in the measure of advance(), all counted

@@ -57,7 +57,7 @@ void NumericIk::begin(const Chain& chain, const IkTask& task, const JointValues&
   beyond_found_ = false;
   status_ = IkStatus::running;
   given_ = seed;
-  seed_ = searched_ = drawn_in(chain, seed);
+  seed_ = searched_ = result_.q = result_.nearest = drawn_in(chain, seed);
   if (chain.size() == 0 || !task.valid() || !usable(seed)) {
     conclude(chain, given_, false, IkOutcome::not_a_number, 0, seed_, result_);
     status_ = IkStatus::failed;

@@ -11,14 +11,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-class CheckArm : public Program {
- protected:
-  Json json_of(const std::string& arguments, int status = 0) const {
-    const Said said = run(arguments + " --json");
-    EXPECT_EQ(said.status, status) << said.err;
-    return Json::parse(said.out);  // throws, and the test fails, when anything else is on stdout
-  }
-};
+class CheckArm : public Program {};
 
 // The joints as the maker's page has them, and the tool within the 0.950 m that 50,000 random postures come to.
 TEST_F(CheckArm, ReadsAnArmOfAnotherMaker) {

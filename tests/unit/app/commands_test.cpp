@@ -20,12 +20,6 @@ using Json = nlohmann::json;
 
 class Commands : public Program {
  protected:
-  Json json_of(const std::string& arguments, int status = 0) const {
-    const Said said = run(arguments + " --json");
-    EXPECT_EQ(said.status, status) << said.err;
-    return Json::parse(said.out);  // throws, and the test fails, when anything else is on stdout
-  }
-
   // A Gaussian stripe of sigma 2 px at v = centre + slope u, over a grey of 20.
   std::string stripe(const std::string& name, double centre, double slope) const {
     std::vector<std::uint8_t> pixels(120 * 100);

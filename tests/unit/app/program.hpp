@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
 
@@ -51,6 +52,13 @@ class Program : public ::testing::Test {
   }
 
   enum class Whom { all, copies };
+
+  // What it says with --json.
+  nlohmann::json json_of(const std::string& arguments, int status = 0) const {
+    const Said said = run(arguments + " --json");
+    EXPECT_EQ(said.status, status) << said.err;
+    return nlohmann::json::parse(said.out);  // throws, and the test fails, when anything else is on stdout
+  }
 
   // Ctrl-C on a terminal, for the program and its children, or a signal to the children that it has by then: as soon as `file` in the folder has over `bytes`
   // bytes. Not after a time, which a busy machine passes before the program has begun.
