@@ -156,10 +156,14 @@ TEST(IkContract, HoldsForEverySolverAtRandom) {
       SCOPED_TRACE(arm.name + ", question " + std::to_string(k));
       const Question asked = questions.next();
       Ik ik(chain);
+      ik.begin(asked.task, asked.seed, asked.config);
+      ASSERT_TRUE(within_limits(chain, ik.result().q)) << "before there is an answer";
       const IkResult& chosen = ik.solve(asked.task, asked.seed, asked.config);
       ASSERT_NO_FATAL_FAILURE(judge(arm, chain, asked, chosen));
       ++outcomes[static_cast<std::size_t>(chosen.outcome)];
       NumericIk numeric;
+      numeric.begin(chain, asked.task, asked.seed, asked.config);
+      ASSERT_TRUE(within_limits(chain, numeric.result().q)) << "before there is an answer";
       ASSERT_NO_FATAL_FAILURE(judge(arm, chain, asked, numeric.solve(chain, asked.task, asked.seed, asked.config)));
     }
   }
