@@ -15,7 +15,7 @@ struct ControllerConfig {
   std::array<arm::TransmissionSetup, joint_count> transmissions;  // between the drives' motors and the joints
   CameraCalibration camera;
   LaserCalibration laser;
-  MarkerCalibration marker;
+  MarkerCalibrations markers;  // of the panel, no two with the same id
   mission::MissionConfig mission;
   safety::Limits limits;          // from the checksummed file
   safety::Limits mission_limits;  // equal or tighter; wider is refused

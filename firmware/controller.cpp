@@ -15,9 +15,10 @@ void Controller::on_can(std::uint8_t bus, const CanFrame& frame, Time t) {
 }
 
 void Controller::on_panel(const PanelResult& result, Time t) {
-  const bool valid = result.fit.plane.normal.allFinite() && std::isfinite(result.fit.plane.offset_m) && std::isfinite(result.confidence) &&
-                     result.marker.camera_from_tag.matrix().allFinite() && result.measured <= t &&
-                     result.clusters.size() <= PanelResult::max_clusters;
+  bool valid = result.fit.plane.normal.allFinite() && std::isfinite(result.fit.plane.offset_m) && std::isfinite(result.confidence) &&
+               result.measured <= t && result.clusters.size() <= PanelResult::max_clusters &&
+               result.markers.size() <= PanelLayout::max_markers && result.pointers.size() <= PanelLayout::max_valves;
+  for (std::size_t i = 0; valid && i < result.markers.size(); ++i) valid = result.markers[i].camera_from_tag.matrix().allFinite();
   if (!valid) {
     ++rejected_inputs_;
     return;

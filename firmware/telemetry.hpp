@@ -23,7 +23,7 @@ struct Event {
   enum class Kind : std::uint8_t {
     step,       // `step` begins
     fault,      // `fault` came up in `step`; `reaction` is taken
-    located,    // the panel was found: value is the handle angle in rad
+    located,    // the panel was found: value is the handle angle in rad of valve `code`; -1: none was looked for
     task_done,  // value: rad reached as seen by the second look, or the button's presses
     task_failed,
     emcy,  // node `code` sent `emcy`; 0x0000 withdraws its complaint
@@ -34,7 +34,7 @@ struct Event {
   safety::Fault fault = safety::Fault::count;
   safety::Reaction reaction = safety::Reaction::count_only;
   std::uint8_t task = 0;  // index of the task under way
-  std::int32_t code = 0;  // what the step or port says of its failure
+  std::int32_t code = 0;  // what the step or port says of its failure; of `located`, the valve
   double value = 0;
   std::uint16_t emcy = 0;  // of a fault: the EMCY code with which its node reported it; 0: none
 };
@@ -49,7 +49,7 @@ struct Telemetry {
   std::uint8_t outputs = 0;  // asked of the output node
   std::uint32_t rejected_inputs = 0;
   std::array<std::uint32_t, safety::fault_count> faults{};
-  StaticVector<Event, 16> events;  // of this tick
+  StaticVector<Event, 24> events;  // of this tick: a look tells of up to 16 valves at once
   mission::Sight sight;            // of the newest look; a fault of panel vision is explained by it
 };
 

@@ -110,33 +110,34 @@ double clearance_to_cylinder(const Capsule& capsule, const Pose& base_from_cylin
   return segment_to_cylinder(cylinder_from_base * capsule.a_m, way, radius_m, height_m / 2) - capsule.radius_m;
 }
 
-const char* name(PanelPart part) {
-  constexpr std::array<const char*, 8> names{"none",          "plate",        "marker plate", "left button",
-                                             "centre button", "right button", "handle",       "stem"};
-  return names[static_cast<std::size_t>(part)];
-}
-
 PanelShape::Solid PanelShape::box(PanelPart part, const Vec2& centre_m, double foot_m, const Vec3& size_m) {
   return {part, Vec3(centre_m.x(), centre_m.y(), foot_m + size_m.z() / 2), size_m / 2, 0};
 }
 
-PanelShape::Solid PanelShape::cylinder(PanelPart part, double height_of_centre_m, double radius_m, double height_m) {
-  return {part, Vec3(0, 0, height_of_centre_m), Vec3(radius_m, radius_m, height_m / 2), radius_m};
+PanelShape::Solid PanelShape::cylinder(PanelPart part, const Vec3& centre_m, double radius_m, double height_m) {
+  return {part, centre_m, Vec3(radius_m, radius_m, height_m / 2), radius_m};
 }
 
 PanelShape::PanelShape(const PanelLayout& layout) {
+  const auto add = [&](const Solid& solid) { (void)solids_.push_back(solid); };  // the layout's capacities are the shape's
+  const auto index = [](std::size_t i) { return static_cast<std::uint8_t>(i); };
   const Vec2 plate_centre = (layout.plate_min_m + layout.plate_max_m) / 2;
   const Vec2 plate_size = layout.plate_max_m - layout.plate_min_m;
-  const Vec3 marker_size(layout.marker_plate_m, layout.marker_plate_m, layout.marker_plate_thickness_m);
-  const Vec3 button_size(layout.button_width_m, layout.button_width_m, layout.button_height_m);
-  const double sweep_radius = std::hypot(layout.handle_length_m, layout.handle_thickness_m) / 2;
-  solids_ = {box(PanelPart::plate, plate_centre, -layout.plate_thickness_m, Vec3(plate_size.x(), plate_size.y(), layout.plate_thickness_m)),
-             box(PanelPart::marker_plate, layout.marker_centre_m, 0, marker_size),
-             box(PanelPart::button_left, layout.buttons_m[0], 0, button_size),
-             box(PanelPart::button_centre, layout.buttons_m[1], 0, button_size),
-             box(PanelPart::button_right, layout.buttons_m[2], 0, button_size),
-             cylinder(PanelPart::handle, layout.handle_height_m, sweep_radius, layout.handle_thickness_m),
-             cylinder(PanelPart::stem, layout.handle_height_m / 2, layout.stem_radius_m, layout.handle_height_m)};
+  add(box(PanelPart::plate(), plate_centre, -layout.plate_thickness_m, Vec3(plate_size.x(), plate_size.y(), layout.plate_thickness_m)));
+  for (std::size_t i = 0; i < layout.markers.size(); ++i) {
+    const PanelLayout::Marker& marker = layout.markers[i];
+    add(box({PanelPart::Kind::marker_plate, index(i)}, marker.centre_m, 0, Vec3(marker.plate_m, marker.plate_m, marker.plate_thickness_m)));
+  }
+  for (std::size_t i = 0; i < layout.buttons.size(); ++i) {
+    const PanelLayout::Button& button = layout.buttons[i];
+    add(box(PanelPart::button(i), button.at_m, 0, Vec3(button.width_m, button.width_m, button.height_m)));
+  }
+  for (std::size_t i = 0; i < layout.valves.size(); ++i) {
+    const PanelLayout::Valve& valve = layout.valves[i];
+    add(cylinder(PanelPart::valve(i), valve.handle_centre_m(), valve.swept_radius_m(), valve.handle_thickness_m));
+    add(cylinder(PanelPart::valve(i), Vec3(valve.at_m.x(), valve.at_m.y(), valve.handle_height_m / 2), valve.stem_radius_m,
+                 valve.handle_height_m));
+  }
 }
 
 // To first order in the turn a point p moves by turn x p, of which the part along an axis is linear in p: its largest is at a corner. The second order,
@@ -148,7 +149,7 @@ PanelShape PanelShape::grown(const Pose& base_from_panel, const PanelDoubt& doub
   PanelShape shape = *this;
   for (Solid& solid : shape.solids_) {
     Vec3 grow = Vec3::Zero();
-    const double spin_rad = solid.radius_m > 0 ? 0 : doubt.spin_rad;  // cylinders stand about the origin, and spin in place
+    const bool round = solid.radius_m > 0;  // what spins moves a cylinder's axis, and nothing about it
     for (int i = 0; i < corners; ++i) {
       const Vec3 corner =
           solid.centre_m + solid.half_m.cwiseProduct(Vec3((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1, (i & 4) != 0 ? 1 : -1));
@@ -156,7 +157,8 @@ PanelShape PanelShape::grown(const Pose& base_from_panel, const PanelDoubt& doub
         const Vec3 axis = Vec3::Unit(k);
         const double by_shift = doubt.shift_m * (axes * axis).lpNorm<1>();
         const Vec3 lever = corner.cross(axis);
-        const double by_turn = doubt.turn_rad * (axes * lever).lpNorm<1>() + spin_rad * std::abs(lever.z());
+        const Vec3 spun = round ? solid.centre_m.cross(axis) : lever;
+        const double by_turn = doubt.turn_rad * (axes * lever).lpNorm<1>() + doubt.spin_rad * std::abs(spun.z());
         grow[k] = std::max(grow[k], by_shift + by_turn + second_order * corner.norm());
       }
     }
@@ -172,7 +174,7 @@ PanelShape PanelShape::grown(const Pose& base_from_panel, const PanelDoubt& doub
 Clearance PanelShape::clearance(const LinkCapsules& capsules, const Pose& base_from_panel, PanelParts ignored,
                                 PanelParts ignored_by_fingers) const {
   const Pose panel_from_base = base_from_panel.inverse(Eigen::Isometry);
-  Clearance least{HUGE_VAL, 0, PanelPart::none};
+  Clearance least{HUGE_VAL, 0, {}};
   // From the fingers up: what is near first, so that the rest need not be looked at closely.
   for (std::size_t i = capsules.size(); i-- > 0;) {
     const Capsule& capsule = capsules[i];

@@ -5,10 +5,12 @@
 // to be, or within the doubt by which it was grown.
 #pragma once
 
-#include <array>
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 
 #include "firmware/arm/kinematics.hpp"
+#include "shared/messages/capacity.hpp"
 #include "shared/messages/static_vector.hpp"
 #include "shared/panel/panel_layout.hpp"
 
@@ -22,17 +24,28 @@ double clearance_to_box(const Capsule& capsule, const Pose& base_from_box, const
 // A solid cylinder about z, centred in `base_from_cylinder`. To 1e-7 m.
 double clearance_to_cylinder(const Capsule& capsule, const Pose& base_from_cylinder, double radius_m, double height_m);
 
-enum class PanelPart : std::uint8_t { none, plate, marker_plate, button_left, button_centre, button_right, handle, stem };
-const char* name(PanelPart part);
+// A part of the panel: what it is, and which of its kind in the layout.
+struct PanelPart {
+  enum class Kind : std::uint8_t { none, plate, marker_plate, button, valve };  // valve: handle and stem
+  Kind kind = Kind::none;
+  std::uint8_t index = 0;
 
-// What may touch: a bit (1 << part) for every part left out.
-using PanelParts = std::uint32_t;
-constexpr PanelParts bit(PanelPart part) { return 1u << static_cast<std::uint32_t>(part); }
+  static constexpr PanelPart plate() { return {Kind::plate, 0}; }
+  static constexpr PanelPart button(std::size_t index) { return {Kind::button, static_cast<std::uint8_t>(index)}; }
+  static constexpr PanelPart valve(std::size_t index) { return {Kind::valve, static_cast<std::uint8_t>(index)}; }
+  friend bool operator==(const PanelPart&, const PanelPart&) = default;
+};
+
+// What may touch: a bit for every part left out.
+using PanelParts = std::uint64_t;
+static_assert(std::max({PanelLayout::max_markers, PanelLayout::max_buttons, PanelLayout::max_valves}) <= 16,
+              "16 bits for each kind of part");
+constexpr PanelParts bit(PanelPart part) { return PanelParts{1} << (16 * (static_cast<unsigned>(part.kind) - 1) + part.index); }
 
 struct Clearance {
-  double distance_m = 0;             // the smallest
-  std::size_t link = 0;              // of that capsule, a scene::BodyId
-  PanelPart part = PanelPart::none;  // nearest to it
+  double distance_m = 0;  // the smallest
+  std::size_t link = 0;   // of that capsule, a scene::BodyId
+  PanelPart part;         // nearest to it
 };
 
 // By how much a panel may be off the place where it is believed to be: either way along each of the base's axes, about each of them at the panel's
@@ -43,7 +56,7 @@ struct PanelDoubt {
   double spin_rad = 0;
 };
 
-// The panel's solids, worked out once for all the questions to come. The handle counts at every angle: as the disc it sweeps.
+// The panel's solids, worked out once for all the questions to come. A handle counts at every angle: as the disc it sweeps.
 class PanelShape {
  public:
   explicit PanelShape(const PanelLayout& layout);
@@ -59,20 +72,20 @@ class PanelShape {
  private:
   // In the panel frame: a box, or, where there is a radius, a cylinder about z within the box.
   struct Solid {
-    PanelPart part = PanelPart::none;
+    PanelPart part;
     Vec3 centre_m = Vec3::Zero();
     Vec3 half_m = Vec3::Zero();
     double radius_m = 0;
   };
   static Solid box(PanelPart part, const Vec2& centre_m, double foot_m, const Vec3& size_m);
-  static Solid cylinder(PanelPart part, double height_of_centre_m, double radius_m, double height_m);
+  static Solid cylinder(PanelPart part, const Vec3& centre_m, double radius_m, double height_m);
 
-  std::array<Solid, 4 + PanelLayout::button_count> solids_;
+  StaticVector<Solid, 1 + PanelLayout::max_markers + PanelLayout::max_buttons + 2 * PanelLayout::max_valves> solids_;
 };
 
 // What of the vehicle the arm could reach and must not touch: hull, camera, lamps. Fixed in the base frame.
 struct VehicleShape {
-  static constexpr std::size_t capacity = 16;  // of each kind
+  static constexpr std::size_t capacity = lf::capacity::vehicle_shapes;  // of each kind
   struct Box {
     Vec3 centre_m = Vec3::Zero(), size_m = Vec3::Zero();  // full extents along the base's axes
   };

@@ -69,6 +69,11 @@ class Gripper {
  public:
   explicit Gripper(const GripperConfig& config = {}) : config_(config) {}
 
+  // What is to be held from now on: its thickness, and within how much of it a stall is plausible.
+  void expect_bar(double bar_m, double bar_tolerance_m) {
+    config_.bar_m = bar_m;
+    config_.bar_tolerance_m = bar_tolerance_m;
+  }
   // Orders. The next update() begins them.
   void open_to(double gap_m);
   void turn_to(double jaw_rad);  // an angle, either way; ends as `open` there, or `jammed`

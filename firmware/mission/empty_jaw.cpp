@@ -9,7 +9,7 @@ Progress EmptyJaw::begin(const StepTick& tick) {
       bench.standoff_m = arm::base_from_tool(bench.measured_rad()).translation();  // a retreat leads nowhere else
       bench.gripper.close();
       break;
-    case Step::free_jaw: bench.gripper.open_to(bench.mission().jaw_open_m); break;
+    case Step::free_jaw: bench.gripper.open_to(bench.jaw_open_m()); break;
     case Step::back_out: return begin_back_out(bench);
     default: break;
   }

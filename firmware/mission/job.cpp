@@ -7,8 +7,9 @@ namespace lf::mission {
 bool Job::makes_sense(const Tasks& tasks, const PanelLayout& panel) {
   if (tasks.empty()) return false;
   for (const Task& task : tasks) {
-    const bool turns = task.kind == Task::Kind::turn_valve && task.to_rad >= panel.handle_min_rad && task.to_rad <= panel.handle_max_rad;
-    const bool presses = task.kind == Task::Kind::press_button && task.button < PanelLayout::button_count;
+    const bool turns = task.kind == Task::Kind::turn_valve && task.valve < panel.valves.size() &&
+                       task.to_rad >= panel.valves[task.valve].handle_min_rad && task.to_rad <= panel.valves[task.valve].handle_max_rad;
+    const bool presses = task.kind == Task::Kind::press_button && task.button < panel.buttons.size();
     if (!turns && !presses) return false;
   }
   return true;
@@ -21,6 +22,14 @@ void Job::set(const Tasks& tasks) {
     result.task = task;
     if (!results_.push_back(result)) return;  // cannot be: the same capacity on both sides
   }
+}
+
+PanelMap::Valves Job::valves() const {
+  PanelMap::Valves valves = 0;
+  for (const TaskResult& result : results_) {
+    if (result.task.kind == Task::Kind::turn_valve) valves |= PanelMap::bit(result.task.valve);
+  }
+  return valves;
 }
 
 void Job::begin_anew() {

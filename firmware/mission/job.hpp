@@ -6,6 +6,7 @@
 
 #include "firmware/mission/mission_config.hpp"
 #include "firmware/mission/orders.hpp"
+#include "firmware/mission/panel_map.hpp"
 #include "firmware/mission/progress.hpp"
 #include "firmware/mission/step_failure.hpp"
 #include "firmware/mission/steps.hpp"
@@ -31,7 +32,7 @@ class Job {
  public:
   Job(const Tasks& tasks, std::uint32_t tries) : tries_allowed_(tries) { set(tasks); }
 
-  // False, and nothing changes, when there is none, or one that this panel does not have: no such button, an angle beyond
+  // False, and nothing changes, when there is none, or one that this panel does not have: no such button or valve, an angle beyond
   // the handle's stops.
   static bool makes_sense(const Tasks& tasks, const PanelLayout& panel);
   void set(const Tasks& tasks);
@@ -42,6 +43,7 @@ class Job {
 
   const TaskResults& results() const { return results_; }
   std::size_t index() const { return index_; }
+  PanelMap::Valves valves() const;  // that its tasks turn
   const Task& task() const { return results_[index_].task; }
   TaskResult& result() { return results_[index_]; }
 

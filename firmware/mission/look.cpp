@@ -12,11 +12,24 @@ constexpr Duration last_exposure = Duration::from_ms(20);
 // The second sweep's margin around the handle: the panel's place is known to 3 mm, and two lines before and after the bar tell it from the plate.
 constexpr double beyond_handle_m = 0.006;
 
+// With room for the 6 mm, and no less than what a bar of today's panel takes.
+scan::SweepRequest::Handle handle_of(const PanelLayout::Valve& valve) {
+  constexpr double least_radius_m = 0.055, least_height_m = 0.107, over_bar_m = 0.0007;
+  return {valve.at_m, std::max(least_radius_m, valve.swept_radius_m() + beyond_handle_m),
+          std::max(least_height_m, valve.handle_height_m + valve.handle_thickness_m / 2 + over_bar_m)};
+}
+
 }  // namespace
 
 scan::SweepRequest sweep_over_panel(const MissionConfig& mission) {
+  const PanelLayout& layout = mission.layout;
   scan::SweepRequest request;
-  request.base_from_panel = mission.layout.nominal_base_from_panel();
+  request.base_from_panel = layout.nominal_base_from_panel();
+  request.top_m = layout.plate_max_m.y();
+  request.bottom_m = layout.plate_min_m.y();
+  request.left_m = layout.plate_min_m.x();
+  request.right_m = layout.plate_max_m.x();
+  for (const PanelLayout::Valve& valve : layout.valves) (void)request.handles.push_back(handle_of(valve));
   request.docking_shift_m = mission.docking.shift_m;
   request.docking_turn_rad = mission.docking.turn_rad;
   request.slowest_rad_s = mission.sweep_speed_rad_s;
@@ -66,9 +79,13 @@ void Look::begin_verify_reach(const StepTick& tick) {
   request.base_from_panel = bench.map.base_from_panel();
   // Over the whole handle at every angle, and no further than the plate.
   const PanelLayout& layout = bench.mission().layout;
-  const double band_m = std::max(bench.mission().verify_band_m, layout.handle_length_m / 2 + beyond_handle_m);
-  request.top_m = std::min(band_m, layout.plate_max_m.y());
-  request.bottom_m = std::max(-band_m, layout.plate_min_m.y());
+  const PanelLayout::Valve& valve = layout.valves[bench.job.task().valve];
+  const double band_m = std::max(bench.mission().verify_band_m, valve.handle_length_m / 2 + beyond_handle_m);
+  request.top_m = std::min(valve.at_m.y() + band_m, layout.plate_max_m.y());
+  request.bottom_m = std::max(valve.at_m.y() - band_m, layout.plate_min_m.y());
+  request.left_m = layout.plate_min_m.x();
+  request.right_m = layout.plate_max_m.x();
+  (void)request.handles.push_back(handle_of(valve));
   request.margin_m = 0.010;
   request.docking_shift_m = bench.map.doubt().shift_m;
   request.docking_turn_rad = bench.map.doubt().turn_rad + bench.map.doubt().spin_rad;
@@ -116,12 +133,13 @@ bool Look::answered(const StepTick& tick) {
   tick.clock.expect(timeout);
   const bool late = tick.clock.elapsed(tick.now) > timeout;
   if (!panel_arrived_ && late) tick.faults.report(safety::Fault::vision_late);
-  if (panel_arrived_) sight_ = sight_of(panel_, before_sweep_, stats_, tick.bench.mission().layout, tick.bench.config.camera);
   return panel_arrived_;
 }
 
-StepFailure Look::take_answer(PanelMap& map) {
-  const StepFailure failure = map.update(panel_);
+StepFailure Look::take_answer(Workbench& bench, PanelMap::Valves wanted) {
+  PanelMap& map = bench.map;
+  const StepFailure failure = map.update(panel_, wanted);
+  sight_ = sight_of(panel_, before_sweep_, stats_, bench.mission().layout, map.told_valve(), bench.config.camera);
   sight_.fit = map.fit();
   return failure;
 }
@@ -129,9 +147,13 @@ StepFailure Look::take_answer(PanelMap& map) {
 Progress Look::run_perceive(const StepTick& tick) {
   if (!answered(tick)) return Progress::running();
   PanelMap& map = tick.bench.map;
-  const StepFailure failure = take_answer(map);
+  const StepFailure failure = take_answer(tick.bench, tick.bench.job.valves());
   if (failure != StepFailure::none) return Progress::failed(failure);
-  tick.event(Event::Kind::located, map.handle_rad());
+  const PanelMap::Valves wanted = tick.bench.job.valves();
+  for (std::size_t i = 0; i < PanelLayout::max_valves; ++i) {
+    if ((wanted & PanelMap::bit(i)) != 0) tick.event(Event::Kind::located, map.handle_rad(i), static_cast<std::int32_t>(i));
+  }
+  if (wanted == 0) tick.event(Event::Kind::located, 0, -1);
   return Progress::done();
 }
 
@@ -139,19 +161,20 @@ Progress Look::run_verify(const StepTick& tick) {
   if (!answered(tick)) return Progress::running();
   PanelMap& map = tick.bench.map;
   Job& job = tick.bench.job;
-  const double left_at_rad = map.handle_rad();  // where the jaw had the handle when it let go
-  const StepFailure failure = take_answer(map);
+  const std::size_t valve = job.task().valve;
+  const double left_at_rad = map.handle_rad(valve);  // where the jaw had the handle when it let go
+  const StepFailure failure = take_answer(tick.bench, PanelMap::bit(valve));
   if (failure != StepFailure::none) return Progress::failed(failure);
-  tick.event(Event::Kind::located, map.handle_rad());
+  tick.event(Event::Kind::located, map.handle_rad(valve), static_cast<std::int32_t>(valve));
   TaskResult& result = job.result();
-  result.reached_rad = map.handle_rad();
+  result.reached_rad = map.handle_rad(valve);
   const double tolerance_rad = tick.bench.mission().valve_tolerance_rad;
-  if (std::abs(map.handle_rad() - job.task().to_rad) <= tolerance_rad) {
+  if (std::abs(map.handle_rad(valve) - job.task().to_rad) <= tolerance_rad) {
     result.done = true;
     tick.event(Event::Kind::task_done, result.reached_rad);
     return Progress::done();
   }
-  const bool followed = !tick.bench.turn_ended || std::abs(map.handle_rad() - left_at_rad) <= tolerance_rad;
+  const bool followed = !tick.bench.turn_ended || std::abs(map.handle_rad(valve) - left_at_rad) <= tolerance_rad;
   if (followed && tick.bench.turn_ended && tick.bench.turn_goal_rad != job.task().to_rad)
     return Progress::other_way();  // the rest of a turn in pieces
   const StepFailure why = followed ? StepFailure::wrong_angle : StepFailure::slipped;

@@ -31,7 +31,7 @@ class Look {
   void begin_question(const StepTick& tick);
   // True when the answer is there; reports vision that is late.
   bool answered(const StepTick& tick);
-  StepFailure take_answer(PanelMap& map);
+  StepFailure take_answer(Workbench& bench, PanelMap::Valves wanted);
   Progress run_perceive(const StepTick& tick);
   Progress run_verify(const StepTick& tick);
   void send(const StepTick& tick, ScanCommand::Kind kind) const;

@@ -37,7 +37,7 @@ std::optional<double> jog_goal_rad(const Order& order, const Workbench& bench) {
   if (joint >= joint_count || !std::isfinite(order.by_rad) || std::abs(order.by_rad) > largest_jog_rad) return std::nullopt;
   const bool arm = joint < arm_joint_count;
   // The arm would drag along what the jaw holds. A jog moves no joint but its own: the operator opens or closes the jaw first.
-  if (arm && bench.gripper.may_hold(bench.jaw_rad())) return std::nullopt;
+  if (arm && bench.jaw_may_hold()) return std::nullopt;
   const double from = arm ? bench.motion.target()[static_cast<Eigen::Index>(joint)] : bench.watch.joints().position_rad[joint];
   const double to = from + order.by_rad;
   const safety::JointLimit& limit = bench.config.mission_limits.joints[joint];

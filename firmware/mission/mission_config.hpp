@@ -16,7 +16,8 @@ struct Task {
   enum class Kind : std::uint8_t { turn_valve, press_button };
   Kind kind = Kind::turn_valve;
   double to_rad = 0;        // turn_valve: the handle angle to reach, shared/geometry/pose.hpp's convention
-  std::uint8_t button = 0;  // press_button: 0 left, 1 centre, 2 right
+  std::uint8_t button = 0;  // press_button: which of the layout's
+  std::uint8_t valve = 0;   // turn_valve: which of the layout's
 };
 
 struct MissionConfig {
@@ -47,7 +48,6 @@ struct MissionConfig {
   double press_overtravel_m = 0.006;   // beyond the button's nominal bottom before a press counts as missed
   double press_torque_nm = 7.0;        // rise of an arm joint's torque that says the button has bottomed: about 12 N at the cap
   double turn_speed_rad_s = 0.35;      // of the handle; above the wrist's stiction of 0.2 rad/s
-  double jaw_open_m = 0.0606;          // between the pads when reaching for the bar: arm::jaw_opening_m() of its thickness
   double valve_tolerance_rad = 0.035;  // 2 degrees: what the second look accepts without turning again
   std::uint32_t tries = 3;             // of a step whose row allows a retry, per task
 };

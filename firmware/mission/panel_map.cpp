@@ -39,104 +39,133 @@ constexpr double largest_shape_shift_m = 0.003;
 // plane, and the more the less of the panel was seen.
 arm::PanelDoubt PanelMap::doubt() const {
   constexpr double least_seen_m = 0.01;
-  const double plate_m = (layout_.plate_max_m - layout_.plate_min_m).minCoeff(), shape_m = plane_.shape_shift_m;
+  const double plate_m = (layout_->plate_max_m - layout_->plate_min_m).minCoeff(), shape_m = plane_.shape_shift_m;
   const double seen_m = std::clamp(plane_.seen_m, least_seen_m, plate_m), bent_m = 2 * plane_.bend_m + shape_m;
-  return {calibration_shift_m + bent_m, calibration_turn_rad + bent_m / seen_m, marker_spin_rad};
+  return {calibration_shift_m + bent_m + marker_spin_rad * markers_beyond_m_, calibration_turn_rad + bent_m / seen_m, marker_spin_rad};
 }
 
-void PanelMap::expect_handle(double rad) {
-  handle_rad_ = rad;
-  way_.low_rad = std::min(way_.low_rad, rad);
-  way_.high_rad = std::max(way_.high_rad, rad);
+// By the farthest, since it may be the only one that is seen. The docked mission's stands 185 mm from its valve.
+double PanelMap::markers_beyond_m(const MarkerCalibrations& markers) {
+  constexpr double measured_m = 0.185;
+  double farthest_m = measured_m;
+  for (const MarkerCalibration& marker : markers) farthest_m = std::max(farthest_m, marker.panel_from_tag.translation().head<2>().norm());
+  return farthest_m - measured_m;
 }
 
-StepFailure PanelMap::update(const PanelResult& result) {
+void PanelMap::expect_handle(std::size_t valve, double rad) {
+  Handle& handle = handles_[valve];
+  handle.angle_rad = rad;
+  handle.way_rad.low = std::min(handle.way_rad.low, rad);
+  handle.way_rad.high = std::max(handle.way_rad.high, rad);
+}
+
+StepFailure PanelMap::update(const PanelResult& result, Valves wanted) {
   fit_ = {};
   if (!result.fit.valid) return StepFailure::no_panel;
   if (result.fit.points < min_plane_points) return StepFailure::too_few_points;
-  const scan::ValveFrameConfig config;
-  const scan::ValveFrame frame = scan::find_valve_frame(result, marker_, camera_, config);
+  const scan::PanelFrame frame = scan::find_panel_frame(result, markers_, camera_, scan::PanelFrameConfig{});
   fit_ = fit_of(result, frame);
-  const scan::HandleObservation handle = scan::find_handle(result, frame, layout_, config);
-  const StepFailure failure = judge(result, frame, handle);
+  const StepFailure failure = judge(result, frame);
   if (failure != StepFailure::none) return failure;
-  double angle_rad = 0;
-  const StepFailure unsettled = settle(result, frame, handle, angle_rad);
-  if (unsettled != StepFailure::none) return unsettled;
+  Handles handles = handles_;
+  // A panel on which no valve is wanted is believed where one is at its place: a marker on the wrong one would lead to the wrong button.
+  const bool any = wanted == 0;
+  StepFailure missed = StepFailure::none;
+  bool found = false;
+  // From the last to the first, so that the first is the one that is told of where none is missed.
+  for (std::size_t i = layout_->valves.size(); i-- > 0;) {
+    if (!any && (wanted & bit(i)) == 0) continue;
+    Handle handle = handles[i];
+    const StepFailure unseen = look_at(i, result, frame, handle);
+    if (unseen == StepFailure::none) {
+      handles[i] = handle;
+      found = true;
+    }
+    if (unseen == StepFailure::none && missed != StepFailure::none) continue;
+    told_valve_ = i;
+    if (unseen == StepFailure::none) continue;
+    missed = unseen;
+    if (!any) return unseen;
+  }
+  if (any && !found && missed != StepFailure::none) return missed;
+  if (!(result.confidence > 0)) return StepFailure::vision_failed;
+  if (!known_) first_m_ = frame.base_from_panel.translation();
   frame_ = frame;
-  handle_ = handle;
+  handles_ = handles;
   plane_ = result.fit;
   known_ = true;
-  handle_rad_ = angle_rad;
-  way_ = {angle_rad, angle_rad};
   return StepFailure::none;
 }
 
-CalibrationFit PanelMap::fit_of(const PanelResult& result, const scan::ValveFrame& frame) const {
+CalibrationFit PanelMap::fit_of(const PanelResult& result, const scan::PanelFrame& frame) const {
   CalibrationFit fit;
-  fit.known = frame.marker_size_m > 0 && marker_.size_m > 0;
+  fit.known = frame.marker_size_m > 0 && frame.surveyed_size_m > 0;
   if (!fit.known) return fit;
-  const std::array<Vec2, 4>& corners_px = result.marker.corners_px;
+  const std::array<Vec2, 4>& corners_px = result.markers[frame.marker].corners_px;
   double around_px = 0;
   for (std::size_t i = 0; i < 4; ++i) around_px += (corners_px[(i + 1) % 4] - corners_px[i]).norm();
-  fit.marker_size_m = static_cast<float>(marker_.size_m);
+  fit.marker_size_m = static_cast<float>(frame.surveyed_size_m);
   fit.marker_side_px = static_cast<float>(around_px / 4);
-  fit.marker_side_error = static_cast<float>(frame.marker_size_m / marker_.size_m - 1);
+  fit.marker_side_error = static_cast<float>(frame.marker_size_m / frame.surveyed_size_m - 1);
   fit.marker_corners_m = static_cast<float>(frame.marker_rms_m);
   fit.plane_bend_m = static_cast<float>(result.fit.bend_m);
   if (known_) fit.panel_shift_m = static_cast<float>((frame.base_from_panel.translation() - frame_.base_from_panel.translation()).norm());
   return fit;
 }
 
-StepFailure PanelMap::judge(const PanelResult& result, const scan::ValveFrame& frame, const scan::HandleObservation& handle) const {
+StepFailure PanelMap::judge(const PanelResult& result, const scan::PanelFrame& frame) const {
   switch (frame.outcome) {
-    case scan::ValveFrameOutcome::ok: break;
-    case scan::ValveFrameOutcome::no_marker: return StepFailure::no_marker;
-    case scan::ValveFrameOutcome::bad_marker: return StepFailure::marker_wrong;
-    case scan::ValveFrameOutcome::poses_disagree: return StepFailure::marker_disagrees;
-    case scan::ValveFrameOutcome::no_plane:
-    case scan::ValveFrameOutcome::not_a_number: return StepFailure::no_panel;
+    case scan::PanelFrameOutcome::ok: break;
+    case scan::PanelFrameOutcome::no_marker: return StepFailure::no_marker;
+    case scan::PanelFrameOutcome::bad_marker: return StepFailure::marker_wrong;
+    case scan::PanelFrameOutcome::poses_disagree: return StepFailure::marker_disagrees;
+    case scan::PanelFrameOutcome::no_plane:
+    case scan::PanelFrameOutcome::not_a_number: return StepFailure::no_panel;
   }
   if (result.fit.inliers < min_inlier_ratio * result.fit.points) return StepFailure::plane_unsure;
   if (!(result.fit.shape_shift_m <= largest_shape_shift_m)) return StepFailure::line_misshapen;
   // The frame of the first look is what later ones are held against: a shift does not become the truth by being seen twice.
-  if (known_ && (frame.base_from_panel.translation() - frame_.base_from_panel.translation()).norm() > max_panel_shift_m)
-    return StepFailure::panel_moved;
-  if (!handle.found) return StepFailure::no_handle;
-  if (!(handle.sigma_rad <= max_handle_sigma_rad)) return StepFailure::handle_unsure;
-  return result.confidence > 0 ? StepFailure::none : StepFailure::vision_failed;
+  if (known_ && (frame.base_from_panel.translation() - first_m_).norm() > max_panel_shift_m) return StepFailure::panel_moved;
+  return StepFailure::none;
+}
+
+StepFailure PanelMap::look_at(std::size_t valve, const PanelResult& result, const scan::PanelFrame& frame, Handle& handle) const {
+  handle.seen = scan::find_handle(result, frame, layout_->valves[valve], scan::PanelFrameConfig{});
+  if (!handle.seen.found) return StepFailure::no_handle;
+  if (!(handle.seen.sigma_rad <= max_handle_sigma_rad)) return StepFailure::handle_unsure;
+  if (!(result.confidence > 0)) return StepFailure::vision_failed;
+  return settle(valve, result, frame, handle);
 }
 
 // Of the angles that a bar may have, half a turn apart, the one that pointer, stops or the last turn leave.
-StepFailure PanelMap::settle(const PanelResult& result, const scan::ValveFrame& frame, const scan::HandleObservation& handle,
-                             double& angle_rad) const {
-  const PointerObservation& pointer = result.pointer;
-  const bool pointed = has_pointer() && pointer.seen && pointer.confidence >= min_pointer_confidence && pointer.direction.allFinite();
+StepFailure PanelMap::settle(std::size_t valve, const PanelResult& result, const scan::PanelFrame& frame, Handle& handle) const {
+  const PanelLayout::Valve& layout = layout_->valves[valve];
+  const PointerObservation pointer = result.pointer(valve);
+  const bool pointed =
+      layout.has_pointer() && pointer.seen && pointer.confidence >= min_pointer_confidence && pointer.direction.allFinite();
   const Vec3 mark = frame.base_from_panel.linear().transpose() * pointer.direction;
   const double marked_rad = std::atan2(-mark.x(), mark.y());
-  Range where{layout_.handle_min_rad - stop_margin_rad, layout_.handle_max_rad + stop_margin_rad};
-  if (!has_pointer() && known_) {
-    where.low_rad = std::max(where.low_rad, way_.low_rad - way_margin_rad);
-    where.high_rad = std::min(where.high_rad, way_.high_rad + way_margin_rad);
+  Range where{layout.handle_min_rad - stop_margin_rad, layout.handle_max_rad + stop_margin_rad};
+  if (!layout.has_pointer() && handles_[valve].seen.found) {
+    where.low = std::max(where.low, handle.way_rad.low - way_margin_rad);
+    where.high = std::min(where.high, handle.way_rad.high + way_margin_rad);
   }
   int possible = 0;
   constexpr int half_turns = 3;  // angles and stops lie within half a turn to either side of 0
   for (int i = -half_turns; i <= half_turns; ++i) {
-    const double candidate_rad = handle.angle_rad + i * pi;
-    const bool inside = candidate_rad >= where.low_rad && candidate_rad <= where.high_rad;
+    const double candidate_rad = handle.seen.angle_rad + i * pi;
+    const bool inside = candidate_rad >= where.low && candidate_rad <= where.high;
     const bool as_marked = !pointed || std::abs(wrap(candidate_rad - marked_rad)) < pi / 2;
     if (!inside || !as_marked) continue;
-    angle_rad = candidate_rad;
+    handle.angle_rad = candidate_rad;
     ++possible;
   }
-  if (possible == 1) return StepFailure::none;
+  if (possible == 1) {
+    handle.way_rad = {handle.angle_rad, handle.angle_rad};
+    return StepFailure::none;
+  }
   if (possible == 0) return StepFailure::beyond_stops;
-  return has_pointer() ? StepFailure::pointer_unsure : StepFailure::half_turn_open;
-}
-
-Vec3 PanelMap::button_m(std::size_t button) const {
-  const Vec2& place = layout_.buttons_m[button < PanelLayout::button_count ? button : 0];
-  return frame_.base_from_panel * Vec3(place.x(), place.y(), layout_.button_height_m);
+  return layout.has_pointer() ? StepFailure::pointer_unsure : StepFailure::half_turn_open;
 }
 
 }  // namespace lf::mission

@@ -42,6 +42,8 @@ double corner_ahead_m(const arm::JointVector& q_rad, const Vec3& normal, double 
   return half_m * (std::abs(normal.dot(base_from_tool.col(0))) + std::abs(normal.dot(base_from_tool.col(1))));
 }
 
+const PanelLayout::Button& the_button(const Workbench& bench) { return bench.mission().layout.buttons[bench.job.task().button]; }
+
 double closed_tip_beyond_tool_m() { return arm::tip_beyond_tool_m(arm::jaw_from_gap(0)); }
 
 }  // namespace
@@ -130,7 +132,7 @@ Progress PressButton::begin_press(Workbench& bench) {
   rest_nm_.reset();
   bottom_m_ = 0;
   bench.job.result().failure = StepFailure::none;
-  const double depth = bench.mission().layout.button_stroke_m + bench.mission().press_overtravel_m;
+  const double depth = the_button(bench).stroke_m + bench.mission().press_overtravel_m;
   const Vec3 tip = bench.map.button_m(bench.job.task().button) - bench.map.normal() * depth;
   arm::JointVector q;
   if (!tool_for_tip(tip, closed_tip_beyond_tool_m(), bench.tool_roll_rad, q)) return Progress::failed(StepFailure::unreachable);
@@ -157,8 +159,7 @@ Progress PressButton::run_press(const StepTick& tick) {
   result.click_felt = feel_.clicked();
   result.face_felt = feel_.touched();
   // Half: a corner touches somewhere between not at all and so much earlier.
-  result.face_off_m =
-      feel_.touch_depth_m() + 0.5 * corner_ahead_m(bench.measured_rad(), bench.map.normal(), bench.mission().layout.button_width_m);
+  result.face_off_m = feel_.touch_depth_m() + 0.5 * corner_ahead_m(bench.measured_rad(), bench.map.normal(), the_button(bench).width_m);
   result.failure = judge(bench);
   if (result.failure == StepFailure::early_contact) return Progress::failed_by_touch(result.failure);
   // What may have gone in unfelt is not pressed again: nobody asked for two clicks.
@@ -234,7 +235,7 @@ void PressButton::feel(const StepTick& tick) {
 
 StepFailure PressButton::judge(const Workbench& bench) const {
   if (pushed_joint_) return StepFailure::early_contact;
-  const double stroke_m = bench.mission().layout.button_stroke_m;
+  const double stroke_m = the_button(bench).stroke_m;
   if (!feel_.touched()) return guard_.touched() ? StepFailure::early_contact : StepFailure::button_missing;
   if (feel_.touch_depth_m() < -press_face_m) return StepFailure::early_contact;
   if (feel_.touch_depth_m() > stroke_m + press_face_m) return StepFailure::button_missing;

@@ -1,6 +1,7 @@
 // What the newest look saw, in numbers: they tell why it failed. Published with the telemetry.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "firmware/mission/calibration_fit.hpp"
@@ -45,8 +46,8 @@ struct Sight {
   CalibrationFit fit;
 };
 
-// `before`: as the sweep began. `now`: as its answer came. Without the fit, which the panel's map knows.
-Sight sight_of(const PanelResult& result, const ScanStats& before, const ScanStats& now, const PanelLayout& layout,
+// `before`: as the sweep began. `now`: as its answer came. `valve`: the one whose handle is told of. Without the fit, which the panel's map knows.
+Sight sight_of(const PanelResult& result, const ScanStats& before, const ScanStats& now, const PanelLayout& layout, std::size_t valve,
                const CameraCalibration& camera);
 
 }  // namespace lf::mission

@@ -31,14 +31,21 @@ std::optional<double> roll_for(const Workbench& bench, const arm::JointVector& q
 
 // The whole way to the task's angle, or as much of it as the wrist can turn and the next look can tell apart: the rest comes after that look.
 std::optional<double> choose_roll(Workbench& bench, const arm::JointVector& q_rad) {
-  const double from_rad = bench.map.handle_rad();
+  const double from_rad = bench.map.handle_rad(bench.job.task().valve);
   const double to_rad = bench.job.task().to_rad;
   for (const double share : {1.0, 0.5, 0.25}) {
     bench.turn_goal_rad = to_rad - (1 - share) * (to_rad - from_rad);
-    if (std::abs(bench.turn_goal_rad - from_rad) > bench.map.longest_turn_rad()) continue;
+    if (std::abs(bench.turn_goal_rad - from_rad) > bench.map.longest_turn_rad(bench.job.task().valve)) continue;
     if (const auto roll = roll_for(bench, q_rad, from_rad, bench.turn_goal_rad)) return roll;
   }
   return std::nullopt;
+}
+
+// The jaw opens where the turn ends, wherever that is. Beside other handles there has to be room for it on the whole way; alone on its panel the valve was reached with the
+// jaw open.
+double jaw_after_rad(const Workbench& bench) {
+  const bool alone = bench.mission().layout.valves.size() == 1;
+  return alone ? bench.jaw_rad() : arm::jaw_from_gap(bench.jaw_open_m());
 }
 
 }  // namespace
@@ -74,7 +81,9 @@ Progress TurnValve::begin_reach(Workbench& bench) {
   bench.take_up_task();
   bench.wound_up = false;
   const PanelMap& map = bench.map;
-  const Vec3 centre = map.handle_centre_m();
+  const std::size_t valve = bench.job.task().valve;
+  if (!map.handle_seen(valve)) return Progress::failed(StepFailure::no_handle);
+  const Vec3 centre = map.handle_centre_m(valve);
   bench.standoff_m = centre + map.normal() * bench.mission().approach_distance_m;
   const arm::IkResult at_bar = arm::inverse_kinematics(centre, 0, limit_margin_rad);
   if (!at_bar.ok()) return unreachable;
@@ -83,7 +92,7 @@ Progress TurnValve::begin_reach(Workbench& bench) {
   bench.tool_roll_rad = *roll;
   const arm::IkResult start = arm::inverse_kinematics(bench.standoff_m, bench.tool_roll_rad, limit_margin_rad);
   if (!start.ok()) return unreachable;
-  bench.go_clear(start.q_rad, bench.mission().jaw_open_m);
+  bench.go_clear(start.q_rad, bench.jaw_open_m());
   return Progress::running();
 }
 
@@ -99,7 +108,8 @@ void TurnValve::begin_advance(Workbench& bench) {
   arm::GuardConfig config;
   config.contact_torque_nm = arm::JointVector(8, 8, 8, 3);  // 20 N at the tool; the pads may brush the bar
   guard_ = arm::GuardedMotion(config);
-  bench.go_straight(bench.map.handle_centre_m(), bench.tool_roll_rad, bench.mission().approach_speed_m_s, bench.meant_parts());
+  bench.go_straight(bench.map.handle_centre_m(bench.job.task().valve), bench.tool_roll_rad, bench.mission().approach_speed_m_s,
+                    bench.meant_parts());
 }
 
 Progress TurnValve::run_advance(const StepTick& tick) {
@@ -137,8 +147,9 @@ void TurnValve::begin_turn(const StepTick& tick) {
   Workbench& bench = tick.bench;
   following_since_ = tick.now;
   bench.turn_ended = false;
-  bench.motion.turn(bench.map.handle_rad(), bench.turn_goal_rad, bench.room(bench.jaw_rad(), bench.meant_parts()), bench.jaw_rad(),
-                    bench.mission().turn_speed_rad_s, bench.compliance.offset_rad());
+  bench.motion.turn(bench.map.handle_rad(bench.job.task().valve), bench.turn_goal_rad,
+                    bench.room(jaw_after_rad(bench), bench.meant_parts()), bench.jaw_rad(), bench.mission().turn_speed_rad_s,
+                    bench.compliance.offset_rad());
 }
 
 // A turn that ends early leaves the handle on its way: the jaw lets go, and the second look finds it.
@@ -146,7 +157,7 @@ Progress TurnValve::run_turn(const StepTick& tick) {
   Workbench& bench = tick.bench;
   const Progress motion = bench.follow_motion();
   if (motion.kind == Progress::Kind::failed) return motion;
-  bench.map.expect_handle(bench.motion.handle_rad());
+  bench.map.expect_handle(bench.job.task().valve, bench.motion.handle_rad());
   const arm::GripperState jaw = bench.gripper.state();
   if (jaw == arm::GripperState::dropped || jaw == arm::GripperState::empty) {
     tick.faults.report(safety::Fault::grip_lost);
@@ -164,7 +175,7 @@ bool TurnValve::stalled(const StepTick& tick) {
 
 void TurnValve::begin_let_go(Workbench& bench) {
   bench.let_off_roll();
-  bench.gripper.open_to(bench.mission().jaw_open_m);
+  bench.gripper.open_to(bench.jaw_open_m());
 }
 
 Progress TurnValve::run_let_go(const StepTick& tick) {

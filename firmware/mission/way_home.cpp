@@ -7,7 +7,7 @@ void WayHome::begin(const StepTick& tick) {
   switch (tick.step) {
     case Step::abandon:  // out of a contact: the jaw opens, whatever it holds, before the arm goes back
       bench.let_off_roll();
-      return bench.gripper.open_to(bench.mission().jaw_open_m);
+      return bench.gripper.open_to(bench.jaw_open_m());
     case Step::abandon_back: return bench.begin_back_off();
     case Step::stow: freed_ = stops_ = leaves_open_ = false; return bench.go_clear(bench.mission().park_rad, 0);
     case Step::shut_down: return begin_shut_down(tick);
@@ -49,7 +49,7 @@ Progress WayHome::run_stow(Workbench& bench) {
       if (!freed_ || !motion.is_done()) return Progress::running();
       if (leaves_open_) return Progress::failed(StepFailure::jaw_not_closed);
       leaves_open_ = true;
-      bench.go_clear(bench.mission().park_rad, bench.mission().jaw_open_m);
+      bench.go_clear(bench.mission().park_rad, bench.jaw_open_m());
       return Progress::running();
     case arm::GripperState::held:
     case arm::GripperState::dropped:
@@ -59,7 +59,7 @@ Progress WayHome::run_stow(Workbench& bench) {
       stops_ = true;
       if (!bench.motion.done()) return Progress::running();
       freed_ = true;
-      bench.gripper.open_to(bench.mission().jaw_open_m);
+      bench.gripper.open_to(bench.jaw_open_m());
       return Progress::running();
     default: return Progress::running();
   }

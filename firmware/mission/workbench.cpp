@@ -124,19 +124,46 @@ Workbench::Workbench(const ControllerConfig& told)
       watch(told.mission_limits, told.transmissions),
       camera(camera_config(told)),
       motion(told.mission_limits, told.mission.layout, told.mission.vehicle, told.mission.park_rad),
+      map(config.mission.layout, config.markers, config.camera),
+      job(told.mission.tasks, told.mission.tries),
       gripper(new_gripper()),
       grip_guard(gripping_guard()),
-      back_guard(free_motion_guard(told.mission_limits)),
-      map(told.mission.layout, told.marker, told.camera),
-      job(told.mission.tasks, told.mission.tries) {}
+      back_guard(free_motion_guard(told.mission_limits)) {}
 
 arm::Gripper Workbench::new_gripper() const {
-  arm::GripperConfig gripper_config;
-  gripper_config.bar_m = config.mission.layout.handle_thickness_m;
-  // Fingers that hold a thick bar stand apart at an angle: the bar touches the pads' edge, and the gap at their middle is wider by the pads' slope.
-  const double slope_rad = std::max(0.0, arm::jaw_from_gap(gripper_config.bar_m));
-  gripper_config.bar_tolerance_m += arm_geometry::jaw.pad_depth_m * std::tan(slope_rad);
-  return arm::Gripper(gripper_config);
+  arm::Gripper jaw;
+  expect_bar(jaw);
+  return jaw;
+}
+
+// Fingers that hold a thick bar stand apart at an angle: the bar touches the pads' edge, and the gap at their middle is wider by the pads' slope.
+void Workbench::expect_bar(arm::Gripper& jaw) const {
+  const double slope_rad = std::max(0.0, arm::jaw_from_gap(bar_m()));
+  jaw.expect_bar(bar_m(), arm::GripperConfig{}.bar_tolerance_m + arm_geometry::jaw.pad_depth_m * std::tan(slope_rad));
+}
+
+namespace {
+
+double thickest_bar_m(const PanelLayout& layout) {
+  double thickest_m = 0;
+  for (const PanelLayout::Valve& valve : layout.valves) thickest_m = std::max(thickest_m, valve.handle_thickness_m);
+  return thickest_m > 0 ? thickest_m : arm::GripperConfig{}.bar_m;
+}
+
+}  // namespace
+
+double Workbench::bar_m() const {
+  const PanelLayout& layout = config.mission.layout;
+  return job.task().kind == Task::Kind::turn_valve ? layout.valves[job.task().valve].handle_thickness_m : thickest_bar_m(layout);
+}
+
+bool Workbench::jaw_may_hold() const {
+  return gripper.may_hold(jaw_rad()) || !arm::stands_empty(jaw_rad(), thickest_bar_m(config.mission.layout));
+}
+
+void Workbench::take_up_task() {
+  course = course == Course::retrying ? Course::working : course;
+  expect_bar(gripper);
 }
 
 arm::JointVector Workbench::measured_rad() const {
@@ -172,9 +199,8 @@ Room Workbench::room(double jaw_goal_rad, arm::PanelParts meant) const {
 }
 
 arm::PanelParts Workbench::meant_parts() const {
-  if (job.task().kind == Task::Kind::turn_valve) return arm::bit(arm::PanelPart::handle) | arm::bit(arm::PanelPart::stem);
-  const auto button = static_cast<arm::PanelPart>(static_cast<std::size_t>(arm::PanelPart::button_left) + job.task().button);
-  return arm::bit(button) | arm::bit(arm::PanelPart::plate);
+  if (job.task().kind == Task::Kind::turn_valve) return arm::bit(arm::PanelPart::valve(job.task().valve));
+  return arm::bit(arm::PanelPart::button(job.task().button)) | arm::bit(arm::PanelPart::plate());
 }
 
 Room Workbench::room_on_the_way(double jaw_opening_m) {
@@ -268,7 +294,7 @@ void Workbench::begin_back_off() {
 }
 
 void Workbench::guard_back_off(Time now) {
-  const double unwinding_m = gives_way_m + config.mission.layout.button_stroke_m;
+  const double unwinding_m = gives_way_m + (wound_up ? config.mission.layout.buttons[job.task().button].stroke_m : 0);
   if (wound_up && (arm::base_from_tool(motion.target()).translation() - back_from_m_).norm() >= unwinding_m) {
     wound_up = false;
     back_guard = arm::GuardedMotion(free_motion_guard(config.mission_limits));
@@ -302,13 +328,14 @@ Progress Workbench::follow_back_off(const StepTick& tick) {
   return Progress::failed_by_touch(StepFailure::touched_on_the_way_back);
 }
 
-void StepTick::event(Event::Kind kind, double value) const {
+void StepTick::event(Event::Kind kind, double value, std::int32_t code) const {
   Event event;
   event.kind = kind;
   event.t = now;
   event.step = step;
   event.task = static_cast<std::uint8_t>(bench.job.index());
   event.value = value;
+  event.code = code;
   (void)telemetry.events.push_back(event);  // a full record of one tick loses details, never the counts
 }
 

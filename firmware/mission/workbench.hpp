@@ -52,17 +52,19 @@ struct StepTick;
 
 struct Workbench {
   explicit Workbench(const ControllerConfig& told);
+  Workbench(const Workbench&) = delete;  // the map knows the layout by its place
+  Workbench& operator=(const Workbench&) = delete;
 
   ControllerConfig config;
   safety::Watch watch;
   CameraWork camera;
   Motion motion;
-  arm::Gripper gripper;
+  PanelMap map;
+  Job job;
+  arm::Gripper gripper;           // of the job's task
   arm::Compliance compliance;     // of the arm while it grips
   arm::GuardedMotion grip_guard;  // of the same: what leaves its place by more than that gives way is driven off it
   arm::GuardedMotion back_guard;  // of the way out of a contact
-  PanelMap map;
-  Job job;
   OrderMailbox mailbox;
   Course course = Course::working;
   safety::Power power;
@@ -72,8 +74,13 @@ struct Workbench {
   double turn_goal_rad = 0;        // turn_valve: where the turn under way ends; short of the task's angle when another one follows
 
   bool turn_ended = false;  // the jaw has turned all the way there
-  // A jaw that knows how thick the handle's bar is.
+  // A jaw that knows how thick the task's bar is.
   arm::Gripper new_gripper() const;
+  // The bar of the task under way, or, where that is none, the panel's thickest; and how far the jaw opens to reach for it.
+  double bar_m() const;
+  double jaw_open_m() const { return arm::jaw_opening_m(bar_m()); }
+  // Something may be between the pads, the panel's thickest bar as well as the task's.
+  bool jaw_may_hold() const;
   const MissionConfig& mission() const { return config.mission; }
   arm::JointVector measured_rad() const;
   arm::JointVector measured_rad_s() const;
@@ -92,7 +99,7 @@ struct Workbench {
   // Done when the motion is; failed when the motion could not be planned.
   Progress follow_motion() const;
   // The task under way is at its beginning again.
-  void take_up_task() { course = course == Course::retrying ? Course::working : course; }
+  void take_up_task();
 
   // The guard learns of the arm on its motion's way.
   void feel(arm::GuardedMotion& guard, Time t) const;
@@ -120,6 +127,7 @@ struct Workbench {
   bool wound_up = false;  // against a button
 
  private:
+  void expect_bar(arm::Gripper& jaw) const;
   Room room_on_the_way(double jaw_opening_m);
   void guard_back_off(Time now);
   std::optional<Joint> misled_on_the_way_back() const;
@@ -139,7 +147,7 @@ struct StepTick {
   StepClock& clock;
 
   bool settled(bool condition, Duration for_how_long) const { return clock.settled(condition, for_how_long, now); }
-  void event(Event::Kind kind, double value = 0) const;
+  void event(Event::Kind kind, double value = 0, std::int32_t code = 0) const;
   // A scan order that finds no room is a port error.
   void send(const ScanCommand& command) const;
 };

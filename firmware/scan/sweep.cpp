@@ -19,10 +19,12 @@ constexpr double shoulder_first_rad = 0.75, shoulder_step_rad = 0.10;
 constexpr int way_samples = 8;
 
 bool valid(const SweepRequest& r, const LaserCalibration& laser) {
-  const std::array values{
-      r.top_m,           r.bottom_m,        r.left_m,           r.right_m,        r.margin_m,      r.handle_radius_m,
-      r.handle_height_m, r.docking_shift_m, r.docking_turn_rad, r.line_spacing_m, r.slowest_rad_s, laser.fan_half_angle_rad};
+  const std::array values{r.top_m,           r.bottom_m,         r.left_m,         r.right_m,       r.margin_m,
+                          r.docking_shift_m, r.docking_turn_rad, r.line_spacing_m, r.slowest_rad_s, laser.fan_half_angle_rad};
   if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); })) return false;
+  for (const SweepRequest::Handle& handle : r.handles) {
+    if (!handle.at_m.allFinite() || !std::isfinite(handle.radius_m) || !std::isfinite(handle.height_m)) return false;
+  }
   if (!r.base_from_panel.matrix().allFinite() || !laser.tool_from_laser.matrix().allFinite()) return false;
   return r.top_m > r.bottom_m && r.right_m > r.left_m && r.docking_shift_m >= 0 && r.docking_turn_rad >= 0 &&
          r.stripe_period > Duration() && r.slowest_rad_s > 0;
@@ -32,15 +34,18 @@ bool valid(const SweepRequest& r, const LaserCalibration& laser) {
 
 double SweepPlanner::shoulder(std::size_t i) { return shoulder_first_rad + shoulder_step_rad * static_cast<double>(i); }
 
-// Left and right border at the height of `border_m`, and the handle's edge where the region reaches it: points the stripe has to pass.
+// Left and right border at the height of `border_m`, and the edge of each handle that the region reaches: points the stripe has to pass.
 SweepPlanner::Points SweepPlanner::points_to_pass(double border_m, double outward) const {
   const SweepRequest& r = request_;
   Points points;
   const double y = border_m + outward * r.margin_m;
   (void)points.push_back(r.base_from_panel * Vec3(r.left_m - r.margin_m, y, 0));
   (void)points.push_back(r.base_from_panel * Vec3(r.right_m + r.margin_m, y, 0));
-  if (r.bottom_m < r.handle_radius_m && r.top_m > -r.handle_radius_m)
-    (void)points.push_back(r.base_from_panel * Vec3(0, outward * r.handle_radius_m, r.handle_height_m));
+  for (const SweepRequest::Handle& handle : r.handles) {
+    const double x = handle.at_m.x(), axis_y = handle.at_m.y();
+    if (r.bottom_m < axis_y + handle.radius_m && r.top_m > axis_y - handle.radius_m)
+      (void)points.push_back(r.base_from_panel * Vec3(x, axis_y + outward * handle.radius_m, handle.height_m));
+  }
   return points;
 }
 

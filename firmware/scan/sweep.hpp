@@ -24,10 +24,14 @@ struct SweepRequest {
   double bottom_m = -0.378;                 // ... down to which the stripe has to pass
   double left_m = -0.400, right_m = 0.400;  // panel x
   double margin_m = 0.025;                  // beyond all four
-  // The stripe falls on the panel at up to 31 degrees: what stands proud is passed at another time. Where the region reaches the valve, the circle
-  // of the turning handle is covered at its own height.
-  double handle_radius_m = 0.055;
-  double handle_height_m = 0.107;
+  // The stripe falls on the panel at up to 31 degrees: what stands proud is passed at another time. Where the region reaches a valve, the circle
+  // of its turning handle is covered at its own height.
+  struct Handle {
+    Vec2 at_m{0, 0};
+    double radius_m = 0.055;
+    double height_m = 0.107;
+  };
+  StaticVector<Handle, PanelLayout::max_valves> handles;
   double docking_shift_m = 0.020;    // either way along each of the base's axes: what `base_from_panel` may be wrong by
   double docking_turn_rad = 0.0349;  // either way about each of them, at the panel's origin
   double line_spacing_m = 0.0026;    // wanted between stripes
@@ -70,7 +74,7 @@ class SweepPlanner {
   struct Laser {
     Vec3 origin_m, normal;
   };
-  using Points = StaticVector<Vec3, 3>;  // base frame
+  using Points = StaticVector<Vec3, 2 + PanelLayout::max_valves>;  // base frame
   struct Ends {
     double start = 0, end = 0;  // the elbow at the start and the end for a shoulder angle; NaN where there is none
   };

@@ -17,8 +17,10 @@
 #include "hal/config/limits_file.hpp"
 #include "hal/config/machine.hpp"
 #include "hal/config/motor_check.hpp"
+#include "hal/config/nearest.hpp"
 #include "hal/config/share.hpp"
 #include "hal/config/sweep_check.hpp"
+#include "hal/config/task_check.hpp"
 #include "hal/config/task_reach.hpp"
 #include "hal/config/view_check.hpp"
 #include "hal/vision/calibration_file.hpp"
@@ -236,12 +238,9 @@ mission::MissionConfig mission_config(const Machine& machine) {
   mission::MissionConfig config = machine.mission;
   config.vehicle = vehicle_shape(machine);
   config.layout = machine.panel;
-  config.layout.handle_min_rad = rad_from_deg(machine.valve.stop_min_deg);
-  config.layout.handle_max_rad = rad_from_deg(machine.valve.stop_max_deg);
-  config.jaw_open_m = arm::jaw_opening_m(machine.panel.handle_thickness_m);
   config.use_lamps = machine.lamps_lit;
   config.camera_always_on = machine.camera_always_on;
-  config.tasks = core_tasks(machine.tasks, machine.file);
+  config.tasks = core_tasks(machine.tasks, machine.survey.names, machine.file);
   return config;
 }
 
@@ -252,7 +251,7 @@ bool check_reach_of_tasks(const Machine& machine, const Steps& steps) {
     const bool reached = steps.take([&] {
       if (!ik.ok())
         refuse(machine, place.what + " is out of the arm's reach at its nominal place: " + excess_text(ik) + place_text(machine.panel) +
-                            (place.tip_m > 0 ? "; see also 'panel.buttons_m'" : "; see also 'panel.handle_height_m'"));
+                            "; see also " + place.key);
     });
     all = all && reached;
   }
@@ -293,8 +292,8 @@ void check_exposure(const Machine& machine) {
 }
 
 // The wrist turns about the tool axis, the bar about the panel's normal: so far apart the wrist is faster than the bar by 1 / cos.
-void check_turn_speed(const Machine& machine, const ArmDescription& description, const safety::Limits& limits) {
-  const double tilt_rad = steepest_rad(machine.panel, {"the valve", Vec3(0, 0, machine.panel.handle_height_m), 0}, machine.mission.docking);
+void check_turn_speed(const Machine& machine, std::size_t valve, const ArmDescription& description, const safety::Limits& limits) {
+  const double tilt_rad = steepest_rad(machine.panel, place_of_valve(machine, valve), machine.mission.docking);
   const auto roll = static_cast<std::size_t>(Joint::roll);
   const double fastest = std::cos(tilt_rad) * std::min(description.joints[roll].velocity_rad_s, limits.joints[roll].max_speed_rad_s);
   if (machine.mission.turn_speed_rad_s <= fastest) return;
@@ -304,12 +303,20 @@ void check_turn_speed(const Machine& machine, const ArmDescription& description,
   refuse(machine, text + aslant_text(machine.panel, machine.mission.docking, tilt_rad));
 }
 
+// The wrist's peak, or the couple of two pads that press on the bar's ends.
+double hand_torque_nm(const ArmDescription& description) {
+  const auto effort_nm = [&](Joint joint) { return description.joints[static_cast<std::size_t>(joint)].effort_nm; };
+  return std::min(arm::pad_force_n(effort_nm(Joint::jaw)) * arm_geometry::jaw.pad_width_m, effort_nm(Joint::roll));
+}
+
 // Where the panel and what stands proud of it can be: the worst docking error moves a corner of the plate by 20 mm and, over half a metre, by
 // 2 degrees about two axes.
 void set_region(const PanelLayout& panel, scan::Triangulator::Config& triangulation) {
   constexpr double docking_m = 0.060;
   const Pose base_from_panel = panel.nominal_base_from_panel();
-  const double proud_m = panel.handle_height_m + 0.5 * panel.handle_thickness_m;
+  double proud_m = 0;
+  for (const PanelLayout::Valve& valve : panel.valves) proud_m = std::max(proud_m, valve.handle_height_m + 0.5 * valve.handle_thickness_m);
+  for (const PanelLayout::Button& button : panel.buttons) proud_m = std::max(proud_m, button.height_m);
   const Vec3 low = base_from_panel * Vec3(panel.plate_min_m.x(), panel.plate_min_m.y(), 0);
   const Vec3 high = base_from_panel * Vec3(panel.plate_max_m.x(), panel.plate_max_m.y(), proud_m);
   triangulation.region_min_m = low.cwiseMin(high).array() - docking_m;
@@ -328,14 +335,20 @@ Pose base_from_camera(const Camera& camera) {
   return pose;
 }
 
-mission::Tasks core_tasks(const std::vector<Task>& tasks, const std::string& where) {
+mission::Tasks core_tasks(const std::vector<Task>& tasks, const PanelNames& names, const std::string& where) {
   std::vector<mission::Task> all;
   for (const Task& task : tasks) {
     if (task.kind == Task::Kind::turn_valve) {
-      all.push_back({mission::Task::Kind::turn_valve, rad_from_deg(task.to_deg), 0});
+      const std::optional<std::size_t> valve = find_valve(names, task.valve);
+      if (!valve) throw InputError(where + ": the panel has no valve '" + task.valve + "'" + suggestion(task.valve, names.valves));
+      all.push_back({mission::Task::Kind::turn_valve, rad_from_deg(task.to_deg), 0, static_cast<std::uint8_t>(*valve)});
       continue;
     }
-    for (const std::string& name : task.order) all.push_back({mission::Task::Kind::press_button, 0, button_index(name)});
+    for (const std::string& name : task.order) {
+      const std::optional<std::size_t> button = find_button(names, name);
+      if (!button) throw InputError(where + ": the panel has no button '" + name + "'" + suggestion(name, names.buttons));
+      all.push_back({mission::Task::Kind::press_button, 0, static_cast<std::uint8_t>(*button), 0});
+    }
   }
   if (all.empty()) throw InputError(where + ": 'tasks' is empty: there is nothing to do");
   mission::Tasks core;
@@ -427,7 +440,8 @@ Core assemble(const Machine& machine, const Steps& steps) {
     read_intrinsics(named_file(machine.file, "camera.calibration", machine.camera_calibration), controller.camera.intrinsics);
   });
   controller.laser = laser_calibration(machine.laser);
-  controller.marker = {machine.panel.marker_id, machine.panel.marker_size_m, machine.panel.panel_from_tag()};
+  for (const PanelLayout::Marker& marker : machine.panel.markers)
+    (void)controller.markers.push_back({marker.id, marker.size_m, marker.panel_from_tag()});
   const bool mission = steps.take([&] { controller.mission = mission_config(machine); });
   core.scan.camera = controller.camera;
   core.scan.laser = controller.laser;
@@ -435,7 +449,16 @@ Core assemble(const Machine& machine, const Steps& steps) {
   set_frame_rate(machine.mission, core.scan);
   steps.take([&] { check_exposure(machine); });
   const bool reach = check_reach_of_tasks(machine, steps);
-  if (arm && limits) steps.take([&] { check_turn_speed(machine, description, controller.mission_limits); });
+  if (arm && limits) {
+    for (std::size_t i = 0; i < machine.panel.valves.size(); ++i) {
+      if (machine.survey.file.empty() || turns(machine, i))
+        steps.take([&] { check_turn_speed(machine, i, description, controller.mission_limits); });
+    }
+  }
+  if (arm) {
+    core.hand_torque_nm = hand_torque_nm(description);
+    for (const std::string& problem : torque_problems(machine, core.hand_torque_nm)) steps.take([&] { refuse(machine, problem); });
+  }
   bool workable = true;
   if (arm && limits && mission) {
     workable =
@@ -449,7 +472,7 @@ Core assemble(const Machine& machine, const Steps& steps) {
   }
   if (limits && mission && reach && workable) {
     steps.take([&] {
-      if (const std::optional<std::string> problem = sweep_problem(controller)) refuse(machine, *problem);
+      if (const std::optional<std::string> problem = sweep_problem(controller, machine.survey)) refuse(machine, *problem);
     });
   }
   return core;

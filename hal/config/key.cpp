@@ -49,9 +49,11 @@ Key key(std::string path, std::string unit, double min, double max, KeyValue val
   return {std::move(path), std::move(doc), std::move(unit), min, max, value, std::move(words)};
 }
 
-Keys keys(Task& task) {
-  return {key("turn_valve.to_deg", "deg", -180, 180, &task.to_deg, "turn the handle to this angle"),
-          key("press_buttons.order", "", 0, 0, &task.order, "press these buttons, one after the other", {"left", "centre", "right"})};
+Keys keys(Task& task, const std::vector<std::string>& buttons) {
+  return {key("turn_valve.valve", "", 0, 0, &task.valve, "which valve of the panel, by its name; empty: the only one"),
+          key("turn_valve.to_deg", "deg", -180, 180, &task.to_deg, "turn the handle to this angle"),
+          key("press_buttons.order", "", 0, 0, &task.order,
+              "press these buttons, one after the other, by their names: left, centre and right on the docked mission's panel", buttons)};
 }
 
 Keys keys(Fault& fault) {

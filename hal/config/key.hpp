@@ -19,6 +19,7 @@ struct Task {
   enum class Kind : std::uint8_t { turn_valve, press_buttons };
   Kind kind = Kind::turn_valve;
   double to_deg = 90;
+  std::string valve{};  // its name; empty: the panel's only one
   std::vector<std::string> order{"left", "centre", "right"};
 };
 
@@ -46,6 +47,7 @@ struct Key {
   double max = 0;
   KeyValue value;                    // where it is kept
   std::vector<std::string> words{};  // what a text, or each text of a list, may be; empty: anything
+  std::vector<std::string> names{};  // of the panel's buttons, where the value is tasks; empty: any name is taken
 };
 
 using Keys = std::vector<Key>;
@@ -56,7 +58,8 @@ inline constexpr std::array<const char*, 3> pointer_words{"none", "light_end", "
 Key key(std::string path, std::string unit, double min, double max, KeyValue value, std::string doc, std::vector<std::string> words = {});
 
 // The pointers are into the argument.
-Keys keys(Task& task);  // paths "turn_valve.to_deg", "press_buttons.order"
+// `buttons`: the panel's; empty: any name is taken.
+Keys keys(Task& task, const std::vector<std::string>& buttons);  // paths "turn_valve.valve", "turn_valve.to_deg", "press_buttons.order"
 Keys keys(Fault& fault);
 
 // "a number", "a number or {min: , max: }", "true or false" ...: what the key takes, in words.

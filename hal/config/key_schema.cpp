@@ -56,7 +56,7 @@ struct TypeSchema {
   Json operator()(std::vector<std::string>*) const { return list_schema(words_schema(key), 0); }
   Json operator()(std::vector<Task>*) const {
     Task task;
-    Json item = nested_schema(keys(task));
+    Json item = nested_schema(keys(task, {}));  // names are a panel file's
     item["minProperties"] = item["maxProperties"] = 1;
     return list_schema(item, 0);
   }

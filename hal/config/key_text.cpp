@@ -57,7 +57,8 @@ struct FlowYaml {
   }
   std::string operator()(const std::vector<Task>* value) const {
     return flow_list(*value, [this](const Task& task) {
-      if (task.kind == Task::Kind::turn_valve) return std::string("{turn_valve: {to_deg: ") + number_text(task.to_deg) + "}}";
+      if (task.kind == Task::Kind::turn_valve)
+        return "{turn_valve: {" + (task.valve.empty() ? "" : "valve: " + task.valve + ", ") + "to_deg: " + number_text(task.to_deg) + "}}";
       return std::string("{press_buttons: {order: ") + (*this)(&task.order) + "}}";
     });
   }

@@ -12,6 +12,7 @@
 #include "firmware/scan_pipeline.hpp"
 #include "hal/config/error_texts.hpp"
 #include "hal/config/key.hpp"
+#include "hal/config/panel_survey.hpp"
 #include "shared/can/can_map.hpp"
 #include "shared/geometry/pose.hpp"
 #include "shared/panel/panel_layout.hpp"
@@ -71,16 +72,10 @@ struct Drives {
   std::int64_t output_node = can_map::io_node;
 };
 
-// Where the valve's handle can be.
-struct ValveStops {
-  double stop_min_deg = -105;  // +/-90 is clear of the stops
-  double stop_max_deg = 105;
-};
-
 struct Machine {
   std::string file;  // where it was read; the files it names are looked for beside it, then among the shipped ones
   PanelLayout panel;
-  ValveStops valve;
+  PanelSurvey survey;  // of the panel: where it was read, and what its features are called
   Camera camera;
   std::string camera_calibration;  // YAML of OpenCV or ROS that overrules `camera.focal_px` and `camera.distortion`; empty: none
   Laser laser;
@@ -97,7 +92,8 @@ struct Machine {
 };
 
 // Parts of the tables, in the order of the documentation. The pointers are into the arguments.
-void add_panel(Keys& all, PanelLayout& panel);
+void add_panel(Keys& all, std::string& file, DockedPanel& panel);
+void add_tasks(Keys& all, std::vector<Task>& tasks, const PanelNames& names, const std::string& doc);
 void add_valve_stops(Keys& all, ValveStops& valve);
 void add_camera(Keys& all, Camera& camera);
 void add_laser(Keys& all, Laser& laser);
@@ -113,6 +109,7 @@ struct Core {
   ControllerConfig controller;
   ScanConfig scan;
   ErrorTexts error_texts;          // of the joints' drives
+  double hand_torque_nm = 0;       // most that the hand can turn with
   std::vector<std::string> notes;  // what is accepted and yet to be known, a sentence each
 };
 
@@ -125,7 +122,7 @@ Core make_core(const Machine& machine, std::vector<std::string>& problems);
 // Where the camera is and looks for the file's angles: first to the right, then down.
 Pose base_from_camera(const Camera& camera);
 
-// As the core has them. Throws InputError, beginning with `where`, when there are more than it holds, or none.
-mission::Tasks core_tasks(const std::vector<Task>& tasks, const std::string& where);
+// As the core has them. Throws InputError, beginning with `where`, when there are more than it holds, or none, and for a valve or button that the panel has not.
+mission::Tasks core_tasks(const std::vector<Task>& tasks, const PanelNames& names, const std::string& where);
 
 }  // namespace lf::config

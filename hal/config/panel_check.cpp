@@ -12,8 +12,6 @@ namespace lf::config {
 
 namespace {
 
-constexpr std::array<const char*, PanelLayout::button_count> button_names{"left", "centre", "right"};
-
 // From a point to a square about the origin, 0 inside of it.
 double distance_to_square(const Vec2& point, double side) {
   const Vec2 outside = (point.cwiseAbs() - Vec2::Constant(side / 2)).cwiseMax(0.0);
@@ -31,93 +29,182 @@ bool inside_plate(const PanelLayout& panel, const Vec2& centre, double half) {
   return (low.array() >= panel.plate_min_m.array()).all() && (high.array() <= panel.plate_max_m.array()).all();
 }
 
-// From the valve's axis to the farthest corner of its bar.
-double turning_bar_m(const PanelLayout& panel) { return std::hypot(panel.handle_length_m, panel.handle_thickness_m) / 2; }
-
-bool plate_fits(const PanelLayout& panel, double side) {
-  const bool free = std::all_of(panel.buttons_m.begin(), panel.buttons_m.end(), [&](const Vec2& button) {
-    return distance_to_square(button - panel.marker_centre_m, side) >= panel.button_width_m / 2;
+bool plate_fits(const PanelLayout& panel, const PanelLayout::Marker& marker, double side) {
+  const bool free = std::all_of(panel.buttons.begin(), panel.buttons.end(), [&](const PanelLayout::Button& button) {
+    return distance_to_square(button.at_m - marker.centre_m, side) >= button.width_m / 2;
   });
-  return free && distance_to_square(-panel.marker_centre_m, side) >= turning_bar_m(panel) &&
-         inside_plate(panel, panel.marker_centre_m, side / 2);
+  const bool not_under_a_bar = std::all_of(panel.valves.begin(), panel.valves.end(), [&](const PanelLayout::Valve& valve) {
+    return distance_to_square(valve.at_m - marker.centre_m, side) >= valve.swept_radius_m();
+  });
+  return free && not_under_a_bar && inside_plate(panel, marker.centre_m, side / 2);
 }
 
-// How aslant the tool comes to the buttons: to that one to which it does most.
-double steepest_button_rad(const PanelLayout& panel, const mission::MissionConfig& mission) {
+// How aslant the tool comes to a button like this one: of all such, to the one to which it does most.
+double steepest_button_rad(const Machine& machine, const PanelLayout::Button& like) {
   double tilt_rad = 0;
-  for (std::uint8_t button = 0; button < PanelLayout::button_count; ++button)
-    tilt_rad = std::max(tilt_rad, steepest_rad(panel, place_of_button(panel, button), mission.docking));
+  for (std::size_t i = 0; i < machine.panel.buttons.size(); ++i) {
+    const PanelLayout::Button& button = machine.panel.buttons[i];
+    const bool alike = button.width_m == like.width_m && button.height_m == like.height_m && button.stroke_m == like.stroke_m;
+    if (alike) tilt_rad = std::max(tilt_rad, steepest_rad(machine.panel, place_of_button(machine, i), machine.mission.docking));
+  }
   return tilt_rad;
 }
 
 }  // namespace
 
-double largest_marker_plate_m(const PanelLayout& panel) {
+double largest_marker_plate_m(const PanelLayout& panel, const PanelLayout::Marker& marker) {
   double fits = 0, does_not = 10;
   for (int i = 0; i < 50; ++i) {
     const double side = (fits + does_not) / 2;
-    (plate_fits(panel, side) ? fits : does_not) = side;
+    (plate_fits(panel, marker, side) ? fits : does_not) = side;
   }
   return fits;
 }
 
 // In simulation caps of 5 to 6 mm with a stroke of 5 mm let the fingers meet the panel beside them, and of 12 mm a broken-off one was told as pressed.
-double lowest_button_m(const PanelLayout& panel, const mission::MissionConfig& mission) {
+double lowest_button_m(const Machine& machine, const PanelLayout::Button& button) {
   constexpr double corner_m = 0.028;  // from the middle of the closed fingers' tips to a corner: pads of 40 mm, 40 mm thick together
   constexpr double doubt_m = 0.0036;  // of the face by the look, 3 mm, and of the tip by the joints, 2 mm, added in squares
-  const double tilt_rad = steepest_button_rad(panel, mission);
-  return panel.button_stroke_m + std::min(mission.press_overtravel_m, mission::press_face_m) + corner_m * std::sin(tilt_rad) + doubt_m;
+  const double tilt_rad = steepest_button_rad(machine, button);
+  return button.stroke_m + std::min(machine.mission.press_overtravel_m, mission::press_face_m) + corner_m * std::sin(tilt_rad) + doubt_m;
 }
 
 bool presses(const std::vector<Task>& tasks) {
   return std::any_of(tasks.begin(), tasks.end(), [](const Task& task) { return task.kind == Task::Kind::press_buttons; });
 }
 
-std::vector<std::string> low_button_problems(const Machine& machine) {
-  const PanelLayout& panel = machine.panel;
-  const double overtravel_m = machine.mission.press_overtravel_m, lowest_m = lowest_button_m(panel, machine.mission);
-  if (!presses(machine.tasks) || panel.button_height_m >= lowest_m) return {};
-  std::array<char, 400> text;
-  (void)std::snprintf(
-      text.data(), text.size(),
-      "'panel.button_height_m' is %.4g: with 'panel.button_stroke_m' at %.4g and 'mission.press_overtravel_m' at %.4g the "
-      "fingers could press the panel instead of the button, and take it for the button. Caps at these 'panel.buttons_m' need %.4f m",
-      panel.button_height_m, panel.button_stroke_m, overtravel_m, lowest_m);
-  return {text.data() + aslant_text(panel, machine.mission.docking, steepest_button_rad(panel, machine.mission))};
+namespace {
+
+bool presses(const std::vector<Task>& tasks, const std::string& button) {
+  return std::any_of(tasks.begin(), tasks.end(), [&](const Task& task) {
+    return task.kind == Task::Kind::press_buttons && std::find(task.order.begin(), task.order.end(), button) != task.order.end();
+  });
 }
 
-std::vector<std::string> panel_problems(const PanelLayout& panel) {
+}  // namespace
+
+// Of buttons that are alike one problem is told: on the docked mission's panel all are.
+std::vector<std::string> low_button_problems(const Machine& machine) {
   std::vector<std::string> problems;
-  const std::string plate = ": see 'panel.plate_min_m', 'panel.plate_max_m'";
-  const double radius = panel.button_width_m / 2, bar_m = turning_bar_m(panel);
-  const double under_m = bar_m - distance_to_square(-panel.marker_centre_m, panel.marker_plate_m);
-  if (under_m > 0)
-    problems.push_back("'panel.marker_centre_m': the turning bar covers the marker's plate by " + millimetres(under_m) +
-                       ": no look would find the marker. See 'panel.handle_length_m', 'panel.handle_thickness_m' and "
-                       "'panel.marker_plate_m'");
-  for (std::size_t i = 0; i < PanelLayout::button_count; ++i) {
-    const std::string name = std::string("'panel.buttons_m': the ") + button_names[i] + " button";
-    const double gap = distance_to_square(panel.buttons_m[i] - panel.marker_centre_m, panel.marker_plate_m) - radius;
-    if (gap < 0) {
-      problems.push_back(name + " covers the marker's plate by " + millimetres(-gap) +
-                         ": no look would find the marker. See 'panel.button_width_m', 'panel.marker_centre_m' and 'panel.marker_plate_m'");
+  if (!presses(machine.tasks)) return problems;
+  const PanelSurvey& survey = machine.survey;
+  for (std::size_t i = 0; i < machine.panel.buttons.size(); ++i) {
+    const PanelLayout::Button& button = machine.panel.buttons[i];
+    const double lowest_m = lowest_button_m(machine, button);
+    if (button.height_m >= lowest_m || (!survey.file.empty() && !presses(machine.tasks, survey.names.buttons[i]))) continue;
+    const auto key = [&](const char* field) { return button_key(survey, i, field); };
+    std::array<char, 480> text;
+    (void)std::snprintf(text.data(), text.size(),
+                        "%s is %.4g: with %s at %.4g and 'mission.press_overtravel_m' at %.4g the "
+                        "fingers could press the panel instead of the button, and take it for the button. Caps at these %s need %.4f m",
+                        key("height_m").c_str(), button.height_m, key("stroke_m").c_str(), button.stroke_m,
+                        machine.mission.press_overtravel_m, key("at_m").c_str(), lowest_m);
+    problems.push_back(text.data() + aslant_text(machine.panel, machine.mission.docking, steepest_button_rad(machine, button)));
+    if (survey.file.empty()) break;
+  }
+  return problems;
+}
+
+namespace {
+
+class PanelCheck {
+ public:
+  PanelCheck(const PanelLayout& panel, const PanelSurvey& survey) : panel_(panel), survey_(survey) {}
+
+  std::vector<std::string> problems() {
+    for (std::size_t i = 0; i < panel_.markers.size(); ++i) check_under_bars(i);
+    for (std::size_t i = 0; i < panel_.buttons.size(); ++i) check_button(i);
+    for (std::size_t i = 0; i < panel_.valves.size(); ++i) check_valve(i);
+    for (std::size_t i = 0; i < panel_.markers.size(); ++i) check_marker(i);
+    return problems_;
+  }
+
+ private:
+  std::string plate() const { return ": see " + plate_key(survey_, "min_m") + ", " + plate_key(survey_, "max_m"); }
+  std::string button_at(std::size_t i) const { return button_key(survey_, i, "at_m") + ": " + button_text(survey_.names, i); }
+
+  void check_under_bars(std::size_t i) {
+    const PanelLayout::Marker& marker = panel_.markers[i];
+    for (std::size_t v = 0; v < panel_.valves.size(); ++v) {
+      const PanelLayout::Valve& valve = panel_.valves[v];
+      const double under_m = valve.swept_radius_m() - distance_to_square(valve.at_m - marker.centre_m, marker.plate_m);
+      if (under_m > 0)
+        problems_.push_back(marker_key(survey_, i, "at_m") + ": the turning bar covers " + marker_text(survey_, i) + "'s plate by " +
+                            millimetres(under_m) + ": no look would find the marker. See " + valve_key(survey_, v, "length_m") + ", " +
+                            valve_key(survey_, v, "thickness_m") + " and " + marker_key(survey_, i, "plate_m"));
+    }
+  }
+
+  void check_button(std::size_t i) {
+    const PanelLayout::Button& button = panel_.buttons[i];
+    const double radius = button.width_m / 2;
+    for (std::size_t m = 0; m < panel_.markers.size(); ++m) {
+      const PanelLayout::Marker& marker = panel_.markers[m];
+      const double gap = distance_to_square(button.at_m - marker.centre_m, marker.plate_m) - radius;
+      if (gap >= 0) continue;
+      problems_.push_back(button_at(i) + " covers " + marker_text(survey_, m) + "'s plate by " + millimetres(-gap) +
+                          ": no look would find the marker. See " + button_key(survey_, i, "width_m") + ", " +
+                          marker_key(survey_, m, "at_m") + " and " + marker_key(survey_, m, "plate_m"));
     }
     for (std::size_t j = 0; j < i; ++j) {
-      const double between = (panel.buttons_m[i] - panel.buttons_m[j]).norm() - 2 * radius;
+      const double between = (button.at_m - panel_.buttons[j].at_m).norm() - radius - panel_.buttons[j].width_m / 2;
       if (between < 0)
-        problems.push_back(name + " and the " + button_names[j] + " one overlap by " + millimetres(-between) +
-                           ": see 'panel.button_width_m'");
+        problems_.push_back(button_at(i) + " and the " + survey_.names.buttons[j] + " one overlap by " + millimetres(-between) + ": see " +
+                            button_key(survey_, i, "width_m"));
     }
-    const double turned_over_m = bar_m + radius - panel.buttons_m[i].norm();
-    if (turned_over_m > 0)
-      problems.push_back(name + " lies " + millimetres(turned_over_m) +
-                         " under the turning bar: see 'panel.button_width_m', 'panel.handle_length_m' and 'panel.handle_thickness_m'");
-    if (!inside_plate(panel, panel.buttons_m[i], radius))
-      problems.push_back(name + " hangs beyond the plate" + plate + " and 'panel.button_width_m'");
+    for (std::size_t v = 0; v < panel_.valves.size(); ++v) {
+      const PanelLayout::Valve& valve = panel_.valves[v];
+      const double turned_over_m = valve.swept_radius_m() + radius - (button.at_m - valve.at_m).norm();
+      if (turned_over_m > 0)
+        problems_.push_back(button_at(i) + " lies " + millimetres(turned_over_m) + " under the turning bar: see " +
+                            button_key(survey_, i, "width_m") + ", " + valve_key(survey_, v, "length_m") + " and " +
+                            valve_key(survey_, v, "thickness_m"));
+    }
+    if (!inside_plate(panel_, button.at_m, radius))
+      problems_.push_back(button_at(i) + " hangs beyond the plate" + plate() + " and " + button_key(survey_, i, "width_m"));
   }
-  if (!inside_plate(panel, panel.marker_centre_m, panel.marker_plate_m / 2))
-    problems.push_back("'panel.marker_centre_m': the marker's plate hangs beyond the panel's" + plate + " and 'panel.marker_plate_m'");
-  return problems;
+
+  // Only a file's valves stand anywhere. What room the hand needs between them is asked of those that are turned (handle_check.hpp).
+  void check_valve(std::size_t i) {
+    const PanelLayout::Valve& valve = panel_.valves[i];
+    if (survey_.file.empty()) return;
+    if ((valve.at_m.array() < panel_.plate_min_m.array()).any() || (valve.at_m.array() > panel_.plate_max_m.array()).any())
+      problems_.push_back(valve_key(survey_, i, "at_m") + ": the valve stands beyond the plate" + plate());
+    for (std::size_t j = 0; j < i; ++j) {
+      const PanelLayout::Valve& other = panel_.valves[j];
+      const double between_m = (valve.at_m - other.at_m).norm() - valve.swept_radius_m() - other.swept_radius_m();
+      if (between_m < 0)
+        problems_.push_back(valve_key(survey_, i, "at_m") + ": its turning bar and that of " + survey_.names.valves[j] + " overlap by " +
+                            millimetres(-between_m) + ": see " + valve_key(survey_, i, "length_m"));
+    }
+  }
+
+  void check_marker(std::size_t i) {
+    const PanelLayout::Marker& marker = panel_.markers[i];
+    if (!inside_plate(panel_, marker.centre_m, marker.plate_m / 2))
+      problems_.push_back(marker_key(survey_, i, "at_m") + ": " + marker_text(survey_, i) + "'s plate hangs beyond the panel's" + plate() +
+                          " and " + marker_key(survey_, i, "plate_m"));
+    for (std::size_t j = 0; j < i; ++j) {
+      const PanelLayout::Marker& other = panel_.markers[j];
+      if (marker.id == other.id)
+        problems_.push_back(marker_key(survey_, i, "id") + ": " + std::to_string(marker.id) + " is " + marker_text(survey_, j) +
+                            "'s too: a look would not tell them apart");
+      const double apart_m = (marker.centre_m - other.centre_m).cwiseAbs().maxCoeff() - (marker.plate_m + other.plate_m) / 2;
+      if (apart_m < 0)
+        problems_.push_back(marker_key(survey_, i, "at_m") + ": its plate and that of " + marker_text(survey_, j) + " overlap by " +
+                            millimetres(-apart_m));
+    }
+  }
+
+  const PanelLayout& panel_;
+  const PanelSurvey& survey_;
+  std::vector<std::string> problems_;
+};
+
+}  // namespace
+
+std::vector<std::string> panel_problems(const PanelLayout& panel, const PanelSurvey& survey) {
+  return PanelCheck(panel, survey).problems();
 }
 
 }  // namespace lf::config

@@ -1,5 +1,6 @@
 #include "hal/config/sweep_check.hpp"
 
+#include <algorithm>
 #include <cstdarg>
 #include <cstdio>
 
@@ -33,15 +34,16 @@ std::string docking_text(const mission::MissionConfig& mission) {
   return formatted("with 'mission.docking_m' at %.3g and 'mission.docking_rad' at %.3g", mission.docking.shift_m, mission.docking.turn_rad);
 }
 
-const char* words(scan::SweepOutcome outcome) {
+std::string words(scan::SweepOutcome outcome, const PanelSurvey& survey) {
+  const std::string min = plate_key(survey, "min_m"), max = plate_key(survey, "max_m");
   switch (outcome) {
     case scan::SweepOutcome::top_unreachable:
-      return "no pose of the arm puts the laser's line above the panel: see 'laser.position_m' and 'panel.plate_max_m'";
+      return "no pose of the arm puts the laser's line above the panel: see 'laser.position_m' and " + max;
     case scan::SweepOutcome::bottom_unreachable:
-      return "no pose of the arm puts the laser's line below the panel: see 'laser.position_m' and 'panel.plate_min_m'";
+      return "no pose of the arm puts the laser's line below the panel: see 'laser.position_m' and " + min;
     case scan::SweepOutcome::fan_too_narrow:
-      return "the laser's line is shorter than the panel is wide: see 'laser.fan_half_angle_deg', 'laser.position_m', 'panel.plate_min_m' "
-             "and 'panel.plate_max_m'";
+      return "the laser's line is shorter than the panel is wide: see 'laser.fan_half_angle_deg', 'laser.position_m', " + min + " and " +
+             max;
     case scan::SweepOutcome::no_way: return "the tool would come too near to the panel: see 'laser.position_m'";
     case scan::SweepOutcome::bad_request:
     case scan::SweepOutcome::ok: break;
@@ -49,17 +51,28 @@ const char* words(scan::SweepOutcome outcome) {
   return "the sweep is not defined";
 }
 
-// The keys that put this part where it stands, for the end of a message.
-const char* keys_of(arm::PanelPart part) {
-  switch (part) {
-    case arm::PanelPart::plate: return ": see 'panel.plate_min_m' and 'panel.plate_max_m'";
-    case arm::PanelPart::marker_plate: return ": see 'panel.marker_centre_m' and 'panel.marker_plate_m'";
-    case arm::PanelPart::button_left:
-    case arm::PanelPart::button_centre:
-    case arm::PanelPart::button_right: return ": see 'panel.buttons_m' and 'panel.button_height_m'";
-    case arm::PanelPart::handle:
-    case arm::PanelPart::stem: return ": see 'panel.handle_height_m' and 'panel.handle_length_m'";
-    case arm::PanelPart::none: break;
+// What a part is called, and the keys that put it where it stands, for the end of a message.
+std::string words(arm::PanelPart part, const PanelSurvey& survey) {
+  using Kind = arm::PanelPart::Kind;
+  switch (part.kind) {
+    case Kind::plate: return "plate";
+    case Kind::marker_plate:
+      return marker_text(survey, part.index).substr(marker_text(survey, part.index).starts_with("the ") ? 4 : 0) + " plate";
+    case Kind::button: return survey.names.buttons.at(part.index) + " button";
+    case Kind::valve: return survey.names.valves.at(part.index) == "valve" ? "handle" : "handle of " + survey.names.valves.at(part.index);
+    case Kind::none: break;
+  }
+  return "none";
+}
+
+std::string keys_of(arm::PanelPart part, const PanelSurvey& survey) {
+  using Kind = arm::PanelPart::Kind;
+  switch (part.kind) {
+    case Kind::plate: return ": see " + plate_key(survey, "min_m") + " and " + plate_key(survey, "max_m");
+    case Kind::marker_plate: return ": see " + marker_key(survey, part.index, "at_m") + " and " + marker_key(survey, part.index, "plate_m");
+    case Kind::button: return ": see " + button_key(survey, part.index, "at_m") + " and " + button_key(survey, part.index, "height_m");
+    case Kind::valve: return ": see " + valve_key(survey, part.index, "height_m") + " and " + valve_key(survey, part.index, "length_m");
+    case Kind::none: break;
   }
   return "";
 }
@@ -73,16 +86,17 @@ struct Nearest {
 
 class Neighbours {
  public:
-  explicit Neighbours(const mission::MissionConfig& mission)
+  Neighbours(const mission::MissionConfig& mission, const PanelSurvey& survey)
       : mission_(mission),
+        survey_(survey),
         base_from_panel_(mission.layout.nominal_base_from_panel()),
         panel_(arm::PanelShape(mission.layout).grown(base_from_panel_, mission.docking)) {}
 
   Nearest of(const JointVector& q_rad, double jaw_rad) const {
     const arm::LinkCapsules capsules = arm::link_capsules(q_rad, jaw_rad);
     const arm::Clearance panel = panel_.clearance(capsules, base_from_panel_);
-    Nearest nearest{panel.distance_m, std::string("the panel's ") + arm::name(panel.part) + ", " + docking_text(mission_),
-                    std::string(keys_of(panel.part)) + place_text(mission_.layout)};
+    Nearest nearest{panel.distance_m, "the panel's " + words(panel.part, survey_) + ", " + docking_text(mission_),
+                    keys_of(panel.part, survey_) + place_text(mission_.layout)};
     const auto hold_against = [&](double distance_m, const std::string& what) {
       if (distance_m < nearest.distance_m) nearest = {distance_m, what, ""};
     };
@@ -106,6 +120,7 @@ class Neighbours {
 
  private:
   const mission::MissionConfig& mission_;
+  const PanelSurvey& survey_;
   Pose base_from_panel_;
   arm::PanelShape panel_;
 };
@@ -129,9 +144,9 @@ std::string unreachable_text(const safety::Limits& limits, const PanelLayout& pa
 
 }  // namespace
 
-std::optional<std::string> sweep_problem(const ControllerConfig& controller) {
+std::optional<std::string> sweep_problem(const ControllerConfig& controller, const PanelSurvey& survey) {
   const mission::MissionConfig& mission = controller.mission;
-  const Neighbours neighbours(mission);
+  const Neighbours neighbours(mission, survey);
   const double jaw_rad = arm::jaw_from_gap(0);
   if (const Nearest parked = neighbours.of(mission.park_rad, jaw_rad); parked.distance_m < mission::clearance_m)
     return too_near("folded up", parked);
@@ -139,19 +154,21 @@ std::optional<std::string> sweep_problem(const ControllerConfig& controller) {
   const scan::SweepRequest request = mission::sweep_over_panel(mission);
   const scan::SweepPlan plan = scan::plan_sweep(request, controller.laser);
   if (plan.outcome != scan::SweepOutcome::ok) {
-    return "the laser cannot be swept over the whole panel wherever it may stand " + docking_text(mission) + ": " + words(plan.outcome) +
-           place_text(mission.layout);
+    return "the laser cannot be swept over the whole panel wherever it may stand " + docking_text(mission) + ": " +
+           words(plan.outcome, survey) + place_text(mission.layout);
   }
   const double frame_share = mission.camera_syncs * can_map::sync_period.s() / request.stripe_period.s();
   const double spacing_m = plan.widest_spacing_m * frame_share;
-  if (spacing_m > widest_of_bar * mission.layout.handle_thickness_m) {
+  for (std::size_t i = 0; i < mission.layout.valves.size(); ++i) {
+    const double widest_m = widest_of_bar * mission.layout.valves[i].handle_thickness_m;
+    const bool turned = std::any_of(mission.tasks.begin(), mission.tasks.end(), [&](const mission::Task& task) {
+      return task.kind == mission::Task::Kind::turn_valve && task.valve == i;
+    });
+    if (spacing_m <= widest_m || (!survey.file.empty() && !turned)) continue;
     return "the laser's lines would lie " + formatted("%.1f mm", 1e3 * spacing_m) + " apart on the panel " + docking_text(mission) +
-           formatted(
-               ", 'mission.sweep_speed_rad_s' at %.3g and 'mission.camera_syncs' at %u: no more than %.1f mm show a handle of this "
-               "'panel.handle_thickness_m'; see also 'laser.position_m'",
-               mission.sweep_speed_rad_s, static_cast<unsigned>(mission.camera_syncs),
-               1e3 * widest_of_bar * mission.layout.handle_thickness_m) +
-           place_text(mission.layout);
+           formatted(", 'mission.sweep_speed_rad_s' at %.3g and 'mission.camera_syncs' at %u: no more than %.1f mm show a handle of this ",
+                     mission.sweep_speed_rad_s, static_cast<unsigned>(mission.camera_syncs), 1e3 * widest_m) +
+           valve_key(survey, i, "thickness_m") + "; see also 'laser.position_m'" + place_text(mission.layout);
   }
   mission::Motion motion(controller.mission_limits, mission.layout, mission.vehicle, mission.park_rad);
   motion.start_at(mission.park_rad);

@@ -6,10 +6,11 @@
 #include <string>
 
 #include "firmware/config.hpp"
+#include "hal/config/panel_survey.hpp"
 
 namespace lf::config {
 
 // One sentence without the file's name, or nothing. It names the part of the panel, the box or the capsule that is in the way. Takes some milliseconds.
-std::optional<std::string> sweep_problem(const ControllerConfig& controller);
+std::optional<std::string> sweep_problem(const ControllerConfig& controller, const PanelSurvey& survey);
 
 }  // namespace lf::config

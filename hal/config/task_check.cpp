@@ -3,24 +3,26 @@
 #include <array>
 #include <cstdio>
 
+#include "hal/config/handle_check.hpp"
 #include "hal/config/limits_check.hpp"
 #include "hal/config/panel_check.hpp"
 #include "hal/config/task_reach.hpp"
+#include "hal/config/view_check.hpp"
 
 namespace lf::config {
 
 namespace {
 
-constexpr std::array<const char*, 3> button_names{"left", "centre", "right"};
-
-std::vector<Task> as_in_a_file(const mission::Tasks& tasks) {
+std::vector<Task> as_in_a_file(const mission::Tasks& tasks, const PanelNames& names) {
   std::vector<Task> all;
   for (const mission::Task& one : tasks) {
     Task task;
     task.to_deg = deg_from_rad(one.to_rad);
     if (one.kind == mission::Task::Kind::press_button) {
       task.kind = Task::Kind::press_buttons;
-      task.order = {button_names[one.button % button_names.size()]};
+      task.order = {names.buttons.at(one.button)};
+    } else {
+      task.valve = names.valves.at(one.valve);
     }
     all.push_back(task);
   }
@@ -29,22 +31,42 @@ std::vector<Task> as_in_a_file(const mission::Tasks& tasks) {
 
 }  // namespace
 
-std::string turn_problem(const mission::Tasks& tasks, const PanelLayout& panel) {
+std::string turn_problem(const mission::Tasks& tasks, const PanelLayout& panel, const PanelNames& names) {
   for (const mission::Task& task : tasks) {
     if (task.kind != mission::Task::Kind::turn_valve) continue;
-    if (task.to_rad >= panel.handle_min_rad && task.to_rad <= panel.handle_max_rad) continue;
-    std::array<char, 128> text;
-    (void)std::snprintf(text.data(), text.size(), "the valve cannot be turned to %.4g deg: its handle goes from %.4g to %.4g deg",
-                        deg_from_rad(task.to_rad), deg_from_rad(panel.handle_min_rad), deg_from_rad(panel.handle_max_rad));
+    const PanelLayout::Valve& valve = panel.valves[task.valve];
+    if (task.to_rad >= valve.handle_min_rad && task.to_rad <= valve.handle_max_rad) continue;
+    std::array<char, 160> text;
+    (void)std::snprintf(text.data(), text.size(), "%s cannot be turned to %.4g deg: its handle goes from %.4g to %.4g deg",
+                        valve_text(names, task.valve).c_str(), deg_from_rad(task.to_rad), deg_from_rad(valve.handle_min_rad),
+                        deg_from_rad(valve.handle_max_rad));
     return text.data();
   }
   return "";
 }
 
-std::string tasks_problem(const Machine& machine, const safety::Limits& limits, const mission::Tasks& tasks) {
+std::vector<std::string> torque_problems(const Machine& machine, double hand_torque_nm) {
+  std::vector<std::string> problems;
+  for (std::size_t i = 0; i < machine.survey.valves.size(); ++i) {
+    const double needs_nm = machine.survey.valves[i].torque_nm;
+    if (!turns(machine, i) || needs_nm <= hand_torque_nm) continue;
+    std::array<char, 200> text;
+    (void)std::snprintf(text.data(), text.size(), "%s needs %.3g N m, the arm gives %.3g. See %s",
+                        valve_text(machine.survey.names, i).c_str(), needs_nm, hand_torque_nm,
+                        valve_key(machine.survey, i, "torque_nm").c_str());
+    problems.emplace_back(text.data());
+  }
+  return problems;
+}
+
+std::string tasks_problem(const Machine& machine, const Core& core, const mission::Tasks& tasks) {
+  const safety::Limits& limits = core.controller.mission_limits;
   Machine with_tasks = machine;
-  with_tasks.tasks = as_in_a_file(tasks);
+  with_tasks.tasks = as_in_a_file(tasks, machine.survey.names);
+  for (const std::string& problem : handle_problems(with_tasks)) return problem;
   for (const std::string& problem : low_button_problems(with_tasks)) return problem;
+  for (const std::string& problem : torque_problems(with_tasks, core.hand_torque_nm)) return problem;
+  for (const std::string& problem : view_problems(with_tasks, core.controller.camera)) return problem;
   for (const Place& place : places_of_tasks(with_tasks)) {
     const arm::IkResult ik = pose_at(machine.panel, place);
     if (!ik.ok()) return place.what + " is out of the arm's reach at its nominal place: " + excess_text(ik);

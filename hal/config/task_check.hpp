@@ -8,9 +8,13 @@
 namespace lf::config {
 
 // Why a turn among them is refused: an angle beyond the handle's stops. Empty: none is.
-std::string turn_problem(const mission::Tasks& tasks, const PanelLayout& panel);
+std::string turn_problem(const mission::Tasks& tasks, const PanelLayout& panel, const PanelNames& names);
 
-// The same of everything that a file of tasks is held against: stops, low caps, places out of reach, poses outside of the limits. `machine.tasks` do not count.
-std::string tasks_problem(const Machine& machine, const safety::Limits& limits, const mission::Tasks& tasks);
+// The same of everything that a file of tasks is held against: stops, low caps, bars, torques, places out of reach or view, poses outside of
+// the limits. `machine.tasks` do not count.
+std::string tasks_problem(const Machine& machine, const Core& core, const mission::Tasks& tasks);
+
+// Of the valves that a task turns, those of which a file says that they take more than the hand can give.
+std::vector<std::string> torque_problems(const Machine& machine, double hand_torque_nm);
 
 }  // namespace lf::config

@@ -5,33 +5,49 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <optional>
 
 #include "firmware/arm/gripper.hpp"
 #include "firmware/arm/reach.hpp"
 
 namespace lf::config {
 
-std::uint8_t button_index(const std::string& name) { return name == "left" ? 0 : name == "centre" ? 1 : 2; }
+bool names_known(const std::vector<Task>& tasks, const PanelNames& names) {
+  return std::all_of(tasks.begin(), tasks.end(), [&](const Task& task) {
+    if (task.kind == Task::Kind::turn_valve) return find_valve(names, task.valve).has_value();
+    return std::all_of(task.order.begin(), task.order.end(), [&](const std::string& name) { return find_button(names, name).has_value(); });
+  });
+}
 
-Place place_of_button(const PanelLayout& panel, std::uint8_t button) {
-  constexpr std::array<const char*, PanelLayout::button_count> names{"the left button", "the centre button", "the right button"};
-  const Vec2& centre = panel.buttons_m[button];
-  return {names[button], Vec3(centre.x(), centre.y(), panel.button_height_m), arm::tip_beyond_tool_m(arm::jaw_from_gap(0))};
+bool turns(const Machine& machine, std::size_t valve) {
+  return std::any_of(machine.tasks.begin(), machine.tasks.end(), [&](const Task& task) {
+    return task.kind == Task::Kind::turn_valve && find_valve(machine.survey.names, task.valve) == valve;
+  });
+}
+
+Place place_of_valve(const Machine& machine, std::size_t valve) {
+  return {valve_text(machine.survey.names, valve), machine.panel.valves[valve].handle_centre_m(), 0,
+          valve_key(machine.survey, valve, "height_m")};
+}
+
+Place place_of_button(const Machine& machine, std::size_t button) {
+  return {button_text(machine.survey.names, button), machine.panel.buttons[button].face_m(), arm::tip_beyond_tool_m(arm::jaw_from_gap(0)),
+          button_key(machine.survey, button, "at_m")};
 }
 
 std::vector<Place> places_of_tasks(const Machine& machine) {
-  const PanelLayout& panel = machine.panel;
   std::vector<Place> places;
   const auto add = [&](const Place& place) {
     if (std::none_of(places.begin(), places.end(), [&](const Place& other) { return other.what == place.what; })) places.push_back(place);
   };
+  const PanelNames& names = machine.survey.names;
   for (const Task& task : machine.tasks) {
     if (task.kind == Task::Kind::turn_valve) {
-      add({"the valve", Vec3(0, 0, panel.handle_height_m), 0});
+      if (const std::optional<std::size_t> valve = find_valve(names, task.valve)) add(place_of_valve(machine, *valve));
       continue;
     }
     for (const std::string& name : task.order) {
-      add(place_of_button(panel, button_index(name)));
+      if (const std::optional<std::size_t> button = find_button(names, name)) add(place_of_button(machine, *button));
     }
   }
   return places;

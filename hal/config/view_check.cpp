@@ -43,9 +43,9 @@ bool lacks_rays(const scan::CameraModel& model) {
 }
 
 struct Sighted {
-  const char* what;
+  std::string what;
   Vec3 in_panel_m;
-  const char* keys;  // that put it there on the panel, as the end of a list
+  std::string keys;  // that put it there on the panel, as the end of a list
 };
 
 // Empty: it is in the picture.
@@ -54,7 +54,7 @@ std::string why_unseen(const Machine& machine, const CameraCalibration& camera, 
   const std::optional<Vec2> pixel = scan::CameraModel(camera.intrinsics).project(in_camera);
   const std::string remedy =
       ": see 'camera.position_m', 'camera.down_deg', 'camera.right_deg', " + lens_keys(machine) + point.keys + place_text(machine.panel);
-  const std::string what = point.what;
+  const std::string& what = point.what;
   if (!pixel) return what + " is behind the camera" + remedy;
   const bool inside =
       pixel->x() >= 0 && pixel->x() <= camera.intrinsics.width - 1 && pixel->y() >= 0 && pixel->y() <= camera.intrinsics.height - 1;
@@ -67,6 +67,18 @@ std::string why_unseen(const Machine& machine, const CameraCalibration& camera, 
   return what + text + remedy;
 }
 
+// Of several markers one in the picture is enough: the first, where none is.
+std::optional<Sighted> hidden_marker(const Machine& machine, const CameraCalibration& camera) {
+  std::optional<Sighted> hidden;
+  for (std::size_t i = 0; i < machine.panel.markers.size(); ++i) {
+    const Vec2& centre = machine.panel.markers[i].centre_m;
+    const Sighted marker{marker_text(machine.survey, i), Vec3(centre.x(), centre.y(), 0), " and " + marker_key(machine.survey, i, "at_m")};
+    if (why_unseen(machine, camera, marker).empty()) return std::nullopt;
+    if (!hidden) hidden = marker;
+  }
+  return hidden;
+}
+
 }  // namespace
 
 std::vector<std::string> view_problems(const Machine& machine, const CameraCalibration& camera) {
@@ -76,18 +88,24 @@ std::vector<std::string> view_problems(const Machine& machine, const CameraCalib
             ", or calibrate with points out to the corners"};
   const PanelLayout& panel = machine.panel;
   const Vec2 low = panel.plate_min_m, high = panel.plate_max_m;
-  const char* both = ", 'panel.plate_min_m' and 'panel.plate_max_m'";
-  const std::array<Sighted, 6> points{{
+  const PanelSurvey& survey = machine.survey;
+  const std::string min = plate_key(survey, "min_m"), max = plate_key(survey, "max_m"), both = ", " + min + " and " + max;
+  const std::vector<Sighted> points{
       {"the panel's upper left corner", Vec3(low.x(), high.y(), 0), both},
-      {"the panel's upper right corner", Vec3(high.x(), high.y(), 0), " and 'panel.plate_max_m'"},
+      {"the panel's upper right corner", Vec3(high.x(), high.y(), 0), " and " + max},
       {"the panel's lower right corner", Vec3(high.x(), low.y(), 0), both},
-      {"the panel's lower left corner", Vec3(low.x(), low.y(), 0), " and 'panel.plate_min_m'"},
-      {"the marker", Vec3(panel.marker_centre_m.x(), panel.marker_centre_m.y(), 0), " and 'panel.marker_centre_m'"},
-      {"the valve", Vec3(0, 0, panel.handle_height_m), " and 'panel.handle_height_m'"},
-  }};
+      {"the panel's lower left corner", Vec3(low.x(), low.y(), 0), " and " + min},
+  };
   std::vector<std::string> problems;
-  for (const Sighted& point : points) {
-    if (std::string why = why_unseen(machine, camera, point); !why.empty()) problems.push_back(std::move(why));
+  const auto look = [&](const Sighted& point) {
+    std::string why = why_unseen(machine, camera, point);
+    if (!why.empty()) problems.push_back(std::move(why));
+  };
+  for (const Sighted& point : points) look(point);
+  if (const std::optional<Sighted> hidden = hidden_marker(machine, camera)) look(*hidden);
+  for (std::size_t i = 0; i < panel.valves.size(); ++i) {
+    if (survey.file.empty() || turns(machine, i))
+      look({valve_text(survey.names, i), panel.valves[i].handle_centre_m(), " and " + valve_key(survey, i, "height_m")});
   }
   return problems;
 }

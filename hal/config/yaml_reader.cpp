@@ -206,7 +206,7 @@ void ValueReader::operator()(std::vector<Task>* value) const {
       source_.refuse(item.Mark(), "'" + shown + "' takes one task, turn_valve or press_buttons, not " + shape_of(item));
     Task task;
     const std::size_t told = source_.problems() != nullptr ? source_.problems()->size() : 0;
-    read_map(item, "", shown + ".", keys(task), source_);
+    read_map(item, "", shown + ".", keys(task, key_.names), source_);
     const bool complete = source_.problems() == nullptr || source_.problems()->size() == told;
     const YAML::Node turn = item["turn_valve"];
     task.kind = turn ? Task::Kind::turn_valve : Task::Kind::press_buttons;

@@ -12,10 +12,29 @@ namespace {
 // As many as a sweep of the whole panel gives.
 constexpr std::uint32_t plane_points = 80000, handle_points = 4000;
 
+// Nothing where a corner is out of the lens's view.
+std::optional<MarkerObservation> marker_as_it_is(const Pose& base_from_panel, const MarkerCalibration& marker,
+                                                 const CameraCalibration& camera) {
+  const scan::CameraModel model(camera.intrinsics);
+  const double h = marker.size_m / 2;
+  const std::array<Vec3, 4> corners{Vec3(-h, -h, 0), Vec3(h, -h, 0), Vec3(h, h, 0), Vec3(-h, h, 0)};
+  MarkerObservation seen;
+  seen.id = marker.id;
+  seen.camera_from_tag = camera.base_from_camera.inverse() * base_from_panel * marker.panel_from_tag;
+  seen.margin = 80;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const std::optional<Vec2> pixel = model.project(seen.camera_from_tag * corners[i]);
+    if (!pixel) return std::nullopt;
+    seen.corners_px[i] = *pixel;
+    seen.centre_px += *pixel / 4;
+  }
+  return seen;
+}
+
 }  // namespace
 
-PanelResult panel_as_it_is(const Pose& base_from_panel, double handle_rad, const PanelLayout& layout, const MarkerCalibration& marker,
-                           const CameraCalibration& camera) {
+PanelResult panel_as_it_is(const Pose& base_from_panel, std::span<const double> handles_rad, const PanelLayout& layout,
+                           const MarkerCalibrations& markers, const CameraCalibration& camera) {
   PanelResult result;
   result.fit.valid = true;
   result.fit.plane.normal = base_from_panel.linear().col(2);
@@ -28,33 +47,27 @@ PanelResult panel_as_it_is(const Pose& base_from_panel, double handle_rad, const
   result.fit.seen_m = (layout.plate_max_m - layout.plate_min_m).minCoeff();
   result.confidence = 0.9f;
 
-  const Pose camera_from_tag = camera.base_from_camera.inverse() * base_from_panel * marker.panel_from_tag;
-  const scan::CameraModel model(camera.intrinsics);
-  const double h = marker.size_m / 2;
-  const std::array<Vec3, 4> corners{Vec3(-h, -h, 0), Vec3(h, -h, 0), Vec3(h, h, 0), Vec3(-h, h, 0)};
-  result.marker.found = true;
-  result.marker.id = marker.id;
-  result.marker.camera_from_tag = camera_from_tag;
-  result.marker.margin = 80;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const std::optional<Vec2> pixel = model.project(camera_from_tag * corners[i]);
-    result.marker.found = result.marker.found && pixel.has_value();
-    result.marker.corners_px[i] = pixel.value_or(Vec2::Zero());
-    result.marker.centre_px += result.marker.corners_px[i] / 4;
+  for (const MarkerCalibration& marker : markers) {
+    if (const std::optional<MarkerObservation> seen = marker_as_it_is(base_from_panel, marker, camera))
+      (void)result.markers.push_back(*seen);
   }
-
-  ProudCluster handle;
-  handle.centroid_m = base_from_panel * Vec3(0, 0, layout.handle_height_m);
-  handle.axis = base_from_panel.linear() * Vec3(-std::sin(handle_rad), std::cos(handle_rad), 0);
-  handle.length_m = layout.handle_length_m;
-  handle.width_m = layout.handle_thickness_m;
-  handle.height_m = handle.height_max_m = layout.handle_height_m;
-  handle.points = handle_points;
-  (void)result.clusters.push_back(handle);
-  if (layout.pointer != PanelLayout::Pointer::none) {
-    result.pointer.seen = true;
-    result.pointer.direction = handle.axis;
-    result.pointer.confidence = 0.8f;
+  for (std::size_t i = 0; i < layout.valves.size(); ++i) {
+    const PanelLayout::Valve& valve = layout.valves[i];
+    ProudCluster handle;
+    handle.centroid_m = base_from_panel * valve.handle_centre_m();
+    handle.axis = base_from_panel.linear() * Vec3(-std::sin(handles_rad[i]), std::cos(handles_rad[i]), 0);
+    handle.length_m = valve.handle_length_m;
+    handle.width_m = valve.handle_thickness_m;
+    handle.height_m = handle.height_max_m = valve.handle_height_m;
+    handle.points = handle_points;
+    (void)result.clusters.push_back(handle);
+    PointerObservation pointer;
+    if (valve.has_pointer()) {
+      pointer.seen = true;
+      pointer.direction = handle.axis;
+      pointer.confidence = 0.8f;
+    }
+    (void)result.pointers.push_back(pointer);
   }
   return result;
 }

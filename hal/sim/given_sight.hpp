@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "host_sim/optics/optics.hpp"
 #include "shared/calibration/calibration.hpp"
@@ -12,9 +13,9 @@
 
 namespace lf::hal {
 
-// What panel vision would say, without error, of a panel that stands so.
-PanelResult panel_as_it_is(const Pose& base_from_panel, double handle_rad, const PanelLayout& layout, const MarkerCalibration& marker,
-                           const CameraCalibration& camera);
+// What panel vision would say, without error, of a panel that stands so. `handles_rad`: of the layout's valves.
+PanelResult panel_as_it_is(const Pose& base_from_panel, std::span<const double> handles_rad, const PanelLayout& layout,
+                           const MarkerCalibrations& markers, const CameraCalibration& camera);
 
 // A picture with nothing in it, which differs from one exposure to the next as a camera's does. It is too small for the core to look for peaks in.
 void blank_picture(std::uint32_t sequence, optics::Frame& frame);

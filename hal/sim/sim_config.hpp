@@ -31,6 +31,8 @@ struct SimConfig {
   // Sight is made of the truth: nothing is rendered or looked for, and the platform has no threads of its own. For runs that are not about seeing.
   bool given_sight = false;
 
+  std::size_t valve_that_breaks = 0;  // whose handle SimFaultKind::handle_breaks takes
+
   // What goes wrong besides `devices.faults`.
   std::vector<SimFault> faults;
 };

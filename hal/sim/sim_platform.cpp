@@ -56,7 +56,7 @@ void SimPlatform::begin(const SimFault& fault) {
       return;
     }
     case SimFaultKind::image_lost: ++images_to_lose_; return;
-    case SimFaultKind::handle_breaks: world_.break_handle(); return;
+    case SimFaultKind::handle_breaks: world_.break_handle(config_.valve_that_breaks); return;
     case SimFaultKind::obstacle: world_.push_obstacle(); return;
     case SimFaultKind::abort_ordered: orders_.push_back(Command::abort); return;
     case SimFaultKind::estop_ordered: orders_.push_back(Command::emergency_stop); return;
@@ -172,8 +172,10 @@ PortStatus SimPlatform::receive_image(std::uint8_t camera, Image& image) {
 }
 
 PanelResult SimPlatform::see_as_it_is(const PanelRequest& request) const {
-  PanelResult answer = panel_as_it_is(config_.world.base_from_panel, world_.valve_angle_rad(), config_.vision.panel, config_.vision.marker,
-                                      config_.vision.camera);
+  std::vector<double> handles_rad;
+  for (std::size_t i = 0; i < world_.valve_count(); ++i) handles_rad.push_back(world_.valve_angle_rad(i));
+  PanelResult answer =
+      panel_as_it_is(config_.world.base_from_panel, handles_rad, config_.vision.panel, config_.vision.markers, config_.vision.camera);
   answer.id = request.id;
   answer.measured = now_;
   return answer;
@@ -200,7 +202,7 @@ PortStatus SimPlatform::receive_panel(PanelResult& result) {
   if (!vision_) result = *given_answer_;
   if (faults_.on(SimFaultKind::vision_silent)) return port_empty;
   if (faults_.on(SimFaultKind::vision_poor)) {
-    result.marker = {};
+    result.markers.clear();
     result.clusters.clear();
     result.confidence = 0;
   }

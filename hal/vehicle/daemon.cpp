@@ -83,9 +83,10 @@ OrderDesk::Ways Daemon::ways(const Surroundings& surroundings) {
     };
   }
   ways.interface = config_.interface;
+  ways.names = config_.machine.survey.names;
   ways.why_not = [this](const mission::Tasks& tasks) {
-    const std::string beyond = config::turn_problem(tasks, config_.core.controller.mission.layout);
-    return beyond.empty() ? config::tasks_problem(config_.machine, config_.core.controller.mission_limits, tasks) : beyond;
+    const std::string beyond = config::turn_problem(tasks, config_.core.controller.mission.layout, config_.machine.survey.names);
+    return beyond.empty() ? config::tasks_problem(config_.machine, config_.core, tasks) : beyond;
   };
   ways.no_sight = [this]() -> std::string { return board_.newest().camera.images > 0 ? "" : camera_lacks_; };
   ways.commissioner = &commissioner_;

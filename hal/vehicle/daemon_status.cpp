@@ -15,7 +15,7 @@ Json Daemon::latencies() const {
 
 Json Daemon::status() const {
   const StatusBoard::Newest now = board_.newest();
-  Json json = status_json(now.control, now.telemetry, config_.core.error_texts);
+  Json json = status_json(now.control, now.telemetry, config_.core.error_texts, config_.machine.survey.names);
   json["interface"] = config_.interface;
   if (now.control.commissioning) {
     json["standing"] = "commissioning";

@@ -5,6 +5,7 @@
 #include <CLI/App.hpp>
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -229,19 +230,37 @@ void add_jog(CLI::App& app, const Options& options, Action& action) {
   });
 }
 
+// "90", or "V2=90"; null where it is neither.
+Json turn_of(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  const std::string angle = equals == std::string::npos ? text : text.substr(equals + 1);
+  double to_deg = 0;
+  const auto [end, error] = std::from_chars(angle.data(), angle.data() + angle.size(), to_deg);
+  if (error != std::errc() || end != angle.data() + angle.size() || equals == 0) return nullptr;
+  Json turn{{"to_deg", to_deg}};
+  if (equals != std::string::npos) turn["valve"] = text.substr(0, equals);
+  return turn;
+}
+
+std::string turn_problem(const std::string& text) {
+  return turn_of(text).is_null() ? "'" + text + "' is no angle in degrees, and no VALVE=ANGLE" : "";
+}
+
 void add_task(CLI::App& app, const Options& options, Action& action) {
   struct Job {
-    std::vector<double> turns;
+    std::vector<std::string> turns;
     std::vector<std::string> buttons;
   };
   auto job = std::make_shared<Job>();
   CLI::App* command = app.add_subcommand("task", right_of("task")->does);
-  command->add_option("--turn", job->turns, "turn the valve to this angle, degrees")->expected(1);
-  command->add_option("--press", job->buttons, "then press these buttons: left, centre, right")->delimiter(',');
+  command->add_option("--turn", job->turns, "turn the valve to this angle, degrees; VALVE=ANGLE where the panel has several")
+      ->expected(1)
+      ->check(turn_problem);
+  command->add_option("--press", job->buttons, "then press these buttons, by their names on the panel: left,centre")->delimiter(',');
   command->callback([&options, &action, job] {
     action = [&options, job] {
       Json tasks = Json::array();
-      for (const double turn : job->turns) tasks.push_back({{"turn_valve", {{"to_deg", turn}}}});
+      for (const std::string& turn : job->turns) tasks.push_back({{"turn_valve", turn_of(turn)}});
       if (!job->buttons.empty()) tasks.push_back({{"press_buttons", {{"order", job->buttons}}}});
       return ask(options, {{"do", "task"}, {"tasks", tasks}});
     };

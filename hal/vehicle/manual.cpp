@@ -81,7 +81,7 @@ Manual vehicle_manual() {
 std::string vehicle_page() {
   VehicleConfig vehicle;
   config::Task task;
-  return command_line::man_page(vehicle_manual(), keys(vehicle), {{"KEYS OF A TASK", keys(task)}});
+  return command_line::man_page(vehicle_manual(), keys(vehicle), {{"KEYS OF A TASK", keys(task, {})}});
 }
 
 }  // namespace

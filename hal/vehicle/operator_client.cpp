@@ -103,6 +103,7 @@ std::string status_text(const Json& status) {
   if (status.contains("faults since the end")) text += "  since the end: " + status["faults since the end"].dump() + "\n";
   for (const Json& task : status["tasks"]) {
     text += "  task " + task["task"].get<std::string>();
+    if (task.contains("valve")) text += " " + task["valve"].get<std::string>();
     if (task.contains("button")) text += " " + task["button"].get<std::string>();
     if (task.contains("target_deg")) text += number(" to %.1f deg", task["target_deg"].get<double>());
     text += task["done"].get<bool>() ? ": done\n" : ": not done\n";

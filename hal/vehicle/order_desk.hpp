@@ -35,6 +35,7 @@ class OrderDesk {
     std::function<void(const Json&)> log;                       // a line of log.jsonl
     std::function<User(unsigned)> look_up;                      // may block: called on a thread of its own
     std::string interface;                                      // for messages
+    PanelNames names;                                           // by which orders name valves and buttons
     std::function<std::string()> no_sight;                      // why there is no camera, in words; empty: there is one
     std::function<std::string(const mission::Tasks&)> why_not;  // tasks that this machine cannot do, in words; empty: it can
     Commissioner* commissioner = nullptr;                       // of the same thread; outlives the desk

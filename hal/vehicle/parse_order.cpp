@@ -115,47 +115,63 @@ void read_jog(const Value& request, mission::Order& order) {
   if (!std::isfinite(order.by_rad) || std::abs(order.by_rad) > mission::largest_jog_rad) refuse("a jog is of 20 deg at most");
 }
 
-config::Task read_turn(const Value& turn) {
+// "left, centre or right"
+std::string listed(const std::vector<std::string>& names, const char* last = " or ") {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i) text += (i == 0 ? "" : i + 1 == names.size() ? last : ", ") + names[i];
+  return names.empty() ? "none" : text;
+}
+
+config::Task read_turn(const Value& turn, const PanelNames& names) {
   const Value& to = member(turn, "to_deg");
-  if (!to.is_number()) refuse("turn_valve takes {\"to_deg\": DEGREES}");
-  allow_only(turn, "turn_valve", {"to_deg"});
+  const Value& valve = member(turn, "valve");
+  if (!to.is_number() || (!valve.is_null() && !valve.is_string()))
+    refuse("turn_valve takes {\"to_deg\": DEGREES}, and {\"valve\": NAME} where the panel has several");
+  allow_only(turn, "turn_valve", {"to_deg", "valve"});
   config::Task task;
+  if (valve.is_string()) task.valve = valve.get<std::string>();
   task.kind = config::Task::Kind::turn_valve;
+  if (const std::string& name = task.valve; !config::find_valve(names, name)) {
+    const std::string has = listed(names.valves);
+    refuse(name.empty() ? "\"valve\" is missing: the panel has " + has : "no valve " + quoted(name) + ": " + has);
+  }
   task.to_deg = to.get<double>();
   if (!(std::abs(task.to_deg) <= largest_turn_deg)) refuse("\"to_deg\" is from -180 to 180");
   return task;
 }
 
-config::Task read_presses(const Value& presses) {
+config::Task read_presses(const Value& presses, const PanelNames& names) {
   const Value& buttons = member(presses, "order");
-  if (!buttons.is_array() || buttons.empty()) refuse("press_buttons takes {\"order\": [left, centre, right]}, one or more of them");
+  if (!buttons.is_array() || buttons.empty())
+    refuse("press_buttons takes {\"order\": [" + listed(names.buttons, ", ") + "]}, one or more of them");
   allow_only(presses, "press_buttons", {"order"});
   config::Task task;
   task.kind = config::Task::Kind::press_buttons;
   task.order.clear();
   for (const Value& button : buttons) {
     const std::string name = button.is_string() ? button.get<std::string>() : "";
-    if (name != "left" && name != "centre" && name != "right") refuse("no button " + quoted(name) + ": left, centre or right");
+    if (!config::find_button(names, name)) refuse("no button " + quoted(name) + ": " + listed(names.buttons));
     task.order.push_back(name);
   }
   return task;
 }
 
-config::Task read_task(const Value& task) {
+config::Task read_task(const Value& task, const PanelNames& names) {
   const bool turn = task.is_object() && task.size() == 1 && task.contains("turn_valve");
   const bool press = task.is_object() && task.size() == 1 && task.contains("press_buttons");
-  if (!turn && !press) refuse("a task is {\"turn_valve\": {\"to_deg\": N}} or {\"press_buttons\": {\"order\": [left, centre, right]}}");
-  return turn ? read_turn(task["turn_valve"]) : read_presses(task["press_buttons"]);
+  if (!turn && !press)
+    refuse("a task is {\"turn_valve\": {\"to_deg\": N}} or {\"press_buttons\": {\"order\": [" + listed(names.buttons, ", ") + "]}}");
+  return turn ? read_turn(task["turn_valve"], names) : read_presses(task["press_buttons"], names);
 }
 
-void read_tasks(const Value& request, mission::Order& order) {
+void read_tasks(const Value& request, const PanelNames& names, mission::Order& order) {
   allow_only(request, "task", {"do", "tasks"});
   const Value& list = member(request, "tasks");
   if (!list.is_array()) refuse("task takes \"tasks\", a list");
   std::vector<config::Task> tasks;
-  for (const Value& task : list) tasks.push_back(read_task(task));
+  for (const Value& task : list) tasks.push_back(read_task(task, names));
   try {
-    order.tasks = config::core_tasks(tasks, "task");
+    order.tasks = config::core_tasks(tasks, names, "task");
   } catch (const InputError& error) {
     refuse(error.what());
   }
@@ -188,7 +204,7 @@ void read_commission(const Value& request, CommissionOrder& order) {
     refuse("\"moved\" (--moved) says that a joint's encoder or stop was changed: commission this joint alone, with \"joints\" (--joint)");
 }
 
-OperatorRequest read_request(std::string_view line) {
+OperatorRequest read_request(std::string_view line, const PanelNames& names) {
   if (nested_too_deep(line)) refuse("nested too deep: a request is a JSON object such as {\"do\": \"status\"}");
   const Value request = Value::parse(line, nullptr, false);
   const Value& what = member(request, "do");
@@ -203,7 +219,7 @@ OperatorRequest read_request(std::string_view line) {
   if (command == Command::jog) {
     read_jog(request, read.order);
   } else if (command == Command::set_tasks) {
-    read_tasks(request, read.order);
+    read_tasks(request, names, read.order);
   } else if (name == "commission") {
     read_commission(request, read.commission);
   } else {
@@ -214,9 +230,9 @@ OperatorRequest read_request(std::string_view line) {
 
 }  // namespace
 
-ParsedOrder parse_order(std::string_view line) {
+ParsedOrder parse_order(std::string_view line, const PanelNames& names) {
   try {
-    return read_request(line);
+    return read_request(line, names);
   } catch (const Wrong& wrong) {
     return wrong.why;
   } catch (const std::exception& error) {  // of the JSON library: no path to it is known

@@ -11,6 +11,7 @@
 
 #include "firmware/mission/orders.hpp"
 #include "hal/vehicle/operator_rights.hpp"
+#include "shared/panel/panel_names.hpp"
 
 namespace lf::hal {
 
@@ -31,6 +32,6 @@ struct OperatorRequest {
 // The text says what is wrong: one line of valid UTF-8, at most some 200 letters.
 using ParsedOrder = std::variant<OperatorRequest, std::string>;
 
-ParsedOrder parse_order(std::string_view line);
+ParsedOrder parse_order(std::string_view line, const PanelNames& names = {});  // names: of the panel's features
 
 }  // namespace lf::hal

@@ -97,18 +97,18 @@ Json node_json(const canopen::NodeBoot& boot) {
   return json;
 }
 
-Json tasks_json(const ControlReport& control) {
+Json tasks_json(const ControlReport& control, const PanelNames& names) {
   Json all = Json::array();
-  constexpr std::array<const char*, 3> buttons{"left", "centre", "right"};
   for (const mission::TaskResult& result : control.tasks) {
     Json json;
     if (result.task.kind == mission::Task::Kind::turn_valve) {
       json["task"] = "turn_valve";
+      if (names.valves.size() > 1 && result.task.valve < names.valves.size()) json["valve"] = names.valves[result.task.valve];
       json["target_deg"] = deg_from_rad(result.task.to_rad);
       if (result.done) json["reached_deg"] = deg_from_rad(result.reached_rad);
     } else {
       json["task"] = "press_button";
-      json["button"] = result.task.button < buttons.size() ? buttons[result.task.button] : "?";
+      json["button"] = result.task.button < names.buttons.size() ? names.buttons[result.task.button] : "?";
       json["presses"] = result.presses;
       if (result.attempted) json["travel_mm"] = 1e3 * result.travel_m;
       if (result.attempted) json["click_felt"] = result.click_felt;
@@ -151,7 +151,7 @@ Json counters_json(const ControlReport& control, const CameraReport& camera, con
   return json;
 }
 
-Json status_json(const ControlReport& control, const Telemetry& telemetry, const config::ErrorTexts& texts) {
+Json status_json(const ControlReport& control, const Telemetry& telemetry, const config::ErrorTexts& texts, const PanelNames& names) {
   Json json;
   json["t_s"] = control.t.s();
   json["standing"] = mission::name(control.standing);
@@ -171,7 +171,7 @@ Json status_json(const ControlReport& control, const Telemetry& telemetry, const
     const Json later = config::fault_counts_json(control.faults_after_end);
     if (!later.empty()) json["faults since the end"] = later;
   }
-  json["tasks"] = tasks_json(control);
+  json["tasks"] = tasks_json(control, names);
   if (const Json fit = config::fit_json(telemetry.sight.fit, control.tasks); !fit.empty()) json["fit"] = fit;
   for (std::size_t i = 0; i < joint_count; ++i) {
     Json joint{{"joint", config::joint_name(i)},

@@ -12,6 +12,7 @@
 #include "hal/config/key_listing.hpp"
 #include "hal/config/key_schema.hpp"
 #include "hal/config/panel_check.hpp"
+#include "hal/config/panel_file.hpp"
 #include "hal/config/share.hpp"
 #include "hal/config/text_file.hpp"
 #include "hal/config/yaml_reader.hpp"
@@ -53,8 +54,8 @@ void add_camera_source(Keys& all, VehicleConfig& c) {
 }
 
 void add_machine(Keys& all, VehicleConfig& c) {
-  config::add_panel(all, c.machine.panel);
-  config::add_valve_stops(all, c.machine.valve);
+  config::add_panel(all, c.panel_file, c.docked_panel);
+  config::add_valve_stops(all, c.valve_stops);
   config::add_camera(all, c.machine.camera);
   config::add_laser(all, c.machine.laser);
   config::add_vehicle(all, c.machine.vehicle);
@@ -121,9 +122,12 @@ void check_together(const VehicleConfig& c, const std::string& file, std::vector
   check_calibration(c.machine, refuse);
   const PanelLayout& panel = c.machine.panel;
   if ((panel.plate_min_m.array() >= panel.plate_max_m.array()).any()) refuse("'panel.plate_min_m' is not below 'panel.plate_max_m'");
-  if (panel.marker_plate_m <= panel.marker_size_m) refuse("'panel.marker_plate_m' is not larger than 'panel.marker_size_m'");
+  for (std::size_t i = 0; i < panel.markers.size(); ++i) {
+    const auto marker = [&](const char* field) { return config::marker_key(c.machine.survey, i, field); };
+    if (panel.markers[i].plate_m <= panel.markers[i].size_m) refuse(marker("plate_m") + " is not larger than " + marker("size_m"));
+  }
   for (const std::string& problem : config::handle_problems(c.machine)) refuse(problem);
-  for (const std::string& problem : config::panel_problems(panel)) refuse(problem);
+  for (const std::string& problem : config::panel_problems(panel, c.machine.survey)) refuse(problem);
   for (const std::string& problem : config::low_button_problems(c.machine)) refuse(problem);
   const double between_ms = c.machine.mission.camera_syncs * can_map::sync_period.s() * 1e3;
   if (c.match_window_us * 1e-3 >= between_ms / 2)
@@ -185,7 +189,10 @@ YAML::Node read_keys(const std::string& path, VehicleConfig& config, std::vector
   const config::Source source = config::Source::of_file(path, problems);
   const YAML::Node root = config::parse_yaml(config::read_text_file(path), source);
   if (!root.IsNull() && !root.IsMap()) source.refuse(root.Mark(), "a vehicle's configuration is a group of keys");
-  if (root.IsMap()) config::read_map(root, "", "", keys(config), source);
+  if (!root.IsMap()) return root;
+  // A file's names are not known yet: any is taken, and looked for later.
+  if (!config::panel_named_in(root).empty()) config.machine.survey.names = {{}, {}, {}};
+  config::read_map(root, "", "", keys(config), source);
   return root;
 }
 
@@ -232,7 +239,7 @@ Keys keys(VehicleConfig& config) {
   Keys all;
   add_bus(all, config);
   add_camera_source(all, config);
-  all.push_back(key("tasks", "", 0, 0, &config.machine.tasks, "the job, in order"));
+  config::add_tasks(all, config.machine.tasks, config.machine.survey.names, "the job, in order");
   add_machine(all, config);
   add_running(all, config);
   return all;
@@ -292,6 +299,9 @@ VehicleConfig load_vehicle_config(const std::string& path, std::vector<std::stri
   VehicleConfig config;
   read_keys(path, config, problems);
   find_places(config, problems);
+  const bool panel_known = config::settle_panel(path, config.panel_file, config.docked_panel, config.valve_stops, config.machine.panel,
+                                                config.machine.survey, problems);
+  if (!panel_known) config.machine.tasks = config::Machine().tasks;  // its own name what nobody has read
   check_together(config, path, problems);
   find_homing(config, problems);
   config.core = config::make_core(config.machine, problems);

@@ -16,6 +16,10 @@ namespace lf::hal {
 // Once it is loaded, paths are absolute: those that the file has are relative to its folder.
 struct VehicleConfig {
   config::Machine machine;
+  // The panel's keys: what `machine.panel` is made of.
+  std::string panel_file;
+  config::DockedPanel docked_panel;
+  config::ValveStops valve_stops;
   config::Core core;          // made of it, with the homing file's offsets
   bool homing_named = false;  // by the file's `homing.file`, which `machine` has only if it is there
 

@@ -15,7 +15,7 @@ constexpr Duration longest_look = Duration::from_ms(5);
 vision::PanelVisionConfig panel_vision_config(const ControllerConfig& core) {
   vision::PanelVisionConfig config;
   config.camera = core.camera;
-  config.marker = core.marker;
+  config.markers = core.markers;
   config.panel = core.mission.layout;
   return config;
 }

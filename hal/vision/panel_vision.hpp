@@ -18,7 +18,7 @@ namespace lf::vision {
 
 struct PanelVisionConfig {
   CameraCalibration camera;
-  MarkerCalibration marker;
+  MarkerCalibrations markers;
   MarkerDetectorConfig detector;
   PanelLayout panel;
   double region_margin_m = 0.025;  // the plate is looked for so far beyond its nominal outline: the worst docking error
@@ -30,11 +30,11 @@ struct PanelVisionConfig {
 };
 
 // One analysis. Never throws: what OpenCV, PCL or memory throw becomes confidence 0, and `failed` (if given) is set.
-// The marker is the one with the configured id; of its two poses, where the image cannot tell (ambiguity below `full_ambiguity`), the one
+// The markers are those with the configured ids, in the order of the configuration; of the two poses of each, where the image cannot tell (ambiguity below `full_ambiguity`), the one
 // whose z agrees better with the plane's normal. `measured` is the still's time; `answered` is left to the platform.
-// Confidence is the smallest of: inlier ratio of the fit; margin over `full_margin`; a half to one as the ambiguity goes from 1 to
+// Confidence is the smallest of: inlier ratio of the fit; of the marker that gives most, its margin over `full_margin` and a half to one as the ambiguity goes from 1 to
 // `full_ambiguity`; points of the largest cluster over `full_cluster_points`. It is 0 when the fit is not valid, when a still was given and the
-// configured marker is not in it, or when nothing is proud. Without a still (`has_still` false) the marker has no say.
+// no configured marker is in it, or when nothing is proud. Without a still (`has_still` false) the marker has no say.
 PanelResult analyse_panel(const PanelRequest& request, ImageView still, std::span<const CloudPoint> cloud, const PanelVisionConfig& config,
                           bool* failed = nullptr);
 

@@ -72,18 +72,18 @@ struct Bar {
   double half_length_m = 0, half_thickness_m = 0;
 };
 
-Bar bar_at(const BarPlace& place, const PanelLayout& layout) {
+Bar bar_at(const BarPlace& place, const PanelLayout::Valve& valve) {
   Bar bar;
   const Vec3 along(-std::sin(place.angle_rad), std::cos(place.angle_rad), 0),
       across(std::cos(place.angle_rad), std::sin(place.angle_rad), 0);
   // Along the bar its visible points say little of its middle: an end may be hidden. The valve's axis is known from the marker.
-  const double aside_m = across.dot(place.centre_m);
-  bar.middle = place.base_from_panel * (aside_m * across + Vec3(0, 0, layout.handle_height_m));
+  const double aside_m = across.dot(place.centre_m - Vec3(valve.at_m.x(), valve.at_m.y(), 0));
+  bar.middle = place.base_from_panel * (aside_m * across + valve.handle_centre_m());
   bar.along = place.base_from_panel.linear() * along;
   bar.across = place.base_from_panel.linear() * across;
   bar.out = place.base_from_panel.linear().col(2);
-  bar.half_length_m = layout.handle_length_m / 2;
-  bar.half_thickness_m = layout.handle_thickness_m / 2;
+  bar.half_length_m = valve.handle_length_m / 2;
+  bar.half_thickness_m = valve.handle_thickness_m / 2;
   return bar;
 }
 
@@ -205,12 +205,12 @@ double step_evidence(std::span<const BarSample> samples, double edge_m, double s
 }
 
 PointerObservation find_pointer(const BarPlace& place, ImageView still, std::span<const CloudPoint> cloud, const CameraCalibration& camera,
-                                const PanelLayout& layout) {
+                                const PanelLayout::Valve& valve) {
   PointerObservation pointer;
-  const double edge_m = layout.handle_length_m / 2 - layout.pointer_length_m;
-  if (layout.pointer == PanelLayout::Pointer::none || !(edge_m > edge_blur_m)) return pointer;
-  const double sign = layout.pointer == PanelLayout::Pointer::light_end ? 1 : -1;
-  const Bar bar = bar_at(place, layout);
+  const double edge_m = valve.handle_length_m / 2 - valve.pointer_length_m;
+  if (!valve.has_pointer() || !(edge_m > edge_blur_m)) return pointer;
+  const double sign = valve.pointer == PanelLayout::Pointer::light_end ? 1 : -1;
+  const Bar bar = bar_at(place, valve);
   pointer.still_evidence = still_evidence(bar, still, camera, edge_m, sign);
   pointer.cloud_evidence = cloud_evidence(bar, cloud, edge_m, sign);
   const double both = (pointer.still_evidence + pointer.cloud_evidence) / 2;

@@ -9,7 +9,7 @@
 
 #include <span>
 
-#include "firmware/scan/valve_frame.hpp"
+#include "firmware/scan/panel_frame.hpp"
 #include "shared/calibration/calibration.hpp"
 #include "shared/messages/image.hpp"
 #include "shared/messages/panel_vision.hpp"
@@ -24,10 +24,10 @@ struct BarPlace {
   Vec3 centre_m = Vec3::Zero();  // panel frame; of the visible points
 };
 
-// `still` may be invalid, `cloud` empty: what is missing gives no evidence. `layout.pointer` none, or a mark that covers half of the bar or more: nothing
+// `still` may be invalid, `cloud` empty: what is missing gives no evidence. `valve.pointer` none, or a mark that covers half of the bar or more: nothing
 // is seen. Never throws.
 PointerObservation find_pointer(const BarPlace& bar, ImageView still, std::span<const CloudPoint> cloud, const CameraCalibration& camera,
-                                const PanelLayout& layout);
+                                const PanelLayout::Valve& valve);
 
 // A value at a place along the bar, m from its middle toward the end under test.
 struct BarSample {

@@ -4,12 +4,9 @@
 
 #include "hal/config/text_file.hpp"
 #include "host_sim/app/command.hpp"
-#include "host_sim/optics/outside_view.hpp"
-#include "host_sim/record/file_sink.hpp"
-#include "host_sim/record/png.hpp"
+#include "host_sim/app/outside_picture.hpp"
 #include "host_sim/scenario/instance.hpp"
 #include "host_sim/scenario/scene_file.hpp"
-#include "host_sim/world/world.hpp"
 
 namespace lf::app {
 namespace {
@@ -45,32 +42,12 @@ scenario::Scenario among(const std::string& file) {
   return scenario;
 }
 
-// What a run begins with where the vehicle is docked exactly.
-void draw(const scenario::Scenario& scenario, const std::string& picture) {
-  scenario::Sample sample = scenario::draw(scenario, 1);
-  sample.docking_shift_m = sample.docking_turn_rad = Vec3::Zero();
-  const scenario::Nominal nominal = scenario::make_nominal(scenario, sample.lamps_lit);
-  const hal::SimConfig sim = scenario::make_truth(scenario, sample, nominal, 1);
-  const world::World world(sim.world);
-  optics::Optics camera(optics::outside_view(sim.optics, optics::OutsideView{}));
-  optics::Shot shot;
-  shot.poses = world.base_from_body();
-  shot.lamps = 1;
-  shot.laser = 0;
-  optics::Frame frame;
-  camera.render(shot, frame);
-  record::RgbImage image(frame.width, frame.height);
-  image.pixels = frame.pixels;
-  const std::vector<std::uint8_t> png = record::encode_png(image);
-  record::write_file_atomically(picture, {reinterpret_cast<const char*>(png.data()), png.size()});
-}
-
 }  // namespace
 
 int check_scene(const std::string& file, const std::string& picture, bool json) {
   const scenario::Scenario scenario = among(file);
   const scenario::SceneFile& scene = *scenario.objects;
-  if (!picture.empty()) draw(scenario, picture);
+  if (!picture.empty()) draw_outside(scenario, scenario, picture);
   if (json) {
     Json objects = Json::array();
     for (const scenario::SceneFile::Placed& object : scene.objects) objects.push_back(json_of(object));

@@ -6,6 +6,7 @@
 #include "firmware/arm/chain/ik.hpp"
 #include "hal/config/arm_chain.hpp"
 #include "hal/config/nearest.hpp"
+#include "host_sim/app/check_panel.hpp"
 #include "host_sim/app/check_scene.hpp"
 #include "host_sim/app/checks.hpp"
 #include "host_sim/app/command.hpp"
@@ -220,11 +221,11 @@ void refuse_other_options(const CLI::App& command, const std::string& kind, cons
 }
 
 int check(const CLI::App& command, const Options& options) {
-  config::check_names({options.kind}, {"arm", "scene"}, "check");
-  if (options.kind == "scene") {
+  config::check_names({options.kind}, {"arm", "panel", "scene"}, "check");
+  if (options.kind != "arm") {
     refuse_other_options(command, options.kind,
                          {"--base", "--tool", "--approach", "--opening", "--packages", "--ignore-missing", "--postures"});
-    return check_scene(options.file, options.picture, options.json);
+    return (options.kind == "scene" ? check_scene : check_panel)(options.file, options.picture, options.json);
   }
   refuse_other_options(command, options.kind, {"--picture"});
   return check_arm(options);
@@ -233,12 +234,14 @@ int check(const CLI::App& command, const Options& options) {
 }  // namespace
 
 void add_check(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("check",
-                                         "Read a file strictly and tell what is in it and all that was assumed: an arm's URDF, with its "
-                                         "joints, its inverse kinematics and where its tool comes; or a scene");
+  CLI::App* command =
+      app.add_subcommand("check",
+                         "Read a file strictly and tell what is in it and all that was assumed: an arm's URDF, with its "
+                         "joints, its inverse kinematics and where its tool comes; a panel, with what of it the robot can work; or a "
+                         "scene");
   auto options = std::make_shared<Options>();
-  command->add_option("KIND", options->kind, "What FILE describes: arm or scene")->required();
-  command->add_option("FILE", options->file, "An arm's URDF file, or a scene's YAML file")->required();
+  command->add_option("KIND", options->kind, "What FILE describes: arm, panel or scene")->required();
+  command->add_option("FILE", options->file, "An arm's URDF file, a scene's YAML file, or a panel's or a shipped panel's name")->required();
   command->add_option("--base", options->ends.base_link, "The link that the arm begins at; the root where it is not given")
       ->check(check_filled);
   command->add_option("--tool", options->ends.tool_link, "The link that carries the tool; needed where the arm ends at several")
@@ -258,7 +261,7 @@ void add_check(CLI::App& app, Action& action) {
       ->check(check_folder);
   command->add_flag("--ignore-missing", options->ignore_missing, "Leave out collision shapes whose mesh is missing, and say so");
   command->add_option("--postures", options->postures, "Random postures to try; 200 where it is not given")->check(within(0, 100000));
-  command->add_option("--picture", options->picture, "scene: draw it with the default robot and panel, a .png file")->check(check_png);
+  command->add_option("--picture", options->picture, "panel, scene: draw it with the default robot, a .png file")->check(check_png);
   command->add_flag("--json", options->json, "Print JSON");
   command->callback([options, command, &action] { action = [options, command] { return check(*command, *options); }; });
 }

@@ -62,12 +62,53 @@ std::string new_scene() {
          "#    position_m: [-0.27, -0.18, 0.03]\n";
 }
 
+std::string new_panel() {
+  return "# What is on your panel: name this file with `panel: {file: THIS_FILE}` in a scenario, or fly\n"
+         "#   lanternfish run default --set panel.file=THIS_FILE --set 'tasks=[{turn_valve: {valve: V1, to_deg: 45}}, {press_buttons: "
+         "{order: [B1]}}]'\n"
+         "# `lanternfish check panel THIS_FILE --picture panel.png` tells and draws it, and says what of it the robot can work. "
+         "docs/your-panel.md\n"
+         "# explains each key. Places are [right, up] in metres from the panel's origin, which the robot docks before: panel.ahead_m, "
+         "right_m and\n"
+         "# down_m of the scenario say where it is. Keys that are left out have the value that stands here behind '#'.\n"
+         "version: 1\n"
+         "plate:\n"
+         "  min_m: [-0.40, -0.378]   # lower left corner\n"
+         "  max_m: [0.40, 0.222]     # upper right corner\n"
+         "#  thickness_m: 0.02\n"
+         "valves:                    # T-bars, up to 16\n"
+         "  - name: V1\n"
+         "    at_m: [0, 0]           # its axis\n"
+         "    torque_nm: 3           # the most that it takes to turn: more than the arm gives is refused\n"
+         "#    length_m: 0.0966       # of the bar\n"
+         "#    thickness_m: 0.0126\n"
+         "#    height_m: 0.1          # of its centre line over the plate\n"
+         "#    pointer: light_end     # the painted end, which points up at 0 degrees: none, light_end or dark_end\n"
+         "#    pointer_length_m: 0.03\n"
+         "#    stop_min_deg: -105     # its range; 0 is a vertical bar, positive counter-clockwise\n"
+         "#    stop_max_deg: 105\n"
+         "#    friction_nm: {min: 0.5, max: 3}   # this and the next are for simulation alone\n"
+         "#    start_deg: {min: -40, max: 40}\n"
+         "#    detents_deg: [-90, 0, 90]\n"
+         "buttons:                   # up to 16\n"
+         "  - name: B1\n"
+         "    at_m: [-0.067, 0.141]\n"
+         "#    width_m: 0.04          # of its cap\n"
+         "#    height_m: 0.03         # over the plate\n"
+         "#    stroke_m: 0.005\n"
+         "markers:                   # AprilTags 36h11, one to 16: a look needs one of them\n"
+         "  - id: 7\n"
+         "    at_m: [-0.17, 0.072]\n"
+         "#    size_m: 0.08           # of its black square\n"
+         "#    plate_m: 0.1\n";
+}
+
 struct Options {
   std::string kind, name;
 };
 
 int make(const Options& options) {
-  config::check_names({options.kind}, {"scenario", "scene"}, "new");
+  config::check_names({options.kind}, {"panel", "scenario", "scene"}, "new");
   fs::path file = options.name;
   if (!file.has_filename() || file.filename() == "." || file.filename() == "..")
     throw InputError("'" + options.name + "' names a folder: give a file");
@@ -76,7 +117,7 @@ int make(const Options& options) {
     throw InputError("'" + options.name + "' ends in " + file.extension().string() + ": a " + options.kind + " ends in .yaml");
   std::error_code none;
   if (fs::exists(fs::symlink_status(file, none))) throw InputError(file.string() + ": is there already: another name, or take it away");
-  std::string text = options.kind == "scene" ? new_scene() : new_scenario();
+  std::string text = options.kind == "scene" ? new_scene() : options.kind == "panel" ? new_panel() : new_scenario();
   const std::string place = "THIS_FILE", word = shell_word(file.string());
   for (std::size_t at = text.find(place); at != std::string::npos; at = text.find(place, at + word.size()))
     text.replace(at, place.size(), word);
@@ -89,9 +130,9 @@ int make(const Options& options) {
 
 void add_new(CLI::App& app, Action& action) {
   CLI::App* command =
-      app.add_subcommand("new", "Write a commented file of your own to begin with: a scenario that flies as it stands, or a scene");
+      app.add_subcommand("new", "Write a commented file of your own to begin with: a scenario that flies as it stands, a panel or a scene");
   auto options = std::make_shared<Options>();
-  command->add_option("KIND", options->kind, "What to write: scenario or scene")->required();
+  command->add_option("KIND", options->kind, "What to write: panel, scenario or scene")->required();
   command->add_option("NAME", options->name, "The file, which ends in .yaml; that is added where it has no ending")
       ->required()
       ->check(check_printable);

@@ -84,8 +84,10 @@ int reach(const Options& options) {
   const std::string format = picture_format(options.out);
   const scenario::Scenario scenario = scenario::load_scenario(options.scenario, options.set);
   check_arm(scenario);
-  const std::vector<ReachGrid> grids{survey_grid(scenario.panel, scenario.panel.button_height_m, closed_tip_m()),
-                                     survey_grid(scenario.panel, scenario.panel.handle_height_m, 0)};
+  // At the height of the first of each kind: on most panels all of a kind are alike.
+  std::vector<ReachGrid> grids;
+  if (!scenario.panel.buttons.empty()) grids.push_back(survey_grid(scenario.panel, scenario.panel.buttons[0].height_m, closed_tip_m()));
+  if (!scenario.panel.valves.empty()) grids.push_back(survey_grid(scenario.panel, scenario.panel.valves[0].handle_height_m, 0));
   const std::vector<ReachTarget> targets = survey_targets(scenario, options.draws);
   const std::vector<std::uint8_t> picture = draw_reach(scenario, grids, targets, format);
   record::write_file_atomically(options.out, {reinterpret_cast<const char*>(picture.data()), picture.size()});

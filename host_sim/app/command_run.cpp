@@ -71,7 +71,8 @@ void tell(const RunOutcome& outcome, const std::string& folder) {
   const record::RunResult& result = outcome.result;
   for (const record::TaskRecord& task : result.tasks) {
     if (task.task == "turn_valve") {
-      print("turn valve to %.1f deg: %s, it stands at %.2f deg\n", task.target_deg, task.done ? "done" : "NOT DONE", task.reached_deg);
+      print("turn valve%s%s to %.1f deg: %s, it stands at %.2f deg\n", task.valve.empty() ? "" : " ", task.valve.c_str(), task.target_deg,
+            task.done ? "done" : "NOT DONE", task.reached_deg);
     } else {
       print("press %s button: %s\n", task.button.c_str(), task.done ? "done" : "NOT DONE");
     }

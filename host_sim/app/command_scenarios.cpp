@@ -1,6 +1,7 @@
 #include <memory>
 
 #include "hal/config/fault_kinds.hpp"
+#include "hal/config/panel_file.hpp"
 #include "host_sim/app/command.hpp"
 #include "host_sim/scenario/describe.hpp"
 #include "host_sim/scenario/instance.hpp"
@@ -20,6 +21,8 @@ struct Options {
   bool faults = false;
   bool scene_schema = false;
   bool scene_keys = false;
+  bool panel_schema = false;
+  bool panel_keys = false;
 };
 
 int list(bool json) {
@@ -44,6 +47,10 @@ int scenarios(const Options& options) {
     print("%s", scenario::scene_schema().c_str());
   } else if (options.scene_keys) {
     print("%s", scenario::scene_keys_markdown().c_str());
+  } else if (options.panel_schema) {
+    print("%s", config::panel_schema().c_str());
+  } else if (options.panel_keys) {
+    print("%s", config::panel_keys_markdown().c_str());
   } else if (options.faults) {
     print("%s", config::fault_kinds_markdown().c_str());
   } else if (options.name.empty()) {
@@ -73,6 +80,8 @@ void add_scenarios(CLI::App& app, Action& action) {
   command->add_flag("--faults", options->faults, "Print the table of all kinds of faults (Markdown)");
   command->add_flag("--scene-schema", options->scene_schema, "Print the JSON Schema of a scene's file");
   command->add_flag("--scene-keys", options->scene_keys, "Print the table of the keys of a scene's object (Markdown)");
+  command->add_flag("--panel-schema", options->panel_schema, "Print the JSON Schema of a panel's file");
+  command->add_flag("--panel-keys", options->panel_keys, "Print the table of the keys of a panel's file (Markdown)");
   command->add_flag("--json", options->json, "Print JSON");
   command->callback([options, &action] { action = [options] { return scenarios(*options); }; });
 }

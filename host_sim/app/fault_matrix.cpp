@@ -45,7 +45,7 @@ judge::Ending ending_of(const Flight& flight, const Watched& watched, const Matr
   if (!ending.success) return ending;
   const auto& results = flight.mission().tasks();
   const auto wrong = [&](const world::ContactReport& contacts) {
-    return judge::contradiction({results.data(), results.size()}, watched.truth.tasks(), judge::task_truth(world), contacts);
+    return judge::contradiction({results.data(), results.size()}, watched.truth.watched(world), contacts, flight.panel_names());
   };
   world::ContactReport contacts = world.contacts();
   if (over) std::erase_if(contacts.unintended, [&](const world::UnintendedContact& touch) { return touch.first_s >= begin.s(); });
@@ -63,7 +63,7 @@ bool unfelt_push(const Flight& flight, const Watched& watched, const MatrixRow& 
   std::erase_if(contacts.unintended, [](const world::UnintendedContact& touch) {
     return touch.a == scene::BodyId::obstacle || touch.b == scene::BodyId::obstacle;
   });
-  if (judge::contradiction({results.data(), results.size()}, watched.truth.tasks(), judge::task_truth(world), contacts)) return false;
+  if (judge::contradiction({results.data(), results.size()}, watched.truth.watched(world), contacts, flight.panel_names())) return false;
   return !judge::felt_a_push(watched.safety.seen());
 }
 

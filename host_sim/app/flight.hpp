@@ -34,6 +34,8 @@ class Flight {
   // Of each fault, how often the core has reported it since power-on.
   const std::array<std::uint32_t, safety::fault_count>& fault_counts() const { return out_.telemetry.faults; }
   hal::SimPlatform& platform() { return *platform_; }
+  // Of the panel's features.
+  const PanelNames& panel_names() const { return names_; }
   // Of the joints' drives.
   const config::ErrorTexts& error_texts() const { return error_texts_; }
   // Of the joints, by their drives' best: what a stop may take.
@@ -50,6 +52,7 @@ class Flight {
   std::array<double, joint_count> deceleration_rad_s2_{}, gear_gives_rad_{}, slips_rad_{}, units_per_count_{};
   bool has_own_drives_ = true;
   config::ErrorTexts error_texts_;
+  PanelNames names_;
   std::unique_ptr<hal::SimPlatform> platform_;
   std::unique_ptr<Controller> controller_;
   std::unique_ptr<ScanPipeline> pipeline_;

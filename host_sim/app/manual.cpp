@@ -91,7 +91,7 @@ std::string scenario_page() {
   scenario::Scenario scenario;
   config::Task task;
   config::Fault fault;
-  return command_line::man_page(scenario_manual(), keys(scenario), {{"KEYS OF A TASK", keys(task)}, {"KEYS OF A FAULT", keys(fault)}});
+  return command_line::man_page(scenario_manual(), keys(scenario), {{"KEYS OF A TASK", keys(task, {})}, {"KEYS OF A FAULT", keys(fault)}});
 }
 
 }  // namespace

@@ -74,18 +74,21 @@ class Map {
   void outlines() {
     cv::rectangle(picture_, at(Vec2(layout_.plate_min_m.x(), layout_.plate_max_m.y())),
                   at(Vec2(layout_.plate_max_m.x(), layout_.plate_min_m.y())), ink, 1);
-    const double half_plate = 0.5 * layout_.marker_plate_m, half_square = 0.5 * layout_.marker_size_m;
-    for (const double half : {half_plate, half_square}) {
-      cv::rectangle(picture_, at(layout_.marker_centre_m + Vec2(-half, half)), at(layout_.marker_centre_m + Vec2(half, -half)), ink, 1,
-                    cv::LINE_AA);
+    for (const PanelLayout::Marker& marker : layout_.markers) {
+      for (const double half : {0.5 * marker.plate_m, 0.5 * marker.size_m}) {
+        cv::rectangle(picture_, at(marker.centre_m + Vec2(-half, half)), at(marker.centre_m + Vec2(half, -half)), ink, 1, cv::LINE_AA);
+      }
     }
-    for (const Vec2& button : layout_.buttons_m) {
-      cv::circle(picture_, at(button), static_cast<int>(0.5 * layout_.button_width_m * px_per_m), ink, 1, cv::LINE_AA);
-      cv::drawMarker(picture_, at(button), ink, cv::MARKER_CROSS, 8, 1, cv::LINE_AA);
+    for (const PanelLayout::Button& button : layout_.buttons) {
+      cv::circle(picture_, at(button.at_m), static_cast<int>(0.5 * button.width_m * px_per_m), ink, 1, cv::LINE_AA);
+      cv::drawMarker(picture_, at(button.at_m), ink, cv::MARKER_CROSS, 8, 1, cv::LINE_AA);
     }
-    const Vec2 half_bar(0.5 * layout_.handle_thickness_m, 0.5 * layout_.handle_length_m);
-    cv::rectangle(picture_, at(Vec2(-half_bar.x(), half_bar.y())), at(Vec2(half_bar.x(), -half_bar.y())), ink, 1, cv::LINE_AA);
-    cv::circle(picture_, at(Vec2::Zero()), static_cast<int>(half_bar.y() * px_per_m), ink, 1, cv::LINE_AA);
+    for (const PanelLayout::Valve& valve : layout_.valves) {
+      const Vec2 half_bar(0.5 * valve.handle_thickness_m, 0.5 * valve.handle_length_m);
+      cv::rectangle(picture_, at(valve.at_m + Vec2(-half_bar.x(), half_bar.y())), at(valve.at_m + Vec2(half_bar.x(), -half_bar.y())), ink,
+                    1, cv::LINE_AA);
+      cv::circle(picture_, at(valve.at_m), static_cast<int>(half_bar.y() * px_per_m), ink, 1, cv::LINE_AA);
+    }
   }
 
  private:

@@ -12,10 +12,14 @@ namespace lf::app {
 
 namespace {
 
-// Everything of the panel but the handle and its stem: a pressing tool touches the rest on purpose.
-constexpr arm::PanelParts all_but_handle = arm::bit(arm::PanelPart::plate) | arm::bit(arm::PanelPart::marker_plate) |
-                                           arm::bit(arm::PanelPart::button_left) | arm::bit(arm::PanelPart::button_centre) |
-                                           arm::bit(arm::PanelPart::button_right);
+// Everything of the panel but its handles and their stems: a pressing tool touches the rest on purpose.
+arm::PanelParts all_but_handles(const PanelLayout& layout) {
+  arm::PanelParts parts = arm::bit(arm::PanelPart::plate());
+  for (std::size_t i = 0; i < layout.markers.size(); ++i)
+    parts |= arm::bit({arm::PanelPart::Kind::marker_plate, static_cast<std::uint8_t>(i)});
+  for (std::size_t i = 0; i < layout.buttons.size(); ++i) parts |= arm::bit(arm::PanelPart::button(i));
+  return parts;
+}
 
 ReachTarget survey_target(const scenario::Scenario& scenario, const std::string& name, const Vec3& point_m, double tip_m, bool is_button,
                           int draws) {
@@ -33,7 +37,7 @@ ReachTarget survey_target(const scenario::Scenario& scenario, const std::string&
     target.worst_tilt_rad = std::max(target.worst_tilt_rad, reach.tilt_rad);
     if (!is_button) continue;
     const arm::Clearance clearance =
-        shape.clearance(arm::link_capsules(reach.q_rad, arm::jaw_from_gap(0)), base_from_panel, all_but_handle);
+        shape.clearance(arm::link_capsules(reach.q_rad, arm::jaw_from_gap(0)), base_from_panel, all_but_handles(scenario.panel));
     target.handle_clearance_m = std::min(target.handle_clearance_m, clearance.distance_m);
   }
   return target;
@@ -80,12 +84,12 @@ ReachGrid survey_grid(const PanelLayout& layout, double height_m, double tip_m) 
 std::vector<ReachTarget> survey_targets(const scenario::Scenario& scenario, int draws) {
   const PanelLayout& panel = scenario.panel;
   const double tip_m = closed_tip_m();
-  static constexpr std::array<const char*, PanelLayout::button_count> names{"left button", "centre button", "right button"};
-  std::vector<ReachTarget> targets{survey_target(scenario, "valve", Vec3(0, 0, panel.handle_height_m), 0, false, draws)};
-  for (std::size_t i = 0; i < PanelLayout::button_count; ++i) {
-    const Vec3 cap(panel.buttons_m[i].x(), panel.buttons_m[i].y(), panel.button_height_m);
-    targets.push_back(survey_target(scenario, names[i], cap, tip_m, true, draws));
-  }
+  const PanelNames& names = scenario.survey.names;
+  std::vector<ReachTarget> targets;
+  for (std::size_t i = 0; i < panel.valves.size(); ++i)
+    targets.push_back(survey_target(scenario, names.valves.at(i), panel.valves[i].handle_centre_m(), 0, false, draws));
+  for (std::size_t i = 0; i < panel.buttons.size(); ++i)
+    targets.push_back(survey_target(scenario, names.buttons.at(i) + " button", panel.buttons[i].face_m(), tip_m, true, draws));
   return targets;
 }
 

@@ -21,7 +21,8 @@ std::vector<record::ReportPart> report_parts_of(const world::WorldConfig& config
     parts[i].shapes = config.scene[i].shapes;
   }
   parts[std::size_t(scene::BodyId::vehicle)].group = record::PartGroup::vehicle;
-  for (std::size_t i = std::size_t(scene::BodyId::obstacle); i < parts.size(); ++i) {
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (config.scene[i].role != scene::Role::object && config.scene[i].role != scene::Role::intruder) continue;
     parts[i].group = record::PartGroup::panel;
     parts[i].parent_from_part = config.scene[i].base_from_body;
   }
@@ -32,16 +33,19 @@ std::vector<record::ReportPart> report_parts_of(const world::WorldConfig& config
   record::ReportPart& panel = parts[std::size_t(scene::BodyId::panel)];
   panel.group = record::PartGroup::panel;
   panel.parent_from_part = config.base_from_panel;
-  record::ReportPart& handle = parts[std::size_t(scene::BodyId::handle)];
-  handle.group = record::PartGroup::controls;
-  handle.parent = index_of(scene::BodyId::panel);
-  handle.coordinate = static_cast<int>(joint_count);
-  for (std::size_t i = 0; i < PanelLayout::button_count; ++i) {
-    record::ReportPart& button = parts[std::size_t(scene::BodyId::button_left) + i];
-    button.group = record::PartGroup::controls;
-    button.parent = index_of(scene::BodyId::panel);
-    button.parent_from_part.translation() = Vec3(config.layout.buttons_m[i].x(), config.layout.buttons_m[i].y(), 0);
-    button.coordinate = static_cast<int>(joint_count + 1 + i);
+  int coordinate = static_cast<int>(joint_count);
+  const auto place = [&](std::size_t body, const Vec2& at_m) -> record::ReportPart& {
+    record::ReportPart& part = parts[body];
+    part.group = record::PartGroup::controls;
+    part.parent = index_of(scene::BodyId::panel);
+    part.parent_from_part.translation() = Vec3(at_m.x(), at_m.y(), 0);
+    part.coordinate = coordinate++;
+    return part;
+  };
+  std::size_t body = scene::first_feature;
+  for (const PanelLayout::Valve& valve : config.layout.valves) place(body++, valve.at_m);
+  for (const PanelLayout::Button& layout : config.layout.buttons) {
+    record::ReportPart& button = place(body++, layout.at_m);
     button.slides = true;
     button.axis = -Vec3::UnitZ();
   }

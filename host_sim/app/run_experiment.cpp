@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "hal/config/drive_kind.hpp"
+#include "hal/config/panel_file.hpp"
 #include "hal/config/share.hpp"
 #include "hal/config/text_file.hpp"
 #include "host_sim/scenario/describe.hpp"
@@ -26,6 +27,7 @@ std::vector<UsedFile> used_files(const scenario::Scenario& scenario) {
   for (const std::string& file : {scenario.arm.urdf, scenario.safety.limits, std::string(scenario::homing_file)})
     files.push_back({file, config::find_file(file, folder)});
   files.push_back({scenario::drive_objects_file, config::share_folder() / scenario::drive_objects_file});
+  if (!scenario.survey.file.empty()) files.push_back({scenario.panel_file, scenario.survey.file});
   if (scenario.objects) {
     const fs::path scene = config::find_file(scenario.scene, folder);
     files.push_back({scenario.scene, scene});
@@ -76,6 +78,14 @@ std::string keep_scene(const scenario::SceneFile& scene, const record::RunFolder
   return "scene/scene.yaml";
 }
 
+// A panel's file that lies anywhere but beside the scenario. A shipped one is where it is.
+void keep_panel(scenario::Scenario& kept, const record::RunFolder& run) {
+  const std::string& file = kept.survey.file;
+  if (file.empty() || config::is_shipped(file) || !beside(file, fs::path(kept.file).parent_path()).empty()) return;
+  kept.panel_file = "panel.yaml";
+  run.write(kept.panel_file, config::read_text_file(file));
+}
+
 }  // namespace
 
 record::Experiment experiment_of(const scenario::Scenario& scenario) {
@@ -99,6 +109,7 @@ void keep_scenario(const scenario::Scenario& scenario, const record::RunFolder& 
   }
   scenario::Scenario kept = scenario;
   if (scenario.objects) kept.scene = keep_scene(*scenario.objects, run);
+  keep_panel(kept, run);
   name_whole(kept.arm.urdf, folder);
   name_whole(kept.safety.limits, folder);
   name_whole(kept.safety.mission_limits, folder);

@@ -21,12 +21,13 @@ PictureNoise noise_of(const optics::OpticsConfig& optics) {
 }  // namespace
 
 RunRecorder::RunRecorder(const record::RunFolder* folder, const config::ErrorTexts& texts, PhaseObserver::Say say,
-                         const optics::OpticsConfig& optics)
+                         const optics::OpticsConfig& optics, const PanelNames& names)
     : files_(folder),
       bus_(files_, digest_),
       phases_(digest_, texts, std::move(say)),
       events_(files_, texts),
       curves_(files_, bus_),
+      motion_(names),
       panel_(files_),
       peaks_(noise_of(optics)),
       pictures_(files_) {}

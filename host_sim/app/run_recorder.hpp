@@ -24,7 +24,8 @@ class RunRecorder {
  public:
   // `folder` may be null: then nothing is written while it runs. It outlives the recorder, as do `texts` and what `say` refers to.
   // `optics`: the simulator's, for what its noise allows.
-  RunRecorder(const record::RunFolder* folder, const config::ErrorTexts& texts, PhaseObserver::Say say, const optics::OpticsConfig& optics);
+  RunRecorder(const record::RunFolder* folder, const config::ErrorTexts& texts, PhaseObserver::Say say, const optics::OpticsConfig& optics,
+              const PanelNames& names);
   RunRecorder(const RunRecorder&) = delete;
   RunRecorder& operator=(const RunRecorder&) = delete;
 

@@ -1,5 +1,6 @@
 #include "host_sim/app/run_result.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -13,8 +14,6 @@
 namespace lf::app {
 
 namespace {
-
-constexpr std::array<const char*, 3> button_names{"left", "centre", "right"};
 
 std::string formatted(const char* format, double a, double b = 0, double c = 0) {
   char text[160];
@@ -43,10 +42,10 @@ std::optional<record::FailureRecord> failure_of(const Controller& controller, co
                                formatted("not ended by the time limit of %g s, at %.1f s", scenario.time_limit_s, world.time_s())};
 }
 
-std::optional<record::FailureRecord> disagreement(const Controller& controller, const world::World& world, const RunRecorder& recorder) {
+std::optional<record::FailureRecord> disagreement(const Controller& controller, const world::World& world, const RunRecorder& recorder,
+                                                  const PanelNames& names) {
   const auto& results = controller.mission().tasks();
-  const auto wrong =
-      judge::contradiction({results.data(), results.size()}, recorder.truth().tasks(), judge::task_truth(world), world.contacts());
+  const auto wrong = judge::contradiction({results.data(), results.size()}, recorder.truth().watched(world), world.contacts(), names);
   if (!wrong) return std::nullopt;
   return record::FailureRecord{wrong->phase, wrong->reason};
 }
@@ -61,7 +60,8 @@ std::optional<record::CalibrationRecord> calibration_of(const CalibrationObserve
   return all;
 }
 
-std::vector<record::TaskRecord> task_records(const Controller& controller, const world::World& world, const RunRecorder& recorder) {
+std::vector<record::TaskRecord> task_records(const Controller& controller, const world::World& world, const RunRecorder& recorder,
+                                             const PanelNames& names) {
   std::vector<record::TaskRecord> records;
   const auto& results = controller.mission().tasks();
   const std::vector<judge::TaskTruth> truths = judge::completed(recorder.truth().tasks(), results.size(), judge::task_truth(world));
@@ -72,12 +72,13 @@ std::vector<record::TaskRecord> task_records(const Controller& controller, const
     record::TaskRecord task;
     if (result.task.kind == mission::Task::Kind::turn_valve) {
       task.task = "turn_valve";
+      if (names.valves.size() > 1) task.valve = names.valves.at(result.task.valve);
       task.target_deg = deg_from_rad(result.task.to_rad);
-      task.reached_deg = deg_from_rad(truth.valve_rad);
+      task.reached_deg = deg_from_rad(truth.valves_rad.at(result.task.valve));
     } else {
       task.task = "press_button";
-      task.button = button_names[result.task.button];
-      task.presses = static_cast<int>(truth.presses[result.task.button]);
+      task.button = names.buttons.at(result.task.button);
+      task.presses = static_cast<int>(truth.presses.at(result.task.button));
       if (result.attempted) task.travel_mm = 1e3 * result.travel_m;
       task.click_felt = result.click_felt;
       if (result.failure != StepFailure::none) task.failure = name(result.failure);
@@ -122,7 +123,8 @@ record::ErrorRecord score(const RunRecorder& recorder, const hal::SimConfig& tru
   errors.plane_normal_deg = plane_normal_error_deg(fit.plane, base_from_panel);
   errors.plane_offset_mm = plane_offset_error_mm(fit.plane, base_from_panel, truth.world.layout);
   errors.panel_over_doubt = recorder.panel().worst_over_doubt();
-  errors.handle_angle_deg = handle_error_deg(located.handle_found_rad, located.handle_true_rad);
+  for (const Located::Handle& handle : located.handles)  // the worst
+    errors.handle_angle_deg = std::fmax(errors.handle_angle_deg, handle_error_deg(handle.found_rad, handle.true_rad));
   errors.valve_base_mm = 1e3 * (located.base_from_panel.translation() - base_from_panel.translation()).norm();
   const std::vector<double> cloud_mm = cloud_errors_mm(located.cloud, truth.world.scene, located.poses);
   errors.cloud_truth_median_mm = percentile(cloud_mm, 0.5);
@@ -158,12 +160,17 @@ std::vector<std::pair<std::string, std::string>> conditions(const scenario::Samp
     return formatted("%+.0f, %+.0f, %+.0f %%", percent.x(), percent.y(), percent.z());
   };
   double worst_button_m = 0;
-  for (const Vec2& shift : s.button_shift_m) worst_button_m = std::max(worst_button_m, shift.norm());
+  for (const scenario::Sample::Button& button : s.buttons) worst_button_m = std::max(worst_button_m, button.shift_m.norm());
+  const auto each = [](const auto& features, const auto& text) {
+    std::string list;
+    for (const auto& feature : features) list += (list.empty() ? "" : "; ") + text(feature);
+    return list.empty() ? std::string("none") : list;
+  };
   return {
       {"docking error, shift", mm(s.docking_shift_m)},
       {"docking error, turn", deg(s.docking_turn_rad)},
-      {"valve's start angle", formatted("%.1f deg", deg_from_rad(s.valve_start_rad))},
-      {"friction torque", formatted("%.2f N m", s.valve_friction_nm)},
+      {"valve's start angle", each(s.valves, [](const auto& valve) { return formatted("%.1f deg", deg_from_rad(valve.start_rad)); })},
+      {"friction torque", each(s.valves, [](const auto& valve) { return formatted("%.2f N m", valve.friction_nm); })},
       {"attenuation", formatted("%.2f per m", s.attenuation_per_m)},
       {"particles", formatted("%.1f per litre", s.particles_per_l)},
       {"scattering and phase function off by",
@@ -182,9 +189,12 @@ std::vector<std::pair<std::string, std::string>> conditions(const scenario::Samp
       {"lamps", s.lamps_lit ? "on" : "off"},
       {"camera's mounting error", formatted("%.2f mm, %.3f deg", 1e3 * s.camera_shift_m.norm(), deg_from_rad(s.camera_turn_rad.norm()))},
       {"laser's mounting error", formatted("%.2f mm, %.3f deg", 1e3 * s.laser_shift_m.norm(), deg_from_rad(s.laser_turn_rad.norm()))},
-      {"marker's side off by",
-       formatted("%+.2f mm, ", 1e3 * s.marker_size_m) + formatted("its edges off the panel by %.2f mm", 1e3 * s.marker_flat_m.norm())},
-      {"handle's size off by", mm2(s.handle_m)},
+      {"marker's side off by", each(s.markers,
+                                    [](const auto& marker) {
+                                      return formatted("%+.2f mm, ", 1e3 * marker.size_m) +
+                                             formatted("its edges off the panel by %.2f mm", 1e3 * marker.flat_m.norm());
+                                    })},
+      {"handle's size off by", each(s.valves, [&](const auto& valve) { return mm2(valve.size_m); })},
       {"buttons' place off by at most", formatted("%.2f mm", 1e3 * worst_button_m)}};
 }
 
@@ -204,12 +214,31 @@ record::DrawnRecord drawn(const scenario::Sample& s) {
   const auto degrees = [](const Vec3& v) { return std::vector<double>{deg_from_rad(v.x()), deg_from_rad(v.y()), deg_from_rad(v.z())}; };
   std::vector<double> joint_offset_deg;
   for (const double offset_rad : s.joint_offset_rad) joint_offset_deg.push_back(deg_from_rad(offset_rad));
-  std::vector<double> button_shift_m;
-  for (const Vec2& shift : s.button_shift_m) button_shift_m.insert(button_shift_m.end(), {shift.x(), shift.y()});
+  // Of the docked mission's buttons one size is drawn, of a file's each has its own: equal ones are told once.
+  std::vector<double> start_deg, friction_nm, handle_m, button_shift_m, button_size_m, marker_shift_m, marker_turn_deg, marker_size_m,
+      marker_flat_m;
+  const auto add = [](std::vector<double>& list, std::initializer_list<double> values) { list.insert(list.end(), values); };
+  for (const scenario::Sample::Valve& valve : s.valves) {
+    add(start_deg, {deg_from_rad(valve.start_rad)});
+    add(friction_nm, {valve.friction_nm});
+    add(handle_m, {valve.size_m.x(), valve.size_m.y(), valve.size_m.z()});
+  }
+  const bool alike =
+      std::all_of(s.buttons.begin(), s.buttons.end(), [&](const auto& button) { return button.size_m == s.buttons[0].size_m; });
+  for (const scenario::Sample::Button& button : s.buttons) {
+    add(button_shift_m, {button.shift_m.x(), button.shift_m.y()});
+    if (!alike || button_size_m.empty()) add(button_size_m, {button.size_m.x(), button.size_m.y()});
+  }
+  for (const scenario::Sample::Marker& marker : s.markers) {
+    add(marker_shift_m, {marker.shift_m.x(), marker.shift_m.y(), marker.shift_m.z()});
+    add(marker_turn_deg, {deg_from_rad(marker.turn_rad)});
+    add(marker_size_m, {marker.size_m});
+    add(marker_flat_m, {marker.flat_m.x(), marker.flat_m.y()});
+  }
   return {{"docking_shift_m", metres(s.docking_shift_m)},
           {"docking_turn_deg", degrees(s.docking_turn_rad)},
-          {"valve_start_deg", {deg_from_rad(s.valve_start_rad)}},
-          {"valve_friction_nm", {s.valve_friction_nm}},
+          {"valve_start_deg", std::move(start_deg)},
+          {"valve_friction_nm", std::move(friction_nm)},
           {"attenuation_per_m", {s.attenuation_per_m}},
           {"camera_noise_grey", {s.camera_noise_grey}},
           {"lamps_lit", {s.lamps_lit ? 1.0 : 0.0}},
@@ -218,8 +247,8 @@ record::DrawnRecord drawn(const scenario::Sample& s) {
           {"laser_shift_m", metres(s.laser_shift_m)},
           {"laser_turn_deg", degrees(s.laser_turn_rad)},
           {"joint_offset_deg", std::move(joint_offset_deg)},
-          {"marker_shift_m", metres(s.marker_shift_m)},
-          {"marker_turn_deg", {deg_from_rad(s.marker_turn_rad)}},
+          {"marker_shift_m", std::move(marker_shift_m)},
+          {"marker_turn_deg", std::move(marker_turn_deg)},
           {"principal_point_px", {s.principal_point_px.x(), s.principal_point_px.y()}},
           {"focal_percent", {100 * (s.focal_ratio - 1)}},
           {"distortion_px", metres(s.distortion_px)},
@@ -229,10 +258,10 @@ record::DrawnRecord drawn(const scenario::Sample& s) {
           {"button_shift_m", std::move(button_shift_m)},
           {"exposure_delay_ms", {1e3 * s.exposure_delay_s}},
           {"stamp_ms", {1e3 * s.stamp_s}},
-          {"handle_m", metres(s.handle_m)},
-          {"button_size_m", {s.button_size_m.x(), s.button_size_m.y()}},
-          {"marker_size_m", {s.marker_size_m}},
-          {"marker_flat_m", {s.marker_flat_m.x(), s.marker_flat_m.y()}},
+          {"handle_m", std::move(handle_m)},
+          {"button_size_m", std::move(button_size_m)},
+          {"marker_size_m", std::move(marker_size_m)},
+          {"marker_flat_m", std::move(marker_flat_m)},
           {"scattering_percent", {100 * (s.scattering_ratio - 1)}},
           {"phase_percent", phase_percent(s)},
           {"corner_blur", {s.corner_blur}},

@@ -22,13 +22,15 @@ namespace lf::app {
 std::optional<record::FailureRecord> failure_of(const Controller& controller, const config::ErrorTexts& texts, const world::World& world,
                                                 const RunRecorder& recorder, const scenario::Scenario& scenario, bool interrupted);
 // Where the truth contradicts a mission that believes it succeeded.
-std::optional<record::FailureRecord> disagreement(const Controller& controller, const world::World& world, const RunRecorder& recorder);
+std::optional<record::FailureRecord> disagreement(const Controller& controller, const world::World& world, const RunRecorder& recorder,
+                                                  const PanelNames& names);
 
 // Of looks and presses; nothing when no look found plane and marker.
 std::optional<record::CalibrationRecord> calibration_of(const CalibrationObserver& looks, const mission::TaskResults& results);
 
 // Done when the core says so and the truth agrees (judge::truly_done).
-std::vector<record::TaskRecord> task_records(const Controller& controller, const world::World& world, const RunRecorder& recorder);
+std::vector<record::TaskRecord> task_records(const Controller& controller, const world::World& world, const RunRecorder& recorder,
+                                             const PanelNames& names);
 
 // Those that the run ended before, or whose step it never came to: "overcurrent elbow, at step free jaw". The platform has flown the run.
 std::vector<std::string> faults_not_made(const scenario::Scenario& scenario, const hal::SimPlatform& platform);

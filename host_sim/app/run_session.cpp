@@ -59,7 +59,7 @@ class Session {
         sample_(scenario::draw(request.scenario, request.seed)),
         nominal_(scenario::make_nominal(request.scenario, sample_.lamps_lit)),
         sim_(truth(request, sample_, nominal_)),
-        recorder_(folder, nominal_.error_texts, request.say, sim_.optics),
+        recorder_(folder, nominal_.error_texts, request.say, sim_.optics, request.scenario.survey.names),
         platform_(std::make_unique<hal::SimPlatform>(sim_, recorder_.observer())),
         controller_(std::make_unique<Controller>(nominal_.controller)),
         pipeline_(std::make_unique<ScanPipeline>(nominal_.scan)),
@@ -129,7 +129,7 @@ class Session {
 
   void judge(record::RunResult& result) {
     result.failure = failure_of(*controller_, nominal_.error_texts, platform_->world(), recorder_, request_.scenario, interrupted());
-    if (!result.failure) result.failure = disagreement(*controller_, platform_->world(), recorder_);
+    if (!result.failure) result.failure = disagreement(*controller_, platform_->world(), recorder_, request_.scenario.survey.names);
     const bool held = controller_->mission().step() == mission::Step::held;
     if (!result.failure && !safe() && !held) result.failure = record::FailureRecord{"end", "the end is not safe"};
     // Before what was expected of it: a mission that did its tasks where it should have failed has claimed nothing that is not so.
@@ -159,7 +159,7 @@ class Session {
     recorder_.finish(platform_->world(), result.failure ? result.failure->reason : "");
     result.phases = recorder_.phases().phases();
     result.faults_not_made = faults_not_made(request_.scenario, *platform_);
-    result.tasks = task_records(*controller_, platform_->world(), recorder_);
+    result.tasks = task_records(*controller_, platform_->world(), recorder_, request_.scenario.survey.names);
     result.errors = score(recorder_, sim_);
     result.calibration = calibration_of(recorder_.calibration(), controller_->mission().tasks());
     const world::ContactReport contacts = platform_->world().contacts();

@@ -1,7 +1,6 @@
 // What was true of a mission's tasks, and where it contradicts a mission that believes it succeeded.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -10,28 +9,38 @@
 
 #include "firmware/mission/mission.hpp"
 #include "hal/sim/sim_platform.hpp"
-#include "shared/panel/panel_layout.hpp"
+#include "shared/panel/panel_names.hpp"
 
 namespace lf::judge {
 
 struct TaskTruth {
-  double valve_rad = 0;                                            // when the task ended
-  std::array<std::uint32_t, PanelLayout::button_count> presses{};  // by then, counted by the buttons themselves
+  std::vector<double> valves_rad;      // when the task ended
+  std::vector<std::uint32_t> presses;  // by then, counted by the buttons themselves
 };
 
 TaskTruth task_truth(const world::World& world);
 
+// What was true of a mission, by its start, its tasks' ends as far as they were seen, and its own end.
+struct Watched {
+  TaskTruth at_start;
+  std::vector<TaskTruth> tasks;
+  TaskTruth at_end;
+};
+
 // Keeps the truth at each task's end.
 class TruthObserver : public hal::SimObserver {
  public:
-  void on_step(Time, const world::World& world) override { world_ = &world; }
+  void on_step(Time, const world::World& world) override;
   void on_telemetry(const Telemetry& telemetry) override;
 
   const std::vector<TaskTruth>& tasks() const { return tasks_; }  // by the task's index, as far as they have ended
+  // With the truth as it is now for the end.
+  Watched watched(const world::World& world) const { return {at_start_, tasks_, task_truth(world)}; }
 
  private:
   const world::World* world_ = nullptr;
   std::vector<TaskTruth> tasks_;
+  TaskTruth at_start_;
 };
 
 // The figures of a success.
@@ -53,10 +62,10 @@ std::vector<TaskTruth> completed(std::vector<TaskTruth> tasks, std::size_t count
 // Whether the truth at each task's end (`tasks`) is what its result says. Turns: the true angle within `valve_accuracy_deg`; presses: the button counted it.
 std::vector<bool> truly_done(std::span<const mission::TaskResult> results, const std::vector<TaskTruth>& tasks);
 
-// The first way in which the truth is not that of a success: a task that was not done, a valve that has moved after its task, clicks that nobody asked for,
-// parts that touched which should not have met, and too much force. Nothing when the mission may call itself a success.
-std::optional<Contradiction> contradiction(std::span<const mission::TaskResult> results, const std::vector<TaskTruth>& tasks,
-                                           const TaskTruth& at_end, const world::ContactReport& contacts);
+// The first way in which the truth is not that of a success: a task that was not done, a valve that has moved after its task or without one, clicks that nobody asked
+// for, parts that touched which should not have met, and too much force. Nothing when the mission may call itself a success. `names`: of the panel's features.
+std::optional<Contradiction> contradiction(std::span<const mission::TaskResult> results, const Watched& watched,
+                                           const world::ContactReport& contacts, const PanelNames& names);
 
 // "wrist and panel at 12.30 s, up to 40 N".
 std::string contact_text(const world::UnintendedContact& contact);

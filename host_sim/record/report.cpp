@@ -82,7 +82,7 @@ std::string tasks_table(const RunResult& result) {
   std::string html = "<table><tr><th>task</th><th class=\"n\">target</th><th class=\"n\">reached</th><th></th></tr>";
   for (const TaskRecord& task : result.tasks) {
     const bool turn = task.task == "turn_valve";
-    const std::string name = turn                          ? "turn the valve"
+    const std::string name = turn                          ? (task.valve.empty() ? "turn the valve" : "turn valve " + task.valve)
                              : task.task == "press_button" ? std::string("press button ").append(task.button)
                                                            : task.task;
     const std::string target = turn ? formatted("%.1f°", task.target_deg) : "1 press";

@@ -42,7 +42,10 @@ Json to_json(const TaskRecord& task) {
     if (!task.failure.empty()) json["failure"] = task.failure;
     return json;
   }
-  return {{"task", task.task}, {"target_deg", number(task.target_deg)}, {"reached_deg", number(task.reached_deg)}, {"done", task.done}};
+  Json json{{"task", task.task}};
+  if (!task.valve.empty()) json["valve"] = task.valve;
+  json.update({{"target_deg", number(task.target_deg)}, {"reached_deg", number(task.reached_deg)}, {"done", task.done}});
+  return json;
 }
 
 Json to_json(const ErrorRecord& errors) {

@@ -24,7 +24,8 @@ struct PhaseRecord {
 
 struct TaskRecord {
   std::string task;              // "turn_valve" or "press_button"
-  std::string button;            // press_button: "left", "centre" or "right"
+  std::string valve{};           // turn_valve: its name, where the panel has several
+  std::string button;            // press_button: its name
   int presses = 0;               // press_button: clicks counted by the button itself
   double target_deg = unknown;   // turn_valve
   double reached_deg = unknown;  // turn_valve: the true angle

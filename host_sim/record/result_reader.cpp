@@ -81,6 +81,7 @@ ProvenanceRecord provenance_from(const Json& json) {
 TaskRecord task_from(const Json& json) {
   TaskRecord task;
   json.at("task").get_to(task.task);
+  read(json, "valve", task.valve);
   read(json, "button", task.button);
   read(json, "presses", task.presses);
   read(json, "travel_mm", task.travel_mm);

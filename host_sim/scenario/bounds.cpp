@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <optional>
 
 #include "firmware/arm/gripper.hpp"
 #include "hal/config/handle_check.hpp"
@@ -39,13 +41,23 @@ Bounds of_stops(const config::Key& key, const Scenario& s) {
   return within(key, most, s.valve.stop_min_deg + config::widest_range_deg);
 }
 
+// The longest of the buttons' strokes by std::greater, the shortest by std::less; that of today's button where there is none.
+template <typename Before>
+double stroke_m(const PanelLayout& panel, Before before) {
+  std::optional<double> best_m;
+  for (const PanelLayout::Button& button : panel.buttons) {
+    if (!best_m || before(button.stroke_m, *best_m)) best_m = button.stroke_m;
+  }
+  return best_m.value_or(PanelLayout::Button{}.stroke_m);
+}
+
 Bounds of_buttons(const config::Key& key, const Scenario& s) {
-  const double half_way_m = s.panel.button_stroke_m / 2, pressed_n = pressed_force_n(s);
+  const double half_way_m = stroke_m(s.panel, std::greater()) / 2, pressed_n = pressed_force_n(s);
   const Buttons& b = s.buttons;
   if (key.path == "buttons.preload_n") return within(key, key.min, pressed_n - b.spring_n_m * half_way_m);
   if (key.path == "buttons.spring_n_m")
     return within(key, (b.click_drop_n - b.preload_n) / b.release_depth_m * (1 + clearly), (pressed_n - b.preload_n) / half_way_m);
-  if (key.path == "buttons.click_depth_m") return within(key, b.release_depth_m * (1 + clearly), s.panel.button_stroke_m);
+  if (key.path == "buttons.click_depth_m") return within(key, b.release_depth_m * (1 + clearly), stroke_m(s.panel, std::less()));
   if (key.path == "buttons.release_depth_m") return within(key, key.min, b.click_depth_m * (1 - clearly));
   if (key.path == "buttons.click_drop_n") return within(key, key.min, returning_force_n(s) * (1 - clearly));
   return {key.min, key.max};
@@ -53,24 +65,31 @@ Bounds of_buttons(const config::Key& key, const Scenario& s) {
 
 // The lower a cap, the more aslant the arm comes to it: the height that is asked for depends on the height.
 double lowest_button_m(const Scenario& s) {
-  PanelLayout panel = s.panel;
-  for (int i = 0; i < 4; ++i) panel.button_height_m = config::lowest_button_m(panel, s.mission);
-  return panel.button_height_m + 1e-6;
+  config::Machine work = work_of(s);
+  for (int i = 0; i < 4; ++i) {
+    const double lowest_m = config::lowest_button_m(work, work.panel.buttons[0]);
+    for (PanelLayout::Button& button : work.panel.buttons) button.height_m = lowest_m;
+  }
+  return work.panel.buttons[0].height_m + 1e-6;
 }
 
 Bounds of_panel(const config::Key& key, const Scenario& s) {
+  if (!s.survey.file.empty()) return {key.min, key.max};  // a file's panel has no such keys
   const PanelLayout& panel = s.panel;
+  const PanelLayout::Valve& valve = panel.valves[0];
+  const PanelLayout::Button& button = panel.buttons[0];
+  const PanelLayout::Marker& marker = panel.markers[0];
   const double lowest_m = lowest_button_m(s);
   if (key.path == "panel.button_stroke_m")
     return within(key, s.buttons.click_depth_m,
                   std::min(2 * (pressed_force_n(s) - s.buttons.preload_n) / s.buttons.spring_n_m,
-                           panel.button_stroke_m + panel.button_height_m - config::lowest_button_m(panel, s.mission) - 1e-6));
+                           button.stroke_m + button.height_m - config::lowest_button_m(work_of(s), button) - 1e-6));
   if (key.path == "panel.button_height_m") return within(key, lowest_m, key.max);
-  if (key.path == "panel.marker_size_m") return within(key, key.min, panel.marker_plate_m * (1 - clearly));
+  if (key.path == "panel.marker_size_m") return within(key, key.min, marker.plate_m * (1 - clearly));
   if (key.path == "panel.marker_plate_m")
-    return within(key, panel.marker_size_m * (1 + clearly), config::largest_marker_plate_m(panel) * (1 - clearly));
-  if (key.path == "panel.handle_thickness_m") return within(key, arm::thinnest_bar_m, config::thickest_bar_m(panel));
-  if (key.path == "panel.pointer_length_m") return within(key, key.min, config::longest_mark_m(panel));
+    return within(key, marker.size_m * (1 + clearly), config::largest_marker_plate_m(panel, marker) * (1 - clearly));
+  if (key.path == "panel.handle_thickness_m") return within(key, arm::thinnest_bar_m, config::thickest_bar_m(valve));
+  if (key.path == "panel.pointer_length_m") return within(key, key.min, config::longest_mark_m(valve));
   return {key.min, key.max};
 }
 
@@ -115,7 +134,7 @@ Bounds bounds_of(const config::Key& key, const Scenario& scenario, const ArmDesc
   if (key.path == "tasks" || key.path == "valve.start_deg" || key.path.starts_with("valve.stop_")) return of_stops(key, scenario);
   if (key.path == "mission.press_torque_nm") {
     const Buttons& b = scenario.buttons;
-    return within(key, (b.preload_n + b.spring_n_m * scenario.panel.button_stroke_m / 2) / force_of_press_n_nm, key.max);
+    return within(key, (b.preload_n + b.spring_n_m * stroke_m(scenario.panel, std::greater()) / 2) / force_of_press_n_nm, key.max);
   }
   if (key.path.starts_with("buttons.")) return of_buttons(key, scenario);
   if (key.path.starts_with("panel.")) return of_panel(key, scenario);

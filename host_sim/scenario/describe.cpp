@@ -18,7 +18,7 @@ std::string keys_markdown() {
   Fault fault;
   std::string out = config::markdown_head;
   for (const Key& key : keys(scenario)) out += config::markdown_row(key);
-  for (const Key& key : keys(task)) out += config::markdown_row(key, "tasks[].", false);
+  for (const Key& key : keys(task, {})) out += config::markdown_row(key, "tasks[].", false);
   for (const Key& key : keys(fault)) out += config::markdown_row(key, "faults[].", false);
   return out;
 }

@@ -33,6 +33,35 @@ class Draws {
   std::uint64_t seed_;
 };
 
+// On the docked mission's panel there is one valve and one marker, and the buttons are of one size: their draws have the keys' names. Those of a file's features have the
+// feature's name as well, so that another one beside it changes no draw.
+void draw_panel(const Scenario& s, const Draws& draws, Sample& sample) {
+  const Calibration& c = s.calibration;
+  const bool docked = s.survey.file.empty();
+  const auto of = [&](const std::string& key, const std::string& feature) { return docked ? key : key + "." + feature; };
+  const std::vector<config::ValveNature> natures = valve_natures(s);
+  for (std::size_t i = 0; i < s.panel.valves.size(); ++i) {
+    const std::string& name = s.survey.names.valves.at(i);
+    sample.valves.push_back({draws.degrees(natures.at(i).start_deg, of("valve.start_deg", name)),
+                             draws.of(natures.at(i).friction_nm, of("valve.friction_nm", name)),
+                             draws.each_axis(c.handle_m, of("calibration.handle_m", name))});
+  }
+  for (std::size_t i = 0; i < s.panel.buttons.size(); ++i) {
+    const std::string& name = s.survey.names.buttons.at(i);
+    sample.buttons.push_back({draws.each_axis(c.buttons_m, "calibration.buttons_m." + (docked ? std::to_string(i) : name)).head<2>(),
+                              draws.each_axis(c.button_size_m, of("calibration.button_size_m", name)).head<2>()});
+  }
+  for (const std::string& name : s.survey.names.markers) {
+    Sample::Marker marker;
+    marker.shift_m = draws.each_axis(s.mounting.marker_m, of("mounting.marker_m", name));
+    marker.shift_m.z() = 0;
+    marker.turn_rad = draws.degrees(s.mounting.marker_deg, of("mounting.marker_deg", name));
+    marker.size_m = draws.of(c.marker_size_m, of("calibration.marker_size_m", name));
+    marker.flat_m = draws.each_axis(c.marker_flat_m, of("calibration.marker_flat_m", name)).head<2>();
+    sample.markers.push_back(marker);
+  }
+}
+
 void draw_light(const Scenario& s, const Draws& draws, Sample& sample) {
   const auto ratio = [&](const Spread& percent, const std::string& name) { return 1 + 0.01 * draws.of(percent, name); };
   sample.scattering_ratio = ratio(s.water.scattering_percent, "water.scattering_percent");
@@ -66,8 +95,7 @@ Sample draw(const Scenario& s, std::uint64_t seed) {
                             draws.of(s.docking.z_m, "docking.z_m")};
   sample.docking_turn_rad = {draws.degrees(s.docking.roll_deg, "docking.roll_deg"), draws.degrees(s.docking.pitch_deg, "docking.pitch_deg"),
                              draws.degrees(s.docking.yaw_deg, "docking.yaw_deg")};
-  sample.valve_start_rad = draws.degrees(s.valve.start_deg, "valve.start_deg");
-  sample.valve_friction_nm = draws.of(s.valve.friction_nm, "valve.friction_nm");
+  draw_panel(s, draws, sample);
   sample.attenuation_per_m = draws.of(s.water.attenuation_per_m, "water.attenuation_per_m");
   sample.camera_noise_grey = draws.of(s.camera.noise_grey, "camera.noise_grey");
   sample.lamps_lit = draws.of(s.lamps.lit, "lamps.lit");
@@ -88,9 +116,6 @@ Sample draw(const Scenario& s, std::uint64_t seed) {
     sample.one_way[i] = friction(s.friction.one_way, "one_way");
     sample.pivot_m[i] = friction(s.friction.pivot_m, "pivot_m");
   }
-  sample.marker_shift_m = draws.each_axis(s.mounting.marker_m, "mounting.marker_m");
-  sample.marker_shift_m.z() = 0;
-  sample.marker_turn_rad = draws.degrees(s.mounting.marker_deg, "mounting.marker_deg");
   const Calibration& c = s.calibration;
   sample.principal_point_px = draws.each_axis(c.principal_point_px, "calibration.principal_point_px").head<2>();
   sample.focal_ratio = 1 + 0.01 * draws.of(c.focal_percent, "calibration.focal_percent");
@@ -98,14 +123,8 @@ Sample draw(const Scenario& s, std::uint64_t seed) {
   sample.lens_ratio = 1 + 0.01 * draws.of(c.lens_percent, "calibration.lens_percent");
   sample.laser_cone_rad = 1e-3 * draws.of(c.laser_cone_mrad, "calibration.laser_cone_mrad");
   sample.beam_ratio = 1 + 0.01 * draws.of(c.beam_percent, "calibration.beam_percent");
-  for (std::size_t i = 0; i < sample.button_shift_m.size(); ++i)
-    sample.button_shift_m[i] = draws.each_axis(c.buttons_m, "calibration.buttons_m." + std::to_string(i)).head<2>();
   sample.exposure_delay_s = 1e-3 * draws.of(c.exposure_delay_ms, "calibration.exposure_delay_ms");
   sample.stamp_s = 1e-3 * draws.of(c.stamp_ms, "calibration.stamp_ms");
-  sample.handle_m = draws.each_axis(c.handle_m, "calibration.handle_m");
-  sample.button_size_m = draws.each_axis(c.button_size_m, "calibration.button_size_m").head<2>();
-  sample.marker_size_m = draws.of(c.marker_size_m, "calibration.marker_size_m");
-  sample.marker_flat_m = draws.each_axis(c.marker_flat_m, "calibration.marker_flat_m").head<2>();
   draw_light(s, draws, sample);
   sample.particles_per_l = draws.of(s.water.particles_per_l, "water.particles_per_l");
   const std::uint64_t sensor_seed = s.sensors.seed > 0 ? static_cast<std::uint64_t>(s.sensors.seed) : seed;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <string_view>
+#include <vector>
 
 #include "host_sim/scenario/scenario.hpp"
 #include "shared/geometry/pose.hpp"
@@ -18,8 +19,25 @@ struct Sample {
   std::uint64_t seed = 0;
   Vec3 docking_shift_m = Vec3::Zero();  // in the base frame
   Vec3 docking_turn_rad = Vec3::Zero();
-  double valve_start_rad = 0;
-  double valve_friction_nm = 0;
+  struct Valve {
+    double start_rad = 0;
+    double friction_nm = 0;
+    Vec3 size_m = Vec3::Zero();  // on the handle's length, thickness and height
+  };
+  struct Button {
+    Vec2 shift_m = Vec2::Zero();
+    Vec2 size_m = Vec2::Zero();  // on width and height
+  };
+  struct Marker {
+    Vec3 shift_m = Vec3::Zero();  // in the panel frame, within its plane: z is 0
+    double turn_rad = 0;          // about the panel's normal
+    double size_m = 0;
+    Vec2 flat_m = Vec2::Zero();  // by which the plate's far edge stands off, along the panel's x and y
+  };
+  // As the panel's layout has them.
+  std::vector<Valve> valves;
+  std::vector<Button> buttons;
+  std::vector<Marker> markers;
   double attenuation_per_m = 0;
   double camera_noise_grey = 0;
   bool lamps_lit = false;
@@ -30,19 +48,12 @@ struct Sample {
   std::array<double, joint_count> joint_offset_rad{};
   std::array<double, joint_count> coulomb{}, viscous{}, efficiency{}, back_efficiency{};  // over the description's
   std::array<double, joint_count> breakaway{}, one_way{}, pivot_m{};
-  Vec3 marker_shift_m = Vec3::Zero();  // in the panel frame, within its plane: z is 0
-  double marker_turn_rad = 0;          // about the panel's normal
   // The true machine, over its calibration.
   Vec2 principal_point_px = Vec2::Zero();
   double focal_ratio = 1, lens_ratio = 1, beam_ratio = 1;
   Vec3 distortion_px = Vec3::Zero();  // at the picture's corners: by k1, p1, p2
   double laser_cone_rad = 0;
-  std::array<Vec2, PanelLayout::button_count> button_shift_m{Vec2::Zero(), Vec2::Zero(), Vec2::Zero()};
   double exposure_delay_s = 0, stamp_s = 0;
-  Vec3 handle_m = Vec3::Zero();       // on its length, thickness and height
-  Vec2 button_size_m = Vec2::Zero();  // on width and height
-  double marker_size_m = 0;
-  Vec2 marker_flat_m = Vec2::Zero();  // by which the plate's far edge stands off, along the panel's x and y
   double particles_per_l = 0;
   // The light's way.
   double scattering_ratio = 1;                         // over that of the attenuation

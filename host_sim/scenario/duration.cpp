@@ -23,10 +23,13 @@ double longest_mission_s(const Scenario& scenario) {
   double needed_s = start_up_s + free_s + sweep_s;
   for (const Task& task : scenario.tasks) {
     if (task.kind == Task::Kind::turn_valve) {
-      const double turn_s = rad_from_deg(scenario.valve.stop_max_deg - scenario.valve.stop_min_deg) / m.turn_speed_rad_s;
+      const PanelLayout::Valve& valve = scenario.panel.valves[config::find_valve(scenario.survey.names, task.valve).value_or(0)];
+      const double turn_s = (valve.handle_max_rad - valve.handle_min_rad) / m.turn_speed_rad_s;
       needed_s += tried_twice * (free_s + straight_s + turn_s + jaw_s + sweep_s);
     } else {
-      const double press_s = 2 * (scenario.panel.button_stroke_m + m.press_overtravel_m) / m.press_speed_m_s;
+      double longest_m = 0;
+      for (const PanelLayout::Button& button : scenario.panel.buttons) longest_m = std::max(longest_m, button.stroke_m);
+      const double press_s = 2 * (longest_m + m.press_overtravel_m) / m.press_speed_m_s;
       needed_s += tried_twice * static_cast<double>(task.order.size()) * (free_s + straight_s + press_s);
     }
   }

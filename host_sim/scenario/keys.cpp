@@ -19,7 +19,7 @@ void add_place(Keys& all, Scenario& s) {
   all.push_back(key("docking.y_m", "m", -far_m, far_m, &s.docking.y_m, "how far it stands off its place, to the right"));
   all.push_back(key("docking.z_m", "m", -far_m, far_m, &s.docking.z_m, "how far it stands off its place, downward"));
   all.push_back(
-      key("docking.roll_deg", "deg", -far_deg, far_deg, &s.docking.roll_deg, "turn of the panel about the base's x axis, at the valve"));
+      key("docking.roll_deg", "deg", -far_deg, far_deg, &s.docking.roll_deg, "turn of the panel about the base's x axis, at its origin"));
   all.push_back(key("docking.pitch_deg", "deg", -far_deg, far_deg, &s.docking.pitch_deg, "the same about the base's y axis"));
   all.push_back(key("docking.yaw_deg", "deg", -far_deg, far_deg, &s.docking.yaw_deg, "the same about the base's z axis"));
   all.push_back(key("valve.start_deg", "deg", -180, 180, &s.valve.start_deg,
@@ -37,8 +37,8 @@ void add_place(Keys& all, Scenario& s) {
                     "depth at which it lets go on the way out; less than where it clicks"));
   all.push_back(key("buttons.click_drop_n", "N", 0, 20, &s.buttons.click_drop_n,
                     "force that a clicked button gives less; less than its spring gives where it lets go"));
-  all.push_back(key("buttons.stuck", "", 0, 0, &s.buttons.stuck, "buttons that do not move", {"left", "centre", "right"}));
-  all.push_back(key("buttons.missing", "", 0, 0, &s.buttons.missing, "buttons that broke off", {"left", "centre", "right"}));
+  all.push_back(key("buttons.stuck", "", 0, 0, &s.buttons.stuck, "buttons that do not move", s.survey.names.buttons));
+  all.push_back(key("buttons.missing", "", 0, 0, &s.buttons.missing, "buttons that broke off", s.survey.names.buttons));
 }
 
 void add_sight(Keys& all, Scenario& s) {
@@ -156,10 +156,10 @@ std::vector<Key> keys(Scenario& scenario) {
   Keys all;
   all.push_back(key("description", "", 0, 0, &scenario.description, "one line that `lanternfish scenarios` shows"));
   all.push_back(key("time_limit_s", "s", 1, 7200, &scenario.time_limit_s, "simulated time after which the run is given up"));
-  all.push_back(key("tasks", "", 0, 0, &scenario.tasks, "the job, in order"));
+  config::add_tasks(all, scenario.tasks, scenario.survey.names, "the job, in order");
   all.push_back(key("scene", "", 0, 0, &scenario.scene, "a file of what else stands about; found as arm.urdf is; empty: nothing"));
   add_place(all, scenario);
-  config::add_panel(all, scenario.panel);
+  config::add_panel(all, scenario.panel_file, scenario.docked_panel);
   add_sight(all, scenario);
   add_calibration(all, scenario);
   add_machine(all, scenario);

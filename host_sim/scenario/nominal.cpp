@@ -15,7 +15,7 @@ config::Machine machine_of(const Scenario& scenario, bool lamps_lit) {
   config::Machine machine;
   machine.file = scenario.file;
   machine.panel = scenario.panel;
-  machine.valve = scenario.valve;
+  machine.survey = scenario.survey;
   machine.camera = scenario.camera;
   machine.laser = scenario.laser;
   machine.vehicle = scenario.vehicle;

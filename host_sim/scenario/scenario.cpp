@@ -7,9 +7,12 @@
 
 #include "hal/config/fault_kinds.hpp"
 #include "hal/config/handle_check.hpp"
+#include "hal/config/key_text.hpp"
 #include "hal/config/nearest.hpp"
 #include "hal/config/panel_check.hpp"
+#include "hal/config/panel_file.hpp"
 #include "hal/config/share.hpp"
+#include "hal/config/task_reach.hpp"
 #include "hal/config/text_file.hpp"
 #include "hal/config/yaml_reader.hpp"
 #include "hal/sim/sim_config.hpp"
@@ -52,7 +55,8 @@ fs::path find_scenario(const std::string& file_or_name) {
 // A profile's name without an ending is a shipped one's.
 bool names_a_file(const std::string& path, const std::string& value) {
   if (path.starts_with("drives.") && path.ends_with("profile")) return looks_like_a_file(value);
-  return path == "arm.urdf" || path == "scene" || path == "safety.limits" || path == "safety.mission_limits";
+  return path == "arm.urdf" || path == "scene" || (path == "panel.file" && looks_like_a_file(value)) || path == "safety.limits" ||
+         path == "safety.mission_limits";
 }
 
 // Whoever types a name means the present folder; in the scenario's file a name means the file's own.
@@ -78,13 +82,24 @@ void apply_override(Scenario& scenario, const std::string& text) {
   take_from_here(*found);
 }
 
+double longest_stroke_m(const PanelLayout& panel) {
+  double longest_m = 0;
+  for (const PanelLayout::Button& button : panel.buttons) longest_m = std::max(longest_m, button.stroke_m);
+  return longest_m;
+}
+
 void check_buttons(const Scenario& s, const std::function<void(const std::string&)>& refuse) {
   for (const std::string& name : s.buttons.stuck) {
     if (std::find(s.buttons.missing.begin(), s.buttons.missing.end(), name) != s.buttons.missing.end())
       refuse("'buttons.stuck' and 'buttons.missing' both name " + name + ": a button that broke off cannot be stuck");
   }
+  for (const auto& [key, names] : {std::pair{"buttons.stuck", &s.buttons.stuck}, std::pair{"buttons.missing", &s.buttons.missing}}) {
+    for (const std::string& name : *names) {
+      if (!config::find_button(s.survey.names, name)) refuse(std::string("'") + key + "': the panel has no button '" + name + "'");
+    }
+  }
   if (!config::presses(s.tasks)) return;
-  const double half_way_n = s.buttons.preload_n + s.buttons.spring_n_m * s.panel.button_stroke_m / 2;
+  const double half_way_n = s.buttons.preload_n + s.buttons.spring_n_m * longest_stroke_m(s.panel) / 2;
   const double pressed_n = pressed_force_n(s);
   if (half_way_n > pressed_n * 1.001) {
     char text[256];
@@ -106,14 +121,15 @@ std::string beyond_stops(const Scenario& s) {
   return text;
 }
 
-// What the checks of a panel and its tasks look at.
-config::Machine work_of(const Scenario& s) {
-  config::Machine work;
-  work.panel = s.panel;
-  work.valve = s.valve;
-  work.mission = s.mission;
-  work.tasks = s.tasks;
-  return work;
+// A file says what its valves are.
+void refuse_docked_valve(const Scenario& s, const std::function<void(const std::string&)>& refuse) {
+  Scenario given = s, usual;
+  const std::vector<Key> told = keys(given), defaults = keys(usual);
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    const bool of_valve = told[i].path.starts_with("valve.") && !told[i].path.starts_with("valve.stop_");  // these are told by settle_panel
+    if (of_valve && config::value_text(told[i]) != config::value_text(defaults[i]))
+      refuse("'" + told[i].path + "' is of the docked mission's panel: 'panel.file' says what the valves are on this one");
+  }
 }
 
 // What no single key can tell.
@@ -121,9 +137,14 @@ void check_together(const Scenario& s, const std::string& where, std::vector<std
   const auto refuse = [&](const std::string& message) { problems.push_back(where + ": " + message); };
   const config::Machine work = work_of(s);
   for (const std::string& problem : config::handle_problems(work)) refuse(problem);
-  for (const std::string& problem : config::panel_problems(s.panel)) refuse(problem);
+  for (const std::string& problem : config::panel_problems(s.panel, s.survey)) refuse(problem);
   for (const std::string& problem : config::low_button_problems(work)) refuse(problem);
-  if (s.valve.start_deg.min < s.valve.stop_min_deg || s.valve.start_deg.max > s.valve.stop_max_deg) refuse(beyond_stops(s));
+  const bool docked = s.survey.file.empty();
+  if (docked && (s.valve.start_deg.min < s.valve.stop_min_deg || s.valve.start_deg.max > s.valve.stop_max_deg)) refuse(beyond_stops(s));
+  if (!docked) refuse_docked_valve(s, refuse);
+  for (const Fault& fault : s.faults) {
+    if (fault.kind == "handle_breaks" && s.panel.valves.empty()) refuse("'faults': handle_breaks: the panel has no valve");
+  }
   check_buttons(s, refuse);
   if (s.buttons.release_depth_m >= s.buttons.click_depth_m) refuse("'buttons.release_depth_m' is not below 'buttons.click_depth_m'");
   if (s.buttons.click_drop_n >= returning_force_n(s)) {
@@ -133,9 +154,16 @@ void check_together(const Scenario& s, const std::string& where, std::vector<std
                   s.buttons.click_drop_n, returning_force_n(s));
     refuse(text);
   }
-  if (s.buttons.click_depth_m > s.panel.button_stroke_m) refuse("'buttons.click_depth_m' is beyond 'panel.button_stroke_m'");
+  for (std::size_t i = 0; i < s.panel.buttons.size(); ++i) {
+    if (s.buttons.click_depth_m <= s.panel.buttons[i].stroke_m) continue;
+    refuse("'buttons.click_depth_m' is beyond " + config::button_key(s.survey, i, "stroke_m"));
+    break;
+  }
   if ((s.panel.plate_min_m.array() >= s.panel.plate_max_m.array()).any()) refuse("'panel.plate_min_m' is not below 'panel.plate_max_m'");
-  if (s.panel.marker_plate_m <= s.panel.marker_size_m) refuse("'panel.marker_plate_m' is not larger than 'panel.marker_size_m'");
+  for (std::size_t i = 0; i < s.panel.markers.size(); ++i) {
+    const auto marker = [&](const char* field) { return config::marker_key(s.survey, i, field); };
+    if (s.panel.markers[i].plate_m <= s.panel.markers[i].size_m) refuse(marker("plate_m") + " is not larger than " + marker("size_m"));
+  }
   if (s.camera.distortion.size() != 5) refuse("'camera.distortion' takes 5 numbers: k1, k2, p1, p2, k3");
   std::size_t tasks = 0;
   for (const Task& task : s.tasks) tasks += task.kind == Task::Kind::turn_valve ? 1 : task.order.size();
@@ -146,16 +174,49 @@ void check_together(const Scenario& s, const std::string& where, std::vector<std
   }
 }
 
+bool names_a_panel(const YAML::Node& root, const std::vector<std::string>& overrides) {
+  return !config::panel_named_in(root).empty() ||
+         std::any_of(overrides.begin(), overrides.end(), [](const std::string& text) { return text.starts_with("panel.file="); });
+}
+
 void read_scene(Scenario& scenario, std::vector<std::string>& problems) {
   if (scenario.scene.empty()) return;
   try {
-    scenario.objects = std::make_shared<const SceneFile>(read_scene_file(config::named_file(scenario.file, "scene", scenario.scene)));
+    auto objects = std::make_shared<const SceneFile>(read_scene_file(config::named_file(scenario.file, "scene", scenario.scene)));
+    const scene::Scene own = scene::bare_scene(scenario.panel, scenario.survey.names);
+    for (const SceneFile::Placed& object : objects->objects) {
+      const bool taken = std::any_of(own.begin(), own.end(), [&](const scene::Body& body) { return body.name == object.body.name; });
+      if (taken)
+        problems.push_back(scenario.scene + ": '" + object.body.name + "' is on the panel of " + scenario.survey.file +
+                           ", too: messages tell bodies by their names");
+    }
+    scenario.objects = std::move(objects);
   } catch (const InputError& problem) {
     problems.emplace_back(problem.what());
   }
 }
 
 }  // namespace
+
+config::Machine work_of(const Scenario& s) {
+  config::Machine work;
+  work.panel = s.panel;
+  work.survey = s.survey;
+  work.mission = s.mission;
+  work.tasks = s.tasks;
+  return work;
+}
+
+std::vector<config::ValveNature> valve_natures(const Scenario& s) {
+  if (!s.survey.file.empty()) return s.survey.valves;
+  config::ValveNature nature;
+  nature.friction_nm = s.valve.friction_nm;
+  nature.start_deg = s.valve.start_deg;
+  nature.detents_deg = s.valve.detents_deg;
+  nature.detent_nm = s.valve.detent_nm;
+  nature.viscous_nm_s = s.valve.viscous_nm_s;
+  return {nature};
+}
 
 Latency::Latency() {
   const hal::SimConfig defaults;
@@ -181,6 +242,8 @@ Scenario load_scenario(const std::string& file_or_name, const std::vector<std::s
   std::vector<std::string> problems;
   const config::Source source = config::Source::of_file(path, problems);
   const YAML::Node root = config::parse_yaml(config::read_text_file(path), source);
+  // A file's names are not known yet: any is taken, and looked for later.
+  if (names_a_panel(root, overrides)) scenario.survey.names = {{}, {}, {}};
   if (!root.IsNull()) {
     if (!root.IsMap()) source.refuse(root.Mark(), "a scenario is a group of keys");
     config::read_map(root, "", "", keys(scenario), source);
@@ -192,10 +255,12 @@ Scenario load_scenario(const std::string& file_or_name, const std::vector<std::s
       problems.emplace_back(problem.what());
     }
   }
+  if (!config::settle_panel(path, scenario.panel_file, scenario.docked_panel, scenario.valve, scenario.panel, scenario.survey, problems))
+    throw InputError(joined(problems));
   read_scene(scenario, problems);
   check_together(scenario, overrides.empty() ? source.name() : source.name() + " with --set", problems);
   if (problems.empty()) return scenario;
-  if (!scenario.tasks.empty()) add_job_problems(scenario, problems);
+  if (!scenario.tasks.empty() && config::names_known(scenario.tasks, scenario.survey.names)) add_job_problems(scenario, problems);
   throw InputError(joined(problems));
 }
 

@@ -13,6 +13,7 @@
 
 #include "firmware/mission/mission_config.hpp"
 #include "hal/config/machine.hpp"
+#include "hal/config/panel_survey.hpp"
 #include "host_sim/devices/devices_config.hpp"
 #include "host_sim/optics/optics.hpp"
 #include "host_sim/world/world.hpp"
@@ -48,7 +49,7 @@ struct Valve : config::ValveStops {
 
 // All three are alike, but for those that are broken.
 struct Buttons : world::ButtonConfig {
-  std::vector<std::string> stuck;    // left, centre, right
+  std::vector<std::string> stuck;    // by name
   std::vector<std::string> missing;  // gone, cap and all
 };
 
@@ -184,7 +185,10 @@ struct Scenario {
   double time_limit_s = 400;
   std::string scene;                         // a file of what else stands about; empty: nothing
   std::shared_ptr<const SceneFile> objects;  // what it says; null where there is none
-  PanelLayout panel;
+  std::string panel_file;                    // what is on the panel; empty: as the next says
+  config::DockedPanel docked_panel;
+  PanelLayout panel;           // made of these; what the core is told
+  config::PanelSurvey survey;  // of the panel
   Docking docking;
   Valve valve;
   Buttons buttons;
@@ -222,5 +226,11 @@ struct ShippedScenario {
 
 // Those in the share folder, by name.
 std::vector<ShippedScenario> shipped_scenarios();
+
+// What the valves are in simulation, as the panel's layout has them: of the docked mission's panel as the keys of `valve` say.
+std::vector<config::ValveNature> valve_natures(const Scenario& scenario);
+
+// What the checks of a panel and its tasks look at.
+config::Machine work_of(const Scenario& scenario);
 
 }  // namespace lf::scenario

@@ -59,7 +59,7 @@ std::vector<std::string> kind_names() {
   return names;
 }
 
-constexpr std::size_t most_objects = scene::max_bodies - scene::own_body_count;
+constexpr std::size_t most_objects = scene::max_objects;
 
 struct Reader {
   fs::path file;

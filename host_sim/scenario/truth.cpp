@@ -45,26 +45,34 @@ ArmDescription true_arm(const Scenario& scenario) {
   return arm;
 }
 
-void move_marker(scene::Body& panel, const Sample& sample) {
-  const Pose error = small_pose(sample.marker_shift_m, Vec3(0, 0, sample.marker_turn_rad));
+void move_markers(scene::Body& panel, const Sample& sample) {
+  std::size_t next = 0;
   for (scene::Shape& shape : panel.shapes) {
     if (shape.marker_id < 0) continue;
+    const Sample::Marker& error_of = sample.markers.at(next++);
+    const Pose error = small_pose(error_of.shift_m, Vec3(0, 0, error_of.turn_rad));
     // A plate that one edge holds off the panel: about its middle it is turned, and lifted by half as much.
-    const Vec3 tilt = Vec3(sample.marker_flat_m.y(), -sample.marker_flat_m.x(), 0) / shape.size_m.x();
-    shape.body_from_shape.translation() += error.translation() + Vec3(0, 0, 0.5 * sample.marker_flat_m.lpNorm<1>());
+    const Vec3 tilt = Vec3(error_of.flat_m.y(), -error_of.flat_m.x(), 0) / shape.size_m.x();
+    shape.body_from_shape.translation() += error.translation() + Vec3(0, 0, 0.5 * error_of.flat_m.lpNorm<1>());
     shape.body_from_shape.linear() = small_pose(Vec3::Zero(), tilt).linear() * error.linear() * shape.body_from_shape.linear();
   }
 }
 
 // The panel as it was built: its buttons off their drawn places, its parts off their drawn sizes.
 PanelLayout true_layout(PanelLayout layout, const Sample& sample) {
-  for (std::size_t i = 0; i < layout.buttons_m.size(); ++i) layout.buttons_m[i] += sample.button_shift_m[i];
-  layout.handle_length_m += sample.handle_m.x();
-  layout.handle_thickness_m += sample.handle_m.y();
-  layout.handle_height_m += sample.handle_m.z();
-  layout.button_width_m += sample.button_size_m.x();
-  layout.button_height_m += sample.button_size_m.y();
-  layout.marker_size_m += sample.marker_size_m;
+  for (std::size_t i = 0; i < layout.valves.size(); ++i) {
+    const Vec3& off_m = sample.valves.at(i).size_m;
+    layout.valves[i].handle_length_m += off_m.x();
+    layout.valves[i].handle_thickness_m += off_m.y();
+    layout.valves[i].handle_height_m += off_m.z();
+  }
+  for (std::size_t i = 0; i < layout.buttons.size(); ++i) {
+    const Sample::Button& off = sample.buttons.at(i);
+    layout.buttons[i].at_m += off.shift_m;
+    layout.buttons[i].width_m += off.size_m.x();
+    layout.buttons[i].height_m += off.size_m.y();
+  }
+  for (std::size_t i = 0; i < layout.markers.size(); ++i) layout.markers[i].size_m += sample.markers.at(i).size_m;
   return layout;
 }
 
@@ -84,30 +92,43 @@ CameraIntrinsics true_intrinsics(CameraIntrinsics k, const Sample& sample) {
   return k;
 }
 
-std::size_t button_of(const std::string& name) { return name == "left" ? 0 : name == "centre" ? 1 : 2; }
+world::ValveConfig valve_config(const config::ValveNature& nature, const PanelLayout::Valve& layout, const Sample::Valve& sample) {
+  world::ValveConfig valve;
+  valve.start_rad = sample.start_rad;
+  valve.friction_nm = sample.friction_nm;
+  valve.viscous_nm_s = nature.viscous_nm_s;
+  valve.stop_min_rad = layout.handle_min_rad;
+  valve.stop_max_rad = layout.handle_max_rad;
+  valve.detent_nm = nature.detent_nm;
+  for (const double detent : nature.detents_deg) valve.detents_rad.push_back(rad_from_deg(detent));
+  return valve;
+}
 
 world::WorldConfig world_config(const Scenario& scenario, const Sample& sample) {
   world::WorldConfig world;
   world.arm = true_arm(scenario);
   world.layout = true_layout(scenario.panel, sample);
-  world.scene = scene::make_scene(world.arm, world.layout);
-  move_marker(world.scene[std::size_t(scene::BodyId::panel)], sample);
+  world.scene = scene::make_scene(world.arm, world.layout, scenario.survey.names);
+  move_markers(world.scene[std::size_t(scene::BodyId::panel)], sample);
   world.base_from_panel = true_base_from_panel(scenario.panel, sample);
   if (scenario.objects) {
     for (scene::Body& object : placed_objects(*scenario.objects, world.base_from_panel)) world.scene.push_back(std::move(object));
   }
-  world.valve.start_rad = sample.valve_start_rad;
-  world.valve.friction_nm = sample.valve_friction_nm;
-  world.valve.viscous_nm_s = scenario.valve.viscous_nm_s;
-  world.valve.stop_min_rad = rad_from_deg(scenario.valve.stop_min_deg);
-  world.valve.stop_max_rad = rad_from_deg(scenario.valve.stop_max_deg);
-  world.valve.detent_nm = scenario.valve.detent_nm;
-  for (const double detent : scenario.valve.detents_deg) world.valve.detents_rad.push_back(rad_from_deg(detent));
-  world.buttons.fill(scenario.buttons);
-  for (world::ButtonConfig& button : world.buttons) button.stroke_m = scenario.panel.button_stroke_m;
-  for (const std::string& name : scenario.buttons.stuck) world.buttons[button_of(name)].stuck = true;
-  for (const std::string& name : scenario.buttons.missing)
-    world.scene[std::size_t(scene::BodyId::button_left) + button_of(name)].shapes.clear();
+  const std::vector<config::ValveNature> natures = valve_natures(scenario);
+  world.valves.clear();
+  for (std::size_t i = 0; i < scenario.panel.valves.size(); ++i)
+    world.valves.push_back(valve_config(natures.at(i), scenario.panel.valves[i], sample.valves.at(i)));
+  const std::vector<std::size_t> caps = scene::bodies_of(world.scene, scene::Role::button);
+  world.buttons.assign(scenario.panel.buttons.size(), scenario.buttons);
+  const auto broken = [](const std::vector<std::string>& list, const std::string& name) {
+    return std::find(list.begin(), list.end(), name) != list.end();
+  };
+  for (std::size_t i = 0; i < world.buttons.size(); ++i) {
+    const std::string& name = scenario.survey.names.buttons.at(i);
+    world.buttons[i].stroke_m = scenario.panel.buttons[i].stroke_m;
+    world.buttons[i].stuck = broken(scenario.buttons.stuck, name);
+    if (broken(scenario.buttons.missing, name)) world.scene[caps.at(i)].shapes.clear();
+  }
   world.joint_drag_nm_s = scenario.physics.joint_drag_nm_s;
   world.drag_coefficient = scenario.physics.drag_coefficient;
   world.restitution = scenario.physics.restitution;
@@ -438,8 +459,13 @@ hal::SimConfig make_truth(const Scenario& scenario, const Sample& sample, const 
     timed_by_devices ? sim.devices.faults.push_back(made.device) : sim.faults.push_back(made);
   }
   sim.vision.camera = nominal.controller.camera;
-  sim.vision.marker = nominal.controller.marker;
+  sim.vision.markers = nominal.controller.markers;
   sim.vision.panel = scenario.panel;
+  for (const mission::Task& task : nominal.controller.mission.tasks) {
+    if (task.kind != mission::Task::Kind::turn_valve) continue;
+    sim.valve_that_breaks = task.valve;
+    break;
+  }
   sim.image_latency = Duration::from_s(scenario.latency.image_ms * 1e-3);
   sim.exposure_delay = Duration::from_s(sample.exposure_delay_s);
   sim.stamp_offset = Duration::from_s(sample.stamp_s);

@@ -1,6 +1,5 @@
 #include "host_sim/serve/serve_result.hpp"
 
-#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -13,29 +12,29 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array<const char*, PanelLayout::button_count> button_names{"left", "centre", "right"};
 constexpr double valve_accuracy_deg = 3.0;  // as a run's success has it
 
-// The valve's last target counts: the tasks are done one after the other, and nobody says when.
-std::vector<record::TaskRecord> score(const world::World& world, const mission::MissionConfig& mission) {
+// A valve's last target counts: the tasks are done one after the other, and nobody says when.
+std::vector<record::TaskRecord> score(const world::World& world, const mission::MissionConfig& mission, const PanelNames& names) {
   std::vector<record::TaskRecord> records;
-  std::array<std::uint32_t, PanelLayout::button_count> wanted{};
-  double last_target_deg = record::unknown;
+  std::vector<std::uint32_t> wanted(world.button_count());
+  std::vector<double> last_target_deg(world.valve_count(), record::unknown);
   for (const mission::Task& task : mission.tasks) {
-    if (task.kind == mission::Task::Kind::turn_valve) last_target_deg = deg_from_rad(task.to_rad);
+    if (task.kind == mission::Task::Kind::turn_valve) last_target_deg.at(task.valve) = deg_from_rad(task.to_rad);
   }
   for (const mission::Task& task : mission.tasks) {
     record::TaskRecord record;
     if (task.kind == mission::Task::Kind::turn_valve) {
       record.task = "turn_valve";
+      if (names.valves.size() > 1) record.valve = names.valves.at(task.valve);
       record.target_deg = deg_from_rad(task.to_rad);
-      record.reached_deg = deg_from_rad(world.valve_angle_rad());
-      record.done = std::abs(record.reached_deg - last_target_deg) <= valve_accuracy_deg;
+      record.reached_deg = deg_from_rad(world.valve_angle_rad(task.valve));
+      record.done = std::abs(record.reached_deg - last_target_deg.at(task.valve)) <= valve_accuracy_deg;
     } else {
       record.task = "press_button";
-      record.button = button_names[task.button];
+      record.button = names.buttons.at(task.button);
       record.presses = static_cast<int>(world.button(task.button).presses);
-      record.done = world.button(task.button).presses >= ++wanted[task.button];
+      record.done = world.button(task.button).presses >= ++wanted.at(task.button);
     }
     records.push_back(record);
   }
@@ -52,8 +51,10 @@ Json tasks_json(const std::vector<record::TaskRecord>& tasks) {
   Json list = Json::array();
   for (const record::TaskRecord& task : tasks) {
     if (task.task == "turn_valve") {
-      list.push_back(
-          {{"task", task.task}, {"target_deg", task.target_deg}, {"reached_deg", number(task.reached_deg)}, {"done", task.done}});
+      Json json{{"task", task.task}};
+      if (!task.valve.empty()) json["valve"] = task.valve;
+      json.update({{"target_deg", task.target_deg}, {"reached_deg", number(task.reached_deg)}, {"done", task.done}});
+      list.push_back(json);
     } else {
       list.push_back({{"task", task.task}, {"button", task.button}, {"presses", task.presses}, {"done", task.done}});
     }
@@ -73,9 +74,9 @@ Json camera_json(const ServedCamera::Stats& camera) {
 
 }  // namespace
 
-ServeResult make_result(const ServeLoop& loop, const ServedCamera* camera, const mission::MissionConfig& mission) {
+ServeResult make_result(const ServeLoop& loop, const ServedCamera* camera, const mission::MissionConfig& mission, const PanelNames& names) {
   ServeResult result;
-  result.tasks = score(loop.world(), mission);
+  result.tasks = score(loop.world(), mission, names);
   result.success = !result.tasks.empty();
   for (const record::TaskRecord& task : result.tasks) result.success = result.success && task.done;
   const world::ContactReport contacts = loop.world().contacts();

@@ -31,7 +31,7 @@ struct ServeResult {
   double simulated_s = 0;
 };
 
-ServeResult make_result(const ServeLoop& loop, const ServedCamera* camera, const mission::MissionConfig& mission);
+ServeResult make_result(const ServeLoop& loop, const ServedCamera* camera, const mission::MissionConfig& mission, const PanelNames& names);
 
 // JSON text, two blanks of indentation, a newline at the end.
 std::string serve_result_json(const ServeResult& result);

@@ -78,7 +78,7 @@ ServeResult serve(const ServeRequest& request, bool (*stop)()) {
     if (step % steps_between_orders == 0) orders.carry_out(loop, say);
   }
 
-  ServeResult result = make_result(loop, camera ? &*camera : nullptr, nominal.controller.mission);
+  ServeResult result = make_result(loop, camera ? &*camera : nullptr, nominal.controller.mission, request.scenario.survey.names);
   result.scenario = request.scenario.name;
   result.seed = request.seed;
   result.nodes = request.nodes.text();

@@ -3,46 +3,50 @@
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 
 #include <algorithm>
-
-#include "shared/scene/scene.hpp"
+#include <vector>
 
 namespace lf::world {
 namespace {
 
-using scene::BodyId;
+using scene::BodyId, scene::Role;
 
-// Whether two bodies can ever meet: not neighbours in the arm's chain, whose shapes overlap at the joint, nor what stands still together. Objects stand still, as vehicle
-// and panel do, and meet all that moves.
-bool can_meet(int first, int second) {
+bool is_arm(Role role) { return role == Role::link || role == Role::hand || role == Role::finger; }
+
+// Whether two bodies can ever meet: not neighbours in the arm's chain, whose shapes overlap at the joint, nor what stands still together, nor the panel and what is set
+// in it, nor an obstacle and anything but the arm and objects. Objects stand still, as vehicle and panel do, and meet all that moves.
+bool can_meet(int first, int second, const std::vector<Role>& roles) {
   if (first < 0 || second < 0 || first == second) return false;
-  const auto a = BodyId(std::min(first, second));
-  const auto b = BodyId(std::max(first, second));
-  const bool b_is_object = std::size_t(b) >= scene::own_body_count;
-  if (b_is_object) return a != BodyId::vehicle && a != BodyId::panel && std::size_t(a) < scene::own_body_count;
-  if (a >= BodyId::panel) return false;                          // panel, what is set in it, and an obstacle
-  if (a == BodyId::vehicle && b >= BodyId::panel) return false;  // docked
-  if (a <= BodyId::forearm && int(b) == int(a) + 1) return false;
-  const bool b_is_finger = b == BodyId::finger_a || b == BodyId::finger_b;
-  return !(b_is_finger && (a == BodyId::wrist || a == BodyId::forearm));  // the jaw opens sideways, ahead of the forearm
+  const auto low = std::size_t(std::min(first, second)), high = std::size_t(std::max(first, second));
+  const Role a = roles[low], b = roles[high];
+  if (b == Role::object) return a != Role::vehicle && a != Role::panel && a != Role::object;
+  if (!is_arm(a) && !is_arm(b)) return false;
+  if (!is_arm(b)) return true;  // the arm comes before all that it can meet but the vehicle
+  if (low <= std::size_t(BodyId::forearm) && high == low + 1) return false;
+  return !(b == Role::finger &&
+           (low == std::size_t(BodyId::wrist) || low == std::size_t(BodyId::forearm)));  // the jaw opens sideways, ahead of the forearm
 }
 
 struct PairFilter : btOverlapFilterCallback {
+  explicit PairFilter(const scene::Scene& scene) {
+    for (const scene::Body& body : scene) roles.push_back(body.role);
+  }
+  std::vector<Role> roles;
   bool needBroadphaseCollision(btBroadphaseProxy* a, btBroadphaseProxy* b) const override {
     return can_meet(static_cast<const btCollisionObject*>(a->m_clientObject)->getUserIndex(),
-                    static_cast<const btCollisionObject*>(b->m_clientObject)->getUserIndex());
+                    static_cast<const btCollisionObject*>(b->m_clientObject)->getUserIndex(), roles);
   }
 };
 
 }  // namespace
 
-BulletWorld::BulletWorld(int solver_iterations, double restitution) {
+BulletWorld::BulletWorld(int solver_iterations, double restitution, const scene::Scene& scene) {
   btDefaultCollisionConstructionInfo pools;  // the default of 4096 each costs 5 MB a world; a grip has about 10 contacts
   pools.m_defaultMaxPersistentManifoldPoolSize = 256;
   pools.m_defaultMaxCollisionAlgorithmPoolSize = 256;
   configuration_ = std::make_unique<btDefaultCollisionConfiguration>(pools);
   dispatcher_ = std::make_unique<btCollisionDispatcher>(configuration_.get());
   broadphase_ = std::make_unique<btDbvtBroadphase>();
-  filter_ = std::make_unique<PairFilter>();
+  filter_ = std::make_unique<PairFilter>(scene);
   broadphase_->getOverlappingPairCache()->setOverlapFilterCallback(filter_.get());
   solver_ = std::make_unique<FixedBaseSolver>(restitution);
   world_ = std::make_unique<btMultiBodyDynamicsWorld>(dispatcher_.get(), broadphase_.get(), solver_.get(), configuration_.get());

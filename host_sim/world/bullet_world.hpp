@@ -8,13 +8,14 @@
 #include <memory>
 
 #include "host_sim/world/fixed_base_solver.hpp"
+#include "shared/scene/scene.hpp"
 
 namespace lf::world {
 
 class BulletWorld {
  public:
-  // `restitution` is that of every contact.
-  BulletWorld(int solver_iterations, double restitution);
+  // `restitution` is that of every contact. Colliders name their body of `scene` by their user index: its role says what it can meet.
+  BulletWorld(int solver_iterations, double restitution, const scene::Scene& scene);
   ~BulletWorld();
   BulletWorld(const BulletWorld&) = delete;
   BulletWorld& operator=(const BulletWorld&) = delete;

@@ -19,17 +19,17 @@ void expect_not_negative(double value, const std::string& name) {
   expect(std::isfinite(value) && value >= 0, name, "must be finite and not below 0");
 }
 
-void check_valve(const ValveConfig& valve) {
-  expect_not_negative(valve.friction_nm, "valve.friction_nm");
-  expect_not_negative(valve.viscous_nm_s, "valve.viscous_nm_s");
-  expect(std::isfinite(valve.inertia_kg_m2) && valve.inertia_kg_m2 >= 1e-4, "valve.inertia_kg_m2",
+void check_valve(const ValveConfig& valve, const std::string& name) {
+  expect_not_negative(valve.friction_nm, name + ".friction_nm");
+  expect_not_negative(valve.viscous_nm_s, name + ".viscous_nm_s");
+  expect(std::isfinite(valve.inertia_kg_m2) && valve.inertia_kg_m2 >= 1e-4, name + ".inertia_kg_m2",
          "must be at least 1e-4 (below, contact jitters)");
   expect(std::isfinite(valve.stop_min_rad) && std::isfinite(valve.stop_max_rad) && valve.stop_min_rad < valve.stop_max_rad,
-         "valve.stop_min_rad", "must be below stop_max_rad");
-  expect(valve.start_rad >= valve.stop_min_rad && valve.start_rad <= valve.stop_max_rad, "valve.start_rad", "must lie between the stops");
-  expect_not_negative(valve.detent_nm, "valve.detent_nm");
-  expect_positive(valve.detent_width_rad, "valve.detent_width_rad");
-  for (const double detent : valve.detents_rad) expect(std::isfinite(detent), "valve.detents_rad", "must be finite");
+         name + ".stop_min_rad", "must be below stop_max_rad");
+  expect(valve.start_rad >= valve.stop_min_rad && valve.start_rad <= valve.stop_max_rad, name + ".start_rad", "must lie between the stops");
+  expect_not_negative(valve.detent_nm, name + ".detent_nm");
+  expect_positive(valve.detent_width_rad, name + ".detent_width_rad");
+  for (const double detent : valve.detents_rad) expect(std::isfinite(detent), name + ".detents_rad", "must be finite");
 }
 
 void check_button(const ButtonConfig& button, const std::string& name) {
@@ -60,8 +60,11 @@ void check_arm(const WorldConfig& config) {
   }
 }
 
-void check_scene(const scene::Scene& scene) {
-  const scene::Scene own = scene::bare_scene();
+void check_scene(const scene::Scene& scene, const PanelLayout& layout) {
+  PanelNames names;
+  names.valves.resize(layout.valves.size());
+  names.buttons.resize(layout.buttons.size());
+  const scene::Scene own = scene::bare_scene(layout, names);
   expect(scene.size() >= own.size() && scene.size() <= scene::max_bodies, "scene",
          "must have its " + std::to_string(own.size()) + " own bodies, and " + std::to_string(scene::max_bodies) + " at most");
   for (std::size_t i = 0; i < own.size(); ++i) expect(scene[i].role == own[i].role, "scene", "must begin with its own bodies");
@@ -77,11 +80,14 @@ void check_scene(const scene::Scene& scene) {
 void check(const WorldConfig& config) {
   expect(config.base_from_panel.matrix().allFinite() && config.base_from_panel.linear().isUnitary(1e-6), "base_from_panel",
          "must be a finite rotation and translation");
-  check_scene(config.scene);
+  check_scene(config.scene, config.layout);
+  expect(config.valves.size() == config.layout.valves.size(), "valves", "must be as many as the layout's");
+  expect(config.buttons.size() == config.layout.buttons.size(), "buttons", "must be as many as the layout's");
   expect(config.vehicle_com_m.allFinite(), "vehicle_com_m", "must be finite");
-  check_valve(config.valve);
-  static constexpr const char* button_names[] = {"buttons[left]", "buttons[centre]", "buttons[right]"};
-  for (std::size_t i = 0; i < PanelLayout::button_count; ++i) check_button(config.buttons[i], button_names[i]);
+  // One alone has its name, of several each its number.
+  for (std::size_t i = 0; i < config.valves.size(); ++i)
+    check_valve(config.valves[i], config.valves.size() == 1 ? "valve" : "valves[" + std::to_string(i) + "]");
+  for (std::size_t i = 0; i < config.buttons.size(); ++i) check_button(config.buttons[i], "buttons[" + std::to_string(i) + "]");
   check_arm(config);
   expect_not_negative(config.joint_drag_nm_s, "joint_drag_nm_s");
   expect_not_negative(config.drag_coefficient, "drag_coefficient");

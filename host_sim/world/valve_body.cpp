@@ -15,15 +15,15 @@ constexpr double rest_speed_rad_s = 1e-9;
 
 }  // namespace
 
-ValveBody::ValveBody(const ValveConfig& config, const Pose& base_from_panel, const scene::Body& handle, double step_s)
-    : config_(config), step_s_(step_s), part_(1, base_from_panel) {
+ValveBody::ValveBody(const ValveConfig& config, const Pose& base_from_valve, const scene::Body& handle, int body, double step_s)
+    : config_(config), step_s_(step_s), part_(1, base_from_valve) {
   // Only the inertia about the shaft moves; the mass is carried by the panel.
   const double inertia = config.inertia_kg_m2;
   part_.body().setupRevolute(0, 0.5, btVector3(inertia, inertia, inertia), -1, btQuaternion::getIdentity(), btVector3(0, 0, 1),
                              btVector3(0, 0, 0), btVector3(0, 0, 0), false);
   part_.finish_links();
   part_.add_collider(-1, make_collision_shape({}, Pose::Identity()), no_body, Friction::free);
-  part_.add_collider(0, make_collision_shape(handle, Pose::Identity()), int(scene::BodyId::handle), Friction::free);
+  part_.add_collider(0, make_collision_shape(handle, Pose::Identity()), body, Friction::free);
   rows_ = &part_.add_rows(0);
   part_.body().setJointPos(0, config.start_rad);
   part_.update_poses();

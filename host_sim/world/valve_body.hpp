@@ -8,7 +8,8 @@ namespace lf::world {
 
 class ValveBody {
  public:
-  ValveBody(const ValveConfig& config, const Pose& base_from_panel, const scene::Body& handle, double step_s);
+  // `base_from_valve`: its axis on the panel's plane, axes as the panel's; `body`: the handle's index in the scene.
+  ValveBody(const ValveConfig& config, const Pose& base_from_valve, const scene::Body& handle, int body, double step_s);
 
   void before_step();
   double angle_rad() const { return part_.body().getJointPos(0); }

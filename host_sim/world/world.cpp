@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <deque>
 #include <string>
 
 #include "host_sim/world/arm_body.hpp"
@@ -36,9 +37,8 @@ const WorldConfig& checked(const WorldConfig& config) {
   return config;
 }
 
-Pose base_from_button(const WorldConfig& config, std::size_t index) {
-  const Vec2& centre = config.layout.buttons_m[index];
-  return config.base_from_panel * Eigen::Translation3d(centre.x(), centre.y(), 0);
+Pose base_from_place(const WorldConfig& config, const Vec2& at_m) {
+  return config.base_from_panel * Eigen::Translation3d(at_m.x(), at_m.y(), 0);
 }
 
 struct Box {
@@ -77,30 +77,33 @@ struct World::Impl {
   ArmBody arm;
   CollisionShape panel_shape;
   std::unique_ptr<btRigidBody> panel;
-  ValveBody valve;
-  std::array<ButtonBody, PanelLayout::button_count> buttons;
+  // Deques: what is in them cannot be moved.
+  std::deque<ValveBody> valves;
+  std::deque<ButtonBody> buttons;
+  std::size_t own_bodies;
   std::vector<std::unique_ptr<FixedObject>> objects;
   ContactSensor sensor;
   std::vector<ContactImpulse> impulses;
   std::unique_ptr<Obstacle> obstacle;
-  bool handle_is_there = true;
+  std::vector<bool> handle_is_there;
   std::int64_t steps = 0;
 
   explicit Impl(const WorldConfig& from)
       : config(checked(from)),
-        bullet(config.solver_iterations, config.restitution),
+        bullet(config.solver_iterations, config.restitution, config.scene),
         arm(config.arm, config.scene,
             {config.start_rad, config.joint_drag_nm_s, config.drive_stiffness_nm_rad, config.step_s, config.drag_coefficient}),
         panel_shape(make_collision_shape(config.scene[std::size_t(BodyId::panel)], Pose::Identity())),
-        valve(config.valve, config.base_from_panel, config.scene[std::size_t(BodyId::handle)], config.step_s),
-        buttons{make_button(0), make_button(1), make_button(2)},
-        sensor(config.force_window_s, config.judged_window_s, config.step_s, config.vehicle_com_m, config.scene) {
+        own_bodies(scene::own_body_count(config.scene)),
+        sensor(config.force_window_s, config.judged_window_s, config.step_s, config.vehicle_com_m, config.scene),
+        handle_is_there(config.valves.size(), true) {
+    add_valves_and_buttons();
     arm.part().enter(bullet.get());
     panel = std::make_unique<btRigidBody>(0, nullptr, panel_shape.compound.get());
     panel->setWorldTransform(to_bullet(config.base_from_panel));
     panel->setUserIndex(int(BodyId::panel));
     bullet.get().addCollisionObject(panel.get());
-    for (std::size_t i = scene::own_body_count; i < config.scene.size(); ++i)
+    for (std::size_t i = own_bodies; i < config.scene.size(); ++i)
       objects.push_back(std::make_unique<FixedObject>(bullet.get(), config.scene[i], config.scene[i].base_from_body, int(i)));
   }
 
@@ -113,7 +116,7 @@ struct World::Impl {
       }
     };
     add(arm.part());
-    add(valve.part());
+    for (const ValveBody& valve : valves) add(valve.part());
     for (const ButtonBody& button : buttons) add(button.part());
     return all;
   }
@@ -121,7 +124,7 @@ struct World::Impl {
   void refuse_clashes(const scene::BodyPoses& base_from_body) {
     std::string problems;
     for (std::size_t i = 0; i < objects.size(); ++i) {
-      const scene::Body& object = config.scene[scene::own_body_count + i];
+      const scene::Body& object = config.scene[own_bodies + i];
       for (const btCollisionObject* other : not_to_stand_in()) {
         double depth_m = 0;
         for (btCollisionObject* part : objects[i]->colliders()) depth_m = std::max(depth_m, overlap_m(bullet.get(), *part, *other));
@@ -142,14 +145,19 @@ struct World::Impl {
     obstacle.reset();
     objects.clear();
     for (ButtonBody& button : buttons) button.part().leave(bullet.get());
-    valve.part().leave(bullet.get());
+    for (ValveBody& valve : valves) valve.part().leave(bullet.get());
     bullet.get().removeCollisionObject(panel.get());
     arm.part().leave(bullet.get());
   }
 
-  ButtonBody make_button(std::size_t i) const {
-    const std::size_t body = std::size_t(BodyId::button_left) + i;
-    return ButtonBody(config.buttons[i], base_from_button(config, i), config.scene[body], int(body), config.step_s);
+  void add_valves_and_buttons() {
+    std::size_t body = scene::first_feature;
+    for (std::size_t i = 0; i < config.valves.size(); ++i, ++body)
+      valves.emplace_back(config.valves[i], base_from_place(config, config.layout.valves[i].at_m), config.scene[body], int(body),
+                          config.step_s);
+    for (std::size_t i = 0; i < config.buttons.size(); ++i, ++body)
+      buttons.emplace_back(config.buttons[i], base_from_place(config, config.layout.buttons[i].at_m), config.scene[body], int(body),
+                           config.step_s);
   }
 
   bool arm_is_near(const MultibodyPart& part) {
@@ -169,12 +177,16 @@ struct World::Impl {
   }
 
   void step() {
-    if (handle_is_there) enter_or_leave(valve);
+    for (std::size_t i = 0; i < valves.size(); ++i) {
+      if (handle_is_there[i]) enter_or_leave(valves[i]);
+    }
     for (ButtonBody& button : buttons) enter_or_leave(button);
     const Pose base_from_tool = arm.base_from_tool();
     arm.before_step();
     if (obstacle) obstacle->before_step();
-    if (valve.part().entered()) valve.before_step();
+    for (ValveBody& valve : valves) {
+      if (valve.part().entered()) valve.before_step();
+    }
     for (ButtonBody& button : buttons) {
       if (button.part().entered()) button.before_step();
     }
@@ -196,9 +208,10 @@ World& World::operator=(World&&) noexcept = default;
 
 void World::set_drives(const JointDrives& drives) { impl_->arm.set_drives(drives); }
 void World::step() { impl_->step(); }
-void World::break_handle() {
-  impl_->handle_is_there = false;
-  if (impl_->valve.part().entered()) impl_->valve.part().leave(impl_->bullet.get());
+void World::break_handle(std::size_t valve) {
+  impl_->handle_is_there.at(valve) = false;
+  MultibodyPart& part = impl_->valves.at(valve).part();
+  if (part.entered()) part.leave(impl_->bullet.get());
 }
 
 void World::push_obstacle() {
@@ -211,8 +224,10 @@ void World::block_jaw(double lower_rad, double upper_rad) { impl_->arm.limit(Joi
 double World::time_s() const { return double(impl_->steps) * impl_->config.step_s; }
 JointReadings World::readings() const { return impl_->arm.readings(); }
 Pose World::base_from_tool() const { return impl_->arm.base_from_tool(); }
-double World::valve_angle_rad() const { return impl_->valve.angle_rad(); }
-double World::valve_speed_rad_s() const { return impl_->valve.speed_rad_s(); }
+std::size_t World::valve_count() const { return impl_->valves.size(); }
+double World::valve_angle_rad(std::size_t valve) const { return impl_->valves.at(valve).angle_rad(); }
+double World::valve_speed_rad_s(std::size_t valve) const { return impl_->valves.at(valve).speed_rad_s(); }
+std::size_t World::button_count() const { return impl_->buttons.size(); }
 ButtonState World::button(std::size_t index) const { return impl_->buttons.at(index).state(); }
 ContactReport World::contacts() const { return impl_->sensor.report(); }
 double World::arm_kinetic_energy_j() const { return impl_->arm.kinetic_energy_j(); }
@@ -223,10 +238,9 @@ scene::BodyPoses World::base_from_body() const {
   for (const scene::Body& body : impl_->config.scene) poses.push_back(body.base_from_body);
   for (std::size_t i = 0; i < ArmDescription::link_count; ++i) poses[i] = impl_->arm.base_from_link(i);
   poses[std::size_t(BodyId::panel)] = impl_->config.base_from_panel;
-  poses[std::size_t(BodyId::handle)] = impl_->valve.base_from_handle();
-  for (std::size_t i = 0; i < PanelLayout::button_count; ++i) {
-    poses[std::size_t(BodyId::button_left) + i] = impl_->buttons[i].base_from_cap();
-  }
+  std::size_t body = scene::first_feature;
+  for (const ValveBody& valve : impl_->valves) poses[body++] = valve.base_from_handle();
+  for (const ButtonBody& button : impl_->buttons) poses[body++] = button.base_from_cap();
   return poses;
 }
 
@@ -235,8 +249,10 @@ std::uint64_t World::state_digest() const {
   for (const JointReading& joint : impl_->arm.readings()) {
     for (const double value : {joint.position_rad, joint.motor_position_rad, joint.velocity_rad_s, joint.torque_nm}) digest.add(value);
   }
-  digest.add(valve_angle_rad());
-  digest.add(valve_speed_rad_s());
+  for (const ValveBody& valve : impl_->valves) {
+    digest.add(valve.angle_rad());
+    digest.add(valve.speed_rad_s());
+  }
   for (const ButtonBody& button : impl_->buttons) {
     digest.add(button.state().depth_m);
     digest.add(double(button.state().presses));

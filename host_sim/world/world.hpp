@@ -1,7 +1,7 @@
-// The docked vehicle's world in Bullet: arm, gripper, panel, valve, buttons and their contacts, stepped at a fixed rate.
+// The docked vehicle's world in Bullet: arm, gripper, panel, valves, buttons and their contacts, stepped at a fixed rate.
 //
 // Everything is computed and given in the base frame B (x toward the panel, y right, z down), which stands still while the vehicle is docked.
-// The valve is turned, and the buttons are pressed, by contact and friction only. Without noise or clocks: equal calls give equal bits.
+// Valves are turned, and buttons are pressed, by contact and friction only. Without noise or clocks: equal calls give equal bits.
 #pragma once
 
 #include <array>
@@ -51,8 +51,8 @@ struct WorldConfig {
   PanelLayout layout;
   scene::Scene scene;                       // shapes with `collides` are collided; see shared/scene/panel_scene.hpp
   Pose base_from_panel = Pose::Identity();  // true
-  ValveConfig valve;
-  std::array<ButtonConfig, PanelLayout::button_count> buttons;
+  std::vector<ValveConfig> valves{{}};      // as the layout's
+  std::vector<ButtonConfig> buttons{{}, {}, {}};
   std::array<double, joint_count> start_rad{0, 0.60, 1.90, 0, 0.3};  // parked, jaw half open
   Vec3 vehicle_com_m = Vec3(-0.5, 0, -0.3);                          // where the base wrench is taken, in B
   // What screws, links and pads give way by under load, lumped at the joints; 0 rigid. 4000 N m/rad is 30 kN/m at the tool, and 0.2 mm of sag from the arm's
@@ -87,8 +87,8 @@ struct UnintendedContact {
 struct ContactReport {
   Wrench tool_wrench;                  // on wrist and fingers, in the tool frame, about its origin
   Wrench base_wrench;                  // on arm and vehicle, in B, about `vehicle_com_m`
-  Vec3 handle_force_n = Vec3::Zero();  // on the handle, in B
-  double grip_force_n = 0;             // each finger's force on the handle along the jaw's closing direction, mean of both
+  Vec3 handle_force_n = Vec3::Zero();  // on all handles, in B
+  double grip_force_n = 0;             // each finger's force on a handle along the jaw's closing direction, mean of both
   double largest_force_n = 0;   // between the robot and one other body, or two parts that should not have met: opposed forces do not cancel
   double peak_force_n = 0;      // largest of it so far
   double obstacle_force_n = 0;  // of what push_obstacle() brought, over `judged_window_s`
@@ -98,7 +98,7 @@ struct ContactReport {
 
 class World {
  public:
-  // Throws InputError when a value is not finite or out of its range, when the scene does not begin with its own bodies, when the arm starts outside its limits, and when an
+  // Throws InputError when a value is not finite or out of its range, when layout, scene, valves and buttons do not belong together, when the arm starts outside its limits, and when an
   // object stands in the robot, the handle or a button.
   explicit World(const WorldConfig& config);
   ~World();
@@ -110,8 +110,8 @@ class World {
   // Advances by `step_s`.
   void step();
 
-  // The handle breaks off: from the next step on it touches nothing, and the valve stays where it is.
-  void break_handle();
+  // A handle breaks off: from the next step on it touches nothing, and its valve stays where it is.
+  void break_handle(std::size_t valve);
   // From the next step on a box floats up from the wrist's left and pushes against it with 80 N.
   void push_obstacle();
   // From the next step on something rigid keeps the jaw's angle at or above `lower_rad` and at or below `upper_rad`. The jaw stands between the two when
@@ -123,9 +123,11 @@ class World {
   JointReadings readings() const;
   scene::BodyPoses base_from_body() const;
   Pose base_from_tool() const;
-  double valve_angle_rad() const;
-  double valve_speed_rad_s() const;
-  ButtonState button(std::size_t index) const;  // left, centre, right
+  std::size_t valve_count() const;
+  double valve_angle_rad(std::size_t valve) const;
+  double valve_speed_rad_s(std::size_t valve) const;
+  std::size_t button_count() const;
+  ButtonState button(std::size_t index) const;
   ContactReport contacts() const;
   // Kinetic energy of the arm, joule.
   double arm_kinetic_energy_j() const;

@@ -5,7 +5,9 @@
 #include <cstdint>
 
 #include "shared/geometry/pose.hpp"
+#include "shared/messages/static_vector.hpp"
 #include "shared/messages/time.hpp"
+#include "shared/panel/panel_layout.hpp"
 
 namespace lf {
 
@@ -33,7 +35,8 @@ struct LaserCalibration {
 struct MarkerCalibration {
   std::int32_t id = 0;                     // AprilTag 36h11
   double size_m = 0.080;                   // side of the black square
-  Pose panel_from_tag = Pose::Identity();  // surveyed: where the tag is seen from the valve's base
+  Pose panel_from_tag = Pose::Identity();  // surveyed
 };
+using MarkerCalibrations = StaticVector<MarkerCalibration, PanelLayout::max_markers>;
 
 }  // namespace lf

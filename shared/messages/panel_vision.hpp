@@ -7,6 +7,7 @@
 #include "shared/geometry/pose.hpp"
 #include "shared/messages/static_vector.hpp"
 #include "shared/messages/time.hpp"
+#include "shared/panel/panel_layout.hpp"
 
 namespace lf {
 
@@ -37,8 +38,8 @@ struct PanelRequest {
   Time still_time;  // mid-exposure of the still image
 };
 
+// One of the panel's markers in the still image.
 struct MarkerObservation {
-  bool found = false;
   std::int32_t id = -1;
   std::array<Vec2, 4> corners_px{};  // counter-clockwise from the bottom left corner of the marker, pixel centres at integers
   Vec2 centre_px = Vec2::Zero();
@@ -59,7 +60,7 @@ struct ProudCluster {
   std::uint32_t points = 0;
 };
 
-// The pointer mark at one end of the handle's bar, which tells the handle's angle from the one half a turn on.
+// The pointer mark at one end of a handle's bar, which tells the handle's angle from the one half a turn on.
 struct PointerObservation {
   bool seen = false;
   Vec3 direction = Vec3::UnitX();  // base frame, unit: along the bar, from its middle to the marked end
@@ -70,17 +71,21 @@ struct PointerObservation {
 };
 
 struct PanelResult {
-  static constexpr std::size_t max_clusters = 12;  // a handle, three buttons, the marker plate's edge, and what drifts by
+  static constexpr std::size_t max_clusters =
+      PanelLayout::max_valves + PanelLayout::max_buttons + 8;  // edges of marker plates, and what drifts by
 
   std::uint32_t id = 0;  // of the request
   Time measured;         // mid-exposure of the still image
   Time answered;
-  PlaneFit fit;  // as in the request
-  MarkerObservation marker;
-  StaticVector<ProudCluster, max_clusters> clusters;  // largest first
+  PlaneFit fit;                                                       // as in the request
+  StaticVector<MarkerObservation, PanelLayout::max_markers> markers;  // those of the panel that were found
+  StaticVector<ProudCluster, max_clusters> clusters;                  // largest first
   std::uint32_t clusters_dropped = 0;
-  PointerObservation pointer;
-  float confidence = 0;  // 0..1: fit's inlier ratio, marker's margin and ambiguity, and points of the largest cluster; 0 is no answer
+  StaticVector<PointerObservation, PanelLayout::max_valves> pointers;  // by valve; what is missing at the end was not seen
+  float confidence =
+      0;  // 0..1: fit's inlier ratio, the best marker's margin and ambiguity, and points of the largest cluster; 0 is no answer
+
+  PointerObservation pointer(std::size_t valve) const { return valve < pointers.size() ? pointers[valve] : PointerObservation{}; }
 };
 
 }  // namespace lf

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <concepts>
 #include <cstddef>
 
 namespace lf {
@@ -11,6 +12,12 @@ namespace lf {
 template <class T, std::size_t Capacity>
 class StaticVector {
  public:
+  StaticVector() = default;
+  // Of these elements, no more than the capacity.
+  template <std::same_as<T>... More>
+  requires(sizeof...(More) < Capacity) explicit StaticVector(const T& first, const More&... more)
+      : items_{first, more...}, size_(1 + sizeof...(More)) {}
+
   static constexpr std::size_t capacity() { return Capacity; }
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }

@@ -16,8 +16,7 @@ constexpr Albedo pointer_white{0.85f, 0.85f, 0.85f};
 constexpr Albedo pointer_black{0.05f, 0.05f, 0.05f};
 constexpr Albedo stem_steel{0.45f, 0.46f, 0.48f};
 constexpr Albedo bezel_grey{0.25f, 0.26f, 0.28f};
-constexpr std::array<Albedo, PanelLayout::button_count> cap_colours{Albedo{0.72f, 0.09f, 0.08f}, Albedo{0.09f, 0.48f, 0.14f},
-                                                                    Albedo{0.10f, 0.20f, 0.66f}};
+constexpr std::array cap_colours{Albedo{0.72f, 0.09f, 0.08f}, Albedo{0.09f, 0.48f, 0.14f}, Albedo{0.10f, 0.20f, 0.66f}};  // in turn
 
 // Friction of a pair is the product of both: the URDF's rubber pads bring 0.8, which is then 0.8 on the bar.
 constexpr double bar_friction = 1.0;
@@ -70,14 +69,17 @@ void add_panel(Body& panel, const PanelLayout& layout) {
   const Vec2 centre = 0.5 * (layout.plate_max_m + layout.plate_min_m);
   panel.shapes.push_back(shape(ShapeKind::box, Vec3(size.x(), size.y(), layout.plate_thickness_m),
                                at(centre.x(), centre.y(), -0.5 * layout.plate_thickness_m), panel_grey));
-  Shape marker = shape(ShapeKind::box, Vec3(layout.marker_plate_m, layout.marker_plate_m, layout.marker_plate_thickness_m),
-                       at(layout.marker_centre_m.x(), layout.marker_centre_m.y(), 0.5 * layout.marker_plate_thickness_m), plate_white);
-  marker.marker_id = layout.marker_id;
-  marker.marker_size_m = layout.marker_size_m;
-  panel.shapes.push_back(marker);
-  for (const Vec2& button : layout.buttons_m) {  // a bezel round each button, lower than the cap pressed home
-    const double radius = 0.5 * layout.button_width_m + 0.004;
-    panel.shapes.push_back(decoration(shape(ShapeKind::cylinder, Vec3(radius, 0, 0.006), at(button.x(), button.y(), 0.003), bezel_grey)));
+  for (const PanelLayout::Marker& tag : layout.markers) {
+    Shape marker = shape(ShapeKind::box, Vec3(tag.plate_m, tag.plate_m, tag.plate_thickness_m),
+                         at(tag.centre_m.x(), tag.centre_m.y(), 0.5 * tag.plate_thickness_m), plate_white);
+    marker.marker_id = tag.id;
+    marker.marker_size_m = tag.size_m;
+    panel.shapes.push_back(marker);
+  }
+  for (const PanelLayout::Button& button : layout.buttons) {  // a bezel round each button, lower than the cap pressed home
+    const double radius = 0.5 * button.width_m + 0.004;
+    panel.shapes.push_back(
+        decoration(shape(ShapeKind::cylinder, Vec3(radius, 0, 0.006), at(button.at_m.x(), button.at_m.y(), 0.003), bezel_grey)));
   }
   for (const double x : {layout.plate_min_m.x() + 0.06, layout.plate_max_m.x() - 0.06}) {  // the observatory's frame, behind the plate
     const double behind = -layout.plate_thickness_m - 0.03;
@@ -87,47 +89,46 @@ void add_panel(Body& panel, const PanelLayout& layout) {
 }
 
 // The part of the bar between two places along it.
-Shape bar_part(const PanelLayout& layout, double from_m, double to_m, const Albedo& albedo) {
-  return shape(ShapeKind::box, Vec3(layout.handle_thickness_m, to_m - from_m, layout.handle_thickness_m),
-               at(0, 0.5 * (from_m + to_m), layout.handle_height_m), albedo);
+Shape bar_part(const PanelLayout::Valve& valve, double from_m, double to_m, const Albedo& albedo) {
+  return shape(ShapeKind::box, Vec3(valve.handle_thickness_m, to_m - from_m, valve.handle_thickness_m),
+               at(0, 0.5 * (from_m + to_m), valve.handle_height_m), albedo);
 }
 
 // Paint changes what is seen, not what is touched: with a pointer the bar that collides is not the two parts that are visible.
-void add_bar(Body& handle, const PanelLayout& layout) {
-  const double end_m = 0.5 * layout.handle_length_m;
-  Shape bar = bar_part(layout, -end_m, end_m, handle_yellow);
+void add_bar(Body& handle, const PanelLayout::Valve& valve) {
+  const double end_m = 0.5 * valve.handle_length_m;
+  Shape bar = bar_part(valve, -end_m, end_m, handle_yellow);
   bar.friction = bar_friction;
-  bar.visible = layout.pointer == PanelLayout::Pointer::none;
+  bar.visible = !valve.has_pointer();
   handle.shapes.push_back(bar);
   if (bar.visible) return;
-  const double edge_m = end_m - layout.pointer_length_m;
-  const Albedo paint = layout.pointer == PanelLayout::Pointer::light_end ? pointer_white : pointer_black;
-  handle.shapes.push_back(decoration(bar_part(layout, -end_m, edge_m, handle_yellow)));
-  handle.shapes.push_back(decoration(bar_part(layout, edge_m, end_m, paint)));
+  const double edge_m = end_m - valve.pointer_length_m;
+  const Albedo paint = valve.pointer == PanelLayout::Pointer::light_end ? pointer_white : pointer_black;
+  handle.shapes.push_back(decoration(bar_part(valve, -end_m, edge_m, handle_yellow)));
+  handle.shapes.push_back(decoration(bar_part(valve, edge_m, end_m, paint)));
 }
 
-void add_handle(Body& handle, const PanelLayout& layout) {
-  const double stem_length = layout.handle_height_m - 0.5 * layout.handle_thickness_m;
-  add_bar(handle, layout);
-  handle.shapes.push_back(shape(ShapeKind::cylinder, Vec3(layout.stem_radius_m, 0, stem_length), at(0, 0, 0.5 * stem_length), stem_steel));
+void add_handle(Body& handle, const PanelLayout::Valve& valve) {
+  const double stem_length = valve.handle_height_m - 0.5 * valve.handle_thickness_m;
+  add_bar(handle, valve);
+  handle.shapes.push_back(shape(ShapeKind::cylinder, Vec3(valve.stem_radius_m, 0, stem_length), at(0, 0, 0.5 * stem_length), stem_steel));
 }
 
-void add_button(Body& button, const PanelLayout& layout, const Albedo& colour) {
-  button.shapes.push_back(shape(ShapeKind::cylinder, Vec3(0.5 * layout.button_width_m, 0, layout.button_height_m),
-                                at(0, 0, 0.5 * layout.button_height_m), colour));
+void add_button(Body& body, const PanelLayout::Button& button, const Albedo& colour) {
+  body.shapes.push_back(
+      shape(ShapeKind::cylinder, Vec3(0.5 * button.width_m, 0, button.height_m), at(0, 0, 0.5 * button.height_m), colour));
 }
 
 }  // namespace
 
-Scene make_scene(const ArmDescription& arm, const PanelLayout& layout) {
-  Scene scene = bare_scene();
+Scene make_scene(const ArmDescription& arm, const PanelLayout& layout, const PanelNames& names) {
+  Scene scene = bare_scene(layout, names);
   for (std::size_t i = 0; i < ArmDescription::link_count; ++i) scene[i].shapes = arm.links[i].shapes;
   add_vehicle(scene[std::size_t(BodyId::vehicle)]);
   add_panel(scene[std::size_t(BodyId::panel)], layout);
-  add_handle(scene[std::size_t(BodyId::handle)], layout);
-  for (std::size_t i = 0; i < PanelLayout::button_count; ++i) {
-    add_button(scene[std::size_t(BodyId::button_left) + i], layout, cap_colours[i]);
-  }
+  std::size_t body = first_feature;
+  for (const PanelLayout::Valve& valve : layout.valves) add_handle(scene[body++], valve);
+  for (std::size_t i = 0; i < layout.buttons.size(); ++i) add_button(scene[body++], layout.buttons[i], cap_colours[i % cap_colours.size()]);
   return scene;
 }
 

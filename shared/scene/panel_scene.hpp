@@ -7,8 +7,9 @@
 
 namespace lf::scene {
 
-// Frames of the bodies: arm links as in the URDF; vehicle: the base frame; panel and handle: the panel frame, the handle turned by its angle
-// about z (its bar along y at 0); buttons: the centre of the cap on the panel's plane, axes as the panel's, moving along -z when pressed.
-Scene make_scene(const ArmDescription& arm, const PanelLayout& layout);
+// Frames of the bodies: arm links as in the URDF; vehicle: the base frame; panel: the panel frame; handles: the valve's axis on the panel's plane, axes as the
+// panel's, turned by the handle's angle about z (its bar along y at 0); buttons: the centre of the cap on the panel's plane, axes as the panel's, moving along -z when
+// pressed.
+Scene make_scene(const ArmDescription& arm, const PanelLayout& layout, const PanelNames& names = {});
 
 }  // namespace lf::scene

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "shared/geometry/pose.hpp"
+#include "shared/panel/panel_layout.hpp"
+#include "shared/panel/panel_names.hpp"
 
 namespace lf::scene {
 
@@ -49,7 +51,7 @@ struct Body {
   Pose base_from_body = Pose::Identity();  // of an object; where the others are the world says
 };
 
-// Indices of the bodies that each Scene begins with, in this order. Objects follow them.
+// Indices of the bodies that each Scene begins with. The panel's handles follow, then its buttons, then objects.
 enum class BodyId : std::size_t {
   vehicle,  // what is bolted to the arm's base: skid, camera and lamp housings
   slew,
@@ -59,20 +61,24 @@ enum class BodyId : std::size_t {
   finger_a,
   finger_b,
   panel,
-  handle,
-  button_left,
-  button_centre,
-  button_right,
   obstacle,  // what a fault of the scenario pushes against the arm: met in contacts, not seen
 };
-inline constexpr std::size_t own_body_count = 13;  // before the objects
-inline constexpr std::size_t max_bodies = 64;      // of a Scene: a record of the served renderer has 6 kB of poses then
+inline constexpr std::size_t first_feature = 9;  // index of the first handle, or, on a panel without valves, of the first button
+inline constexpr std::size_t max_objects = 51;
+// Of a Scene: a record of the served renderer has 9 kB of poses then.
+inline constexpr std::size_t max_bodies = first_feature + PanelLayout::max_valves + PanelLayout::max_buttons + max_objects;
 
 using Scene = std::vector<Body>;
 using BodyPoses = std::vector<Pose>;  // base_from_body of each body of a Scene
 
-// The scene's own bodies, named and in their order, without shapes.
-Scene bare_scene();
+// The robot's and the panel's bodies, named and in their order, without shapes.
+Scene bare_scene(const PanelLayout& layout, const PanelNames& names);
+inline Scene bare_scene() { return bare_scene(PanelLayout{}, PanelNames{}); }
+
+// Indices of all bodies of a role, in their order: handles as the layout's valves, buttons as its buttons.
+std::vector<std::size_t> bodies_of(const Scene& scene, Role role);
+// How many bodies there are before the objects.
+std::size_t own_body_count(const Scene& scene);
 
 // All at the base's origin.
 inline BodyPoses poses_at_origin(const Scene& scene) { return BodyPoses(scene.size(), Pose::Identity()); }

@@ -40,8 +40,8 @@ void look_for_pointer(Input& in, ImageView image) {
   CameraCalibration camera;
   camera.intrinsics.width = image.width;
   camera.intrinsics.height = image.height;
-  PanelLayout layout;
-  layout.pointer = static_cast<PanelLayout::Pointer>(in.byte() % 3U);
+  PanelLayout::Valve valve;
+  valve.pointer = static_cast<PanelLayout::Pointer>(in.byte() % 3U);
   std::vector<CloudPoint> cloud;
   for (std::size_t count = in.byte(); count > 0; --count) {
     CloudPoint point;
@@ -49,7 +49,7 @@ void look_for_pointer(Input& in, ImageView image) {
     point.amplitude = static_cast<float>(number(in));
     cloud.push_back(point);
   }
-  const PointerObservation seen = vision::find_pointer(bar, image, cloud, camera, layout);
+  const PointerObservation seen = vision::find_pointer(bar, image, cloud, camera, valve);
   expect(seen.confidence >= 0 && seen.confidence <= 1, "a confidence is a share");
   expect(std::abs(seen.still_evidence) <= 1 && std::abs(seen.cloud_evidence) <= 1, "evidence is within 1");
 }

@@ -30,7 +30,7 @@ Turned fly(const std::vector<std::string>& overrides, std::uint64_t seed) {
   rig.start();
   EXPECT_TRUE(rig.run_to_end()) << rig.story();
   EXPECT_TRUE(rig.world().contacts().unintended.empty()) << rig.story();
-  return {rig.outcome().success, deg_from_rad(rig.world().valve_angle_rad()), rig.story()};
+  return {rig.outcome().success, deg_from_rad(rig.world().valve_angle_rad(0)), rig.story()};
 }
 
 struct Way {
@@ -59,7 +59,7 @@ TEST(AHandleWithoutPointer, IsRefusedByNameWhereHalfATurnStaysOpen) {
   ASSERT_TRUE(rig.run_to_end()) << rig.story();
   EXPECT_EQ(rig.step_now(), Step::failed) << rig.story();
   EXPECT_EQ(rig.outcome().code, static_cast<std::int32_t>(StepFailure::half_turn_open)) << rig.story();
-  EXPECT_NEAR(deg_from_rad(rig.world().valve_angle_rad()), 95, 0.5) << "it was not touched";
+  EXPECT_NEAR(deg_from_rad(rig.world().valve_angle_rad(0)), 95, 0.5) << "it was not touched";
 }
 
 class TurnWithoutPointer : public testing::TestWithParam<Way> {};
@@ -137,7 +137,7 @@ TEST(TurnAtTheSlowestSpeed, OfAQuarterEndsWhereItShould) {
   EXPECT_GT(rig.now().s() - began_s, pi / 2 / 0.03);
   ASSERT_TRUE(rig.run_to_end()) << rig.story();
   EXPECT_TRUE(rig.outcome().success) << rig.story();
-  EXPECT_NEAR(deg_from_rad(rig.world().valve_angle_rad()), 90, 3) << rig.story();
+  EXPECT_NEAR(deg_from_rad(rig.world().valve_angle_rad(0)), 90, 3) << rig.story();
 }
 
 TEST(ATurnFasterThanTheWrist, IsRefusedBeforeTheStart) {

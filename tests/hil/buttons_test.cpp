@@ -25,7 +25,7 @@ TEST_P(AButton, ThatWorksGoesInByItsStroke) {
     EXPECT_TRUE(rig.outcome().success) << "seed " << seed << ": " << rig.story();
     EXPECT_EQ(rig.world().button(index_of(GetParam())).presses, 1u) << rig.story();
     EXPECT_EQ(result(rig).presses, 1u);
-    EXPECT_NEAR(result(rig).travel_m, PanelLayout{}.button_stroke_m, 0.0015) << "seed " << seed;
+    EXPECT_NEAR(result(rig).travel_m, PanelLayout{}.buttons[0].stroke_m, 0.0015) << "seed " << seed;
     EXPECT_EQ(result(rig).failure, StepFailure::none);
     EXPECT_TRUE(result(rig).face_felt);
     EXPECT_NEAR(result(rig).face_off_m, 0, 0.0036) << "seed " << seed;
@@ -161,7 +161,7 @@ TEST(APress, StopsWhereItFindsTheBottom) {
 // After a valve the jaw closes for the second look. Something gets between the fingers there: as thick as the bar it looks held, thicker it jams them.
 TEST(APress, IsNotBegunWithSomethingBetweenTheFingers) {
   const double widest_rad = arm_geometry::joints[4].upper_rad;
-  for (const double thick_m : {PanelLayout{}.handle_thickness_m, 0.025}) {
+  for (const double thick_m : {PanelLayout{}.valves[0].handle_thickness_m, 0.025}) {
     Rig rig({"tasks=[{turn_valve: {to_deg: 90}}, {press_buttons: {order: [left]}}]"});
     rig.start();
     ASSERT_TRUE(rig.run_to(Step::back_off)) << rig.story();

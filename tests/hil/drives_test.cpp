@@ -21,7 +21,7 @@ void expect_success(Rig& rig) {
   rig.start();
   ASSERT_TRUE(rig.run_to_end()) << rig.story();
   EXPECT_TRUE(rig.outcome().success) << rig.story();
-  EXPECT_NEAR(deg_from_rad(rig.world().valve_angle_rad()), 90, 3);
+  EXPECT_NEAR(deg_from_rad(rig.world().valve_angle_rad(0)), 90, 3);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(rig.world().button(i).presses, 1u) << i;
 }
 
@@ -81,7 +81,7 @@ TEST_F(ADriveThatHomesByItsOwnMethod, MovesNoJointBeyondItsHoming) {
   EXPECT_EQ(rig.count(safety::Fault::following_error), 0u) << rig.story();
   ASSERT_TRUE(rig.run_to_end()) << rig.story();
   EXPECT_TRUE(rig.outcome().success) << rig.story();
-  EXPECT_NEAR(deg_from_rad(rig.world().valve_angle_rad()), 90, 3);
+  EXPECT_NEAR(deg_from_rad(rig.world().valve_angle_rad(0)), 90, 3);
 }
 
 TEST_F(ADriveThatHomesByItsOwnMethod, IsNamedWhereItFailsAtIt) {
@@ -129,7 +129,7 @@ TEST(MixedDrives, TellTheirErrorsInTheirMakersWords) {
     EXPECT_EQ(told, c.event);
     hal::ControlReport report;
     report.outcome = rig.outcome();
-    EXPECT_EQ(hal::status_json(report, {}, texts)["failure"]["text"], c.reason);
+    EXPECT_EQ(hal::status_json(report, {}, texts, {})["failure"]["text"], c.reason);
   }
 }
 

@@ -30,8 +30,9 @@ hal::PortStatus KnownSight::receive_image(std::uint8_t camera, Image& image) {
 hal::PortStatus KnownSight::submit_panel(const PanelRequest& request, ImageView, std::span<const CloudPoint>) {
   ++questions_;
   if (!answers_) return hal::port_ok;
-  answer_ = hal::panel_as_it_is(base_from_panel_ * Eigen::Translation3d(shift_m_), inner_.world().valve_angle_rad() + handle_rad_, layout_,
-                                marker_, camera_);
+  std::vector<double> handles_rad;
+  for (std::size_t i = 0; i < layout_.valves.size(); ++i) handles_rad.push_back(inner_.world().valve_angle_rad(i) + handle_rad_);
+  answer_ = hal::panel_as_it_is(base_from_panel_ * Eigen::Translation3d(shift_m_), handles_rad, layout_, markers_, camera_);
   answer_->id = request.id;
   answer_->measured = inner_.now();
   answer_due_ = inner_.now() + answer_time;

@@ -18,7 +18,7 @@ class KnownSight : public hal::Unattended {
  public:
   // `inner` outlives this. `base_from_panel` is the true pose of the panel.
   KnownSight(hal::SimPlatform& inner, const ControllerConfig& told, const Pose& base_from_panel)
-      : inner_(inner), camera_(told.camera), marker_(told.marker), layout_(told.mission.layout), base_from_panel_(base_from_panel) {}
+      : inner_(inner), camera_(told.camera), markers_(told.markers), layout_(told.mission.layout), base_from_panel_(base_from_panel) {}
 
   // Whether questions from now on are answered.
   void answer(bool answers) { answers_ = answers; }
@@ -45,7 +45,7 @@ class KnownSight : public hal::Unattended {
  private:
   hal::SimPlatform& inner_;
   CameraCalibration camera_;
-  MarkerCalibration marker_;
+  MarkerCalibrations markers_;
   PanelLayout layout_;
   Pose base_from_panel_;
   bool answers_ = true;

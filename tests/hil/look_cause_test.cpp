@@ -94,7 +94,7 @@ TEST(LookCause, AVehicleDockedHalfAMetreOff) {
 
 TEST(LookCause, AMarkerHiddenByAButton) {
   expect_cause("the marker is hidden", "what covers, blurs or outshines the marker",
-               [](scenario::Scenario& real) { real.panel.buttons_m[0] = real.panel.marker_centre_m; }, {"lamps.lit=false"});
+               [](scenario::Scenario& real) { real.panel.buttons[0].at_m = real.panel.markers[0].centre_m; }, {"lamps.lit=false"});
 }
 
 TEST(LookCause, ALaserThatIsOff) {

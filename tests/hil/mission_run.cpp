@@ -56,7 +56,7 @@ MissionRun run_mission(const std::string& scenario_name, std::uint64_t seed, con
   run.events = recorder.events;
   run.tasks.assign(mission.tasks().begin(), mission.tasks().end());
   run.simulated_s = lockstep.now().s();
-  run.valve_rad = platform.world().valve_angle_rad();
+  run.valve_rad = platform.world().valve_angle_rad(0);
   for (std::size_t i = 0; i < run.presses.size(); ++i) run.presses[i] = platform.world().button(i).presses;
   run.contacts = platform.world().contacts();
   run.heap_calls = hal::HeapGuard::calls() - heap_before;

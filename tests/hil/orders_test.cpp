@@ -46,12 +46,12 @@ TEST_P(Hold, StandsStillForAsLongAsItTakesAndGoesOnFromThere) {
   rig.run_for(halt_time_s);
   EXPECT_FALSE(rig.devices().laser_on());
   const auto stood = angles_rad(rig);
-  const double valve_rad = rig.world().valve_angle_rad();
+  const double valve_rad = rig.world().valve_angle_rad(0);
   const double grip_n = rig.world().contacts().grip_force_n;
   rig.run_for(mission::row(moment.step).margin_s + 20);
   EXPECT_LT(rig.fastest_joint_rad_s(), standing_rad_s);
   EXPECT_LT(farthest_apart(angles_rad(rig), stood), 0.004) << "it crept";
-  EXPECT_NEAR(rig.world().valve_angle_rad(), valve_rad, 0.005);
+  EXPECT_NEAR(rig.world().valve_angle_rad(0), valve_rad, 0.005);
   EXPECT_EQ(rig.step_now(), moment.step) << rig.story();
   EXPECT_EQ(rig.mission().standing(), Standing::on_hold);
   EXPECT_FALSE(rig.devices().laser_on());
@@ -67,7 +67,7 @@ TEST_P(Hold, StandsStillForAsLongAsItTakesAndGoesOnFromThere) {
   if (button) {
     EXPECT_EQ(rig.world().button(1).presses, 1u);
   } else {
-    EXPECT_NEAR(rig.world().valve_angle_rad(), pi / 2, 0.05) << rig.story();
+    EXPECT_NEAR(rig.world().valve_angle_rad(0), pi / 2, 0.05) << rig.story();
   }
 }
 
@@ -204,7 +204,7 @@ TEST(Orders, ThatHaveExpiredAreRefusedButAStopIsObeyed) {
 
 TEST(SetTasks, ReplacesTheJob) {
   Rig rig(turn_only());
-  const double valve_rad = rig.world().valve_angle_rad();
+  const double valve_rad = rig.world().valve_angle_rad(0);
   ASSERT_TRUE(set_tasks(rig, {{mission::Task::Kind::press_button, 0, 0}}));
   ASSERT_TRUE(home(rig)) << rig.story();
   ASSERT_TRUE(set_tasks(rig, {{mission::Task::Kind::press_button, 0, 2}, {mission::Task::Kind::press_button, 0, 1}}));
@@ -215,7 +215,7 @@ TEST(SetTasks, ReplacesTheJob) {
   EXPECT_EQ(rig.world().button(0).presses, 0u);
   EXPECT_EQ(rig.world().button(1).presses, 1u);
   EXPECT_EQ(rig.world().button(2).presses, 1u);
-  EXPECT_NEAR(rig.world().valve_angle_rad(), valve_rad, 0.01);
+  EXPECT_NEAR(rig.world().valve_angle_rad(0), valve_rad, 0.01);
 }
 
 TEST(SetTasks, ThatMakeNoSenseAreRefused) {
@@ -260,7 +260,7 @@ TEST(Reset, AfterAStopInTheTurnGetsFreeOfTheHandleFirst) {
     rig.run_for(1.5);
     ASSERT_EQ(rig.step_now(), Step::stopped) << rig.story();
     ASSERT_GT(rig.world().contacts().grip_force_n, 10) << "the handle is held";
-    const double valve_rad = rig.world().valve_angle_rad();
+    const double valve_rad = rig.world().valve_angle_rad(0);
     ASSERT_TRUE(give(rig, Command::reset));
     rig.run_for(0.5);
     ASSERT_TRUE(home(rig)) << rig.story();
@@ -271,7 +271,7 @@ TEST(Reset, AfterAStopInTheTurnGetsFreeOfTheHandleFirst) {
     for (int i = 0; i < 60'000 && !rig.outcome().ended && !(job && rig.step_now() == Step::deploy); ++i) {
       rig.step();
       pulled_n = std::max(pulled_n, rig.world().contacts().base_wrench.force_n.norm());
-      turned_rad = std::max(turned_rad, std::abs(rig.world().valve_angle_rad() - valve_rad));
+      turned_rad = std::max(turned_rad, std::abs(rig.world().valve_angle_rad(0) - valve_rad));
     }
     EXPECT_EQ(rig.step_now(), job ? Step::deploy : Step::failed) << rig.story();
     EXPECT_LT(pulled_n, 60) << "before: " << force_before_n;
@@ -290,7 +290,7 @@ TEST(Reset, AfterAStopInTheTurnNoArmJointIsJoggedBeforeTheJawIsOpen) {
   rig.run_for(0.5);
   ASSERT_TRUE(home(rig)) << rig.story();
   ASSERT_GT(rig.world().contacts().grip_force_n, 10) << "the handle is held";
-  const double valve_rad = rig.world().valve_angle_rad();
+  const double valve_rad = rig.world().valve_angle_rad(0);
   double pulled_n = 0;
   const auto finish = [&] {
     for (int i = 0; i < 1500; ++i) {
@@ -305,7 +305,7 @@ TEST(Reset, AfterAStopInTheTurnNoArmJointIsJoggedBeforeTheJawIsOpen) {
     }
   }
   EXPECT_LT(pulled_n, 60) << rig.story();
-  EXPECT_NEAR(rig.world().valve_angle_rad(), valve_rad, 0.02);
+  EXPECT_NEAR(rig.world().valve_angle_rad(0), valve_rad, 0.02);
   ASSERT_TRUE(jog(rig, Joint::jaw, 0.1));
   finish();
   EXPECT_FALSE(jog(rig, Joint::slew, -0.1)) << "the bar is still between the fingers";

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
 
@@ -16,29 +17,31 @@ using mission::PanelMap;
 
 struct Panel {
   PanelLayout layout;
-  MarkerCalibration marker;
+  MarkerCalibrations markers;
   CameraCalibration camera = nominal_camera();
 
   explicit Panel(PanelLayout::Pointer pointer = PanelLayout::Pointer::light_end) {
-    layout.pointer = pointer;
-    marker = {layout.marker_id, layout.marker_size_m, layout.panel_from_tag()};
+    layout.valves[0].pointer = pointer;
+    const PanelLayout::Marker& marker = layout.markers[0];
+    (void)markers.push_back({marker.id, marker.size_m, marker.panel_from_tag()});
   }
-  PanelMap map() const { return {layout, marker, camera}; }
+  PanelMap map() const { return {layout, markers, camera}; }
   PanelResult seen(double handle_deg, const Vec3& shift_m = Vec3::Zero()) const {
     Pose pose = layout.nominal_base_from_panel();
     pose.translation() += shift_m;
-    return panel_as_it_is(pose, rad_from_deg(handle_deg), layout, marker, camera);
+    return panel_as_it_is(pose, std::array{rad_from_deg(handle_deg)}, layout, markers, camera);
   }
 };
 
 constexpr double a_tenth_deg = 0.1;
+constexpr PanelMap::Valves first = PanelMap::bit(0);
 
 TEST(PanelMap, TellsEveryAngleBetweenTheStopsByItsPointer) {
   const Panel panel;
   for (double degrees = -105; degrees <= 105; degrees += 5) {
     PanelMap map = panel.map();
-    ASSERT_EQ(map.update(panel.seen(degrees)), StepFailure::none) << degrees;
-    EXPECT_NEAR(deg_from_rad(map.handle_rad()), degrees, a_tenth_deg);
+    ASSERT_EQ(map.update(panel.seen(degrees), first), StepFailure::none) << degrees;
+    EXPECT_NEAR(deg_from_rad(map.handle_rad(0)), degrees, a_tenth_deg);
   }
 }
 
@@ -47,7 +50,7 @@ TEST(PanelMap, APlaneThatIsNoNumberIsNoPanel) {
   PanelMap map = panel.map();
   PanelResult result = panel.seen(20);
   result.fit.plane.offset_m = std::nan("");
-  EXPECT_EQ(map.update(result), StepFailure::no_panel);
+  EXPECT_EQ(map.update(result, first), StepFailure::no_panel);
   EXPECT_FALSE(map.known());
 }
 
@@ -55,10 +58,10 @@ TEST(PanelMap, WithoutAPointerTakesWhatTheStopsMakeUniqueAndRefusesTheRestByName
   const Panel panel(PanelLayout::Pointer::none);
   for (double degrees = -104; degrees <= 105; degrees += 1) {
     PanelMap map = panel.map();
-    const StepFailure failure = map.update(panel.seen(degrees));
+    const StepFailure failure = map.update(panel.seen(degrees), first);
     if (std::abs(degrees) <= 71) {
       EXPECT_EQ(failure, StepFailure::none) << degrees;
-      EXPECT_NEAR(deg_from_rad(map.handle_rad()), degrees, a_tenth_deg);
+      EXPECT_NEAR(deg_from_rad(map.handle_rad(0)), degrees, a_tenth_deg);
     } else if (std::abs(degrees) >= 73) {
       EXPECT_EQ(failure, StepFailure::half_turn_open) << degrees;
       EXPECT_FALSE(map.known()) << "nothing is guessed";
@@ -70,11 +73,11 @@ TEST(PanelMap, WithoutAPointerKnowsTheHandleOnTheWayOfItsOwnTurn) {
   const Panel panel(PanelLayout::Pointer::none);
   for (const double found : {0.0, 45.0, 90.0, 95.0}) {  // it followed all the way, half of it, or not at all
     PanelMap map = panel.map();
-    ASSERT_EQ(map.update(panel.seen(0)), StepFailure::none);
-    map.expect_handle(rad_from_deg(50));
-    map.expect_handle(rad_from_deg(90));
-    ASSERT_EQ(map.update(panel.seen(found)), StepFailure::none) << found;
-    EXPECT_NEAR(deg_from_rad(map.handle_rad()), found, a_tenth_deg);
+    ASSERT_EQ(map.update(panel.seen(0), first), StepFailure::none);
+    map.expect_handle(0, rad_from_deg(50));
+    map.expect_handle(0, rad_from_deg(90));
+    ASSERT_EQ(map.update(panel.seen(found), first), StepFailure::none) << found;
+    EXPECT_NEAR(deg_from_rad(map.handle_rad(0)), found, a_tenth_deg);
   }
 }
 
@@ -82,10 +85,10 @@ TEST(PanelMap, WithoutAPointerKnowsTheHandleOnTheWayOfItsOwnTurn) {
 TEST(PanelMap, WithoutAPointerDoesNotTellAHandleThatStayedFromOneThatTurnedHalfATurn) {
   const Panel panel(PanelLayout::Pointer::none);
   PanelMap map = panel.map();
-  ASSERT_EQ(map.update(panel.seen(-70)), StepFailure::none);
-  map.expect_handle(rad_from_deg(100));
-  EXPECT_EQ(map.update(panel.seen(-75)), StepFailure::half_turn_open);
-  EXPECT_LT(map.longest_turn_rad(), rad_from_deg(170)) << "so long a turn is made in two";
+  ASSERT_EQ(map.update(panel.seen(-70), first), StepFailure::none);
+  map.expect_handle(0, rad_from_deg(100));
+  EXPECT_EQ(map.update(panel.seen(-75), first), StepFailure::half_turn_open);
+  EXPECT_LT(map.longest_turn_rad(0), rad_from_deg(170)) << "so long a turn is made in two";
 }
 
 struct Poor {
@@ -100,11 +103,11 @@ class PoorVision : public testing::TestWithParam<Poor> {};
 TEST_P(PoorVision, IsNamedByItsCauseAndChangesNothing) {
   const Panel panel;
   PanelMap map = panel.map();
-  ASSERT_EQ(map.update(panel.seen(10)), StepFailure::none);
+  ASSERT_EQ(map.update(panel.seen(10), first), StepFailure::none);
   PanelResult poor = panel.seen(40);
   GetParam().spoil(poor);
-  EXPECT_EQ(map.update(poor), GetParam().why) << name(map.update(poor));
-  EXPECT_NEAR(deg_from_rad(map.handle_rad()), 10, a_tenth_deg);
+  EXPECT_EQ(map.update(poor, first), GetParam().why) << name(map.update(poor, first));
+  EXPECT_NEAR(deg_from_rad(map.handle_rad(0)), 10, a_tenth_deg);
   EXPECT_STRNE(name(GetParam().why), "unknown");
   EXPECT_STRNE(remedy(GetParam().why), "");
 }
@@ -117,17 +120,18 @@ INSTANTIATE_TEST_SUITE_P(
                     Poor{"LineMisshapen", [](PanelResult& r) { r.fit.shape_shift_m = 0.0031; }, StepFailure::line_misshapen},
                     Poor{"LineOfNoShape", [](PanelResult& r) { r.fit.shape_shift_m = std::numeric_limits<double>::quiet_NaN(); },
                          StepFailure::line_misshapen},
-                    Poor{"NoMarker", [](PanelResult& r) { r.marker.found = false; }, StepFailure::no_marker},
+                    Poor{"NoMarker", [](PanelResult& r) { r.markers.clear(); }, StepFailure::no_marker},
                     Poor{"MarkerTooSmall",
                          [](PanelResult& r) {
-                           for (Vec2& c : r.marker.corners_px) c = r.marker.centre_px + 0.7 * (c - r.marker.centre_px);
+                           for (Vec2& c : r.markers[0].corners_px) c = r.markers[0].centre_px + 0.7 * (c - r.markers[0].centre_px);
                          },
                          StepFailure::marker_wrong},
-                    Poor{"MarkerElsewhere", [](PanelResult& r) { r.marker.camera_from_tag.translation().z() += 0.1; },
+                    Poor{"MarkerElsewhere", [](PanelResult& r) { r.markers[0].camera_from_tag.translation().z() += 0.1; },
                          StepFailure::marker_disagrees},
                     Poor{"MarkerTilted",
                          [](PanelResult& r) {
-                           r.marker.camera_from_tag.linear() = r.marker.camera_from_tag.linear() * Eigen::AngleAxisd(0.7, Vec3::UnitX());
+                           r.markers[0].camera_from_tag.linear() =
+                               r.markers[0].camera_from_tag.linear() * Eigen::AngleAxisd(0.7, Vec3::UnitX());
                          },
                          StepFailure::marker_disagrees},
                     Poor{"NoHandle", [](PanelResult& r) { r.clusters.clear(); }, StepFailure::no_handle},
@@ -146,9 +150,9 @@ TEST(PanelMap, DoubtsThePanelsPlaceByTheLinesShape) {
   PanelMap plain = panel.map(), skewed = panel.map();
   PanelResult result = panel.seen(10);
   result.fit.shape_shift_m = 0;
-  ASSERT_EQ(plain.update(result), StepFailure::none);
+  ASSERT_EQ(plain.update(result, first), StepFailure::none);
   result.fit.shape_shift_m = 0.0024;
-  ASSERT_EQ(skewed.update(result), StepFailure::none);
+  ASSERT_EQ(skewed.update(result, first), StepFailure::none);
   EXPECT_NEAR(skewed.doubt().shift_m - plain.doubt().shift_m, 0.0024, 1e-9);
   EXPECT_GT(skewed.doubt().turn_rad, plain.doubt().turn_rad + 0.002);
 }
@@ -157,16 +161,16 @@ TEST(PanelMap, DoubtsThePanelsPlaceByThePlanesBendAndNotByItsPointsScatter) {
   const Panel panel;
   PanelMap plain = panel.map(), bent = panel.map(), speckled = panel.map();
   PanelResult result = panel.seen(10);
-  ASSERT_EQ(plain.update(result), StepFailure::none);
+  ASSERT_EQ(plain.update(result, first), StepFailure::none);
   PanelResult bends = result, scatters = result;
   bends.fit.bend_m += 0.001;
   scatters.fit.rms_m += 0.001;
-  ASSERT_EQ(bent.update(bends), StepFailure::none);
-  ASSERT_EQ(speckled.update(scatters), StepFailure::none);
+  ASSERT_EQ(bent.update(bends, first), StepFailure::none);
+  ASSERT_EQ(speckled.update(scatters, first), StepFailure::none);
   EXPECT_NEAR(bent.doubt().shift_m - plain.doubt().shift_m, 0.002, 1e-9);
   EXPECT_NEAR(bent.doubt().turn_rad - plain.doubt().turn_rad, 0.002 / result.fit.seen_m, 1e-9);
   bends.fit.seen_m = 0.12;
-  ASSERT_EQ(bent.update(bends), StepFailure::none);
+  ASSERT_EQ(bent.update(bends, first), StepFailure::none);
   EXPECT_NEAR(bent.doubt().turn_rad,
               plain.doubt().turn_rad + (bent.doubt().shift_m - 0.0021) / 0.12 - (plain.doubt().shift_m - 0.0021) / result.fit.seen_m, 1e-9)
       << "a strip of the panel tells less of its tilt";
@@ -177,19 +181,19 @@ TEST(PanelMap, TellsWhatItsLookLeavesOver) {
   const Panel panel;
   PanelMap map = panel.map();
   EXPECT_FALSE(map.fit().known);
-  ASSERT_EQ(map.update(panel.seen(0)), StepFailure::none);
+  ASSERT_EQ(map.update(panel.seen(0), first), StepFailure::none);
   ASSERT_TRUE(map.fit().known);
   EXPECT_NEAR(map.fit().marker_side_error, 0, 1e-6);
   EXPECT_NEAR(map.fit().marker_corners_m, 0, 1e-7);
   EXPECT_TRUE(std::isnan(map.fit().panel_shift_m)) << "there was none before";
-  EXPECT_NEAR(map.fit().marker_size_m, panel.layout.marker_size_m, 1e-7);
+  EXPECT_NEAR(map.fit().marker_size_m, panel.layout.markers[0].size_m, 1e-7);
 
   // The marker's plane a hundredth farther than it is: the rays of its corners meet it in a square so much larger.
   PanelResult far = panel.seen(0);
   const double camera_m = far.fit.plane.signed_distance_m(panel.camera.base_from_camera.translation());
-  far.fit.plane.offset_m += 0.01 * (camera_m - panel.layout.panel_from_tag().translation().z());
+  far.fit.plane.offset_m += 0.01 * (camera_m - panel.layout.markers[0].panel_from_tag().translation().z());
   far.fit.bend_m = 0.0004;
-  ASSERT_EQ(map.update(far), StepFailure::none);
+  ASSERT_EQ(map.update(far, first), StepFailure::none);
   EXPECT_NEAR(map.fit().marker_side_error, 0.01, 1e-6);
   EXPECT_NEAR(map.fit().marker_corners_m, 0, 1e-7);
   EXPECT_NEAR(map.fit().plane_bend_m, 0.0004, 1e-9);
@@ -198,40 +202,40 @@ TEST(PanelMap, TellsWhatItsLookLeavesOver) {
 
   // One corner off by a fiftieth of the side: no square.
   PanelResult skewed = panel.seen(0);
-  const double side_px = (skewed.marker.corners_px[1] - skewed.marker.corners_px[0]).norm();
-  skewed.marker.corners_px[2].x() += 0.02 * side_px;
-  (void)map.update(skewed);
-  EXPECT_GT(map.fit().marker_corners_m, 0.005 * panel.layout.marker_size_m);
+  const double side_px = (skewed.markers[0].corners_px[1] - skewed.markers[0].corners_px[0]).norm();
+  skewed.markers[0].corners_px[2].x() += 0.02 * side_px;
+  (void)map.update(skewed, first);
+  EXPECT_GT(map.fit().marker_corners_m, 0.005 * panel.layout.markers[0].size_m);
 
   PanelResult no_marker = panel.seen(0);
-  no_marker.marker.found = false;
-  (void)map.update(no_marker);
+  no_marker.markers.clear();
+  (void)map.update(no_marker, first);
   EXPECT_FALSE(map.fit().known);
 }
 
 TEST(PanelMap, NamesAPointerThatItDidNotRecogniseWhereTheStopsLeaveItOpen) {
   const Panel panel;
   PanelResult faint = panel.seen(90);
-  faint.pointer.confidence = 0.1f;
-  EXPECT_EQ(panel.map().update(faint), StepFailure::pointer_unsure);
+  faint.pointers[0].confidence = 0.1f;
+  EXPECT_EQ(panel.map().update(faint, first), StepFailure::pointer_unsure);
   PanelResult clear_by_stops = panel.seen(30);
-  clear_by_stops.pointer.confidence = 0.1f;
-  EXPECT_EQ(panel.map().update(clear_by_stops), StepFailure::none);
+  clear_by_stops.pointers[0].confidence = 0.1f;
+  EXPECT_EQ(panel.map().update(clear_by_stops, first), StepFailure::none);
 }
 
 TEST(PanelMap, NamesAHandleThatStandsWhereItsStopsDoNotLetIt) {
   const Panel panel;
-  EXPECT_EQ(panel.map().update(panel.seen(150)), StepFailure::beyond_stops);
-  EXPECT_EQ(panel.map().update(panel.seen(106)), StepFailure::none) << "a look errs by a degree";
+  EXPECT_EQ(panel.map().update(panel.seen(150), first), StepFailure::beyond_stops);
+  EXPECT_EQ(panel.map().update(panel.seen(106), first), StepFailure::none) << "a look errs by a degree";
 }
 
 TEST(PanelMap, HoldsEveryLookAgainstTheFirstSoThatAShiftSeenTwiceIsNamedTwice) {
   const Panel panel;
   PanelMap map = panel.map();
-  ASSERT_EQ(map.update(panel.seen(0)), StepFailure::none);
-  EXPECT_EQ(map.update(panel.seen(0, Vec3(0, 0.03, 0))), StepFailure::panel_moved);
-  EXPECT_EQ(map.update(panel.seen(0, Vec3(0, 0.03, 0))), StepFailure::panel_moved);
-  EXPECT_EQ(map.update(panel.seen(0, Vec3(0, 0.001, 0))), StepFailure::none);
+  ASSERT_EQ(map.update(panel.seen(0), first), StepFailure::none);
+  EXPECT_EQ(map.update(panel.seen(0, Vec3(0, 0.03, 0)), first), StepFailure::panel_moved);
+  EXPECT_EQ(map.update(panel.seen(0, Vec3(0, 0.03, 0)), first), StepFailure::panel_moved);
+  EXPECT_EQ(map.update(panel.seen(0, Vec3(0, 0.001, 0)), first), StepFailure::none);
 }
 
 }  // namespace

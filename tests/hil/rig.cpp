@@ -62,7 +62,7 @@ std::string Rig::story() {
   run.outcome = outcome();
   run.events = recorder_.events;
   run.simulated_s = now().s();
-  run.valve_rad = world().valve_angle_rad();
+  run.valve_rad = world().valve_angle_rad(0);
   for (std::size_t i = 0; i < run.presses.size(); ++i) run.presses[i] = world().button(i).presses;
   return describe(run);
 }

@@ -60,7 +60,7 @@ TEST_P(EmergencyStop, StopsTheDrivesAndHoldsWhatIsHeld) {
   rig.run_for(stop_time_s);
   EXPECT_GT(moving_rad_s, 2 * standing_rad_s) << "there was nothing to stop";
   EXPECT_LT(rig.fastest_joint_rad_s(), standing_rad_s);
-  const double valve_rad = rig.world().valve_angle_rad();
+  const double valve_rad = rig.world().valve_angle_rad(0);
   rig.run_for(2);
   EXPECT_LT(rig.fastest_joint_rad_s(), standing_rad_s);
   EXPECT_EQ(rig.step_now(), Step::stopped) << rig.story();
@@ -71,7 +71,7 @@ TEST_P(EmergencyStop, StopsTheDrivesAndHoldsWhatIsHeld) {
   if (GetParam().step != Step::turn) return;
   EXPECT_GT(grip_n, 20) << "nothing was held";
   EXPECT_GT(rig.world().contacts().grip_force_n, 0.5 * grip_n);
-  EXPECT_NEAR(rig.world().valve_angle_rad(), valve_rad, 0.005);
+  EXPECT_NEAR(rig.world().valve_angle_rad(0), valve_rad, 0.005);
 }
 
 INSTANTIATE_TEST_SUITE_P(InEveryPhase, EmergencyStop, testing::Values(free_motion, scanning, in_contact, gripping, pressing, stowing),

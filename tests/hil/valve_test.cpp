@@ -39,7 +39,7 @@ TEST(Turn, ThatStallsIsLetGoLookedAtAndTakenUpAgain) {
   rig.start();
   ASSERT_TRUE(rig.run_to_end()) << rig.story();
   EXPECT_EQ(rig.step_now(), Step::done) << rig.story();
-  EXPECT_NEAR(rig.world().valve_angle_rad(), pi / 2, rad_from_deg(3)) << rig.story();
+  EXPECT_NEAR(rig.world().valve_angle_rad(0), pi / 2, rad_from_deg(3)) << rig.story();
   EXPECT_EQ(times_begun(rig, Step::turn), 2) << rig.story();
   EXPECT_EQ(rig.count(Fault::step_failed), 1u) << rig.story();
   EXPECT_TRUE(rig.world().contacts().unintended.empty());
@@ -106,14 +106,14 @@ TEST(Turn, OfAHandleThatIsStuckIsTriedThreeTimesAndEndsStowed) {
   std::vector<std::string> overrides = turn_only();
   overrides.emplace_back("valve.friction_nm=20");
   Rig rig(overrides);
-  const double before_rad = rig.world().valve_angle_rad();
+  const double before_rad = rig.world().valve_angle_rad(0);
   rig.start();
   ASSERT_TRUE(rig.run_to_end()) << rig.story();
   EXPECT_EQ(rig.step_now(), Step::failed) << rig.story();
   EXPECT_EQ(rig.outcome().fault, Fault::step_failed);
   EXPECT_EQ(rig.outcome().code, static_cast<std::int32_t>(StepFailure::stalled)) << rig.story();
   EXPECT_EQ(times_begun(rig, Step::turn), 3) << rig.story();
-  EXPECT_LT(std::abs(rig.world().valve_angle_rad() - before_rad), rad_from_deg(25)) << "20 N m give way a little to a roll at its limit";
+  EXPECT_LT(std::abs(rig.world().valve_angle_rad(0) - before_rad), rad_from_deg(25)) << "20 N m give way a little to a roll at its limit";
   EXPECT_LT(rig.world().contacts().grip_force_n, 1) << "still held";
 }
 
@@ -131,7 +131,7 @@ Pull pull(const Vec3& mistake_m) {
   Pull pull;
   if (!rig.run_to(Step::let_go)) ADD_FAILURE() << rig.story();
   pull.settled_n = rig.world().contacts().handle_force_n.norm();
-  EXPECT_NEAR(rig.world().valve_angle_rad(), pi / 2, rad_from_deg(3)) << rig.story();
+  EXPECT_NEAR(rig.world().valve_angle_rad(0), pi / 2, rad_from_deg(3)) << rig.story();
   rig.run_to_end();
   pull.end = rig.step_now();
   pull.story = rig.story();

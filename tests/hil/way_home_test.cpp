@@ -66,7 +66,8 @@ TEST_P(AJawThatDoesNotOpen, EndsTheWayHomeWithAStopAndNoPullOnTheHandle) {
   EXPECT_LT(moved_m, 0.005) << "it went back with the handle in the jaw";
   EXPECT_LT(pulled_n, pulled_before_n + 20) << rig.story();
   EXPECT_LT(rig.fastest_joint_rad_s(), standing_rad_s);
-  EXPECT_LT(arm::gap_from_jaw(angle_rad(rig, Joint::jaw)), PanelLayout{}.handle_thickness_m + 0.002) << "it is not jammed on the handle";
+  EXPECT_LT(arm::gap_from_jaw(angle_rad(rig, Joint::jaw)), PanelLayout{}.valves[0].handle_thickness_m + 0.002)
+      << "it is not jammed on the handle";
 }
 
 INSTANTIATE_TEST_SUITE_P(WhereItJams, AJawThatDoesNotOpen, testing::Values(When::turning, When::letting_go, When::leaving));
@@ -81,7 +82,7 @@ double fastest_arm_joint_rad_s(const Rig& rig) {
 // checked for a closed jaw.
 TEST(WhatTheJawClosesOnOnTheWayHome, IsLetGoOfByAnArmAtRest) {
   const double widest_rad = arm_geometry::joints[4].upper_rad;
-  for (const double thick_m : {PanelLayout{}.handle_thickness_m, 0.025}) {
+  for (const double thick_m : {PanelLayout{}.valves[0].handle_thickness_m, 0.025}) {
     SCOPED_TRACE(thick_m);
     Rig rig(turn_only());
     rig.start();

@@ -97,6 +97,7 @@ void put_motions(Ledger& ledger) {
 void put_sweep(Ledger& ledger) {
   scan::SweepRequest request;
   request.base_from_panel = PanelLayout{}.nominal_base_from_panel();
+  (void)request.handles.push_back({});
   const LaserCalibration laser = nominal_laser();
   // Ends are found by bisection to 1e-9 rad.
   ledger.operation("sweep, planned", 1e-8);

@@ -91,6 +91,7 @@ void put_pipeline(Ledger& ledger, Bench<capacity>& bench, const char* image, con
   auto& pipeline = *new (bench.pipeline) BasicScanPipeline<capacity>(config);
   scan::SweepRequest request;
   request.base_from_panel = PanelLayout{}.nominal_base_from_panel();
+  (void)request.handles.push_back({});
   const scan::SweepPlan plan = scan::plan_sweep(request, config.laser);
   const auto joints = [&](Duration t) {
     Joints q;

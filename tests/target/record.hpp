@@ -17,7 +17,7 @@
 
 namespace lf::test {
 
-inline constexpr std::uint32_t record_magic = 0x314D464Cu;  // "LFM1"
+inline constexpr std::uint32_t record_magic = 0x324D464Cu;  // "LFM2"
 
 // A stream has bytes(void*, size): a writer takes from there, a reader puts there; and broken(), which ends the program. It derives from this one, by
 // which argument-dependent lookup finds every `pass`.
@@ -58,13 +58,11 @@ template <class S, class T, std::size_t N>
 void pass(S& s, StaticVector<T, N>& items) {
   std::uint32_t size = static_cast<std::uint32_t>(items.size());
   pass(s, size);
-  StaticVector<T, N> passed;
-  for (std::uint32_t i = 0; i < size; ++i) {
-    T item = i < items.size() ? items[i] : T{};
-    pass(s, item);
-    if (!passed.push_back(item)) s.broken();
-  }
-  items = passed;
+  // In place: an answer of panel vision is too big for a small stack.
+  while (items.size() > size) items.pop_back();
+  while (items.size() < size)
+    if (items.extend() == nullptr) return s.broken();
+  for (T& item : items) pass(s, item);
 }
 
 template <class S, class... Fields>
@@ -152,17 +150,28 @@ void pass(S& s, MarkerCalibration& v) {
 }
 template <class S>
 void pass(S& s, mission::Task& v) {
-  auto& [kind, to_rad, button] = v;
-  pass_all(s, kind, to_rad, button);
+  auto& [kind, to_rad, button, valve] = v;
+  pass_all(s, kind, to_rad, button, valve);
+}
+template <class S>
+void pass(S& s, PanelLayout::Valve& v) {
+  auto& [at_m, length, thickness, height, pointer, pointer_length, min_rad, max_rad, stem] = v;
+  pass_all(s, at_m, length, thickness, height, pointer, pointer_length, min_rad, max_rad, stem);
+}
+template <class S>
+void pass(S& s, PanelLayout::Button& v) {
+  auto& [at_m, width, height, stroke] = v;
+  pass_all(s, at_m, width, height, stroke);
+}
+template <class S>
+void pass(S& s, PanelLayout::Marker& v) {
+  auto& [id, size, plate, thickness, centre] = v;
+  pass_all(s, id, size, plate, thickness, centre);
 }
 template <class S>
 void pass(S& s, PanelLayout& v) {
-  auto& [x, y, z, plate_min, plate_max, plate_thickness, handle_length, handle_thickness, handle_height, pointer, pointer_length,
-         handle_min, handle_max, stem, buttons, button_width, button_height, button_stroke, marker_id, marker_size, marker_plate,
-         marker_thickness, marker_centre] = v;
-  pass_all(s, x, y, z, plate_min, plate_max, plate_thickness, handle_length, handle_thickness, handle_height, pointer, pointer_length,
-           handle_min, handle_max, stem, buttons, button_width, button_height, button_stroke, marker_id, marker_size, marker_plate,
-           marker_thickness, marker_centre);
+  auto& [x, y, z, plate_min, plate_max, plate_thickness, valves, buttons, markers] = v;
+  pass_all(s, x, y, z, plate_min, plate_max, plate_thickness, valves, buttons, markers);
 }
 template <class S>
 void pass(S& s, arm::PanelDoubt& v) {
@@ -187,10 +196,10 @@ void pass(S& s, arm::VehicleShape& v) {
 template <class S>
 void pass(S& s, mission::MissionConfig& v) {
   auto& [tasks, layout, docking, vehicle, park, lamps, always_on, camera_syncs, frames_per_background, image_due, sweep_speed, verify_band,
-         move_speed, approach_distance, approach_speed, press_speed, press_overtravel, press_torque, turn_speed, jaw_open, valve_tolerance,
-         tries] = v;
+         move_speed, approach_distance, approach_speed, press_speed, press_overtravel, press_torque, turn_speed, valve_tolerance, tries] =
+      v;
   pass_all(s, tasks, layout, docking, vehicle, park, lamps, always_on, camera_syncs, frames_per_background, image_due, sweep_speed,
-           verify_band, move_speed, approach_distance, approach_speed, press_speed, press_overtravel, press_torque, turn_speed, jaw_open,
+           verify_band, move_speed, approach_distance, approach_speed, press_speed, press_overtravel, press_torque, turn_speed,
            valve_tolerance, tries);
 }
 template <class S>
@@ -215,8 +224,8 @@ void pass(S& s, arm::TransmissionSetup& v) {
 }
 template <class S>
 void pass(S& s, ControllerConfig& v) {
-  auto& [network, transmissions, camera, laser, marker, mission, limits, mission_limits] = v;
-  pass_all(s, network, transmissions, camera, laser, marker, mission, limits, mission_limits);
+  auto& [network, transmissions, camera, laser, markers, mission, limits, mission_limits] = v;
+  pass_all(s, network, transmissions, camera, laser, markers, mission, limits, mission_limits);
 }
 
 // What comes from the vision side.
@@ -239,8 +248,8 @@ void pass(S& s, PlaneFit& v) {
 }
 template <class S>
 void pass(S& s, MarkerObservation& v) {
-  auto& [found, id, corners, centre, pose, rms, ambiguity, margin] = v;
-  pass_all(s, found, id, corners, centre, pose, rms, ambiguity, margin);
+  auto& [id, corners, centre, pose, rms, ambiguity, margin] = v;
+  pass_all(s, id, corners, centre, pose, rms, ambiguity, margin);
 }
 template <class S>
 void pass(S& s, ProudCluster& v) {
@@ -254,8 +263,8 @@ void pass(S& s, PointerObservation& v) {
 }
 template <class S>
 void pass(S& s, PanelResult& v) {
-  auto& [id, measured, answered, fit, marker, clusters, dropped, pointer, confidence] = v;
-  pass_all(s, id, measured, answered, fit, marker, clusters, dropped, pointer, confidence);
+  auto& [id, measured, answered, fit, markers, clusters, dropped, pointers, confidence] = v;
+  pass_all(s, id, measured, answered, fit, markers, clusters, dropped, pointers, confidence);
 }
 
 // What goes to it.

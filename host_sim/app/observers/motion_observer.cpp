@@ -29,7 +29,9 @@ void MotionObserver::on_telemetry(const Telemetry& telemetry) {
     asked_tool_mm_[axis].push_back(asked ? 1000 * asked_m[static_cast<Eigen::Index>(axis)] : record::unknown);
   }
   tool_error_mm_.push_back(asked ? 1000 * (tool_m - asked_m).norm() : record::unknown);
-  valve_rad_.push_back(world_->valve_angle_rad());
+  valves_rad_.resize(world_->valve_count());
+  for (std::size_t i = 0; i < valves_rad_.size(); ++i) valves_rad_[i].push_back(world_->valve_angle_rad(i));
+  button_depth_m_.resize(world_->button_count());
   for (std::size_t i = 0; i < button_depth_m_.size(); ++i) button_depth_m_[i].push_back(world_->button(i).depth_m);
   const world::ContactReport contacts = world_->contacts();
   contact_n_.push_back(contacts.largest_force_n);
@@ -44,13 +46,17 @@ std::vector<record::ReportChart> MotionObserver::charts() const {
     tool.series.push_back({name, t_s_, tool_mm_[axis], false});
     tool.series.push_back({name + ", asked", t_s_, asked_tool_mm_[axis], true});
   }
-  std::vector<double> valve_deg;
-  std::transform(valve_rad_.begin(), valve_rad_.end(), std::back_inserter(valve_deg), deg_from_rad);
-  return {speeds,
-          tool,
-          {"Tool's distance from where it is asked to be, truth", "mm", {{"distance", t_s_, tool_error_mm_, false}}},
-          {"Valve's angle, truth", "deg", {{"valve", t_s_, valve_deg, false}}},
-          {"Contact force, truth", "N", {{"largest", t_s_, contact_n_, false}, {"grip on the handle", t_s_, grip_n_, false}}}};
+  record::ReportChart valves{valves_rad_.size() > 1 ? "Valves' angles, truth" : "Valve's angle, truth", "deg", {}};
+  for (std::size_t i = 0; i < valves_rad_.size(); ++i) {
+    std::vector<double> deg;
+    std::transform(valves_rad_[i].begin(), valves_rad_[i].end(), std::back_inserter(deg), deg_from_rad);
+    valves.series.push_back({names_.valves.at(i), t_s_, std::move(deg), false});
+  }
+  std::vector<record::ReportChart> charts{
+      speeds, tool, {"Tool's distance from where it is asked to be, truth", "mm", {{"distance", t_s_, tool_error_mm_, false}}}};
+  if (!valves.series.empty()) charts.push_back(std::move(valves));
+  charts.push_back({"Contact force, truth", "N", {{"largest", t_s_, contact_n_, false}, {"grip on the handle", t_s_, grip_n_, false}}});
+  return charts;
 }
 
 record::ReportMotion MotionObserver::motion(const world::WorldConfig& config) const {
@@ -58,9 +64,9 @@ record::ReportMotion MotionObserver::motion(const world::WorldConfig& config) co
   motion.parts = report_parts_of(config);
   motion.t_s = t_s_;
   for (std::size_t i = 0; i < joint_count; ++i) motion.coordinates.push_back({joint_names[i], position_rad_[i]});
-  motion.coordinates.push_back({"valve", valve_rad_});
-  for (const char* name : {"left button", "centre button", "right button"})
-    motion.coordinates.push_back({name, button_depth_m_[motion.coordinates.size() - joint_count - 1]});
+  for (std::size_t i = 0; i < valves_rad_.size(); ++i) motion.coordinates.push_back({names_.valves.at(i), valves_rad_[i]});
+  for (std::size_t i = 0; i < button_depth_m_.size(); ++i)
+    motion.coordinates.push_back({names_.buttons.at(i) + " button", button_depth_m_[i]});
   motion.tool_part = static_cast<std::size_t>(scene::BodyId::wrist);
   motion.tool_m = config.arm.wrist_from_tool.translation();
   motion.base_from_panel = config.base_from_panel;

@@ -11,6 +11,8 @@ namespace lf::app {
 
 class MotionObserver : public hal::SimObserver {
  public:
+  explicit MotionObserver(const PanelNames& names = {}) : names_(names) {}
+
   void on_step(Time, const world::World& world) override { world_ = &world; }
   void on_telemetry(const Telemetry& telemetry) override;
 
@@ -21,13 +23,14 @@ class MotionObserver : public hal::SimObserver {
 
  private:
   const world::World* world_ = nullptr;
+  PanelNames names_;
   std::uint32_t ticks_ = 0;
   std::vector<double> t_s_;
   std::array<std::vector<double>, joint_count> position_rad_, speed_rad_s_;
   std::array<std::vector<double>, 3> tool_mm_, asked_tool_mm_;
   std::vector<double> tool_error_mm_;
-  std::vector<double> valve_rad_, contact_n_, grip_n_;
-  std::array<std::vector<double>, PanelLayout::button_count> button_depth_m_;
+  std::vector<double> contact_n_, grip_n_;
+  std::vector<std::vector<double>> valves_rad_, button_depth_m_;  // of each valve and button of the world
 };
 
 }  // namespace lf::app

@@ -10,8 +10,10 @@ namespace lf::app {
 
 void PanelObserver::on_telemetry(const Telemetry& telemetry) {
   for (const Event& event : telemetry.events) {
-    if (event.kind != Event::Kind::located || located_) continue;
-    located_ = Located{answered_, Pose::Identity(), event.value, asked_valve_rad_, asked_poses_, std::move(asked_cloud_)};
+    if (event.kind != Event::Kind::located || map_taken_) continue;
+    if (!located_) located_ = Located{answered_, Pose::Identity(), {}, asked_poses_, std::move(asked_cloud_)};
+    const auto valve = static_cast<std::size_t>(event.code);
+    if (event.code >= 0 && valve < asked_valves_rad_.size()) located_->handles.push_back({valve, event.value, asked_valves_rad_[valve]});
   }
 }
 
@@ -19,7 +21,8 @@ void PanelObserver::on_panel_request(const PanelRequest&, ImageView, std::span<c
   asked_cloud_.assign(cloud.begin(), cloud.end());
   if (world_ != nullptr) {
     asked_poses_ = world_->base_from_body();
-    asked_valve_rad_ = world_->valve_angle_rad();
+    asked_valves_rad_.clear();
+    for (std::size_t i = 0; i < world_->valve_count(); ++i) asked_valves_rad_.push_back(world_->valve_angle_rad(i));
   }
   if (files_.wanted() && !cloud.empty() && !located_) files_.write("cloud.pcd", record::pcd_bytes(cloud));
 }

@@ -16,9 +16,12 @@ namespace lf::app {
 struct Located {
   PanelResult panel;
   Pose base_from_panel = Pose::Identity();  // as found
-  double handle_found_rad = 0;
-  double handle_true_rad = 0;
-  scene::BodyPoses poses;  // while it looked
+  struct Handle {
+    std::size_t valve = 0;
+    double found_rad = 0, true_rad = 0;
+  };
+  std::vector<Handle> handles;  // those that it looked for
+  scene::BodyPoses poses;       // while it looked
   std::vector<CloudPoint> cloud;
 };
 
@@ -45,7 +48,7 @@ class PanelObserver : public hal::SimObserver {
   const world::World* world_ = nullptr;
   std::vector<CloudPoint> asked_cloud_;
   scene::BodyPoses asked_poses_;
-  double asked_valve_rad_ = 0;
+  std::vector<double> asked_valves_rad_;
   PanelResult answered_;
   std::optional<Located> located_;
   bool map_taken_ = false;

@@ -5,7 +5,7 @@
 namespace lf::app {
 namespace {
 
-// Frame::object is 1 + the body.
+// Frame::object is 1 + the body. The robot's bodies come first.
 bool of_the_panel(std::uint16_t object) { return object > static_cast<std::uint16_t>(scene::BodyId::panel); }
 
 constexpr double pause_s = 1;  // longer than any interval of the camera's, twice 80 ms: charts show no line over it

@@ -45,15 +45,17 @@ void PictureObserver::after_control() {
 }
 
 void PictureObserver::keep_still() {
-  if (answered_.marker.found) {
+  for (const MarkerObservation& marker : answered_.markers) {
     std::array<record::PixelPoint, 4> corners;
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-      corners[i] = {static_cast<float>(answered_.marker.corners_px[i].x()), static_cast<float>(answered_.marker.corners_px[i].y())};
-    }
+    for (std::size_t i = 0; i < corners.size(); ++i)
+      corners[i] = {static_cast<float>(marker.corners_px[i].x()), static_cast<float>(marker.corners_px[i].y())};
     record::draw_outline(*still_, corners, {255, 40, 40});
   }
   keep(formatted("images/still_%07.2fs.png", still_time_.s()), formatted("Still image at %.2f s", still_time_.s()),
-       answered_.marker.found ? "The marker as it was found, in red." : "No marker was found in it.", *still_, true);
+       answered_.markers.empty()       ? "No marker was found in it."
+       : answered_.markers.size() == 1 ? "The marker as it was found, in red."
+                                       : "The markers as they were found, in red.",
+       *still_, true);
   still_.reset();
 }
 

@@ -38,10 +38,10 @@ scene::BodyPoses sweep_poses(const ArmDescription& arm, const PanelLayout& layou
   poses[std::size_t(BodyId::finger_b)] = poses[std::size_t(BodyId::wrist)] * turned(arm.finger_b, q[4]);
   const Pose panel = layout.nominal_base_from_panel();
   poses[std::size_t(BodyId::panel)] = panel;
-  poses[std::size_t(BodyId::handle)] = panel * Eigen::AngleAxisd(0.3, Vec3::UnitZ());
-  for (std::size_t i = 0; i < PanelLayout::button_count; ++i) {
-    poses[std::size_t(BodyId::button_left) + i] = panel * Eigen::Translation3d(layout.buttons_m[i].x(), layout.buttons_m[i].y(), 0);
-  }
+  std::size_t body = scene::first_feature;
+  poses[body++] = panel * Eigen::AngleAxisd(0.3, Vec3::UnitZ());
+  for (const PanelLayout::Button& button : layout.buttons)
+    poses[body++] = panel * Eigen::Translation3d(button.at_m.x(), button.at_m.y(), 0);
   return poses;
 }
 

@@ -42,8 +42,8 @@ world::WorldConfig with_a_post() {
 void expect_parts_where_the_bodies_are(const world::World& world, const std::vector<record::ReportPart>& parts) {
   std::vector<double> coordinates;
   for (const JointReading& joint : world.readings()) coordinates.push_back(joint.position_rad);
-  coordinates.push_back(world.valve_angle_rad());
-  for (std::size_t i = 0; i < PanelLayout::button_count; ++i) coordinates.push_back(world.button(i).depth_m);
+  for (std::size_t i = 0; i < world.valve_count(); ++i) coordinates.push_back(world.valve_angle_rad(i));
+  for (std::size_t i = 0; i < world.button_count(); ++i) coordinates.push_back(world.button(i).depth_m);
   const std::vector<Pose> poses = poses_of(parts, coordinates);
   const scene::BodyPoses bodies = world.base_from_body();
   ASSERT_EQ(poses.size(), bodies.size());
@@ -57,7 +57,7 @@ void expect_parts_where_the_bodies_are(const world::World& world, const std::vec
 
 TEST(ReportParts, StandWhereTheBodiesDoAsTheArmMoves) {
   world::WorldConfig config = with_a_post();
-  config.valve.start_rad = 0.4;
+  config.valves[0].start_rad = 0.4;
   const std::vector<record::ReportPart> parts = report_parts_of(config);
   world::World world(config);
   expect_parts_where_the_bodies_are(world, parts);
@@ -66,6 +66,18 @@ TEST(ReportParts, StandWhereTheBodiesDoAsTheArmMoves) {
     drives.run(0.5);
     expect_parts_where_the_bodies_are(world, parts);
   }
+}
+
+TEST(ReportParts, StandWhereTheBodiesDoOnAPanelWithSeveralOfEachKind) {
+  world::WorldConfig config = world::nominal_config();
+  ASSERT_TRUE(config.layout.valves.push_back({.at_m{0.25, 0.02}}));
+  ASSERT_TRUE(config.layout.buttons.push_back({.at_m{0.2, 0.17}}));
+  config.scene = scene::make_scene(config.arm, config.layout, {{"V1", "V2"}, {"B1", "B2", "B3", "B4"}, {"7"}});
+  config.valves.resize(2);
+  config.buttons.resize(4);
+  config.valves[0].start_rad = 0.4;
+  config.valves[1].start_rad = -0.7;
+  expect_parts_where_the_bodies_are(world::World(config), report_parts_of(config));
 }
 
 TEST(ReportParts, HaveTheWorldsShapes) {

@@ -76,18 +76,21 @@ inline double to_rod_m(const Vec3& p, const VehicleShape::Rod& rod) {
   return std::max(0.0, least - rod.radius_m);
 }
 
-// The panel as it was built, point by point in the panel frame; the handle as the disc it sweeps.
+// The panel as it was built, point by point in the panel frame; a handle as the disc it sweeps.
 inline double to_panel_m(const Vec3& p, const PanelLayout& layout) {
   const Vec2 middle = (layout.plate_min_m + layout.plate_max_m) / 2, size = layout.plate_max_m - layout.plate_min_m;
   double least =
       to_box_m(p, Vec3(middle.x(), middle.y(), -layout.plate_thickness_m / 2), Vec3(size.x(), size.y(), layout.plate_thickness_m));
-  for (const Vec2& button : layout.buttons_m)
-    least = std::min(least, to_box_m(p, Vec3(button.x(), button.y(), layout.button_height_m / 2),
-                                     Vec3(layout.button_width_m, layout.button_width_m, layout.button_height_m)));
-  const double disc = std::hypot(layout.handle_length_m, layout.handle_thickness_m) / 2;
-  const double outward = std::max(0.0, p.head<2>().norm() - disc);
-  const double upward = std::max(0.0, std::abs(p.z() - layout.handle_height_m) - layout.handle_thickness_m / 2);
-  return std::min(least, std::hypot(outward, upward));
+  for (const PanelLayout::Button& button : layout.buttons)
+    least = std::min(least, to_box_m(p, Vec3(button.at_m.x(), button.at_m.y(), button.height_m / 2),
+                                     Vec3(button.width_m, button.width_m, button.height_m)));
+  for (const PanelLayout::Valve& valve : layout.valves) {
+    const double disc = std::hypot(valve.handle_length_m, valve.handle_thickness_m) / 2;
+    const double outward = std::max(0.0, (p.head<2>() - valve.at_m).norm() - disc);
+    const double upward = std::max(0.0, std::abs(p.z() - valve.handle_height_m) - valve.handle_thickness_m / 2);
+    least = std::min(least, std::hypot(outward, upward));
+  }
+  return least;
 }
 
 }  // namespace lf::arm

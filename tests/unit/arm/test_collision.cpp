@@ -132,11 +132,11 @@ TEST(PanelShape, NamesWhatIsNearest) {
   EXPECT_GT(parked.distance_m, 0.15);
   const Clearance grasp = PanelShape(layout).clearance(link_capsules({0, 1.307, 1.151, 0}, 0), base_from_panel);
   EXPECT_LT(grasp.distance_m, 0);
-  EXPECT_EQ(grasp.part, PanelPart::handle);
+  EXPECT_EQ(grasp.part, PanelPart::valve(0));
   EXPECT_GE(grasp.link, 5u) << "a finger";
   const JointVector press = inverse_kinematics({0.395, 0, 0.407}, 0).q_rad;
   const Clearance button = PanelShape(layout).clearance(link_capsules(press, jaw_from_gap(0)), base_from_panel);
-  EXPECT_EQ(button.part, PanelPart::button_centre);
+  EXPECT_EQ(button.part, PanelPart::button(1));
 }
 
 // The layout's promise: 20 mm between the closed tool and the handle at any angle while a button is pressed.
@@ -144,11 +144,11 @@ TEST(PanelShape, OfTheHandleIsTwentyMillimetresAtEveryButton) {
   const PanelLayout layout;
   const Pose base_from_panel = layout.nominal_base_from_panel();
   const double jaw_rad = jaw_from_gap(0);
-  for (std::size_t i = 0; i < PanelLayout::button_count; ++i) {
-    const Vec3 cap = base_from_panel * Vec3(layout.buttons_m[i].x(), layout.buttons_m[i].y(), layout.button_height_m);
+  for (std::size_t i = 0; i < layout.buttons.size(); ++i) {
+    const Vec3 cap = base_from_panel * layout.buttons[i].face_m();
     const IkResult ik = inverse_kinematics(cap - Vec3(tip_beyond_tool_m(jaw_rad), 0, 0), pi / 2, 0.02);
     ASSERT_TRUE(ik.ok()) << name(ik.outcome);
-    PanelParts others = ~(bit(PanelPart::handle) | bit(PanelPart::stem));
+    PanelParts others = ~bit(PanelPart::valve(0));
     const Clearance handle = PanelShape(layout).clearance(link_capsules(ik.q_rad, jaw_rad), base_from_panel, others);
     EXPECT_GT(handle.distance_m, 0.020) << "button " << i << ", link " << handle.link;
   }
@@ -160,6 +160,8 @@ TEST(PanelShapeGrown, ContainsItselfWhereverItMayBe) {
   SCOPED_TRACE(testing::Message() << "seed " << seed);
   RandomJoints random(seed);
   const PanelLayout layout;
+  const PanelLayout::Valve& valve = layout.valves[0];
+  const PanelLayout::Button& cap = layout.buttons[2];
   const PanelDoubt doubt{0.020, 0.0349, 0.0105};
   const Pose believed = layout.nominal_base_from_panel();
   const PanelShape surveyed(layout), grown = surveyed.grown(believed, doubt);
@@ -182,12 +184,10 @@ TEST(PanelShapeGrown, ContainsItselfWhereverItMayBe) {
         p = Vec3(either(1) < 0 ? layout.plate_min_m.x() : layout.plate_max_m.x(),
                  either(1) < 0 ? layout.plate_min_m.y() : layout.plate_max_m.y(), 0);
         break;
-      case 1:
-        p = Vec3(layout.buttons_m[2].x() + either(0.5 * layout.button_width_m), layout.buttons_m[2].y(), layout.button_height_m);
-        break;
+      case 1: p = Vec3(cap.at_m.x() + either(0.5 * cap.width_m), cap.at_m.y(), cap.height_m); break;
       default:
-        p = Vec3(0, 0, layout.handle_height_m + either(0.5 * layout.handle_thickness_m)) +
-            std::hypot(layout.handle_length_m, layout.handle_thickness_m) / 2 * Vec3(std::cos(angle), std::sin(angle), 0);
+        p = Vec3(0, 0, valve.handle_height_m + either(0.5 * valve.handle_thickness_m)) +
+            std::hypot(valve.handle_length_m, valve.handle_thickness_m) / 2 * Vec3(std::cos(angle), std::sin(angle), 0);
     }
     LinkCapsules all;
     all.fill({2, real * p, real * p, 0});
@@ -201,11 +201,116 @@ TEST(PanelShapeGrown, ContainsItselfWhereverItMayBe) {
               surveyed.clearance(link_capsules({0, 1.0, 1.5, 0}, 0), believed).distance_m, 1e-12);
 }
 
+// A panel with two valves, four buttons and two markers, all apart.
+PanelLayout two_valves() {
+  PanelLayout layout;
+  PanelLayout::Valve left, right;
+  left.at_m = Vec2(-0.20, 0.02);
+  right.at_m = Vec2(0.22, -0.15);
+  right.handle_length_m = 0.14;
+  right.handle_thickness_m = 0.016;
+  right.handle_height_m = 0.08;
+  layout.valves = decltype(layout.valves)(left, right);
+  layout.buttons.clear();
+  for (const double x_m : {-0.32, -0.11, 0.09, 0.31}) {
+    PanelLayout::Button button;
+    button.at_m = Vec2(x_m, 0.15);
+    button.height_m = 0.03 + 0.05 * std::abs(x_m);
+    (void)layout.buttons.push_back(button);
+  }
+  PanelLayout::Marker first, second;
+  first.centre_m = Vec2(-0.30, -0.25);
+  second.id = 8;
+  second.centre_m = Vec2(0.02, -0.28);
+  second.plate_m = 0.07;
+  layout.markers = decltype(layout.markers)(first, second);
+  return layout;
+}
+
+TEST(PanelShape, NamesEachPartByItsKindAndIndex) {
+  const PanelLayout layout = two_valves();
+  Pose base_from_panel = layout.nominal_base_from_panel();
+  base_from_panel.rotate(Eigen::AngleAxisd(0.4, Vec3(0.3, 1, -0.5).normalized()));
+  const PanelShape panel(layout);
+  constexpr double off_m = 0.004, thin_m = 0.001;
+  // A thin capsule that ends so far off a place on the panel, and what is nearest to it.
+  const auto near = [&](const Vec3& place_m, const Vec3& outward, PanelParts ignored = 0) {
+    LinkCapsules all;
+    all.fill({3, base_from_panel * Vec3(place_m + (off_m + thin_m) * outward), base_from_panel * Vec3(place_m + 0.02 * outward), thin_m});
+    return panel.clearance(all, base_from_panel, ignored);
+  };
+  const auto expect_named = [&](PanelPart part, const Vec3& place_m, const Vec3& outward) {
+    const Clearance nearest = near(place_m, outward);
+    EXPECT_EQ(nearest.part, part) << int(nearest.part.kind) << " " << int(nearest.part.index);
+    EXPECT_NEAR(nearest.distance_m, off_m, 1e-7);
+    EXPECT_NE(near(place_m, outward, bit(part)).part, part);
+    EXPECT_GT(near(place_m, outward, bit(part)).distance_m, off_m + 1e-4);
+  };
+  const Vec3 out = Vec3::UnitZ();
+  for (std::size_t i = 0; i < layout.valves.size(); ++i) {
+    SCOPED_TRACE(testing::Message() << "valve " << i);
+    const PanelLayout::Valve& valve = layout.valves[i];
+    expect_named(PanelPart::valve(i), valve.handle_centre_m() + Vec3(0.02, 0.03, valve.handle_thickness_m / 2), out);
+    expect_named(PanelPart::valve(i), valve.handle_centre_m() + Vec3(0, -valve.swept_radius_m(), 0), -Vec3::UnitY());
+    const Vec3 stem = Vec3(valve.at_m.x() - valve.stem_radius_m, valve.at_m.y(), valve.handle_height_m / 2);
+    expect_named(PanelPart::valve(i), stem, -Vec3::UnitX());
+  }
+  for (std::size_t i = 0; i < layout.buttons.size(); ++i) {
+    SCOPED_TRACE(testing::Message() << "button " << i);
+    expect_named(PanelPart::button(i), layout.buttons[i].face_m(), out);
+  }
+  for (std::size_t i = 0; i < layout.markers.size(); ++i) {
+    SCOPED_TRACE(testing::Message() << "marker " << i);
+    expect_named({PanelPart::Kind::marker_plate, static_cast<std::uint8_t>(i)}, layout.markers[i].panel_from_tag().translation(), out);
+  }
+  expect_named(PanelPart::plate(), Vec3(-0.05, -0.10, 0), out);
+}
+
+// The rims of handles and stems that stand off the panel's origin: what spins the panel moves them.
+TEST(PanelShapeGrown, ContainsItsOffsetCylindersWhereverItMayBe) {
+  SCOPED_TRACE(testing::Message() << "seed " << seed);
+  RandomJoints random(seed);
+  const PanelLayout layout = two_valves();
+  const PanelShape surveyed(layout);
+  double farthest_m = 0;
+  for (int k = 0; k < 20'000; ++k) {
+    const auto either = [&](double most) {
+      return random.uniform(0, 1) < 0.7 ? std::copysign(most, random.uniform(-1, 1)) : random.uniform(-most, most);
+    };
+    const auto turned = [&](double rad, const Vec3& axis) { return Eigen::AngleAxisd(rad, axis).toRotationMatrix(); };
+    // The spin alone, all the rest alone, or both.
+    const PanelDoubt doubt = k % 3 == 0   ? PanelDoubt{0, 0, 0.05}
+                             : k % 3 == 1 ? PanelDoubt{0.010, 0.02, 0}
+                                          : PanelDoubt{0.003, 0.004, 0.0105};
+    Pose believed = layout.nominal_base_from_panel();
+    believed.rotate(
+        Eigen::AngleAxisd(random.uniform(-pi, pi), Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)).normalized()));
+    Pose real = believed;
+    real.translation() += Vec3(either(doubt.shift_m), either(doubt.shift_m), either(doubt.shift_m));
+    real.linear() = turned(either(doubt.turn_rad), Vec3::UnitZ()) * turned(either(doubt.turn_rad), Vec3::UnitY()) *
+                    turned(either(doubt.turn_rad), Vec3::UnitX()) * real.linear() * turned(either(doubt.spin_rad), Vec3::UnitZ());
+    const std::size_t which = static_cast<std::size_t>(k / 3 % 2);
+    const PanelLayout::Valve& valve = layout.valves[which];
+    const double angle = random.uniform(-pi, pi), end = k / 6 % 2 == 0 ? 0.5 : -0.5;
+    const Vec3 around(std::cos(angle), std::sin(angle), 0);
+    const bool stem = k / 12 % 2 == 0;
+    const Vec3 handle_rim = valve.handle_centre_m() + valve.swept_radius_m() * around + end * valve.handle_thickness_m * Vec3::UnitZ();
+    const Vec3 stem_side = Vec3(valve.at_m.x(), valve.at_m.y(), random.uniform(0, valve.handle_height_m)) + valve.stem_radius_m * around;
+    const Vec3 p = real * (stem ? stem_side : handle_rim);
+    LinkCapsules all;
+    all.fill({2, p, p, 0});
+    const PanelParts others = ~bit(PanelPart::valve(which));
+    ASSERT_LE(surveyed.grown(believed, doubt).clearance(all, believed, others).distance_m, 1e-9) << "draw " << k;
+    farthest_m = std::max(farthest_m, surveyed.clearance(all, believed, others).distance_m);
+  }
+  EXPECT_GT(farthest_m, 0.010) << "no draw moved a valve by what its place adds: 0.05 rad at 0.26 m";
+}
+
 TEST(PanelShape, LeavesOutForTheFingersWhatOnlyTheyMayTouch) {
   const PanelLayout layout;
   const Pose base_from_panel = layout.nominal_base_from_panel();
   const LinkCapsules grasp = link_capsules({0, 1.307, 1.151, 0}, 0);
-  const PanelParts handle = bit(PanelPart::handle) | bit(PanelPart::stem);
+  const PanelParts handle = bit(PanelPart::valve(0));
   const PanelShape panel(layout);
   EXPECT_LT(panel.clearance(grasp, base_from_panel).distance_m, 0);
   const Clearance others = panel.clearance(grasp, base_from_panel, 0, handle);
@@ -260,7 +365,9 @@ TEST(PanelShape, IsAsFarAsTheNearestOfItsSolids) {
   RandomJoints random(seed);
   const PanelLayout layout;
   const PanelShape shape(layout);
-  const double disc = std::hypot(layout.handle_length_m, layout.handle_thickness_m) / 2;
+  const PanelLayout::Valve& valve = layout.valves[0];
+  const PanelLayout::Marker& tag = layout.markers[0];
+  const double disc = std::hypot(valve.handle_length_m, valve.handle_thickness_m) / 2;
   for (int k = 0; k < 2000; ++k) {
     Pose base_from_panel = layout.nominal_base_from_panel();
     base_from_panel.translation() += Vec3(random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2));
@@ -270,16 +377,15 @@ TEST(PanelShape, IsAsFarAsTheNearestOfItsSolids) {
     double least = 1e9;
     for (const Capsule& c : capsules) {
       const Vec2 size = layout.plate_max_m - layout.plate_min_m, middle = (layout.plate_max_m + layout.plate_min_m) / 2;
-      const double thick = layout.plate_thickness_m, marker = layout.marker_plate_m, high = layout.marker_plate_thickness_m;
+      const double thick = layout.plate_thickness_m, marker = tag.plate_m, high = tag.plate_thickness_m;
       least = std::min(least, clearance_to_box(c, at(middle.x(), middle.y(), -thick / 2), Vec3(size.x(), size.y(), thick)));
-      least = std::min(
-          least, clearance_to_box(c, at(layout.marker_centre_m.x(), layout.marker_centre_m.y(), high / 2), Vec3(marker, marker, high)));
-      for (const Vec2& button : layout.buttons_m) {
-        const Vec3 cap(layout.button_width_m, layout.button_width_m, layout.button_height_m);
-        least = std::min(least, clearance_to_box(c, at(button.x(), button.y(), layout.button_height_m / 2), cap));
+      least = std::min(least, clearance_to_box(c, at(tag.centre_m.x(), tag.centre_m.y(), high / 2), Vec3(marker, marker, high)));
+      for (const PanelLayout::Button& button : layout.buttons) {
+        const Vec3 cap(button.width_m, button.width_m, button.height_m);
+        least = std::min(least, clearance_to_box(c, at(button.at_m.x(), button.at_m.y(), button.height_m / 2), cap));
       }
-      least = std::min(least, clearance_to_cylinder(c, at(0, 0, layout.handle_height_m), disc, layout.handle_thickness_m));
-      least = std::min(least, clearance_to_cylinder(c, at(0, 0, layout.handle_height_m / 2), layout.stem_radius_m, layout.handle_height_m));
+      least = std::min(least, clearance_to_cylinder(c, at(0, 0, valve.handle_height_m), disc, valve.handle_thickness_m));
+      least = std::min(least, clearance_to_cylinder(c, at(0, 0, valve.handle_height_m / 2), valve.stem_radius_m, valve.handle_height_m));
     }
     ASSERT_NEAR(shape.clearance(capsules, base_from_panel).distance_m, least, 1e-12) << "draw " << k;
   }

@@ -16,18 +16,18 @@ TEST(Reach, ReproducesTheLayoutsTilts) {
     EXPECT_EQ(r.outcome, IkOutcome::ok) << name(r.outcome);
     return deg_from_rad(r.tilt_rad);
   };
-  EXPECT_NEAR(tilt_deg({0, 0, layout.handle_height_m}), 8.2, 0.1);
+  EXPECT_NEAR(tilt_deg({0, 0, layout.valves[0].handle_height_m}), 8.2, 0.1);
   // Where the buttons stood in that layout; ours have moved by 5 mm since.
   const std::array<Vec2, 3> buttons_m{Vec2{-0.064, 0.137}, Vec2{0.0, 0.185}, Vec2{0.064, 0.137}};
   const std::array<double, 3> button_tilts{12.0, 13.7, 12.0};
   for (std::size_t i = 0; i < 3; ++i)
-    EXPECT_NEAR(tilt_deg({buttons_m[i].x(), buttons_m[i].y(), layout.button_height_m}), button_tilts[i], 0.1);
+    EXPECT_NEAR(tilt_deg({buttons_m[i].x(), buttons_m[i].y(), layout.buttons[i].height_m}), button_tilts[i], 0.1);
 }
 
 TEST(Reach, CountsTheTiltAgainstATurnedPanel) {
   const PanelLayout layout;
   Pose base_from_panel = layout.nominal_base_from_panel();
-  const Vec3 handle(0, 0, layout.handle_height_m);
+  const Vec3 handle(0, 0, layout.valves[0].handle_height_m);
   const Vec3 at = base_from_panel * handle;
   const double square = reach(base_from_panel, handle).tilt_rad;
   // The panel leant by 2 degrees about base y, the handle left where it is: the whole of it adds to the tilt, or takes from it.

@@ -1,3 +1,5 @@
+#include "hal/config/view_check.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,6 +12,7 @@
 namespace lf::config {
 namespace {
 
+using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
 using testing::Not;
@@ -20,6 +23,8 @@ std::vector<std::string> problems_of(const Machine& machine) {
   return problems;
 }
 
+CameraCalibration usual_camera() { return make_core(Machine()).controller.camera; }
+
 TEST(ViewCheck, WhatIsOutOfViewNamesTheLensAndWhereItStands) {
   Machine machine;
   machine.camera.focal_px = 5000;
@@ -28,6 +33,10 @@ TEST(ViewCheck, WhatIsOutOfViewNamesTheLensAndWhereItStands) {
                                            "'camera.down_deg', 'camera.right_deg', 'camera.focal_px', 'camera.distortion' and "
                                            "'panel.marker_centre_m'. 'panel.ahead_m' is 0.44, 'panel.right_m' 0, 'panel.down_m' 0.592")));
   EXPECT_THAT(problems, Contains(HasSubstr("'camera.distortion', 'panel.plate_min_m' and 'panel.plate_max_m'. 'panel.ahead_m'")));
+  EXPECT_THAT(problems,
+              Contains(AllOf(HasSubstr("the panel's lower left corner"), HasSubstr("'camera.distortion' and 'panel.plate_min_m'. "))));
+  EXPECT_THAT(problems,
+              Contains(AllOf(HasSubstr("the panel's upper right corner"), HasSubstr("'camera.distortion' and 'panel.plate_max_m'. "))));
 }
 
 // Barrel distortion pulls the panel's corners into the picture. The pixels beyond the fold have no ray: the run ended with a sentence that named no key.
@@ -70,6 +79,26 @@ TEST(ViewCheck, WhatLiesBeyondAFoldIsNotSeen) {
   const std::vector<std::string> problems = problems_of(machine);
   EXPECT_THAT(problems, Not(Contains(HasSubstr("some of its pixels have no ray"))));
   EXPECT_THAT(problems, Contains(HasSubstr("the marker lies farther aside than this lens images")));
+}
+
+// A look needs one marker; a valve that nobody turns may stand where it likes.
+TEST(ViewCheck, OfAFilesPanelOneMarkerAndTheValvesThatATaskTurnsHaveToBeSeen) {
+  Machine machine;
+  machine.survey = {"panel.yaml", {{"V1", "V2"}, {}, {"7", "9"}}, {ValveNature{}, ValveNature{}}};
+  machine.panel.buttons.clear();
+  ASSERT_TRUE(machine.panel.valves.push_back({.at_m{1.5, 0}}));
+  PanelLayout::Marker aside;
+  aside.id = 9;
+  aside.centre_m = Vec2(1.5, 0.2);
+  ASSERT_TRUE(machine.panel.markers.push_back(aside));
+  const auto told = [&](const char* valve) {
+    machine.tasks = {Task{Task::Kind::turn_valve, 10, valve}};
+    return view_problems(machine, usual_camera());
+  };
+  EXPECT_THAT(told("V1"), testing::IsEmpty());
+  EXPECT_THAT(told("V2"), testing::ElementsAre(AllOf(HasSubstr("valve V2 "), HasSubstr(" and 'valves.V2.height_m'. 'panel.ahead_m'"))));
+  machine.panel.markers[0].centre_m = Vec2(-1.5, 0.2);
+  EXPECT_THAT(told("V1"), testing::ElementsAre(AllOf(HasSubstr("marker 7 "), HasSubstr(" and 'markers.7.at_m'. 'panel.ahead_m'"))));
 }
 
 // A calibration overrules the focal length and the distortion of the machine's file: these would not help.

@@ -20,7 +20,7 @@ struct Grasp {
 Grasp grasp(double handle_rad, double turn_rad) {
   const PanelLayout layout;
   const Pose base_from_panel = layout.nominal_base_from_panel();
-  const Vec3 centre = base_from_panel * Vec3(0, 0, layout.handle_height_m);
+  const Vec3 centre = base_from_panel * Vec3(0, 0, layout.valves[0].handle_height_m);
   const arm::IkResult ik = arm::inverse_kinematics(centre, 0);
   EXPECT_TRUE(ik.ok());
   const Vec3 bar = base_from_panel.linear() * Vec3(-std::sin(handle_rad), std::cos(handle_rad), 0);

@@ -14,6 +14,7 @@ PanelResult finite_result(Time measured) {
   PanelResult result;
   result.fit.plane.normal = Vec3::UnitZ();
   result.measured = measured;
+  EXPECT_TRUE(result.markers.push_back({}));
   return result;
 }
 
@@ -42,7 +43,7 @@ TEST(ControllerInputs, ThatAreNoNumbersAreCounted) {
   refused([&](PanelResult& r) { r.fit.plane.normal.x() = nan; });
   refused([&](PanelResult& r) { r.fit.plane.offset_m = nan; });
   refused([&](PanelResult& r) { r.confidence = std::numeric_limits<float>::infinity(); });
-  refused([&](PanelResult& r) { r.marker.camera_from_tag.translation().x() = nan; });
+  refused([&](PanelResult& r) { r.markers[0].camera_from_tag.translation().x() = nan; });
   refused([&](PanelResult& r) { r.measured = now + Duration::from_ms(1); });
 }
 

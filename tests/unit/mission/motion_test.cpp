@@ -47,6 +47,7 @@ Room far_away() {
 scan::SweepRequest sweep_over_the_panel() {
   scan::SweepRequest request;
   request.base_from_panel = PanelLayout{}.nominal_base_from_panel();
+  (void)request.handles.push_back({});
   return request;
 }
 
@@ -181,11 +182,15 @@ PanelLayout board() {
   layout.plate_min_m = Vec2(-0.05, -0.2);
   layout.plate_max_m = Vec2(0.05, 0.2);
   layout.plate_thickness_m = 0.02;
-  for (Vec2& button : layout.buttons_m) button = Vec2(0, 0);
-  layout.button_width_m = layout.button_height_m = 0.001;
-  layout.marker_centre_m = Vec2(0, 0);
-  layout.marker_plate_m = layout.marker_plate_thickness_m = 0.001;
-  layout.handle_length_m = layout.handle_thickness_m = layout.handle_height_m = layout.stem_radius_m = 0.001;
+  for (PanelLayout::Button& button : layout.buttons) {
+    button.at_m = Vec2(0, 0);
+    button.width_m = button.height_m = 0.001;
+  }
+  PanelLayout::Marker& marker = layout.markers[0];
+  marker.centre_m = Vec2(0, 0);
+  marker.plate_m = marker.plate_thickness_m = 0.001;
+  PanelLayout::Valve& valve = layout.valves[0];
+  valve.handle_length_m = valve.handle_thickness_m = valve.handle_height_m = valve.stem_radius_m = 0.001;
   return layout;
 }
 
@@ -315,6 +320,7 @@ TEST(Motion, IsPlannedInSharesAndStoppedMeanwhileStaysWhereItIs) {
   Motion motion = at_park();
   scan::SweepRequest request;
   request.base_from_panel = PanelLayout{}.nominal_base_from_panel();
+  (void)request.handles.push_back({});
   LaserCalibration laser;
   laser.tool_from_laser.translation() = Vec3(-0.090, 0, -0.365);
   motion.go_to_sweep(request, laser, closed_before(request.base_from_panel), 0, 0.6);

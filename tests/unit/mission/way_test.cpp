@@ -158,11 +158,8 @@ TEST(RandomLines, ToTheHandleAndTheButtonsKeepAllButTheFingersClear) {
     const double jaw_rad = handle ? arm::jaw_from_gap(0.0606) : -0.05;
     room.jaw = {jaw_rad, jaw_rad};
     room.meant_for_fingers =
-        handle ? arm::bit(arm::PanelPart::handle) | arm::bit(arm::PanelPart::stem)
-               : arm::bit(arm::PanelPart::plate) |
-                     arm::bit(static_cast<arm::PanelPart>(static_cast<std::size_t>(arm::PanelPart::button_left) + button));
-    const Vec3 aim = handle ? Vec3(0, 0, layout.handle_height_m)
-                            : Vec3(layout.buttons_m[button].x(), layout.buttons_m[button].y(), layout.button_height_m + 0.012);
+        handle ? arm::bit(arm::PanelPart::valve(0)) : arm::bit(arm::PanelPart::plate()) | arm::bit(arm::PanelPart::button(button));
+    const Vec3 aim = handle ? layout.valves[0].handle_centre_m() : Vec3(layout.buttons[button].face_m() + Vec3(0, 0, 0.012));
     const double roll = handle ? draw.uniform(-1.5, 1.5) : 0;
     const arm::IkResult start = arm::inverse_kinematics(room.base_from_panel * (aim + Vec3(0, 0, 0.08)), roll, 0.01);
     if (!start.ok()) continue;

@@ -23,11 +23,11 @@ struct MissionScene {
     poses[std::size_t(scene::BodyId::finger_b)] = poses[std::size_t(scene::BodyId::wrist)] * turned(arm.finger_b, q[4]);
     const Pose panel = layout.nominal_base_from_panel();
     poses[std::size_t(scene::BodyId::panel)] = panel;
-    poses[std::size_t(scene::BodyId::handle)] = panel * Eigen::AngleAxisd(handle_rad, Vec3::UnitZ());
-    for (std::size_t i = 0; i < PanelLayout::button_count; ++i) {
+    poses[scene::first_feature] = panel * Eigen::AngleAxisd(handle_rad, Vec3::UnitZ());
+    for (std::size_t i = 0; i < layout.buttons.size(); ++i) {
       const double z = i == 0 ? -pressed_m : 0.0;
-      poses[std::size_t(scene::BodyId::button_left) + i] =
-          panel * Eigen::Translation3d(layout.buttons_m[i].x(), layout.buttons_m[i].y(), z);
+      const Vec2& at_m = layout.buttons[i].at_m;
+      poses[scene::first_feature + 1 + i] = panel * Eigen::Translation3d(at_m.x(), at_m.y(), z);
     }
     return poses;
   }

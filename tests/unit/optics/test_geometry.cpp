@@ -46,7 +46,7 @@ TEST(Geometry, DepthOfATiltedPlateIsThatOfItsPlane) {
 
 TEST(Geometry, DepthOfACylinderIsThatOfItsQuadricWithin60Micrometres) {
   scene::Scene scene = scene::bare_scene();
-  body(scene, scene::BodyId::handle).shapes.push_back(make_shape(scene::ShapeKind::cylinder, {0.03, 0, 0.4}, {0.6, 0, 0}));
+  scene[scene::first_feature].shapes.push_back(make_shape(scene::ShapeKind::cylinder, {0.03, 0, 0.4}, {0.6, 0, 0}));
   const Frame frame = truth_of(scene, resting());
   int hits = 0;
   for (int v = 150; v < 330; v += 10) {
@@ -86,7 +86,7 @@ TEST(Geometry, AMeshIsDrawnWhereItsTrianglesAre) {
   scene::Shape mesh = make_shape(scene::ShapeKind::mesh, Vec3::Zero(), {0.5, 0, 0});
   mesh.vertices_m = {{0, -0.1, -0.1}, {0, 0.1, -0.1}, {0, 0, 0.1}};
   mesh.triangles = {{0, 1, 2}};
-  body(scene, scene::BodyId::handle).shapes.push_back(mesh);
+  scene[scene::first_feature].shapes.push_back(mesh);
   const Frame frame = truth_of(scene, resting());
   EXPECT_NEAR(frame.depth_m[240 * 640 + 320], 0.5, 1e-6);
   EXPECT_EQ(frame.depth_m[400 * 640 + 100], std::numeric_limits<float>::infinity());

@@ -44,10 +44,9 @@ struct Layout {
     camera.base_from_camera = looking({0.015, -0.245, 0.060}, {0.678, 0.257, 0.688});
     config.cameras.push_back(camera);
     scene::Shape plate = make_shape(scene::ShapeKind::box, {0.8, 0.6, 0.02}, {0, -0.078, -0.01}, 0.6f);
-    scene::Shape marker =
-        make_shape(scene::ShapeKind::box, {0.1, 0.1, 0.002}, {panel.marker_centre_m.x(), panel.marker_centre_m.y(), 0.001}, 0.85f);
-    marker.marker_id = panel.marker_id;
-    marker.marker_size_m = panel.marker_size_m;
+    scene::Shape marker = make_shape(scene::ShapeKind::box, {0.1, 0.1, 0.002}, {tag().centre_m.x(), tag().centre_m.y(), 0.001}, 0.85f);
+    marker.marker_id = tag().id;
+    marker.marker_size_m = tag().size_m;
     body(config.scene, scene::BodyId::panel).shapes = {plate, marker};
     LampConfig lamp;
     lamp.body_from_lamp = looking({0.0, 0.30, 0.03}, {0.70, -0.25, 0.66});
@@ -67,10 +66,11 @@ struct Layout {
   }
   Vec2 project(const Vec3& tag_point) const {
     const CameraIntrinsics k;
-    const Pose base_from_tag = panel.nominal_base_from_panel() * panel.panel_from_tag();
+    const Pose base_from_tag = panel.nominal_base_from_panel() * tag().panel_from_tag();
     const Vec3 p = config.cameras[0].base_from_camera.inverse() * (base_from_tag * tag_point);
     return {k.cx + k.fx * p.x() / p.z(), k.cy + k.fy * p.y() / p.z()};
   }
+  const PanelLayout::Marker& tag() const { return panel.markers[0]; }
   PanelLayout panel;
   OpticsConfig config;
 };
@@ -81,7 +81,7 @@ TEST(MarkerImage, LibapriltagReadsItOnThePanelInAllWatersWithAndWithoutLamps) {
     for (const bool lamps : {false, true}) {
       const auto found = detect(layout.render(attenuation, lamps));
       ASSERT_EQ(found.size(), 1U) << attenuation << " " << lamps;
-      EXPECT_EQ(found[0].id, layout.panel.marker_id);
+      EXPECT_EQ(found[0].id, layout.tag().id);
       EXPECT_EQ(found[0].hamming, 0);
       EXPECT_GT(found[0].margin, 10);
     }
@@ -94,7 +94,7 @@ TEST(MarkerImage, ItsCornersAreWhereTheyProjectToAndTheRightWayUp) {
   const auto found = detect(layout.render(0.1, true));
   ASSERT_EQ(found.size(), 1U);
   // libapriltag's corners: lower left, lower right, upper right, upper left of the upright marker.
-  const double h = 0.5 * layout.panel.marker_size_m;
+  const double h = 0.5 * layout.tag().size_m;
   const std::array<Vec3, 4> corners{Vec3(-h, -h, 0), Vec3(h, -h, 0), Vec3(h, h, 0), Vec3(-h, h, 0)};
   // libapriltag counts pixel edges, not centres, from the image's corner: half a pixel more.
   for (std::size_t i = 0; i < 4; ++i) {

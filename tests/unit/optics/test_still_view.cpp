@@ -98,7 +98,7 @@ TEST(StillView, AnObjectOfTheSceneIsSeenThrowsItsShadowAndBearsTheStripe) {
   EXPECT_THROW(Optics(config).render(shot, with), InputError) << "a pose is missing";
   shot.poses.push_back(post.base_from_body);
   Optics(config).render(shot, with);
-  const auto label = static_cast<std::uint16_t>(1 + scene::own_body_count);
+  const auto label = static_cast<std::uint16_t>(1 + scene::own_body_count(config.scene));
   int seen = 0, darker = 0;
   for (std::size_t i = 0; i < with.object.size(); ++i) {
     seen += with.object[i] == label;

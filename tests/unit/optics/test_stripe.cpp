@@ -68,7 +68,7 @@ struct StripeScene {
     config.scene = plate_scene(0.7);
     config.water = dark_clear_water();
     // A post before the plate: the stripe climbs it and its shadow cuts the stripe.
-    body(config.scene, scene::BodyId::handle).shapes.push_back(make_shape(scene::ShapeKind::box, {0.04, 0.04, 0.6}, {0.58, 0.0, 0.0}));
+    config.scene[scene::first_feature].shapes.push_back(make_shape(scene::ShapeKind::box, {0.04, 0.04, 0.6}, {0.58, 0.0, 0.0}));
     base_from_laser = sheet({0.0, 0.0, 0.40}, Vec3(0.7, 0, -0.35), Vec3::UnitY());
     config.lasers.push_back(vehicle_laser(base_from_laser));
   }

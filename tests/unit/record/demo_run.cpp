@@ -24,9 +24,9 @@ RunResult demo_result() {
     result.phases.push_back({names[i], t, t + lengths_s[i], i == 6 ? "retried" : "done"});
     t += lengths_s[i];
   }
-  result.tasks = {{"turn_valve", "", 0, 90, 89.1, true},
-                  {"press_button", "left", 1, unknown, unknown, true},
-                  {"press_button", "centre", 1, unknown, unknown, true}};
+  result.tasks = {{"turn_valve", "", "", 0, 90, 89.1, true},
+                  {"press_button", "", "left", 1, unknown, unknown, true},
+                  {"press_button", "", "centre", 1, unknown, unknown, true}};
   result.errors = {0.061, 0.42, 1.31, 0.44, 0.58, 1.72, 0.124, 0.083, 0.991};
   result.contact = {38.2, 0};
   result.core.heap_calls = 0;

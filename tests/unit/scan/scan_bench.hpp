@@ -181,6 +181,7 @@ class ScanBench {
 inline scan::SweepPlan nominal_sweep() {
   scan::SweepRequest request;
   request.base_from_panel = PanelLayout{}.nominal_base_from_panel();
+  (void)request.handles.push_back({});
   return scan::plan_sweep(request, test::nominal_laser());
 }
 

@@ -27,6 +27,7 @@ double passed_m(const SweepPlan& plan, double f, const Vec3& point, const LaserC
 SweepRequest whole_panel() {
   SweepRequest request;
   request.base_from_panel = PanelLayout{}.nominal_base_from_panel();
+  (void)request.handles.push_back({});
   return request;
 }
 
@@ -38,6 +39,7 @@ SweepRequest handle_band(const Pose& base_from_panel) {
   request.margin_m = 0.010;
   request.docking_shift_m = 0.003;
   request.docking_turn_rad = 0.0035;
+  (void)request.handles.push_back({});
   return request;
 }
 
@@ -78,6 +80,31 @@ TEST(Sweep, OfABandPassesTheWholeHandle) {
       expect_scanned(plan, base_from_panel * Vec3(0.054 * std::cos(angle), 0.054 * std::sin(angle), 0.106), laser);
     if (HasFatalFailure()) return;
   }
+}
+
+// At the upper edge the light rises toward the panel: to start above what stands proud there, the stripe has to be higher on the plate.
+TEST(Sweep, StartsAboveASecondHandleNearTheUpperEdge) {
+  const LaserCalibration laser = test::nominal_laser();
+  SweepRequest request = whole_panel();
+  const SweepPlan one = plan_sweep(request, laser);
+  const SweepRequest::Handle second{Vec2(0.20, 0.19), 0.055, 0.107};
+  ASSERT_TRUE(request.handles.push_back(second));
+  const SweepPlan two = plan_sweep(request, laser);
+  ASSERT_EQ(one.outcome, SweepOutcome::ok);
+  ASSERT_EQ(two.outcome, SweepOutcome::ok);
+  std::mt19937_64 random(22);
+  int missed_by_one = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    SCOPED_TRACE(testing::Message() << "trial " << trial << " of seed 22");
+    const Pose base_from_panel = test::docked_panel(random, 0.020, rad_from_deg(2));
+    for (double angle = 0; angle < 2 * pi; angle += pi / 6) {
+      const Vec2 rim = second.at_m + 0.054 * Vec2(std::cos(angle), std::sin(angle));
+      expect_scanned(two, base_from_panel * Vec3(rim.x(), rim.y(), 0.106), laser);
+    }
+    if (HasFatalFailure()) return;
+    missed_by_one += passed_m(one, 0, base_from_panel * Vec3(second.at_m.x(), second.at_m.y() + 0.054, 0.106), laser) >= 0;
+  }
+  EXPECT_GT(missed_by_one, 0) << "nothing was put to the test";
 }
 
 TEST(Sweep, IsWithinTheSoftLimitsWithRunUpAndAboveTheStiction) {

@@ -149,8 +149,8 @@ TEST(Truth, TheMachineIsOffItsCalibrationByWhatWasDrawn) {
   const hal::SimConfig flat = make_truth(plain, draw(plain, 1), make_nominal(plain, false), 1);
   EXPECT_LT((middle - flat.optics.lasers[0].body_from_laser.linear().col(2)).norm(), 1e-9);
   EXPECT_NEAR(laser.waist_sigma_m, 0.8 * scenario.laser.waist_sigma_m, 1e-12);
-  for (std::size_t i = 0; i < PanelLayout::button_count; ++i)
-    EXPECT_LT((truth.world.layout.buttons_m[i] - scenario.panel.buttons_m[i] - Vec2(0.0004, 0.0004)).norm(), 1e-12);
+  for (std::size_t i = 0; i < scenario.panel.buttons.size(); ++i)
+    EXPECT_LT((truth.world.layout.buttons[i].at_m - scenario.panel.buttons[i].at_m - Vec2(0.0004, 0.0004)).norm(), 1e-12);
   EXPECT_EQ(truth.exposure_delay, Duration::from_us(300));
 }
 
@@ -206,16 +206,16 @@ TEST(Truth, LightAndPanelAreThoseThatWereDrawn) {
   EXPECT_EQ(truth.stamp_offset, Duration::from_us(-200));
   // The panel as it was built, in the world and in the picture; the core and its vision have the drawing's.
   const PanelLayout& built = truth.world.layout;
-  EXPECT_NEAR(built.handle_length_m, scenario.panel.handle_length_m + 0.0004, 1e-12);
-  EXPECT_NEAR(built.handle_thickness_m, scenario.panel.handle_thickness_m + 0.0004, 1e-12);
-  EXPECT_NEAR(built.handle_height_m, scenario.panel.handle_height_m + 0.0004, 1e-12);
-  EXPECT_NEAR(built.button_width_m, scenario.panel.button_width_m + 0.0003, 1e-12);
-  EXPECT_NEAR(built.button_height_m, scenario.panel.button_height_m + 0.0003, 1e-12);
-  EXPECT_EQ(truth.vision.panel.handle_length_m, scenario.panel.handle_length_m);
+  EXPECT_NEAR(built.valves[0].handle_length_m, scenario.panel.valves[0].handle_length_m + 0.0004, 1e-12);
+  EXPECT_NEAR(built.valves[0].handle_thickness_m, scenario.panel.valves[0].handle_thickness_m + 0.0004, 1e-12);
+  EXPECT_NEAR(built.valves[0].handle_height_m, scenario.panel.valves[0].handle_height_m + 0.0004, 1e-12);
+  EXPECT_NEAR(built.buttons[0].width_m, scenario.panel.buttons[0].width_m + 0.0003, 1e-12);
+  EXPECT_NEAR(built.buttons[0].height_m, scenario.panel.buttons[0].height_m + 0.0003, 1e-12);
+  EXPECT_EQ(truth.vision.panel.valves[0].handle_length_m, scenario.panel.valves[0].handle_length_m);
   const std::vector<scene::Shape>& shapes = truth.optics.scene[std::size_t(scene::BodyId::panel)].shapes;
   const auto marker = std::find_if(shapes.begin(), shapes.end(), [](const scene::Shape& shape) { return shape.marker_id >= 0; });
   ASSERT_NE(marker, shapes.end());
-  EXPECT_NEAR(marker->marker_size_m, scenario.panel.marker_size_m + 0.0002, 1e-12);
+  EXPECT_NEAR(marker->marker_size_m, scenario.panel.markers[0].size_m + 0.0002, 1e-12);
   // The plate's back: one corner lies on the panel, the opposite one stands off by both edges' share.
   double lowest = 1, highest = -1;
   for (const double x : {-0.5, 0.5}) {
@@ -363,11 +363,43 @@ TEST(Truth, HasTheSamplesErrorsAndTheCoreHasNone) {
   const double turn = Eigen::AngleAxisd(truth.world.base_from_panel.linear() * nominal_panel.linear().transpose()).angle();
   EXPECT_NEAR(turn, sample.docking_turn_rad.norm(), 0.03 * sample.docking_turn_rad.norm() + 1e-9)
       << "small turns about three axes nearly add up";
-  EXPECT_EQ(truth.world.valve.friction_nm, sample.valve_friction_nm);
+  EXPECT_EQ(truth.world.valves[0].friction_nm, sample.valves[0].friction_nm);
   EXPECT_EQ(truth.optics.water.attenuation_per_m, sample.attenuation_per_m);
   const Pose camera_error = nominal.controller.camera.base_from_camera.inverse() * truth.optics.cameras[0].base_from_camera;
   EXPECT_LT((camera_error.translation() - sample.camera_shift_m).norm(), 1e-12);
   EXPECT_GT(sample.camera_shift_m.norm(), 1e-6) << "otherwise this test says nothing";
+}
+
+TEST(Truth, OfAFilesPanelHasItsFeaturesUnderTheirNames) {
+  const Scenario scenario = load_scenario(
+      "default", {"panel.file=pandora",
+                  "tasks=[{press_buttons: {order: [B1]}}, {turn_valve: {valve: V2, to_deg: 10}}, {turn_valve: {valve: V1, to_deg: 10}}]",
+                  "buttons.stuck=[B2]", "buttons.missing=[B1]"});
+  const Sample sample = draw(scenario, 3);
+  const Nominal nominal = make_nominal(scenario, false);
+  const hal::SimConfig truth = make_truth(scenario, sample, nominal, 1);
+  ASSERT_EQ(truth.world.valves.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(truth.world.valves[i].start_rad, sample.valves[i].start_rad);
+    EXPECT_EQ(truth.world.valves[i].friction_nm, sample.valves[i].friction_nm);
+  }
+  EXPECT_EQ(truth.valve_that_breaks, 1u) << "the first that is to be turned";
+  ASSERT_EQ(truth.world.buttons.size(), 2u);
+  EXPECT_FALSE(truth.world.buttons[0].stuck);
+  EXPECT_TRUE(truth.world.buttons[1].stuck);
+  const scene::Scene& scene = truth.world.scene;
+  const std::vector<std::size_t> handles = scene::bodies_of(scene, scene::Role::handle),
+                                 caps = scene::bodies_of(scene, scene::Role::button);
+  ASSERT_EQ(handles.size(), 4u);
+  ASSERT_EQ(caps.size(), 2u);
+  EXPECT_EQ(scene[handles[1]].name, "V2's handle");
+  EXPECT_TRUE(scene[caps[0]].shapes.empty()) << "broken off";
+  EXPECT_FALSE(scene[caps[1]].shapes.empty());
+  ASSERT_EQ(nominal.controller.markers.size(), 2u);
+  EXPECT_EQ(nominal.controller.markers[1].id, 12);
+  EXPECT_EQ(nominal.controller.mission.tasks[1].valve, 1);
+  const std::vector<scene::Shape>& panel = scene[std::size_t(scene::BodyId::panel)].shapes;
+  EXPECT_EQ(std::count_if(panel.begin(), panel.end(), [](const scene::Shape& shape) { return shape.marker_id >= 0; }), 2);
 }
 
 // The core's own model of a gear is the description's, whatever the truth is.

@@ -52,7 +52,7 @@ faults:
   EXPECT_EQ(s.lamps.lit, Chance::yes);
   EXPECT_TRUE(s.camera.always_on);
   EXPECT_EQ(s.camera.exposure_us, 1500);
-  EXPECT_EQ(s.panel.marker_centre_m, Vec2(-0.2, 0.1));
+  EXPECT_EQ(s.panel.markers[0].centre_m, Vec2(-0.2, 0.1));
   ASSERT_EQ(s.tasks.size(), 2u);
   EXPECT_EQ(s.tasks[0].kind, Task::Kind::press_buttons);
   EXPECT_EQ(s.tasks[0].order, (std::vector<std::string>{"right", "right"}));
@@ -311,6 +311,35 @@ TEST(Load, EveryButtonOutOfReachIsTold) {
   const std::string told = complaint_before_a_run("panel: {ahead_m: 0.7}");
   for (const char* what : {"the valve is out", "the left button is out", "the centre button is out", "the right button is out"})
     EXPECT_THAT(told, HasSubstr(what));
+}
+
+TEST(Load, APanelsFileIsWhatItsTasksName) {
+  const auto told = [](const std::string& tasks, const std::string& more = "") {
+    return complaint("panel: {file: pandora}\ntasks: [" + tasks + "]\n" + more);
+  };
+  const std::string turn = "turn_valve: {valve: V1, to_deg: 45}";
+  EXPECT_EQ(told(turn + ", press_buttons: {order: [B2, B1]}"), "");
+  EXPECT_THAT(told("turn_valve: {to_deg: 45}"), StartsWith(": 'turn_valve.valve' is missing: the panel has V1, V2, V3, V4"));
+  EXPECT_THAT(told("turn_valve: {valve: V9, to_deg: 45}"),
+              StartsWith(": 'turn_valve.valve': the panel has no valve 'V9'; it has V1, V2, V3, V4"));
+  EXPECT_THAT(told("turn_valve: {valve: V2, to_deg: 106}"),
+              StartsWith(": 'turn_valve.to_deg' is 106, beyond valve V2's stops at -105 and 105"));
+  EXPECT_THAT(told("press_buttons: {order: [B1, left]}"),
+              StartsWith(": 'press_buttons.order': the panel has no button 'left'; it has B1, B2"));
+  EXPECT_EQ(told(turn, "buttons: {stuck: [B1], missing: [B2]}\n"), "");
+  EXPECT_THAT(told(turn, "buttons: {stuck: [left]}\n"), StartsWith(": 'buttons.stuck': the panel has no button 'left'"));
+  EXPECT_THAT(complaint("panel: {file: pandora, marker_id: 3}\ntasks: [" + turn + "]\n"),
+              StartsWith(": 'panel.marker_id' is of the docked mission's panel"));
+  EXPECT_EQ(told(turn).find('\n'), std::string::npos);
+  // On the docked mission's panel the one valve needs no name.
+  EXPECT_EQ(complaint("tasks: [turn_valve: {valve: valve, to_deg: 45}]\n"), "");
+  EXPECT_THAT(complaint("tasks: [" + turn + "]\n"), StartsWith(": 'turn_valve.valve': the panel has no valve 'V1'; it has valve"));
+}
+
+TEST(Load, APanelsFileMayBeGivenByAnOverride) {
+  for (const char* name : {"pandora", "\"pandora\"", "'pandora'"})
+    EXPECT_EQ(complaint("", {std::string("panel.file=") + name, "tasks=[press_buttons: {order: [B1]}]"}), "") << name;
+  EXPECT_THAT(complaint("", {"panel.file=pandra"}), StartsWith(": 'panel.file': no shipped panel 'pandra'; did you mean 'pandora'?"));
 }
 
 TEST(Load, AFaultWithAMistakeDoesNotHideTheNextOnes) {

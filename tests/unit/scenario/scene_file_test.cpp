@@ -177,7 +177,7 @@ TEST(SceneFile, StandsInTheScenariosWorld) {
   EXPECT_NO_THROW(check_runnable(scenario));
   const Sample sample = draw(scenario, 7);
   const hal::SimConfig truth = make_truth(scenario, sample, make_nominal(scenario, false), 1);
-  ASSERT_EQ(truth.world.scene.size(), scene::own_body_count + 1);
+  ASSERT_EQ(truth.world.scene.size(), scene::own_body_count(scene::bare_scene()) + 1);
   EXPECT_EQ(truth.optics.scene.size(), truth.world.scene.size());
   const Pose expected = truth.world.base_from_panel * Eigen::Translation3d(0.2, -0.2, 0.1);
   EXPECT_TRUE(truth.world.scene.back().base_from_body.isApprox(expected));

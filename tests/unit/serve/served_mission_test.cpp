@@ -127,7 +127,7 @@ TEST(ServedMission, turns_the_valve_by_the_worlds_own_account) {
   hal::Lockstep<WirePlatform> core(platform, job.nominal.controller, job.nominal.scan);
   core.controller().on_command(Command::start, {});
   while (!core.ended() && clock.now.s() < job.scenario.time_limit_s) core.step();
-  const ServeResult result = make_result(loop, &camera, job.nominal.controller.mission);
+  const ServeResult result = make_result(loop, &camera, job.nominal.controller.mission, job.scenario.survey.names);
   EXPECT_TRUE(core.controller().mission().outcome().success);
   EXPECT_TRUE(result.success) << serve_result_json(result);
   EXPECT_TRUE(result.pace.held());

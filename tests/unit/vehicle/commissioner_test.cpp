@@ -30,7 +30,7 @@ TEST(Commissioned, TheFrictionOfEachJointIsToldWithItsResidual) {
 TEST(StatusText, SaysHowTheEmergencyStopChainStands) {
   const Json none{{"p50", 0}, {"p999", 0}, {"max", 0}};
   const auto said = [&](const ControlReport& control, Json more) {
-    Json status = status_json(control, {}, {});
+    Json status = status_json(control, {}, {}, {});
     status["latency"] = {{"wake_up_us", none}, {"tick_us", none}};
     status["lost"] = Json::array();
     status["counters"] = Json::object();
@@ -46,9 +46,9 @@ TEST(StatusText, SaysHowTheEmergencyStopChainStands) {
   EXPECT_EQ(said(control, Json::object()), "  emergency-stop chain open, laser's interlock closed");
   control.inputs = can_map::input_estop_closed;
   EXPECT_EQ(said(control, {{"estop_input_closed", false}}), "  emergency-stop chain closed, laser's interlock open; estop.input open");
-  EXPECT_EQ(status_json(control, {}, {})["estop_closed"], true);
+  EXPECT_EQ(status_json(control, {}, {}, {})["estop_closed"], true);
   control.inputs_fresh = false;
-  EXPECT_EQ(status_json(control, {}, {})["estop_closed"], false) << "what it said before it fell silent";
+  EXPECT_EQ(status_json(control, {}, {}, {})["estop_closed"], false) << "what it said before it fell silent";
 }
 
 // `why` was in the document alone.
@@ -60,7 +60,7 @@ TEST(StatusText, SaysWhatToDoWhenABootFailed) {
   elbow.index = 0x1016;
   elbow.sub = 1;
   elbow.abort_code = canopen::sdo_abort::no_object;
-  Json status = status_json(control, {}, {});
+  Json status = status_json(control, {}, {}, {});
   const Json none{{"p50", 0}, {"p999", 0}, {"max", 0}};
   status["latency"] = {{"wake_up_us", none}, {"tick_us", none}};
   status["lost"] = Json::array();
@@ -71,6 +71,25 @@ TEST(StatusText, SaysWhatToDoWhenABootFailed) {
       << status_text(status);
 }
 
+TEST(StatusText, NamesTheValvesAndButtonsOfAFilesPanel) {
+  const PanelNames names{{"V1", "V2"}, {"B1", "B2"}, {"7"}};
+  ControlReport control;
+  (void)control.tasks.push_back(
+      mission::TaskResult{.task = {.kind = mission::Task::Kind::turn_valve, .to_rad = rad_from_deg(45), .valve = 1}, .done = true});
+  (void)control.tasks.push_back(mission::TaskResult{.task = {.kind = mission::Task::Kind::press_button, .button = 1}});
+  Json status = status_json(control, {}, {}, names);
+  EXPECT_EQ(status["tasks"][0]["valve"], "V2");
+  EXPECT_EQ(status["tasks"][1]["button"], "B2");
+  const Json none{{"p50", 0}, {"p999", 0}, {"max", 0}};
+  status["latency"] = {{"wake_up_us", none}, {"tick_us", none}};
+  status["lost"] = Json::array();
+  status["counters"] = Json::object();
+  EXPECT_NE(status_text(status).find("  task turn_valve V2 to 45.0 deg: done\n  task press_button B2: not done\n"), std::string::npos)
+      << status_text(status);
+  control.tasks[0].task.valve = 0;
+  EXPECT_FALSE(status_json(control, {}, {}, {})["tasks"][0].contains("valve")) << "the docked mission's panel has one";
+}
+
 // A user learns that the marker was printed too small before the arm misses the valve.
 TEST(StatusText, SaysThatTheCalibrationIsDoubtful) {
   const Json none{{"p50", 0}, {"p999", 0}, {"max", 0}};
@@ -78,7 +97,7 @@ TEST(StatusText, SaysThatTheCalibrationIsDoubtful) {
     Telemetry telemetry;
     telemetry.sight.look = 1;
     telemetry.sight.fit = {true, 0.08f, 32, side_error, 0, 0, 0};
-    Json status = status_json({}, telemetry, {});
+    Json status = status_json({}, telemetry, {}, {});
     status["latency"] = {{"wake_up_us", none}, {"tick_us", none}};
     status["lost"] = Json::array();
     status["counters"] = Json::object();
@@ -91,9 +110,9 @@ TEST(StatusText, SaysThatTheCalibrationIsDoubtful) {
   ControlReport felt;
   (void)felt.tasks.push_back(
       mission::TaskResult{.task = {.kind = mission::Task::Kind::press_button}, .face_felt = true, .face_off_m = 0.006});
-  EXPECT_NEAR(status_json(felt, {}, {})["fit"]["faces_off_mm"], 6, 1e-9);
-  EXPECT_TRUE(status_json(felt, {}, {})["fit"].contains("doubt"));
-  EXPECT_FALSE(status_json({}, {}, {}).contains("fit")) << "before the first look";
+  EXPECT_NEAR(status_json(felt, {}, {}, {})["fit"]["faces_off_mm"], 6, 1e-9);
+  EXPECT_TRUE(status_json(felt, {}, {}, {})["fit"].contains("doubt"));
+  EXPECT_FALSE(status_json({}, {}, {}, {}).contains("fit")) << "before the first look";
 }
 
 TEST(Commissioned, AJointThatSomethingRubsAgainstIsLeftOutAndTheOthersAreTakenOver) {

@@ -161,9 +161,9 @@ TEST_F(Loop, MakesNoHeapCall) {
 TEST_F(Loop, NamesInTheStatusWhatCameAfterTheEnd) {
   ControlReport report;
   report.faults_after_end[static_cast<std::size_t>(safety::Fault::node_lost)] = 2;
-  EXPECT_FALSE(status_json(report, {}, {}).contains("faults since the end")) << "before the end there is none";
+  EXPECT_FALSE(status_json(report, {}, {}, {}).contains("faults since the end")) << "before the end there is none";
   report.outcome.ended = report.outcome.success = true;
-  const Json status = status_json(report, {}, {});
+  const Json status = status_json(report, {}, {}, {});
   EXPECT_EQ(status["success"], true);
   EXPECT_EQ(status["faults since the end"], (Json{{"node lost", 2}}));
   EXPECT_TRUE(give(Command::emergency_stop).taken);
@@ -173,7 +173,7 @@ TEST_F(Loop, NamesInTheStatusWhatCameAfterTheEnd) {
   ControlReport newest;
   loop->report([](ControlReport&) {});
   while (rings->reports.pop(report)) newest = report;
-  EXPECT_EQ(status_json(newest, {}, {})["faults since the end"], (Json{{"emergency stop", 1}}));
+  EXPECT_EQ(status_json(newest, {}, {}, {})["faults since the end"], (Json{{"emergency stop", 1}}));
 }
 
 TEST_F(Loop, AnOpenEmergencyStopInputStopsAndGoesOnDoingSo) {

@@ -118,9 +118,9 @@ TEST_F(Desk, SaysWhatToDoBeforeAnOrderThatIsNotAllowedNow) {
 TEST_F(Desk, NamesTheAngleThatTheHandleCannotHaveAndItsBounds) {
   ways.why_not = [](const mission::Tasks& tasks) {
     PanelLayout panel;
-    panel.handle_min_rad = rad_from_deg(-10);
-    panel.handle_max_rad = rad_from_deg(105);
-    return config::turn_problem(tasks, panel);
+    panel.valves[0].handle_min_rad = rad_from_deg(-10);
+    panel.valves[0].handle_max_rad = rad_from_deg(105);
+    return config::turn_problem(tasks, panel, {});
   };
   desk = std::make_unique<OrderDesk>(*rings, ways);
   const auto turn = [&](const char* to) {
@@ -130,6 +130,22 @@ TEST_F(Desk, NamesTheAngleThatTheHandleCannotHaveAndItsBounds) {
   EXPECT_EQ(turn("-11")["ok"], false);
   EXPECT_EQ(turn("104.9")["ok"], true);
   EXPECT_EQ(ask(R"({"do":"task","tasks":[{"press_buttons":{"order":["left"]}}]})", alice)["ok"], true);
+}
+
+TEST_F(Desk, NamesTheValveOfAFilesPanel) {
+  ways.names = {{"V1", "V2"}, {"B1", "B2", "B3"}, {"7"}};
+  ways.why_not = [names = ways.names](const mission::Tasks& tasks) {
+    PanelLayout panel;
+    (void)panel.valves.push_back({.at_m{0.25, 0}, .handle_min_rad = rad_from_deg(-10)});
+    return config::turn_problem(tasks, panel, names);
+  };
+  desk = std::make_unique<OrderDesk>(*rings, ways);
+  const auto turn = [&](const std::string& valve, const char* to) {
+    return ask(R"({"do":"task","tasks":[{"turn_valve":{"valve":")" + valve + R"(","to_deg":)" + to + "}}]}", alice);
+  };
+  EXPECT_EQ(turn("V2", "-11")["why"], "valve V2 cannot be turned to -11 deg: its handle goes from -10 to 105 deg");
+  EXPECT_EQ(turn("V1", "-11")["ok"], true);
+  EXPECT_EQ(turn("V3", "-11")["why"], "no valve 'V3': V1 or V2");
 }
 
 TEST_F(Desk, AnswersALineThatIsNoRequestAndLogsIt) {

@@ -16,14 +16,14 @@ namespace {
 
 using testing::HasSubstr;
 
-std::string refusal(const std::string& line) {
-  const ParsedOrder parsed = parse_order(line);
+std::string refusal(const std::string& line, const PanelNames& names = {}) {
+  const ParsedOrder parsed = parse_order(line, names);
   const auto* why = std::get_if<std::string>(&parsed);
   return why != nullptr ? *why : "taken";
 }
 
-OperatorRequest taken(const std::string& line) {
-  const ParsedOrder parsed = parse_order(line);
+OperatorRequest taken(const std::string& line, const PanelNames& names = {}) {
+  const ParsedOrder parsed = parse_order(line, names);
   const auto* request = std::get_if<OperatorRequest>(&parsed);
   if (request == nullptr) ADD_FAILURE() << line << ": " << std::get<std::string>(parsed);
   return request != nullptr ? *request : OperatorRequest{};
@@ -49,6 +49,45 @@ TEST(ParseOrder, TakesAJob) {
   EXPECT_NEAR(job.order.tasks[0].to_rad, -45.5 * 3.14159265358979 / 180, 1e-12);
   EXPECT_EQ(job.order.tasks[1].button, 2);
   EXPECT_EQ(job.order.tasks[2].button, 0);
+}
+
+const PanelNames two_valves{{"V1", "V2"}, {"B1", "B2"}, {"7"}};
+
+TEST(ParseOrder, NamesTheValvesAndButtonsOfAFilesPanel) {
+  const OperatorRequest job = taken(
+      R"({"do":"task","tasks":[{"turn_valve":{"valve":"V2","to_deg":45}},{"press_buttons":{"order":["B2","B1"]}},{"turn_valve":{"to_deg":0,"valve":"V1"}}]})",
+      two_valves);
+  ASSERT_EQ(job.order.tasks.size(), 4u);
+  EXPECT_EQ(job.order.tasks[0].kind, mission::Task::Kind::turn_valve);
+  EXPECT_EQ(job.order.tasks[0].valve, 1);
+  EXPECT_NEAR(job.order.tasks[0].to_rad, 45 * 3.14159265358979 / 180, 1e-12);
+  EXPECT_EQ(job.order.tasks[1].button, 1);
+  EXPECT_EQ(job.order.tasks[2].button, 0);
+  EXPECT_EQ(job.order.tasks[3].valve, 0);
+}
+
+TEST(ParseOrder, AValveIsNamedWhereThePanelHasSeveral) {
+  const auto turn = [](const char* which, const PanelNames& names) {
+    return refusal(R"({"do":"task","tasks":[{"turn_valve":{)" + std::string(which) + R"("to_deg":45}}]})", names);
+  };
+  EXPECT_EQ(turn("", two_valves), "\"valve\" is missing: the panel has V1 or V2");
+  EXPECT_EQ(turn(R"("valve":"",)", two_valves), "\"valve\" is missing: the panel has V1 or V2");
+  EXPECT_EQ(turn(R"("valve":"V3",)", two_valves), "no valve 'V3': V1 or V2");
+  EXPECT_EQ(turn(R"("valve":"valve",)", two_valves), "no valve 'valve': V1 or V2");
+  EXPECT_THAT(turn(R"("valve":2,)", two_valves), HasSubstr("{\"valve\": NAME} where the panel has several"));
+  EXPECT_EQ(turn("", {{}, {"B1"}, {"7"}}), "\"valve\" is missing: the panel has none");
+  EXPECT_EQ(turn("", {}), "taken") << "the only one";
+  EXPECT_EQ(turn(R"("valve":"valve",)", {}), "taken");
+  EXPECT_EQ(turn(R"("valve":"V1",)", {}), "no valve 'V1': valve");
+}
+
+TEST(ParseOrder, AButtonIsOneOfThePanels) {
+  const auto press = [](const char* order, const PanelNames& names) {
+    return refusal(R"({"do":"task","tasks":[{"press_buttons":{"order":)" + std::string(order) + "}}]}", names);
+  };
+  EXPECT_EQ(press(R"(["B1","left"])", two_valves), "no button 'left': B1 or B2");
+  EXPECT_EQ(press(R"(["B1"])", {}), "no button 'B1': left, centre or right");
+  EXPECT_EQ(press("[]", two_valves), "press_buttons takes {\"order\": [B1, B2]}, one or more of them");
 }
 
 TEST(ParseOrder, TakesACommissioning) {

@@ -122,6 +122,53 @@ TEST(VehicleConfig, ACapThatIsTooLowToPressIsRefused) {
   EXPECT_THAT(problems_of(folder.write("turn.yaml", low + "tasks: [{turn_valve: {to_deg: 90}}]\n")), ::testing::Not(told));
 }
 
+TEST(VehicleConfig, APanelsFileIsWhatItsTasksName) {
+  const TemporaryFolder folder;
+  folder.write("mine.yaml",
+               "version: 1\nvalves: [{name: V1, at_m: [0, 0]}, {name: V2, at_m: [0.13, 0]}]\nbuttons: [{name: B1, at_m: [-0.067, 0.141]}]\n"
+               "markers: [{id: 7, at_m: [-0.17, 0.072]}, {id: 9, at_m: [0.27, 0.072]}]\n");
+  const auto file = [&](const std::string& panel, const std::string& tasks) {
+    return folder.write("v.yaml", "panel: {file: mine.yaml" + panel + "}\ntasks: [" + tasks + "]\n");
+  };
+  const VehicleConfig config =
+      load_vehicle_config(file(", down_m: 0.6", "{press_buttons: {order: [B1]}}, {turn_valve: {valve: V2, to_deg: -45}}"));
+  EXPECT_THAT(config.machine.survey.names.valves, ElementsAre("V1", "V2"));
+  const mission::MissionConfig& mission = config.core.controller.mission;
+  EXPECT_EQ(mission.layout.valves.size(), 2u);
+  EXPECT_EQ(mission.layout.buttons.size(), 1u);
+  EXPECT_EQ(mission.layout.nominal_z_m, 0.6);
+  ASSERT_EQ(config.core.controller.markers.size(), 2u);
+  EXPECT_EQ(config.core.controller.markers[1].id, 9);
+  EXPECT_EQ(config.core.controller.markers[1].panel_from_tag.translation().x(), 0.27);
+  ASSERT_EQ(mission.tasks.size(), 2u);
+  EXPECT_EQ(mission.tasks[0].button, 0);
+  EXPECT_EQ(mission.tasks[1].valve, 1);
+  using ::testing::Contains;
+  EXPECT_THAT(problems_of(file("", "{turn_valve: {to_deg: 45}}")),
+              Contains(HasSubstr("'turn_valve.valve' is missing: the panel has V1, V2")));
+  EXPECT_THAT(problems_of(file("", "{turn_valve: {valve: V3, to_deg: 45}}")),
+              Contains(HasSubstr("'turn_valve.valve': the panel has no valve 'V3'")));
+  EXPECT_THAT(problems_of(file("", "{press_buttons: {order: [left]}}")),
+              Contains(HasSubstr("'press_buttons.order': the panel has no button 'left'; it has B1")));
+  EXPECT_THAT(problems_of(file(", handle_length_m: 0.11", "{turn_valve: {valve: V1, to_deg: 45}}")),
+              ElementsAre(HasSubstr("'panel.handle_length_m' is of the docked mission's panel")));
+  EXPECT_THAT(problems_of(folder.write("v.yaml", "tasks: [{turn_valve: {valve: V1, to_deg: 45}}]\n")),
+              Contains(HasSubstr("the panel has no valve 'V1'; it has valve")));
+}
+
+// What its maker says that a valve takes is held against the hand, though the simulated one takes less.
+TEST(VehicleConfig, AValveThatTakesMoreThanTheArmGivesIsRefused) {
+  const TemporaryFolder folder;
+  const auto told = [&](const char* torque_nm) {
+    folder.write("mine.yaml", std::string("version: 1\nvalves: [{name: V1, at_m: [0, 0], torque_nm: ") + torque_nm +
+                                  "}, {name: V2, at_m: [0.13, 0], torque_nm: 100000}]\nmarkers: [{id: 7, at_m: [-0.17, 0.072]}]\n");
+    return problems_of(folder.write("v.yaml", "panel: {file: mine.yaml}\ntasks: [{turn_valve: {valve: V1, to_deg: 45}}]\n"));
+  };
+  EXPECT_THAT(told("3"), IsEmpty()) << "V2 is not to be turned";
+  EXPECT_THAT(told("400"),
+              ElementsAre(::testing::AllOf(HasSubstr("valve V1 needs 400 N m, the arm gives "), HasSubstr("See 'valves.V1.torque_nm'"))));
+}
+
 // The core would move a real arm by the kinematics of another one.
 TEST(VehicleConfig, AnotherArmThanTheCoresIsRefused) {
   const TemporaryFolder folder;

@@ -33,8 +33,8 @@ GreyPicture draw_handle(const DrawnHandle& scene) {
   const CameraIntrinsics& camera = scene.camera.intrinsics;
   std::mt19937 random(scene.seed);
   std::normal_distribution<float> noise(0, static_cast<float>(scene.noise_grey));
-  const PanelLayout& layout = scene.layout;
-  const double half = layout.handle_length_m / 2, thick = layout.handle_thickness_m / 2, high = layout.handle_height_m;
+  const PanelLayout::Valve& valve = scene.valve;
+  const double half = valve.handle_length_m / 2, thick = valve.handle_thickness_m / 2, high = valve.handle_height_m;
   const Vec3 along(-std::sin(scene.angle_rad), std::cos(scene.angle_rad), 0),
       across(std::cos(scene.angle_rad), std::sin(scene.angle_rad), 0);
   const Vec3 eye = scene.base_from_panel.inverse() * scene.camera.base_from_camera.translation();
@@ -44,8 +44,8 @@ GreyPicture draw_handle(const DrawnHandle& scene) {
   constexpr double piece_m = 0.001;
   for (double s = -half; s < half - 1e-9; s += piece_m) {
     const double middle = s + piece_m / 2;
-    const bool marked = scene.painted && middle > half - layout.pointer_length_m;
-    double grey = (marked ? scene.paint_grey : scene.bar_grey) * (1 - scene.fall_off * (middle / layout.handle_length_m + 0.5));
+    const bool marked = scene.painted && middle > half - valve.pointer_length_m;
+    double grey = (marked ? scene.paint_grey : scene.bar_grey) * (1 - scene.fall_off * (middle / valve.handle_length_m + 0.5));
     if (middle < scene.shade_edge_m) grey *= scene.shade;
     const Vec3 a = s * along, b = (s + piece_m) * along, up(0, 0, 1);
     const Vec3 left = -thick * across, right = thick * across;
@@ -76,8 +76,8 @@ GreyPicture draw_handle(const DrawnHandle& scene) {
 std::vector<CloudPoint> draw_bar_points(const DrawnHandle& scene, double paint_over_bar) {
   std::mt19937 random(scene.seed + 77);
   std::normal_distribution<double> noise(0, 1);
-  const PanelLayout& layout = scene.layout;
-  const double half = layout.handle_length_m / 2, thick = layout.handle_thickness_m / 2;
+  const PanelLayout::Valve& valve = scene.valve;
+  const double half = valve.handle_length_m / 2, thick = valve.handle_thickness_m / 2;
   std::vector<CloudPoint> points;
   for (double y = -half; y <= half; y += 0.0026) {
     for (double x = -half; x <= half; x += 0.002) {
@@ -85,8 +85,8 @@ std::vector<CloudPoint> draw_bar_points(const DrawnHandle& scene, double paint_o
       const double t = std::cos(scene.angle_rad) * x + std::sin(scene.angle_rad) * y;
       if (std::abs(s) > half || std::abs(t) > thick) continue;
       CloudPoint point;
-      point.p_m = (scene.base_from_panel * Vec3(x, y, layout.handle_height_m + thick + 0.0006 * noise(random))).cast<float>();
-      const bool marked = scene.painted && s > half - layout.pointer_length_m;
+      point.p_m = (scene.base_from_panel * Vec3(x, y, valve.handle_height_m + thick + 0.0006 * noise(random))).cast<float>();
+      const bool marked = scene.painted && s > half - valve.pointer_length_m;
       point.amplitude = static_cast<float>(60 * (marked ? paint_over_bar : 1) * (1 + 0.08 * noise(random)));
       points.push_back(point);
     }

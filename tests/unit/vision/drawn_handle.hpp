@@ -9,7 +9,7 @@
 namespace lf::vision::test {
 
 struct DrawnHandle {
-  PanelLayout layout;
+  PanelLayout::Valve valve;
   CameraCalibration camera;
   Pose base_from_panel = PanelLayout{}.nominal_base_from_panel();
   double angle_rad = 0;

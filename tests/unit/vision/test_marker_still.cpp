@@ -15,12 +15,15 @@ TEST(MarkerStill, HasItsMarkerFoundInASmallerPictureWithCornersOfTheWhole) {
   const std::array<Vec2, 4> seen{Vec2(252, 291), Vec2(298, 281), Vec2(295, 251), Vec2(246, 261)};
   const GreyImage image = still();
   PanelVisionConfig config;
-  config.marker.id = config.panel.marker_id;
-  config.marker.size_m = config.panel.marker_size_m;
+  MarkerCalibration calibration;
+  calibration.id = config.panel.markers[0].id;
+  calibration.size_m = config.panel.markers[0].size_m;
+  config.markers = MarkerCalibrations(calibration);
   PanelRequest request;
   request.has_still = true;
-  const MarkerObservation marker = analyse_panel(request, image.view(), {}, config).marker;
-  ASSERT_TRUE(marker.found);
+  const PanelResult result = analyse_panel(request, image.view(), {}, config);
+  ASSERT_EQ(result.markers.size(), 1u);
+  const MarkerObservation& marker = result.markers[0];
   EXPECT_GT(marker.margin, 10);
   for (std::size_t i = 0; i < 4; ++i) EXPECT_LT((marker.corners_px[i] - seen[i]).norm(), 3) << marker.corners_px[i].transpose();
 }

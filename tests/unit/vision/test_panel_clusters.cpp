@@ -53,19 +53,19 @@ TEST(PanelClusters, AreTheHandleAndThreeButtonsAtTheirPlaces) {
   EXPECT_EQ(found.dropped, 0u);
   const ProudCluster* handle = handle_among(found);
   ASSERT_NE(handle, nullptr);
-  EXPECT_NEAR(handle->length_m, scene.layout.handle_length_m, 0.006);
-  EXPECT_NEAR(handle->width_m, scene.layout.handle_thickness_m, 0.004);
+  EXPECT_NEAR(handle->length_m, scene.layout.valves[0].handle_length_m, 0.006);
+  EXPECT_NEAR(handle->width_m, scene.layout.valves[0].handle_thickness_m, 0.004);
   EXPECT_NEAR(handle->height_m, 0.106, 0.002);
   const Vec3 place = scene.base_from_panel.inverse() * handle->centroid_m;
   EXPECT_NEAR(place.x(), 0, 0.0015);
   EXPECT_NEAR(place.y(), 0, 0.0015);
   EXPECT_NEAR(place.z(), 0.106, 0.0015);
-  for (const Vec2& button : scene.layout.buttons_m) {
+  for (const PanelLayout::Button& button : scene.layout.buttons) {
     const bool seen = std::any_of(found.clusters.begin(), found.clusters.end(), [&](const ProudCluster& cluster) {
       const Vec3 p = scene.base_from_panel.inverse() * cluster.centroid_m;
-      return (p.head<2>() - button).norm() < 0.0015 && std::abs(cluster.height_m - scene.layout.button_height_m) < 0.001;
+      return (p.head<2>() - button.at_m).norm() < 0.0015 && std::abs(cluster.height_m - button.height_m) < 0.001;
     });
-    EXPECT_TRUE(seen) << button.transpose();
+    EXPECT_TRUE(seen) << button.at_m.transpose();
   }
   for (std::size_t i = 1; i < found.clusters.size(); ++i) EXPECT_GE(found.clusters[i - 1].points, found.clusters[i].points);
 }
@@ -118,16 +118,17 @@ TEST(PanelClusters, RemoveLonePointsAndCountThem) {
 TEST(PanelClusters, CountWhatDoesNotFit) {
   PanelLayout layout;
   std::vector<CloudPoint> cloud;
-  for (int block = 0; block < 15; ++block) {
+  constexpr int blocks = static_cast<int>(PanelResult::max_clusters) + 3;
+  for (int block = 0; block < blocks; ++block) {
     for (int i = 0; i < 100 + block; ++i) {
-      const Vec3 p(-0.35 + 0.05 * block + 0.002 * (i % 10), 0.002 * (i / 10), 0.05);
+      const Vec3 p(-0.35 + 0.05 * (block % 15) + 0.002 * (i % 10), -0.3 + 0.1 * (block / 15) + 0.002 * (i / 10), 0.05);
       cloud.push_back({(layout.nominal_base_from_panel() * p).cast<float>(), 1});
     }
   }
   const PanelClusters found = find_panel_clusters(cloud, {Vec3(-1, 0, 0), layout.nominal_x_m}, region_of(layout));
   EXPECT_EQ(found.clusters.size(), PanelResult::max_clusters);
   EXPECT_EQ(found.dropped, 3u);
-  EXPECT_EQ(found.clusters[0].points, 114u);
+  EXPECT_EQ(found.clusters[0].points, 99u + blocks);
 }
 
 TEST(PanelClusters, OfPointsThatAreNotNumbersOrOfNoneAreNone) {

@@ -35,12 +35,11 @@ const Docked& docked() {
   static const Docked shared = [] {
     Docked d;
     d.config.camera.base_from_camera = base_from_camera();
-    d.config.marker.id = d.config.panel.marker_id;
-    d.config.marker.size_m = d.config.panel.marker_size_m;
-    d.config.marker.panel_from_tag = d.config.panel.panel_from_tag();
+    const PanelLayout::Marker& marker = d.config.panel.markers[0];
+    d.config.markers = MarkerCalibrations(MarkerCalibration{marker.id, marker.size_m, marker.panel_from_tag()});
     d.cloud = test::panel_cloud(d.cloud_scene);
     test::MarkerScene scene;
-    scene.camera_from_tag = base_from_camera().inverse() * d.cloud_scene.base_from_panel * d.config.panel.panel_from_tag();
+    scene.camera_from_tag = base_from_camera().inverse() * d.cloud_scene.base_from_panel * marker.panel_from_tag();
     scene.noise_grey = 2;
     d.still = test::render_marker(scene);
     d.camera_from_tag = scene.camera_from_tag;
@@ -56,8 +55,12 @@ const Docked& docked() {
 PanelJob job_of(const Docked& d) { return PanelJob::copy(d.request, d.still.view(), d.cloud); }
 
 bool same(const PanelResult& a, const PanelResult& b) {
-  bool equal = a.id == b.id && a.clusters.size() == b.clusters.size() && a.confidence == b.confidence &&
-               a.marker.corners_px == b.marker.corners_px && a.marker.camera_from_tag.matrix() == b.marker.camera_from_tag.matrix();
+  bool equal =
+      a.id == b.id && a.clusters.size() == b.clusters.size() && a.confidence == b.confidence && a.markers.size() == b.markers.size();
+  for (std::size_t i = 0; equal && i < a.markers.size(); ++i) {
+    equal = a.markers[i].corners_px == b.markers[i].corners_px &&
+            a.markers[i].camera_from_tag.matrix() == b.markers[i].camera_from_tag.matrix();
+  }
   for (std::size_t i = 0; equal && i < a.clusters.size(); ++i) {
     equal = a.clusters[i].centroid_m == b.clusters[i].centroid_m && a.clusters[i].axis == b.clusters[i].axis;
   }
@@ -69,10 +72,10 @@ TEST(AnalysePanel, FindsMarkerHandleAndButtonsOfADockedPanel) {
   const PanelResult result = analyse_panel(d.request, d.still.view(), d.cloud, d.config);
   EXPECT_EQ(result.id, 3u);
   EXPECT_EQ(result.measured, d.request.still_time);
-  ASSERT_TRUE(result.marker.found);
-  EXPECT_EQ(result.marker.id, 7);
-  EXPECT_LT((result.marker.camera_from_tag.translation() - d.camera_from_tag.translation()).norm(), 0.002);
-  EXPECT_GT(result.marker.camera_from_tag.linear().col(2).dot(d.camera_from_tag.linear().col(2)), 0.9997);  // 1.4 degrees
+  ASSERT_EQ(result.markers.size(), 1u);
+  EXPECT_EQ(result.markers[0].id, 7);
+  EXPECT_LT((result.markers[0].camera_from_tag.translation() - d.camera_from_tag.translation()).norm(), 0.002);
+  EXPECT_GT(result.markers[0].camera_from_tag.linear().col(2).dot(d.camera_from_tag.linear().col(2)), 0.9997);  // 1.4 degrees
   EXPECT_EQ(result.clusters.size(), 4u);
   EXPECT_GT(result.confidence, 0.6f);
   EXPECT_LE(result.confidence, 1.0f);
@@ -86,8 +89,8 @@ TEST(AnalysePanel, HasNoConfidenceWithoutFitMarkerOrProudPoints) {
   EXPECT_EQ(analyse_panel(d.request, ImageView{}, d.cloud, d.config).confidence, 0);
   EXPECT_EQ(analyse_panel(d.request, d.still.view(), {}, d.config).confidence, 0);
   PanelVisionConfig other = d.config;
-  other.marker.id = 8;
-  EXPECT_FALSE(analyse_panel(d.request, d.still.view(), d.cloud, other).marker.found);
+  other.markers[0].id = 8;
+  EXPECT_TRUE(analyse_panel(d.request, d.still.view(), d.cloud, other).markers.empty());
   request = d.request;
   request.fit.plane.normal.x() = std::nan("");
   EXPECT_TRUE(analyse_panel(request, d.still.view(), d.cloud, d.config).clusters.empty());
@@ -98,7 +101,7 @@ TEST(AnalysePanel, LooksAtTheCloudAloneWhereNoStillWasTaken) {
   PanelRequest request = d.request;
   request.has_still = false;
   const PanelResult result = analyse_panel(request, ImageView{}, d.cloud, d.config);
-  EXPECT_FALSE(result.marker.found);
+  EXPECT_TRUE(result.markers.empty());
   EXPECT_GT(result.confidence, 0.6f);
 }
 
@@ -193,7 +196,7 @@ TEST(PanelVisionWorker, TakesAStillThatIsMissingOrBroken) {
   lying.width = 4000;
   ASSERT_TRUE(worker.submit(lying));
   ASSERT_TRUE(worker.wait(result));
-  EXPECT_FALSE(result.marker.found);
+  EXPECT_TRUE(result.markers.empty());
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ bool toward_the_mark(const PointerObservation& pointer, const test::DrawnHandle&
 
 PointerObservation read(const test::DrawnHandle& scene, std::mt19937& random, std::span<const CloudPoint> cloud = {}) {
   const test::GreyPicture picture = test::draw_handle(scene);
-  return find_pointer(place_of(scene, random), picture.view(), cloud, scene.camera, scene.layout);
+  return find_pointer(place_of(scene, random), picture.view(), cloud, scene.camera, scene.valve);
 }
 
 test::DrawnHandle any_handle(std::mt19937& random) {
@@ -87,7 +87,7 @@ TEST(PointerInADrawnPicture, IsReadWhenTheMarkIsDark) {
   constexpr int pictures = 40;
   for (int i = 0; i < pictures; ++i) {
     test::DrawnHandle scene = any_handle(random);
-    scene.layout.pointer = PanelLayout::Pointer::dark_end;
+    scene.valve.pointer = PanelLayout::Pointer::dark_end;
     scene.paint_grey = 0.2 * scene.bar_grey;
     const PointerObservation pointer = read(scene, random, test::draw_bar_points(scene, 0.3));
     right += pointer.confidence >= believed && toward_the_mark(pointer, scene) ? 1 : 0;
@@ -118,15 +118,15 @@ TEST(Pointer, IsNotLookedForWhereThereIsNoneAndNeedsNeitherPictureNorCloud) {
   test::DrawnHandle scene = any_handle(random);
   const std::vector<CloudPoint> cloud = test::draw_bar_points(scene, 1.4);
   const BarPlace place = place_of(scene, random);
-  EXPECT_FALSE(find_pointer(place, ImageView{}, {}, scene.camera, scene.layout).seen);
-  const PointerObservation by_laser = find_pointer(place, ImageView{}, cloud, scene.camera, scene.layout);
+  EXPECT_FALSE(find_pointer(place, ImageView{}, {}, scene.camera, scene.valve).seen);
+  const PointerObservation by_laser = find_pointer(place, ImageView{}, cloud, scene.camera, scene.valve);
   EXPECT_EQ(by_laser.still_evidence, 0);
   EXPECT_TRUE(by_laser.seen && toward_the_mark(by_laser, scene));
-  scene.layout.pointer = PanelLayout::Pointer::none;
-  EXPECT_FALSE(find_pointer(place, ImageView{}, cloud, scene.camera, scene.layout).seen);
-  scene.layout.pointer = PanelLayout::Pointer::light_end;
-  scene.layout.pointer_length_m = scene.layout.handle_length_m / 2;
-  EXPECT_FALSE(find_pointer(place, ImageView{}, cloud, scene.camera, scene.layout).seen) << "half of the bar tells nothing";
+  scene.valve.pointer = PanelLayout::Pointer::none;
+  EXPECT_FALSE(find_pointer(place, ImageView{}, cloud, scene.camera, scene.valve).seen);
+  scene.valve.pointer = PanelLayout::Pointer::light_end;
+  scene.valve.pointer_length_m = scene.valve.handle_length_m / 2;
+  EXPECT_FALSE(find_pointer(place, ImageView{}, cloud, scene.camera, scene.valve).seen) << "half of the bar tells nothing";
 }
 
 // A straight line explains everything on both sides; a step is one-sided evidence. It is less than 1: the model's edge is blurred, the step's is not.

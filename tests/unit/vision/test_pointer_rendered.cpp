@@ -49,7 +49,7 @@ TEST_P(RenderedPointer, IsReadOverTheWholeCircle) {
     shot.poses = mission.poses({0, 0.945, 0.92, 0, 0}, 0, 0);  // the sweep's end, where stills are taken
     for (std::size_t i = std::size_t(scene::BodyId::panel); i < mission.scene.size(); ++i)
       shot.poses[i] = panel * mission.layout.nominal_base_from_panel().inverse() * shot.poses[i];
-    shot.poses[std::size_t(scene::BodyId::handle)] = panel * Eigen::AngleAxisd(angle_rad, Vec3::UnitZ());
+    shot.poses[scene::first_feature] = panel * Eigen::AngleAxisd(angle_rad, Vec3::UnitZ());
     optics::Frame frame;
     optics.render(shot, frame);
 
@@ -58,7 +58,7 @@ TEST_P(RenderedPointer, IsReadOverTheWholeCircle) {
     place.base_from_panel.translation() += 0.0015 * Vec3(share(random), share(random), share(random));
     place.angle_rad = wrap(angle_rad, pi / 2) + rad_from_deg(1) * share(random);
     const PointerObservation pointer =
-        find_pointer(place, {frame.pixels.data(), frame.width, frame.height, frame.width}, {}, calibration, mission.layout);
+        find_pointer(place, {frame.pixels.data(), frame.width, frame.height, frame.width}, {}, calibration, mission.layout.valves[0]);
     const Vec3 mark = panel.linear() * Vec3(-std::sin(angle_rad), std::cos(angle_rad), 0);
     EXPECT_GT(pointer.direction.dot(mark), 0) << "seed " << seed << ", " << deg_from_rad(angle_rad) << " deg, evidence "
                                               << pointer.still_evidence;

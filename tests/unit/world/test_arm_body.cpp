@@ -15,7 +15,7 @@ constexpr std::size_t shoulder = 1, elbow = 2, roll = 3, jaw = 4;
 // The arm alone.
 struct Bench {
   WorldConfig config;
-  BulletWorld world{30, 0};
+  BulletWorld world{30, 0, scene::bare_scene()};
   ArmBody arm;
 
   explicit Bench(const WorldConfig& of)

@@ -12,9 +12,9 @@ constexpr double step_s = 0.001;
 
 // A button alone, pressed by a force on its cap.
 struct Bench {
-  BulletWorld world{30, 0};
+  BulletWorld world{30, 0, scene::bare_scene()};
   ButtonConfig config;
-  ButtonBody button{config, Pose::Identity(), {}, int(scene::BodyId::button_centre), step_s};
+  ButtonBody button{config, Pose::Identity(), {}, int(scene::first_feature + 2), step_s};
 
   Bench() { button.part().enter(world.get()); }
   ~Bench() { button.part().leave(world.get()); }

@@ -18,6 +18,7 @@ using scene::BodyId;
 
 constexpr int iterations = 200;
 constexpr double gravity_m_s2 = 9.81;
+constexpr auto handle = BodyId(scene::first_feature);
 
 struct Collision {
   double restitution, window_s, step_s;
@@ -60,7 +61,7 @@ TEST_P(StepRates, collisionWithAFixedStructureGivesMassTimesSpeedChangeOverTheWi
       SCOPED_TRACE(testing::Message() << GetParam() << " Hz, window " << window_s << " s, e " << restitution);
       const double mass_kg = 189;
       const double speed_m_s = 0.2;
-      BulletWorld world(iterations, restitution);
+      BulletWorld world(iterations, restitution, scene::bare_scene());
       Sled sled(world, mass_kg, box_body(Vec3(0.4, 0.4, 0.4)), Pose::Identity());
       Wall wall(world, box_body(Vec3(1, 1, 0.2)), Pose(Eigen::Translation3d(0, 0, -0.3 - 0.0113)));
       sled.set_speed(Vec3(0, 0, -speed_m_s));
@@ -79,9 +80,9 @@ TEST_P(StepRates, collisionOfTwoBodiesGivesTheReducedMassTimesSpeedChangeOverThe
   for (const double restitution : {0.0, 0.5, 1.0}) {
     SCOPED_TRACE(testing::Message() << GetParam() << " Hz, e " << restitution);
     const double m1 = 3, m2 = 5, v1 = 0.3, v2 = -0.1;
-    BulletWorld world(iterations, restitution);
+    BulletWorld world(iterations, restitution, scene::bare_scene());
     Sled first(world, m1, box_body(Vec3(0.1, 0.1, 0.1)), Pose::Identity(), BodyId::finger_a);
-    Sled second(world, m2, box_body(Vec3(0.1, 0.1, 0.1)), Pose(Eigen::Translation3d(0.1153, 0, 0)), BodyId::handle);
+    Sled second(world, m2, box_body(Vec3(0.1, 0.1, 0.1)), Pose(Eigen::Translation3d(0.1153, 0, 0)), handle);
     first.set_speed(Vec3(v1, 0, 0));
     second.set_speed(Vec3(v2, 0, 0));
     const Measured measured = measure(world, {restitution, 0.020, step_s}, 0.2, BodyId::finger_a, [] {});
@@ -99,7 +100,7 @@ TEST_P(StepRates, collisionOfALeverUsesItsInertia) {
   for (const double restitution : {0.0, 0.5, 1.0}) {
     SCOPED_TRACE(testing::Message() << GetParam() << " Hz, e " << restitution);
     const double inertia = 0.8, speed_rad_s = 0.5, arm_m = 0.45;
-    BulletWorld world(iterations, restitution);
+    BulletWorld world(iterations, restitution, scene::bare_scene());
     MultibodyPart lever(1, Pose::Identity());
     lever.body().setupRevolute(0, 1, btVector3(inertia, inertia, inertia), -1, btQuaternion::getIdentity(), btVector3(0, 0, 1),
                                btVector3(0, 0, 0), btVector3(0, 0, 0), false);
@@ -128,7 +129,7 @@ TEST_P(StepRates, weightAtRestReadsAsWeight) {
   const double step_s = 1 / GetParam();
   for (const double restitution : {0.0, 0.5}) {
     SCOPED_TRACE(testing::Message() << GetParam() << " Hz, e " << restitution);
-    BulletWorld world(iterations, restitution);
+    BulletWorld world(iterations, restitution, scene::bare_scene());
     Sled sled(world, 20, box_body(Vec3(0.4, 0.4, 0.4)), Pose::Identity());
     Wall wall(world, box_body(Vec3(1, 1, 0.2)), Pose(Eigen::Translation3d(0, 0, -0.3)));
     const auto weigh = [&] { sled.push(Vec3(0, 0, -20 * gravity_m_s2)); };
@@ -144,7 +145,7 @@ TEST_P(StepRates, aDroppedBodyBouncesToTheSquareOfTheRestitution) {
   for (const double restitution : {0.4, 0.7, 0.9}) {
     SCOPED_TRACE(testing::Message() << GetParam() << " Hz, e " << restitution);
     const double height_m = 0.4, mass_kg = 3, bottom_m = -0.05;
-    BulletWorld world(iterations, restitution);
+    BulletWorld world(iterations, restitution, scene::bare_scene());
     Sled sled(world, mass_kg, box_body(Vec3(0.1, 0.1, 0.1)), Pose::Identity());
     Wall wall(world, box_body(Vec3(1, 1, 0.2)), Pose(Eigen::Translation3d(0, 0, bottom_m - height_m - 0.1)));
     std::vector<double> tops_m;
@@ -171,7 +172,7 @@ TEST_P(StepRates, aBodyInPenetrationComesOutWithAnyRestitution) {
   for (const double restitution : {0.0, 0.5, 1.0}) {
     for (const double depth_m : {0.0002, 0.005}) {
       SCOPED_TRACE(testing::Message() << GetParam() << " Hz, e " << restitution << ", " << depth_m << " m deep");
-      BulletWorld world(iterations, restitution);
+      BulletWorld world(iterations, restitution, scene::bare_scene());
       Sled sled(world, 3, box_body(Vec3(0.1, 0.1, 0.1)), Pose::Identity());
       Wall wall(world, box_body(Vec3(1, 1, 0.2)), Pose(Eigen::Translation3d(0, 0, depth_m - 0.15)));
       double highest_m = 0;
@@ -194,7 +195,7 @@ TEST(FrictionCone, holdsBelowItsAngleAndSlidesWithTheRestAboveIt) {
   for (const double heading_deg : {0.0, 22.5, 45.0, 70.0}) {
     for (const double slope_deg : {15.0, 25.0, 28.0, 35.0}) {  // the cone's: 26.6
       SCOPED_TRACE(testing::Message() << "slope " << slope_deg << " deg toward " << heading_deg << " deg");
-      BulletWorld world(iterations, 0);
+      BulletWorld world(iterations, 0, scene::bare_scene());
       Sled sled(world, mass_kg, box_body(Vec3(0.2, 0.2, 0.1), Pose::Identity(), mu), Pose::Identity());
       Wall wall(world, box_body(Vec3(4, 4, 0.2), Pose::Identity(), 1.0), Pose(Eigen::Translation3d(0, 0, -0.15)));
       const double slope = rad_from_deg(slope_deg);
@@ -222,7 +223,7 @@ TEST(FrictionOfAShape, isThatOfTheTwoShapesThatTouch) {
         body.shapes.push_back(box_body(Vec3(0.1, 0.1, 0.05), at(0, i == down ? -0.025 : 0.025), feet[i]).shapes.front());
         floor.shapes.push_back(box_body(Vec3(4, 1, 0.2), at(i == over ? 0 : 1, 0), plates[i]).shapes.front());
       }
-      BulletWorld world(iterations, 0);
+      BulletWorld world(iterations, 0, scene::bare_scene());
       Sled sled(world, mass_kg, body, Pose::Identity());
       Wall wall(world, floor, at(0, -0.15));
       const Vec3 weight = mass_kg * gravity_m_s2 * Vec3(std::sin(slope), 0, -std::cos(slope));
@@ -257,15 +258,15 @@ TEST(ContactSensor, opposedForcesDoNotCancelAndASqueezeDoes) {
   };
   const Vec3 impulse(0.1, 0, 0);  // 100 N for a millisecond
   const ContactReport between =
-      seen({{BodyId::forearm, BodyId::panel, Vec3::Zero(), impulse}, {BodyId::finger_a, BodyId::handle, Vec3::Zero(), -impulse}});
+      seen({{BodyId::forearm, BodyId::panel, Vec3::Zero(), impulse}, {BodyId::finger_a, handle, Vec3::Zero(), -impulse}});
   EXPECT_NEAR(between.base_wrench.force_n.norm(), 0, 1e-9);
   EXPECT_NEAR(between.largest_force_n, 100, 1e-9);
   EXPECT_NEAR(between.peak_force_n, 100, 1e-9);
   const ContactReport own = seen({{BodyId::forearm, BodyId::vehicle, Vec3::Zero(), impulse}});
   EXPECT_NEAR(own.base_wrench.force_n.norm(), 0, 1e-9);
   EXPECT_NEAR(own.largest_force_n, 100, 1e-9);
-  const ContactReport squeeze = seen(
-      {{BodyId::finger_a, BodyId::handle, Vec3::Zero(), 2 * impulse}, {BodyId::handle, BodyId::finger_b, Vec3::Zero(), 1.8 * impulse}});
+  const ContactReport squeeze =
+      seen({{BodyId::finger_a, handle, Vec3::Zero(), 2 * impulse}, {handle, BodyId::finger_b, Vec3::Zero(), 1.8 * impulse}});
   EXPECT_NEAR(squeeze.largest_force_n, 20, 1e-9);
   EXPECT_EQ(seen({{BodyId::finger_a, BodyId::finger_b, Vec3::Zero(), 3 * impulse}}).largest_force_n, 0) << "a jaw that is closed";
 }

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int iterations = 50;
 constexpr double step_s = 0.001;
-constexpr int object_index = static_cast<int>(scene::own_body_count);
+const int object_index = static_cast<int>(scene::own_body_count(scene::bare_scene()));
 
 // A box of full extents `size_m` about `centre_m`, as twelve triangles that are counter-clockwise from outside.
 void add_box(scene::Shape& mesh, const Vec3& size_m, const Vec3& centre_m) {
@@ -24,6 +24,12 @@ void add_box(scene::Shape& mesh, const Vec3& size_m, const Vec3& centre_m) {
     mesh.triangles.push_back({first + f[0], first + f[1], first + f[2]});
     mesh.triangles.push_back({first + f[0], first + f[2], first + f[3]});
   }
+}
+
+scene::Scene scene_with(const scene::Body& thing) {
+  scene::Scene scene = scene::bare_scene();
+  scene.push_back(thing);
+  return scene;
 }
 
 scene::Body mesh_body(const std::vector<std::pair<Vec3, Vec3>>& boxes) {
@@ -43,7 +49,7 @@ struct Stopped {
 
 // A sled of 2 kg and 50 mm that slides along x at 0.2 m/s, from 0.1 m before the origin, for a second.
 Stopped slide_into(const scene::Body& thing, const Pose& pose, double y_m = 0) {
-  BulletWorld world(iterations, 0);
+  BulletWorld world(iterations, 0, scene_with(thing));
   Sled sled(world, 2, box_body(Vec3::Constant(0.05)), at({-0.1, y_m, 0}));
   const FixedObject object(world.get(), thing, pose, object_index);
   sled.set_speed(Vec3(0.2, 0, 0));
@@ -90,7 +96,7 @@ TEST(FixedObject, AMeshHasItsShapesFriction) {
   scene::Body floor = mesh_body({{Vec3(2, 2, 0.1), Vec3(0, 0, -0.05)}});
   floor.shapes[0].friction = 0.8;
   for (const double push_n : {35.0, 45.0}) {
-    BulletWorld world(iterations, 0);
+    BulletWorld world(iterations, 0, scene_with(floor));
     Sled sled(world, 2, box_body(Vec3::Constant(0.05), Pose::Identity(), 0.5), at({0.013, 0.017, 0.0255}));
     const FixedObject object(world.get(), floor, Pose::Identity(), object_index);
     for (int i = 0; i < 500; ++i) {
@@ -160,8 +166,8 @@ TEST(FixedObject, IsRefusedWhereTheRobotIsInsideOfIt) {
 // A bar that is turned meets what stands in its way: it is held there, and both are told.
 TEST(FixedObject, StandsInTheHandlesWay) {
   WorldConfig config = nominal_config();
-  config.valve.friction_nm = 0.5;
-  config.valve.detent_nm = 0;
+  config.valves[0].friction_nm = 0.5;
+  config.valves[0].detent_nm = 0;
   scene::Body bead = box_body(Vec3(0.006, 0.006, 0.02));
   bead.name = "bead";
   bead.base_from_body = config.base_from_panel * Eigen::Translation3d(0.030, 0.030, 0.100);  // in the circle of the bar's ends

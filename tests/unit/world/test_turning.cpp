@@ -19,7 +19,7 @@ constexpr std::array<double, joint_count> start_rad{0, 1.307, 1.151, pi / 2,
 
 WorldConfig gripping(const Grasp& grasp) {
   WorldConfig config = nominal_config();
-  config.valve.friction_nm = grasp.friction_nm;
+  config.valves[0].friction_nm = grasp.friction_nm;
   config.base_from_panel.translation() += Vec3(0, grasp.right_m, grasp.down_m);
   config.base_from_panel.linear() =
       config.base_from_panel.linear() * Eigen::AngleAxisd(rad_from_deg(grasp.tilt_deg), Vec3::UnitX()).toRotationMatrix();
@@ -37,12 +37,12 @@ Turned grip_and_turn(World& world, Script& script, double deg) {
   script.torque_limit_nm = {20, 20, 20, 12, 15};  // the arm yields, the jaw does not
   script.targets_rad[4] = -0.05;
   script.run(1.0);
-  const double valve_rad = world.valve_angle_rad();
+  const double valve_rad = world.valve_angle_rad(0);
   const double wrist_rad = world.readings()[3].position_rad;
   script.targets_rad[3] -= rad_from_deg(deg);
   script.run(3.0);
   Turned turned;
-  turned.valve_deg = deg_from_rad(world.valve_angle_rad() - valve_rad);
+  turned.valve_deg = deg_from_rad(world.valve_angle_rad(0) - valve_rad);
   turned.wrist_deg = deg_from_rad(wrist_rad - world.readings()[3].position_rad);
   turned.contacts = world.contacts();
   return turned;
@@ -92,16 +92,16 @@ TEST(TurnedHandle, standsStillWhileItIsHeld) {
   Script script(world, config.start_rad);
   script.targets_rad = {0, 1.307, 1.151, 1.0, -0.05};
   script.run(10.0);
-  const double held_rad = world.valve_angle_rad();
+  const double held_rad = world.valve_angle_rad(0);
   EXPECT_GT(std::abs(held_rad), 0.5);
   script.run(20.0);
-  EXPECT_NEAR(deg_from_rad(world.valve_angle_rad() - held_rad), 0, 0.1);
+  EXPECT_NEAR(deg_from_rad(world.valve_angle_rad(0) - held_rad), 0, 0.1);
 }
 
 // The jaw has to hold: with a tenth of the torque the bar slips through the pads.
 TEST(TurningWithAWeakJaw, slips) {
   WorldConfig config = nominal_config();
-  config.valve.friction_nm = 3;
+  config.valves[0].friction_nm = 3;
   config.start_rad = {0, 1.307, 1.151, pi / 2, 0.3};
   World world(config);
   Script script(world, config.start_rad);
@@ -110,7 +110,7 @@ TEST(TurningWithAWeakJaw, slips) {
   script.run(1.0);
   script.targets_rad[3] -= rad_from_deg(60);
   script.run(3.0);
-  EXPECT_LT(std::abs(deg_from_rad(world.valve_angle_rad())), 30);
+  EXPECT_LT(std::abs(deg_from_rad(world.valve_angle_rad(0))), 30);
 }
 
 }  // namespace

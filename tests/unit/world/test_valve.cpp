@@ -13,10 +13,11 @@ constexpr double step_s = 0.001;
 
 // The valve alone, turned by a torque on its shaft.
 struct Bench {
-  BulletWorld world{30, 0};
+  BulletWorld world{30, 0, scene::bare_scene()};
   ValveBody valve;
 
-  explicit Bench(const ValveConfig& config) : valve(config, PanelLayout().nominal_base_from_panel(), {}, step_s) {
+  explicit Bench(const ValveConfig& config)
+      : valve(config, PanelLayout().nominal_base_from_panel(), {}, int(scene::first_feature), step_s) {
     valve.part().enter(world.get());
   }
   ~Bench() { valve.part().leave(world.get()); }

@@ -18,40 +18,40 @@ TEST(World, restsParkedWithoutAnyContact) {
   script.run(0.5);
   EXPECT_TRUE(world.contacts().unintended.empty());
   EXPECT_EQ(world.contacts().peak_force_n, 0);
-  EXPECT_EQ(world.valve_angle_rad(), 0);
+  EXPECT_EQ(world.valve_angle_rad(0), 0);
   EXPECT_NEAR(world.time_s(), 0.5, 1e-9);
 }
 
 // Half a detent's width beside it, where friction does not hold: with the arm parked it stood there until the hand came near.
 TEST(World, aHandleBesideItsDetentFallsInWithNoArmNear) {
   WorldConfig config = nominal_config();
-  config.valve.friction_nm = 0.1;
-  config.valve.viscous_nm_s = 0.05;
-  config.valve.detents_rad = {0.5};
-  config.valve.detent_nm = 0.3;
-  config.valve.start_rad = 0.5 - 0.5 * config.valve.detent_width_rad;
+  config.valves[0].friction_nm = 0.1;
+  config.valves[0].viscous_nm_s = 0.05;
+  config.valves[0].detents_rad = {0.5};
+  config.valves[0].detent_nm = 0.3;
+  config.valves[0].start_rad = 0.5 - 0.5 * config.valves[0].detent_width_rad;
   World world(config);
   Script script(world, config.start_rad);
   script.run(2);
-  const double held_within_rad = std::asin(config.valve.friction_nm / config.valve.detent_nm) / pi * config.valve.detent_width_rad;
-  EXPECT_NEAR(world.valve_angle_rad(), 0.5, held_within_rad + 1e-6);
-  const double fallen_rad = world.valve_angle_rad();
+  const double held_within_rad =
+      std::asin(config.valves[0].friction_nm / config.valves[0].detent_nm) / pi * config.valves[0].detent_width_rad;
+  EXPECT_NEAR(world.valve_angle_rad(0), 0.5, held_within_rad + 1e-6);
+  const double fallen_rad = world.valve_angle_rad(0);
   script.run(1);
-  EXPECT_EQ(world.valve_angle_rad(), fallen_rad) << "and stays";
+  EXPECT_EQ(world.valve_angle_rad(0), fallen_rad) << "and stays";
 }
 
 TEST(World, placesThePanelsBodiesAsTheLayoutSays) {
   WorldConfig config = nominal_config();
-  config.valve.start_rad = 0.4;
+  config.valves[0].start_rad = 0.4;
   config.base_from_panel.translation() += Vec3(0.01, -0.02, 0.015);
   const World world(config);
   const scene::BodyPoses poses = world.base_from_body();
   EXPECT_TRUE(poses[std::size_t(BodyId::panel)].isApprox(config.base_from_panel));
-  EXPECT_TRUE(poses[std::size_t(BodyId::handle)].isApprox(config.base_from_panel * Eigen::AngleAxisd(0.4, Vec3::UnitZ()), 1e-9));
-  for (std::size_t i = 0; i < PanelLayout::button_count; ++i) {
-    const Vec2& centre = config.layout.buttons_m[i];
-    EXPECT_TRUE(
-        poses[std::size_t(BodyId::button_left) + i].translation().isApprox(config.base_from_panel * Vec3(centre.x(), centre.y(), 0), 1e-9));
+  EXPECT_TRUE(poses[scene::first_feature].isApprox(config.base_from_panel * Eigen::AngleAxisd(0.4, Vec3::UnitZ()), 1e-9));
+  for (std::size_t i = 0; i < config.layout.buttons.size(); ++i) {
+    const Vec2& centre = config.layout.buttons[i].at_m;
+    EXPECT_TRUE(poses[scene::first_feature + 1 + i].translation().isApprox(config.base_from_panel * Vec3(centre.x(), centre.y(), 0), 1e-9));
   }
 }
 
@@ -139,12 +139,12 @@ TEST(World, equalCallsGiveEqualBits) { EXPECT_EQ(digest_of_a_grasp(), digest_of_
 TEST(World, refusesWhatMakesNoSense) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const std::vector<std::function<void(WorldConfig&)>> faults{
-      [&](WorldConfig& c) { c.valve.friction_nm = -1; },
-      [&](WorldConfig& c) { c.valve.friction_nm = nan; },
-      [&](WorldConfig& c) { c.valve.start_rad = 3; },
-      [&](WorldConfig& c) { c.valve.stop_min_rad = 2; },
-      [&](WorldConfig& c) { c.valve.inertia_kg_m2 = 1e-6; },
-      [&](WorldConfig& c) { c.valve.detents_rad = {nan}; },
+      [&](WorldConfig& c) { c.valves[0].friction_nm = -1; },
+      [&](WorldConfig& c) { c.valves[0].friction_nm = nan; },
+      [&](WorldConfig& c) { c.valves[0].start_rad = 3; },
+      [&](WorldConfig& c) { c.valves[0].stop_min_rad = 2; },
+      [&](WorldConfig& c) { c.valves[0].inertia_kg_m2 = 1e-6; },
+      [&](WorldConfig& c) { c.valves[0].detents_rad = {nan}; },
       [&](WorldConfig& c) { c.buttons[0].click_depth_m = 0.1; },
       [&](WorldConfig& c) { c.buttons[1].click_drop_n = 100; },
       [&](WorldConfig& c) { c.buttons[2].mass_kg = 0; },
