@@ -89,7 +89,7 @@ _lanternfishd() {
       ;;
     'task')
       case $before in
-        --turn) :; return ;;
+        --turn) compopt -o filenames; COMPREPLY=($(compgen -f -- "$word")); return ;;
         --press) COMPREPLY=($(compgen -W "$(printf "%s\n" left centre right)" -- "$word")); return ;;
         --config) compopt -o filenames; COMPREPLY=($(compgen -f -- "$word")); return ;;
         --socket) compopt -o filenames; COMPREPLY=($(compgen -f -- "$word")); return ;;
