@@ -68,26 +68,24 @@ StepFailure PanelMap::update(const PanelResult& result, Valves wanted) {
   const StepFailure failure = judge(result, frame);
   if (failure != StepFailure::none) return failure;
   Handles handles = handles_;
-  // A panel on which no valve is wanted is believed where one is at its place: a marker on the wrong one would lead to the wrong button.
-  const bool any = wanted == 0;
-  StepFailure missed = StepFailure::none;
+  // Where no valve is wanted one has to be at its place all the same: a marker at a wrong place would lead to the wrong button.
+  const bool any_will_do = wanted == 0;
   bool found = false;
-  // From the last to the first, so that the first is the one that is told of where none is missed.
-  for (std::size_t i = layout_->valves.size(); i-- > 0;) {
-    if (!any && (wanted & bit(i)) == 0) continue;
+  StepFailure missed = StepFailure::none;
+  for (std::size_t i = 0; i < layout_->valves.size(); ++i) {
+    if (!any_will_do && (wanted & bit(i)) == 0) continue;
+    if (!found && missed == StepFailure::none) told_valve_ = i;
     Handle handle = handles[i];
     const StepFailure unseen = look_at(i, result, frame, handle);
     if (unseen == StepFailure::none) {
       handles[i] = handle;
       found = true;
+    } else if (missed == StepFailure::none) {
+      missed = unseen;
+      told_valve_ = i;
     }
-    if (unseen == StepFailure::none && missed != StepFailure::none) continue;
-    told_valve_ = i;
-    if (unseen == StepFailure::none) continue;
-    missed = unseen;
-    if (!any) return unseen;
   }
-  if (any && !found && missed != StepFailure::none) return missed;
+  if (missed != StepFailure::none && !(any_will_do && found)) return missed;
   if (!(result.confidence > 0)) return StepFailure::vision_failed;
   if (!known_) first_m_ = frame.base_from_panel.translation();
   frame_ = frame;

@@ -28,8 +28,8 @@ class PanelMap {
   PanelMap(const PanelLayout& layout, const MarkerCalibrations& markers, const CameraCalibration& camera)
       : layout_(&layout), markers_(markers), camera_(camera), markers_beyond_m_(markers_beyond_m(markers)) {}
 
-  // Takes an answer of panel vision: the panel's place, and how the handles of these valves stand; what is known of the others stays. On a failure what was known
-  // before stays.
+  // Takes an answer of panel vision: the panel's place, and how the handles of these valves stand; what is known of the others stays. With none wanted, the handle of any
+  // one has to be seen at its place. On a failure what was known before stays.
   // Of the answer's confidence only 0 counts: it says that there is no answer. What makes a confidence low has a limit of its own each:
   //   the plane's inliers: two fifths of the points;
   //   the marker's margin: the detector finds no marker below MarkerDetectorConfig::min_margin;

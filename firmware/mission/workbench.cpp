@@ -37,6 +37,12 @@ arm::GuardConfig gripping_guard() {
   return guard;
 }
 
+double thickest_bar_m(const PanelLayout& layout) {
+  double thickest_m = 0;
+  for (const PanelLayout::Valve& valve : layout.valves) thickest_m = std::max(thickest_m, valve.handle_thickness_m);
+  return thickest_m > 0 ? thickest_m : arm::GripperConfig{}.bar_m;
+}
+
 CameraWork::Config camera_config(const ControllerConfig& config) {
   CameraWork::Config camera;
   camera.exposure = config.camera.exposure;
@@ -141,16 +147,6 @@ void Workbench::expect_bar(arm::Gripper& jaw) const {
   const double slope_rad = std::max(0.0, arm::jaw_from_gap(bar_m()));
   jaw.expect_bar(bar_m(), arm::GripperConfig{}.bar_tolerance_m + arm_geometry::jaw.pad_depth_m * std::tan(slope_rad));
 }
-
-namespace {
-
-double thickest_bar_m(const PanelLayout& layout) {
-  double thickest_m = 0;
-  for (const PanelLayout::Valve& valve : layout.valves) thickest_m = std::max(thickest_m, valve.handle_thickness_m);
-  return thickest_m > 0 ? thickest_m : arm::GripperConfig{}.bar_m;
-}
-
-}  // namespace
 
 double Workbench::bar_m() const {
   const PanelLayout& layout = config.mission.layout;

@@ -148,9 +148,8 @@ double shift_m(const OnPlane& one, const Pose& base_from_panel) {
   return sum.norm() / 4;
 }
 
-// Of a pair that stands so far from where it should to each other, each is half of it off their middle; one of n stands (n - 1) / n of it off a fit of which it is a part.
-// Across the line between a pair the common turn takes it up: their own edges disagree with it, and what an edge may be off counts over that distance.
-// Returns the worst shift or turn over what is allowed: up to 1 they agree.
+// How well markers agree: the worst of their shifts and their common turn over what is allowed, up to 1. A stray marker draws the fit after it: of n it stands only
+// (n - 1) / n of its error off. An error across the line between two markers turns the fit, and no shift is left: then the markers' own edges are turned against it.
 double spread_of(const Found& found, const Vec3& normal, const PanelFrameConfig& config) {
   const Pose together = fit_all(found, normal);
   const auto n = static_cast<double>(found.size());

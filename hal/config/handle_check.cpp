@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "firmware/arm/gripper.hpp"
+#include "hal/config/joined.hpp"
 #include "hal/config/nearest.hpp"
 #include "hal/config/task_reach.hpp"
 
@@ -35,15 +36,10 @@ void check_stops(const PanelSurvey& survey, std::size_t valve, const PanelLayout
                        " degrees apart: no look tells an angle from the one a turn on");
 }
 
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text.empty() ? "none" : text;
-}
-
 std::string missing(const char* what, const std::string& name, const std::vector<std::string>& names) {
   const std::string near = suggestion(name, names);
-  return std::string("the panel has no ") + what + " '" + name + "'" + (near.empty() ? "; it has " + joined(names) : near);
+  return std::string("the panel has no ") + what + " '" + name + "'" +
+         (near.empty() ? "; it has " + (names.empty() ? "none" : joined(names, ", ")) : near);
 }
 
 void check_tasks(const Machine& machine, std::vector<std::string>& problems) {
@@ -58,7 +54,7 @@ void check_tasks(const Machine& machine, std::vector<std::string>& problems) {
     const std::optional<std::size_t> valve = find_valve(names, task.valve);
     if (!valve && task.valve.empty()) {
       problems.push_back(names.valves.empty() ? "'turn_valve': the panel has no valve"
-                                              : "'turn_valve.valve' is missing: the panel has " + joined(names.valves));
+                                              : "'turn_valve.valve' is missing: the panel has " + joined(names.valves, ", "));
       continue;
     }
     if (!valve) {
@@ -106,10 +102,12 @@ void check_bar(const Machine& machine, std::size_t i, std::vector<std::string>& 
                        " m of a bar of this " + key("length_m") + " would not tell its ends apart");
 }
 
-// The hand that turns a bar stands about it: pads, fingers and the room to open for it reach so far from the axis, and keep a centimetre and the look's doubt clear. Bars that
-// are nearer than 12 mm to each other are one to the scan.
+// The hand that turns a bar stands about its axis with the jaw open, and keeps clear of the circle in which a bar beside it turns. Bars nearer than 12 mm to each other are
+// one to the scan.
 void check_neighbours(const Machine& machine, std::size_t i, std::vector<std::string>& problems) {
-  constexpr double fingers_m = 0.032, clear_m = 0.016, told_apart_m = 0.020;  // the fingers' outer sides beyond the open pads
+  constexpr double fingers_m = 0.032;     // from an open pad's face to the outer side of its finger's capsule
+  constexpr double clear_m = 0.016;       // what a motion keeps off, 10 mm, and what the look leaves in doubt
+  constexpr double told_apart_m = 0.020;  // the 12 mm, and the scan's noise
   const PanelLayout::Valve& valve = machine.panel.valves[i];
   const double hand_m = arm::jaw_opening_m(valve.handle_thickness_m) / 2 + fingers_m + clear_m;
   for (std::size_t j = 0; j < machine.panel.valves.size(); ++j) {

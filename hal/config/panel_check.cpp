@@ -129,7 +129,7 @@ class PanelCheck {
       const PanelLayout::Valve& valve = panel_.valves[v];
       const double under_m = valve.swept_radius_m() - distance_to_square(valve.at_m - marker.centre_m, marker.plate_m);
       if (under_m > 0)
-        problems_.push_back(marker_key(survey_, i, "at_m") + ": the turning bar covers " + marker_text(survey_, i) + "'s plate by " +
+        problems_.push_back(marker_key(survey_, i, "at_m") + ": the turning bar covers " + marker_text(survey_.names, i) + "'s plate by " +
                             millimetres(under_m) + ": no look would find the marker. See " + valve_key(survey_, v, "length_m") + ", " +
                             valve_key(survey_, v, "thickness_m") + " and " + marker_key(survey_, i, "plate_m"));
     }
@@ -142,7 +142,7 @@ class PanelCheck {
       const PanelLayout::Marker& marker = panel_.markers[m];
       const double gap = distance_to_square(button.at_m - marker.centre_m, marker.plate_m) - radius;
       if (gap >= 0) continue;
-      problems_.push_back(button_at(i) + " covers " + marker_text(survey_, m) + "'s plate by " + millimetres(-gap) +
+      problems_.push_back(button_at(i) + " covers " + marker_text(survey_.names, m) + "'s plate by " + millimetres(-gap) +
                           ": no look would find the marker. See " + button_key(survey_, i, "width_m") + ", " +
                           marker_key(survey_, m, "at_m") + " and " + marker_key(survey_, m, "plate_m"));
     }
@@ -182,16 +182,16 @@ class PanelCheck {
   void check_marker(std::size_t i) {
     const PanelLayout::Marker& marker = panel_.markers[i];
     if (!inside_plate(panel_, marker.centre_m, marker.plate_m / 2))
-      problems_.push_back(marker_key(survey_, i, "at_m") + ": " + marker_text(survey_, i) + "'s plate hangs beyond the panel's" + plate() +
-                          " and " + marker_key(survey_, i, "plate_m"));
+      problems_.push_back(marker_key(survey_, i, "at_m") + ": " + marker_text(survey_.names, i) + "'s plate hangs beyond the panel's" +
+                          plate() + " and " + marker_key(survey_, i, "plate_m"));
     for (std::size_t j = 0; j < i; ++j) {
       const PanelLayout::Marker& other = panel_.markers[j];
       if (marker.id == other.id)
-        problems_.push_back(marker_key(survey_, i, "id") + ": " + std::to_string(marker.id) + " is " + marker_text(survey_, j) +
+        problems_.push_back(marker_key(survey_, i, "id") + ": " + std::to_string(marker.id) + " is " + marker_text(survey_.names, j) +
                             "'s too: a look would not tell them apart");
       const double apart_m = (marker.centre_m - other.centre_m).cwiseAbs().maxCoeff() - (marker.plate_m + other.plate_m) / 2;
       if (apart_m < 0)
-        problems_.push_back(marker_key(survey_, i, "at_m") + ": its plate and that of " + marker_text(survey_, j) + " overlap by " +
+        problems_.push_back(marker_key(survey_, i, "at_m") + ": its plate and that of " + marker_text(survey_.names, j) + " overlap by " +
                             millimetres(-apart_m));
     }
   }

@@ -5,6 +5,7 @@
 #include <set>
 #include <string_view>
 
+#include "hal/config/joined.hpp"
 #include "hal/config/key_schema.hpp"
 #include "hal/config/key_text.hpp"
 #include "hal/config/machine.hpp"
@@ -26,10 +27,14 @@ constexpr std::int64_t version = 1;
 constexpr std::size_t longest_name = 40;
 const std::vector<std::string> root_names{"version", "plate", "valves", "buttons", "markers"};
 
-std::string joined(const std::vector<std::string>& problems) {
-  std::string text;
-  for (const std::string& problem : problems) text += (text.empty() ? "" : "\n") + problem;
-  return text;
+fs::path named_panel(const std::string& told_in, const std::string& file) {
+  const std::string path = panel_file_of(file);
+  if (path == file) return named_file(told_in, "panel.file", file);
+  const std::vector<std::string> shipped = shipped_panels();
+  if (std::find(shipped.begin(), shipped.end(), file) != shipped.end()) return share_folder() / path;
+  const std::string near = suggestion(file, shipped);
+  throw InputError(told_in + ": 'panel.file': no shipped panel '" + file + "'" +
+                   (near.empty() ? "; there are " + joined(shipped, ", ") + ", or give a file" : near));
 }
 
 class Reader {
@@ -237,21 +242,6 @@ PanelFile read_panel_file(const fs::path& file) {
   if (!problems.empty()) throw InputError(joined(problems));
   return panel;
 }
-
-namespace {
-
-fs::path named_panel(const std::string& told_in, const std::string& file) {
-  const std::vector<std::string> shipped = shipped_panels();
-  if (panel_file_of(file) == file) return named_file(told_in, "panel.file", file);
-  if (std::find(shipped.begin(), shipped.end(), file) != shipped.end()) return share_folder() / panel_file_of(file);
-  std::string list;
-  for (const std::string& name : shipped) list += (list.empty() ? "" : ", ") + name;
-  const std::string near = suggestion(file, shipped);
-  throw InputError(told_in + ": 'panel.file': no shipped panel '" + file + "'" +
-                   (near.empty() ? "; there are " + list + ", or give a file" : near));
-}
-
-}  // namespace
 
 bool settle_panel(const std::string& told_in, const std::string& file, const DockedPanel& docked, const ValveStops& stops,
                   PanelLayout& layout, PanelSurvey& survey, std::vector<std::string>& problems) {

@@ -36,7 +36,7 @@ PanelFile read_panel_file(const std::filesystem::path& file);
 
 // The panel that a scenario or a configuration means, `told_in` its file: what `file` names, or, where that is empty, the keys of the docked mission's panel. Where it
 // stands is told by these keys in either case. Adds to `problems` what read_panel_file() throws, and keys that the file makes meaningless. False where the file cannot be
-// read: it is the docked mission's panel then, which no task needs to fit.
+// read: `layout` is the docked mission's then, and the tasks need not fit it.
 bool settle_panel(const std::string& told_in, const std::string& file, const DockedPanel& docked, const ValveStops& stops,
                   PanelLayout& layout, PanelSurvey& survey, std::vector<std::string>& problems);
 

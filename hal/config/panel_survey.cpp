@@ -103,9 +103,4 @@ std::optional<std::size_t> find_valve(const PanelNames& names, const std::string
 
 std::optional<std::size_t> find_button(const PanelNames& names, const std::string& name) { return index_of(names.buttons, name); }
 
-std::string marker_text(const PanelSurvey& survey, std::size_t marker) {
-  const std::string& name = survey.names.markers.at(marker);
-  return name == "marker" ? "the marker" : "marker " + name;
-}
-
 }  // namespace lf::config

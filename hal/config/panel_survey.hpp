@@ -62,7 +62,4 @@ std::string plate_key(const PanelSurvey& survey, const std::string& field);
 std::optional<std::size_t> find_valve(const PanelNames& names, const std::string& name);
 std::optional<std::size_t> find_button(const PanelNames& names, const std::string& name);
 
-// "the marker", "marker M2".
-std::string marker_text(const PanelSurvey& survey, std::size_t marker);
-
 }  // namespace lf::config

@@ -57,7 +57,7 @@ std::string words(arm::PanelPart part, const PanelSurvey& survey) {
   switch (part.kind) {
     case Kind::plate: return "plate";
     case Kind::marker_plate:
-      return marker_text(survey, part.index).substr(marker_text(survey, part.index).starts_with("the ") ? 4 : 0) + " plate";
+      return survey.names.markers.at(part.index) == "marker" ? "marker plate" : "plate of marker " + survey.names.markers.at(part.index);
     case Kind::button: return survey.names.buttons.at(part.index) + " button";
     case Kind::valve: return survey.names.valves.at(part.index) == "valve" ? "handle" : "handle of " + survey.names.valves.at(part.index);
     case Kind::none: break;

@@ -72,7 +72,8 @@ std::optional<Sighted> hidden_marker(const Machine& machine, const CameraCalibra
   std::optional<Sighted> hidden;
   for (std::size_t i = 0; i < machine.panel.markers.size(); ++i) {
     const Vec2& centre = machine.panel.markers[i].centre_m;
-    const Sighted marker{marker_text(machine.survey, i), Vec3(centre.x(), centre.y(), 0), " and " + marker_key(machine.survey, i, "at_m")};
+    const Sighted marker{marker_text(machine.survey.names, i), Vec3(centre.x(), centre.y(), 0),
+                         " and " + marker_key(machine.survey, i, "at_m")};
     if (why_unseen(machine, camera, marker).empty()) return std::nullopt;
     if (!hidden) hidden = marker;
   }

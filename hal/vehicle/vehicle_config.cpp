@@ -9,6 +9,7 @@
 
 #include "hal/config/arm_match.hpp"
 #include "hal/config/handle_check.hpp"
+#include "hal/config/joined.hpp"
 #include "hal/config/key_listing.hpp"
 #include "hal/config/key_schema.hpp"
 #include "hal/config/panel_check.hpp"
@@ -202,12 +203,6 @@ bool gives_socket(const YAML::Node& root) {
   return group && group.IsMap() && group["socket"] && group["socket"].IsScalar();
 }
 
-std::string joined(const std::vector<std::string>& problems) {
-  std::string text;
-  for (const std::string& problem : problems) text += (text.empty() ? "" : "\n") + problem;
-  return text;
-}
-
 }  // namespace
 
 SocketCan::Config VehicleConfig::can() const {
@@ -248,7 +243,7 @@ Keys keys(VehicleConfig& config) {
 VehicleConfig load_vehicle_config(const std::string& path) {
   std::vector<std::string> problems;
   VehicleConfig config = load_vehicle_config(path, problems);
-  if (!problems.empty()) throw InputError(joined(problems));
+  if (!problems.empty()) throw InputError(config::joined(problems));
   return config;
 }
 
@@ -286,7 +281,7 @@ std::string print_vehicle_config(const std::string& path) {
   std::vector<std::string> problems;
   VehicleConfig config, defaults;
   if (!path.empty()) read_keys(path, config, problems);
-  if (!problems.empty()) throw InputError(joined(problems));
+  if (!problems.empty()) throw InputError(config::joined(problems));
   return config::key_listing(keys(config), keys(defaults));
 }
 

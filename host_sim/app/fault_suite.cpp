@@ -1,16 +1,12 @@
 #include "host_sim/app/fault_suite.hpp"
 
+#include "hal/config/joined.hpp"
+
 namespace lf::app {
 
 namespace {
 
 using campaign::TestCase;
-
-std::string joined(const std::vector<std::string>& texts) {
-  std::string all;
-  for (const std::string& text : texts) all += (all.empty() ? "" : "; ") + text;
-  return all;
-}
 
 TestCase case_of(const std::string& scenario, const RowResult& row) {
   TestCase each;
@@ -20,11 +16,11 @@ TestCase case_of(const std::string& scenario, const RowResult& row) {
   if (!row.safe()) {
     each.end = TestCase::End::failed;
     each.kind = row.false_success ? "false success" : "unsafe";
-    each.message = joined(row.wrong) + " (" + each.message + ")";
+    each.message = config::joined(row.wrong, "; ") + " (" + each.message + ")";
   } else if (!row.unclear.empty() && !row.must_go_on) {
     each.end = TestCase::End::failed;
     each.kind = "unclear";
-    each.message = joined(row.unclear) + " (" + each.message + ")";
+    each.message = config::joined(row.unclear, "; ") + " (" + each.message + ")";
   }
   return each;
 }

@@ -10,6 +10,8 @@
 namespace lf::record {
 namespace {
 
+std::string valve_of(const TaskRecord& task) { return task.valve.empty() ? "valve" : "valve " + task.valve; }
+
 std::string tile(const std::string& value, const std::string& name) {
   return "<div class=\"tile\"><b>" + escape_html(value) + "</b><span>" + escape_html(name) + "</span></div>";
 }
@@ -30,7 +32,7 @@ std::string tiles(const ReportData& data) {
   for (const TaskRecord& task : result.tasks) {
     if (task.task == "turn_valve") {
       html += tile(formatted("%.1f°", task.reached_deg),
-                   (task.done ? "valve turned to (target " : "valve stands at, not turned to its target (") +
+                   (task.done ? valve_of(task) + " turned to (target " : valve_of(task) + " stands at, not turned to its target (") +
                        formatted("%.0f°", task.target_deg) + ")");
     }
   }
@@ -82,7 +84,7 @@ std::string tasks_table(const RunResult& result) {
   std::string html = "<table><tr><th>task</th><th class=\"n\">target</th><th class=\"n\">reached</th><th></th></tr>";
   for (const TaskRecord& task : result.tasks) {
     const bool turn = task.task == "turn_valve";
-    const std::string name = turn                          ? (task.valve.empty() ? "turn the valve" : "turn valve " + task.valve)
+    const std::string name = turn                          ? "turn " + (task.valve.empty() ? "the valve" : valve_of(task))
                              : task.task == "press_button" ? std::string("press button ").append(task.button)
                                                            : task.task;
     const std::string target = turn ? formatted("%.1f°", task.target_deg) : "1 press";
@@ -227,7 +229,7 @@ std::vector<ReportError> report_errors(const RunResult& result, double attenuati
                                   {"false peaks", e.peaks_false, 0.002, "", false}};
   for (const TaskRecord& task : result.tasks) {
     if (task.task == "turn_valve" && task.done)
-      errors.push_back({"valve's final angle", std::abs(task.reached_deg - task.target_deg), 3.0, "°", false});
+      errors.push_back({valve_of(task) + "'s final angle", std::abs(task.reached_deg - task.target_deg), 3.0, "°", false});
   }
   return errors;
 }

@@ -9,6 +9,7 @@ namespace lf::scenario {
 
 std::string json_schema() {
   Scenario scenario;
+  scenario.survey.names.buttons.clear();  // a file's panel has its own
   return config::key_schema(keys(scenario), "Lanternfish scenario");
 }
 

@@ -27,7 +27,6 @@ void check_runnable(const Scenario& scenario);
 
 // Adds what make_nominal would refuse.
 void add_job_problems(const Scenario& scenario, std::vector<std::string>& problems);
-std::string joined(const std::vector<std::string>& problems);  // a line each
 
 // The world, the optics, the devices with the sample's errors in them.
 hal::SimConfig make_truth(const Scenario& scenario, const Sample& sample, const Nominal& nominal, int render_threads);

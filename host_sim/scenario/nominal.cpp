@@ -1,6 +1,7 @@
 #include <array>
 #include <cstdio>
 
+#include "hal/config/joined.hpp"
 #include "hal/config/share.hpp"
 #include "host_sim/scenario/bounds.hpp"
 #include "host_sim/scenario/instance.hpp"
@@ -76,18 +77,12 @@ Nominal make_core(const Scenario& scenario, bool lamps_lit, std::vector<std::str
 
 }  // namespace
 
-std::string joined(const std::vector<std::string>& problems) {
-  std::string text;
-  for (const std::string& problem : problems) text += (text.empty() ? "" : "\n") + problem;
-  return text;
-}
-
 void add_job_problems(const Scenario& scenario, std::vector<std::string>& problems) { (void)make_core(scenario, true, problems); }
 
 Nominal make_nominal(const Scenario& scenario, bool lamps_lit) {
   std::vector<std::string> problems;
   Nominal nominal = make_core(scenario, lamps_lit, problems);
-  if (!problems.empty()) throw InputError(joined(problems));
+  if (!problems.empty()) throw InputError(config::joined(problems));
   for (const Fault& fault : scenario.faults) {
     if (fault.kind == "limits_refused") nominal.controller.limits.checksum ^= 1u;  // a bit of the file that turned over on the way
   }

@@ -7,6 +7,7 @@
 
 #include "hal/config/fault_kinds.hpp"
 #include "hal/config/handle_check.hpp"
+#include "hal/config/joined.hpp"
 #include "hal/config/key_text.hpp"
 #include "hal/config/nearest.hpp"
 #include "hal/config/panel_check.hpp"
@@ -46,10 +47,9 @@ fs::path find_scenario(const std::string& file_or_name) {
   const std::vector<std::string> names = shipped_names();
   if (std::find(names.begin(), names.end(), file_or_name) != names.end())
     return config::share_folder() / "scenarios" / (file_or_name + ".yaml");
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
   const std::string near = config::suggestion(file_or_name, names);
-  throw InputError("no scenario '" + file_or_name + "'" + (near.empty() ? "; there are " + list + ", or give a file" : near));
+  throw InputError("no scenario '" + file_or_name + "'" +
+                   (near.empty() ? "; there are " + config::joined(names, ", ") + ", or give a file" : near));
 }
 
 // A profile's name without an ending is a shipped one's.
@@ -256,12 +256,12 @@ Scenario load_scenario(const std::string& file_or_name, const std::vector<std::s
     }
   }
   if (!config::settle_panel(path, scenario.panel_file, scenario.docked_panel, scenario.valve, scenario.panel, scenario.survey, problems))
-    throw InputError(joined(problems));
+    throw InputError(config::joined(problems));
   read_scene(scenario, problems);
   check_together(scenario, overrides.empty() ? source.name() : source.name() + " with --set", problems);
   if (problems.empty()) return scenario;
   if (!scenario.tasks.empty() && config::names_known(scenario.tasks, scenario.survey.names)) add_job_problems(scenario, problems);
-  throw InputError(joined(problems));
+  throw InputError(config::joined(problems));
 }
 
 std::vector<ShippedScenario> shipped_scenarios() {

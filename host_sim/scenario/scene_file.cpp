@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "hal/config/joined.hpp"
 #include "hal/config/key_schema.hpp"
 #include "hal/config/key_text.hpp"
 #include "hal/config/text_file.hpp"
@@ -262,7 +263,7 @@ SceneFile read_scene_file(const fs::path& file) {
   Reader reader{file, config::Source::of_file(file, problems), problems, {}, {}};
   const YAML::Node root = config::parse_yaml(config::read_text_file(file), reader.source);
   reader.attempt([&] { reader.read(root); });
-  if (!problems.empty()) throw InputError(joined(problems));
+  if (!problems.empty()) throw InputError(config::joined(problems));
   return std::move(reader.scene);
 }
 

@@ -7,6 +7,7 @@
 #include "hal/config/drive_kind.hpp"
 #include "hal/config/fault_kinds.hpp"
 #include "hal/config/homing_file.hpp"
+#include "hal/config/joined.hpp"
 #include "hal/config/nearest.hpp"
 #include "hal/config/share.hpp"
 #include "host_sim/devices/drive/drive_dictionary.hpp"
@@ -382,7 +383,7 @@ void add_clashes(const Scenario& scenario, std::vector<std::string>& problems) {
 void check_runnable(const Scenario& scenario) {
   std::vector<std::string> problems;
   add_job_problems(scenario, problems);
-  if (!problems.empty()) throw InputError(joined(problems));
+  if (!problems.empty()) throw InputError(config::joined(problems));
   add_clashes(scenario, problems);
   const ArmDescription arm = true_arm(scenario);
   for (std::size_t joint = 0; joint < joint_count; ++joint) {
@@ -393,7 +394,7 @@ void check_runnable(const Scenario& scenario) {
       problems.push_back(scenario.file + ": " + problem.what());
     }
   }
-  if (!problems.empty()) throw InputError(joined(problems));
+  if (!problems.empty()) throw InputError(config::joined(problems));
 }
 
 void check_overheard(const config::Drives& drives, std::size_t joint) {

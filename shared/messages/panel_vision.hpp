@@ -41,7 +41,8 @@ struct PanelRequest {
 // One of the panel's markers in the still image.
 struct MarkerObservation {
   std::int32_t id = -1;
-  std::array<Vec2, 4> corners_px{};  // counter-clockwise from the bottom left corner of the marker, pixel centres at integers
+  std::array<Vec2, 4> corners_px{Vec2::Zero(), Vec2::Zero(), Vec2::Zero(),
+                                 Vec2::Zero()};  // counter-clockwise from the bottom left corner of the marker, pixel centres at integers
   Vec2 centre_px = Vec2::Zero();
   Pose camera_from_tag = Pose::Identity();
   double reprojection_rms_px = 0;

@@ -12,10 +12,14 @@ struct PanelNames {
   std::vector<std::string> markers{"marker"};
 };
 
-// "the left button", "the valve", "valve V2".
+// "the left button"; "the valve", "valve V2"; "the marker", "marker 12".
 inline std::string button_text(const PanelNames& names, std::size_t i) { return "the " + names.buttons.at(i) + " button"; }
 inline std::string valve_text(const PanelNames& names, std::size_t i) {
   return names.valves.at(i) == "valve" ? "the valve" : "valve " + names.valves.at(i);
+}
+
+inline std::string marker_text(const PanelNames& names, std::size_t i) {
+  return names.markers.at(i) == "marker" ? "the marker" : "marker " + names.markers.at(i);
 }
 
 }  // namespace lf

@@ -41,7 +41,6 @@ TEST(Sight, HoldsTheMarkerAgainstItsNominalPlace) {
   camera.base_from_camera = Pose(Eigen::Translation3d(0.1, -0.2, 0.05) * Eigen::AngleAxisd(0.7, Vec3::UnitY()));
   PanelResult result;
   MarkerObservation marker;
-  marker.corners_px.fill(Vec2::Zero());
   marker.id = layout.markers[0].id;
   marker.margin = 55;
   const Vec3 seen_m = (layout.nominal_base_from_panel() * layout.markers[0].panel_from_tag()).translation() + Vec3(0.03, 0, -0.04);

@@ -64,6 +64,17 @@ TEST(Report, NamesCountersThatAreZeroInOneRow) {
   EXPECT_THAT(html, HasSubstr("can_unknown_node, images_unexpected"));
 }
 
+TEST(Report, OfSeveralValvesNamesEach) {
+  ReportData data = small_run();
+  for (TaskRecord& task : data.result.tasks) {
+    if (task.task == "turn_valve") task.valve = "V<2>";
+  }
+  const std::string html = report_html(data);
+  for (const char* text : {"valve V&lt;2&gt; turned to (target", "turn valve V&lt;2&gt;", "valve V&lt;2&gt;&#39;s final angle"})
+    EXPECT_THAT(html, HasSubstr(text));
+  EXPECT_THAT(html, Not(HasSubstr("V<2>")));
+}
+
 TEST(Report, OfAValveThatNobodyTurnedSaysWhereItStands) {
   ReportData data = small_run();
   for (TaskRecord& task : data.result.tasks) task.done = false;
