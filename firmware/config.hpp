@@ -10,8 +10,9 @@
 
 namespace lf {
 
-struct ControllerConfig {
-  canopen::NetworkConfig network;
+// What the mission works with.
+struct MissionSetup {
+  arm::Arm arm = arm::arm5e();
   std::array<arm::TransmissionSetup, joint_count> transmissions;  // between the drives' motors and the joints
   CameraCalibration camera;
   LaserCalibration laser;
@@ -19,6 +20,10 @@ struct ControllerConfig {
   mission::MissionConfig mission;
   safety::Limits limits;          // from the checksummed file
   safety::Limits mission_limits;  // equal or tighter; wider is refused
+};
+
+struct ControllerConfig : MissionSetup {
+  canopen::NetworkConfig network;
 };
 
 }  // namespace lf

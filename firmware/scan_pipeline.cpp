@@ -279,8 +279,8 @@ bool BasicScanPipeline<capacity>::add_points(const Stripe& stripe, bool final) {
     return true;
   }
   const arm::JointVector q(q_rad[0], q_rad[1], q_rad[2], q_rad[3]);
-  const Pose base_from_laser = arm::base_from_laser(q, config_.laser);
-  arm_ = arm::link_capsules(q, jaw_while_scanning_rad);
+  const Pose base_from_laser = config_.arm.base_from_laser(q, config_.laser);
+  arm_ = config_.arm.link_capsules(q, jaw_while_scanning_rad);
   const std::span<const scan::Peak> peaks = std::span(stripe.peaks).first(stripe.count);
   const std::span<std::uint8_t> chains = std::span(chains_).first(peaks.size());
   scan::measure_chains(peaks, config_.chain.step_px, chains);

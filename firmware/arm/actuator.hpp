@@ -5,24 +5,21 @@
 
 #include <cstdint>
 
-#include "shared/arm/arm_geometry.hpp"
-#include "shared/messages/joint_io.hpp"
+#include "shared/arm/arm_model.hpp"
 
 namespace lf::arm {
 
 // Motor counts at an angle, rounded to the nearest, halves away from zero. The angle is clamped to the joint's limits widened by 0.1 rad, where the
 // screw's triangle still closes; not a number gives 0 counts, the homing position: callers refuse such targets before they get here.
-std::int32_t counts_from_rad(Joint joint, double q_rad);
+std::int32_t counts_from_rad(const ArmModel::Joint& joint, double q_rad);
 
 // The same without rounding.
-double exact_counts_from_rad(Joint joint, double q_rad);
+double exact_counts_from_rad(const ArmModel::Joint& joint, double q_rad);
 
 // The angle at a count. Counts beyond the widened limits give the angle at these.
-double rad_from_counts(Joint joint, std::int32_t counts);
+double rad_from_counts(const ArmModel::Joint& joint, std::int32_t counts);
 
 // d angle / d count, positive.
-double rad_per_count(Joint joint, double q_rad);
-
-inline const arm_geometry::JointNumbers& numbers(Joint joint) { return arm_geometry::joints[static_cast<std::size_t>(joint)]; }
+double rad_per_count(const ArmModel::Joint& joint, double q_rad);
 
 }  // namespace lf::arm

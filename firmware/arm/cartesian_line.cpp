@@ -21,12 +21,12 @@ struct Rates {
 
 // The tool's place in the arm's plane is r e(psi) + z k. A straight way gives r', psi' and z' by its parts along e, across it and along k; that it is
 // straight, so that nothing of it changes, gives the second derivatives.
-Rates rates(const JointVector& q_rad, const Vec3& way_m, double turn_rad) {
+Rates rates(const Arm& arm, const JointVector& q_rad, const Vec3& way_m, double turn_rad) {
   Rates rates;
   rates.first[3] = turn_rad;
   if (way_m.squaredNorm() == 0) return rates;
-  const PlanarChain chain(q_rad);
-  const double r1 = chain.elbow_r_m - a0_m, z1 = chain.elbow_z_m;                             // shoulder to elbow
+  const PlanarChain chain(arm.planar(), q_rad);
+  const double r1 = chain.elbow_r_m - arm.planar().a0_m, z1 = chain.elbow_z_m;                // shoulder to elbow
   const double r2 = chain.tool_r_m - chain.elbow_r_m, z2 = chain.tool_z_m - chain.elbow_z_m;  // elbow to tool
   const double determinant = r1 * z2 - r2 * z1;
   // The angles beta of the upper arm and gamma of the forearm that change r and z by so much: (r, z)' = beta' (-z1, r1) + gamma' (-z2, r2).
@@ -72,20 +72,21 @@ void respect(const Rates& rates, const JointLimits& limits, double& velocity, do
 
 }  // namespace
 
-LinePlan CartesianLine::plan(const JointVector& start_rad, const Vec3& goal_m, double goal_roll_rad, const LineLimits& line,
+LinePlan CartesianLine::plan(const Arm& arm, const JointVector& start_rad, const Vec3& goal_m, double goal_roll_rad, const LineLimits& line,
                              const JointLimits& limits) {
-  begin(start_rad, goal_m, goal_roll_rad, line, limits);
+  begin(arm, start_rad, goal_m, goal_roll_rad, line, limits);
   (void)advance(checks + 1);
   return result_;
 }
 
-void CartesianLine::begin(const JointVector& start_rad, const Vec3& goal_m, double goal_roll_rad, const LineLimits& line,
+void CartesianLine::begin(const Arm& arm, const JointVector& start_rad, const Vec3& goal_m, double goal_roll_rad, const LineLimits& line,
                           const JointLimits& limits) {
   *this = CartesianLine();
+  arm_ = &arm;
   start_rad_ = start_rad;
   goal_roll_rad_ = start_rad[3];
   if (!start_rad.allFinite()) return;
-  start_m_ = goal_m_ = base_from_tool(start_rad).translation();
+  start_m_ = goal_m_ = arm.base_from_tool(start_rad).translation();
   way_m_ = goal_m - start_m_;
   if (!way_m_.allFinite() || !std::isfinite(goal_roll_rad - start_rad[3])) return;
   goal_roll_rad_ = goal_roll_rad;
@@ -93,6 +94,7 @@ void CartesianLine::begin(const JointVector& start_rad, const Vec3& goal_m, doub
   velocity_ = length > 0 ? line.speed_m_s / length : HUGE_VAL;
   acceleration_ = length > 0 ? line.acceleration_m_s2 / length : HUGE_VAL;
   jerk_ = length > 0 ? line.jerk_m_s3 / length : HUGE_VAL;
+  posture_ = posture_of(arm, start_rad);
   limits_ = limits;
   last_rad_ = start_rad;
   planned_ = false;
@@ -115,14 +117,15 @@ bool CartesianLine::check() {
   const double fraction = static_cast<double>(i) / checks;
   const double turn = goal_roll_rad_ - start_rad_[3];
   result_.fraction = fraction;
-  const IkResult ik = inverse_kinematics(start_m_ + fraction * way_m_, start_rad_[3] + fraction * turn, no_limit_margin_rad);
+  const IkResult ik =
+      inverse_kinematics(*arm_, posture_, start_m_ + fraction * way_m_, start_rad_[3] + fraction * turn, no_limit_margin_rad);
   const IkOutcome reached = ik.ok() ? limit_passed(ik.q_rad, limits_) : ik.outcome;
   // The start is where the arm is: a motion may lead back inside from there.
   if (reached != IkOutcome::ok && (i > 0 || !ik.ok())) return finish(PlanOutcome::unreachable, reached);
   // Past the slew axis the arm would have to turn about between two checks.
   if ((ik.q_rad - last_rad_).head<3>().cwiseAbs().maxCoeff() > max_step_rad) return finish(PlanOutcome::unreachable, IkOutcome::slew_limit);
   last_rad_ = ik.q_rad;
-  const Rates here = rates(ik.q_rad, way_m_, turn);
+  const Rates here = rates(*arm_, ik.q_rad, way_m_, turn);
   // The stretched arm is singular.
   if (!here.first.allFinite() || !here.second.allFinite()) return finish(PlanOutcome::unreachable, IkOutcome::too_far);
   respect(here, limits_, velocity_, acceleration_, jerk_);
@@ -145,8 +148,8 @@ JointState CartesianLine::sample(double t_s) const {
   const Vec3 way = goal_m_ - start_m_;
   const double turn = goal_roll_rad_ - start_rad_[3];
   const double roll = s.position < 1 ? start_rad_[3] + s.position * turn : goal_roll_rad_;
-  state.q_rad = inverse_kinematics(start_m_ + s.position * way, roll, no_limit_margin_rad).q_rad;
-  const Rates r = rates(state.q_rad, way, turn);
+  state.q_rad = inverse_kinematics(*arm_, posture_, start_m_ + s.position * way, roll, no_limit_margin_rad).q_rad;
+  const Rates r = rates(*arm_, state.q_rad, way, turn);
   state.qd_rad_s = s.velocity * r.first;
   state.qdd_rad_s2 = s.acceleration * r.first + s.velocity * s.velocity * r.second;
   return state;

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "firmware/arm/planar_chain.hpp"
-
 namespace lf::arm {
 namespace {
 
@@ -13,39 +11,40 @@ constexpr std::size_t forearm = 3, wrist = 4, finger = 5;  // scene::BodyId
 constexpr Distances nowhere_near{HUGE_VAL, HUGE_VAL, HUGE_VAL};
 
 // How far from each joint's axis any point of what it moves can be, at most, in whatever pose the joints after it are.
-JointVector reach_m(double jaw_rad) {
-  const LinkPoses links = base_from_links(JointVector::Zero(), jaw_rad);
+JointVector reach_m(const Arm& arm, double jaw_rad) {
+  const ArmModel::Planar& n = arm.planar();
+  const LinkPoses links = arm.base_from_links(JointVector::Zero(), jaw_rad);
   const Vec3 elbow = links[forearm - 1].translation();
   const Vec3 roll_axis = links[wrist - 1].linear().col(2);
   double from_roll_axis = 0, from_elbow = 0;
-  for (const Capsule& capsule : link_capsules(JointVector::Zero(), jaw_rad)) {
+  for (const Capsule& capsule : arm.link_capsules(JointVector::Zero(), jaw_rad)) {
     if (capsule.link < forearm) continue;
     for (const Vec3& end : {capsule.a_m, capsule.b_m}) {
       const double aside = (end - links[wrist - 1].translation()).cross(roll_axis).norm();
       if (capsule.link >= wrist) from_roll_axis = std::max(from_roll_axis, aside + capsule.radius_m);
       // The roll carries it round an axis that passes the elbow at a2.
-      from_elbow = std::max(from_elbow, std::hypot(std::abs(a2_m) + aside, (end - elbow).dot(roll_axis)) + capsule.radius_m);
+      from_elbow = std::max(from_elbow, std::hypot(std::abs(n.a2_m) + aside, (end - elbow).dot(roll_axis)) + capsule.radius_m);
     }
   }
-  const double from_shoulder = std::abs(a1_m) + from_elbow;
-  return {std::abs(a0_m) + from_shoulder, from_shoulder, from_elbow, from_roll_axis};
+  const double from_shoulder = std::abs(n.a1_m) + from_elbow;
+  return {std::abs(n.a0_m) + from_shoulder, from_shoulder, from_elbow, from_roll_axis};
 }
 
 // The largest of all the jaw's angles: the fingers turn about axes of their own, so that what is farthest out at one end is not at the other.
-JointVector reach_m(const JawSweep& jaw) {
+JointVector reach_m(const Arm& arm, const JawSweep& jaw) {
   constexpr int angles = 4;
-  JointVector most = reach_m(jaw.high_rad);
+  JointVector most = reach_m(arm, jaw.high_rad);
   for (int i = 0; i < angles && jaw.low_rad < jaw.high_rad; ++i)
-    most = most.cwiseMax(reach_m(jaw.low_rad + (jaw.high_rad - jaw.low_rad) * i / angles));
+    most = most.cwiseMax(reach_m(arm, jaw.low_rad + (jaw.high_rad - jaw.low_rad) * i / angles));
   return most;
 }
 
 // From a finger's axis to its farthest point.
-double jaw_reach_m() {
+double jaw_reach_m(const Arm& arm) {
   double most = 0;
-  for (const arm_geometry::CapsuleNumbers& n : arm_geometry::capsules) {
+  for (const ArmModel::Capsule& n : arm.model().capsules) {
     if (n.link < finger) continue;
-    most = std::max({most, std::hypot(n.a_m[0], n.a_m[2]) + n.radius_m, std::hypot(n.b_m[0], n.b_m[2]) + n.radius_m});
+    most = std::max({most, std::hypot(n.a_m.x(), n.a_m.z()) + n.radius_m, std::hypot(n.b_m.x(), n.b_m.z()) + n.radius_m});
   }
   return most;
 }
@@ -56,8 +55,8 @@ void ClearWay::begin(const JointVector& from_rad, const Surroundings& surroundin
   const Room& room = surroundings.room();
   *this = ClearWay();
   from_rad_ = from_rad;
-  reach_m_ = reach_m(room.jaw);
-  jaw_reach_m_ = jaw_reach_m();
+  reach_m_ = reach_m(surroundings.arm(), room.jaw);
+  jaw_reach_m_ = jaw_reach_m(surroundings.arm());
   jaw_rad_ = room.jaw.low_rad;
   at_first_ = kept_ = at_first;
   wanted_ = wanted;

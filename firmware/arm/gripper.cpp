@@ -6,10 +6,6 @@
 namespace lf::arm {
 namespace {
 
-constexpr arm_geometry::JawNumbers jaw = arm_geometry::jaw;
-constexpr double lower_rad = arm_geometry::joints[4].lower_rad;
-constexpr double upper_rad = arm_geometry::joints[4].upper_rad;
-
 // The handle is known to 4 mm and the tool comes to 2 mm of where it is sent; a tool 14 degrees aslant has its finger tips, 25 mm before and behind the
 // bar, 6 mm off to the side. Twice that, since a finger that meets the bar's edge pushes instead of reaching around.
 constexpr double reaching_room_m = 0.024;
@@ -32,43 +28,47 @@ bool in_doubt(GripperState state) {
 
 }  // namespace
 
-double gap_from_jaw(double jaw_rad) { return -2 * (jaw.pivot_x_m + jaw.face_x_m * std::cos(jaw_rad) - jaw.face_z_m * std::sin(jaw_rad)); }
+double gap_from_jaw(const ArmModel::Jaw& jaw, double jaw_rad) {
+  return -2 * (jaw.pivot_x_m + jaw.face_x_m * std::cos(jaw_rad) - jaw.face_z_m * std::sin(jaw_rad));
+}
 
-double jaw_from_gap(double gap_m) {
+double jaw_from_gap(const ArmModel::Jaw& jaw, double gap_m) {
   // face_x cos q - face_z sin q = reach cos(q + phase)
   const double reach = std::hypot(jaw.face_x_m, jaw.face_z_m);
   const double phase = std::atan2(jaw.face_z_m, jaw.face_x_m);
   const double cosine = std::clamp((-gap_m / 2 - jaw.pivot_x_m) / reach, -1.0, 1.0);
-  return std::clamp(std::acos(cosine) - phase, lower_rad, upper_rad);
+  return std::clamp(std::acos(cosine) - phase, jaw.lower_rad, jaw.upper_rad);
 }
 
-double pad_force_n(double jaw_torque_nm) { return jaw_torque_nm / 2 / jaw.face_z_m; }
+double pad_force_n(const ArmModel::Jaw& jaw, double jaw_torque_nm) { return jaw_torque_nm / 2 / jaw.face_z_m; }
 
-bool stands_closed(double jaw_rad) { return std::abs(jaw_rad - lower_rad) <= closed_rad; }
+bool stands_closed(const ArmModel::Jaw& jaw, double jaw_rad) { return std::abs(jaw_rad - jaw.lower_rad) <= closed_rad; }
 
-bool stands_empty(double jaw_rad, double bar_m) {
-  const bool open = jaw_rad <= upper_rad + closed_rad && gap_from_jaw(jaw_rad) > jaw_opening_m(bar_m) - short_of_open_m;
-  return stands_closed(jaw_rad) || open;  // what is not a number is neither
+bool stands_empty(const ArmModel::Jaw& jaw, double jaw_rad, double bar_m) {
+  const bool open = jaw_rad <= jaw.upper_rad + closed_rad && gap_from_jaw(jaw, jaw_rad) > jaw_opening_m(jaw, bar_m) - short_of_open_m;
+  return stands_closed(jaw, jaw_rad) || open;  // what is not a number is neither
 }
 
-double jaw_opening_m(double bar_m) { return std::min(bar_m + 2 * reaching_room_m, gap_from_jaw(upper_rad)); }
+double jaw_opening_m(const ArmModel::Jaw& jaw, double bar_m) {
+  return std::min(bar_m + 2 * reaching_room_m, gap_from_jaw(jaw, jaw.upper_rad));
+}
 
-double thickest_bar_m() { return gap_from_jaw(upper_rad) - 2 * reaching_room_m; }
+double thickest_bar_m(const ArmModel::Jaw& jaw) { return gap_from_jaw(jaw, jaw.upper_rad) - 2 * reaching_room_m; }
 
-double tip_beyond_tool_m(double jaw_rad) {
+double tip_beyond_tool_m(const ArmModel::Jaw& jaw, double jaw_rad) {
   const double end = (jaw.face_z_m + jaw.pad_depth_m / 2) * std::cos(jaw_rad);
   return jaw.pivot_z_m + end + std::max(0.0, jaw.face_x_m * std::sin(jaw_rad));
 }
 
 void Gripper::open_to(double gap_m) {
   if (!std::isfinite(gap_m)) return;
-  goal_rad_ = jaw_from_gap(gap_m);
+  goal_rad_ = jaw_from_gap(jaw_, gap_m);
   order_ = Order::open;
 }
 
 void Gripper::turn_to(double jaw_rad) {
   if (!std::isfinite(jaw_rad)) return;
-  goal_rad_ = std::clamp(jaw_rad, lower_rad, upper_rad);
+  goal_rad_ = std::clamp(jaw_rad, jaw_.lower_rad, jaw_.upper_rad);
   order_ = Order::open;
 }
 
@@ -85,7 +85,7 @@ GripperState Gripper::state() const {
 
 bool Gripper::doubted() const { return doubted_ || in_doubt(state()) || state() == GripperState::closing; }
 
-bool Gripper::may_hold(double jaw_rad) const { return doubted() || !stands_empty(jaw_rad, config_.bar_m); }
+bool Gripper::may_hold(double jaw_rad) const { return doubted() || !stands_empty(jaw_, jaw_rad, config_.bar_m); }
 
 void Gripper::wait(Duration d) {
   still_since_ = still_since_ + d;
@@ -100,11 +100,11 @@ void Gripper::begin(Time t, double jaw_rad) {
     doubted_ = true;
     doubted_rad_ = jaw_rad;
   }
-  if (order_ == Order::close) goal_rad_ = lower_rad;
+  if (order_ == Order::close) goal_rad_ = jaw_.lower_rad;
   state_ = order_ == Order::open ? GripperState::opening : order_ == Order::close ? GripperState::closing : GripperState::idle;
   order_ = Order::none;
   // From where the jaw is: a squeeze's lead or an old target must not make it jump.
-  target_rad_ = std::clamp(jaw_rad, lower_rad, upper_rad);
+  target_rad_ = std::clamp(jaw_rad, jaw_.lower_rad, jaw_.upper_rad);
   still_rad_ = jaw_rad;
   nearest_rad_ = std::abs(goal_rad_ - jaw_rad);
   still_since_ = began_ = unloaded_ = t;
@@ -190,16 +190,16 @@ void Gripper::stalled(double jaw_rad, const TorqueEstimate& torque) {
     return;
   }
   if (-torque.high_nm < config_.grip_torque_nm) return;
-  const double gap = gap_from_jaw(jaw_rad);
+  const double gap = gap_from_jaw(jaw_, jaw_rad);
   grip_rad_ = crept_rad_ = jaw_rad;
   grip_gap_m_ = gap;
   const bool bar = std::abs(gap - config_.bar_m) <= config_.bar_tolerance_m;
-  if (!bar || stands_closed(jaw_rad)) {
-    state_ = stands_closed(jaw_rad) ? GripperState::empty : GripperState::jammed;
+  if (!bar || stands_closed(jaw_, jaw_rad)) {
+    state_ = stands_closed(jaw_, jaw_rad) ? GripperState::empty : GripperState::jammed;
     target_rad_ = jaw_rad;
   } else {
     state_ = GripperState::held;
-    target_rad_ = std::max(jaw_rad - config_.lead_rad, lower_rad);
+    target_rad_ = std::max(jaw_rad - config_.lead_rad, jaw_.lower_rad);
   }
 }
 

@@ -4,30 +4,30 @@
 #include <cstdint>
 
 #include "firmware/arm/transmission.hpp"
-#include "shared/arm/arm_geometry.hpp"
+#include "shared/arm/arm_model.hpp"
 #include "shared/messages/time.hpp"
 
 namespace lf::arm {
 
 // Distance between the pads' faces at their centres, m, negative where they would overlap; and the jaw angle for a distance (clamped to the limits).
 // At jaw angle 0 the pads are parallel.
-double gap_from_jaw(double jaw_rad);
-double jaw_from_gap(double gap_m);
-// Force of each pad, at its centre and square to its face, for a jaw torque that both fingers share, N. 20 N m give 101 N.
-double pad_force_n(double jaw_torque_nm);
+double gap_from_jaw(const ArmModel::Jaw& jaw, double jaw_rad);
+double jaw_from_gap(const ArmModel::Jaw& jaw, double gap_m);
+// Force of each pad, at its centre and square to its face, for a jaw torque that both fingers share, N. 20 N m of the ARM 5E give 101 N.
+double pad_force_n(const ArmModel::Jaw& jaw, double jaw_torque_nm);
 // How far the fingers reach beyond the tool point along the tool axis, m.
-double tip_beyond_tool_m(double jaw_rad);
+double tip_beyond_tool_m(const ArmModel::Jaw& jaw, double jaw_rad);
 
-// The thinnest bar that a closed jaw is told from: at its stop 1.3 mm stay open, and a stall within `bar_tolerance_m` of the bar counts as a grip.
+// The thinnest bar that a closed jaw is told from: at its stop 1.3 mm of the ARM 5E stay open, and a stall within `bar_tolerance_m` of the bar counts as a grip.
 inline constexpr double thinnest_bar_m = 0.008;
 // Closed to its stop, which leaves no more than some millimetres. An angle beyond the stop is one of a false zero, and tells nothing.
-bool stands_closed(double jaw_rad);
+bool stands_closed(const ArmModel::Jaw& jaw, double jaw_rad);
 // The fingers hold nothing of a jaw that stands so: closed, or open for reaching for such a bar. Open, they may still stand around it.
-bool stands_empty(double jaw_rad, double bar_m);
+bool stands_empty(const ArmModel::Jaw& jaw, double jaw_rad, double bar_m);
 // How far the jaw opens to reach for a bar: to either side `reaching_room_m` more than the bar is thick.
-double jaw_opening_m(double bar_m);
+double jaw_opening_m(const ArmModel::Jaw& jaw, double bar_m);
 // The thickest bar that the jaw opens for.
-double thickest_bar_m();
+double thickest_bar_m(const ArmModel::Jaw& jaw);
 
 struct GripperConfig {
   double bar_m = 0.0126;                  // what is to be held: its thickness
@@ -67,7 +67,7 @@ enum class GripperState : std::uint8_t {
 
 class Gripper {
  public:
-  explicit Gripper(const GripperConfig& config = {}) : config_(config) {}
+  explicit Gripper(const ArmModel::Jaw& jaw, const GripperConfig& config = {}) : jaw_(jaw), config_(config) {}
 
   // What is to be held from now on: its thickness, and within how much of it a stall is plausible.
   void expect_bar(double bar_m, double bar_tolerance_m) {
@@ -108,6 +108,7 @@ class Gripper {
   void hold(double jaw_rad, const TorqueEstimate& torque, double dt_s);
   void rest(Time t, double jaw_rad, const TorqueEstimate& torque);
 
+  ArmModel::Jaw jaw_;
   GripperConfig config_;
   GripperState state_ = GripperState::idle;
   Order order_ = Order::stay;

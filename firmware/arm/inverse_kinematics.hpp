@@ -1,8 +1,8 @@
 // From a tool point and a roll to joint angles, in closed form: no iteration, no starting guess, and a reason where there is no answer.
 //
 // A position fixes the approach axis: the arm has three joints besides the roll. The slew faces the target (front) or looks away from it with the arm
-// folded under (folded); its range is less than half a turn, so at most one of the two is within its limits. The elbow's triangle of upper arm and
-// forearm then gives shoulder and elbow.
+// folded under (folded), and the elbow's triangle of upper arm and forearm bends one way or the other: of up to four postures those within the limits
+// count.
 #pragma once
 
 #include <array>
@@ -27,9 +27,17 @@ const char* name(IkOutcome outcome);
 
 enum class IkBranch : std::uint8_t { front, folded };
 
+// Which of the four.
+struct IkPosture {
+  IkBranch branch = IkBranch::folded;
+  bool bent_back = false;  // the elbow's triangle: false where the elbow's angle is larger than the stretched arm's
+  friend bool operator==(const IkPosture&, const IkPosture&) = default;
+};
+IkPosture posture_of(const Arm& arm, const JointVector& q_rad);
+
 struct IkResult {
   IkOutcome outcome = IkOutcome::not_a_number;
-  IkBranch branch = IkBranch::folded;
+  IkPosture posture;
   JointVector q_rad = JointVector::Zero();  // when ok; else the angles that would be needed, where there are any
   double excess = 0;                        // by how much: rad past the limit, or m too far or too near
 
@@ -40,8 +48,14 @@ struct IkResult {
 inline constexpr double default_limit_margin_rad = 0.05;
 
 // Joint angles that put the tool point at `tool_m` (base frame) with the given roll, all of them inside their limits less `limit_margin_rad`.
-// Exact to 1e-12 m. The roll's own limits, at +/- half a turn, are drawn in by the margin, too.
-IkResult inverse_kinematics(const Vec3& tool_m, double roll_rad, double limit_margin_rad = default_limit_margin_rad);
+// Exact to 1e-12 m. The roll's own limits are drawn in by the margin, too. Of several postures the one that is nearest to `near_rad`, by the largest travel
+// of slew, shoulder or elbow; without it the one farthest from these joints' limits.
+IkResult inverse_kinematics(const Arm& arm, const Vec3& tool_m, double roll_rad, double limit_margin_rad = default_limit_margin_rad,
+                            const std::optional<JointVector>& near_rad = std::nullopt);
+
+// The same in one posture, for following a way without changing it.
+IkResult inverse_kinematics(const Arm& arm, IkPosture posture, const Vec3& tool_m, double roll_rad,
+                            double limit_margin_rad = default_limit_margin_rad);
 
 // The two rolls, half a turn apart, that lay the tool's y axis along a bar: fingers close along x, across it.
 // `tilt_rad` is what remains between bar and tool y: the bar's angle out of the plane square to the approach axis.
@@ -52,10 +66,10 @@ struct BarRolls {
 
 // For a tool at slew, shoulder and elbow of `q_rad` and a bar along `bar` (base frame, any length). Nothing when the bar points along the
 // approach axis within 0.2 rad, or is not a number.
-std::optional<BarRolls> rolls_for_bar(const JointVector& q_rad, const Vec3& bar);
+std::optional<BarRolls> rolls_for_bar(const Arm& arm, const JointVector& q_rad, const Vec3& bar);
 
-// Of the two rolls, the one from which the wrist can turn by `turn_rad` (of roll; either sign) and stay inside its limits less `limit_margin_rad`,
-// the one that stays farther from them. Nothing when neither can.
-std::optional<double> roll_for_turn(const BarRolls& rolls, double turn_rad, double limit_margin_rad = default_limit_margin_rad);
+// Of the two rolls, the one from which the wrist can turn by `turn_rad` (of roll; either sign) and stay within `lower_rad` and `upper_rad`, the one that stays
+// farther from them. Nothing when neither can.
+std::optional<double> roll_for_turn(const BarRolls& rolls, double turn_rad, double lower_rad, double upper_rad);
 
 }  // namespace lf::arm

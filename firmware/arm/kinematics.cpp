@@ -5,16 +5,9 @@
 namespace lf::arm {
 namespace {
 
-Pose pose_of(const arm_geometry::Transform& transform) {
-  Pose pose = Pose::Identity();
-  pose.linear() = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(transform.rotation.data());
-  pose.translation() = Eigen::Map<const Vec3>(transform.translation_m.data());
-  return pose;
-}
-
 // A child's frame: its joint's place on the parent, turned by `angle_rad` about the joint's own axis, which takes `from` to `to`: x to y about z.
-Pose turned(const Pose& base_from_parent, std::size_t origin, double angle_rad, Eigen::Index from, Eigen::Index to) {
-  Pose pose = base_from_parent * pose_of(arm_geometry::joint_origins[origin]);
+Pose turned(const Pose& base_from_parent, const Pose& origin, double angle_rad, Eigen::Index from, Eigen::Index to) {
+  Pose pose = base_from_parent * origin;
   const double c = std::cos(angle_rad);
   const double s = std::sin(angle_rad);
   const Vec3 a = pose.linear().col(from);
@@ -35,8 +28,15 @@ Pose tool_at_roll_zero(const PlanarChain& chain) {
 
 }  // namespace
 
-Pose base_from_tool(const JointVector& q_rad) {
-  const PlanarChain chain(q_rad);
+Arm::Arm(const ArmModel& model) : model_(model) {
+  const ArmModel::Planar& n = model.planar;
+  forearm_.length_squared_m2 = n.a2_m * n.a2_m + n.d_m * n.d_m;
+  forearm_.length_m = std::sqrt(forearm_.length_squared_m2);
+  forearm_.angle_rad = std::atan2(-n.d_m, n.a2_m);
+}
+
+Pose Arm::base_from_tool(const JointVector& q_rad) const {
+  const PlanarChain chain(model_.planar, q_rad);
   const double c = std::cos(q_rad[3]);
   const double s = std::sin(q_rad[3]);
   const Vec3 x = chain.tool_x();
@@ -49,14 +49,14 @@ Pose base_from_tool(const JointVector& q_rad) {
   return pose;
 }
 
-Vec3 approach_axis(const JointVector& q_rad) { return PlanarChain(q_rad).tool_z(); }
+Vec3 Arm::approach_axis(const JointVector& q_rad) const { return PlanarChain(model_.planar, q_rad).tool_z(); }
 
-Pose base_from_laser(const JointVector& q_rad, const LaserCalibration& laser) {
-  return tool_at_roll_zero(PlanarChain(q_rad)) * laser.tool_from_laser;
+Pose Arm::base_from_laser(const JointVector& q_rad, const LaserCalibration& laser) const {
+  return tool_at_roll_zero(PlanarChain(model_.planar, q_rad)) * laser.tool_from_laser;
 }
 
-Jacobian jacobian(const JointVector& q_rad) {
-  const PlanarChain chain(q_rad);
+Jacobian Arm::jacobian(const JointVector& q_rad) const {
+  const PlanarChain chain(model_.planar, q_rad);
   const Vec3 across = chain.across();
   Jacobian j = Jacobian::Zero();
   const auto set = [&j](int column, const Vec3& linear, const Vec3& angular) {
@@ -65,38 +65,36 @@ Jacobian jacobian(const JointVector& q_rad) {
   };
   // Turning by `across` within the arm's plane takes (r, z) to (-z, r); turning about z takes the plane's r to -across.
   set(0, -chain.tool_r_m * across, Vec3::UnitZ());
-  set(1, chain.in_base(-chain.tool_z_m, chain.tool_r_m - a0_m), across);
+  set(1, chain.in_base(-chain.tool_z_m, chain.tool_r_m - model_.planar.a0_m), across);
   set(2, chain.in_base(chain.elbow_z_m - chain.tool_z_m, chain.tool_r_m - chain.elbow_r_m), across);
   set(3, Vec3::Zero(), chain.tool_z());
   return j;
 }
 
-LinkPoses base_from_links(const JointVector& q_rad, double jaw_rad) {
+LinkPoses Arm::base_from_links(const JointVector& q_rad, double jaw_rad) const {
   constexpr Eigen::Index x = 0, y = 1, z = 2;
   LinkPoses links;
   Pose parent = Pose::Identity();
-  for (std::size_t i = 0; i < arm_joint_count; ++i) parent = links[i] = turned(parent, i, q_rad[i], x, y);
-  links[4] = turned(parent, 4, jaw_rad, x, z);  // about -y
-  links[5] = turned(parent, 5, jaw_rad, z, x);
+  for (std::size_t i = 0; i < arm_joint_count; ++i) parent = links[i] = turned(parent, model_.origins[i], q_rad[i], x, y);
+  links[4] = turned(parent, model_.origins[4], jaw_rad, x, z);  // about -y
+  links[5] = turned(parent, model_.origins[5], jaw_rad, z, x);
   return links;
 }
 
-LinkCapsules link_capsules(const JointVector& q_rad, double jaw_rad) {
+LinkCapsules Arm::link_capsules(const JointVector& q_rad, double jaw_rad) const {
   const LinkPoses links = base_from_links(q_rad, jaw_rad);
   LinkCapsules capsules;
-  for (std::size_t i = 0; i < capsules.size(); ++i) {
-    const arm_geometry::CapsuleNumbers& n = arm_geometry::capsules[i];
+  for (const ArmModel::Capsule& n : model_.capsules) {
     const Pose& base_from_link = links[n.link - 1];
-    capsules[i] = {n.link, base_from_link * Eigen::Map<const Vec3>(n.a_m.data()), base_from_link * Eigen::Map<const Vec3>(n.b_m.data()),
-                   n.radius_m};
+    capsules.push_back({n.link, base_from_link * n.a_m, base_from_link * n.b_m, n.radius_m});
   }
   return capsules;
 }
 
-JointLimits joint_limits(double position_margin_rad, double speed_fraction, double jerk_time_s) {
+JointLimits Arm::limits(double position_margin_rad, double speed_fraction, double jerk_time_s) const {
   JointLimits limits;
   for (std::size_t i = 0; i < arm_joint_count; ++i) {
-    const arm_geometry::JointNumbers& joint = arm_geometry::joints[i];
+    const ArmModel::Joint& joint = model_.joints[i];
     limits.lower_rad[i] = joint.lower_rad + position_margin_rad;
     limits.upper_rad[i] = joint.upper_rad - position_margin_rad;
     limits.velocity_rad_s[i] = joint.velocity_rad_s * speed_fraction;

@@ -1,4 +1,4 @@
-// Where the arm's parts are for given joint angles: closed forms of its one chain, with numbers made of the URDF.
+// An arm held by value, and where its parts are for given joint angles, in closed form.
 //
 // The slew turns a vertical plane about base z; shoulder and elbow move within that plane; the roll axis lies in it. So a pose is a planar sum:
 // with psi = slew + mount yaw, e = (cos psi, sin psi, 0), beta = shoulder + its offset, gamma = beta + elbow + its offset,
@@ -8,7 +8,7 @@
 #include <array>
 #include <cstddef>
 
-#include "shared/arm/arm_geometry.hpp"
+#include "shared/arm/arm_model.hpp"
 #include "shared/calibration/calibration.hpp"
 #include "shared/geometry/pose.hpp"
 #include "shared/messages/joint_io.hpp"
@@ -20,41 +20,80 @@ using JointVector = Eigen::Matrix<double, 4, 1>;
 // Linear velocity of the tool point (m/s) above angular velocity (rad/s), both in the base frame, per rad/s of each joint.
 using Jacobian = Eigen::Matrix<double, 6, 4>;
 
-// The tool frame in the base frame.
-Pose base_from_tool(const JointVector& q_rad);
-
-// The tool axis (tool z) in the base frame; it does not depend on the roll.
-Vec3 approach_axis(const JointVector& q_rad);
-
-// The laser, given in the tool frame at roll 0 and carried by slew, shoulder and elbow: the roll in `q_rad` is ignored.
-Pose base_from_laser(const JointVector& q_rad, const LaserCalibration& laser);
-
-// Geometric Jacobian of the tool point.
-Jacobian jacobian(const JointVector& q_rad);
-
-// base_from_link of slew, upper_arm, forearm, wrist, finger_a and finger_b, in this order; `jaw_rad` is the jaw's angle.
+// base_from_link of slew, upper_arm, forearm, wrist, finger_a and finger_b, in this order.
 inline constexpr std::size_t moving_link_count = 6;
 using LinkPoses = std::array<Pose, moving_link_count>;
-LinkPoses base_from_links(const JointVector& q_rad, double jaw_rad);
 
-// A link's outline for clearances: all points within `radius_m` of the segment a-b, base frame. Contains the link's collision shape.
+// A link's outline for clearances, in the base frame: all points within `radius_m` of the segment a-b. Contains the link's collision shape.
 struct Capsule {
-  std::size_t link = 0;  // its scene::BodyId: 1 slew .. 6 finger_b
-  Vec3 a_m = Vec3::Zero();
-  Vec3 b_m = Vec3::Zero();
-  double radius_m = 0;
+  std::size_t link;  // its scene::BodyId: 1 slew .. 6 finger_b
+  Vec3 a_m, b_m;
+  double radius_m;
 };
-using LinkCapsules = std::array<Capsule, arm_geometry::capsules.size()>;
-LinkCapsules link_capsules(const JointVector& q_rad, double jaw_rad);
 
-// What each joint may do; from the URDF by default.
+// Of one pose. Without a value beyond its size: a pose is asked for every microsecond, and most of the room is not used.
+class LinkCapsules {
+ public:
+  LinkCapsules() {}  // NOLINT(modernize-use-equals-default): that would set all of it to zero
+
+  std::size_t size() const { return size_; }
+  const Capsule& operator[](std::size_t i) const { return items_[i]; }
+  const Capsule* begin() const { return items_.data(); }
+  const Capsule* end() const { return items_.data() + size_; }
+  void push_back(const Capsule& capsule) {  // of a model's capsules, which are no more than there is room for
+    if (size_ < items_.size()) items_[size_++] = capsule;
+  }
+
+ private:
+  std::array<Capsule, capacity::arm_shapes> items_;
+  std::size_t size_ = 0;
+};
+
+// What each joint may do; by default what the arm can.
 struct JointLimits {
   JointVector lower_rad = JointVector::Zero(), upper_rad = JointVector::Zero();
   JointVector velocity_rad_s = JointVector::Zero(), acceleration_rad_s2 = JointVector::Zero(), jerk_rad_s3 = JointVector::Zero();
 };
 
-// The URDF's limits: positions drawn in by `position_margin_rad` on both sides, speeds times `speed_fraction`. The jerk takes `jerk_time_s` to reach
-// full acceleration; 0.1 s is 25 control periods, above the drives' bandwidth and below what sets the arm swinging.
-JointLimits joint_limits(double position_margin_rad = 0, double speed_fraction = 1, double jerk_time_s = 0.1);
+class Arm {
+ public:
+  // Whoever makes the model has checked it: lengths of upper arm and forearm above 0, limits in order, screws that close their triangle.
+  explicit Arm(const ArmModel& model);
+
+  const ArmModel& model() const { return model_; }
+  const ArmModel::Planar& planar() const { return model_.planar; }
+  const ArmModel::Joint& joint(Joint which) const { return model_.joints[static_cast<std::size_t>(which)]; }
+  const ArmModel::Jaw& jaw() const { return model_.jaw; }
+  // From the elbow straight to the tool point.
+  struct Forearm {
+    double length_squared_m2 = 0, length_m = 0;
+    double angle_rad = 0;  // from the forearm's own x direction
+  };
+  const Forearm& forearm() const { return forearm_; }
+
+  // The tool frame in the base frame.
+  Pose base_from_tool(const JointVector& q_rad) const;
+  // The tool axis (tool z) in the base frame; it does not depend on the roll.
+  Vec3 approach_axis(const JointVector& q_rad) const;
+  // The laser, given in the tool frame at roll 0 and carried by slew, shoulder and elbow: the roll in `q_rad` is ignored.
+  Pose base_from_laser(const JointVector& q_rad, const LaserCalibration& laser) const;
+  // Geometric Jacobian of the tool point.
+  Jacobian jacobian(const JointVector& q_rad) const;
+  // `jaw_rad` is the jaw's angle.
+  LinkPoses base_from_links(const JointVector& q_rad, double jaw_rad) const;
+  LinkCapsules link_capsules(const JointVector& q_rad, double jaw_rad) const;
+
+  // Positions drawn in by `position_margin_rad` on both sides, speeds times `speed_fraction`. The jerk takes `jerk_time_s` to reach full acceleration;
+  // 0.1 s is 25 control periods, above the drives' bandwidth and below what sets the arm swinging.
+  JointLimits limits(double position_margin_rad = 0, double speed_fraction = 1, double jerk_time_s = 0.1) const;
+
+ private:
+  ArmModel model_;
+  Forearm forearm_;
+};
+
+// The default machine's, of the numbers that the build makes of its URDF.
+ArmModel arm5e_model();
+inline Arm arm5e() { return Arm(arm5e_model()); }
 
 }  // namespace lf::arm

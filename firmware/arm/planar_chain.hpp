@@ -1,4 +1,4 @@
-// The chain's constants as the closed forms use them. Internal to the arm's kinematics.
+// The arm's plane for given joint angles, as the closed forms use it. Internal to the arm's kinematics.
 #pragma once
 
 #include <cmath>
@@ -7,27 +7,20 @@
 
 namespace lf::arm {
 
-inline constexpr double a0_m = arm_geometry::dh[0].a_m;  // slew axis to shoulder
-inline constexpr double a1_m = arm_geometry::dh[1].a_m;  // shoulder to elbow
-inline constexpr double a2_m = arm_geometry::dh[2].a_m;  // elbow to the roll axis, across it
-inline constexpr double d_m = arm_geometry::dh[3].d_m;   // elbow to the tool point, along the roll axis
-inline constexpr double shoulder_offset_rad = arm_geometry::dh[1].theta_offset_rad;
-inline constexpr double elbow_offset_rad = arm_geometry::dh[2].theta_offset_rad;
-
 // The arm's plane and the forearm's direction in it, for slew, shoulder and elbow.
 struct PlanarChain {
-  explicit PlanarChain(const JointVector& q_rad) {
-    const double psi = q_rad[0] + arm_geometry::mount_yaw_rad;
-    const double beta = q_rad[1] + shoulder_offset_rad;
-    const double gamma = beta + q_rad[2] + elbow_offset_rad;
+  PlanarChain(const ArmModel::Planar& n, const JointVector& q_rad) {
+    const double psi = q_rad[0] + n.mount_yaw_rad;
+    const double beta = q_rad[1] + n.shoulder_offset_rad;
+    const double gamma = beta + q_rad[2] + n.elbow_offset_rad;
     cos_psi = std::cos(psi);
     sin_psi = std::sin(psi);
-    elbow_r_m = a0_m + a1_m * std::cos(beta);
-    elbow_z_m = a1_m * std::sin(beta);
+    elbow_r_m = n.a0_m + n.a1_m * std::cos(beta);
+    elbow_z_m = n.a1_m * std::sin(beta);
     cos_gamma = std::cos(gamma);
     sin_gamma = std::sin(gamma);
-    tool_r_m = elbow_r_m + a2_m * cos_gamma + d_m * sin_gamma;
-    tool_z_m = elbow_z_m + a2_m * sin_gamma - d_m * cos_gamma;
+    tool_r_m = elbow_r_m + n.a2_m * cos_gamma + n.d_m * sin_gamma;
+    tool_z_m = elbow_z_m + n.a2_m * sin_gamma - n.d_m * cos_gamma;
   }
 
   // A vector of the arm's plane in the base frame.

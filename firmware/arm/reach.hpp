@@ -12,6 +12,6 @@ struct Reach {
 };
 
 // For a point in the panel frame (m) with the panel at `base_from_panel`.
-Reach reach(const Pose& base_from_panel, const Vec3& panel_point_m, double limit_margin_rad = default_limit_margin_rad);
+Reach reach(const Arm& arm, const Pose& base_from_panel, const Vec3& panel_point_m, double limit_margin_rad = default_limit_margin_rad);
 
 }  // namespace lf::arm

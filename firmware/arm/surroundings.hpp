@@ -33,19 +33,26 @@ struct Room {
 
 class Surroundings {
  public:
-  Surroundings(const PanelLayout& layout, const VehicleShape& vehicle) : surveyed_(layout), panel_(layout), vehicle_(vehicle) {}
+  // All three are known by their place.
+  Surroundings(const Arm& arm, const PanelLayout& layout, const VehicleShape& vehicle)
+      : arm_(arm), layout_(layout), panel_(layout), vehicle_(vehicle) {}
+
+  Surroundings(const Arm&, PanelLayout&&, const VehicleShape&) = delete;
+  Surroundings(const Arm&, const PanelLayout&, VehicleShape&&) = delete;
 
   // All questions from now on are about this room.
   void enter(const Room& room);
   const Room& room() const { return room_; }
+  const Arm& arm() const { return arm_; }
 
   // 1 us on a desktop.
   Distances distances(const JointVector& q_rad, double jaw_rad) const;
 
  private:
-  PanelShape surveyed_;
+  const Arm& arm_;
+  const PanelLayout& layout_;
   PanelShape panel_;  // grown by the room's doubt
-  VehicleShape vehicle_;
+  const VehicleShape& vehicle_;
   Room room_;
 };
 

@@ -77,11 +77,13 @@ class CartesianLine {
  public:
   static constexpr int checks = 64;  // points at which reach and joint rates are checked; 80 mm of way are 1.25 mm apart
 
-  // Plans in one go. `limits` holds the joints' positions, too: draw them in for a margin.
-  LinePlan plan(const JointVector& start_rad, const Vec3& goal_m, double goal_roll_rad, const LineLimits& line, const JointLimits& limits);
+  // Plans in one go. The line knows `arm` by its place. `limits` holds the joints' positions, too: draw them in for a margin.
+  LinePlan plan(const Arm& arm, const JointVector& start_rad, const Vec3& goal_m, double goal_roll_rad, const LineLimits& line,
+                const JointLimits& limits);
 
   // Plans in shares: begin(), then advance() until it is true; each of its checks takes 0.2 us on a desktop. Until then the motion stands at its start.
-  void begin(const JointVector& start_rad, const Vec3& goal_m, double goal_roll_rad, const LineLimits& line, const JointLimits& limits);
+  void begin(const Arm& arm, const JointVector& start_rad, const Vec3& goal_m, double goal_roll_rad, const LineLimits& line,
+             const JointLimits& limits);
   bool advance(int checks);
   bool planned() const { return planned_; }
   const LinePlan& result() const { return result_; }
@@ -98,6 +100,8 @@ class CartesianLine {
   bool check();
   bool finish(PlanOutcome outcome, IkOutcome ik);
 
+  const Arm* arm_ = nullptr;
+  IkPosture posture_;  // kept all along
   Vec3 start_m_ = Vec3::Zero(), goal_m_ = Vec3::Zero();
   JointVector start_rad_ = JointVector::Zero();
   double goal_roll_rad_ = 0;

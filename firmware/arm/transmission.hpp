@@ -41,7 +41,7 @@ class Transmission {
   // What a self-locking screw holds before something breaks: the bound of a load of which the motor says nothing.
   static constexpr double breaking_nm = 1000;
 
-  explicit Transmission(Joint joint, const TransmissionSetup& setup = {}) : joint_(joint), setup_(setup) {}
+  explicit Transmission(const ArmModel::Joint& joint, const TransmissionSetup& setup = {}) : joint_(joint), setup_(setup) {}
 
   // d turn of the motor / d angle of the joint at this angle; positive.
   double ratio(double q_rad) const;
@@ -53,7 +53,7 @@ class Transmission {
   TorqueEstimate joint_torque(double q_rad, double speed_rad_s, int direction, bool standing, double motor_nm, double motor_doubt_nm) const;
 
  private:
-  Joint joint_;
+  ArmModel::Joint joint_;
   TransmissionSetup setup_;
 };
 

@@ -6,15 +6,15 @@
 
 namespace lf::mission {
 
-void limit_axes(canopen::Network& network) {
+void limit_axes(const arm::Arm& arm, canopen::Network& network) {
   for (std::size_t i = 0; i < joint_count; ++i) {
-    const auto joint = static_cast<Joint>(i);
-    canopen::Axis& axis = network.axis(joint);
+    const ArmModel::Joint& joint = arm.model().joints[i];
+    canopen::Axis& axis = network.axis(static_cast<Joint>(i));
     const double here_rad = arm::rad_from_counts(joint, axis.actual_counts());
     const double target_rad = arm::rad_from_counts(joint, axis.target_counts());
     const double coarsest_rad = std::max(arm::rad_per_count(joint, here_rad), arm::rad_per_count(joint, target_rad));
-    axis.set_limits_here({static_cast<std::uint32_t>(arm::numbers(joint).velocity_rad_s / coarsest_rad),
-                          static_cast<std::uint32_t>(following_window_rad / coarsest_rad)});
+    axis.set_limits_here(
+        {static_cast<std::uint32_t>(joint.velocity_rad_s / coarsest_rad), static_cast<std::uint32_t>(following_window_rad / coarsest_rad)});
   }
 }
 

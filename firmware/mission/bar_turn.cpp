@@ -7,13 +7,14 @@ namespace lf::mission {
 
 double BarTurn::roll_at(double handle_rad, double near_rad) const {
   const Vec3 bar = base_from_panel_ * Vec3(-std::sin(handle_rad), std::cos(handle_rad), 0);
-  const std::optional<arm::BarRolls> rolls = arm::rolls_for_bar(q_rad_, bar);
+  const std::optional<arm::BarRolls> rolls = arm::rolls_for_bar(*arm_, q_rad_, bar);
   if (!rolls) return std::numeric_limits<double>::quiet_NaN();
   return near_rad + wrap(rolls->roll_rad[0] - near_rad, pi / 2);
 }
 
-bool BarTurn::plan(const arm::JointVector& start_rad, const Mat3& base_from_panel, double from_rad, double to_rad, const Limits& limits,
-                   double roll_min_rad, double roll_max_rad) {
+bool BarTurn::plan(const arm::Arm& arm, const arm::JointVector& start_rad, const Mat3& base_from_panel, double from_rad, double to_rad,
+                   const Limits& limits, double roll_min_rad, double roll_max_rad) {
+  arm_ = &arm;
   q_rad_ = start_rad;
   base_from_panel_ = base_from_panel;
   from_rad_ = from_rad;

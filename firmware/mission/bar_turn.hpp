@@ -20,8 +20,8 @@ class BarTurn {
 
   // From handle angle `from_rad` to `to_rad` (shared/geometry/pose.hpp's convention), the tool staying at `start_rad`, whose roll holds the bar.
   // False when the bar cannot be held so at some angle, or the roll leaves [roll_min_rad, roll_max_rad] on the way.
-  bool plan(const arm::JointVector& start_rad, const Mat3& base_from_panel, double from_rad, double to_rad, const Limits& limits,
-            double roll_min_rad, double roll_max_rad);
+  bool plan(const arm::Arm& arm, const arm::JointVector& start_rad, const Mat3& base_from_panel, double from_rad, double to_rad,
+            const Limits& limits, double roll_min_rad, double roll_max_rad);
 
   double duration_s() const { return curve_.duration_s(); }
   // Where a planned turn ends; on the way only the roll changes, from where it starts to here.
@@ -34,6 +34,7 @@ class BarTurn {
   // The roll for a handle angle that is nearest to `near_rad`; not a number when there is none.
   double roll_at(double handle_rad, double near_rad) const;
 
+  const arm::Arm* arm_ = nullptr;
   arm::JointVector q_rad_ = arm::JointVector::Zero();
   arm::JointVector goal_rad_ = arm::JointVector::Zero();
   Mat3 base_from_panel_ = Mat3::Identity();

@@ -6,7 +6,7 @@ Progress EmptyJaw::begin(const StepTick& tick) {
   Workbench& bench = tick.bench;
   switch (tick.step) {
     case Step::check_jaw:
-      bench.standoff_m = arm::base_from_tool(bench.measured_rad()).translation();  // a retreat leads nowhere else
+      bench.standoff_m = bench.config.arm.base_from_tool(bench.measured_rad()).translation();  // a retreat leads nowhere else
       bench.gripper.close();
       break;
     case Step::free_jaw: bench.gripper.open_to(bench.jaw_open_m()); break;
@@ -45,7 +45,8 @@ Progress EmptyJaw::run_check(const StepTick& tick) {
 
 Progress EmptyJaw::begin_back_out(Workbench& bench) {
   const arm::JointVector here = bench.measured_rad();
-  bench.standoff_m = arm::base_from_tool(here).translation() - bench.mission().approach_distance_m * arm::approach_axis(here);
+  bench.standoff_m =
+      bench.config.arm.base_from_tool(here).translation() - bench.mission().approach_distance_m * bench.config.arm.approach_axis(here);
   bench.wound_up = false;
   bench.begin_back_off();
   return Progress::running();

@@ -30,7 +30,7 @@ void FaultSources::collect(const StepTick& tick, safety::Vigilance vigilance) {
 
 void FaultSources::collect_drives(const StepTick& tick, safety::Vigilance vigilance) {
   Workbench& bench = tick.bench;
-  const Vec3 tool_m = arm::base_from_tool(bench.measured_rad()).translation();
+  const Vec3 tool_m = bench.config.arm.base_from_tool(bench.measured_rad()).translation();
   bench.watch.check(tick.network, tool_m, vigilance, tick.now, tick.faults);
 }
 

@@ -20,10 +20,10 @@ bool keeps_to_workspace(const Workbench& bench, std::size_t joint, double to_rad
   const auto k = static_cast<Eigen::Index>(joint);
   const double from_rad = q[k];
   const safety::Limits& limits = bench.config.mission_limits;
-  double before_m = safety::workspace_excursion_m(limits, arm::base_from_tool(q).translation());
+  double before_m = safety::workspace_excursion_m(limits, bench.config.arm.base_from_tool(q).translation());
   for (int i = 1; i <= checks; ++i) {
     q[k] = from_rad + (to_rad - from_rad) * i / checks;
-    const double excursion_m = safety::workspace_excursion_m(limits, arm::base_from_tool(q).translation());
+    const double excursion_m = safety::workspace_excursion_m(limits, bench.config.arm.base_from_tool(q).translation());
     if (excursion_m > before_m + noise_m) return false;
     before_m = std::min(before_m, excursion_m);
   }
@@ -41,7 +41,7 @@ std::optional<double> jog_goal_rad(const Order& order, const Workbench& bench) {
   const double from = arm ? bench.motion.target()[static_cast<Eigen::Index>(joint)] : bench.watch.joints().position_rad[joint];
   const double to = from + order.by_rad;
   const safety::JointLimit& limit = bench.config.mission_limits.joints[joint];
-  const arm_geometry::JointNumbers& stroke = arm::numbers(order.joint);
+  const ArmModel::Joint& stroke = bench.config.arm.joint(order.joint);
   const double low = std::max(limit.min_rad, stroke.lower_rad), high = std::min(limit.max_rad, stroke.upper_rad);
   const bool inside = to >= low && to <= high;
   const bool toward_it = (from < low && to > from && to <= high) || (from > high && to < from && to >= low);

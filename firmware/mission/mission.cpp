@@ -17,7 +17,7 @@ void Mission::tick(Time now, canopen::Network& network, ScanOrders& orders, Tele
   bench_.mailbox.drop_expired(now);
   take_reset(tick);  // before the joints are observed: the watch begins anew with it, and a joint that it has not observed counts as silent
   observe(tick);
-  limit_axes(network);
+  limit_axes(bench_.config.arm, network);
   take_shut_down(tick);
   sources_.collect(tick, vigilance(network));
   watch_grip(tick);
@@ -52,7 +52,7 @@ void Mission::observe(const StepTick& tick) {
   std::array<double, joint_count> rad{};
   for (std::size_t i = 0; i < joint_count; ++i) {
     const auto joint = static_cast<Joint>(i);
-    rad[i] = arm::rad_from_counts(joint, tick.network.axis(joint).actual_counts());
+    rad[i] = arm::rad_from_counts(bench_.config.arm.joint(joint), tick.network.axis(joint).actual_counts());
   }
   const Time before = joints().t;
   bench_.watch.observe(tick.network, rad, tick.now);
@@ -306,13 +306,13 @@ void Mission::drive(const StepTick& tick) {
   const arm::JointVector target = bench_.pushed_target();
   for (std::size_t i = 0; i < arm_joint_count; ++i) {
     const auto joint = static_cast<Joint>(i);
-    tick.network.axis(joint).set_target_counts(arm::counts_from_rad(joint, target[static_cast<Eigen::Index>(i)]));
+    tick.network.axis(joint).set_target_counts(arm::counts_from_rad(bench_.config.arm.joint(joint), target[static_cast<Eigen::Index>(i)]));
   }
   if (!joints().valid || on_hold()) return;
   const auto jaw = static_cast<std::size_t>(Joint::jaw);
   const double jaw_rad = bench_.gripper.update(joints().t, joints().position_rad[jaw],
                                                {joints().torque_nm[jaw], joints().torque_low_nm[jaw], joints().torque_high_nm[jaw]});
-  tick.network.axis(Joint::jaw).set_target_counts(arm::counts_from_rad(Joint::jaw, jaw_rad));
+  tick.network.axis(Joint::jaw).set_target_counts(arm::counts_from_rad(bench_.config.arm.joint(Joint::jaw), jaw_rad));
 }
 
 // A slew that runs off squeezes the bar against the jaw. The friction of its gear hides that from its motor long before it is an overload, so the lag tells it.
@@ -336,7 +336,7 @@ void Mission::report(const StepTick& tick) {
     const auto joint = static_cast<Joint>(i);
     telemetry.actual_rad[i] = joints().position_rad[i];
     telemetry.torque_nm[i] = joints().torque_nm[i];
-    telemetry.target_rad[i] = arm::rad_from_counts(joint, tick.network.axis(joint).target_counts());
+    telemetry.target_rad[i] = arm::rad_from_counts(bench_.config.arm.joint(joint), tick.network.axis(joint).target_counts());
   }
   telemetry.outputs = tick.network.io().wanted_outputs();
   telemetry.faults = fault_counts_;

@@ -69,8 +69,8 @@ void Mission::forget(const StepTick& tick) {
   bench_.mailbox.clear();
   if (stop) bench_.mailbox.put(*stop);
   if (shut_down) bench_.mailbox.put(*shut_down);
-  const ControllerConfig& config = bench_.config;
-  bench_.watch = safety::Watch(config.mission_limits, config.transmissions, tick.network.foreign());
+  const MissionSetup& config = bench_.config;
+  bench_.watch = safety::Watch(config.arm, config.mission_limits, config.transmissions, tick.network.foreign());
   const bool doubtful_jaw = bench_.gripper.doubted();
   bench_.gripper = bench_.new_gripper();
   if (doubtful_jaw) bench_.gripper.doubt();

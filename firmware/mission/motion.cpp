@@ -14,7 +14,7 @@ constexpr double hold_ramp_s = 0.5;
 }  // namespace
 
 arm::JointLimits Motion::limits(double speed_fraction) const {
-  arm::JointLimits limits = arm::joint_limits(0, speed_fraction);
+  arm::JointLimits limits = arm_.limits(0, speed_fraction);
   for (std::size_t i = 0; i < arm_joint_count; ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     limits.lower_rad[k] = std::max(limits.lower_rad[k], limits_.joints[i].min_rad);
@@ -95,7 +95,7 @@ void Motion::advance_route() {
 void Motion::line(const Vec3& goal_m, double goal_roll_rad, const Room& room, double jaw_rad, double speed_m_s) {
   arm::LineLimits line;
   line.speed_m_s = speed_m_s;
-  line_.begin(target_.q_rad, goal_m, goal_roll_rad, line, limits(1));
+  line_.begin(arm_, target_.q_rad, goal_m, goal_roll_rad, line, limits(1));
   begin_way(room, jaw_rad);
   begin(Kind::plan_line, 0);
 }
@@ -119,7 +119,7 @@ void Motion::go_to_sweep(const scan::SweepRequest& request, const LaserCalibrati
   surroundings_.enter(room);
   jaw_rad_ = jaw_rad;
   speed_fraction_ = speed_fraction;
-  sweep_planner_.begin(request, laser);
+  sweep_planner_.begin(arm_, request, laser);
   begin(Kind::plan_sweep, 0);
 }
 
@@ -150,7 +150,7 @@ void Motion::turn(double from_rad, double to_rad, const Room& room, double jaw_r
   const arm::JointLimits limits = this->limits(1);
   BarTurn::Limits bar;
   bar.speed_rad_s = speed_rad_s;
-  if (!turn_.plan(target_.q_rad, room.base_from_panel.linear(), from_rad, to_rad, bar, limits.lower_rad[3], limits.upper_rad[3])) {
+  if (!turn_.plan(arm_, target_.q_rad, room.base_from_panel.linear(), from_rad, to_rad, bar, limits.lower_rad[3], limits.upper_rad[3])) {
     return refuse(StepFailure::unreachable);
   }
   // The tool stays where it is: what is near stays near.

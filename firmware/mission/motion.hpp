@@ -21,9 +21,12 @@ namespace lf::mission {
 class Motion {
  public:
   // `limits` bound every motion's positions and speeds. Motions keep clear of a panel of this layout and of the vehicle. Ways through free space may lead
-  // by `park_rad`.
-  Motion(const safety::Limits& limits, const PanelLayout& layout, const arm::VehicleShape& vehicle, const arm::JointVector& park_rad)
-      : limits_(limits), surroundings_(layout, vehicle), route_(park_rad) {}
+  // by `park_rad`. Arm, layout and vehicle are known by their place.
+  Motion(const arm::Arm& arm, const safety::Limits& limits, const PanelLayout& layout, const arm::VehicleShape& vehicle,
+         const arm::JointVector& park_rad)
+      : arm_(arm), limits_(limits), surroundings_(arm, layout, vehicle), route_(park_rad) {}
+  Motion(const arm::Arm&, const safety::Limits&, PanelLayout&&, const arm::VehicleShape&, const arm::JointVector&) = delete;
+  Motion(const arm::Arm&, const safety::Limits&, const PanelLayout&, arm::VehicleShape&&, const arm::JointVector&) = delete;
 
   // Where the joints are when power comes on.
   void start_at(const arm::JointVector& q_rad);
@@ -95,6 +98,7 @@ class Motion {
   // Looks on along the way; begins the motion of this kind when all of it is clear.
   void advance_way(Kind then, double duration_s);
 
+  const arm::Arm& arm_;
   safety::Limits limits_;
   Kind kind_ = Kind::rest;
   double t_s_ = 0;

@@ -23,28 +23,29 @@ constexpr Duration press_time = Duration::from_ms(250);
 
 // The tool point when the closed fingers' tip is at `tip_m`: behind it by the fingers' length along an approach axis that depends on the place itself.
 // Two rounds settle it to 0.1 mm, since the axis turns by 2 degrees over the fingers' length.
-bool tool_for_tip(const Vec3& tip_m, double tip_beyond_m, double roll_rad, arm::JointVector& q_rad) {
+// Of several postures the one nearest to `q_rad` as it comes in.
+bool tool_for_tip(const arm::Arm& arm, const Vec3& tip_m, double tip_beyond_m, double roll_rad, arm::JointVector& q_rad) {
   Vec3 tool_m = tip_m;
   for (int round = 0; round < 4; ++round) {
-    const arm::IkResult result = arm::inverse_kinematics(tool_m, roll_rad, limit_margin_rad);
+    const arm::IkResult result = arm::inverse_kinematics(arm, tool_m, roll_rad, limit_margin_rad, q_rad);
     if (result.outcome == arm::IkOutcome::not_a_number || result.outcome == arm::IkOutcome::too_far) return false;
     q_rad = result.q_rad;
     if (round == 3) return result.ok();
-    tool_m = tip_m - tip_beyond_m * arm::approach_axis(q_rad);
+    tool_m = tip_m - tip_beyond_m * arm.approach_axis(q_rad);
   }
   return false;
 }
 
 // By how much at most a corner of fingers that come aslant touches before the middle of their tips. Round corners and caps touch later.
-double corner_ahead_m(const arm::JointVector& q_rad, const Vec3& normal, double button_width_m) {
-  const double half_m = 0.5 * std::min(arm_geometry::jaw.pad_width_m, button_width_m);
-  const Eigen::Matrix3d base_from_tool = arm::base_from_tool(q_rad).linear();
+double corner_ahead_m(const arm::Arm& arm, const arm::JointVector& q_rad, const Vec3& normal, double button_width_m) {
+  const double half_m = 0.5 * std::min(arm.jaw().pad_width_m, button_width_m);
+  const Eigen::Matrix3d base_from_tool = arm.base_from_tool(q_rad).linear();
   return half_m * (std::abs(normal.dot(base_from_tool.col(0))) + std::abs(normal.dot(base_from_tool.col(1))));
 }
 
 const PanelLayout::Button& the_button(const Workbench& bench) { return bench.mission().layout.buttons[bench.job.task().button]; }
 
-double closed_tip_beyond_tool_m() { return arm::tip_beyond_tool_m(arm::jaw_from_gap(0)); }
+double closed_tip_beyond_tool_m(const ArmModel::Jaw& jaw) { return arm::tip_beyond_tool_m(jaw, arm::jaw_from_gap(jaw, 0)); }
 
 }  // namespace
 
@@ -73,7 +74,7 @@ Progress PressButton::begin_reach(Workbench& bench) {
   const std::optional<arm::JointVector> q = choose_roll(bench);
   if (!q) return barrier_ == StepFailure::none ? Progress::failed(StepFailure::unreachable) : Progress::failed_for_good(barrier_);
   bench.go_clear(*q, 0);
-  bench.standoff_m = arm::base_from_tool(*q).translation();
+  bench.standoff_m = bench.config.arm.base_from_tool(*q).translation();
   return Progress::running();
 }
 
@@ -85,8 +86,8 @@ std::optional<arm::JointVector> PressButton::choose_roll(Workbench& bench) {
   const Vec3 tip = bench.map.button_m(bench.job.task().button) + bench.map.normal() * bench.mission().approach_distance_m;
   const arm::JointLimits limits = bench.motion.limits(1);
   for (std::size_t k = 0; k < rolls_rad.size(); ++k) {
-    arm::JointVector q;
-    if (barred_[k] || !tool_for_tip(tip, closed_tip_beyond_tool_m(), rolls_rad[k], q)) continue;
+    arm::JointVector q = bench.measured_rad();
+    if (barred_[k] || !tool_for_tip(bench.config.arm, tip, closed_tip_beyond_tool_m(bench.jaw()), rolls_rad[k], q)) continue;
     if (q[3] < limits.lower_rad[3] || q[3] > limits.upper_rad[3]) continue;
     roll_ = k;
     bench.tool_roll_rad = rolls_rad[k];
@@ -134,9 +135,11 @@ Progress PressButton::begin_press(Workbench& bench) {
   bench.job.result().failure = StepFailure::none;
   const double depth = the_button(bench).stroke_m + bench.mission().press_overtravel_m;
   const Vec3 tip = bench.map.button_m(bench.job.task().button) - bench.map.normal() * depth;
-  arm::JointVector q;
-  if (!tool_for_tip(tip, closed_tip_beyond_tool_m(), bench.tool_roll_rad, q)) return Progress::failed(StepFailure::unreachable);
-  bench.go_straight(arm::base_from_tool(q).translation(), bench.tool_roll_rad, bench.mission().press_speed_m_s, bench.meant_parts());
+  arm::JointVector q = bench.motion.target();
+  if (!tool_for_tip(bench.config.arm, tip, closed_tip_beyond_tool_m(bench.jaw()), bench.tool_roll_rad, q))
+    return Progress::failed(StepFailure::unreachable);
+  bench.go_straight(bench.config.arm.base_from_tool(q).translation(), bench.tool_roll_rad, bench.mission().press_speed_m_s,
+                    bench.meant_parts());
   return Progress::running();
 }
 
@@ -159,7 +162,8 @@ Progress PressButton::run_press(const StepTick& tick) {
   result.click_felt = feel_.clicked();
   result.face_felt = feel_.touched();
   // Half: a corner touches somewhere between not at all and so much earlier.
-  result.face_off_m = feel_.touch_depth_m() + 0.5 * corner_ahead_m(bench.measured_rad(), bench.map.normal(), the_button(bench).width_m);
+  result.face_off_m =
+      feel_.touch_depth_m() + 0.5 * corner_ahead_m(bench.config.arm, bench.measured_rad(), bench.map.normal(), the_button(bench).width_m);
   result.failure = judge(bench);
   if (result.failure == StepFailure::early_contact) return Progress::failed_by_touch(result.failure);
   // What may have gone in unfelt is not pressed again: nobody asked for two clicks.
@@ -194,7 +198,7 @@ void PressButton::watch_on_hold(const StepTick& tick) {
 
 // At rest a screw says little of its load. What free motion takes is learned anew once the press has come to its speed.
 void PressButton::learn_under_way(const Workbench& bench) {
-  const double gone_m = (arm::base_from_tool(bench.motion.target()).translation() - bench.standoff_m).norm();
+  const double gone_m = (bench.config.arm.base_from_tool(bench.motion.target()).translation() - bench.standoff_m).norm();
   if (learned_under_way_ || gone_m < to_speed_m) return;
   rest_nm_ = guard_.baseline_nm();
   arm::GuardConfig config;
@@ -222,10 +226,10 @@ void PressButton::feel(const StepTick& tick) {
   if (guard_.state() == arm::GuardState::learning || !bench.watch.joints().valid) return;
   const arm::JointVector q = bench.measured_rad();
   const Vec3 inward = -bench.map.normal();
-  arm::JointVector along = (inward.transpose() * arm::jacobian(q).topRows<3>()).transpose();
+  arm::JointVector along = (inward.transpose() * bench.config.arm.jacobian(q).topRows<3>()).transpose();
   along[3] = 0;
   const double force_n = along.dot(guard_.excess_torque_nm()) / along.squaredNorm();
-  const Vec3 tip = arm::base_from_tool(q) * Vec3(0, 0, closed_tip_beyond_tool_m());
+  const Vec3 tip = bench.config.arm.base_from_tool(q) * Vec3(0, 0, closed_tip_beyond_tool_m(bench.jaw()));
   const double depth_m = (tip - bench.map.button_m(bench.job.task().button)).dot(inward);
   bottom_m_ = depth_m;
   // Far from the face a small force is the friction of the way, which the guard still learns; a large one is the guard's to notice.

@@ -28,7 +28,7 @@ Progress StartUp::run_idle(const StepTick& tick) {
 }
 
 void StartUp::begin_boot(const StepTick& tick) {
-  const ControllerConfig& config = tick.bench.config;
+  const MissionSetup& config = tick.bench.config;
   const safety::LimitsVerdict verdict = safety::check(config.limits);
   const bool tighter = safety::is_tighter(config.mission_limits, config.limits);
   if (verdict == safety::LimitsVerdict::good && tighter) return tick.network.start_boot(tick.now);

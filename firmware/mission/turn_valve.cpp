@@ -18,15 +18,14 @@ constexpr Duration stalled_for = Duration::from_ms(50);
 
 // The roll with which to take the bar so that the wrist can turn it from one angle to another.
 std::optional<double> roll_for(const Workbench& bench, const arm::JointVector& q_rad, double from_rad, double to_rad) {
-  const auto from = arm::rolls_for_bar(q_rad, bench.map.bar(from_rad));
-  const auto to = arm::rolls_for_bar(q_rad, bench.map.bar(to_rad));
+  const auto from = arm::rolls_for_bar(bench.config.arm, q_rad, bench.map.bar(from_rad));
+  const auto to = arm::rolls_for_bar(bench.config.arm, q_rad, bench.map.bar(to_rad));
   if (!from || !to) return std::nullopt;
   // Seen along the tool axis, into the panel, the handle turns the other way round.
   const double about = from_rad - to_rad;
   const double turn = about + wrap(to->roll_rad[0] - from->roll_rad[0] - about, pi / 2);
   const arm::JointLimits limits = bench.motion.limits(1);
-  const double drawn_in_rad = pi - std::min(limits.upper_rad[3], -limits.lower_rad[3]);
-  return arm::roll_for_turn(*from, turn, drawn_in_rad + limit_margin_rad);
+  return arm::roll_for_turn(*from, turn, limits.lower_rad[3] + limit_margin_rad, limits.upper_rad[3] - limit_margin_rad);
 }
 
 // The whole way to the task's angle, or as much of it as the wrist can turn and the next look can tell apart: the rest comes after that look.
@@ -45,7 +44,7 @@ std::optional<double> choose_roll(Workbench& bench, const arm::JointVector& q_ra
 // jaw open.
 double jaw_after_rad(const Workbench& bench) {
   const bool alone = bench.mission().layout.valves.size() == 1;
-  return alone ? bench.jaw_rad() : arm::jaw_from_gap(bench.jaw_open_m());
+  return alone ? bench.jaw_rad() : arm::jaw_from_gap(bench.jaw(), bench.jaw_open_m());
 }
 
 }  // namespace
@@ -85,12 +84,13 @@ Progress TurnValve::begin_reach(Workbench& bench) {
   if (!map.handle_seen(valve)) return Progress::failed(StepFailure::no_handle);
   const Vec3 centre = map.handle_centre_m(valve);
   bench.standoff_m = centre + map.normal() * bench.mission().approach_distance_m;
-  const arm::IkResult at_bar = arm::inverse_kinematics(centre, 0, limit_margin_rad);
+  const arm::IkResult at_bar = arm::inverse_kinematics(bench.config.arm, centre, 0, limit_margin_rad, bench.measured_rad());
   if (!at_bar.ok()) return unreachable;
   const std::optional<double> roll = choose_roll(bench, at_bar.q_rad);
   if (!roll) return unreachable;
   bench.tool_roll_rad = *roll;
-  const arm::IkResult start = arm::inverse_kinematics(bench.standoff_m, bench.tool_roll_rad, limit_margin_rad);
+  const arm::IkResult start =
+      arm::inverse_kinematics(bench.config.arm, at_bar.posture, bench.standoff_m, bench.tool_roll_rad, limit_margin_rad);
   if (!start.ok()) return unreachable;
   bench.go_clear(start.q_rad, bench.jaw_open_m());
   return Progress::running();

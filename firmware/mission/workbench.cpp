@@ -94,14 +94,14 @@ bool drives_itself_off(const arm::GuardedMotion& guard) {
   return by_its_motor || away;
 }
 
-bool has_seized(const arm::GuardedMotion& guard) {
+bool has_seized(const arm::Arm& arm, const arm::GuardedMotion& guard) {
   // Gear and links of the stiffest joint give way by 2.4 mrad before they carry a contact's torque: the motor goes so far, seven counts of a screw. A
   // count is what an encoder that stands may waver by. The roll's is 3.1 mrad: what it meets hard, and what leans on an arm before it begins to move, look the
   // same as a seized motor. Both lose their power, which is the safer answer.
   constexpr double stands_counts = 1.5, wavers_counts = 1, gives_rad = 0.0024;
   if (!guard.touched()) return false;
   const auto joint = static_cast<Eigen::Index>(guard.joint());
-  const double count_rad = arm::rad_per_count(guard.joint(), guard.position_rad()[joint]);
+  const double count_rad = arm::rad_per_count(arm.joint(guard.joint()), guard.position_rad()[joint]);
   const double travelled = guard.travelled_rad()[joint] / count_rad, to_travel = guard.to_travel_rad()[joint] / count_rad;
   // Where one count is more than gear and links give way by, a motor that pushes towards its target shows the count before anything can hold it.
   const double error_rad = guard.error_rad()[joint];
@@ -110,15 +110,15 @@ bool has_seized(const arm::GuardedMotion& guard) {
   return travelled < stands_counts && to_travel > 2 * travelled + wavers_counts;
 }
 
-bool does_not_follow(const arm::GuardedMotion& guard) {
-  return lags_without_load(guard) || runs_off(guard) || drives_itself_off(guard) || has_seized(guard);
+bool does_not_follow(const arm::Arm& arm, const arm::GuardedMotion& guard) {
+  return lags_without_load(guard) || runs_off(guard) || drives_itself_off(guard) || has_seized(arm, guard);
 }
 
-bool was_behind_before(const arm::GuardedMotion& guard) {
+bool was_behind_before(const arm::Arm& arm, const arm::GuardedMotion& guard) {
   // A healthy drive holds its joint within two counts. A guard that begins under a load takes it for the usual one: what it reads above that has come later.
   constexpr double healthy_counts = 2.5, grown_share = 0.25;  // an overload that has grown by a quarter is one that the arm met
   const auto joint = static_cast<Eigen::Index>(guard.joint());
-  const double count_rad = arm::rad_per_count(guard.joint(), guard.position_rad()[joint]);
+  const double count_rad = arm::rad_per_count(arm.joint(guard.joint()), guard.position_rad()[joint]);
   const double load_nm = guard.baseline_nm()[joint], error_rad = guard.error_rad()[joint];
   const bool grown = std::abs(guard.excess_torque_nm()[joint]) >= grown_share * std::abs(load_nm);
   return guard.state() == arm::GuardState::overload && !grown && error_rad * load_nm > 0 &&
@@ -127,25 +127,26 @@ bool was_behind_before(const arm::GuardedMotion& guard) {
 
 Workbench::Workbench(const ControllerConfig& told)
     : config(told),
-      watch(told.mission_limits, told.transmissions),
+      watch(config.arm, told.mission_limits, told.transmissions),
       camera(camera_config(told)),
-      motion(told.mission_limits, told.mission.layout, told.mission.vehicle, told.mission.park_rad),
+      motion(config.arm, told.mission_limits, config.mission.layout, config.mission.vehicle, told.mission.park_rad),
       map(config.mission.layout, config.markers, config.camera),
       job(told.mission.tasks, told.mission.tries),
       gripper(new_gripper()),
       grip_guard(gripping_guard()),
-      back_guard(free_motion_guard(told.mission_limits)) {}
+      back_guard(free_motion_guard(told.mission_limits)),
+      power(config.arm) {}
 
 arm::Gripper Workbench::new_gripper() const {
-  arm::Gripper jaw;
-  expect_bar(jaw);
-  return jaw;
+  arm::Gripper fresh(jaw());
+  expect_bar(fresh);
+  return fresh;
 }
 
 // Fingers that hold a thick bar stand apart at an angle: the bar touches the pads' edge, and the gap at their middle is wider by the pads' slope.
-void Workbench::expect_bar(arm::Gripper& jaw) const {
-  const double slope_rad = std::max(0.0, arm::jaw_from_gap(bar_m()));
-  jaw.expect_bar(bar_m(), arm::GripperConfig{}.bar_tolerance_m + arm_geometry::jaw.pad_depth_m * std::tan(slope_rad));
+void Workbench::expect_bar(arm::Gripper& of) const {
+  const double slope_rad = std::max(0.0, arm::jaw_from_gap(jaw(), bar_m()));
+  of.expect_bar(bar_m(), arm::GripperConfig{}.bar_tolerance_m + jaw().pad_depth_m * std::tan(slope_rad));
 }
 
 double Workbench::bar_m() const {
@@ -154,7 +155,7 @@ double Workbench::bar_m() const {
 }
 
 bool Workbench::jaw_may_hold() const {
-  return gripper.may_hold(jaw_rad()) || !arm::stands_empty(jaw_rad(), thickest_bar_m(config.mission.layout));
+  return gripper.may_hold(jaw_rad()) || !arm::stands_empty(jaw(), jaw_rad(), thickest_bar_m(config.mission.layout));
 }
 
 void Workbench::take_up_task() {
@@ -201,7 +202,7 @@ arm::PanelParts Workbench::meant_parts() const {
 
 Room Workbench::room_on_the_way(double jaw_opening_m) {
   jaw_order_m_ = jaw_opening_m;
-  return room(jaw_opening_m > 0 ? arm::jaw_from_gap(jaw_opening_m) : arm_geometry::joints[static_cast<std::size_t>(Joint::jaw)].lower_rad);
+  return room(jaw_opening_m > 0 ? arm::jaw_from_gap(jaw(), jaw_opening_m) : jaw().lower_rad);
 }
 
 void Workbench::go_clear(const arm::JointVector& goal_rad, double jaw_opening_m) {
@@ -269,7 +270,7 @@ std::optional<Joint> Workbench::unseen_joint() const {
 std::optional<Joint> Workbench::misled_joint(const arm::GuardedMotion& guard) const {
   if (!guard.touched()) return std::nullopt;
   if (const std::optional<Joint> unseen = unseen_joint()) return unseen;
-  return does_not_follow(guard) || watch.shows_nothing(guard.joint()) ? std::optional(guard.joint()) : std::nullopt;
+  return does_not_follow(config.arm, guard) || watch.shows_nothing(guard.joint()) ? std::optional(guard.joint()) : std::nullopt;
 }
 
 void Workbench::report_touch(const arm::GuardedMotion& guard, safety::FaultArbiter& faults) const {
@@ -285,13 +286,13 @@ void Workbench::let_off_roll() {
 
 void Workbench::begin_back_off() {
   back_guard = arm::GuardedMotion(wound_up ? unwinding_guard() : free_motion_guard(config.mission_limits));
-  back_from_m_ = arm::base_from_tool(motion.target()).translation();
+  back_from_m_ = config.arm.base_from_tool(motion.target()).translation();
   go_straight(standoff_m, motion.target()[3], config.mission.approach_speed_m_s, meant_parts());
 }
 
 void Workbench::guard_back_off(Time now) {
   const double unwinding_m = gives_way_m + (wound_up ? config.mission.layout.buttons[job.task().button].stroke_m : 0);
-  if (wound_up && (arm::base_from_tool(motion.target()).translation() - back_from_m_).norm() >= unwinding_m) {
+  if (wound_up && (config.arm.base_from_tool(motion.target()).translation() - back_from_m_).norm() >= unwinding_m) {
     wound_up = false;
     back_guard = arm::GuardedMotion(free_motion_guard(config.mission_limits));
   }
@@ -304,7 +305,7 @@ std::optional<Joint> Workbench::misled_on_the_way_back() const {
   // The jaw is open and the roll was let off: what its motor still pushes with is no contact. Another joint that was overloaded and behind its target before the arm left has
   // seized or is pinned. It loses its power either way.
   const bool roll_pushes = back_guard.state() == arm::GuardState::overload && back_guard.joint() == Joint::roll;
-  return roll_pushes || was_behind_before(back_guard) ? std::optional(back_guard.joint()) : std::nullopt;
+  return roll_pushes || was_behind_before(config.arm, back_guard) ? std::optional(back_guard.joint()) : std::nullopt;
 }
 
 void Workbench::watch_back_off_on_hold(const StepTick& tick) {

@@ -41,21 +41,21 @@ bool runs_off(const arm::GuardedMotion& guard);
 bool drives_itself_off(const arm::GuardedMotion& guard);
 // Its torque rises while it stands where it should go: the motor or its gear has seized, or something leans on it and keeps it from beginning. A joint that
 // meets something on its way winds up its gear.
-bool has_seized(const arm::GuardedMotion& guard);
+bool has_seized(const arm::Arm& arm, const arm::GuardedMotion& guard);
 // One of them: what was felt is the drive's own doing, and no contact.
-bool does_not_follow(const arm::GuardedMotion& guard);
+bool does_not_follow(const arm::Arm& arm, const arm::GuardedMotion& guard);
 
 // A guard that began under an overload, at a joint that pushes towards its target and is farther behind than a drive that follows.
-bool was_behind_before(const arm::GuardedMotion& guard);
+bool was_behind_before(const arm::Arm& arm, const arm::GuardedMotion& guard);
 
 struct StepTick;
 
 struct Workbench {
   explicit Workbench(const ControllerConfig& told);
-  Workbench(const Workbench&) = delete;  // the map knows the layout by its place
+  Workbench(const Workbench&) = delete;  // much knows the arm and the layout by their place
   Workbench& operator=(const Workbench&) = delete;
 
-  ControllerConfig config;
+  MissionSetup config;
   safety::Watch watch;
   CameraWork camera;
   Motion motion;
@@ -78,10 +78,11 @@ struct Workbench {
   arm::Gripper new_gripper() const;
   // The bar of the task under way, or, where that is none, the panel's thickest; and how far the jaw opens to reach for it.
   double bar_m() const;
-  double jaw_open_m() const { return arm::jaw_opening_m(bar_m()); }
+  double jaw_open_m() const { return arm::jaw_opening_m(jaw(), bar_m()); }
   // Something may be between the pads, the panel's thickest bar as well as the task's.
   bool jaw_may_hold() const;
   const MissionConfig& mission() const { return config.mission; }
+  const ArmModel::Jaw& jaw() const { return config.arm.jaw(); }
   arm::JointVector measured_rad() const;
   arm::JointVector measured_rad_s() const;
   arm::JointTorques measured_nm() const;
@@ -127,7 +128,7 @@ struct Workbench {
   bool wound_up = false;  // against a button
 
  private:
-  void expect_bar(arm::Gripper& jaw) const;
+  void expect_bar(arm::Gripper& of) const;
   Room room_on_the_way(double jaw_opening_m);
   void guard_back_off(Time now);
   std::optional<Joint> misled_on_the_way_back() const;

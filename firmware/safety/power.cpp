@@ -135,14 +135,14 @@ void Power::tick(const JointStates& joints, Time now, canopen::Network& network)
 }
 
 // Of the quick stop, 6085. Options 1 and 5 of 605A brake by another object, and a drive without 6085 by its maker's number.
-Duration Power::ramp(const JointStates& joints, std::size_t joint, const canopen::Network& network) {
+Duration Power::ramp(const JointStates& joints, std::size_t joint, const canopen::Network& network) const {
   const auto which = static_cast<Joint>(joint);
   const canopen::DriveSetup& setup = network.axis(which).setup();
   const bool by_6085 = (setup.quick_stop_option == 2 || setup.quick_stop_option == 6) && setup.quick_stop_counts_s2 != 0 &&
                        setup.profile.absence(canopen::BootValue::quick_stop_deceleration) == nullptr;
   Duration ramp;
   if (joints.speed_known[joint] && setup.quick_stop_counts_s2 != 0) {
-    const double counts_per_rad = 1 / std::abs(arm::rad_per_count(which, joints.position_rad[joint]));
+    const double counts_per_rad = 1 / std::abs(arm::rad_per_count(arm_->joint(which), joints.position_rad[joint]));
     const double to_still_rad_s = std::max(0.0, std::abs(joints.velocity_rad_s[joint]) - still_rad / still_time.s());
     ramp = Duration::from_s(to_still_rad_s * counts_per_rad / setup.quick_stop_counts_s2);
   }

@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "firmware/arm/kinematics.hpp"
 #include "firmware/canopen/network.hpp"
 #include "firmware/safety/watch.hpp"
 #include "shared/messages/joint_io.hpp"
@@ -60,6 +61,9 @@ class Power {
   static constexpr Duration lowering_beside_brake = Duration::from_ms(200);
   static Duration longest_lowering(const canopen::NetworkConfig& config);
 
+  // The arm is known by its place.
+  explicit Power(const arm::Arm& arm) : arm_(&arm) {}
+
   void switch_on() { state_ = state_ == State::off ? State::on : state_; }
   // Category 1.
   void stop(Time now, canopen::Network& network);
@@ -83,7 +87,7 @@ class Power {
   };
   Standing standing(const JointStates& joints, Time now, const canopen::Network& network);
   void take_heard(const JointStates& joints, Time now, canopen::Network& network);
-  static Duration ramp(const JointStates& joints, std::size_t joint, const canopen::Network& network);
+  Duration ramp(const JointStates& joints, std::size_t joint, const canopen::Network& network) const;
   bool confirmed(Time now, const canopen::Network& network) const;
   // Stops or restarts by NMT what does not heed its process data.
   void insist(Time now, canopen::Network& network);
@@ -94,6 +98,7 @@ class Power {
   void note_what_left(Time now, const canopen::Network& network);
   static bool hears_none(Time now, const canopen::Network& network);
 
+  const arm::Arm* arm_;
   State state_ = State::off;
   Time insist_at_;
   Time since_;  // of the state

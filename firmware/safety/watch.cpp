@@ -52,7 +52,7 @@ void Watch::observe(const canopen::Network& network, const std::array<double, jo
 }
 
 void Watch::observe_torque(const canopen::Axis& axis, std::size_t joint) {
-  const auto which = static_cast<Joint>(joint);
+  const ArmModel::Joint& which = arm_->model().joints[joint];
   const double q = joints_.position_rad[joint], rated_nm = axis.rated_torque_unm() * 1e-6;
   const arm::Transmission transmission(which, transmissions_[joint]);
   const arm::TorqueEstimate torque =
@@ -72,7 +72,7 @@ void Watch::observe_encoder(const canopen::Axis& axis, std::size_t joint, Time n
   sample.t = now;
   sample.actual_counts = axis.actual_counts();
   sample.target_counts = axis.target_counts();
-  sample.rad_per_count = arm::rad_per_count(static_cast<Joint>(joint), joints_.position_rad[joint]);
+  sample.rad_per_count = arm::rad_per_count(arm_->model().joints[joint], joints_.position_rad[joint]);
   sample.torque_nm = joints_.torque_nm[joint];
   sample.load_nm = load_share * limit_nm;
   sample.follows = axis.enabled();

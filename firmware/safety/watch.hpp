@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "firmware/arm/joint_observer.hpp"
+#include "firmware/arm/kinematics.hpp"
 #include "firmware/arm/transmission.hpp"
 #include "firmware/canopen/network.hpp"
 #include "firmware/safety/fault_arbiter.hpp"
@@ -38,10 +39,11 @@ enum class Vigilance : std::uint8_t {
 
 class Watch {
  public:
-  // `foreign`: what the network has counted of another master's, and what was reported already.
+  // The arm is known by its place. `foreign`: what the network has counted of another master's, and what was reported already.
   using Transmissions = std::array<arm::TransmissionSetup, joint_count>;
-  explicit Watch(const Limits& limits, const Transmissions& transmissions = {}, const canopen::ForeignFrames& foreign = {})
-      : limits_(limits), transmissions_(transmissions), foreign_(foreign) {}
+  explicit Watch(const arm::Arm& arm, const Limits& limits, const Transmissions& transmissions = {},
+                 const canopen::ForeignFrames& foreign = {})
+      : arm_(&arm), limits_(limits), transmissions_(transmissions), foreign_(foreign) {}
 
   // Reads the joints; call once a tick after the frames came in. `rad` are the positions decoded from counts.
   void observe(const canopen::Network& network, const std::array<double, joint_count>& rad, Time now);
@@ -76,6 +78,7 @@ class Watch {
   // `index` tells reports of one fault apart: joint, node, or 0.
   void raise(bool present, std::size_t index, const FaultReport& report, FaultArbiter& began);
 
+  const arm::Arm* arm_;
   Limits limits_;
   Transmissions transmissions_;
   std::array<arm::JointObserver, joint_count> observers_;

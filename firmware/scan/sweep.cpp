@@ -51,7 +51,7 @@ SweepPlanner::Points SweepPlanner::points_to_pass(double border_m, double outwar
 
 SweepPlanner::Laser SweepPlanner::at(double shoulder_rad, double elbow_rad) {
   ++poses_;
-  const Pose base_from_laser = arm::base_from_laser(arm::JointVector(0, shoulder_rad, elbow_rad, 0), laser_);
+  const Pose base_from_laser = arm_->base_from_laser(arm::JointVector(0, shoulder_rad, elbow_rad, 0), laser_);
   return {base_from_laser.translation(), base_from_laser.linear().col(0)};
 }
 
@@ -132,7 +132,7 @@ SweepOutcome SweepPlanner::check_way(const Candidate& c, double& widest_m) {
     const double y_m = height_m(laser);
     const double spacing_m = y_m - height_m(at(shoulder_at(f_next), elbow_at(f_next)));
     if (!(spacing_m > 0)) return SweepOutcome::no_way;
-    const Vec3 tool_m = arm::base_from_tool(arm::JointVector(0, shoulder_at(f), elbow_at(f), 0)).translation();
+    const Vec3 tool_m = arm_->base_from_tool(arm::JointVector(0, shoulder_at(f), elbow_at(f), 0)).translation();
     ++poses_;
     if (out_of_panel.dot(tool_m - request_.base_from_panel.translation()) < tool_distance_m) return SweepOutcome::no_way;
     if (y_m > request_.top_m + request_.margin_m || y_m < request_.bottom_m - request_.margin_m) continue;
@@ -171,14 +171,15 @@ void SweepPlanner::consider(std::size_t from, std::size_t to) {
   if (outcome == SweepOutcome::fan_too_narrow && best_.outcome != SweepOutcome::ok) best_.outcome = outcome;
 }
 
-void SweepPlanner::begin(const SweepRequest& request, const LaserCalibration& laser) {
+void SweepPlanner::begin(const arm::Arm& arm, const SweepRequest& request, const LaserCalibration& laser) {
   best_ = SweepPlan{};
   next_ = 0;
   planned_ = !valid(request, laser);
   if (planned_) return;
+  arm_ = &arm;
   request_ = request;
   laser_ = laser;
-  limits_ = arm::joint_limits(soft_margin_rad + run_up_s * request.slowest_rad_s);
+  limits_ = arm.limits(soft_margin_rad + run_up_s * request.slowest_rad_s);
   above_ = points_to_pass(request.top_m, 1);
   below_ = points_to_pass(request.bottom_m, -1);
 }
@@ -198,9 +199,9 @@ bool SweepPlanner::advance() {
   return planned_;
 }
 
-SweepPlan plan_sweep(const SweepRequest& request, const LaserCalibration& laser) {
+SweepPlan plan_sweep(const arm::Arm& arm, const SweepRequest& request, const LaserCalibration& laser) {
   SweepPlanner planner;
-  planner.begin(request, laser);
+  planner.begin(arm, request, laser);
   while (!planner.advance()) {
   }
   return planner.plan();

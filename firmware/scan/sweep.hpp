@@ -61,7 +61,7 @@ struct SweepPlan {
 // Start and end stay 0.05 rad and the run-up inside the URDF's limits. Some 300 poses of the arm, 0.1 us each on a desktop.
 class SweepPlanner {
  public:
-  void begin(const SweepRequest& request, const LaserCalibration& laser);
+  void begin(const arm::Arm& arm, const SweepRequest& request, const LaserCalibration& laser);
   // Looks at some 25 poses more, at most 55. True when plan() stands.
   bool advance();
   const SweepPlan& plan() const { return best_; }
@@ -99,6 +99,7 @@ class SweepPlanner {
   SweepOutcome check_way(const Candidate& c, double& widest_m);
   SweepPlan result(const Candidate& c, double widest_m) const;
 
+  const arm::Arm* arm_ = nullptr;
   SweepRequest request_;
   LaserCalibration laser_;
   arm::JointLimits limits_;
@@ -111,6 +112,6 @@ class SweepPlanner {
 };
 
 // All of it at once.
-SweepPlan plan_sweep(const SweepRequest& request, const LaserCalibration& laser);
+SweepPlan plan_sweep(const arm::Arm& arm, const SweepRequest& request, const LaserCalibration& laser);
 
 }  // namespace lf::scan

@@ -1,6 +1,5 @@
 #include "hal/config/arm_notes.hpp"
 
-#include "hal/config/arm_match.hpp"
 #include "hal/config/homing_file.hpp"
 #include "shared/arm/arm_description.hpp"
 
@@ -9,9 +8,6 @@ namespace lf::config {
 std::vector<std::string> arm_notes(const std::string& urdf_file) {
   const ArmDescription arm = load_arm_urdf(urdf_file);
   std::vector<std::string> notes;
-  if (const std::string differs = difference_from_core(arm); !differs.empty())
-    notes.push_back(urdf_file + ": another arm than the control core's: " + differs +
-                    ". The core moves its own arm: put this URDF in place of shared/arm/arm5e.urdf and build again");
   std::string frictionless;
   for (std::size_t i = 0; i < joint_count; ++i) {
     if (!arm.joints[i].friction.stated) frictionless += (frictionless.empty() ? "" : ", ") + std::string(joint_name(i));

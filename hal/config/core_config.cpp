@@ -25,6 +25,7 @@
 #include "hal/config/view_check.hpp"
 #include "hal/vision/calibration_file.hpp"
 #include "shared/arm/arm_description.hpp"
+#include "shared/arm/make_model.hpp"
 #include "shared/arm/motor.hpp"
 #include "shared/input_error.hpp"
 
@@ -43,16 +44,16 @@ constexpr double overload_reserve = 1.05, torque_noise = 0.01;
 // The drives' own limits lie this far outside of the stroke: encoder offsets do not clip the last degrees.
 constexpr double beyond_stroke_rad = 0.01;
 
-canopen::DriveSetup drive_setup(const ArmJoint& joint, Joint which, const safety::JointLimit& limit) {
+canopen::DriveSetup drive_setup(const ArmModel::Joint& joint, const safety::JointLimit& limit) {
   canopen::DriveSetup setup;
-  setup.min_counts = arm::counts_from_rad(which, limit.min_rad);
-  setup.max_counts = arm::counts_from_rad(which, limit.max_rad);
-  setup.drive_margin_counts = std::max({0, setup.min_counts - arm::counts_from_rad(which, joint.lower_rad - beyond_stroke_rad),
-                                        arm::counts_from_rad(which, joint.upper_rad + beyond_stroke_rad) - setup.max_counts});
+  setup.min_counts = arm::counts_from_rad(joint, limit.min_rad);
+  setup.max_counts = arm::counts_from_rad(joint, limit.max_rad);
+  setup.drive_margin_counts = std::max({0, setup.min_counts - arm::counts_from_rad(joint, joint.lower_rad - beyond_stroke_rad),
+                                        arm::counts_from_rad(joint, joint.upper_rad + beyond_stroke_rad) - setup.max_counts});
   // A drive has one number for all poses, so it gets that of the pose where a radian has the most counts: elsewhere it allows a screw more. The master
   // limits each pose by its own (mission/axis_limits.hpp).
   double least = 1e9;
-  for (int i = 0; i <= 64; ++i) least = std::min(least, arm::rad_per_count(which, std::lerp(limit.min_rad, limit.max_rad, i / 64.0)));
+  for (int i = 0; i <= 64; ++i) least = std::min(least, arm::rad_per_count(joint, std::lerp(limit.min_rad, limit.max_rad, i / 64.0)));
   setup.max_speed_counts_s = static_cast<std::uint32_t>(joint.velocity_rad_s / least);
   setup.following_window_counts = static_cast<std::uint32_t>(mission::following_window_rad / least);
   setup.quick_stop_counts_s2 = static_cast<std::uint32_t>(quick_stop_share * joint.acceleration_rad_s2 / least);
@@ -155,10 +156,9 @@ std::uint16_t torque_cap_permille(const ArmJoint& joint, const safety::JointLimi
   return static_cast<std::uint16_t>(std::clamp(1000 * std::min(seen_nm, motor.peak_torque_nm) / motor.rated_torque_nm, 1.0, 1000.0));
 }
 
-canopen::NetworkConfig network_config(const ArmDescription& description, const safety::Limits& limits) {
+canopen::NetworkConfig network_config(const arm::Arm& arm, const safety::Limits& limits) {
   canopen::NetworkConfig network;
-  for (std::size_t i = 0; i < joint_count; ++i)
-    network.drives[i] = drive_setup(description.joints[i], static_cast<Joint>(i), limits.joints[i]);
+  for (std::size_t i = 0; i < joint_count; ++i) network.drives[i] = drive_setup(arm.model().joints[i], limits.joints[i]);
   return network;
 }
 
@@ -247,7 +247,7 @@ mission::MissionConfig mission_config(const Machine& machine) {
 bool check_reach_of_tasks(const Machine& machine, const Steps& steps) {
   bool all = true;
   for (const Place& place : places_of_tasks(machine)) {
-    const arm::IkResult ik = pose_at(machine.panel, place);
+    const arm::IkResult ik = pose_at(machine.arm, machine.panel, place);
     const bool reached = steps.take([&] {
       if (!ik.ok())
         refuse(machine, place.what + " is out of the arm's reach at its nominal place: " + excess_text(ik) + place_text(machine.panel) +
@@ -263,9 +263,9 @@ bool check_limits(const Machine& machine, const std::string& file, const safety:
                   const Steps& steps) {
   std::vector<std::string> problems = limits_problems(limits, controller);
   for (const Place& place : places_of_tasks(machine)) {
-    const arm::IkResult ik = pose_at(machine.panel, place);
+    const arm::IkResult ik = pose_at(machine.arm, machine.panel, place);
     if (!ik.ok()) continue;
-    for (const std::string& problem : pose_problems(limits, ik.q_rad, place.what)) problems.push_back(problem);
+    for (const std::string& problem : pose_problems(controller.arm, limits, ik.q_rad, place.what)) problems.push_back(problem);
   }
   for (const std::string& problem : problems) steps.take([&] { throw InputError(file + ": " + problem); });
   return problems.empty();
@@ -293,7 +293,7 @@ void check_exposure(const Machine& machine) {
 
 // The wrist turns about the tool axis, the bar about the panel's normal: so far apart the wrist is faster than the bar by 1 / cos.
 void check_turn_speed(const Machine& machine, std::size_t valve, const ArmDescription& description, const safety::Limits& limits) {
-  const double tilt_rad = steepest_rad(machine.panel, place_of_valve(machine, valve), machine.mission.docking);
+  const double tilt_rad = steepest_rad(machine.arm, machine.panel, place_of_valve(machine, valve), machine.mission.docking);
   const auto roll = static_cast<std::size_t>(Joint::roll);
   const double fastest = std::cos(tilt_rad) * std::min(description.joints[roll].velocity_rad_s, limits.joints[roll].max_speed_rad_s);
   if (machine.mission.turn_speed_rad_s <= fastest) return;
@@ -304,9 +304,9 @@ void check_turn_speed(const Machine& machine, std::size_t valve, const ArmDescri
 }
 
 // The wrist's peak, or the couple of two pads that press on the bar's ends.
-double hand_torque_nm(const ArmDescription& description) {
+double hand_torque_nm(const ArmDescription& description, const ArmModel::Jaw& jaw) {
   const auto effort_nm = [&](Joint joint) { return description.joints[static_cast<std::size_t>(joint)].effort_nm; };
-  return std::min(arm::pad_force_n(effort_nm(Joint::jaw)) * arm_geometry::jaw.pad_width_m, effort_nm(Joint::roll));
+  return std::min(arm::pad_force_n(jaw, effort_nm(Joint::jaw)) * jaw.pad_width_m, effort_nm(Joint::roll));
 }
 
 // Where the panel and what stands proud of it can be: the worst docking error moves a corner of the plate by 20 mm and, over half a metre, by
@@ -403,12 +403,16 @@ void tighten(const Machine& machine, ControllerConfig& controller) {
   controller.mission_limits = tighter;
 }
 
-Core assemble(const Machine& machine, const Steps& steps) {
+Core assemble(Machine machine, const Steps& steps) {
   const std::filesystem::path folder = std::filesystem::path(machine.file).parent_path();
   Core core;
   ControllerConfig& controller = core.controller;
   ArmDescription description;
-  const bool arm = steps.take([&] { description = load_arm_urdf(named_file(machine.file, "arm.urdf", machine.arm_urdf)); });
+  const bool arm = steps.take([&] {
+    description = load_arm_urdf(named_file(machine.file, "arm.urdf", machine.arm_urdf));
+    machine.arm = arm::Arm(make_model(description));
+  });
+  controller.arm = core.scan.arm = machine.arm;
   const bool limits =
       steps.take([&] { controller.limits = read_limits(named_file(machine.file, "safety.limits", machine.safety_limits)); });
   controller.mission_limits = controller.limits;
@@ -416,7 +420,7 @@ Core assemble(const Machine& machine, const Steps& steps) {
   bool drives_known = false;
   const std::map<std::string, DriveKind> profiles = read_profiles(machine, steps);
   if (arm && limits) {
-    controller.network = network_config(description, controller.limits);
+    controller.network = network_config(machine.arm, controller.limits);
     controller.network.io.node = static_cast<std::uint8_t>(machine.drives.output_node);
     bool drives = true;
     for (std::size_t i = 0; i < joint_count; ++i) {
@@ -456,7 +460,7 @@ Core assemble(const Machine& machine, const Steps& steps) {
     }
   }
   if (arm) {
-    core.hand_torque_nm = hand_torque_nm(description);
+    core.hand_torque_nm = hand_torque_nm(description, controller.arm.jaw());
     for (const std::string& problem : torque_problems(machine, core.hand_torque_nm)) steps.take([&] { refuse(machine, problem); });
   }
   bool workable = true;

@@ -71,26 +71,26 @@ void check_tasks(const Machine& machine, std::vector<std::string>& problems) {
 }
 
 double tilt_at_bar_rad(const Machine& machine, std::size_t valve) {
-  return steepest_rad(machine.panel, place_of_valve(machine, valve), machine.mission.docking);
+  return steepest_rad(machine.arm, machine.panel, place_of_valve(machine, valve), machine.mission.docking);
 }
 
 // The tips of an open jaw reach beyond the bar, and more so on the side to which the tool is tilted. Below them the panel keeps a centimetre.
-double lowest_bar_m(const PanelLayout::Valve& valve, double tilt_rad) {
+double lowest_bar_m(const ArmModel::Jaw& jaw, const PanelLayout::Valve& valve, double tilt_rad) {
   constexpr double finger_m = 0.020;
   constexpr double clear_m = 0.010;
-  const double opening_m = arm::jaw_opening_m(valve.handle_thickness_m);
-  return arm::tip_beyond_tool_m(arm::jaw_from_gap(opening_m)) + (opening_m / 2 + finger_m) * std::sin(tilt_rad) + clear_m;
+  const double opening_m = arm::jaw_opening_m(jaw, valve.handle_thickness_m);
+  return arm::tip_beyond_tool_m(jaw, arm::jaw_from_gap(jaw, opening_m)) + (opening_m / 2 + finger_m) * std::sin(tilt_rad) + clear_m;
 }
 
 void check_bar(const Machine& machine, std::size_t i, std::vector<std::string>& problems) {
   const PanelLayout::Valve& valve = machine.panel.valves[i];
   const auto key = [&](const char* field) { return valve_key(machine.survey, i, field); };
-  const double tilt_rad = tilt_at_bar_rad(machine, i), lowest_m = lowest_bar_m(valve, tilt_rad);
+  const double tilt_rad = tilt_at_bar_rad(machine, i), lowest_m = lowest_bar_m(machine.arm.jaw(), valve, tilt_rad);
   if (valve.handle_height_m < lowest_m)
     problems.push_back(key("height_m") + " is " + number(valve.handle_height_m) + ": the open jaw would touch the panel below " +
                        number(lowest_m) + " m with a bar of this " + key("thickness_m") +
                        aslant_text(machine.panel, machine.mission.docking, tilt_rad));
-  const double thickest_m = thickest_bar_m(valve);
+  const double thickest_m = thickest_bar_m(machine.arm.jaw(), valve);
   if (valve.handle_thickness_m < arm::thinnest_bar_m)
     problems.push_back(key("thickness_m") + " is " + number(valve.handle_thickness_m) + ": the jaw does not tell a bar thinner than " +
                        number(arm::thinnest_bar_m) + " m from nothing");
@@ -109,7 +109,7 @@ void check_neighbours(const Machine& machine, std::size_t i, std::vector<std::st
   constexpr double clear_m = 0.016;       // what a motion keeps off, 10 mm, and what the look leaves in doubt
   constexpr double told_apart_m = 0.020;  // the 12 mm, and the scan's noise
   const PanelLayout::Valve& valve = machine.panel.valves[i];
-  const double hand_m = arm::jaw_opening_m(valve.handle_thickness_m) / 2 + fingers_m + clear_m;
+  const double hand_m = arm::jaw_opening_m(machine.arm.jaw(), valve.handle_thickness_m) / 2 + fingers_m + clear_m;
   for (std::size_t j = 0; j < machine.panel.valves.size(); ++j) {
     if (j == i) continue;
     const PanelLayout::Valve& other = machine.panel.valves[j];
@@ -123,8 +123,8 @@ void check_neighbours(const Machine& machine, std::size_t i, std::vector<std::st
 
 }  // namespace
 
-double thickest_bar_m(const PanelLayout::Valve& valve) {
-  return std::min(arm::thickest_bar_m(), valve.handle_length_m / shortest_over_thickness);
+double thickest_bar_m(const ArmModel::Jaw& jaw, const PanelLayout::Valve& valve) {
+  return std::min(arm::thickest_bar_m(jaw), valve.handle_length_m / shortest_over_thickness);
 }
 
 double longest_mark_m(const PanelLayout::Valve& valve) { return valve.handle_length_m / 2 - bare_beyond_middle_m; }

@@ -11,7 +11,7 @@ namespace lf::config {
 // Two angles a turn apart look the same, and a look errs by a few degrees.
 inline constexpr double widest_range_deg = 350;
 // The thickest bar that the jaw opens for and whose angle a scan still tells.
-double thickest_bar_m(const PanelLayout::Valve& valve);
+double thickest_bar_m(const ArmModel::Jaw& jaw, const PanelLayout::Valve& valve);
 // The longest mark on the bar's end that still tells its ends apart.
 double longest_mark_m(const PanelLayout::Valve& valve);
 

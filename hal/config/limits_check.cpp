@@ -22,10 +22,10 @@ std::string formatted(const char* form, Values... values) {
   return text.data();
 }
 
-void check_torques(const safety::Limits& limits, std::vector<std::string>& problems) {
+void check_torques(const arm::Arm& arm, const safety::Limits& limits, std::vector<std::string>& problems) {
   const arm::JointVector contact_nm = mission::free_motion_guard(limits).contact_torque_nm;
   for (std::size_t i = 0; i < arm_joint_count; ++i) {
-    const double told_nm = contact_nm[static_cast<Eigen::Index>(i)], free_nm = free_motion_share * arm_geometry::joints[i].rated_torque_nm;
+    const double told_nm = contact_nm[static_cast<Eigen::Index>(i)], free_nm = free_motion_share * arm.model().joints[i].rated_torque_nm;
     if (told_nm > free_nm) continue;
     const bool by_joint = told_nm < limits.max_contact_torque_nm;
     const std::string entry = by_joint ? std::string("joints.") + joint_names[i] + ".max_torque_nm" : "max_contact_torque_nm";
@@ -39,7 +39,8 @@ void check_torques(const safety::Limits& limits, std::vector<std::string>& probl
 
 }  // namespace
 
-std::vector<std::string> pose_problems(const safety::Limits& limits, const arm::JointVector& q_rad, const std::string& what) {
+std::vector<std::string> pose_problems(const arm::Arm& arm, const safety::Limits& limits, const arm::JointVector& q_rad,
+                                       const std::string& what) {
   std::vector<std::string> problems;
   for (std::size_t i = 0; i < arm_joint_count; ++i) {
     const double q = q_rad[static_cast<Eigen::Index>(i)];
@@ -48,7 +49,7 @@ std::vector<std::string> pose_problems(const safety::Limits& limits, const arm::
     problems.push_back(formatted("'joints.%s.%s' is %.5g: %s takes the %s to %.5g rad", joint_names[i], low ? "min_rad" : "max_rad",
                                  low ? limits.joints[i].min_rad : limits.joints[i].max_rad, what.c_str(), joint_names[i], q));
   }
-  const Vec3 tool_m = arm::base_from_tool(q_rad).translation();
+  const Vec3 tool_m = arm.base_from_tool(q_rad).translation();
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double at_m = tool_m[static_cast<Eigen::Index>(axis)];
     const bool low = at_m < limits.workspace_min_m[axis];
@@ -60,8 +61,8 @@ std::vector<std::string> pose_problems(const safety::Limits& limits, const arm::
 }
 
 std::vector<std::string> limits_problems(const safety::Limits& limits, const ControllerConfig& controller) {
-  std::vector<std::string> problems = pose_problems(limits, controller.mission.park_rad, "the arm's folded pose");
-  check_torques(limits, problems);
+  std::vector<std::string> problems = pose_problems(controller.arm, limits, controller.mission.park_rad, "the arm's folded pose");
+  check_torques(controller.arm, limits, problems);
   const double exposure_s = controller.camera.exposure.s();
   if (limits.stale_image_s <= exposure_s)
     problems.push_back(formatted("'stale_image_s' is %.4g: an image cannot be there before its exposure has ended, after %.4g s",

@@ -13,6 +13,7 @@ namespace lf::config {
 std::vector<std::string> limits_problems(const safety::Limits& limits, const ControllerConfig& controller);
 
 // The same of one pose of the arm, for `what`, as "the valve": joints beyond their range, a tool outside of the workspace.
-std::vector<std::string> pose_problems(const safety::Limits& limits, const arm::JointVector& q_rad, const std::string& what);
+std::vector<std::string> pose_problems(const arm::Arm& arm, const safety::Limits& limits, const arm::JointVector& q_rad,
+                                       const std::string& what);
 
 }  // namespace lf::config

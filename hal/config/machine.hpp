@@ -81,6 +81,7 @@ struct Machine {
   Laser laser;
   Vehicle vehicle;
   std::string arm_urdf = "arm/arm5e.urdf";
+  arm::Arm arm = arm::arm5e();  // of `arm_urdf`: whoever reads the file fills it in; make_core() reads it itself
   std::string safety_limits = "safety/limits.yaml";
   std::string mission_limits;  // a file of the same form, none of whose limits is wider; empty: `safety_limits` again
   std::string homing_file;     // of the joints' zeros; empty: none is known, and no joint takes power

@@ -45,7 +45,8 @@ double steepest_button_rad(const Machine& machine, const PanelLayout::Button& li
   for (std::size_t i = 0; i < machine.panel.buttons.size(); ++i) {
     const PanelLayout::Button& button = machine.panel.buttons[i];
     const bool alike = button.width_m == like.width_m && button.height_m == like.height_m && button.stroke_m == like.stroke_m;
-    if (alike) tilt_rad = std::max(tilt_rad, steepest_rad(machine.panel, place_of_button(machine, i), machine.mission.docking));
+    if (alike)
+      tilt_rad = std::max(tilt_rad, steepest_rad(machine.arm, machine.panel, place_of_button(machine, i), machine.mission.docking));
   }
   return tilt_rad;
 }

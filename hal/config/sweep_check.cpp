@@ -86,14 +86,15 @@ struct Nearest {
 
 class Neighbours {
  public:
-  Neighbours(const mission::MissionConfig& mission, const PanelSurvey& survey)
-      : mission_(mission),
+  Neighbours(const arm::Arm& arm, const mission::MissionConfig& mission, const PanelSurvey& survey)
+      : arm_(arm),
+        mission_(mission),
         survey_(survey),
         base_from_panel_(mission.layout.nominal_base_from_panel()),
         panel_(arm::PanelShape(mission.layout).grown(base_from_panel_, mission.docking)) {}
 
   Nearest of(const JointVector& q_rad, double jaw_rad) const {
-    const arm::LinkCapsules capsules = arm::link_capsules(q_rad, jaw_rad);
+    const arm::LinkCapsules capsules = arm_.link_capsules(q_rad, jaw_rad);
     const arm::Clearance panel = panel_.clearance(capsules, base_from_panel_);
     Nearest nearest{panel.distance_m, "the panel's " + words(panel.part, survey_) + ", " + docking_text(mission_),
                     keys_of(panel.part, survey_) + place_text(mission_.layout)};
@@ -119,6 +120,7 @@ class Neighbours {
   }
 
  private:
+  const arm::Arm& arm_;
   const mission::MissionConfig& mission_;
   const PanelSurvey& survey_;
   Pose base_from_panel_;
@@ -133,11 +135,11 @@ std::string too_near(const char* when, const Nearest& nearest) {
 JointVector vector_of(const std::array<double, arm_joint_count>& q) { return {q[0], q[1], q[2], q[3]}; }
 
 // With what of the limits keeps the arm from it, where that is seen at the sweep's ends.
-std::string unreachable_text(const safety::Limits& limits, const PanelLayout& panel, const scan::SweepPlan& plan) {
+std::string unreachable_text(const arm::Arm& arm, const safety::Limits& limits, const PanelLayout& panel, const scan::SweepPlan& plan) {
   std::string text =
       "the arm does not reach the poses from which the laser is swept over the panel: see 'laser.position_m'" + place_text(panel);
-  std::vector<std::string> problems = pose_problems(limits, vector_of(plan.start_rad), "the sweep's start");
-  for (const std::string& problem : pose_problems(limits, vector_of(plan.end_rad), "the sweep's end")) problems.push_back(problem);
+  std::vector<std::string> problems = pose_problems(arm, limits, vector_of(plan.start_rad), "the sweep's start");
+  for (const std::string& problem : pose_problems(arm, limits, vector_of(plan.end_rad), "the sweep's end")) problems.push_back(problem);
   for (const std::string& problem : problems) text += "; in the safety limits " + problem;
   return text;
 }
@@ -146,13 +148,13 @@ std::string unreachable_text(const safety::Limits& limits, const PanelLayout& pa
 
 std::optional<std::string> sweep_problem(const ControllerConfig& controller, const PanelSurvey& survey) {
   const mission::MissionConfig& mission = controller.mission;
-  const Neighbours neighbours(mission, survey);
-  const double jaw_rad = arm::jaw_from_gap(0);
+  const Neighbours neighbours(controller.arm, mission, survey);
+  const double jaw_rad = arm::jaw_from_gap(controller.arm.jaw(), 0);
   if (const Nearest parked = neighbours.of(mission.park_rad, jaw_rad); parked.distance_m < mission::clearance_m)
     return too_near("folded up", parked);
 
   const scan::SweepRequest request = mission::sweep_over_panel(mission);
-  const scan::SweepPlan plan = scan::plan_sweep(request, controller.laser);
+  const scan::SweepPlan plan = scan::plan_sweep(controller.arm, request, controller.laser);
   if (plan.outcome != scan::SweepOutcome::ok) {
     return "the laser cannot be swept over the whole panel wherever it may stand " + docking_text(mission) + ": " +
            words(plan.outcome, survey) + place_text(mission.layout);
@@ -170,13 +172,14 @@ std::optional<std::string> sweep_problem(const ControllerConfig& controller, con
                      mission.sweep_speed_rad_s, static_cast<unsigned>(mission.camera_syncs), 1e3 * widest_m) +
            valve_key(survey, i, "thickness_m") + "; see also 'laser.position_m'" + place_text(mission.layout);
   }
-  mission::Motion motion(controller.mission_limits, mission.layout, mission.vehicle, mission.park_rad);
+  mission::Motion motion(controller.arm, controller.mission_limits, mission.layout, mission.vehicle, mission.park_rad);
   motion.start_at(mission.park_rad);
   const arm::Room room{request.base_from_panel, mission.docking, {jaw_rad, jaw_rad}, 0};
   motion.go_to_sweep(request, controller.laser, room, jaw_rad, mission.move_speed_fraction);
   while (motion.planning()) motion.step(can_map::sync_period.s());
   if (motion.failure() == StepFailure::none) return std::nullopt;
-  if (motion.failure() == StepFailure::unreachable) return unreachable_text(controller.mission_limits, mission.layout, plan);
+  if (motion.failure() == StepFailure::unreachable)
+    return unreachable_text(controller.arm, controller.mission_limits, mission.layout, plan);
 
   // The sweep, and the straight way to it: the core looks at more poses, and stops at the first that is too near.
   constexpr int poses = 200;

@@ -68,9 +68,9 @@ std::string tasks_problem(const Machine& machine, const Core& core, const missio
   for (const std::string& problem : torque_problems(with_tasks, core.hand_torque_nm)) return problem;
   for (const std::string& problem : view_problems(with_tasks, core.controller.camera)) return problem;
   for (const Place& place : places_of_tasks(with_tasks)) {
-    const arm::IkResult ik = pose_at(machine.panel, place);
+    const arm::IkResult ik = pose_at(machine.arm, machine.panel, place);
     if (!ik.ok()) return place.what + " is out of the arm's reach at its nominal place: " + excess_text(ik);
-    for (const std::string& problem : pose_problems(limits, ik.q_rad, place.what)) return problem;
+    for (const std::string& problem : pose_problems(machine.arm, limits, ik.q_rad, place.what)) return problem;
   }
   return "";
 }

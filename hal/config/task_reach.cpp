@@ -31,8 +31,8 @@ Place place_of_valve(const Machine& machine, std::size_t valve) {
 }
 
 Place place_of_button(const Machine& machine, std::size_t button) {
-  return {button_text(machine.survey.names, button), machine.panel.buttons[button].face_m(), arm::tip_beyond_tool_m(arm::jaw_from_gap(0)),
-          button_key(machine.survey, button, "at_m")};
+  return {button_text(machine.survey.names, button), machine.panel.buttons[button].face_m(),
+          arm::tip_beyond_tool_m(machine.arm.jaw(), arm::jaw_from_gap(machine.arm.jaw(), 0)), button_key(machine.survey, button, "at_m")};
 }
 
 std::vector<Place> places_of_tasks(const Machine& machine) {
@@ -53,24 +53,24 @@ std::vector<Place> places_of_tasks(const Machine& machine) {
   return places;
 }
 
-arm::IkResult pose_at(const PanelLayout& panel, const Place& place) {
+arm::IkResult pose_at(const arm::Arm& arm, const PanelLayout& panel, const Place& place) {
   const Vec3 tip_m = panel.nominal_base_from_panel() * place.in_panel_m;
-  arm::IkResult ik = arm::inverse_kinematics(tip_m, 0);
+  arm::IkResult ik = arm::inverse_kinematics(arm, tip_m, 0);
   for (int round = 0; round < 3 && place.tip_m > 0; ++round) {
     if (ik.outcome == arm::IkOutcome::not_a_number || ik.outcome == arm::IkOutcome::too_far) break;
-    ik = arm::inverse_kinematics(tip_m - place.tip_m * arm::approach_axis(ik.q_rad), 0);
+    ik = arm::inverse_kinematics(arm, tip_m - place.tip_m * arm.approach_axis(ik.q_rad), 0, arm::default_limit_margin_rad, ik.q_rad);
   }
   return ik;
 }
 
-double steepest_rad(const PanelLayout& panel, const Place& place, const arm::PanelDoubt& docking) {
+double steepest_rad(const arm::Arm& arm, const PanelLayout& panel, const Place& place, const arm::PanelDoubt& docking) {
   // A place beside its own turns the arm the more the nearer it is.
   constexpr double farthest_m = 0.5, nearest_m = 0.1;
-  const arm::IkResult ik = pose_at(panel, place);
+  const arm::IkResult ik = pose_at(arm, panel, place);
   if (!ik.ok()) return 0;
-  const double away_m = std::clamp(arm::base_from_tool(ik.q_rad).translation().head<2>().norm(), nearest_m, farthest_m);
+  const double away_m = std::clamp(arm.base_from_tool(ik.q_rad).translation().head<2>().norm(), nearest_m, farthest_m);
   const Vec3 inward = -panel.nominal_base_from_panel().linear().col(2);
-  const Vec3 axis = arm::approach_axis(ik.q_rad);
+  const Vec3 axis = arm.approach_axis(ik.q_rad);
   const double doubt_rad = std::numbers::sqrt3 * docking.turn_rad + std::numbers::sqrt2 * docking.shift_m / away_m;
   return std::atan2(axis.cross(inward).norm(), axis.dot(inward)) + doubt_rad;
 }

@@ -146,6 +146,7 @@ std::optional<std::string> Commissioner::begin(const CommissionOrder& order, Tim
   called_off_.clear();
   prepared_ = std::make_shared<Prepared>();
   Commissioning::Config setup;
+  setup.arm = core_.arm;
   setup.network = core_.network;
   // It presses with thousandths of each drive's own rating, and reads them back as such.
   for (canopen::DriveSetup& drive : setup.network.drives) drive.described_torque_unm = 0;
@@ -347,7 +348,7 @@ void Commissioner::store(const Commissioning& ended, const std::string& failed) 
           const JointSet gone = with_a_zero(commissioned.lost, offsets);
           forget_lost(commissioned.lost, offsets, core);
           const config::HomingOffsets before = offsets;
-          if (changes_core) taken = take_over(commissioned, motors, offsets);
+          if (changes_core) taken = take_over(core.arm, commissioned, motors, offsets);
           if (failed.empty() && !moved_as_ordered) failed = found_elsewhere(taken);
           const JointSet doubted = changes_core ? either(disowned, doubted_joints(commissioned, taken, offsets)) : JointSet{};
           const std::string unwritten_for = write_offsets(file, failed.empty() ? offsets : with_doubts(before, doubted, offsets, core));

@@ -10,7 +10,6 @@
 #include "firmware/arm/gripper.hpp"
 #include "hal/vehicle/gentle_network.hpp"
 #include "hal/vehicle/zero_moved.hpp"
-#include "shared/arm/arm_geometry.hpp"
 
 namespace lf::hal {
 
@@ -40,15 +39,9 @@ constexpr std::array<std::size_t, joint_count> order{4, 0, 1, 2, 3};
 
 // Of a target's lead over its joint: then it presses.
 constexpr double nearly_all = 0.9;
-// Where the jaw is left: closed, and not pressing on its stop.
-constexpr double shut_rad = arm_geometry::joints[static_cast<std::size_t>(Joint::jaw)].lower_rad + 0.005;
 
 // The jaw's lower stop may be met by what is between its fingers.
 double direction(std::size_t joint) { return static_cast<Joint>(joint) == Joint::jaw ? 1 : -1; }
-double stop_rad(std::size_t joint) {
-  const arm_geometry::JointNumbers& stroke = arm_geometry::joints[joint];
-  return direction(joint) < 0 ? stroke.lower_rad : stroke.upper_rad;
-}
 
 // The sum over all senders of what another master has sent as RPDOs.
 std::uint32_t foreign_set_points(const canopen::Network& network) {
@@ -60,21 +53,29 @@ std::uint32_t foreign_set_points(const canopen::Network& network) {
   return frames;
 }
 
+}  // namespace
+
+Commissioning::Commissioning(const Config& config) : config_(config), network_(gentle_network(config)), power_(config_.arm) {}
+
+double Commissioning::stop_rad(std::size_t joint) const {
+  const ArmModel::Joint& stroke = config_.arm.model().joints[joint];
+  return direction(joint) < 0 ? stroke.lower_rad : stroke.upper_rad;
+}
+
+// Where the jaw is left: closed, and not pressing on its stop.
+double Commissioning::shut_rad() const { return config_.arm.jaw().lower_rad + 0.005; }
+
 // Whether a joint stands is all that they tell here: where its zero is nobody knows, and a screw's counts are taken for those in the middle of its stroke.
-safety::JointStates joint_states(const canopen::Network& network, Time now) {
+safety::JointStates Commissioning::joint_states(Time now) const {
   safety::JointStates joints;
   for (std::size_t i = 0; i < joint_count; ++i) {
-    const auto joint = static_cast<Joint>(i);
-    const arm_geometry::JointNumbers& stroke = arm_geometry::joints[i];
-    joints.fresh[i] = network.axis(joint).fresh(now);
-    joints.position_rad[i] = network.axis(joint).actual_counts() * arm::rad_per_count(joint, 0.5 * (stroke.lower_rad + stroke.upper_rad));
+    const canopen::Axis& axis = network_.axis(static_cast<Joint>(i));
+    const ArmModel::Joint& stroke = config_.arm.model().joints[i];
+    joints.fresh[i] = axis.fresh(now);
+    joints.position_rad[i] = axis.actual_counts() * arm::rad_per_count(stroke, 0.5 * (stroke.lower_rad + stroke.upper_rad));
   }
   return joints;
 }
-
-}  // namespace
-
-Commissioning::Commissioning(const Config& config) : config_(config), network_(gentle_network(config)) {}
 
 std::array<double, joint_count> Commissioning::places_rad() const {
   std::array<double, joint_count> places{};
@@ -138,7 +139,7 @@ void Commissioning::tick(Time now, canopen::Outbox& outbox) {
   note_power(now);
   watch(now);
   step(now);
-  power_.tick(joint_states(network_, now), now, network_);
+  power_.tick(joint_states(now), now, network_);
   network_.tick(now, outbox);
 }
 
@@ -239,7 +240,7 @@ const char* Commissioning::why_not() const {
   if (!arm_moves || config_.joints[jaw]) return nullptr;
   if (!config_.jaw_known || network_.axis(Joint::jaw).zero_lost()) return "nobody knows whether the jaw is empty: commission it, too";
   const std::int32_t counts = network_.axis(Joint::jaw).actual_counts() - config_.network.drives[jaw].encoder_zero_counts;
-  if (arm::stands_closed(arm::rad_from_counts(Joint::jaw, counts))) return nullptr;
+  if (arm::stands_closed(config_.arm.jaw(), arm::rad_from_counts(config_.arm.joint(Joint::jaw), counts))) return nullptr;
   return "the jaw is not closed: what is between its fingers would move with the arm, or be in its way. Commission the jaw, too, which "
          "opens and closes it";
 }
@@ -271,7 +272,7 @@ void Commissioning::end_joint(Time now) {
 void Commissioning::take_here(Time now) {
   for (std::size_t i = 0; i < joint_count; ++i) {
     if (config_.joints[i])
-      take_zero(i, network_.axis(static_cast<Joint>(i)).actual_counts() - arm::counts_from_rad(static_cast<Joint>(i), 0));
+      take_zero(i, network_.axis(static_cast<Joint>(i)).actual_counts() - arm::counts_from_rad(config_.arm.model().joints[i], 0));
   }
   for (std::size_t i = 0; i < joint_count; ++i) {
     if (ends_elsewhere(i, now)) return;
@@ -291,7 +292,8 @@ double Commissioning::off_earlier_rad(std::size_t joint) const {
   if (network_.axis(static_cast<Joint>(joint)).zero_lost()) return 0;
   const canopen::DriveSetup& drive = config_.network.drives[joint];
   const auto off_rad = [&](std::int32_t earlier_counts) {
-    return zero_moved_rad(static_cast<Joint>(joint), places_rad()[joint], static_cast<double>(zero_counts_[joint]) - earlier_counts);
+    return zero_moved_rad(config_.arm.model().joints[joint], places_rad()[joint],
+                          static_cast<double>(zero_counts_[joint]) - earlier_counts);
   };
   const double off_known = drive.zero_known ? off_rad(drive.encoder_zero_counts) : 0;
   const double off_file = config_.zero_in_file[joint] ? off_rad(*config_.zero_in_file[joint]) : 0;
@@ -384,7 +386,7 @@ void Commissioning::ease(Time now) {
   }
   stop_counts_ = actual + (actual - *easing_counts_) * load / (easing_load_ - load);
   const double touching_rad = stop_rad(joint_) + way * 0.5 * config_.backlash_rad[joint_];
-  const double zero = stop_counts_ - arm::exact_counts_from_rad(static_cast<Joint>(joint_), touching_rad);
+  const double zero = stop_counts_ - arm::exact_counts_from_rad(config_.arm.model().joints[joint_], touching_rad);
   take_zero(joint_, static_cast<std::int32_t>(std::lround(zero)));
   target_ = actual;
   begin_rubbing(now);
@@ -401,7 +403,7 @@ double Commissioning::started_off_stop() const {
 
 double Commissioning::goal_counts() const {
   if (static_cast<Joint>(joint_) != Joint::jaw) return started_off_stop();
-  return reopening_ ? off_stop_counts() : zero_counts_[joint_] + arm::exact_counts_from_rad(Joint::jaw, shut_rad);
+  return reopening_ ? off_stop_counts() : zero_counts_[joint_] + arm::exact_counts_from_rad(config_.arm.joint(Joint::jaw), shut_rad());
 }
 
 // The stretch begins off the stop and goes where the joint has just come from: there is nothing on it.

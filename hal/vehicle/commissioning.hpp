@@ -29,6 +29,7 @@ namespace lf::hal {
 class Commissioning {
  public:
   struct Config {
+    arm::Arm arm = arm::arm5e();
     canopen::NetworkConfig network;
     std::array<bool, joint_count> joints{true, true, true, true, true};
     std::array<double, joint_count>
@@ -115,6 +116,9 @@ class Commissioning {
   void take_here(Time now);
   void take_zero(std::size_t joint, std::int32_t zero_counts);
   double off_earlier_rad(std::size_t joint) const;
+  double stop_rad(std::size_t joint) const;
+  double shut_rad() const;
+  safety::JointStates joint_states(Time now) const;
   bool ends_elsewhere(std::size_t joint, Time now);
   void seek(Time now);
   void ease(Time now);

@@ -8,10 +8,10 @@ namespace lf::hal {
 
 namespace {
 
-double moved_rad(const Commissioned& commissioned, const config::HomingOffsets& offsets, std::size_t joint) {
+double moved_rad(const arm::Arm& arm, const Commissioned& commissioned, const config::HomingOffsets& offsets, std::size_t joint) {
   if (!offsets.has_earlier_zero(joint)) return commissioned.moved_rad[joint];
   const double off_counts = static_cast<double>(commissioned.zero_counts[joint]) - offsets.zero_counts[joint];
-  const double off_rad = zero_moved_rad(static_cast<Joint>(joint), commissioned.place_rad[joint], off_counts);
+  const double off_rad = zero_moved_rad(arm.model().joints[joint], commissioned.place_rad[joint], off_counts);
   return std::max(commissioned.moved_rad[joint], off_rad > told_move_rad ? off_rad : 0);
 }
 
@@ -40,11 +40,12 @@ Json friction_json(const config::HomingOffsets& offsets) {
   return all;
 }
 
-TakenOver take_over(const Commissioned& commissioned, const std::array<Motor, joint_count>& motors, config::HomingOffsets& offsets) {
+TakenOver take_over(const arm::Arm& arm, const Commissioned& commissioned, const std::array<Motor, joint_count>& motors,
+                    config::HomingOffsets& offsets) {
   TakenOver taken;
   for (std::size_t i = 0; i < joint_count; ++i) {
     if (!commissioned.found[i]) continue;
-    taken.moved_rad[i] = moved_rad(commissioned, offsets, i);
+    taken.moved_rad[i] = moved_rad(arm, commissioned, offsets, i);
     if (const std::optional<std::string> why = friction_doubt(commissioned, motors, offsets, i)) {
       taken.left_out.push_back(*why);
       // What was known of it before may be as wrong.

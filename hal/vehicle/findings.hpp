@@ -39,7 +39,8 @@ struct TakenOver {
 };
 // Takes it over into `offsets`. A joint whose friction cannot be is no longer known there, and stays out until a friction was measured that can be: a zero
 // alone does not show that what rubbed is gone.
-TakenOver take_over(const Commissioned& commissioned, const std::array<Motor, joint_count>& motors, config::HomingOffsets& offsets);
+TakenOver take_over(const arm::Arm& arm, const Commissioned& commissioned, const std::array<Motor, joint_count>& motors,
+                    config::HomingOffsets& offsets);
 
 // Of a commissioning that failed: a zero was found elsewhere, or something rubs.
 bool leaves_doubt(const Commissioning& ended, const std::array<Motor, joint_count>& motors);

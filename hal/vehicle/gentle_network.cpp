@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "shared/arm/arm_geometry.hpp"
-
 namespace lf::hal {
 
 namespace {
@@ -19,7 +17,7 @@ std::int32_t any_count(const canopen::DriveSetup& drive) {
 }  // namespace
 
 std::uint16_t pressing_permille(const Commissioning::Config& config, std::size_t joint) {
-  return arm_geometry::joints[joint].counts_per_rad > 0 ? config.gear_permille : config.screw_permille;
+  return config.arm.model().joints[joint].actuator.counts_per_rad > 0 ? config.gear_permille : config.screw_permille;
 }
 
 canopen::NetworkConfig gentle_network(const Commissioning::Config& config) {

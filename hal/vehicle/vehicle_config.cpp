@@ -7,13 +7,13 @@
 #include <limits>
 #include <system_error>
 
-#include "hal/config/arm_match.hpp"
 #include "hal/config/handle_check.hpp"
 #include "hal/config/joined.hpp"
 #include "hal/config/key_listing.hpp"
 #include "hal/config/key_schema.hpp"
 #include "hal/config/panel_check.hpp"
 #include "hal/config/panel_file.hpp"
+#include "hal/config/read_arm.hpp"
 #include "hal/config/share.hpp"
 #include "hal/config/text_file.hpp"
 #include "hal/config/yaml_reader.hpp"
@@ -63,7 +63,7 @@ void add_machine(Keys& all, VehicleConfig& c) {
   all.push_back(key("lamps.lit", "", 0, 0, &c.machine.lamps_lit, "stills are taken with the lamps on"));
   all.push_back(
       key("arm.urdf", "", 0, 0, &c.machine.arm_urdf,
-          "the arm, which has to be the one that the core was built of; relative to this file's folder, then to the shipped files"));
+          "the arm: slew, shoulder, elbow, roll and a jaw of two fingers; relative to this file's folder, then to the shipped files"));
   all.push_back(key("safety.limits", "", 0, 0, &c.machine.safety_limits, "the checksummed file of limits; found as arm.urdf is"));
   all.push_back(key("safety.mission_limits", "", 0, 0, &c.machine.mission_limits,
                     "a file of the same form with limits of this mission, none wider; empty: the same"));
@@ -135,13 +135,13 @@ void check_together(const VehicleConfig& c, const std::string& file, std::vector
     refuse("'camera.match_window_us' is half the time between two exposures or more: an image could belong to either");
 }
 
-// The core moves the arm that it was built of, whatever is before it.
-void check_arm(const VehicleConfig& c, std::vector<std::string>& problems) {
-  const std::string urdf = config::named_file(c.machine.file, "arm.urdf", c.machine.arm_urdf);
-  const std::string differs = config::difference_from_core(load_arm_urdf(urdf));
-  if (differs.empty()) return;
-  problems.push_back(c.machine.file + ": 'arm.urdf' names another arm than the control core's: " + differs +
-                     ". The core moves its own arm: put " + urdf + " in place of shared/arm/arm5e.urdf and build again");
+// For the checks that come before the core's; that it cannot be read is told with these.
+void read_arm(config::Machine& machine) {
+  try {
+    machine.arm = config::read_arm(config::named_file(machine.file, "arm.urdf", machine.arm_urdf));
+  } catch (const InputError&) {
+    return;
+  }
 }
 
 // A file that is missing may be one that was misspelt. Its place is kept, so that commissioning writes where was read.
@@ -297,10 +297,10 @@ VehicleConfig load_vehicle_config(const std::string& path, std::vector<std::stri
   const bool panel_known = config::settle_panel(path, config.panel_file, config.docked_panel, config.valve_stops, config.machine.panel,
                                                 config.machine.survey, problems);
   if (!panel_known) config.machine.tasks = config::Machine().tasks;  // its own name what nobody has read
+  read_arm(config.machine);
   check_together(config, path, problems);
   find_homing(config, problems);
   config.core = config::make_core(config.machine, problems);
-  if (problems.empty()) check_arm(config, problems);
   config.core.scan.match_window = Duration::from_us(config.match_window_us);
   config.core.controller.mission.image_due = Duration::from_ms(config.image_due_ms);
   return config;

@@ -1,7 +1,7 @@
 // By how much a joint's zero has moved, as an angle.
 #pragma once
 
-#include "shared/messages/joint_names.hpp"
+#include "shared/arm/arm_model.hpp"
 
 namespace lf::hal {
 
@@ -10,6 +10,6 @@ namespace lf::hal {
 inline constexpr double told_move_rad = 0.03;
 
 // What a joint at `place_rad` is off by when its zero is `moved_counts` off. At a stop one of the two ways leads out of the stroke: the other one tells.
-double zero_moved_rad(Joint joint, double place_rad, double moved_counts);
+double zero_moved_rad(const ArmModel::Joint& joint, double place_rad, double moved_counts);
 
 }  // namespace lf::hal

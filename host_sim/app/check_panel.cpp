@@ -46,8 +46,8 @@ std::vector<std::string> problems_of(const std::string& file, const Json& task) 
   return problems;
 }
 
-double tilt_deg(const Pose& base_from_panel, const Vec3& place_m, double tip_m) {
-  const arm::Reach reach = reach_of_tip(base_from_panel, place_m, tip_m);
+double tilt_deg(const arm::Arm& arm, const Pose& base_from_panel, const Vec3& place_m, double tip_m) {
+  const arm::Reach reach = reach_of_tip(arm, base_from_panel, place_m, tip_m);
   return reach.outcome == arm::IkOutcome::ok ? deg_from_rad(reach.tilt_rad) : NAN;
 }
 
@@ -60,6 +60,7 @@ std::string range_text(const PanelLayout::Valve& valve, const config::ValveNatur
 }
 
 std::vector<Feature> features_of(const std::string& file, const config::PanelFile& panel) {
+  const arm::Arm arm = arm::arm5e();  // that of the shipped scenarios
   std::vector<Feature> features;
   const Pose base_from_panel = panel.layout.nominal_base_from_panel();
   for (std::size_t i = 0; i < panel.layout.valves.size(); ++i) {
@@ -67,7 +68,7 @@ std::vector<Feature> features_of(const std::string& file, const config::PanelFil
     const std::string& name = panel.survey.names.valves[i];
     const double middle_deg = deg_from_rad((valve.handle_min_rad + valve.handle_max_rad) / 2);
     features.push_back({"valve", name, valve.at_m, range_text(valve, panel.survey.valves[i]),
-                        tilt_deg(base_from_panel, valve.handle_centre_m(), 0),
+                        tilt_deg(arm, base_from_panel, valve.handle_centre_m(), 0),
                         problems_of(file, {{"turn_valve", {{"valve", name}, {"to_deg", middle_deg}}}})});
   }
   for (std::size_t i = 0; i < panel.layout.buttons.size(); ++i) {
@@ -76,7 +77,7 @@ std::vector<Feature> features_of(const std::string& file, const config::PanelFil
     char text[96];
     std::snprintf(text, sizeof text, "%.0f mm wide, %.0f mm high, stroke %.1f mm", 1e3 * button.width_m, 1e3 * button.height_m,
                   1e3 * button.stroke_m);
-    features.push_back({"button", name, button.at_m, text, tilt_deg(base_from_panel, button.face_m(), closed_tip_m()),
+    features.push_back({"button", name, button.at_m, text, tilt_deg(arm, base_from_panel, button.face_m(), closed_tip_m(arm)),
                         problems_of(file, {{"press_buttons", {{"order", Json::array({name})}}}})});
   }
   return features;

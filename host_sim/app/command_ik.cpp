@@ -3,6 +3,8 @@
 #include <memory>
 
 #include "firmware/arm/inverse_kinematics.hpp"
+#include "hal/config/read_arm.hpp"
+#include "hal/config/share.hpp"
 #include "host_sim/app/checks.hpp"
 #include "host_sim/app/command.hpp"
 #include "shared/input_error.hpp"
@@ -15,6 +17,7 @@ namespace {
 struct Options {
   double x_m = 0, y_m = 0, z_m = 0, roll_rad = 0;
   double margin_rad = arm::default_limit_margin_rad;
+  std::string arm = "arm/arm5e.urdf";
   bool json = false;
 };
 
@@ -23,13 +26,13 @@ constexpr double farthest = 1000;
 
 bool is_length(arm::IkOutcome outcome) { return outcome == arm::IkOutcome::too_far || outcome == arm::IkOutcome::too_near; }
 
-Json answer(const arm::IkResult& ik) {
+Json answer(const arm::Arm& arm, const arm::IkResult& ik) {
   Json json{{"reachable", ik.ok()}};
   if (ik.ok()) {
-    const Vec3 approach = arm::approach_axis(ik.q_rad);
+    const Vec3 approach = arm.approach_axis(ik.q_rad);
     for (std::size_t i = 0; i < arm_joint_count; ++i) json["joints_rad"][joint_names[i]] = ik.q_rad[Eigen::Index(i)];
     json["approach"] = {approach.x(), approach.y(), approach.z()};
-    json["branch"] = ik.branch == arm::IkBranch::front ? "front" : "folded";
+    json["branch"] = ik.posture.branch == arm::IkBranch::front ? "front" : "folded";
   } else {
     json["reason"] = arm::name(ik.outcome);
     json[is_length(ik.outcome) ? "excess_m" : "excess_rad"] = ik.excess;
@@ -37,7 +40,7 @@ Json answer(const arm::IkResult& ik) {
   return json;
 }
 
-void tell(const arm::IkResult& ik) {
+void tell(const arm::Arm& arm, const arm::IkResult& ik) {
   if (!ik.ok()) {
     if (is_length(ik.outcome)) {
       print("not reachable: %s by %.1f mm\n", arm::name(ik.outcome), 1e3 * ik.excess);
@@ -50,7 +53,7 @@ void tell(const arm::IkResult& ik) {
     const double q_rad = ik.q_rad[Eigen::Index(i)];
     print("%-9s %9.5f rad  %8.3f deg\n", joint_names[i], q_rad, deg_from_rad(q_rad));
   }
-  const Vec3 approach = arm::approach_axis(ik.q_rad);
+  const Vec3 approach = arm.approach_axis(ik.q_rad);
   print("approach  %.5f %.5f %.5f\n", approach.x(), approach.y(), approach.z());
 }
 
@@ -65,11 +68,13 @@ int ik(const Options& options) {
     std::snprintf(text, sizeof text, "ik: %s takes a number from -%g to %g, not %g", name, farthest, farthest, value);
     throw InputError(text);
   }
-  const arm::IkResult result = arm::inverse_kinematics(Vec3(options.x_m, options.y_m, options.z_m), options.roll_rad, options.margin_rad);
+  const arm::Arm arm = config::read_arm(config::find_file(options.arm, ""));
+  const arm::IkResult result =
+      arm::inverse_kinematics(arm, Vec3(options.x_m, options.y_m, options.z_m), options.roll_rad, options.margin_rad);
   if (options.json) {
-    print_json(answer(result));
+    print_json(answer(arm, result));
   } else {
-    tell(result);
+    tell(arm, result);
   }
   return result.ok() ? done : failed;
 }
@@ -84,6 +89,7 @@ void add_ik(CLI::App& app, Action& action) {
   command->add_option("--z", options->z_m, "Down, m")->required();
   command->add_option("--roll", options->roll_rad, "Roll of the jaw, rad");
   command->add_option("--margin", options->margin_rad, "Distance to keep from the joints' limits, rad")->check(within(0, 0.5));
+  command->add_option("--arm", options->arm, "The arm's URDF, a file or a shipped one")->capture_default_str();
   command->add_flag("--json", options->json, "Print JSON");
   command->callback([options, &action] { action = [options] { return ik(*options); }; });
 }

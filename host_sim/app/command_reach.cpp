@@ -2,8 +2,6 @@
 #include <cstdio>
 #include <memory>
 
-#include "hal/config/arm_match.hpp"
-#include "hal/config/share.hpp"
 #include "host_sim/app/command.hpp"
 #include "host_sim/app/reach_picture.hpp"
 #include "host_sim/app/reach_survey.hpp"
@@ -55,15 +53,6 @@ void tell(const ReachTarget& target) {
   print("\n");
 }
 
-// The survey is made with the control core's kinematics, which are those of the URDF that the program was built with.
-void check_arm(const scenario::Scenario& scenario) {
-  const std::string file = config::named_file(scenario.file, "arm.urdf", scenario.arm.urdf);
-  const std::string differs = config::difference_from_core(load_arm_urdf(file));
-  if (differs.empty()) return;
-  throw InputError(scenario.file + ": 'arm.urdf' names another arm than the control core's (" + file + "): " + differs +
-                   ". `reach` surveys the core's own arm: put this URDF in place of shared/arm/arm5e.urdf and build again");
-}
-
 // Why a mission may fail at a place that is within reach where the panel should stand.
 std::vector<std::string> doubts_of(const std::vector<ReachTarget>& targets) {
   std::vector<std::string> doubts;
@@ -83,11 +72,12 @@ std::vector<std::string> doubts_of(const std::vector<ReachTarget>& targets) {
 int reach(const Options& options) {
   const std::string format = picture_format(options.out);
   const scenario::Scenario scenario = scenario::load_scenario(options.scenario, options.set);
-  check_arm(scenario);
   // At the height of the first of each kind: on most panels all of a kind are alike.
   std::vector<ReachGrid> grids;
-  if (!scenario.panel.buttons.empty()) grids.push_back(survey_grid(scenario.panel, scenario.panel.buttons[0].height_m, closed_tip_m()));
-  if (!scenario.panel.valves.empty()) grids.push_back(survey_grid(scenario.panel, scenario.panel.valves[0].handle_height_m, 0));
+  if (!scenario.panel.buttons.empty())
+    grids.push_back(survey_grid(scenario.told_arm, scenario.panel, scenario.panel.buttons[0].height_m, closed_tip_m(scenario.told_arm)));
+  if (!scenario.panel.valves.empty())
+    grids.push_back(survey_grid(scenario.told_arm, scenario.panel, scenario.panel.valves[0].handle_height_m, 0));
   const std::vector<ReachTarget> targets = survey_targets(scenario, options.draws);
   const std::vector<std::uint8_t> picture = draw_reach(scenario, grids, targets, format);
   record::write_file_atomically(options.out, {reinterpret_cast<const char*>(picture.data()), picture.size()});

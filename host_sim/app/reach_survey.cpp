@@ -25,19 +25,20 @@ ReachTarget survey_target(const scenario::Scenario& scenario, const std::string&
                           int draws) {
   ReachTarget target;
   target.name = name;
-  target.nominal = reach_of_tip(scenario.panel.nominal_base_from_panel(), point_m, tip_m);
+  target.nominal = reach_of_tip(scenario.told_arm, scenario.panel.nominal_base_from_panel(), point_m, tip_m);
   target.handle_clearance_m = std::numeric_limits<double>::infinity();
   target.draws = draws;
   const arm::PanelShape shape(scenario.panel);
   for (int seed = 1; seed <= draws; ++seed) {
     const Pose base_from_panel = scenario::true_base_from_panel(scenario.panel, scenario::draw(scenario, static_cast<std::uint64_t>(seed)));
-    const arm::Reach reach = reach_of_tip(base_from_panel, point_m, tip_m);
+    const arm::Reach reach = reach_of_tip(scenario.told_arm, base_from_panel, point_m, tip_m);
     if (reach.outcome != arm::IkOutcome::ok) continue;
     ++target.reached;
     target.worst_tilt_rad = std::max(target.worst_tilt_rad, reach.tilt_rad);
     if (!is_button) continue;
     const arm::Clearance clearance =
-        shape.clearance(arm::link_capsules(reach.q_rad, arm::jaw_from_gap(0)), base_from_panel, all_but_handles(scenario.panel));
+        shape.clearance(scenario.told_arm.link_capsules(reach.q_rad, arm::jaw_from_gap(scenario.told_arm.jaw(), 0)), base_from_panel,
+                        all_but_handles(scenario.panel));
     target.handle_clearance_m = std::min(target.handle_clearance_m, clearance.distance_m);
   }
   return target;
@@ -45,14 +46,14 @@ ReachTarget survey_target(const scenario::Scenario& scenario, const std::string&
 
 }  // namespace
 
-double closed_tip_m() { return arm::tip_beyond_tool_m(arm::jaw_from_gap(0)); }
+double closed_tip_m(const arm::Arm& arm) { return arm::tip_beyond_tool_m(arm.jaw(), arm::jaw_from_gap(arm.jaw(), 0)); }
 
-arm::Reach reach_of_tip(const Pose& base_from_panel, const Vec3& panel_point_m, double tip_m) {
-  arm::Reach reach = arm::reach(base_from_panel, panel_point_m);
+arm::Reach reach_of_tip(const arm::Arm& arm, const Pose& base_from_panel, const Vec3& panel_point_m, double tip_m) {
+  arm::Reach reach = arm::reach(arm, base_from_panel, panel_point_m);
   // The approach turns by a few degrees as the point draws back by the tip's length: each round leaves a twentieth of the error.
   for (int round = 0; round < 6 && tip_m > 0 && reach.outcome == arm::IkOutcome::ok; ++round) {
-    const Vec3 approach = base_from_panel.linear().transpose() * arm::approach_axis(reach.q_rad);
-    reach = arm::reach(base_from_panel, panel_point_m - tip_m * approach);
+    const Vec3 approach = base_from_panel.linear().transpose() * arm.approach_axis(reach.q_rad);
+    reach = arm::reach(arm, base_from_panel, panel_point_m - tip_m * approach);
   }
   return reach;
 }
@@ -62,7 +63,7 @@ double ReachGrid::area_m2(double limit_rad) const {
   return static_cast<double>(within) * step_m * step_m;
 }
 
-ReachGrid survey_grid(const PanelLayout& layout, double height_m, double tip_m) {
+ReachGrid survey_grid(const arm::Arm& arm, const PanelLayout& layout, double height_m, double tip_m) {
   ReachGrid grid;
   grid.height_m = height_m;
   const Vec2 size = layout.plate_max_m - layout.plate_min_m;
@@ -73,7 +74,7 @@ ReachGrid survey_grid(const PanelLayout& layout, double height_m, double tip_m) 
     for (int column = 0; column < grid.columns; ++column) {
       const Vec3 point(layout.plate_min_m.x() + (column + 0.5) * ReachGrid::step_m,
                        layout.plate_max_m.y() - (row + 0.5) * ReachGrid::step_m, height_m);
-      const arm::Reach reach = reach_of_tip(base_from_panel, point, tip_m);
+      const arm::Reach reach = reach_of_tip(arm, base_from_panel, point, tip_m);
       grid.tilt_rad.push_back(reach.outcome == arm::IkOutcome::ok ? static_cast<float>(reach.tilt_rad)
                                                                   : std::numeric_limits<float>::quiet_NaN());
     }
@@ -83,7 +84,7 @@ ReachGrid survey_grid(const PanelLayout& layout, double height_m, double tip_m) 
 
 std::vector<ReachTarget> survey_targets(const scenario::Scenario& scenario, int draws) {
   const PanelLayout& panel = scenario.panel;
-  const double tip_m = closed_tip_m();
+  const double tip_m = closed_tip_m(scenario.told_arm);
   const PanelNames& names = scenario.survey.names;
   std::vector<ReachTarget> targets;
   for (std::size_t i = 0; i < panel.valves.size(); ++i)

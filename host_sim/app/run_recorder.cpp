@@ -21,19 +21,20 @@ PictureNoise noise_of(const optics::OpticsConfig& optics) {
 }  // namespace
 
 RunRecorder::RunRecorder(const record::RunFolder* folder, const config::ErrorTexts& texts, PhaseObserver::Say say,
-                         const optics::OpticsConfig& optics, const PanelNames& names)
+                         const optics::OpticsConfig& optics, const arm::Arm& arm, const PanelNames& names)
     : files_(folder),
       bus_(files_, digest_),
       phases_(digest_, texts, std::move(say)),
       events_(files_, texts),
       curves_(files_, bus_),
-      motion_(names),
+      motion_(arm, names),
       panel_(files_),
       peaks_(noise_of(optics)),
       pictures_(files_) {}
 
-void RunRecorder::keep_raw_images(const CameraCalibration& camera, const LaserCalibration& laser, const optics::OpticsConfig& optics) {
-  all_.add(raw_images_.emplace(files_, camera, laser, optics));
+void RunRecorder::keep_raw_images(const arm::Arm& arm, const CameraCalibration& camera, const LaserCalibration& laser,
+                                  const optics::OpticsConfig& optics) {
+  all_.add(raw_images_.emplace(files_, arm, camera, laser, optics));
 }
 
 void RunRecorder::after_control(const mission::Mission& mission) {

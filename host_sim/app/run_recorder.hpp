@@ -23,14 +23,15 @@ namespace lf::app {
 class RunRecorder {
  public:
   // `folder` may be null: then nothing is written while it runs. It outlives the recorder, as do `texts` and what `say` refers to.
-  // `optics`: the simulator's, for what its noise allows.
+  // `optics`: the simulator's, for what its noise allows. `arm`: as the core knows it.
   RunRecorder(const record::RunFolder* folder, const config::ErrorTexts& texts, PhaseObserver::Say say, const optics::OpticsConfig& optics,
-              const PanelNames& names);
+              const arm::Arm& arm, const PanelNames& names);
   RunRecorder(const RunRecorder&) = delete;
   RunRecorder& operator=(const RunRecorder&) = delete;
 
   // Keeps the camera's pictures as they are; before the run.
-  void keep_raw_images(const CameraCalibration& camera, const LaserCalibration& laser, const optics::OpticsConfig& optics);
+  void keep_raw_images(const arm::Arm& arm, const CameraCalibration& camera, const LaserCalibration& laser,
+                       const optics::OpticsConfig& optics);
 
   hal::SimObserver& observer() { return all_; }
   // After each turn of the control thread and of the vision thread, outside of their timing.

@@ -59,14 +59,15 @@ class Session {
         sample_(scenario::draw(request.scenario, request.seed)),
         nominal_(scenario::make_nominal(request.scenario, sample_.lamps_lit)),
         sim_(truth(request, sample_, nominal_)),
-        recorder_(folder, nominal_.error_texts, request.say, sim_.optics, request.scenario.survey.names),
+        recorder_(folder, nominal_.error_texts, request.say, sim_.optics, nominal_.controller.arm, request.scenario.survey.names),
         platform_(std::make_unique<hal::SimPlatform>(sim_, recorder_.observer())),
         controller_(std::make_unique<Controller>(nominal_.controller)),
         pipeline_(std::make_unique<ScanPipeline>(nominal_.scan)),
         rings_(std::make_unique<hal::CoreRings>()),
         ticks_(static_cast<std::size_t>(request.scenario.time_limit_s / can_map::sync_period.s()) + 1),
         frames_(16384) {
-    if (request.record_images) recorder_.keep_raw_images(nominal_.controller.camera, nominal_.controller.laser, sim_.optics);
+    if (request.record_images)
+      recorder_.keep_raw_images(nominal_.controller.arm, nominal_.controller.camera, nominal_.controller.laser, sim_.optics);
     recorder_.events().say({{"t_s", 0.0},
                             {"kind", "begin"},
                             {"config", request.scenario.file},

@@ -12,6 +12,7 @@
 #include "hal/config/nearest.hpp"
 #include "hal/config/panel_check.hpp"
 #include "hal/config/panel_file.hpp"
+#include "hal/config/read_arm.hpp"
 #include "hal/config/share.hpp"
 #include "hal/config/task_reach.hpp"
 #include "hal/config/text_file.hpp"
@@ -179,6 +180,15 @@ bool names_a_panel(const YAML::Node& root, const std::vector<std::string>& overr
          std::any_of(overrides.begin(), overrides.end(), [](const std::string& text) { return text.starts_with("panel.file="); });
 }
 
+// For the checks that come before the core's.
+void read_arm(Scenario& scenario) {
+  try {
+    scenario.told_arm = config::read_arm(config::named_file(scenario.file, "arm.urdf", scenario.arm.urdf));
+  } catch (const InputError&) {
+    return;  // told with the job's problems
+  }
+}
+
 void read_scene(Scenario& scenario, std::vector<std::string>& problems) {
   if (scenario.scene.empty()) return;
   try {
@@ -204,6 +214,7 @@ config::Machine work_of(const Scenario& s) {
   work.survey = s.survey;
   work.mission = s.mission;
   work.tasks = s.tasks;
+  work.arm = s.told_arm;
   return work;
 }
 
@@ -257,6 +268,7 @@ Scenario load_scenario(const std::string& file_or_name, const std::vector<std::s
   }
   if (!config::settle_panel(path, scenario.panel_file, scenario.docked_panel, scenario.valve, scenario.panel, scenario.survey, problems))
     throw InputError(config::joined(problems));
+  read_arm(scenario);
   read_scene(scenario, problems);
   check_together(scenario, overrides.empty() ? source.name() : source.name() + " with --set", problems);
   if (problems.empty()) return scenario;

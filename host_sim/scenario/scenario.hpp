@@ -200,6 +200,7 @@ struct Scenario {
   Calibration calibration;
   config::Vehicle vehicle;
   Arm arm;
+  arm::Arm told_arm = arm::arm5e();  // of arm.urdf, read with the file; what cannot be read is told with the job's problems
   Jaw jaw;
   Physics physics;
   Friction friction;

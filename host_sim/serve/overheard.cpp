@@ -23,7 +23,7 @@ void OverheardDrives::hear(const CanFrame& frame, Time t) {
     if (frame.id != canopen::cob_id::tpdo1 + can_map::drive_nodes[i]) continue;
     Report& report = reports_[i];
     const std::int64_t counts = std::int64_t{canopen::get<std::int32_t>(frame, can_map::drive_tpdo1::position)} - zero_counts_[i];
-    const double position = arm::rad_from_counts(static_cast<Joint>(i), static_cast<std::int32_t>(counts));
+    const double position = arm::rad_from_counts(arm_.joints[i], static_cast<std::int32_t>(counts));
     const double gap_s = (t - report.t).s();
     if (report.heard && gap_s > 0 && gap_s < longest_gap_s) {
       report.velocity_rad_s += new_share * ((position - report.position_rad) / gap_s - report.velocity_rad_s);
@@ -42,7 +42,7 @@ std::optional<double> OverheardDrives::position_rad(std::size_t joint) const {
 }
 
 JointDrive OverheardDrives::follow(std::size_t joint, double motor_rad) const {
-  const arm_geometry::JointNumbers& numbers = arm::numbers(static_cast<Joint>(joint));
+  const ArmModel::Joint& numbers = arm_.joints[joint];
   const Report& report = reports_[joint];
   JointDrive drive;
   drive.torque_limit_nm = numbers.effort_nm;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "host_sim/devices/exposure.hpp"
+#include "shared/arm/arm_model.hpp"
 #include "shared/messages/can_frame.hpp"
 #include "shared/messages/joint_io.hpp"
 #include "shared/messages/time.hpp"
@@ -17,7 +18,8 @@ namespace lf::serve {
 class OverheardDrives {
  public:
   // `zero_counts`: what each real drive's encoder counts where the arm's own count is 0.
-  explicit OverheardDrives(const std::array<std::int32_t, joint_count>& zero_counts = {}) : zero_counts_(zero_counts) {}
+  explicit OverheardDrives(const ArmModel& arm, const std::array<std::int32_t, joint_count>& zero_counts = {})
+      : arm_(arm), zero_counts_(zero_counts) {}
 
   void hear(const CanFrame& frame, Time t);
   // The joint's motor, as its drive last reported it; nothing before it did.
@@ -33,6 +35,7 @@ class OverheardDrives {
     double velocity_rad_s = 0;  // smoothed: a count in a SYNC period is up to 0.8 rad/s
     bool heard = false;
   };
+  ArmModel arm_;
   std::array<std::int32_t, joint_count> zero_counts_;
   std::array<Report, joint_count> reports_{};
 };

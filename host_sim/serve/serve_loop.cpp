@@ -2,6 +2,8 @@
 
 #include <cstring>
 
+#include "shared/arm/make_model.hpp"
+
 namespace lf::serve {
 
 ServeLoop::ServeLoop(const hal::SimConfig& config, const NodeSet& served, CanLink& link, LoopCamera* camera, Say say,
@@ -9,7 +11,7 @@ ServeLoop::ServeLoop(const hal::SimConfig& config, const NodeSet& served, CanLin
     : world_(config.world),
       rack_(config.devices, Time{}),
       link_(link),
-      bus_(rack_, link, served, real_zero_counts),
+      bus_(rack_, link, served, make_model(config.world.arm), real_zero_counts),
       camera_(camera),
       say_(std::move(say)),
       pace_(link.now()) {}

@@ -29,9 +29,9 @@ class ServedBus {
   };
 
   // `real_zero_counts`: see OverheardDrives.
-  ServedBus(devices::NodeRack& rack, CanLink& link, const NodeSet& served,
+  ServedBus(devices::NodeRack& rack, CanLink& link, const NodeSet& served, const ArmModel& arm,
             const std::array<std::int32_t, joint_count>& real_zero_counts = {})
-      : rack_(rack), link_(link), served_(served), real_drives_(real_zero_counts) {
+      : rack_(rack), link_(link), served_(served), real_drives_(arm, real_zero_counts) {
     // What grows by the hour looks like a leak, and in the tests of the daemon like one of the daemon's.
     stats_.answer_us.reserve(most_answers);
   }

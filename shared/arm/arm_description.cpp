@@ -273,6 +273,54 @@ ArmJoint read_mimic(const Urdf& urdf, const ArmJoint& jaw) {
   return finger_b;
 }
 
+// The box by which a finger holds, square to it.
+scene::Shape read_pad(const Urdf& urdf, const char* finger) {
+  const XMLElement* const link = urdf.named("link", finger);
+  for (const XMLElement* c = link->FirstChildElement("collision"); c != nullptr; c = c->NextSiblingElement("collision")) {
+    const char* const name = c->Attribute("name");
+    if (name == nullptr || std::strcmp(name, "pad") != 0) continue;
+    const scene::Shape pad = read_collision(urdf, c);
+    if (pad.kind != scene::ShapeKind::box || !pad.body_from_shape.linear().isIdentity(1e-9))
+      urdf.fail(c, "the pad must be a box, not turned");
+    return pad;
+  }
+  urdf.fail(link, urdf.label(link) + " has no <collision> named 'pad', the box by which it holds");
+}
+
+// Each gets a capsule in the core, but for those of the base.
+void check_shapes(const Urdf& urdf, const ArmDescription& arm) {
+  std::size_t shapes = 0;
+  for (std::size_t link = 1; link < arm.links.size(); ++link) {
+    for (const scene::Shape& shape : arm.links[link].shapes) shapes += shape.collides ? 1 : 0;
+    if (shapes > capacity::arm_shapes)
+      urdf.fail(urdf.named("link", arm.links[link].name), "with this link the arm has " + std::to_string(shapes) +
+                                                              " collision shapes; the core holds " + std::to_string(capacity::arm_shapes) +
+                                                              ". Leave out what lies within a larger one");
+  }
+}
+
+// The fingers turn about the wrist's y, on its x axis or above it, and are each other's mirror image.
+void check_jaw(const Urdf& urdf, const ArmDescription& arm) {
+  constexpr double tolerance = 1e-9;
+  const auto expect = [&](bool holds, const char* joint, const char* message) {
+    if (!holds) urdf.fail(urdf.named("joint", joint), std::string("joint '") + joint + "' " + message);
+  };
+  const ArmJoint& a = arm.joints[static_cast<std::size_t>(Joint::jaw)];
+  const auto square = [&](const ArmJoint& joint) {
+    return joint.parent_from_joint.linear().isIdentity(tolerance) && std::abs(joint.parent_from_joint.translation().y()) < tolerance;
+  };
+  expect(square(a) && (a.axis + Vec3::UnitY()).norm() < tolerance, "jaw", "must turn about the wrist's -y, in its x-z plane");
+  const Vec3 mirrored = a.parent_from_joint.translation().cwiseProduct(Vec3(-1, 1, 1));
+  expect(square(arm.finger_b) && (arm.finger_b.axis - Vec3::UnitY()).norm() < tolerance &&
+             (arm.finger_b.parent_from_joint.translation() - mirrored).norm() < tolerance,
+         "finger_b", "must be the mirror image of 'jaw': about the wrist's y, at -x");
+  const scene::Shape other = read_pad(urdf, "finger_b");
+  const Vec3 pad = arm.pad.body_from_shape.translation();
+  if ((other.body_from_shape.translation() - pad.cwiseProduct(Vec3(-1, 1, 1))).norm() > tolerance ||
+      (other.size_m - arm.pad.size_m).norm() > tolerance)
+    urdf.fail(urdf.named("link", "finger_b"), "link 'finger_b': its pad must be the mirror image of finger_a's");
+}
+
 // The closed forms of the core hold for one kind of chain only: slew axis through the base's origin, then shoulder and elbow parallel and square to it,
 // the roll axis square to these, and everything in the one plane that the slew turns.
 void check_chain(const Urdf& urdf, const ArmDescription& arm) {
@@ -314,7 +362,10 @@ ArmDescription load_arm_urdf(const std::string& path) {
   }
   arm.finger_b = read_mimic(urdf, arm.joints[static_cast<std::size_t>(Joint::jaw)]);
   arm.wrist_from_tool = urdf.origin(joint_between(urdf, "tool", "fixed", "wrist", "tool"));
+  check_shapes(urdf, arm);
   check_chain(urdf, arm);
+  arm.pad = read_pad(urdf, "finger_a");
+  check_jaw(urdf, arm);
   return arm;
 }
 

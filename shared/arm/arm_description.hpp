@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "shared/arm/arm_model.hpp"
 #include "shared/geometry/pose.hpp"
 #include "shared/messages/joint_io.hpp"
 #include "shared/scene/scene.hpp"
@@ -20,17 +21,6 @@ struct ArmLink {
   Pose link_from_com = Pose::Identity();
   Mat3 inertia_kg_m2 = Mat3::Identity();  // about the centre of mass, in its axes
   std::vector<scene::Shape> shapes;       // a URDF's visuals are drawn only, its collisions collide only
-};
-
-// A screw or gear between motor counts and the joint's angle.
-// Screw: its length closes a triangle, length^2 = pivot_a^2 + pivot_b^2 - 2 pivot_a pivot_b cos(q + offset); counts = counts_per_m (length - length(q = 0)).
-// Gear (pivot lengths 0): counts = counts_per_rad q.
-struct ArmActuator {
-  double pivot_a_m = 0;
-  double pivot_b_m = 0;
-  double offset_rad = 0;
-  double counts_per_m = 0;
-  double counts_per_rad = 0;
 };
 
 // Between motor and joint, nominal: what commissioning is to find. Shares of the motor's rated torque, and what of a load's torque gets through.
@@ -67,6 +57,7 @@ struct ArmDescription {
   std::array<ArmJoint, joint_count> joints;
   ArmJoint finger_b;                        // mimic of the jaw joint
   Pose wrist_from_tool = Pose::Identity();  // the tool frame on the wrist body
+  scene::Shape pad;                         // of finger_a: the box whose +x face holds
 };
 
 // Reads and checks a URDF. Throws InputError with file and line: unreadable file, missing joint or link, limits that are not numbers or

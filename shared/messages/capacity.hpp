@@ -3,14 +3,14 @@
 
 #include <cstddef>
 
-// Of a panel its valves, buttons and markers; of the vehicle's shape the boxes, and as many rods.
+// Of a panel its valves, buttons and markers; of the vehicle's shape the boxes, and as many rods; of the arm the collision shapes.
 namespace lf::capacity {
 
 #ifdef LANTERNFISH_SMALL_CORE
 // A controller in the 64 KiB of a Cortex-M7's tightly coupled memory.
-inline constexpr std::size_t valves = 2, buttons = 4, markers = 2, vehicle_shapes = 8;
+inline constexpr std::size_t valves = 2, buttons = 4, markers = 2, vehicle_shapes = 8, arm_shapes = 16;
 #else
-inline constexpr std::size_t valves = 16, buttons = 16, markers = 16, vehicle_shapes = 16;
+inline constexpr std::size_t valves = 16, buttons = 16, markers = 16, vehicle_shapes = 16, arm_shapes = 96;
 #endif
 
 }  // namespace lf::capacity

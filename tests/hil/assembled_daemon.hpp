@@ -30,6 +30,7 @@
 #include "hal/vehicle/operator_client.hpp"
 #include "host_sim/scenario/instance.hpp"
 #include "host_sim/serve/serve_loop.hpp"
+#include "tests/arm5e.hpp"
 #include "tests/hil/pair_linux.hpp"
 #include "tests/unit/temporary_folder.hpp"
 
@@ -76,8 +77,8 @@ inline hal::SimConfig make_sea() {
   const scenario::Sample sample = scenario::draw(scenario, 1);
   const scenario::Nominal nominal = scenario::make_nominal(scenario, sample.lamps_lit);
   hal::SimConfig sea = scenario::make_truth(scenario, sample, nominal, 1);
-  sea.world.base_from_panel.translation().x() += 2;                    // nothing within reach
-  sea.world.start_rad[4] = arm_geometry::joints[4].lower_rad + 0.004;  // closed: the arm may be commissioned without it
+  sea.world.base_from_panel.translation().x() += 2;                          // nothing within reach
+  sea.world.start_rad[4] = test::arm5e.model().joints[4].lower_rad + 0.004;  // closed: the arm may be commissioned without it
   for (std::size_t i = 0; i < joint_count; ++i) sea.devices.drives[i].encoder_offset_rad = 0;
   return sea;
 }

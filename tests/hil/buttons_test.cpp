@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "tests/arm5e.hpp"
 #include "tests/hil/operator.hpp"
 
 namespace lf::test {
@@ -160,12 +161,12 @@ TEST(APress, StopsWhereItFindsTheBottom) {
 
 // After a valve the jaw closes for the second look. Something gets between the fingers there: as thick as the bar it looks held, thicker it jams them.
 TEST(APress, IsNotBegunWithSomethingBetweenTheFingers) {
-  const double widest_rad = arm_geometry::joints[4].upper_rad;
+  const double widest_rad = test::arm5e.model().joints[4].upper_rad;
   for (const double thick_m : {PanelLayout{}.valves[0].handle_thickness_m, 0.025}) {
     Rig rig({"tasks=[{turn_valve: {to_deg: 90}}, {press_buttons: {order: [left]}}]"});
     rig.start();
     ASSERT_TRUE(rig.run_to(Step::back_off)) << rig.story();
-    rig.block_jaw(arm::jaw_from_gap(thick_m), widest_rad);
+    rig.block_jaw(arm::jaw_from_gap(test::jaw5e, thick_m), widest_rad);
     ASSERT_TRUE(rig.run_to_end()) << rig.story();
     EXPECT_FALSE(rig.outcome().success) << rig.story();
     EXPECT_EQ(rig.outcome().step, Step::verify_reach) << rig.story();
@@ -181,12 +182,12 @@ TEST(AValve, IsNoSuccessWithSomethingBetweenTheFingers) {
   Rig rig({"tasks=[{turn_valve: {to_deg: 90}}]"});
   rig.start();
   ASSERT_TRUE(rig.run_to(Step::back_off)) << rig.story();
-  rig.block_jaw(arm::jaw_from_gap(0.025), arm_geometry::joints[4].upper_rad);
+  rig.block_jaw(arm::jaw_from_gap(test::jaw5e, 0.025), test::arm5e.model().joints[4].upper_rad);
   ASSERT_TRUE(rig.run_to_end()) << rig.story();
   rig.run_for(1);
   EXPECT_FALSE(rig.outcome().success) << rig.story();
   EXPECT_EQ(rig.outcome().code, static_cast<std::int32_t>(StepFailure::jaw_not_closed)) << rig.story();
-  EXPECT_GT(arm::gap_from_jaw(angle_rad(rig, Joint::jaw)), 0.04) << "it still holds it";
+  EXPECT_GT(arm::gap_from_jaw(test::jaw5e, angle_rad(rig, Joint::jaw)), 0.04) << "it still holds it";
 }
 
 // The jaw's motor seizes before the second look: its torque rises while it stands.
@@ -199,7 +200,7 @@ TEST(APress, IsNotBegunWithAJawThatHasSeized) {
   EXPECT_FALSE(rig.outcome().success) << rig.story();
   EXPECT_EQ(rig.outcome().fault, safety::Fault::following_error) << rig.story();
   EXPECT_EQ(rig.outcome().code, static_cast<std::int32_t>(Joint::jaw)) << rig.story();
-  EXPECT_GT(arm::gap_from_jaw(angle_rad(rig, Joint::jaw)), 0.02) << "it has not closed";
+  EXPECT_GT(arm::gap_from_jaw(test::jaw5e, angle_rad(rig, Joint::jaw)), 0.02) << "it has not closed";
   EXPECT_EQ(rig.world().button(0).presses, 0u);
   EXPECT_EQ(rig.world().button(0).depth_m, 0) << "it was touched";
 }

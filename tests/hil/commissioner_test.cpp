@@ -11,6 +11,7 @@
 #include <memory>
 #include <string>
 
+#include "tests/arm5e.hpp"
 #include "tests/hil/commissioner_at_work.hpp"
 
 namespace lf::test {
@@ -213,7 +214,7 @@ TEST(CommissioningThatFails, SaysThatNothingWasWrittenWhereTheFileCannotBe) {
 // A joint that was found elsewhere, and a file that somebody changes meanwhile: what was found cannot be compared with it. A commissioning of another joint
 // that ended well gave the joint its power back, with the zero that had just been found wrong.
 TEST(CommissioningThatFails, LeavesNoPowerToAJointWhoseFileWasUnreadableByThen) {
-  const auto off = static_cast<std::int32_t>(0.2 / std::abs(arm::rad_per_count(Joint::slew, 0)));
+  const auto off = static_cast<std::int32_t>(0.2 / std::abs(arm::rad_per_count(test::arm5e.joint(Joint::slew), 0)));
   Bench bench(somewhere);
   AtWork work(somewhere[4]);
   std::string text = work.folder.read("homing.yaml");

@@ -13,6 +13,7 @@
 #include "hal/sim/sim_platform.hpp"
 #include "hal/vehicle/commissioning.hpp"
 #include "host_sim/scenario/instance.hpp"
+#include "tests/arm5e.hpp"
 
 namespace lf::test {
 
@@ -21,7 +22,7 @@ using Angles = std::array<double, joint_count>;
 
 inline constexpr Zeros somewhere{12'345, -70'000, 7, 100'123, -54'321};
 // Folded, the jaw closed.
-inline constexpr Angles parked{0, 0.60, 1.90, 0, arm_geometry::joints[4].lower_rad + 0.004};
+inline const Angles parked{0, 0.60, 1.90, 0, test::arm5e.model().joints[4].lower_rad + 0.004};
 // Screws rub, and what is not known of that before costs 0.02 degrees.
 inline constexpr double allowed_rad = 0.07 * pi / 180;
 
@@ -86,11 +87,11 @@ class CommissioningBench {
 
   // Half a count is what rounding costs.
   double tolerance_rad(std::size_t joint) const {
-    return allowed_rad + 0.5 * arm::rad_per_count(static_cast<Joint>(joint), angles()[joint]);
+    return allowed_rad + 0.5 * arm::rad_per_count(test::arm5e.joint(static_cast<Joint>(joint)), angles()[joint]);
   }
   // How far the angle at the joint's place is off when the zero is taken to be `zero_counts`.
   double error_rad(std::size_t joint, std::int32_t zero_counts) const {
-    const double per_count = arm::rad_per_count(static_cast<Joint>(joint), angles()[joint]);
+    const double per_count = arm::rad_per_count(test::arm5e.joint(static_cast<Joint>(joint)), angles()[joint]);
     return (zero_counts - zeros_[joint]) * per_count;
   }
 

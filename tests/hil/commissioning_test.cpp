@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/arm5e.hpp"
 #include "tests/hil/commissioning_bench.hpp"
 
 namespace lf::test {
@@ -111,7 +112,7 @@ TEST(CommissionedArm, IsWhereTheCoreTakesItToBe) {
     const JointReading truth = bench.platform().world().readings()[i];
     EXPECT_NEAR(told, truth.motor_position_rad, bench.tolerance_rad(i)) << config::joint_name(i);
     EXPECT_NEAR(told, truth.position_rad, 0.003) << config::joint_name(i) << ", which its load may bend";
-    const double left_rad = i == 4 ? arm_geometry::joints[4].lower_rad : parked[i];
+    const double left_rad = i == 4 ? test::arm5e.model().joints[4].lower_rad : parked[i];
     EXPECT_NEAR(truth.position_rad, left_rad, 0.01) << config::joint_name(i) << ", back where it was, and the jaw closed";
   }
 }
@@ -135,7 +136,7 @@ constexpr Angles holding{0, 0.60, 1.90, 0, 0.06};
 TEST(CommissioningWithSomethingInTheJaw, OpensAndClosesTheJawBeforeTheArmMoves) {
   Bench bench(somewhere, holding);
   Commissioning commissioning(bench.config());
-  const double open_rad = arm_geometry::joints[4].upper_rad - 0.3, closed_rad = arm_geometry::joints[4].lower_rad + 0.01;
+  const double open_rad = test::arm5e.model().joints[4].upper_rad - 0.3, closed_rad = test::arm5e.model().joints[4].lower_rad + 0.01;
   bool opened = false, closed = false;
   bench.run(commissioning, [&] {
     opened = opened || bench.angles()[4] > open_rad;
@@ -151,7 +152,7 @@ TEST(CommissioningWithSomethingInTheJaw, OpensAndClosesTheJawBeforeTheArmMoves) 
 // The arm stands so that the valve's bar is between the fingers: opened, they close on it again.
 TEST(CommissioningWithSomethingInTheJaw, MovesNoArmJointWhereTheJawDoesNotClose) {
   Bench bench(somewhere, holding);
-  bench.platform().block_jaw(arm::jaw_from_gap(0.0126), arm_geometry::joints[4].upper_rad);
+  bench.platform().block_jaw(arm::jaw_from_gap(test::jaw5e, 0.0126), test::arm5e.model().joints[4].upper_rad);
   Commissioning commissioning(bench.config());
   bench.run(commissioning);
   EXPECT_EQ(commissioning.state(), Commissioning::State::failed);
@@ -167,7 +168,7 @@ TEST(CommissioningWithSomethingInTheJaw, MovesNoArmJointWithoutTheJaw) {
     double rad;
     const char* why;  // nothing: it is done
   };
-  const double shut_rad = arm_geometry::joints[4].lower_rad + 0.004;
+  const double shut_rad = test::arm5e.model().joints[4].lower_rad + 0.004;
   for (const Jaw& jaw : {Jaw{true, 0.06, "the jaw is not closed"}, Jaw{true, 0.30, "the jaw is not closed"}, Jaw{true, shut_rad, nullptr},
                          Jaw{false, shut_rad, "nobody knows whether the jaw is empty"}}) {
     SCOPED_TRACE(jaw.rad);
@@ -217,7 +218,7 @@ TEST_P(CommissioningOfAJointThatIsFoundElsewhere, FailsAndMovesNoOther) {
   bench.run(commissioning);
   EXPECT_EQ(commissioning.state(), elsewhere.ordered ? Commissioning::State::done : Commissioning::State::failed)
       << commissioning.failure();
-  EXPECT_NEAR(commissioning.moved_rad()[4], 700 * arm::rad_per_count(Joint::jaw, 0), 0.005);
+  EXPECT_NEAR(commissioning.moved_rad()[4], 700 * arm::rad_per_count(test::arm5e.joint(Joint::jaw), 0), 0.005);
   if (!elsewhere.ordered) {
     const std::string failure(commissioning.failure());
     EXPECT_NE(failure.find("jaw: its zero was found 0.38 rad from where it was"), std::string::npos) << failure;
@@ -240,8 +241,10 @@ TEST(CommissioningInAJig, MovesNothing) {
     const auto joint = static_cast<Joint>(i);
     EXPECT_TRUE(commissioning.found()[i]);
     EXPECT_NEAR(bench.angles()[i], parked[i], 0.003) << config::joint_name(i);
-    const double counts = commissioning.zero_counts()[i] - somewhere[i] - arm::exact_counts_from_rad(joint, bench.angles()[i]);
-    EXPECT_LT(std::abs(counts) * arm::rad_per_count(joint, bench.angles()[i]), bench.tolerance_rad(i) + bench.backlash_rad()[i])
+    const double counts =
+        commissioning.zero_counts()[i] - somewhere[i] - arm::exact_counts_from_rad(test::arm5e.joint(joint), bench.angles()[i]);
+    EXPECT_LT(std::abs(counts) * arm::rad_per_count(test::arm5e.joint(joint), bench.angles()[i]),
+              bench.tolerance_rad(i) + bench.backlash_rad()[i])
         << config::joint_name(i);
   }
 }
@@ -253,7 +256,7 @@ TEST(CommissioningInAJig, FailsWhereAZeroIsFoundElsewhere) {
   setup.here = true;
   setup.network.drives[4].zero_known = false;
   setup.network.drives[3].zero_known = true;
-  setup.network.drives[3].encoder_zero_counts = somewhere[3] + arm::counts_from_rad(Joint::roll, 0.1);
+  setup.network.drives[3].encoder_zero_counts = somewhere[3] + arm::counts_from_rad(test::arm5e.joint(Joint::roll), 0.1);
   Commissioning commissioning(setup);
   bench.run(commissioning);
   EXPECT_EQ(commissioning.state(), Commissioning::State::failed);

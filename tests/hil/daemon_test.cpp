@@ -12,6 +12,7 @@
 
 #include "firmware/arm/actuator.hpp"
 #include "hal/config/homing_file.hpp"
+#include "tests/arm5e.hpp"
 #include "tests/hil/assembled_daemon.hpp"
 
 namespace lf::test {
@@ -241,7 +242,7 @@ TEST_F(AssembledDaemon, CommissionsAJointAndUsesItsZero) {
   EXPECT_FALSE(sea->any_powered());
   offsets = config::read_homing_file(folder / "homing.yaml");
   EXPECT_TRUE(offsets.known[4]);
-  const double off_rad = std::abs(offsets.zero_counts[4]) * arm::rad_per_count(Joint::jaw, sea->actual_rad(4));
+  const double off_rad = std::abs(offsets.zero_counts[4]) * arm::rad_per_count(test::arm5e.joint(Joint::jaw), sea->actual_rad(4));
   EXPECT_LT(off_rad, 0.003);  // the simulated encoder counts 0 at 0
   EXPECT_EQ(offsets.zero_counts[0], 0);
   order("home");

@@ -15,6 +15,7 @@
 #include "firmware/safety/watch.hpp"
 #include "hal/sim/sim_platform.hpp"
 #include "host_sim/scenario/instance.hpp"
+#include "tests/arm5e.hpp"
 
 namespace lf::test {
 
@@ -35,7 +36,7 @@ class JointBench {
     if (change) change(truth);
     platform = std::make_unique<hal::SimPlatform>(truth, nobody_);
     network = std::make_unique<canopen::Network>(nominal.controller.network);
-    watch = std::make_unique<safety::Watch>(nominal.controller.limits, nominal.controller.transmissions);
+    watch = std::make_unique<safety::Watch>(test::arm5e, nominal.controller.limits, nominal.controller.transmissions);
   }
 
   // False when the joint does not come into power.
@@ -51,7 +52,7 @@ class JointBench {
   }
 
   void move(Joint joint, double speed_rad_s) {
-    const double per_count = arm::rad_per_count(joint, watch->joints().position_rad[std::size_t(joint)]);
+    const double per_count = arm::rad_per_count(test::arm5e.joint(joint), watch->joints().position_rad[std::size_t(joint)]);
     target_ += speed_rad_s * 0.004 / per_count;
     const double lead = 0.05 / per_count, actual = network->axis(joint).actual_counts();
     target_ = std::clamp(target_, actual - lead, actual + lead);
@@ -64,11 +65,11 @@ class JointBench {
     for (hal::ReceivedFrame received; platform->receive_can(0, received) == hal::port_ok;) network->on_frame(received.frame, received.t);
     Angles rad{};
     for (std::size_t i = 0; i < joint_count; ++i)
-      rad[i] = arm::rad_from_counts(static_cast<Joint>(i), network->axis(static_cast<Joint>(i)).actual_counts());
+      rad[i] = arm::rad_from_counts(test::arm5e.joint(static_cast<Joint>(i)), network->axis(static_cast<Joint>(i)).actual_counts());
     watch->observe(*network, rad, now);
     safety::FaultArbiter began;
     const Vec3 tool_m =
-        watches_tool ? arm::base_from_tool(arm::JointVector(rad[0], rad[1], rad[2], rad[3])).translation() : Vec3(0.2, 0, 0.5);
+        watches_tool ? test::arm5e.base_from_tool(arm::JointVector(rad[0], rad[1], rad[2], rad[3])).translation() : Vec3(0.2, 0, 0.5);
     watch->check(*network, tool_m, safety::Vigilance::joints, now, began);
     for (const safety::FaultReport& report : began.reports()) {
       if (report.fault == safety::Fault::overload) overloaded = static_cast<std::size_t>(report.code);

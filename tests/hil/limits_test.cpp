@@ -9,6 +9,7 @@
 
 #include "firmware/arm/kinematics.hpp"
 #include "firmware/mission/workbench.hpp"
+#include "tests/arm5e.hpp"
 #include "tests/hil/joint_bench.hpp"
 
 namespace lf::test {
@@ -106,7 +107,7 @@ TEST(ALimit, OfTheWorkspaceActsBeyondEveryFace) {
     for (const bool upper : {false, true}) {
       // Beyond this face, and within the others.
       const auto out_m = [&](const arm::JointVector& q) {
-        const Vec3 tool_m = arm::base_from_tool(q).translation();
+        const Vec3 tool_m = test::arm5e.base_from_tool(q).translation();
         double beyond_m = -HUGE_VAL, others_m = -HUGE_VAL;
         for (Eigen::Index other = 0; other < 3; ++other) {
           const auto i = static_cast<std::size_t>(other);
@@ -128,7 +129,7 @@ TEST(ALimit, OfTheWorkspaceActsBeyondEveryFace) {
     }
   }
   arm::JointVector inside = draw();
-  while (safety::workspace_excursion_m(limits, arm::base_from_tool(inside).translation()) > 0) inside = draw();
+  while (safety::workspace_excursion_m(limits, test::arm5e.base_from_tool(inside).translation()) > 0) inside = draw();
   EXPECT_FALSE(acts(inside));
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "firmware/arm/gripper.hpp"
+#include "tests/arm5e.hpp"
 #include "tests/hil/rig.hpp"
 
 namespace lf::test {
@@ -66,7 +67,7 @@ TEST(AGrip, OfWhatIsNoBarIsGivenUpAtOnce) {
   Rig rig(turn_only());
   rig.start();
   ASSERT_TRUE(rig.run_to(Step::grip)) << rig.story();
-  rig.block_jaw(arm::jaw_from_gap(0.030), arm_geometry::joints[4].upper_rad);
+  rig.block_jaw(arm::jaw_from_gap(test::jaw5e, 0.030), test::arm5e.model().joints[4].upper_rad);
   ASSERT_TRUE(rig.run_to_end()) << rig.story();
   EXPECT_EQ(rig.outcome().fault, Fault::step_failed) << rig.story();
   EXPECT_EQ(rig.outcome().code, static_cast<std::int32_t>(StepFailure::not_gripped)) << rig.story();

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <string>
 
+#include "tests/arm5e.hpp"
 #include "tests/hil/operator.hpp"
 
 namespace lf::test {
@@ -66,7 +67,7 @@ TEST_P(AJawThatDoesNotOpen, EndsTheWayHomeWithAStopAndNoPullOnTheHandle) {
   EXPECT_LT(moved_m, 0.005) << "it went back with the handle in the jaw";
   EXPECT_LT(pulled_n, pulled_before_n + 20) << rig.story();
   EXPECT_LT(rig.fastest_joint_rad_s(), standing_rad_s);
-  EXPECT_LT(arm::gap_from_jaw(angle_rad(rig, Joint::jaw)), PanelLayout{}.valves[0].handle_thickness_m + 0.002)
+  EXPECT_LT(arm::gap_from_jaw(test::jaw5e, angle_rad(rig, Joint::jaw)), PanelLayout{}.valves[0].handle_thickness_m + 0.002)
       << "it is not jammed on the handle";
 }
 
@@ -81,7 +82,7 @@ double fastest_arm_joint_rad_s(const Rig& rig) {
 // Something gets between the fingers as they close on the way home: as thick as the bar, and thicker. The jaw opened while the arm moved, on a way that had been
 // checked for a closed jaw.
 TEST(WhatTheJawClosesOnOnTheWayHome, IsLetGoOfByAnArmAtRest) {
-  const double widest_rad = arm_geometry::joints[4].upper_rad;
+  const double widest_rad = test::arm5e.model().joints[4].upper_rad;
   for (const double thick_m : {PanelLayout{}.valves[0].handle_thickness_m, 0.025}) {
     SCOPED_TRACE(thick_m);
     Rig rig(turn_only());
@@ -89,13 +90,13 @@ TEST(WhatTheJawClosesOnOnTheWayHome, IsLetGoOfByAnArmAtRest) {
     ASSERT_TRUE(rig.run_to(Step::turn)) << rig.story();
     ASSERT_TRUE(give(rig, Command::abort));
     ASSERT_TRUE(rig.run_to(Step::stow)) << rig.story();
-    rig.block_jaw(arm::jaw_from_gap(thick_m), widest_rad);
+    rig.block_jaw(arm::jaw_from_gap(test::jaw5e, thick_m), widest_rad);
     const double pads_m = 0.003;  // by which the pads may stand apart more than what they hold
     const double open_m = 0.04;   // well open: the jaw goes on to 0.0606
     double narrowest_m = 1, moved_before_rad_s = 0, opening_rad_s = 0;
     for (int i = 0; i < 250 * 90 && rig.step_now() == Step::stow; ++i) {
       rig.step();
-      const double gap_m = arm::gap_from_jaw(angle_rad(rig, Joint::jaw));
+      const double gap_m = arm::gap_from_jaw(test::jaw5e, angle_rad(rig, Joint::jaw));
       narrowest_m = std::min(narrowest_m, gap_m);
       const double speed_rad_s = fastest_arm_joint_rad_s(rig);
       if (narrowest_m > thick_m + pads_m) moved_before_rad_s = std::max(moved_before_rad_s, speed_rad_s);
@@ -108,7 +109,7 @@ TEST(WhatTheJawClosesOnOnTheWayHome, IsLetGoOfByAnArmAtRest) {
     EXPECT_LT(opening_rad_s, standing_rad_s) << "the arm moves while the jaw opens";
     EXPECT_FALSE(rig.outcome().success) << rig.story();
     EXPECT_TRUE(failed_by(rig, StepFailure::jaw_not_closed)) << rig.story();
-    EXPECT_GT(arm::gap_from_jaw(angle_rad(rig, Joint::jaw)), open_m) << "it still holds it";
+    EXPECT_GT(arm::gap_from_jaw(test::jaw5e, angle_rad(rig, Joint::jaw)), open_m) << "it still holds it";
     for (std::size_t i = 0; i < arm_joint_count; ++i) {
       EXPECT_NEAR(rig.world().readings()[i].position_rad, mission::MissionConfig{}.park_rad[static_cast<Eigen::Index>(i)], 0.02)
           << "it is not at home: " << rig.story();

@@ -4,6 +4,7 @@
 #include "firmware/arm/kinematics.hpp"
 #include "firmware/arm/trajectory.hpp"
 #include "firmware/scan/sweep.hpp"
+#include "tests/arm5e.hpp"
 #include "tests/target/ledger.hpp"
 #include "tests/target/same_everywhere.hpp"
 #include "tests/unit/scan/docked_scene.hpp"
@@ -24,23 +25,23 @@ JointVector draw(SameRandom& random, const arm::JointLimits& limits) {
 }
 
 void put_kinematics(Ledger& ledger) {
-  const arm::JointLimits limits = arm::joint_limits();
+  const arm::JointLimits limits = test::arm5e.limits();
   const LaserCalibration laser = nominal_laser();
   SameRandom random(1);
   ledger.operation("forward kinematics", tolerance_m);
   for (int i = 0; i < 100; ++i) {
     const JointVector q = draw(random, limits);
-    ledger.pose(ledger.turn([&] { return arm::base_from_tool(q); }));
+    ledger.pose(ledger.turn([&] { return test::arm5e.base_from_tool(q); }));
   }
   ledger.operation("laser's pose", tolerance_m);
   for (int i = 0; i < 100; ++i) {
     const JointVector q = draw(random, limits);
-    ledger.pose(ledger.turn([&] { return arm::base_from_laser(q, laser); }));
+    ledger.pose(ledger.turn([&] { return test::arm5e.base_from_laser(q, laser); }));
   }
   ledger.operation("Jacobian", tolerance_m);
   for (int i = 0; i < 100; ++i) {
     const JointVector q = draw(random, limits);
-    ledger.numbers(ledger.turn([&] { return arm::jacobian(q); }).reshaped());
+    ledger.numbers(ledger.turn([&] { return test::arm5e.jacobian(q); }).reshaped());
   }
 }
 
@@ -51,14 +52,14 @@ void put_inverse_kinematics(Ledger& ledger) {
   for (int i = 0; i < 300; ++i) {
     const Vec3 tool_m = Vec3(0.45, 0, 0.55) + random.shares().cwiseProduct(Vec3(0.25, 0.4, 0.4));
     const double roll_rad = 3.2 * random.share();
-    const arm::IkResult ik = ledger.turn([&] { return arm::inverse_kinematics(tool_m, roll_rad); });
+    const arm::IkResult ik = ledger.turn([&] { return arm::inverse_kinematics(test::arm5e, tool_m, roll_rad); });
     ledger.integer(static_cast<std::uint64_t>(ik.outcome));
     if (ik.ok()) ledger.numbers(ik.q_rad);
   }
 }
 
 void put_motions(Ledger& ledger) {
-  const arm::JointLimits limits = arm::joint_limits(0.05, 0.6);
+  const arm::JointLimits limits = test::arm5e.limits(0.05, 0.6);
   SameRandom random(3);
   // A motion's time is a cube root of its way; a line's reach is searched for.
   ledger.operation("joint motion, planned", 1e-13);
@@ -76,12 +77,12 @@ void put_motions(Ledger& ledger) {
     ledger.numbers(state.qd_rad_s);
   }
 
-  const arm::IkResult start = arm::inverse_kinematics(Vec3(0.33, 0.02, 0.58), 0.3);
+  const arm::IkResult start = arm::inverse_kinematics(test::arm5e, Vec3(0.33, 0.02, 0.58), 0.3);
   ledger.operation("straight line, planned", 1e-12);
   arm::CartesianLine line;
   for (int i = 0; i < 10; ++i) {
     const Vec3 goal_m = Vec3(0.40, 0, 0.58) + random.shares().cwiseProduct(Vec3(0.02, 0.05, 0.03));
-    const arm::LinePlan plan = ledger.turn([&] { return line.plan(start.q_rad, goal_m, 0.5, {}, limits); });
+    const arm::LinePlan plan = ledger.turn([&] { return line.plan(test::arm5e, start.q_rad, goal_m, 0.5, {}, limits); });
     ledger.integer(static_cast<std::uint64_t>(plan.outcome));
     ledger.number(plan.speed_m_s);
     ledger.number(line.duration_s());
@@ -101,7 +102,7 @@ void put_sweep(Ledger& ledger) {
   const LaserCalibration laser = nominal_laser();
   // Ends are found by bisection to 1e-9 rad.
   ledger.operation("sweep, planned", 1e-8);
-  const scan::SweepPlan plan = ledger.turn([&] { return scan::plan_sweep(request, laser); });
+  const scan::SweepPlan plan = ledger.turn([&] { return scan::plan_sweep(test::arm5e, request, laser); });
   ledger.integer(static_cast<std::uint64_t>(plan.outcome));
   ledger.numbers(plan.start_rad);
   ledger.numbers(plan.end_rad);

@@ -8,6 +8,7 @@
 #include "firmware/scan/camera_model.hpp"
 #include "firmware/scan/sweep.hpp"
 #include "firmware/scan_pipeline.hpp"
+#include "tests/arm5e.hpp"
 #include "tests/target/ledger.hpp"
 #include "tests/target/same_everywhere.hpp"
 #include "tests/unit/scan/docked_scene.hpp"
@@ -52,7 +53,7 @@ void paint(B& bench, const CameraCalibration& camera, const LaserCalibration& la
   for (std::uint8_t& grey : bench.pixels) grey = static_cast<std::uint8_t>(40 + random.below(3));
   if (!laser_on) return;
   const Pose panel = PanelLayout{}.nominal_base_from_panel();
-  const Pose sheet = arm::base_from_laser(arm::JointVector(q[0], q[1], q[2], q[3]), laser);
+  const Pose sheet = test::arm5e.base_from_laser(arm::JointVector(q[0], q[1], q[2], q[3]), laser);
   const Vec3 panel_normal = panel.linear().col(2), sheet_normal = sheet.linear().col(0);
   const Vec3 along = panel_normal.cross(sheet_normal).normalized();
   // A point of both planes: from the panel's origin within the panel to the sheet.
@@ -92,7 +93,7 @@ void put_pipeline(Ledger& ledger, Bench<capacity>& bench, const char* image, con
   scan::SweepRequest request;
   request.base_from_panel = PanelLayout{}.nominal_base_from_panel();
   (void)request.handles.push_back({});
-  const scan::SweepPlan plan = scan::plan_sweep(request, config.laser);
+  const scan::SweepPlan plan = scan::plan_sweep(test::arm5e, request, config.laser);
   const auto joints = [&](Duration t) {
     Joints q;
     for (std::size_t j = 0; j < q.size(); ++j) q[j] = plan.start_rad[j] + plan.speed_rad_s[j] * t.s();

@@ -23,7 +23,7 @@ void MotionObserver::on_telemetry(const Telemetry& telemetry) {
   const bool asked = telemetry.step != mission::Step::idle && telemetry.step != mission::Step::boot;
   arm::JointVector asked_rad;
   for (std::size_t i = 0; i < arm_joint_count; ++i) asked_rad[static_cast<Eigen::Index>(i)] = telemetry.target_rad[i];
-  const Vec3 tool_m = world_->base_from_tool().translation(), asked_m = arm::base_from_tool(asked_rad).translation();
+  const Vec3 tool_m = world_->base_from_tool().translation(), asked_m = arm_.base_from_tool(asked_rad).translation();
   for (std::size_t axis = 0; axis < 3; ++axis) {
     tool_mm_[axis].push_back(1000 * tool_m[static_cast<Eigen::Index>(axis)]);
     asked_tool_mm_[axis].push_back(asked ? 1000 * asked_m[static_cast<Eigen::Index>(axis)] : record::unknown);

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "firmware/arm/kinematics.hpp"
 #include "hal/sim/sim_platform.hpp"
 #include "host_sim/record/report.hpp"
 
@@ -11,7 +12,8 @@ namespace lf::app {
 
 class MotionObserver : public hal::SimObserver {
  public:
-  explicit MotionObserver(const PanelNames& names = {}) : names_(names) {}
+  // `arm`: as the core knows it.
+  explicit MotionObserver(const arm::Arm& arm, const PanelNames& names = {}) : arm_(arm), names_(names) {}
 
   void on_step(Time, const world::World& world) override { world_ = &world; }
   void on_telemetry(const Telemetry& telemetry) override;
@@ -23,6 +25,7 @@ class MotionObserver : public hal::SimObserver {
 
  private:
   const world::World* world_ = nullptr;
+  arm::Arm arm_;
   PanelNames names_;
   std::uint32_t ticks_ = 0;
   std::vector<double> t_s_;

@@ -51,9 +51,10 @@ std::string file_name(const hal::ExposureRecord& exposure) {
 
 }  // namespace
 
-RawImageObserver::RawImageObserver(RunFiles& files, const CameraCalibration& camera, const LaserCalibration& laser,
+RawImageObserver::RawImageObserver(RunFiles& files, const arm::Arm& arm, const CameraCalibration& camera, const LaserCalibration& laser,
                                    const optics::OpticsConfig& optics)
     : files_(files),
+      arm_(arm),
       laser_(laser),
       told_camera_(camera.base_from_camera),
       true_camera_(optics.cameras.at(0).base_from_camera),
@@ -108,7 +109,7 @@ void RawImageObserver::on_image(const hal::ExposureRecord& record) {
     dark = name;
   }
   for (std::size_t i = 0; i < joint_count; ++i) line["joints_rad"][joint_names[i]] = rad[i];
-  line["told"] = {{"base_from_camera", matrix(told_camera_)}, {"base_from_laser", matrix(arm::base_from_laser(q, laser_))}};
+  line["told"] = {{"base_from_camera", matrix(told_camera_)}, {"base_from_laser", matrix(arm_.base_from_laser(q, laser_))}};
   const Pose& body = record.poses[static_cast<std::size_t>(true_laser_.body)];
   line["true"] = {{"base_from_camera", matrix(true_camera_)}, {"base_from_laser", matrix(body * true_laser_.body_from_laser)}};
   say(line.dump());

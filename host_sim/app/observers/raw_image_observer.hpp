@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 
+#include "firmware/arm/kinematics.hpp"
 #include "hal/sim/sim_platform.hpp"
 #include "host_sim/app/observers/run_files.hpp"
 #include "host_sim/record/file_sink.hpp"
@@ -20,7 +21,9 @@ namespace lf::app {
 class RawImageObserver : public hal::SimObserver {
  public:
   // `files` outlives the observer; where they are not wanted nothing is kept. `camera` and `laser` as the core is told, `optics` as it is.
-  RawImageObserver(RunFiles& files, const CameraCalibration& camera, const LaserCalibration& laser, const optics::OpticsConfig& optics);
+  // `arm` and calibrations: as the core knows them.
+  RawImageObserver(RunFiles& files, const arm::Arm& arm, const CameraCalibration& camera, const LaserCalibration& laser,
+                   const optics::OpticsConfig& optics);
 
   void on_bus_frame(const devices::BusRecord& record) override;
   void on_telemetry(const Telemetry& telemetry) override;
@@ -37,6 +40,7 @@ class RawImageObserver : public hal::SimObserver {
   void say(const std::string& line);
 
   RunFiles& files_;
+  arm::Arm arm_;
   LaserCalibration laser_;
   Pose told_camera_, true_camera_;
   optics::LaserConfig true_laser_;

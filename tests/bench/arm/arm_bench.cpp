@@ -7,6 +7,7 @@
 #include <kdl/chainiksolverpos_lma.hpp>
 
 #include "firmware/arm/inverse_kinematics.hpp"
+#include "tests/arm5e.hpp"
 #include "tests/unit/arm/kdl_arm.hpp"
 #include "tests/unit/arm/random_joints.hpp"
 
@@ -31,7 +32,7 @@ std::vector<Target> targets() {
   for (Target& t : targets) {
     t.q_rad = random.next();
     for (int i = 0; i < 4; ++i) t.guess_rad[i] = t.q_rad[i] + random.uniform(-0.3, 0.3);
-    const Pose tool = arm::base_from_tool(t.q_rad);
+    const Pose tool = test::arm5e.base_from_tool(t.q_rad);
     t.tool_m = tool.translation();
     const Mat3& r = tool.linear();
     t.frame = KDL::Frame(KDL::Rotation(r(0, 0), r(0, 1), r(0, 2), r(1, 0), r(1, 1), r(1, 2), r(2, 0), r(2, 1), r(2, 2)),
@@ -78,7 +79,7 @@ std::vector<Row> run_arm_bench() {
   double ours_worst_m = 0, peer_worst_m = 0, sum = 0;
   std::size_t ours_solved = 0, peer_solved = 0;
   const auto ours_ik = [&] {
-    for (const Target& t : all) sum += arm::inverse_kinematics(t.tool_m, t.q_rad[3], 0).q_rad.sum();
+    for (const Target& t : all) sum += arm::inverse_kinematics(test::arm5e, t.tool_m, t.q_rad[3], 0).q_rad.sum();
   };
   KDL::JntArray q(4);
   const auto kdl_ik = [&] {
@@ -88,7 +89,7 @@ std::vector<Row> run_arm_bench() {
     }
   };
   const auto ours_fk = [&] {
-    for (const Target& t : all) sum += arm::base_from_tool(t.q_rad).translation().x();
+    for (const Target& t : all) sum += test::arm5e.base_from_tool(t.q_rad).translation().x();
   };
   std::vector<KDL::JntArray> joints;
   for (const Target& t : all) joints.push_back(arm::kdl_joints(t.q_rad));
@@ -103,9 +104,9 @@ std::vector<Row> run_arm_bench() {
   std::vector<Row> rows{compare("ik", "KDL ChainIkSolverPos_LMA", 10, 1, ours_ik, kdl_ik),
                         compare("fk", "KDL ChainFkSolverPos_recursive", 10, 10, ours_fk, kdl_fk)};
   for (const Target& t : all) {
-    const arm::IkResult ik = arm::inverse_kinematics(t.tool_m, t.q_rad[3], 0);
+    const arm::IkResult ik = arm::inverse_kinematics(test::arm5e, t.tool_m, t.q_rad[3], 0);
     ours_solved += ik.ok() ? 1 : 0;
-    ours_worst_m = std::max(ours_worst_m, (arm::base_from_tool(ik.q_rad).translation() - t.tool_m).norm());
+    ours_worst_m = std::max(ours_worst_m, (test::arm5e.base_from_tool(ik.q_rad).translation() - t.tool_m).norm());
     if (peer_ik.CartToJnt(arm::kdl_joints(t.guess_rad), t.frame, q) < 0) continue;
     ++peer_solved;
     peer_fk.JntToCart(q, frame);

@@ -4,12 +4,13 @@
 #include <random>
 
 #include "firmware/arm/kinematics.hpp"
+#include "tests/arm5e.hpp"
 
 namespace lf::arm {
 
 class RandomJoints {
  public:
-  explicit RandomJoints(std::uint64_t seed, double margin_rad = 0) : engine_(seed), limits_(joint_limits(margin_rad)) {}
+  explicit RandomJoints(std::uint64_t seed, double margin_rad = 0) : engine_(seed), limits_(test::arm5e.limits(margin_rad)) {}
 
   double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
   JointVector next() {

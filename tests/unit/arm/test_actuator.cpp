@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "firmware/arm/actuator.hpp"
+#include "tests/arm5e.hpp"
 
 namespace lf::arm {
 namespace {
@@ -11,14 +12,14 @@ namespace {
 constexpr std::array<Joint, joint_count> joints{Joint::slew, Joint::shoulder, Joint::elbow, Joint::roll, Joint::jaw};
 
 double at_fraction(Joint joint, int i, int n) {
-  return numbers(joint).lower_rad + (numbers(joint).upper_rad - numbers(joint).lower_rad) * i / n;
+  return test::arm5e.joint(joint).lower_rad + (test::arm5e.joint(joint).upper_rad - test::arm5e.joint(joint).lower_rad) * i / n;
 }
 
 TEST(Actuator, CountsRiseWithTheAngleOverTheWholeStroke) {
   for (const Joint joint : joints)
     for (int i = 1; i <= 10'000; ++i)
-      ASSERT_GT(exact_counts_from_rad(joint, at_fraction(joint, i, 10'000)),
-                exact_counts_from_rad(joint, at_fraction(joint, i - 1, 10'000)))
+      ASSERT_GT(exact_counts_from_rad(test::arm5e.joint(joint), at_fraction(joint, i, 10'000)),
+                exact_counts_from_rad(test::arm5e.joint(joint), at_fraction(joint, i - 1, 10'000)))
           << "joint " << static_cast<int>(joint) << " step " << i;
 }
 
@@ -29,7 +30,7 @@ TEST(Actuator, TicksAreAsCoarseAsPublished) {
   for (std::size_t k = 0; k < joint_count; ++k) {
     double finest = 1, coarsest = 0;
     for (int i = 0; i <= 10'000; ++i) {
-      const double tick = rad_per_count(joints[k], at_fraction(joints[k], i, 10'000));
+      const double tick = rad_per_count(test::arm5e.joint(joints[k]), at_fraction(joints[k], i, 10'000));
       finest = std::min(finest, tick);
       coarsest = std::max(coarsest, tick);
     }
@@ -42,8 +43,9 @@ TEST(Actuator, TickIsTheInverseSlopeOfTheCounts) {
   for (const Joint joint : joints)
     for (int i = 1; i < 100; ++i) {
       const double q = at_fraction(joint, i, 100);
-      const double slope = (exact_counts_from_rad(joint, q + 1e-6) - exact_counts_from_rad(joint, q - 1e-6)) / 2e-6;
-      EXPECT_NEAR(rad_per_count(joint, q) * slope, 1, 1e-6);
+      const double slope =
+          (exact_counts_from_rad(test::arm5e.joint(joint), q + 1e-6) - exact_counts_from_rad(test::arm5e.joint(joint), q - 1e-6)) / 2e-6;
+      EXPECT_NEAR(rad_per_count(test::arm5e.joint(joint), q) * slope, 1, 1e-6);
     }
 }
 
@@ -51,28 +53,32 @@ TEST(Actuator, CountsAndAnglesAreInverse) {
   for (const Joint joint : joints) {
     for (int i = 0; i <= 1000; ++i) {
       const double q = at_fraction(joint, i, 1000);
-      const std::int32_t counts = counts_from_rad(joint, q);
-      EXPECT_LE(std::abs(rad_from_counts(joint, counts) - q), 0.51 * rad_per_count(joint, q) + 1e-7);
-      EXPECT_EQ(counts_from_rad(joint, rad_from_counts(joint, counts)), counts);
+      const std::int32_t counts = counts_from_rad(test::arm5e.joint(joint), q);
+      EXPECT_LE(std::abs(rad_from_counts(test::arm5e.joint(joint), counts) - q), 0.51 * rad_per_count(test::arm5e.joint(joint), q) + 1e-7);
+      EXPECT_EQ(counts_from_rad(test::arm5e.joint(joint), rad_from_counts(test::arm5e.joint(joint), counts)), counts);
     }
-    EXPECT_EQ(counts_from_rad(joint, 0), 0);
+    EXPECT_EQ(counts_from_rad(test::arm5e.joint(joint), 0), 0);
   }
 }
 
 // The law of cosines written down once more: the elbow's screw between pivots 0.26 m and 0.06 m.
 TEST(Actuator, ScrewIsTheTrianglesThirdSide) {
   const auto length = [](double q) { return std::sqrt(0.26 * 0.26 + 0.06 * 0.06 - 2 * 0.26 * 0.06 * std::cos(q + 0.2115)); };
-  EXPECT_NEAR(exact_counts_from_rad(Joint::elbow, 1.151), 166667 * (length(1.151) - length(0)), 1e-8);
+  EXPECT_NEAR(exact_counts_from_rad(test::arm5e.joint(Joint::elbow), 1.151), 166667 * (length(1.151) - length(0)), 1e-8);
 }
 
 TEST(Actuator, WithstandsNonsense) {
   for (const Joint joint : joints) {
-    EXPECT_EQ(counts_from_rad(joint, std::numeric_limits<double>::quiet_NaN()), 0);
-    EXPECT_EQ(counts_from_rad(joint, std::numeric_limits<double>::infinity()), counts_from_rad(joint, numbers(joint).upper_rad + 0.1));
-    EXPECT_EQ(counts_from_rad(joint, -1e300), counts_from_rad(joint, numbers(joint).lower_rad - 0.1));
-    EXPECT_NEAR(rad_from_counts(joint, std::numeric_limits<std::int32_t>::max()), numbers(joint).upper_rad + 0.1, 1e-12);
-    EXPECT_NEAR(rad_from_counts(joint, std::numeric_limits<std::int32_t>::min()), numbers(joint).lower_rad - 0.1, 1e-12);
-    EXPECT_TRUE(std::isfinite(rad_per_count(joint, std::numeric_limits<double>::quiet_NaN())));
+    EXPECT_EQ(counts_from_rad(test::arm5e.joint(joint), std::numeric_limits<double>::quiet_NaN()), 0);
+    EXPECT_EQ(counts_from_rad(test::arm5e.joint(joint), std::numeric_limits<double>::infinity()),
+              counts_from_rad(test::arm5e.joint(joint), test::arm5e.joint(joint).upper_rad + 0.1));
+    EXPECT_EQ(counts_from_rad(test::arm5e.joint(joint), -1e300),
+              counts_from_rad(test::arm5e.joint(joint), test::arm5e.joint(joint).lower_rad - 0.1));
+    EXPECT_NEAR(rad_from_counts(test::arm5e.joint(joint), std::numeric_limits<std::int32_t>::max()),
+                test::arm5e.joint(joint).upper_rad + 0.1, 1e-12);
+    EXPECT_NEAR(rad_from_counts(test::arm5e.joint(joint), std::numeric_limits<std::int32_t>::min()),
+                test::arm5e.joint(joint).lower_rad - 0.1, 1e-12);
+    EXPECT_TRUE(std::isfinite(rad_per_count(test::arm5e.joint(joint), std::numeric_limits<double>::quiet_NaN())));
   }
 }
 

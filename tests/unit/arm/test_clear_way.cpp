@@ -4,6 +4,7 @@
 
 #include "firmware/arm/clear_way.hpp"
 #include "firmware/arm/gripper.hpp"
+#include "tests/arm5e.hpp"
 #include "tests/unit/arm/random_joints.hpp"
 
 namespace lf::arm {
@@ -20,8 +21,10 @@ Room room_at(const Pose& base_from_panel, double jaw_low_rad = 0, double jaw_hig
   return room;
 }
 
-Surroundings before(const PanelLayout& layout, const Room& room, const VehicleShape& vehicle = {}) {
-  Surroundings surroundings(layout, vehicle);
+const VehicleShape no_vehicle;
+
+Surroundings before(const PanelLayout& layout, const Room& room, const VehicleShape& vehicle = no_vehicle) {
+  Surroundings surroundings(test::arm5e, layout, vehicle);
   surroundings.enter(room);
   return surroundings;
 }
@@ -43,7 +46,7 @@ double nearest_by_sampling(const JointVector& from, const JointVector& to, const
     const JointVector q = from + (to - from) * (static_cast<double>(i) / samples);
     for (int k = 0; k <= openings; ++k) {
       if (k > 0 && room.jaw.low_rad == room.jaw.high_rad) break;
-      const LinkCapsules capsules = link_capsules(q, std::lerp(room.jaw.low_rad, room.jaw.high_rad, k / double{openings}));
+      const LinkCapsules capsules = test::arm5e.link_capsules(q, std::lerp(room.jaw.low_rad, room.jaw.high_rad, k / double{openings}));
       least = std::min({least, panel.clearance(capsules, room.base_from_panel).distance_m, clearance_to_vehicle(capsules, vehicle),
                         clearance_to_itself(capsules)});
     }
@@ -67,7 +70,7 @@ TEST(ClearWay, LetsNothingSlipBetweenTwoPoses) {
     VehicleShape vehicle;
     const Vec3 lamp(random.uniform(0.1, 0.5), random.uniform(-0.6, 0.2), random.uniform(0, 1));
     ASSERT_TRUE(vehicle.rods.push_back({lamp, lamp + Vec3(0, 0, 0.05), 0.03}));
-    const Room room = room_at(base_from_panel, -0.05, k % 2 == 0 ? -0.05 : jaw_from_gap(0.06));
+    const Room room = room_at(base_from_panel, -0.05, k % 2 == 0 ? -0.05 : jaw_from_gap(test::jaw5e, 0.06));
     ClearWay way;
     const ClearWay::State state = look_along(way, from, to, before(board, room, vehicle));
     const double nearest = nearest_by_sampling(from, to, panel, vehicle, room);
@@ -170,11 +173,11 @@ TEST(ClearWay, OfTheJawAloneIsSweptFromEndToEnd) {
   const JointVector q{0, 1.1, 1.3, 0};
   constexpr double open_rad = 1.2;
   VehicleShape vehicle;
-  const LinkCapsules half = link_capsules(q, open_rad / 2);
-  const Capsule& pad = half.back();
+  const LinkCapsules half = test::arm5e.link_capsules(q, open_rad / 2);
+  const Capsule& pad = half[half.size() - 1];
   ASSERT_TRUE(vehicle.rods.push_back({pad.a_m, pad.b_m, 0.001}));
-  ASSERT_GT(clearance_to_vehicle(link_capsules(q, 0), vehicle), 0.005);
-  ASSERT_GT(clearance_to_vehicle(link_capsules(q, open_rad), vehicle), 0.005);
+  ASSERT_GT(clearance_to_vehicle(test::arm5e.link_capsules(q, 0), vehicle), 0.005);
+  ASSERT_GT(clearance_to_vehicle(test::arm5e.link_capsules(q, open_rad), vehicle), 0.005);
   const auto state = [&](double high_rad) {
     PanelLayout layout;
     Pose away = layout.nominal_base_from_panel();

@@ -6,6 +6,7 @@
 #include "firmware/arm/gripper.hpp"
 #include "firmware/arm/inverse_kinematics.hpp"
 #include "shared/arm/arm_description.hpp"
+#include "tests/arm5e.hpp"
 #include "tests/unit/arm/random_joints.hpp"
 
 namespace lf::arm {
@@ -68,8 +69,8 @@ TEST(Clearance, OfCapsulesBoxesAndCylindersIsWhatSamplingFinds) {
 
 TEST(LinkCapsules, ContainTheUrdfsCollisionShapes) {
   const ArmDescription arm = load_arm_urdf(LANTERNFISH_SOURCE_DIR "/shared/arm/arm5e.urdf");
-  const LinkPoses links = base_from_links(JointVector::Zero(), 0);
-  const LinkCapsules capsules = link_capsules(JointVector::Zero(), 0);
+  const LinkPoses links = test::arm5e.base_from_links(JointVector::Zero(), 0);
+  const LinkCapsules capsules = test::arm5e.link_capsules(JointVector::Zero(), 0);
   for (std::size_t k = 1; k < ArmDescription::link_count; ++k) {
     for (const scene::Shape& shape : arm.links[k].shapes) {
       if (!shape.collides) continue;
@@ -97,7 +98,7 @@ TEST(ClearanceToItself, IsWhatSamplingFindsBetweenLinksThatAreNotNeighbours) {
   for (int k = 0; k < 300; ++k) {
     // Also where the joints' limits do not let the arm go: within them it never comes as near to itself as 50 mm.
     const JointVector q(random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(-3, 3));
-    const LinkCapsules capsules = link_capsules(q, random.uniform(0, 1));
+    const LinkCapsules capsules = test::arm5e.link_capsules(q, random.uniform(0, 1));
     double least = 1e9;
     for (const Capsule& a : capsules) {
       for (const Capsule& b : capsules) {
@@ -122,20 +123,21 @@ TEST(ClearanceToItself, IsPositiveInEveryPoseOfTheMission) {
   for (const JointVector& q :
        {JointVector(0, 0.60, 1.90, 0), JointVector(0, 1.307, 1.151, 1.5), JointVector(0, 1.083, 1.355, 0), JointVector(0, 1.414, 1.425, 0),
         JointVector(0.155, 1.423, 1.321, 0), JointVector(0, 0.945, 2.095, 0), JointVector(0, 0.945, 0.920, 0)})
-    for (const double gap : {0.0, 0.09}) EXPECT_GT(clearance_to_itself(link_capsules(q, jaw_from_gap(gap))), 0.02) << q.transpose();
+    for (const double gap : {0.0, 0.09})
+      EXPECT_GT(clearance_to_itself(test::arm5e.link_capsules(q, jaw_from_gap(test::jaw5e, gap))), 0.02) << q.transpose();
 }
 
 TEST(PanelShape, NamesWhatIsNearest) {
   const PanelLayout layout;
   const Pose base_from_panel = layout.nominal_base_from_panel();
-  const Clearance parked = PanelShape(layout).clearance(link_capsules({0, 0.60, 1.90, 0}, 0), base_from_panel);
+  const Clearance parked = PanelShape(layout).clearance(test::arm5e.link_capsules({0, 0.60, 1.90, 0}, 0), base_from_panel);
   EXPECT_GT(parked.distance_m, 0.15);
-  const Clearance grasp = PanelShape(layout).clearance(link_capsules({0, 1.307, 1.151, 0}, 0), base_from_panel);
+  const Clearance grasp = PanelShape(layout).clearance(test::arm5e.link_capsules({0, 1.307, 1.151, 0}, 0), base_from_panel);
   EXPECT_LT(grasp.distance_m, 0);
   EXPECT_EQ(grasp.part, PanelPart::valve(0));
   EXPECT_GE(grasp.link, 5u) << "a finger";
-  const JointVector press = inverse_kinematics({0.395, 0, 0.407}, 0).q_rad;
-  const Clearance button = PanelShape(layout).clearance(link_capsules(press, jaw_from_gap(0)), base_from_panel);
+  const JointVector press = inverse_kinematics(test::arm5e, {0.395, 0, 0.407}, 0).q_rad;
+  const Clearance button = PanelShape(layout).clearance(test::arm5e.link_capsules(press, jaw_from_gap(test::jaw5e, 0)), base_from_panel);
   EXPECT_EQ(button.part, PanelPart::button(1));
 }
 
@@ -143,13 +145,13 @@ TEST(PanelShape, NamesWhatIsNearest) {
 TEST(PanelShape, OfTheHandleIsTwentyMillimetresAtEveryButton) {
   const PanelLayout layout;
   const Pose base_from_panel = layout.nominal_base_from_panel();
-  const double jaw_rad = jaw_from_gap(0);
+  const double jaw_rad = jaw_from_gap(test::jaw5e, 0);
   for (std::size_t i = 0; i < layout.buttons.size(); ++i) {
     const Vec3 cap = base_from_panel * layout.buttons[i].face_m();
-    const IkResult ik = inverse_kinematics(cap - Vec3(tip_beyond_tool_m(jaw_rad), 0, 0), pi / 2, 0.02);
+    const IkResult ik = inverse_kinematics(test::arm5e, cap - Vec3(tip_beyond_tool_m(test::jaw5e, jaw_rad), 0, 0), pi / 2, 0.02);
     ASSERT_TRUE(ik.ok()) << name(ik.outcome);
     PanelParts others = ~bit(PanelPart::valve(0));
-    const Clearance handle = PanelShape(layout).clearance(link_capsules(ik.q_rad, jaw_rad), base_from_panel, others);
+    const Clearance handle = PanelShape(layout).clearance(test::arm5e.link_capsules(ik.q_rad, jaw_rad), base_from_panel, others);
     EXPECT_GT(handle.distance_m, 0.020) << "button " << i << ", link " << handle.link;
   }
 }
@@ -190,15 +192,15 @@ TEST(PanelShapeGrown, ContainsItselfWhereverItMayBe) {
             std::hypot(valve.handle_length_m, valve.handle_thickness_m) / 2 * Vec3(std::cos(angle), std::sin(angle), 0);
     }
     LinkCapsules all;
-    all.fill({2, real * p, real * p, 0});
+    all.push_back({2, real * p, real * p, 0});
     const double distance = grown.clearance(all, believed).distance_m;
     ASSERT_LE(distance, 1e-9) << "draw " << k << ", point " << p.transpose();
     // How much larger it could have been: the point's distance to the surveyed panel.
     nearest_to_border = std::min(nearest_to_border, std::abs(surveyed.clearance(all, believed).distance_m - 0.047));
   }
   EXPECT_LT(nearest_to_border, 0.005) << "no draw came near the worst: 20 mm, and 2 degrees over 0.78 m";
-  EXPECT_NEAR(surveyed.grown(believed, {}).clearance(link_capsules({0, 1.0, 1.5, 0}, 0), believed).distance_m,
-              surveyed.clearance(link_capsules({0, 1.0, 1.5, 0}, 0), believed).distance_m, 1e-12);
+  EXPECT_NEAR(surveyed.grown(believed, {}).clearance(test::arm5e.link_capsules({0, 1.0, 1.5, 0}, 0), believed).distance_m,
+              surveyed.clearance(test::arm5e.link_capsules({0, 1.0, 1.5, 0}, 0), believed).distance_m, 1e-12);
 }
 
 // A panel with two valves, four buttons and two markers, all apart.
@@ -236,7 +238,8 @@ TEST(PanelShape, NamesEachPartByItsKindAndIndex) {
   // A thin capsule that ends so far off a place on the panel, and what is nearest to it.
   const auto near = [&](const Vec3& place_m, const Vec3& outward, PanelParts ignored = 0) {
     LinkCapsules all;
-    all.fill({3, base_from_panel * Vec3(place_m + (off_m + thin_m) * outward), base_from_panel * Vec3(place_m + 0.02 * outward), thin_m});
+    all.push_back(
+        {3, base_from_panel * Vec3(place_m + (off_m + thin_m) * outward), base_from_panel * Vec3(place_m + 0.02 * outward), thin_m});
     return panel.clearance(all, base_from_panel, ignored);
   };
   const auto expect_named = [&](PanelPart part, const Vec3& place_m, const Vec3& outward) {
@@ -298,7 +301,7 @@ TEST(PanelShapeGrown, ContainsItsOffsetCylindersWhereverItMayBe) {
     const Vec3 stem_side = Vec3(valve.at_m.x(), valve.at_m.y(), random.uniform(0, valve.handle_height_m)) + valve.stem_radius_m * around;
     const Vec3 p = real * (stem ? stem_side : handle_rim);
     LinkCapsules all;
-    all.fill({2, p, p, 0});
+    all.push_back({2, p, p, 0});
     const PanelParts others = ~bit(PanelPart::valve(which));
     ASSERT_LE(surveyed.grown(believed, doubt).clearance(all, believed, others).distance_m, 1e-9) << "draw " << k;
     farthest_m = std::max(farthest_m, surveyed.clearance(all, believed, others).distance_m);
@@ -309,15 +312,15 @@ TEST(PanelShapeGrown, ContainsItsOffsetCylindersWhereverItMayBe) {
 TEST(PanelShape, LeavesOutForTheFingersWhatOnlyTheyMayTouch) {
   const PanelLayout layout;
   const Pose base_from_panel = layout.nominal_base_from_panel();
-  const LinkCapsules grasp = link_capsules({0, 1.307, 1.151, 0}, 0);
+  const LinkCapsules grasp = test::arm5e.link_capsules({0, 1.307, 1.151, 0}, 0);
   const PanelParts handle = bit(PanelPart::valve(0));
   const PanelShape panel(layout);
   EXPECT_LT(panel.clearance(grasp, base_from_panel).distance_m, 0);
   const Clearance others = panel.clearance(grasp, base_from_panel, 0, handle);
   EXPECT_GT(others.distance_m, 0.02);
-  LinkCapsules without_fingers = grasp;
-  for (Capsule& capsule : without_fingers)
-    if (capsule.link >= 5) capsule.a_m = capsule.b_m = Vec3(-5, 0, 0);
+  LinkCapsules without_fingers;
+  for (const Capsule& capsule : grasp)
+    if (capsule.link < 5) without_fingers.push_back(capsule);
   const double wrist_m = panel.clearance(without_fingers, base_from_panel).distance_m;
   const double fingers_m = panel.clearance(grasp, base_from_panel, handle).distance_m;
   EXPECT_NEAR(others.distance_m, std::min(wrist_m, fingers_m), 1e-12);
@@ -336,7 +339,7 @@ TEST(ClearanceToTheVehicle, IsThatOfTheNearestSolidToAnyLinkButTheSlew) {
           vehicle.boxes.push_back({point(), Vec3(random.uniform(0.01, 0.5), random.uniform(0.01, 0.5), random.uniform(0.01, 0.5))}));
       ASSERT_TRUE(vehicle.rods.push_back({a, i == 0 ? a : point(), random.uniform(0.01, 0.1)}));
     }
-    const LinkCapsules capsules = link_capsules(random.next(), random.uniform(0, 1));
+    const LinkCapsules capsules = test::arm5e.link_capsules(random.next(), random.uniform(0, 1));
     double least = 1e9;
     for (const Capsule& c : capsules) {
       if (c.link == 1) continue;
@@ -356,7 +359,7 @@ TEST(ClearanceToTheVehicle, IsThatOfTheNearestSolidToAnyLinkButTheSlew) {
     }
     ASSERT_NEAR(clearance_to_vehicle(capsules, vehicle), least, 1e-4) << "draw " << k;
   }
-  EXPECT_EQ(clearance_to_vehicle(link_capsules({0, 1, 1, 0}, 0), {}), HUGE_VAL);
+  EXPECT_EQ(clearance_to_vehicle(test::arm5e.link_capsules({0, 1, 1, 0}, 0), {}), HUGE_VAL);
 }
 
 // Its bounding boxes may only save work.
@@ -372,7 +375,7 @@ TEST(PanelShape, IsAsFarAsTheNearestOfItsSolids) {
     Pose base_from_panel = layout.nominal_base_from_panel();
     base_from_panel.translation() += Vec3(random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2));
     base_from_panel.rotate(Eigen::AngleAxisd(random.uniform(-0.5, 0.5), Vec3(1, random.uniform(-1, 1), 0.3).normalized()));
-    const LinkCapsules capsules = link_capsules(random.next(), random.uniform(0, 1));
+    const LinkCapsules capsules = test::arm5e.link_capsules(random.next(), random.uniform(0, 1));
     const auto at = [&](double x, double y, double z) { return Pose(base_from_panel * Eigen::Translation3d(x, y, z)); };
     double least = 1e9;
     for (const Capsule& c : capsules) {

@@ -7,6 +7,7 @@
 
 #include "firmware/arm/gripper.hpp"
 #include "firmware/arm/kinematics.hpp"
+#include "tests/arm5e.hpp"
 
 namespace lf::arm {
 namespace {
@@ -28,7 +29,7 @@ struct Jaw {
 
 class GripperRun {
  public:
-  Gripper gripper;
+  Gripper gripper{test::jaw5e};
   Jaw jaw;
   double widest_lead_rad = 0;
 
@@ -50,43 +51,45 @@ class GripperRun {
 
 TEST(JawOpening, LeavesTheSameRoomBesideABarOfAnyThickness) {
   for (const double bar_m : {thinnest_bar_m, 0.0126, 0.022, 0.050}) {
-    const double room_m = (jaw_opening_m(bar_m) - bar_m) / 2;
+    const double room_m = (jaw_opening_m(test::jaw5e, bar_m) - bar_m) / 2;
     EXPECT_NEAR(room_m, 0.024, 1e-12) << bar_m;
-    EXPECT_NEAR(gap_from_jaw(jaw_from_gap(jaw_opening_m(bar_m))), jaw_opening_m(bar_m), 1e-9) << "within the jaw's stroke";
+    EXPECT_NEAR(gap_from_jaw(test::jaw5e, jaw_from_gap(test::jaw5e, jaw_opening_m(test::jaw5e, bar_m))), jaw_opening_m(test::jaw5e, bar_m),
+                1e-9)
+        << "within the jaw's stroke";
   }
-  EXPECT_NEAR(jaw_opening_m(thickest_bar_m()), gap_from_jaw(1.3377), 1e-9);
-  EXPECT_LE(jaw_opening_m(1), gap_from_jaw(1.3377)) << "no further than the jaw opens";
-  EXPECT_GT(thinnest_bar_m, gap_from_jaw(-0.05816) + 0.004) << "told from a closed jaw";
+  EXPECT_NEAR(jaw_opening_m(test::jaw5e, thickest_bar_m(test::jaw5e)), gap_from_jaw(test::jaw5e, 1.3377), 1e-9);
+  EXPECT_LE(jaw_opening_m(test::jaw5e, 1), gap_from_jaw(test::jaw5e, 1.3377)) << "no further than the jaw opens";
+  EXPECT_GT(thinnest_bar_m, gap_from_jaw(test::jaw5e, -0.05816) + 0.004) << "told from a closed jaw";
 }
 
 // The pads of the URDF's fingers, corner by corner in the wrist's frame.
 TEST(JawGeometry, GapIsTheDistanceBetweenThePadsOfTheUrdf) {
   for (const double q : {-0.05, 0.0, 0.1, 0.4, 0.9, 1.3}) {
-    const LinkPoses links = base_from_links(JointVector::Zero(), q);
+    const LinkPoses links = test::arm5e.base_from_links(JointVector::Zero(), q);
     const Pose wrist_from_a = links[3].inverse() * links[4], wrist_from_b = links[3].inverse() * links[5];
     // Pad of 8 x 40 x 30 mm at (29.7, 0, 98.5) mm: its inner face.
     const double face_a = (wrist_from_a * Vec3(0.0337, 0, 0.0985)).x(), face_b = (wrist_from_b * Vec3(-0.0337, 0, 0.0985)).x();
-    EXPECT_NEAR(gap_from_jaw(q), face_b - face_a, 1e-12);
-    EXPECT_NEAR(jaw_from_gap(gap_from_jaw(q)), q, 1e-9);
+    EXPECT_NEAR(gap_from_jaw(test::jaw5e, q), face_b - face_a, 1e-12);
+    EXPECT_NEAR(jaw_from_gap(test::jaw5e, gap_from_jaw(test::jaw5e, q)), q, 1e-9);
     double tip = 0;
     for (const double x : {0.0, 0.0337}) tip = std::max(tip, (wrist_from_a * Vec3(x, 0, 0.1135)).z());
-    EXPECT_NEAR(tip_beyond_tool_m(q), tip - 0.1485, 1e-12);
+    EXPECT_NEAR(tip_beyond_tool_m(test::jaw5e, q), tip - 0.1485, 1e-12);
   }
 }
 
 TEST(JawGeometry, PadsAreParallelAndCentredOnABarOf12Point6Millimetres) {
-  EXPECT_NEAR(gap_from_jaw(0), 0.0126, 1e-12);
-  EXPECT_NEAR(jaw_from_gap(0.0126), 0, 1e-12);
-  const LinkPoses links = base_from_links(JointVector::Zero(), 0);
+  EXPECT_NEAR(gap_from_jaw(test::jaw5e, 0), 0.0126, 1e-12);
+  EXPECT_NEAR(jaw_from_gap(test::jaw5e, 0.0126), 0, 1e-12);
+  const LinkPoses links = test::arm5e.base_from_links(JointVector::Zero(), 0);
   EXPECT_LT((links[4].linear() - links[3].linear()).norm(), 1e-12);
   EXPECT_LT((links[5].linear() - links[3].linear()).norm(), 1e-12);
-  EXPECT_GT(gap_from_jaw(jaw_from_gap(0.10)), 0.0999);
+  EXPECT_GT(gap_from_jaw(test::jaw5e, jaw_from_gap(test::jaw5e, 0.10)), 0.0999);
 }
 
 // 3 N m at the handle need 3 N m / 40 mm = 75 N on each of two pads 40 mm wide, their pressure moved to the edges.
 TEST(JawGeometry, PeakTorqueHoldsThreeNewtonMetres) {
-  const double force = pad_force_n(arm_geometry::joints[4].effort_nm);
-  EXPECT_GT(force * arm_geometry::jaw.pad_width_m, 3.0 * 1.2);
+  const double force = pad_force_n(test::jaw5e, test::arm5e.model().joints[4].effort_nm);
+  EXPECT_GT(force * test::jaw5e.pad_width_m, 3.0 * 1.2);
 }
 
 TEST(Gripper, HoldsABar) {
@@ -113,7 +116,7 @@ TEST(Gripper, FindsNothingBetweenThePads) {
 
 TEST(Gripper, IsJammedBySomethingThickerThanTheBar) {
   GripperRun run;
-  run.jaw.stop_closing_rad = jaw_from_gap(0.030);
+  run.jaw.stop_closing_rad = jaw_from_gap(test::jaw5e, 0.030);
   run.gripper.close();
   EXPECT_EQ(run.run(5), GripperState::jammed);
 }
@@ -124,8 +127,8 @@ TEST(Gripper, IsJammedBySomethingThinnerThanTheBar) {
     GripperConfig config;
     config.bar_m = bar_m;
     GripperRun run;
-    run.gripper = Gripper(config);
-    run.jaw.stop_closing_rad = jaw_from_gap(thing_m);
+    run.gripper = Gripper(test::jaw5e, config);
+    run.jaw.stop_closing_rad = jaw_from_gap(test::jaw5e, thing_m);
     run.gripper.close();
     EXPECT_EQ(run.run(5), GripperState::jammed) << bar_m;
     EXPECT_TRUE(run.gripper.may_hold(run.jaw.q_rad));
@@ -134,15 +137,15 @@ TEST(Gripper, IsJammedBySomethingThinnerThanTheBar) {
 
 // An angle beyond either stop is one of a false zero.
 TEST(Gripper, MayHoldAnythingWhereItsAngleCannotBe) {
-  const Gripper gripper;
-  for (const double rad : {arm_geometry::joints[4].lower_rad - 0.02, arm_geometry::joints[4].upper_rad + 0.02})
+  const Gripper gripper(test::jaw5e);
+  for (const double rad : {test::arm5e.model().joints[4].lower_rad - 0.02, test::arm5e.model().joints[4].upper_rad + 0.02})
     EXPECT_TRUE(gripper.may_hold(rad));
 }
 
 // Told to open by a hair it ends as open, and has let go of nothing.
 TEST(Gripper, StaysInDoubtWhenItsNextOrderMovesItByAHair) {
   GripperRun run;
-  run.jaw.stop_closing_rad = jaw_from_gap(0.030);
+  run.jaw.stop_closing_rad = jaw_from_gap(test::jaw5e, 0.030);
   run.gripper.close();
   ASSERT_EQ(run.run(5), GripperState::jammed);
   run.gripper.turn_to(run.jaw.q_rad + 0.001);
@@ -155,24 +158,24 @@ TEST(Gripper, StaysInDoubtWhenItsNextOrderMovesItByAHair) {
 
 // Closed is closed, however thick the bar: a hose of 20 mm in a jaw for bars of 40 mm is something that is held.
 TEST(Gripper, MayHoldWhatFitsBetweenClosedAndOpen) {
-  const double stop_rad = arm_geometry::joints[4].lower_rad;
-  for (const double bar_m : {thinnest_bar_m, 0.0126, 0.040, thickest_bar_m()}) {
+  const double stop_rad = test::arm5e.model().joints[4].lower_rad;
+  for (const double bar_m : {thinnest_bar_m, 0.0126, 0.040, thickest_bar_m(test::jaw5e)}) {
     GripperConfig config;
     config.bar_m = bar_m;
-    const Gripper gripper(config);
+    const Gripper gripper(test::jaw5e, config);
     EXPECT_FALSE(gripper.may_hold(stop_rad)) << "closed to its stop";
     EXPECT_FALSE(gripper.may_hold(stop_rad + 2 * config.stall_rad)) << "as far as it counts as empty";
     for (const double gap_m : {0.004, 0.005, 0.020, bar_m - 0.004, bar_m, bar_m + 0.040})
-      EXPECT_TRUE(gripper.may_hold(jaw_from_gap(gap_m))) << bar_m << ", " << gap_m;
-    EXPECT_FALSE(gripper.may_hold(jaw_from_gap(jaw_opening_m(bar_m)))) << bar_m;
+      EXPECT_TRUE(gripper.may_hold(jaw_from_gap(test::jaw5e, gap_m))) << bar_m << ", " << gap_m;
+    EXPECT_FALSE(gripper.may_hold(jaw_from_gap(test::jaw5e, jaw_opening_m(test::jaw5e, bar_m)))) << bar_m;
     EXPECT_TRUE(gripper.may_hold(std::nan("")));
   }
 }
 
 TEST(Gripper, MayHoldWhatItsLastOrderEndedAt) {
-  const double open_rad = jaw_from_gap(jaw_opening_m(GripperConfig().bar_m));
+  const double open_rad = jaw_from_gap(test::jaw5e, jaw_opening_m(test::jaw5e, GripperConfig().bar_m));
   GripperRun jammed;
-  jammed.jaw.stop_closing_rad = jaw_from_gap(0.030);
+  jammed.jaw.stop_closing_rad = jaw_from_gap(test::jaw5e, 0.030);
   jammed.gripper.close();
   ASSERT_EQ(jammed.run(5), GripperState::jammed);
   EXPECT_TRUE(jammed.gripper.may_hold(open_rad)) << "wherever it is said to stand";
@@ -191,7 +194,7 @@ TEST(Gripper, IsInDoubtUntilItsJawIsSeenToMove) {
   GripperRun run;
   run.gripper.doubt();
   EXPECT_EQ(run.run(0.1), GripperState::idle);
-  EXPECT_TRUE(run.gripper.may_hold(jaw_from_gap(jaw_opening_m(GripperConfig().bar_m))));
+  EXPECT_TRUE(run.gripper.may_hold(jaw_from_gap(test::jaw5e, jaw_opening_m(test::jaw5e, GripperConfig().bar_m))));
   run.gripper.turn_to(run.jaw.q_rad + 0.04);
   run.run(2);
   EXPECT_TRUE(run.gripper.doubted());
@@ -266,7 +269,7 @@ TEST(Gripper, OpensToAGapAndIsJammedWhenItCannot) {
   run.jaw.q_rad = 0;
   run.gripper.open_to(0.09);
   EXPECT_EQ(run.run(4), GripperState::open);
-  EXPECT_NEAR(gap_from_jaw(run.jaw.q_rad), 0.09, 0.001);
+  EXPECT_NEAR(gap_from_jaw(test::jaw5e, run.jaw.q_rad), 0.09, 0.001);
   run.jaw.stop_closing_rad = 0.0;
   run.gripper.close();
   ASSERT_EQ(run.run(4), GripperState::held);
@@ -330,7 +333,7 @@ TEST(Gripper, DoesNotTakeAStallWithLittleTorqueForAGrip) {
 // The jaw moves, and says that it does not: no torque holds it.
 TEST(Gripper, IsLostWhenItReportsTheSameAngleWithoutALoad) {
   for (const bool closing : {true, false}) {
-    Gripper gripper;
+    Gripper gripper{test::jaw5e};
     Time t;
     const auto run = [&](double seconds, double jaw_rad) {
       double target = 0;
@@ -355,7 +358,7 @@ TEST(Gripper, IsLostWhenItReportsTheSameAngleWithoutALoad) {
 // Its drive hears no target any more: told to open, it goes on squeezing.
 TEST(Gripper, IsLostWhenItGoesOnPushingTheOtherWay) {
   for (const double squeezing_nm : {-8.0, -2.5}) {
-    Gripper gripper;
+    Gripper gripper{test::jaw5e};
     Time t;
     const auto run = [&](double seconds) {
       for (const Time end = t + Duration::from_s(seconds); t < end;) {
@@ -375,7 +378,7 @@ TEST(Gripper, IsLostWhenItGoesOnPushingTheOtherWay) {
 // Told to open it closes, or the other way round: with fingers in between, before it has gone far.
 TEST(Gripper, IsLostWhenItGoesTheOtherWay) {
   for (const double way : {-1.0, 1.0}) {
-    Gripper gripper;
+    Gripper gripper{test::jaw5e};
     Time t;
     double jaw_rad = 0.5;
     (void)gripper.update(t, jaw_rad, 0.0);
@@ -394,7 +397,7 @@ TEST(Gripper, IsLostWhenItGoesTheOtherWay) {
 // Its encoder stands still: the drive creeps on, and the fingers come to press on their stop.
 TEST(Gripper, IsLostWhenItPressesThoughItIsOpen) {
   for (const double pressing_nm : {-8.0, 8.0}) {
-    Gripper gripper;
+    Gripper gripper{test::jaw5e};
     Time t;
     const auto run = [&](double seconds, double torque_nm) {
       for (const Time end = t + Duration::from_s(seconds); t < end;) {
@@ -431,7 +434,7 @@ TEST(Gripper, StaysWhereItIsUntilOrderedAndRefusesNonsense) {
 TEST(Gripper, BelievesAGripThatTheTorqueSurelyHasAndALossThatItSurelyIs) {
   const GripperConfig config;
   const auto after = [&](const TorqueEstimate& closing, const TorqueEstimate& holding) {
-    Gripper gripper(config);
+    Gripper gripper(test::jaw5e, config);
     gripper.close();
     Time t;
     for (int i = 0; i < 200; ++i) gripper.update(t = t + Duration::from_ms(4), 0, closing);  // stands at the bar's thickness

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "firmware/arm/inverse_kinematics.hpp"
+#include "tests/arm5e.hpp"
 #include "tests/unit/all_named.hpp"
 #include "tests/unit/arm/random_joints.hpp"
 
@@ -23,10 +24,10 @@ TEST(InverseKinematics, HitsEveryOfAMillionReachableTargetsToANanometre) {
   double worst_roll_rad = 0;
   for (int i = 0; i < 1'000'000; ++i) {
     const JointVector q = random.next();
-    const Vec3 target = base_from_tool(q).translation();
-    const IkResult ik = inverse_kinematics(target, q[3], 0);
+    const Vec3 target = test::arm5e.base_from_tool(q).translation();
+    const IkResult ik = inverse_kinematics(test::arm5e, target, q[3], 0);
     ASSERT_TRUE(ik.ok()) << i << ": " << name(ik.outcome) << " by " << ik.excess << " for " << q.transpose();
-    worst_m = std::max(worst_m, (base_from_tool(ik.q_rad).translation() - target).norm());
+    worst_m = std::max(worst_m, (test::arm5e.base_from_tool(ik.q_rad).translation() - target).norm());
     worst_roll_rad = std::max(worst_roll_rad, std::abs(ik.q_rad[3] - q[3]));
   }
   EXPECT_LT(worst_m, 1e-9);
@@ -38,8 +39,8 @@ TEST(InverseKinematics, GivesTheOnlyJointAnglesThereAre) {
   RandomJoints random(seed + 1);
   for (int i = 0; i < 100'000; ++i) {
     const JointVector q = random.next();
-    if (base_from_tool(q).translation().head<2>().norm() < 1e-3) continue;  // on the slew axis any slew angle will do
-    const IkResult ik = inverse_kinematics(base_from_tool(q).translation(), q[3], 0);
+    if (test::arm5e.base_from_tool(q).translation().head<2>().norm() < 1e-3) continue;  // on the slew axis any slew angle will do
+    const IkResult ik = inverse_kinematics(test::arm5e, test::arm5e.base_from_tool(q).translation(), q[3], 0);
     ASSERT_LT((ik.q_rad - q).cwiseAbs().maxCoeff(), 1e-7) << q.transpose();
   }
 }
@@ -47,63 +48,64 @@ TEST(InverseKinematics, GivesTheOnlyJointAnglesThereAre) {
 // Two fingers' width outside of each limit in turn: refused, with that joint's name and the way to go back.
 TEST(InverseKinematics, SaysWhichLimitStopsIt) {
   const IkOutcome reasons[] = {IkOutcome::slew_limit, IkOutcome::shoulder_limit, IkOutcome::elbow_limit, IkOutcome::roll_limit};
-  const JointLimits limits = joint_limits();
+  const JointLimits limits = test::arm5e.limits();
   for (int joint = 0; joint < 4; ++joint) {
     for (const bool above : {false, true}) {
       if (joint == 2 && !above) continue;  // below 0 the elbow's triangle is flat: another answer exists
       JointVector q{0.1, 0.8, 1.2, 0.4};
       q[joint] = above ? limits.upper_rad[joint] + 0.02 : limits.lower_rad[joint] - 0.02;
-      const IkResult ik = inverse_kinematics(base_from_tool(q).translation(), q[3], 0);
+      const IkResult ik = inverse_kinematics(test::arm5e, test::arm5e.base_from_tool(q).translation(), q[3], 0);
       EXPECT_EQ(ik.outcome, reasons[joint]) << joint << above << ": " << name(ik.outcome);
       EXPECT_NEAR(ik.excess, 0.02, 1e-9) << joint << above;
       EXPECT_LT((ik.q_rad - q).cwiseAbs().maxCoeff(), 1e-9) << "the angles that would be needed";
     }
   }
   const JointVector flat{0.1, 0.8, -0.02, 0.4};
-  EXPECT_EQ(inverse_kinematics(base_from_tool(flat).translation(), 0, 0).outcome, IkOutcome::elbow_limit);
+  EXPECT_EQ(inverse_kinematics(test::arm5e, test::arm5e.base_from_tool(flat).translation(), 0, 0).outcome, IkOutcome::elbow_limit);
 }
 
 TEST(InverseKinematics, DrawsTheLimitsInByTheMargin) {
   JointVector q{0.1, 0.8, 1.2, 0.4};
-  q[1] = joint_limits().upper_rad[1] - 0.03;
-  const Vec3 target = base_from_tool(q).translation();
-  EXPECT_TRUE(inverse_kinematics(target, q[3], 0.02).ok());
-  EXPECT_EQ(inverse_kinematics(target, q[3]).outcome, IkOutcome::shoulder_limit);
-  EXPECT_EQ(inverse_kinematics(base_from_tool({0.1, 0.8, 1.2, 0}).translation(), pi - 0.04).outcome, IkOutcome::roll_limit);
+  q[1] = test::arm5e.limits().upper_rad[1] - 0.03;
+  const Vec3 target = test::arm5e.base_from_tool(q).translation();
+  EXPECT_TRUE(inverse_kinematics(test::arm5e, target, q[3], 0.02).ok());
+  EXPECT_EQ(inverse_kinematics(test::arm5e, target, q[3]).outcome, IkOutcome::shoulder_limit);
+  EXPECT_EQ(inverse_kinematics(test::arm5e, test::arm5e.base_from_tool({0.1, 0.8, 1.2, 0}).translation(), pi - 0.04).outcome,
+            IkOutcome::roll_limit);
 }
 
 TEST(InverseKinematics, AnswersExactlyAtTheLimits) {
-  const JointLimits limits = joint_limits();
+  const JointLimits limits = test::arm5e.limits();
   for (int corner = 0; corner < 16; ++corner) {
     JointVector q;
     for (int i = 0; i < 4; ++i) q[i] = (corner >> i) & 1 ? limits.upper_rad[i] : limits.lower_rad[i];
-    const Vec3 target = base_from_tool(q).translation();
-    const IkResult ik = inverse_kinematics(target, q[3], 0);
+    const Vec3 target = test::arm5e.base_from_tool(q).translation();
+    const IkResult ik = inverse_kinematics(test::arm5e, target, q[3], 0);
     EXPECT_TRUE(ik.ok()) << corner << ": " << name(ik.outcome) << " by " << ik.excess;
-    EXPECT_LT((base_from_tool(ik.q_rad).translation() - target).norm(), 1e-9);
+    EXPECT_LT((test::arm5e.base_from_tool(ik.q_rad).translation() - target).norm(), 1e-9);
   }
 }
 
 // From anywhere: rounding passes a limit by some 1e-16, and the answer does not.
 TEST(InverseKinematics, AnswersWithinTheLimitsWhereOneJointIsAtOne) {
-  const JointLimits limits = joint_limits();
+  const JointLimits limits = test::arm5e.limits();
   RandomJoints random(20261125, 0.05);
   for (int draw = 0; draw < 2000; ++draw) {
     const int joint = draw % 3;  // the roll is told, not solved
     JointVector q = random.next();
     q[joint] = draw % 2 == 0 ? limits.upper_rad[joint] : limits.lower_rad[joint];
-    const IkResult ik = inverse_kinematics(base_from_tool(q).translation(), q[3], 0);
+    const IkResult ik = inverse_kinematics(test::arm5e, test::arm5e.base_from_tool(q).translation(), q[3], 0);
     ASSERT_TRUE(ik.ok()) << draw << ": " << name(ik.outcome) << " by " << ik.excess;
     EXPECT_TRUE(((ik.q_rad - limits.upper_rad).array() <= 0).all() && ((ik.q_rad - limits.lower_rad).array() >= 0).all()) << draw;
   }
 }
 
 TEST(InverseKinematics, KnowsTooFarFromTooNear) {
-  const IkResult far = inverse_kinematics({2, 0, 0.3}, 0);
+  const IkResult far = inverse_kinematics(test::arm5e, {2, 0, 0.3}, 0);
   EXPECT_EQ(far.outcome, IkOutcome::too_far);
   // From the shoulder, folded under: 2 + 0.08052 ahead and 0.3 below; the stretched arm reaches 0.44278 + 0.49951.
   EXPECT_NEAR(far.excess, std::hypot(2.08052, 0.3) - 0.44278 - std::hypot(0.49257, 0.083), 1e-9);
-  const IkResult near = inverse_kinematics({-0.08052, 0, 0.01}, 0);  // beside the shoulder itself
+  const IkResult near = inverse_kinematics(test::arm5e, {-0.08052, 0, 0.01}, 0);  // beside the shoulder itself
   EXPECT_EQ(near.outcome, IkOutcome::too_near);
   EXPECT_NEAR(near.excess, std::hypot(0.49257, 0.083) - 0.44278 - 0.01, 1e-9);
 }
@@ -115,18 +117,18 @@ TEST(InverseKinematics, RefusesWhatIsNotANumber) {
     for (int i = 0; i < 3; ++i) {
       Vec3 target(0.3, 0, 0.5);
       target[i] = bad;
-      EXPECT_FALSE(inverse_kinematics(target, 0).ok());
+      EXPECT_FALSE(inverse_kinematics(test::arm5e, target, 0).ok());
     }
-    EXPECT_FALSE(inverse_kinematics({0.3, 0, 0.5}, bad).ok());
+    EXPECT_FALSE(inverse_kinematics(test::arm5e, {0.3, 0, 0.5}, bad).ok());
   }
-  EXPECT_EQ(inverse_kinematics({nan, 0, 0.5}, 0).outcome, IkOutcome::not_a_number);
+  EXPECT_EQ(inverse_kinematics(test::arm5e, {nan, 0, 0.5}, 0).outcome, IkOutcome::not_a_number);
 }
 
 TEST(InverseKinematics, FoldsUnderTowardThePanelAndFacesWhatIsBehind) {
-  EXPECT_EQ(inverse_kinematics({0.34, 0, 0.592}, 0).branch, IkBranch::folded);
+  EXPECT_EQ(inverse_kinematics(test::arm5e, {0.34, 0, 0.592}, 0).posture.branch, IkBranch::folded);
   const JointVector front{0.2, 0.3, 0.5, 0};
-  ASSERT_LT(base_from_tool(front).translation().x(), 0);
-  EXPECT_EQ(inverse_kinematics(base_from_tool(front).translation(), 0).branch, IkBranch::front);
+  ASSERT_LT(test::arm5e.base_from_tool(front).translation().x(), 0);
+  EXPECT_EQ(inverse_kinematics(test::arm5e, test::arm5e.base_from_tool(front).translation(), 0).posture.branch, IkBranch::front);
 }
 
 TEST(BarRolls, LayTheToolsYAlongTheBar) {
@@ -135,8 +137,8 @@ TEST(BarRolls, LayTheToolsYAlongTheBar) {
   for (int i = 0; i < 10'000; ++i) {
     JointVector q = random.next();
     const Vec3 bar(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-    const std::optional<BarRolls> rolls = rolls_for_bar(q, bar);
-    const double off_axis = std::acos(std::abs(bar.normalized().dot(approach_axis(q))));
+    const std::optional<BarRolls> rolls = rolls_for_bar(test::arm5e, q, bar);
+    const double off_axis = std::acos(std::abs(bar.normalized().dot(test::arm5e.approach_axis(q))));
     ASSERT_TRUE(!rolls || off_axis > 0.199);
     if (!rolls) {
       ASSERT_LT(off_axis, 0.2001);
@@ -145,7 +147,7 @@ TEST(BarRolls, LayTheToolsYAlongTheBar) {
     ASSERT_NEAR(std::abs(wrap(rolls->roll_rad[1] - rolls->roll_rad[0])), pi, 1e-12);
     for (const double roll : rolls->roll_rad) {
       q[3] = roll;
-      const Mat3 tool = base_from_tool(q).linear();
+      const Mat3 tool = test::arm5e.base_from_tool(q).linear();
       ASSERT_NEAR(tool.col(0).dot(bar), 0, 1e-12);  // the fingers close across it
       ASSERT_NEAR(std::acos(std::min(1.0, std::abs(tool.col(1).dot(bar.normalized())))), rolls->tilt_rad, 1e-7);
     }
@@ -154,17 +156,18 @@ TEST(BarRolls, LayTheToolsYAlongTheBar) {
 
 TEST(BarRolls, RefuseABarAlongTheToolAndNoBarAtAll) {
   const JointVector q{0, 1.307, 1.151, 0};
-  EXPECT_FALSE(rolls_for_bar(q, approach_axis(q)));
-  EXPECT_FALSE(rolls_for_bar(q, Vec3::Zero()));
-  EXPECT_FALSE(rolls_for_bar(q, Vec3(std::nan(""), 0, 1)));
+  EXPECT_FALSE(rolls_for_bar(test::arm5e, q, test::arm5e.approach_axis(q)));
+  EXPECT_FALSE(rolls_for_bar(test::arm5e, q, Vec3::Zero()));
+  EXPECT_FALSE(rolls_for_bar(test::arm5e, q, Vec3(std::nan(""), 0, 1)));
 }
 
 TEST(BarRolls, AreChosenSoThatTheWholeTurnFits) {
   const BarRolls level{{0.2, 0.2 - pi}, 0};
-  EXPECT_EQ(roll_for_turn(level, 1.5), 0.2);
-  EXPECT_EQ(roll_for_turn(level, 3.1), 0.2 - pi);  // 0.2 + 3.1 passes the limit of pi, -2.94 + 3.1 does not
-  EXPECT_EQ(roll_for_turn(level, -3.1), 0.2);      // down to -2.9
-  EXPECT_FALSE(roll_for_turn(level, 6.2));
+  constexpr double lower = -pi + default_limit_margin_rad, upper = pi - default_limit_margin_rad;
+  EXPECT_EQ(roll_for_turn(level, 1.5, lower, upper), 0.2);
+  EXPECT_EQ(roll_for_turn(level, 3.1, lower, upper), 0.2 - pi);  // 0.2 + 3.1 passes the limit of pi, -2.94 + 3.1 does not
+  EXPECT_EQ(roll_for_turn(level, -3.1, lower, upper), 0.2);      // down to -2.9
+  EXPECT_FALSE(roll_for_turn(level, 6.2, lower, upper));
 }
 
 }  // namespace

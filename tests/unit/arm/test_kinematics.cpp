@@ -5,6 +5,7 @@
 
 #include "firmware/arm/kinematics.hpp"
 #include "shared/arm/arm_description.hpp"
+#include "tests/arm5e.hpp"
 #include "tests/unit/arm/kdl_arm.hpp"
 #include "tests/unit/arm/random_joints.hpp"
 
@@ -31,8 +32,8 @@ TEST(Kinematics, EqualsKdlToTwelveDigits) {
     const JointVector q = random.next();
     KDL::Frame frame;
     ASSERT_EQ(solver.JntToCart(kdl_joints(q), frame), 0);
-    ASSERT_LT((base_from_tool(q).matrix() - pose_of(frame).matrix()).cwiseAbs().maxCoeff(), 1e-12) << q.transpose();
-    ASSERT_LT((approach_axis(q) - pose_of(frame).linear().col(2)).norm(), 1e-12);
+    ASSERT_LT((test::arm5e.base_from_tool(q).matrix() - pose_of(frame).matrix()).cwiseAbs().maxCoeff(), 1e-12) << q.transpose();
+    ASSERT_LT((test::arm5e.approach_axis(q) - pose_of(frame).linear().col(2)).norm(), 1e-12);
   }
 }
 
@@ -45,7 +46,7 @@ TEST(Kinematics, JacobianEqualsKdls) {
     const JointVector q = random.next();
     KDL::Jacobian peer(4);
     ASSERT_EQ(solver.JntToJac(kdl_joints(q), peer), 0);
-    ASSERT_LT((jacobian(q) - peer.data).cwiseAbs().maxCoeff(), 1e-12) << q.transpose();
+    ASSERT_LT((test::arm5e.jacobian(q) - peer.data).cwiseAbs().maxCoeff(), 1e-12) << q.transpose();
   }
 }
 
@@ -55,12 +56,12 @@ TEST(Kinematics, JacobianEqualsFiniteDifferencesOfThePose) {
   constexpr double h = 1e-6;
   for (int i = 0; i < 500; ++i) {
     const JointVector q = random.next();
-    const Jacobian j = jacobian(q);
+    const Jacobian j = test::arm5e.jacobian(q);
     for (int k = 0; k < 4; ++k) {
-      const Pose above = base_from_tool(q + h * JointVector::Unit(k));
-      const Pose below = base_from_tool(q - h * JointVector::Unit(k));
+      const Pose above = test::arm5e.base_from_tool(q + h * JointVector::Unit(k));
+      const Pose below = test::arm5e.base_from_tool(q - h * JointVector::Unit(k));
       const Vec3 linear = (above.translation() - below.translation()) / (2 * h);
-      const Mat3 spin = (above.linear() - below.linear()) / (2 * h) * base_from_tool(q).linear().transpose();
+      const Mat3 spin = (above.linear() - below.linear()) / (2 * h) * test::arm5e.base_from_tool(q).linear().transpose();
       ASSERT_LT((j.col(k).head<3>() - linear).norm(), 1e-8);
       ASSERT_LT((j.col(k).tail<3>() - Vec3(spin(2, 1), spin(0, 2), spin(1, 0))).norm(), 1e-8);
     }
@@ -80,20 +81,20 @@ TEST(Kinematics, ReproducesTheLayoutTable) {
                       {{0.155, 1.423, 1.321, 0}, {0.410, 0.064, 0.455}, 12.0},
                       {{-0.155, 1.423, 1.321, 0}, {0.410, -0.064, 0.455}, 12.0}};
   for (const Row& row : rows) {
-    EXPECT_LT((base_from_tool(row.q_rad).translation() - row.tool_m).norm(), 0.001) << row.q_rad.transpose();
-    EXPECT_NEAR(deg_from_rad(std::acos(approach_axis(row.q_rad).x())), row.tilt_deg, 0.1) << row.q_rad.transpose();
+    EXPECT_LT((test::arm5e.base_from_tool(row.q_rad).translation() - row.tool_m).norm(), 0.001) << row.q_rad.transpose();
+    EXPECT_NEAR(deg_from_rad(std::acos(test::arm5e.approach_axis(row.q_rad).x())), row.tilt_deg, 0.1) << row.q_rad.transpose();
   }
 }
 
 TEST(Kinematics, ToolXPointsUpWhenTheToolIsLevelAtRollZero) {
-  const Pose tool = base_from_tool({0, 1.307, 1.151, 0});
+  const Pose tool = test::arm5e.base_from_tool({0, 1.307, 1.151, 0});
   EXPECT_LT(tool.linear()(2, 0), -0.98);  // base z is down
 }
 
 TEST(Kinematics, ReachesAsFarAsPublished) {
   RandomJoints random(seed + 3);
   double farthest = 0;
-  for (int i = 0; i < 200'000; ++i) farthest = std::max(farthest, base_from_tool(random.next()).translation().norm());
+  for (int i = 0; i < 200'000; ++i) farthest = std::max(farthest, test::arm5e.base_from_tool(random.next()).translation().norm());
   EXPECT_LE(farthest, 1.0145);
   EXPECT_GE(farthest, 1.0100);
 }
@@ -106,9 +107,9 @@ TEST(Kinematics, LaserIsCarriedByTheForearmAndIgnoresTheRoll) {
   RandomJoints random(seed + 4);
   for (int i = 0; i < 100; ++i) {
     JointVector q = random.next();
-    const Pose with_roll = base_from_laser(q, laser);
+    const Pose with_roll = test::arm5e.base_from_laser(q, laser);
     q[3] = 0;
-    EXPECT_LT((with_roll.matrix() - (base_from_tool(q) * laser.tool_from_laser).matrix()).cwiseAbs().maxCoeff(), 1e-15);
+    EXPECT_LT((with_roll.matrix() - (test::arm5e.base_from_tool(q) * laser.tool_from_laser).matrix()).cwiseAbs().maxCoeff(), 1e-15);
   }
 }
 
@@ -119,7 +120,7 @@ TEST(Kinematics, LinkPosesAreTheUrdfsChain) {
   for (int i = 0; i < 100; ++i) {
     const JointVector q = random.next();
     const double jaw = random.uniform(-0.05, 1.3);
-    const LinkPoses links = base_from_links(q, jaw);
+    const LinkPoses links = test::arm5e.base_from_links(q, jaw);
     const auto turn = [](const ArmJoint& joint, double angle) { return joint.parent_from_joint * Eigen::AngleAxisd(angle, joint.axis); };
     Pose pose = Pose::Identity();
     for (std::size_t k = 0; k < 4; ++k) {
@@ -128,7 +129,7 @@ TEST(Kinematics, LinkPosesAreTheUrdfsChain) {
     }
     ASSERT_LT((links[4].matrix() - (pose * turn(arm.joints[4], jaw)).matrix()).cwiseAbs().maxCoeff(), 1e-14);
     ASSERT_LT((links[5].matrix() - (pose * turn(arm.finger_b, jaw)).matrix()).cwiseAbs().maxCoeff(), 1e-14);
-    ASSERT_LT((base_from_tool(q).matrix() - (pose * arm.wrist_from_tool).matrix()).cwiseAbs().maxCoeff(), 1e-14);
+    ASSERT_LT((test::arm5e.base_from_tool(q).matrix() - (pose * arm.wrist_from_tool).matrix()).cwiseAbs().maxCoeff(), 1e-14);
   }
 }
 

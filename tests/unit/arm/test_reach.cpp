@@ -4,6 +4,7 @@
 
 #include "firmware/arm/reach.hpp"
 #include "shared/panel/panel_layout.hpp"
+#include "tests/arm5e.hpp"
 
 namespace lf::arm {
 namespace {
@@ -12,7 +13,7 @@ TEST(Reach, ReproducesTheLayoutsTilts) {
   const PanelLayout layout;
   const Pose base_from_panel = layout.nominal_base_from_panel();
   const auto tilt_deg = [&](const Vec3& panel_point_m) {
-    const Reach r = reach(base_from_panel, panel_point_m, 0.008);
+    const Reach r = reach(test::arm5e, base_from_panel, panel_point_m, 0.008);
     EXPECT_EQ(r.outcome, IkOutcome::ok) << name(r.outcome);
     return deg_from_rad(r.tilt_rad);
   };
@@ -29,21 +30,21 @@ TEST(Reach, CountsTheTiltAgainstATurnedPanel) {
   Pose base_from_panel = layout.nominal_base_from_panel();
   const Vec3 handle(0, 0, layout.valves[0].handle_height_m);
   const Vec3 at = base_from_panel * handle;
-  const double square = reach(base_from_panel, handle).tilt_rad;
+  const double square = reach(test::arm5e, base_from_panel, handle).tilt_rad;
   // The panel leant by 2 degrees about base y, the handle left where it is: the whole of it adds to the tilt, or takes from it.
   for (const double lean : {rad_from_deg(2), rad_from_deg(-2)}) {
     Pose leant = base_from_panel;
     leant.linear() = Eigen::AngleAxisd(lean, Vec3::UnitY()) * base_from_panel.linear();
     leant.translation() += at - leant * handle;
-    EXPECT_NEAR(std::abs(reach(leant, handle).tilt_rad - square), rad_from_deg(2), 1e-6);
+    EXPECT_NEAR(std::abs(reach(test::arm5e, leant, handle).tilt_rad - square), rad_from_deg(2), 1e-6);
   }
 }
 
 TEST(Reach, SaysWhyThePanelsCornersAreOutOfIt) {
   const PanelLayout layout;
   const Pose base_from_panel = layout.nominal_base_from_panel();
-  EXPECT_NE(reach(base_from_panel, {layout.plate_max_m.x(), layout.plate_min_m.y(), 0}).outcome, IkOutcome::ok);
-  EXPECT_EQ(reach(base_from_panel, {0, 0, std::nan("")}).outcome, IkOutcome::not_a_number);
+  EXPECT_NE(reach(test::arm5e, base_from_panel, {layout.plate_max_m.x(), layout.plate_min_m.y(), 0}).outcome, IkOutcome::ok);
+  EXPECT_EQ(reach(test::arm5e, base_from_panel, {0, 0, std::nan("")}).outcome, IkOutcome::not_a_number);
 }
 
 }  // namespace

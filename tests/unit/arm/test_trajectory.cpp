@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "firmware/arm/trajectory.hpp"
+#include "tests/arm5e.hpp"
 #include "tests/unit/arm/random_joints.hpp"
 
 namespace lf::arm {
@@ -35,7 +36,7 @@ void expect_within(const Motion& motion, const JointLimits& limits, double jerk_
 TEST(JointTrajectory, KeepsLimitsMovesInStepAndArrivesExactly) {
   SCOPED_TRACE(testing::Message() << "seed " << seed);
   RandomJoints random(seed);
-  const JointLimits limits = joint_limits(0, 0.6);
+  const JointLimits limits = test::arm5e.limits(0, 0.6);
   for (int k = 0; k < 300; ++k) {
     const JointVector start = random.next(), goal = random.next();
     JointTrajectory motion;
@@ -52,13 +53,13 @@ TEST(JointTrajectory, KeepsLimitsMovesInStepAndArrivesExactly) {
 
 TEST(JointTrajectory, ReachesTheLimitOfTheJointThatHoldsItBack) {
   JointTrajectory motion;
-  const JointLimits limits = joint_limits();
+  const JointLimits limits = test::arm5e.limits();
   ASSERT_EQ(motion.plan({0, 0.1, 0.1, 0}, {0, 1.5, 0.2, 0}, limits), PlanOutcome::ok);
   EXPECT_NEAR(motion.sample(motion.duration_s() / 2).qd_rad_s[1], limits.velocity_rad_s[1], 1e-9);
 }
 
 TEST(JointTrajectory, RefusesGoalsOutsideAndWhatIsNotANumber) {
-  const JointLimits limits = joint_limits(0.05);
+  const JointLimits limits = test::arm5e.limits(0.05);
   const JointVector park{0, 0.6, 1.9, 0};
   JointTrajectory motion;
   EXPECT_EQ(motion.plan(park, {0, 0.04, 1.9, 0}, limits), PlanOutcome::outside);
@@ -73,15 +74,15 @@ TEST(JointTrajectory, RefusesGoalsOutsideAndWhatIsNotANumber) {
 TEST(JointTrajectory, StaysForNoWayAndManagesTheTiniest) {
   const JointVector park{0, 0.6, 1.9, 0};
   JointTrajectory motion;
-  ASSERT_EQ(motion.plan(park, park, joint_limits()), PlanOutcome::ok);
+  ASSERT_EQ(motion.plan(park, park, test::arm5e.limits()), PlanOutcome::ok);
   EXPECT_EQ(motion.duration_s(), 0);
   const JointVector near = park + JointVector(1e-12, 0, 1e-13, 0);
-  ASSERT_EQ(motion.plan(park, near, joint_limits()), PlanOutcome::ok);
+  ASSERT_EQ(motion.plan(park, near, test::arm5e.limits()), PlanOutcome::ok);
   EXPECT_EQ(motion.sample(1).q_rad, near);
 }
 
 TEST(JointPath, StopsInEachViaPoint) {
-  const JointLimits limits = joint_limits();
+  const JointLimits limits = test::arm5e.limits();
   const JointVector start{0, 0.6, 1.9, 0};
   const std::vector<JointVector> points{{0, 0.9, 1.6, 0}, {0.1, 1.083, 1.355, 1.0}, {0, 1.307, 1.151, 1.5}};
   JointPath path;
@@ -104,27 +105,27 @@ TEST(JointPath, StopsInEachViaPoint) {
 TEST(JointPath, RefusesTooManyPointsAndKeepsWhatItHad) {
   const JointVector park{0, 0.6, 1.9, 0};
   JointPath path;
-  ASSERT_EQ(path.plan(park, {}, joint_limits()), PlanOutcome::ok);
+  ASSERT_EQ(path.plan(park, {}, test::arm5e.limits()), PlanOutcome::ok);
   EXPECT_EQ(path.sample(3).q_rad, park);
-  EXPECT_EQ(path.plan(park, std::vector<JointVector>(9, park), joint_limits()), PlanOutcome::too_many);
+  EXPECT_EQ(path.plan(park, std::vector<JointVector>(9, park), test::arm5e.limits()), PlanOutcome::too_many);
   const std::vector<JointVector> bad{park, {0, 3, 1, 0}};
-  EXPECT_EQ(path.plan(park, bad, joint_limits()), PlanOutcome::outside);
+  EXPECT_EQ(path.plan(park, bad, test::arm5e.limits()), PlanOutcome::outside);
   EXPECT_EQ(path.duration_s(), 0);
 }
 
 TEST(CartesianLine, KeepsTheToolOnTheLineAndTheJointsWithinTheirLimits) {
   SCOPED_TRACE(testing::Message() << "seed " << seed);
   RandomJoints random(seed + 1, 0.06);
-  const JointLimits limits = joint_limits(0.05);
+  const JointLimits limits = test::arm5e.limits(0.05);
   const LineLimits line{0.08, 0.3, 3.0};
   int planned = 0;
   for (int k = 0; k < 400; ++k) {
     const JointVector start = random.next();
-    const Vec3 from = base_from_tool(start).translation();
+    const Vec3 from = test::arm5e.base_from_tool(start).translation();
     const Vec3 to = from + Vec3(random.uniform(-0.15, 0.15), random.uniform(-0.15, 0.15), random.uniform(-0.15, 0.15));
     const double roll = random.uniform(-3, 3);
     CartesianLine motion;
-    const LinePlan plan = motion.plan(start, to, roll, line, limits);
+    const LinePlan plan = motion.plan(test::arm5e, start, to, roll, line, limits);
     if (plan.outcome != PlanOutcome::ok) {
       ASSERT_EQ(plan.outcome, PlanOutcome::unreachable);
       ASSERT_NE(plan.ik, IkOutcome::ok);
@@ -138,12 +139,12 @@ TEST(CartesianLine, KeepsTheToolOnTheLineAndTheJointsWithinTheirLimits) {
     for (int i = 0; i <= 50; ++i) {
       const double t = motion.duration_s() * i / 50;
       const JointState s = motion.sample(t);
-      const Vec3 tool = base_from_tool(s.q_rad).translation();
+      const Vec3 tool = test::arm5e.base_from_tool(s.q_rad).translation();
       ASSERT_LT((tool - from).cross(direction).norm(), 1e-9);
       ASSERT_LT((tool - motion.tool_m(t)).norm(), 1e-9);
-      ASSERT_LE((jacobian(s.q_rad).topRows<3>() * s.qd_rad_s).norm(), plan.speed_m_s * (1 + 1e-6) + 1e-9);
+      ASSERT_LE((test::arm5e.jacobian(s.q_rad).topRows<3>() * s.qd_rad_s).norm(), plan.speed_m_s * (1 + 1e-6) + 1e-9);
     }
-    ASSERT_LT((base_from_tool(motion.sample(1e9).q_rad).translation() - to).norm(), 1e-9);
+    ASSERT_LT((test::arm5e.base_from_tool(motion.sample(1e9).q_rad).translation() - to).norm(), 1e-9);
     ASSERT_EQ(motion.sample(1e9).q_rad[3], roll);
     ASSERT_LT((motion.sample(0).q_rad - start).norm(), 1e-9);
   }
@@ -152,7 +153,7 @@ TEST(CartesianLine, KeepsTheToolOnTheLineAndTheJointsWithinTheirLimits) {
 
 TEST(CartesianLine, RatesAreTheDerivativesOfTheJoints) {
   CartesianLine motion;
-  ASSERT_EQ(motion.plan({0, 1.083, 1.355, 0}, {0.34, 0.05, 0.592}, 1.2, {}, joint_limits()).outcome, PlanOutcome::ok);
+  ASSERT_EQ(motion.plan(test::arm5e, {0, 1.083, 1.355, 0}, {0.34, 0.05, 0.592}, 1.2, {}, test::arm5e.limits()).outcome, PlanOutcome::ok);
   constexpr double h = 1e-4;
   for (double t = 0.1; t < motion.duration_s() - 0.1; t += 0.05) {
     const JointState below = motion.sample(t - h), here = motion.sample(t), above = motion.sample(t + h);
@@ -164,9 +165,9 @@ TEST(CartesianLine, RatesAreTheDerivativesOfTheJoints) {
 TEST(CartesianLine, PlannedInSharesIsTheSame) {
   const JointVector start{0, 1.083, 1.355, 0};
   CartesianLine at_once, in_shares;
-  const LinePlan plan = at_once.plan(start, {0.34, 0.05, 0.592}, 1.2, {}, joint_limits());
+  const LinePlan plan = at_once.plan(test::arm5e, start, {0.34, 0.05, 0.592}, 1.2, {}, test::arm5e.limits());
   ASSERT_EQ(plan.outcome, PlanOutcome::ok);
-  in_shares.begin(start, {0.34, 0.05, 0.592}, 1.2, {}, joint_limits());
+  in_shares.begin(test::arm5e, start, {0.34, 0.05, 0.592}, 1.2, {}, test::arm5e.limits());
   int shares = 1;
   for (; !in_shares.advance(16); ++shares) {
     EXPECT_EQ(in_shares.duration_s(), 0);
@@ -182,22 +183,22 @@ TEST(CartesianLine, PlannedInSharesIsTheSame) {
 TEST(CartesianLine, SaysWhereAndWhyItCannotGo) {
   CartesianLine motion;
   const JointVector start{0, 1.083, 1.355, 0};
-  const LinePlan far = motion.plan(start, {1.5, 0, 0.6}, 0, {}, joint_limits());
+  const LinePlan far = motion.plan(test::arm5e, start, {1.5, 0, 0.6}, 0, {}, test::arm5e.limits());
   EXPECT_EQ(far.outcome, PlanOutcome::unreachable);
   EXPECT_NE(far.ik, IkOutcome::ok);
   EXPECT_GT(far.fraction, 0.05);
   EXPECT_LT(far.fraction, 0.8);
   EXPECT_EQ(motion.duration_s(), 0);
   EXPECT_EQ(motion.sample(1).q_rad, start);
-  EXPECT_EQ(motion.plan(start, {std::nan(""), 0, 0.6}, 0, {}, joint_limits()).outcome, PlanOutcome::not_a_number);
-  EXPECT_EQ(motion.plan(start, {0.3, 0, 0.6}, 0, {0, 1, 1}, joint_limits()).outcome, PlanOutcome::not_a_number);
+  EXPECT_EQ(motion.plan(test::arm5e, start, {std::nan(""), 0, 0.6}, 0, {}, test::arm5e.limits()).outcome, PlanOutcome::not_a_number);
+  EXPECT_EQ(motion.plan(test::arm5e, start, {0.3, 0, 0.6}, 0, {0, 1, 1}, test::arm5e.limits()).outcome, PlanOutcome::not_a_number);
 }
 
 TEST(CartesianLine, TurnsTheWristInPlace) {
   CartesianLine motion;
   const JointVector start{0, 1.307, 1.151, 0.2};
-  const JointLimits limits = joint_limits();
-  const LinePlan plan = motion.plan(start, base_from_tool(start).translation(), 1.8, {}, limits);
+  const JointLimits limits = test::arm5e.limits();
+  const LinePlan plan = motion.plan(test::arm5e, start, test::arm5e.base_from_tool(start).translation(), 1.8, {}, limits);
   ASSERT_EQ(plan.outcome, PlanOutcome::ok);
   expect_within(motion, limits);
   EXPECT_EQ(motion.sample(1e9).q_rad[3], 1.8);
@@ -206,7 +207,7 @@ TEST(CartesianLine, TurnsTheWristInPlace) {
 
 // The layout's sweep: the elbow at 0.065 rad/s, above the stiction of 0.06 rad/s all along the panel, run-up and run-out outside of it.
 TEST(ConstantSpeedSweep, MovesAtConstantSpeedBetweenRunUpAndRunOut) {
-  const JointLimits limits = joint_limits(0.008);
+  const JointLimits limits = test::arm5e.limits(0.008);
   const JointVector from{0, 0.945, 2.095, 0}, to{0, 0.945, 0.920, 0};
   ConstantSpeedSweep sweep;
   const double cruise_s = (2.095 - 0.920) / 0.065;
@@ -223,16 +224,16 @@ TEST(ConstantSpeedSweep, MovesAtConstantSpeedBetweenRunUpAndRunOut) {
 TEST(ConstantSpeedSweep, RefusesToStartOrEndOutsideAndToBeTooFast) {
   ConstantSpeedSweep sweep;
   const JointVector from{0, 0.945, 2.15, 0}, to{0, 0.945, 0.920, 0};
-  EXPECT_EQ(sweep.plan(from, to, 18, joint_limits()), PlanOutcome::outside) << "the run-up passes the elbow's limit";
-  EXPECT_EQ(sweep.plan({0, 0.945, 1.9, 0}, to, 1, joint_limits()), PlanOutcome::outside) << "1 rad/s";
-  EXPECT_EQ(sweep.plan(from, to, 0, joint_limits()), PlanOutcome::not_a_number);
+  EXPECT_EQ(sweep.plan(from, to, 18, test::arm5e.limits()), PlanOutcome::outside) << "the run-up passes the elbow's limit";
+  EXPECT_EQ(sweep.plan({0, 0.945, 1.9, 0}, to, 1, test::arm5e.limits()), PlanOutcome::outside) << "1 rad/s";
+  EXPECT_EQ(sweep.plan(from, to, 0, test::arm5e.limits()), PlanOutcome::not_a_number);
   EXPECT_EQ(sweep.sample(1).q_rad, from);
 }
 
 TEST(ConstantSpeedSweep, KeepsLimitsForRandomSweeps) {
   SCOPED_TRACE(testing::Message() << "seed " << seed);
   RandomJoints random(seed + 2, 0.2);
-  const JointLimits limits = joint_limits();
+  const JointLimits limits = test::arm5e.limits();
   int planned = 0;
   for (int k = 0; k < 200; ++k) {
     ConstantSpeedSweep sweep;
@@ -247,7 +248,7 @@ TEST(ConstantSpeedSweep, KeepsLimitsForRandomSweeps) {
 TEST(JointStop, BringsEveryJointToRestFromTheMiddleOfAMotion) {
   SCOPED_TRACE(testing::Message() << "seed " << seed);
   RandomJoints random(seed + 3);
-  const JointLimits limits = joint_limits();
+  const JointLimits limits = test::arm5e.limits();
   for (int k = 0; k < 200; ++k) {
     JointTrajectory motion;
     ASSERT_EQ(motion.plan(random.next(), random.next(), limits), PlanOutcome::ok);
@@ -264,7 +265,7 @@ TEST(JointStop, TakesWhatIsNotANumberAsRest) {
   JointState at;
   at.q_rad = {0.1, 0.2, 0.3, 0.4};
   at.qd_rad_s[1] = std::numeric_limits<double>::quiet_NaN();
-  const JointStop stop(at, joint_limits());
+  const JointStop stop(at, test::arm5e.limits());
   EXPECT_EQ(stop.sample(5).q_rad, at.q_rad);
   EXPECT_EQ(JointStop().duration_s(), 0);
 }

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "firmware/arm/transmission.hpp"
+#include "tests/arm5e.hpp"
 
 namespace lf::arm {
 namespace {
@@ -16,12 +17,14 @@ constexpr double counts_per_rev = 64;
 constexpr Friction sliding{0.004, 2e-5, 0.8, 0.75};
 constexpr Friction locking{0.004, 2e-5, 0.45, -0.2};
 
-Transmission transmission(Joint joint, const Friction& friction) { return Transmission(joint, {counts_per_rev, friction}); }
+Transmission transmission(Joint joint, const Friction& friction) {
+  return Transmission(test::arm5e.joint(joint), {counts_per_rev, friction});
+}
 
 class RandomPose {
  public:
   Joint joint() { return static_cast<Joint>(std::uniform_int_distribution<std::size_t>(0, joint_count - 1)(engine_)); }
-  double angle(Joint joint) { return within(numbers(joint).lower_rad, numbers(joint).upper_rad); }
+  double angle(Joint joint) { return within(test::arm5e.joint(joint).lower_rad, test::arm5e.joint(joint).upper_rad); }
   double within(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
   bool coin() { return within(0, 1) < 0.5; }
 
@@ -36,7 +39,8 @@ TEST(Transmission, HasTheRatioOfVirtualWork) {
     const Joint joint = random.joint();
     const double q = random.angle(joint), step = 1e-5;
     const double turn =
-        (exact_counts_from_rad(joint, q + step) - exact_counts_from_rad(joint, q - step)) / counts_per_rev * 2 * std::numbers::pi;
+        (exact_counts_from_rad(test::arm5e.joint(joint), q + step) - exact_counts_from_rad(test::arm5e.joint(joint), q - step)) /
+        counts_per_rev * 2 * std::numbers::pi;
     const Transmission smooth = transmission(joint, {});
     ASSERT_NEAR(smooth.ratio(q), turn / (2 * step), 1e-6 * smooth.ratio(q)) << "seed " << seed << ", pose " << i;
     // Without friction the motor's work is the joint's, at each speed and at rest.
@@ -141,7 +145,7 @@ TEST(Transmission, BoundsHoldTheTrueLoad) {
 
 TEST(TorqueObserver, RemembersTheWayOfTheLastMotion) {
   const Transmission t = transmission(Joint::elbow, sliding);
-  const double rad = rad_per_count(Joint::elbow, 1), held = t.motor_torque_nm(1, 1e-12, 10);
+  const double rad = rad_per_count(test::arm5e.joint(Joint::elbow), 1), held = t.motor_torque_nm(1, 1e-12, 10);
   TorqueObserver observer;
   EXPECT_NEAR(observer.update(t, rad, 1, 0, held, 0).nm, t.ratio(1) * held, 1e-9) << "it never moved: as if there were no friction";
   EXPECT_NEAR(observer.update(t, rad, 1, 0.1, t.motor_torque_nm(1, 0.1, 10), 0).nm, 10, 1e-9);

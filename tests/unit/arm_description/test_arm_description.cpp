@@ -211,6 +211,9 @@ INSTANTIATE_TEST_SUITE_P(
                     BadUrdf{"<cylinder radius=\"0.036\"", "<cylinder radius=\"0\"", "radius must be positive"},
                     BadUrdf{"<cylinder radius=\"0.036\" length=\"0.44278\"/>", "<cone/>", "holds none of"},
                     BadUrdf{"coefficient=\"0.8\"", "coefficient=\"-1\"", "coefficient must not be negative"},
+                    BadUrdf{"<collision name=\"pad\">", "<collision name=\"pd\">", "has no <collision> named 'pad'"},
+                    BadUrdf{"<origin xyz=\"-0.04 0 0.045\"", "<origin xyz=\"-0.04 0.01 0.045\"", "must turn about the wrist's -y"},
+                    BadUrdf{"<origin xyz=\"0.04 0 0.045\"", "<origin xyz=\"0.05 0 0.045\"", "must be the mirror image of 'jaw'"},
                     BadUrdf{"rgba=\"0.10", "rgba=\"1.10", "rgba must lie within 0 and 1"},
                     BadUrdf{"</robot>", "", "is not well-formed XML"}, BadUrdf{"<robot", "<robot2", "is not well-formed XML"}));
 

@@ -9,6 +9,7 @@
 #include "hal/config/share.hpp"
 #include "host_sim/devices/drive/drive_dictionary.hpp"
 #include "shared/arm/arm_description.hpp"
+#include "tests/arm5e.hpp"
 
 namespace lf::test {
 namespace {
@@ -108,6 +109,8 @@ bool DriveBench::boot() {
 
 std::string DriveBench::sentence() const { return config::boot_sentence(network.boot().nodes[elbow_index], "elbow"); }
 
-double DriveBench::joint_counts() const { return arm::exact_counts_from_rad(Joint::elbow, joints[elbow_index].motor_position_rad); }
+double DriveBench::joint_counts() const {
+  return arm::exact_counts_from_rad(test::arm5e.joint(Joint::elbow), joints[elbow_index].motor_position_rad);
+}
 
 }  // namespace lf::test

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "shared/arm/arm_description.hpp"
+#include "tests/arm5e.hpp"
 #include "tests/unit/canopen/scripted_node.hpp"
 
 namespace lf::mission {
@@ -70,7 +71,7 @@ class StrokesEnd : public testing::TestWithParam<End> {
   Axis& axis() { return bus.network.axis(GetParam().joint); }
   canopen::test::ScriptedNode& drive() { return bus.nodes[index()]; }
   void step() {
-    limit_axes(bus.network);
+    limit_axes(test::arm5e, bus.network);
     bus.step();
   }
   bool enable() {

@@ -7,6 +7,7 @@
 
 #include "firmware/arm/inverse_kinematics.hpp"
 #include "shared/panel/panel_layout.hpp"
+#include "tests/arm5e.hpp"
 
 namespace lf::mission {
 namespace {
@@ -21,12 +22,12 @@ Grasp grasp(double handle_rad, double turn_rad) {
   const PanelLayout layout;
   const Pose base_from_panel = layout.nominal_base_from_panel();
   const Vec3 centre = base_from_panel * Vec3(0, 0, layout.valves[0].handle_height_m);
-  const arm::IkResult ik = arm::inverse_kinematics(centre, 0);
+  const arm::IkResult ik = arm::inverse_kinematics(test::arm5e, centre, 0);
   EXPECT_TRUE(ik.ok());
   const Vec3 bar = base_from_panel.linear() * Vec3(-std::sin(handle_rad), std::cos(handle_rad), 0);
-  const auto rolls = arm::rolls_for_bar(ik.q_rad, bar);
+  const auto rolls = arm::rolls_for_bar(test::arm5e, ik.q_rad, bar);
   EXPECT_TRUE(rolls.has_value());
-  const auto roll = arm::roll_for_turn(*rolls, -turn_rad);
+  const auto roll = arm::roll_for_turn(*rolls, -turn_rad, -pi + arm::default_limit_margin_rad, pi - arm::default_limit_margin_rad);
   EXPECT_TRUE(roll.has_value());
   arm::JointVector q = ik.q_rad;
   q[3] = *roll;
@@ -36,19 +37,19 @@ Grasp grasp(double handle_rad, double turn_rad) {
 TEST(BarTurn, KeepsTheClosingDirectionAcrossTheBarAllTheWay) {
   const Grasp start = grasp(-0.5, 2.0);
   BarTurn turn;
-  ASSERT_TRUE(turn.plan(start.q, start.base_from_panel, -0.5, 1.5, {}, -pi, pi));
+  ASSERT_TRUE(turn.plan(test::arm5e, start.q, start.base_from_panel, -0.5, 1.5, {}, -pi, pi));
   for (double t = 0; t <= turn.duration_s() + 0.1; t += 0.02) {
     const arm::JointVector q = turn.sample(t);
     const double handle = turn.handle_rad(t);
     const Vec3 bar = start.base_from_panel * Vec3(-std::sin(handle), std::cos(handle), 0);
-    EXPECT_NEAR(arm::base_from_tool(q).linear().col(0).dot(bar), 0, 1e-9) << "at " << t << " s";
+    EXPECT_NEAR(test::arm5e.base_from_tool(q).linear().col(0).dot(bar), 0, 1e-9) << "at " << t << " s";
   }
 }
 
 TEST(BarTurn, EndsAtTheAngleAndTheOtherJointsStay) {
   const Grasp start = grasp(0.3, 1.2);
   BarTurn turn;
-  ASSERT_TRUE(turn.plan(start.q, start.base_from_panel, 0.3, 1.5, {}, -pi, pi));
+  ASSERT_TRUE(turn.plan(test::arm5e, start.q, start.base_from_panel, 0.3, 1.5, {}, -pi, pi));
   const arm::JointVector end = turn.sample(turn.duration_s());
   EXPECT_NEAR(turn.handle_rad(turn.duration_s()), 1.5, 1e-12);
   EXPECT_EQ(end.head<3>(), start.q.head<3>());
@@ -59,8 +60,8 @@ TEST(BarTurn, EndsAtTheAngleAndTheOtherJointsStay) {
 TEST(BarTurn, FollowsTheUniversalJointNotTheProportion) {
   const Grasp start = grasp(0, 1.5);
   BarTurn turn;
-  ASSERT_TRUE(turn.plan(start.q, start.base_from_panel, 0, 1.5, {}, -pi, pi));
-  const Vec3 tool = arm::base_from_tool(start.q).linear().col(2);
+  ASSERT_TRUE(turn.plan(test::arm5e, start.q, start.base_from_panel, 0, 1.5, {}, -pi, pi));
+  const Vec3 tool = test::arm5e.base_from_tool(start.q).linear().col(2);
   const auto seen = [&](double handle) {
     const Vec3 bar = start.base_from_panel * Vec3(-std::sin(handle), std::cos(handle), 0);
     return Vec3(bar - tool * tool.dot(bar));
@@ -83,7 +84,7 @@ TEST(BarTurn, FollowsTheUniversalJointNotTheProportion) {
 TEST(BarTurn, RefusesATurnThatLeavesTheWristsLimits) {
   const Grasp start = grasp(0, 1.5);
   BarTurn turn;
-  EXPECT_FALSE(turn.plan(start.q, start.base_from_panel, 0, 1.5, {}, start.q[3] - 0.5, start.q[3] + 0.5));
+  EXPECT_FALSE(turn.plan(test::arm5e, start.q, start.base_from_panel, 0, 1.5, {}, start.q[3] - 0.5, start.q[3] + 0.5));
 }
 
 }  // namespace

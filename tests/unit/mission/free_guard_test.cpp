@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "firmware/mission/workbench.hpp"
+#include "tests/arm5e.hpp"
 
 namespace lf::mission {
 namespace {
@@ -142,16 +143,17 @@ TEST(HasSeized, IsAMotorThatStandsWhileItsTorqueRises) {
   for (const double rad_s : {0.01, 0.05, 0.3}) {
     SCOPED_TRACE(rad_s);
     // A controller that asks for more speed winds up faster: at 0.06 rad/s to 30 N m in 50 ms.
-    EXPECT_TRUE(has_seized(met(rad_s, 0, 600 * rad_s / 0.06)));
-    EXPECT_TRUE(does_not_follow(met(rad_s, 0, 600 * rad_s / 0.06)));
+    EXPECT_TRUE(has_seized(test::arm5e, met(rad_s, 0, 600 * rad_s / 0.06)));
+    EXPECT_TRUE(does_not_follow(test::arm5e, met(rad_s, 0, 600 * rad_s / 0.06)));
     // One whose speed loop is slow lags by more than the guard allows before it has wound up: its torque is 5 N m then.
     if (rad_s == 0.3) {
       const arm::GuardedMotion slow = met(rad_s, 0, 50);
       ASSERT_EQ(slow.cause(), arm::GuardCause::following_error);
       ASSERT_FALSE(lags_without_load(slow));
-      EXPECT_TRUE(does_not_follow(slow));
+      EXPECT_TRUE(does_not_follow(test::arm5e, slow));
     }
-    for (const double stiffness_nm_rad : {1500.0, 4000.0}) EXPECT_FALSE(has_seized(met(rad_s, stiffness_nm_rad, 0))) << stiffness_nm_rad;
+    for (const double stiffness_nm_rad : {1500.0, 4000.0})
+      EXPECT_FALSE(has_seized(test::arm5e, met(rad_s, stiffness_nm_rad, 0))) << stiffness_nm_rad;
   }
 }
 
@@ -171,7 +173,7 @@ TEST(HasSeized, IsARollThatShowsNotOneCountOfItsWay) {
       guard.update(Time::from_s(t_s += 0.004), command_rad, position_rad, arm::JointVector::Zero(), torque_nm);
     }
     EXPECT_TRUE(guard.touched());
-    return has_seized(guard);
+    return has_seized(test::arm5e, guard);
   };
   for (const int way : {-1, 1}) {
     EXPECT_TRUE(met(way, 0, way * 6));
@@ -194,7 +196,7 @@ TEST(WasBehindBefore, IsAJointThatWasOverloadedAndDidNotFollow) {
       guard.update(Time::from_s(t_s += 0.004), command_rad, position_rad, arm::JointVector::Zero(), torque_nm);
     }
     EXPECT_TRUE(guard.touched());
-    return was_behind_before(guard);
+    return was_behind_before(test::arm5e, guard);
   };
   EXPECT_TRUE(met(-0.0005, -28, -28));
   EXPECT_TRUE(met(0.0005, 28, 28));
@@ -209,10 +211,10 @@ TEST(HasSeized, IsNoMotorThatHoldsWhatPushesAtIt) {
   double t_s = 0, nm = 0;
   ASSERT_FALSE(touches(guard, t_s, nm, 0, 1));
   ASSERT_TRUE(touches(guard, t_s, nm, 40, 1));
-  EXPECT_FALSE(has_seized(guard));
+  EXPECT_FALSE(has_seized(test::arm5e, guard));
 }
 
-TEST(DrivesItselfOff, CountsAsAJointThatDoesNotFollow) { EXPECT_TRUE(does_not_follow(moving(0.05, -0.05, -10))); }
+TEST(DrivesItselfOff, CountsAsAJointThatDoesNotFollow) { EXPECT_TRUE(does_not_follow(test::arm5e, moving(0.05, -0.05, -10))); }
 
 }  // namespace
 }  // namespace lf::mission

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "firmware/arm/inverse_kinematics.hpp"
+#include "tests/arm5e.hpp"
 
 namespace lf::mission {
 namespace {
@@ -14,7 +15,7 @@ constexpr double period_s = 0.004;
 
 safety::Limits limits() {
   safety::Limits limits;
-  const arm::JointLimits urdf = arm::joint_limits();
+  const arm::JointLimits urdf = test::arm5e.limits();
   for (std::size_t i = 0; i < arm_joint_count; ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     limits.joints[i] = {urdf.lower_rad[k] + 0.02, urdf.upper_rad[k] - 0.02, 0.8 * urdf.velocity_rad_s[k], 50};
@@ -25,8 +26,12 @@ safety::Limits limits() {
 
 const arm::JointVector park{0, 0.6, 1.9, 0};
 
-Motion at_park(const PanelLayout& layout = {}) {
-  Motion motion(limits(), layout, {}, park);
+const PanelLayout docked;
+const arm::VehicleShape no_vehicle;
+
+Motion at_park(PanelLayout&& gone_after) = delete;
+Motion at_park(const PanelLayout& layout = docked) {
+  Motion motion(test::arm5e, limits(), layout, no_vehicle, park);
   motion.start_at(park);
   return motion;
 }
@@ -115,19 +120,19 @@ TEST(Motion, ATurnBeyondTheRollsLimitsIsRefused) {
 
 TEST(Motion, ALineStaysOnTheLine) {
   Motion motion = at_park();
-  const arm::IkResult start = arm::inverse_kinematics({0.25, 0, 0.59}, 0.3);
+  const arm::IkResult start = arm::inverse_kinematics(test::arm5e, {0.25, 0, 0.59}, 0.3);
   ASSERT_TRUE(start.ok());
   motion.start_at(start.q_rad);
-  const Vec3 from = arm::base_from_tool(start.q_rad).translation();
+  const Vec3 from = test::arm5e.base_from_tool(start.q_rad).translation();
   const Vec3 to(0.34, 0.01, 0.592);
   motion.line(to, 0.3, far_away(), 0, 0.04);
   ASSERT_TRUE(planned(motion));
   while (!motion.done()) {
     motion.step(period_s);
-    const Vec3 tool = arm::base_from_tool(motion.target()).translation();
+    const Vec3 tool = test::arm5e.base_from_tool(motion.target()).translation();
     EXPECT_LT((tool - from).cross((to - from).normalized()).norm(), 1e-9);
   }
-  EXPECT_LT((arm::base_from_tool(motion.target()).translation() - to).norm(), 1e-9);
+  EXPECT_LT((test::arm5e.base_from_tool(motion.target()).translation() - to).norm(), 1e-9);
 }
 
 TEST(Motion, AStopEndsAtRestWithoutAJump) {
@@ -168,7 +173,7 @@ TEST(Motion, ASweepFasterThanItsJointMayGoIsRefused) {
   const scan::SweepRequest request = sweep_over_the_panel();
   safety::Limits slow = limits();
   slow.joints[2].max_speed_rad_s = 0.5 * request.slowest_rad_s;
-  Motion motion(slow, {}, {}, park);
+  Motion motion(test::arm5e, slow, docked, no_vehicle, park);
   motion.start_at(park);
   motion.go_to_sweep(request, forearm_laser(), closed_before(request.base_from_panel), 0, 0.6);
   EXPECT_FALSE(planned(motion));
@@ -177,21 +182,24 @@ TEST(Motion, ASweepFasterThanItsJointMayGoIsRefused) {
 }
 
 // A board of 100 x 400 mm stands in the arm's space: nothing else of the panel is anywhere near.
-PanelLayout board() {
-  PanelLayout layout;
-  layout.plate_min_m = Vec2(-0.05, -0.2);
-  layout.plate_max_m = Vec2(0.05, 0.2);
-  layout.plate_thickness_m = 0.02;
-  for (PanelLayout::Button& button : layout.buttons) {
-    button.at_m = Vec2(0, 0);
-    button.width_m = button.height_m = 0.001;
-  }
-  PanelLayout::Marker& marker = layout.markers[0];
-  marker.centre_m = Vec2(0, 0);
-  marker.plate_m = marker.plate_thickness_m = 0.001;
-  PanelLayout::Valve& valve = layout.valves[0];
-  valve.handle_length_m = valve.handle_thickness_m = valve.handle_height_m = valve.stem_radius_m = 0.001;
-  return layout;
+const PanelLayout& board() {
+  static const PanelLayout all = [] {
+    PanelLayout layout;
+    layout.plate_min_m = Vec2(-0.05, -0.2);
+    layout.plate_max_m = Vec2(0.05, 0.2);
+    layout.plate_thickness_m = 0.02;
+    for (PanelLayout::Button& button : layout.buttons) {
+      button.at_m = Vec2(0, 0);
+      button.width_m = button.height_m = 0.001;
+    }
+    PanelLayout::Marker& marker = layout.markers[0];
+    marker.centre_m = Vec2(0, 0);
+    marker.plate_m = marker.plate_thickness_m = 0.001;
+    PanelLayout::Valve& valve = layout.valves[0];
+    valve.handle_length_m = valve.handle_thickness_m = valve.handle_height_m = valve.stem_radius_m = 0.001;
+    return layout;
+  }();
+  return all;
 }
 
 Room board_at(double x_m, double y_m, double z_m) {
@@ -207,7 +215,8 @@ double nearest_m(Motion& motion, const Room& room) {
   double nearest = 1e9;
   for (int i = 0; i < 100'000 && !motion.done(); ++i) {
     motion.step(period_s);
-    nearest = std::min(nearest, panel.clearance(arm::link_capsules(motion.target(), room.jaw.low_rad), room.base_from_panel).distance_m);
+    nearest =
+        std::min(nearest, panel.clearance(test::arm5e.link_capsules(motion.target(), room.jaw.low_rad), room.base_from_panel).distance_m);
   }
   EXPECT_TRUE(motion.done());
   return nearest;
@@ -277,7 +286,7 @@ TEST(MotionPastThePanel, MayLeaveFromNearerThanItWouldGo) {
   Room room = board_at(0.5, 0, 0.55);
   const arm::PanelShape panel(board());
   // The board comes up until the arm is 5 mm off it.
-  while (panel.clearance(arm::link_capsules(near, 0), room.base_from_panel).distance_m > 0.005)
+  while (panel.clearance(test::arm5e.link_capsules(near, 0), room.base_from_panel).distance_m > 0.005)
     room.base_from_panel.translation().x() -= 0.0005;
   motion.go_clear(park, room, 0, 0.6);
   EXPECT_TRUE(planned(motion));

@@ -7,6 +7,7 @@
 #include "firmware/mission/motion.hpp"
 #include "hal/config/machine.hpp"
 #include "shared/scene/panel_scene.hpp"
+#include "tests/arm5e.hpp"
 #include "tests/unit/arm/solid_arm.hpp"
 
 namespace lf::mission {
@@ -29,7 +30,7 @@ arm::VehicleShape default_vehicle() {
 
 safety::Limits limits() {
   safety::Limits limits;
-  const arm::JointLimits urdf = arm::joint_limits();
+  const arm::JointLimits urdf = test::arm5e.limits();
   for (std::size_t i = 0; i < arm_joint_count; ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     limits.joints[i] = {urdf.lower_rad[k], urdf.upper_rad[k], urdf.velocity_rad_s[k], 50};
@@ -42,7 +43,7 @@ class Draws {
   double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
   double either(double most) { return uniform(0, 1) < 0.7 ? (uniform(0, 1) < 0.5 ? most : -most) : uniform(-most, most); }
   arm::JointVector joints() {
-    const arm::JointLimits l = arm::joint_limits(0.01);
+    const arm::JointLimits l = test::arm5e.limits(0.01);
     return {uniform(l.lower_rad[0], l.upper_rad[0]), uniform(l.lower_rad[1], l.upper_rad[1]), uniform(l.lower_rad[2], l.upper_rad[2]),
             uniform(l.lower_rad[3], l.upper_rad[3])};
   }
@@ -101,7 +102,7 @@ TEST(RandomWays, ThatArePlannedKeepClearOfPanelAndVehicleWhereverThePanelMayBe) 
   const PanelLayout layout;
   const arm::VehicleShape vehicle = default_vehicle();
   const Model model(layout, vehicle);
-  Motion motion(limits(), layout, vehicle, park);
+  Motion motion(test::arm5e, limits(), layout, vehicle, park);
   int ways = 0, refused_for_panel = 0, refused_for_vehicle = 0, near = 0;
   for (int k = 0; k < 400 || ways < 60; ++k) {
     ASSERT_LT(k, 3000) << "too few ways are found";
@@ -109,7 +110,7 @@ TEST(RandomWays, ThatArePlannedKeepClearOfPanelAndVehicleWhereverThePanelMayBe) 
     Room room;
     room.base_from_panel = layout.nominal_base_from_panel();
     room.doubt = k % 2 == 0 ? arm::PanelDoubt{0.020, 0.0349} : arm::PanelDoubt{0.003, 0.004, 0.0105};
-    const double open_rad = arm::jaw_from_gap(0.0606);
+    const double open_rad = arm::jaw_from_gap(test::jaw5e, 0.0606);
     room.jaw = k % 4 < 2 ? arm::JawSweep{-0.05, -0.05} : arm::JawSweep{-0.05, open_rad};
     // A way out of a place that is too near already is another matter: see MayLeaveFromNearerThanItWouldGo.
     const Nearest start = model.at(from, room.jaw.low_rad, room.base_from_panel);
@@ -147,7 +148,7 @@ TEST(RandomLines, ToTheHandleAndTheButtonsKeepAllButTheFingersClear) {
   const PanelLayout layout;
   const arm::VehicleShape vehicle = default_vehicle();
   const Model model(layout, vehicle);
-  Motion motion(limits(), layout, vehicle, park);
+  Motion motion(test::arm5e, limits(), layout, vehicle, park);
   int lines = 0;
   for (int k = 0; k < 60; ++k) {
     Room room;
@@ -155,13 +156,13 @@ TEST(RandomLines, ToTheHandleAndTheButtonsKeepAllButTheFingersClear) {
     room.doubt = {0.003, 0.004};
     const bool handle = k % 4 == 0;
     const std::size_t button = static_cast<std::size_t>(k % 4 + 2) % 3;
-    const double jaw_rad = handle ? arm::jaw_from_gap(0.0606) : -0.05;
+    const double jaw_rad = handle ? arm::jaw_from_gap(test::jaw5e, 0.0606) : -0.05;
     room.jaw = {jaw_rad, jaw_rad};
     room.meant_for_fingers =
         handle ? arm::bit(arm::PanelPart::valve(0)) : arm::bit(arm::PanelPart::plate()) | arm::bit(arm::PanelPart::button(button));
     const Vec3 aim = handle ? layout.valves[0].handle_centre_m() : Vec3(layout.buttons[button].face_m() + Vec3(0, 0, 0.012));
     const double roll = handle ? draw.uniform(-1.5, 1.5) : 0;
-    const arm::IkResult start = arm::inverse_kinematics(room.base_from_panel * (aim + Vec3(0, 0, 0.08)), roll, 0.01);
+    const arm::IkResult start = arm::inverse_kinematics(test::arm5e, room.base_from_panel * (aim + Vec3(0, 0, 0.08)), roll, 0.01);
     if (!start.ok()) continue;
     motion.start_at(start.q_rad);
     motion.line(room.base_from_panel * aim, roll, room, jaw_rad, 0.04);
@@ -185,14 +186,14 @@ TEST(AWay, IsThatOfTheJawAtItsWidest) {
   const PanelLayout layout;
   arm::VehicleShape post;
   const arm::JointVector from{-0.25, 1.0, 1.2, 0}, to{0.25, 1.0, 1.2, 0};
-  const double open_rad = arm::jaw_from_gap(0.0606);
+  const double open_rad = arm::jaw_from_gap(test::jaw5e, 0.0606);
   // Beside the fingers where the way begins, 20 mm off the closed ones: nearer than their opening.
-  const arm::LinkCapsules closed = arm::link_capsules(from, 0);
+  const arm::LinkCapsules closed = test::arm5e.link_capsules(from, 0);
   Room room;
   room.base_from_panel = layout.nominal_base_from_panel();
   room.base_from_panel.translation().x() += 2;
-  Vec3 beside = arm::base_from_tool(from) * Vec3(-0.03, 0, 0);
-  const Vec3 outward = arm::base_from_tool(from).linear().col(0);
+  Vec3 beside = test::arm5e.base_from_tool(from) * Vec3(-0.03, 0, 0);
+  const Vec3 outward = test::arm5e.base_from_tool(from).linear().col(0);
   const auto off_m = [&] { return arm::clearance_to_vehicle(closed, post); };
   do {
     beside -= 0.001 * outward;
@@ -200,7 +201,7 @@ TEST(AWay, IsThatOfTheJawAtItsWidest) {
     ASSERT_TRUE(post.rods.push_back({beside, beside, 0.002}));
   } while (off_m() < 0.020);
   const auto failure = [&](double high_rad) {
-    Motion motion(limits(), layout, post, park);
+    Motion motion(test::arm5e, limits(), layout, post, park);
     motion.start_at(from);
     room.jaw = {0, high_rad};
     motion.go_clear(to, room, 0, 0.8);
@@ -217,14 +218,15 @@ TEST(AWay, LeadsRoundWhatTheVehicleHasInIt) {
   Room room;
   room.base_from_panel = layout.nominal_base_from_panel();
   room.base_from_panel.translation().x() += 2;
-  const arm::IkResult left = arm::inverse_kinematics({0.1, -0.45, 0.5}, 0), right = arm::inverse_kinematics({0.35, 0.15, 0.5}, 0);
+  const arm::IkResult left = arm::inverse_kinematics(test::arm5e, {0.1, -0.45, 0.5}, 0),
+                      right = arm::inverse_kinematics(test::arm5e, {0.35, 0.15, 0.5}, 0);
   ASSERT_TRUE(left.ok() && right.ok());
   const arm::JointVector from = left.q_rad, to = right.q_rad, middle = (from + to) / 2;
   arm::VehicleShape post;
-  const Vec3 tool = arm::base_from_tool(middle).translation();
+  const Vec3 tool = test::arm5e.base_from_tool(middle).translation();
   ASSERT_TRUE(post.rods.push_back({tool, tool + Vec3(0, 0, 0.05), 0.01}));
   const Model model(layout, post);
-  Motion motion(limits(), layout, post, park);
+  Motion motion(test::arm5e, limits(), layout, post, park);
   motion.start_at(from);
   motion.go_clear(to, room, 0, 0.8);
   while (motion.planning()) motion.step(period_s);
@@ -242,7 +244,7 @@ TEST(AWay, LeadsRoundWhatTheVehicleHasInIt) {
 TEST(AJog, ThatIsBarredMovesNothingAndSaysByWhat) {
   const PanelLayout layout;
   const arm::VehicleShape vehicle = default_vehicle();
-  Motion motion(limits(), layout, vehicle, park);
+  Motion motion(test::arm5e, limits(), layout, vehicle, park);
   const arm::JointVector near_panel{0, 1.307, 1.0, 0};
   Room room;
   room.base_from_panel = layout.nominal_base_from_panel();

@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "firmware/arm/actuator.hpp"
+#include "tests/arm5e.hpp"
 #include "tests/unit/canopen/scripted_node.hpp"
 
 namespace lf::safety {
@@ -74,14 +75,14 @@ class PowerTest : public testing::Test {
     canopen::NetworkConfig config = canopen::test::plain_config();
     for (std::size_t i = 0; i < joint_count; ++i) {
       config.drives[i].quick_stop_counts_s2 =
-          static_cast<std::uint32_t>(deceleration_rad_s2 / std::abs(arm::rad_per_count(static_cast<Joint>(i), 0)));
+          static_cast<std::uint32_t>(deceleration_rad_s2 / std::abs(arm::rad_per_count(test::arm5e.joint(static_cast<Joint>(i)), 0)));
     }
     return config;
   }
 
   static constexpr double deceleration_rad_s2 = 0.5;
   canopen::test::Bus bus{config()};
-  Power power;
+  Power power{test::arm5e};
   JointStates joints;
   bool speeds_known = true;
   std::array<bool, joint_count> taken_for_stale{};  // by limits that are tighter than an axis'
@@ -346,7 +347,7 @@ TEST(PowerWithBrakes, TheOrderlyWayDownWaitsForTheSlowestBrake) {
     canopen::Axis& elbow = bus.network.axis(Joint::elbow);
     elbow.request(canopen::AxisRequest::hold_enabled);
     ASSERT_TRUE(bus.run_until([&] { return elbow.enabled(); }, Duration::from_ms(500)));
-    Power power;
+    Power power{test::arm5e};
     power.switch_on();
     bus.nodes[2].ignores_controlword = true;
     const Time began = bus.now;
@@ -389,7 +390,7 @@ class PowerFromBefore : public PowerTest {
     }
     ASSERT_TRUE(bus.run_until([this] { return all_in(holding); }, Duration::from_ms(100)));
     bus.network = canopen::Network(canopen::test::plain_config());
-    power = Power();
+    power = Power(test::arm5e);
     bus.log.clear();
     step();
     ASSERT_TRUE(all_in(holding));

@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "tests/arm5e.hpp"
 #include "tests/unit/canopen/scripted_node.hpp"
 
 namespace lf::safety {
@@ -39,7 +40,7 @@ class WatchTest : public testing::Test {
   }
 
   canopen::test::Bus bus{canopen::test::plain_config()};
-  Watch watch{limits()};
+  Watch watch{test::arm5e, limits()};
 };
 
 TEST_F(WatchTest, NamesAJointBeyondItsLimitOnce) {
@@ -91,7 +92,7 @@ class EachLimit : public testing::Test {
 
   // How often `fault` begins within some cycles under these limits. Joint 2 turns at `speed_rad_s`, from 0.
   int begins(const Limits& limits, Fault fault, double speed_rad_s = 0, const Vec3& tool_m = Vec3::Zero(), int cycles = 100) {
-    Watch watch{limits, transmissions};
+    Watch watch{test::arm5e, limits, transmissions};
     int began = 0;
     double rad = 0;
     for (int i = 0; i < cycles; ++i) {
@@ -144,7 +145,8 @@ TEST_F(EachLimit, OfTorque) {
   bus.nodes[2].torque_permille = 500;
   EXPECT_EQ(begins(limits, Fault::overload), 0);
   // The motor's torque, through the screw at angle 0: half of the rated one.
-  const double joint_nm = 0.5e-6 * bus.network.axis(Joint::elbow).rated_torque_unm() * arm::Transmission(Joint::elbow).ratio(0);
+  const double joint_nm =
+      0.5e-6 * bus.network.axis(Joint::elbow).rated_torque_unm() * arm::Transmission(test::arm5e.joint(Joint::elbow)).ratio(0);
   limits.joints[2].max_torque_nm = 0.95 * joint_nm;
   EXPECT_EQ(begins(limits, Fault::overload), 1);
   // A reading may be wrong by a hundredth of the rated torque: what may be within the limit is no overload.
@@ -185,7 +187,7 @@ TEST_F(EachLimit, OfAPositionsAge) {
   const auto with_a_gap = [this](double stale_s) {
     Limits limits = loose();
     limits.stale_position_s = stale_s;
-    Watch watch{limits};
+    Watch watch{test::arm5e, limits};
     int began = 0;
     for (int i = 0; i < 30; ++i) {
       bus.nodes[2].mute_tpdo = i >= 10 && i < 12;
@@ -202,7 +204,7 @@ TEST_F(EachLimit, OfAPositionsAge) {
 }
 
 TEST_F(EachLimit, AToolOutsideMayComeBackAndNotGoOn) {
-  Watch watch{loose()};
+  Watch watch{test::arm5e, loose()};
   const auto began = [&](double x_m) {
     bus.step();
     watch.observe(bus.network, {}, bus.now);
@@ -235,7 +237,7 @@ class Links : public EachLimit {
     }
     return all;
   }
-  Watch watch{loose()};
+  Watch watch{test::arm5e, loose()};
 };
 
 TEST_F(Links, AnOutputNodeThatIsSilentIsAFaultWithinFourCycles) {

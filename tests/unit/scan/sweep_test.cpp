@@ -7,6 +7,7 @@
 
 #include "firmware/arm/kinematics.hpp"
 #include "firmware/arm/trajectory.hpp"
+#include "tests/arm5e.hpp"
 #include "tests/unit/scan/docked_scene.hpp"
 
 namespace lf::scan {
@@ -20,7 +21,7 @@ arm::JointVector along(const SweepPlan& plan, double f) {
 
 // Positive where the stripe has passed the point.
 double passed_m(const SweepPlan& plan, double f, const Vec3& point, const LaserCalibration& laser) {
-  const Pose pose = arm::base_from_laser(along(plan, f), laser);
+  const Pose pose = test::arm5e.base_from_laser(along(plan, f), laser);
   return pose.linear().col(0).dot(point - pose.translation());
 }
 
@@ -49,14 +50,14 @@ void expect_scanned(const SweepPlan& plan, const Vec3& point, const LaserCalibra
   ASSERT_GT(passed_m(plan, 1, point, laser), 0);
   double before = 0, after = 1;
   for (int i = 0; i < 30; ++i) (passed_m(plan, 0.5 * (before + after), point, laser) < 0 ? before : after) = 0.5 * (before + after);
-  const Vec3 in_laser = arm::base_from_laser(along(plan, after), laser).inverse() * point;
+  const Vec3 in_laser = test::arm5e.base_from_laser(along(plan, after), laser).inverse() * point;
   ASSERT_GT(in_laser.z(), 0);
   ASSERT_LE(std::atan2(std::abs(in_laser.y()), in_laser.z()), laser.fan_half_angle_rad);
 }
 
 TEST(Sweep, PassesThePanelAndItsMarginAtEveryDockingError) {
   const LaserCalibration laser = test::nominal_laser();
-  const SweepPlan plan = plan_sweep(whole_panel(), laser);
+  const SweepPlan plan = plan_sweep(test::arm5e, whole_panel(), laser);
   ASSERT_EQ(plan.outcome, SweepOutcome::ok);
   std::mt19937_64 random(20);
   for (int trial = 0; trial < 400; ++trial) {
@@ -74,7 +75,7 @@ TEST(Sweep, OfABandPassesTheWholeHandle) {
   for (int trial = 0; trial < 100; ++trial) {
     SCOPED_TRACE(testing::Message() << "trial " << trial << " of seed 21");
     const Pose base_from_panel = test::docked_panel(random, 0.020, rad_from_deg(2));
-    const SweepPlan plan = plan_sweep(handle_band(base_from_panel), laser);
+    const SweepPlan plan = plan_sweep(test::arm5e, handle_band(base_from_panel), laser);
     ASSERT_EQ(plan.outcome, SweepOutcome::ok);
     for (double angle = 0; angle < 2 * pi; angle += pi / 6)
       expect_scanned(plan, base_from_panel * Vec3(0.054 * std::cos(angle), 0.054 * std::sin(angle), 0.106), laser);
@@ -86,10 +87,10 @@ TEST(Sweep, OfABandPassesTheWholeHandle) {
 TEST(Sweep, StartsAboveASecondHandleNearTheUpperEdge) {
   const LaserCalibration laser = test::nominal_laser();
   SweepRequest request = whole_panel();
-  const SweepPlan one = plan_sweep(request, laser);
+  const SweepPlan one = plan_sweep(test::arm5e, request, laser);
   const SweepRequest::Handle second{Vec2(0.20, 0.19), 0.055, 0.107};
   ASSERT_TRUE(request.handles.push_back(second));
-  const SweepPlan two = plan_sweep(request, laser);
+  const SweepPlan two = plan_sweep(test::arm5e, request, laser);
   ASSERT_EQ(one.outcome, SweepOutcome::ok);
   ASSERT_EQ(two.outcome, SweepOutcome::ok);
   std::mt19937_64 random(22);
@@ -108,9 +109,9 @@ TEST(Sweep, StartsAboveASecondHandleNearTheUpperEdge) {
 }
 
 TEST(Sweep, IsWithinTheSoftLimitsWithRunUpAndAboveTheStiction) {
-  const arm::JointLimits limits = arm::joint_limits(0.05);
+  const arm::JointLimits limits = test::arm5e.limits(0.05);
   for (const SweepRequest& request : {whole_panel(), handle_band(PanelLayout{}.nominal_base_from_panel())}) {
-    const SweepPlan plan = plan_sweep(request, test::nominal_laser());
+    const SweepPlan plan = plan_sweep(test::arm5e, request, test::nominal_laser());
     ASSERT_EQ(plan.outcome, SweepOutcome::ok);
     arm::ConstantSpeedSweep motion;
     EXPECT_EQ(motion.plan(joints(plan.start_rad), joints(plan.end_rad), plan.duration.s(), limits), arm::PlanOutcome::ok);
@@ -123,7 +124,7 @@ TEST(Sweep, IsWithinTheSoftLimitsWithRunUpAndAboveTheStiction) {
 
 // 14 s where the first exploration's elbow-only sweep took 18.1, its lines no further apart than 2.6 mm.
 TEST(Sweep, OfTheWholePanelIsShortAndDense) {
-  const SweepPlan plan = plan_sweep(whole_panel(), test::nominal_laser());
+  const SweepPlan plan = plan_sweep(test::arm5e, whole_panel(), test::nominal_laser());
   ASSERT_EQ(plan.outcome, SweepOutcome::ok);
   EXPECT_LT(plan.duration.s(), 15);
   EXPECT_LT(plan.widest_spacing_m, 0.0027);
@@ -133,7 +134,7 @@ TEST(Sweep, OfTheWholePanelIsShortAndDense) {
 TEST(Sweep, OfABandIsDenserWhenAskedForWithShoulderAndElbowTogether) {
   SweepRequest request = handle_band(PanelLayout{}.nominal_base_from_panel());
   request.line_spacing_m = 0.0015;
-  const SweepPlan plan = plan_sweep(request, test::nominal_laser());
+  const SweepPlan plan = plan_sweep(test::arm5e, request, test::nominal_laser());
   ASSERT_EQ(plan.outcome, SweepOutcome::ok);
   EXPECT_LE(plan.widest_spacing_m, 0.0015);
   EXPECT_GT(plan.speed_rad_s[1], 0.06);
@@ -142,29 +143,29 @@ TEST(Sweep, OfABandIsDenserWhenAskedForWithShoulderAndElbowTogether) {
 
 TEST(Sweep, IsAsSlowAsItIsAskedToBe) {
   SweepRequest request = whole_panel();
-  const SweepPlan slow = plan_sweep(request, test::nominal_laser());
+  const SweepPlan slow = plan_sweep(test::arm5e, request, test::nominal_laser());
   request.slowest_rad_s = 0.1;
-  const SweepPlan fast = plan_sweep(request, test::nominal_laser());
+  const SweepPlan fast = plan_sweep(test::arm5e, request, test::nominal_laser());
   ASSERT_EQ(fast.outcome, SweepOutcome::ok);
   EXPECT_NEAR(std::abs(slow.speed_rad_s[2]), 0.065, 1e-9);
   EXPECT_NEAR(std::abs(fast.speed_rad_s[2]), 0.1, 1e-9);
   EXPECT_NEAR(fast.widest_spacing_m / slow.widest_spacing_m, 0.1 / 0.065, 0.02);
   request.slowest_rad_s = 0.5;
-  EXPECT_NE(plan_sweep(request, test::nominal_laser()).outcome, SweepOutcome::ok) << "faster than the joints go";
+  EXPECT_NE(plan_sweep(test::arm5e, request, test::nominal_laser()).outcome, SweepOutcome::ok) << "faster than the joints go";
   request.slowest_rad_s = 0;
-  EXPECT_EQ(plan_sweep(request, test::nominal_laser()).outcome, SweepOutcome::bad_request);
+  EXPECT_EQ(plan_sweep(test::arm5e, request, test::nominal_laser()).outcome, SweepOutcome::bad_request);
 }
 
 TEST(Sweep, SpacingIsWhatItSays) {
   const LaserCalibration laser = test::nominal_laser();
   const SweepRequest request = whole_panel();
-  const SweepPlan plan = plan_sweep(request, laser);
+  const SweepPlan plan = plan_sweep(test::arm5e, request, laser);
   ASSERT_EQ(plan.outcome, SweepOutcome::ok);
   // Where the stripe meets the panel's middle line, at every stripe.
   double widest = 0, before = 0;
   const int stripes = static_cast<int>(plan.duration.s() / request.stripe_period.s());
   for (int i = 0; i <= stripes; ++i) {
-    const Pose pose = arm::base_from_laser(along(plan, static_cast<double>(i) / stripes), laser);
+    const Pose pose = test::arm5e.base_from_laser(along(plan, static_cast<double>(i) / stripes), laser);
     const Vec3 normal = pose.linear().col(0);
     const Vec3 up = request.base_from_panel.linear().col(1);
     const double y = (pose.translation() - request.base_from_panel.translation()).dot(normal) / up.dot(normal);
@@ -178,19 +179,19 @@ TEST(Sweep, SaysWhatStandsInItsWay) {
   const LaserCalibration laser = test::nominal_laser();
   SweepRequest request = whole_panel();
   request.top_m = 1.0;
-  EXPECT_EQ(plan_sweep(request, laser).outcome, SweepOutcome::top_unreachable);
+  EXPECT_EQ(plan_sweep(test::arm5e, request, laser).outcome, SweepOutcome::top_unreachable);
   LaserCalibration upward = laser;
   upward.tool_from_laser.rotate(Eigen::AngleAxisd(1.4, Vec3::UnitY()));
-  EXPECT_EQ(plan_sweep(whole_panel(), upward).outcome, SweepOutcome::bottom_unreachable);
+  EXPECT_EQ(plan_sweep(test::arm5e, whole_panel(), upward).outcome, SweepOutcome::bottom_unreachable);
   LaserCalibration narrow = laser;
   narrow.fan_half_angle_rad = 0.4;
-  EXPECT_EQ(plan_sweep(whole_panel(), narrow).outcome, SweepOutcome::fan_too_narrow);
+  EXPECT_EQ(plan_sweep(test::arm5e, whole_panel(), narrow).outcome, SweepOutcome::fan_too_narrow);
   request = whole_panel();
   request.margin_m = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(plan_sweep(request, laser).outcome, SweepOutcome::bad_request);
+  EXPECT_EQ(plan_sweep(test::arm5e, request, laser).outcome, SweepOutcome::bad_request);
   request = whole_panel();
   std::swap(request.top_m, request.bottom_m);
-  EXPECT_EQ(plan_sweep(request, laser).outcome, SweepOutcome::bad_request);
+  EXPECT_EQ(plan_sweep(test::arm5e, request, laser).outcome, SweepOutcome::bad_request);
 }
 
 }  // namespace

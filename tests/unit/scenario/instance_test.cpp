@@ -5,6 +5,7 @@
 
 #include "firmware/mission/look.hpp"
 #include "hal/config/text_file.hpp"
+#include "tests/arm5e.hpp"
 #include "tests/unit/scenario/scenario_file.hpp"
 #include "tests/unit/temporary_folder.hpp"
 
@@ -311,7 +312,7 @@ TEST(Nominal, APanelThatMayStandWhereTheArmIsIsNamed) {
 
 TEST(Nominal, WhatStandsInTheWayOfTheFirstSweepIsNamed) {
   const auto with_ball_at = [](const arm::JointVector& q_rad) {
-    const Vec3 tool = arm::base_from_tool(q_rad).translation();
+    const Vec3 tool = test::arm5e.base_from_tool(q_rad).translation();
     const std::string place = std::to_string(tool.x()) + ", " + std::to_string(tool.y()) + ", " + std::to_string(tool.z());
     return load_scenario("default", {"vehicle.capsules_m=[[-2, 0, 0, -2, 0, 0, 0.1], [" + place + ", " + place + ", 0.02]]"});
   };
@@ -319,7 +320,7 @@ TEST(Nominal, WhatStandsInTheWayOfTheFirstSweepIsNamed) {
   const mission::MissionConfig& mission = nominal.controller.mission;
   EXPECT_THAT(refusal(with_ball_at(mission.park_rad)),
               ::testing::HasSubstr("folded up the arm comes as near as 0 mm to capsule 2 of 'vehicle.capsules_m'"));
-  const scan::SweepPlan plan = scan::plan_sweep(mission::sweep_over_panel(mission), nominal.controller.laser);
+  const scan::SweepPlan plan = scan::plan_sweep(test::arm5e, mission::sweep_over_panel(mission), nominal.controller.laser);
   const auto& start = plan.start_rad;
   EXPECT_THAT(refusal(with_ball_at({start[0], start[1], start[2], start[3]})),
               ::testing::HasSubstr("sweeping the laser over the panel the arm comes as near as 0 mm to capsule 2 of 'vehicle.capsules_m'"));
@@ -441,8 +442,8 @@ TEST(Truth, TheLaserOnTheForearmIsWhereTheCoreThinksItIs) {
   const Nominal nominal = make_nominal(scenario, false);
   const hal::SimConfig truth = make_truth(scenario, draw(scenario, 1), nominal, 1);
   for (const arm::JointVector& q_rad : {arm::JointVector(0, 0.945, 2.095, 0), arm::JointVector(-0.3, 0.6, 1.2, 1.0)}) {
-    const Pose base_from_forearm = arm::base_from_links(q_rad, 0)[2];
-    const Pose base_from_laser = arm::base_from_laser(q_rad, nominal.controller.laser);
+    const Pose base_from_forearm = test::arm5e.base_from_links(q_rad, 0)[2];
+    const Pose base_from_laser = test::arm5e.base_from_laser(q_rad, nominal.controller.laser);
     EXPECT_LT(((base_from_forearm * truth.optics.lasers[0].body_from_laser).matrix() - base_from_laser.matrix()).norm(), 1e-6);
   }
 }

@@ -8,6 +8,7 @@
 #include "firmware/arm/actuator.hpp"
 #include "firmware/canopen/sdo_abort.hpp"
 #include "hal/vehicle/operator_client.hpp"
+#include "tests/arm5e.hpp"
 #include "tests/unit/temporary_folder.hpp"
 
 namespace lf::hal {
@@ -213,11 +214,11 @@ TEST(Commissioned, AZeroThatHasMovedIsTold) {
     commissioned.found = {true, true, false, true, true};
     commissioned.zero_counts = {0, 7, 0, -70'000, 900};
     commissioned.place_rad = {};
-    const double roll_counts_rad = arm_geometry::joints[3].counts_per_rad;
-    const double stop_rad = arm_geometry::joints[0].lower_rad;
+    const double roll_counts_rad = test::arm5e.model().joints[3].counts_per_rad;
+    const double stop_rad = test::arm5e.model().joints[0].lower_rad;
     commissioned.place_rad[0] = stop_rad;
-    const std::int32_t short_of_it =
-        arm::counts_from_rad(Joint::slew, stop_rad + std::abs(off_rad)) - arm::counts_from_rad(Joint::slew, stop_rad);
+    const std::int32_t short_of_it = arm::counts_from_rad(test::arm5e.joint(Joint::slew), stop_rad + std::abs(off_rad)) -
+                                     arm::counts_from_rad(test::arm5e.joint(Joint::slew), stop_rad);
     commissioned.zero_counts[0] = off_rad > 0 ? short_of_it : -short_of_it;
     commissioned.zero_counts[3] += static_cast<std::int32_t>(std::lround(off_rad * roll_counts_rad));
     const TakenOver taken = take_over(commissioned, motors, offsets);

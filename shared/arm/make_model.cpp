@@ -1,0 +1,97 @@
+#include "shared/arm/make_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "shared/geometry/pose.hpp"
+
+namespace lf {
+
+namespace {
+
+// Denavit and Hartenberg's numbers of joint frames whose z is their axis. load_arm_urdf() has checked that the others are 0 or a quarter turn.
+ArmModel::Planar planar(const ArmDescription& arm) {
+  const auto turn = [](const Pose& pose) { return std::atan2(pose.linear()(1, 0), pose.linear()(0, 0)); };
+  const auto along = [](const Pose& pose, double turn_rad) {
+    return std::cos(turn_rad) * pose.translation().x() + std::sin(turn_rad) * pose.translation().y();
+  };
+  const Pose& shoulder = arm.joints[1].parent_from_joint;
+  const Pose& elbow = arm.joints[2].parent_from_joint;
+  const Pose& roll = arm.joints[3].parent_from_joint;
+  ArmModel::Planar n;
+  n.mount_yaw_rad = turn(arm.joints[0].parent_from_joint);
+  n.a0_m = along(shoulder, turn(shoulder));
+  n.shoulder_offset_rad = turn(elbow);
+  n.a1_m = along(elbow, n.shoulder_offset_rad);
+  n.elbow_offset_rad = turn(roll);
+  n.a2_m = along(roll, n.elbow_offset_rad);
+  const double to_roll_m = std::sin(n.elbow_offset_rad) * roll.translation().x() - std::cos(n.elbow_offset_rad) * roll.translation().y();
+  n.d_m = to_roll_m + arm.wrist_from_tool.translation().z();
+  return n;
+}
+
+ArmModel::Jaw jaw(const ArmDescription& arm) {
+  const ArmJoint& joint = arm.joints[static_cast<std::size_t>(Joint::jaw)];
+  const Vec3 pivot = joint.parent_from_joint.translation(), pad = arm.pad.body_from_shape.translation();
+  return {.pivot_x_m = pivot.x(),
+          .pivot_z_m = pivot.z() - arm.wrist_from_tool.translation().z(),
+          .face_x_m = pad.x() + arm.pad.size_m.x() / 2,
+          .face_z_m = pad.z(),
+          .pad_width_m = arm.pad.size_m.y(),
+          .pad_depth_m = arm.pad.size_m.z(),
+          .lower_rad = joint.lower_rad,
+          .upper_rad = joint.upper_rad};
+}
+
+// About the shape's axis, 1.1 times as thick, so that it overhangs the ends by 0.64 of the radius only. A short and thick shape gets a sphere.
+ArmModel::Capsule around(std::size_t link, const Pose& link_from_shape, const Vec3& axis, double radius_m, double length_m) {
+  double thick_m = 1.1 * radius_m;
+  const double half_m = std::max(0.0, length_m / 2 - std::sqrt(thick_m * thick_m - radius_m * radius_m));
+  if (half_m == 0) thick_m = std::hypot(radius_m, length_m / 2);
+  const Vec3 along = link_from_shape.linear() * (half_m * axis);
+  return {link, link_from_shape.translation() - along, link_from_shape.translation() + along, thick_m};
+}
+
+ArmModel::Capsule around_box(std::size_t link, const scene::Shape& box) {
+  Eigen::Index axis = 0;
+  const double length_m = box.size_m.maxCoeff(&axis);
+  const double radius_m = 0.5 * std::hypot(box.size_m[(axis + 1) % 3], box.size_m[(axis + 2) % 3]);
+  return around(link, box.body_from_shape, Vec3::Unit(axis), radius_m, length_m);
+}
+
+ArmModel::Capsule capsule(std::size_t link, const scene::Shape& shape) {
+  switch (shape.kind) {
+    case scene::ShapeKind::box: return around_box(link, shape);
+    case scene::ShapeKind::sphere:
+      return {link, shape.body_from_shape.translation(), shape.body_from_shape.translation(), shape.size_m.x()};
+    default: return around(link, shape.body_from_shape, Vec3::UnitZ(), shape.size_m.x(), shape.size_m.z());
+  }
+}
+
+}  // namespace
+
+ArmModel make_model(const ArmDescription& description) {
+  ArmModel model;
+  model.planar = planar(description);
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    const ArmJoint& joint = description.joints[i];
+    model.joints[i] = {.lower_rad = joint.lower_rad,
+                       .upper_rad = joint.upper_rad,
+                       .velocity_rad_s = joint.velocity_rad_s,
+                       .acceleration_rad_s2 = joint.acceleration_rad_s2,
+                       .effort_nm = joint.effort_nm,
+                       .rated_torque_nm = joint.rated_torque_nm,
+                       .actuator = joint.actuator};
+    model.origins[i] = joint.parent_from_joint;
+  }
+  model.origins[joint_count] = description.finger_b.parent_from_joint;
+  model.jaw = jaw(description);
+  for (std::size_t link = 1; link < ArmDescription::link_count; ++link) {  // no capsule resembles the base's plate
+    for (const scene::Shape& shape : description.links[link].shapes) {
+      if (shape.collides) (void)model.capsules.push_back(capsule(link, shape));
+    }
+  }
+  return model;
+}
+
+}  // namespace lf
