@@ -19,6 +19,14 @@ scan::SweepRequest::Handle handle_of(const PanelLayout::Valve& valve) {
           std::max(least_height_m, valve.handle_height_m + valve.handle_thickness_m / 2 + over_bar_m)};
 }
 
+// The tallest of what stands on the panel.
+double proud_m(const PanelLayout& layout) {
+  double most_m = 0;
+  for (const PanelLayout::Valve& valve : layout.valves) most_m = std::max(most_m, handle_of(valve).height_m);
+  for (const PanelLayout::Button& button : layout.buttons) most_m = std::max(most_m, button.height_m);
+  return most_m;
+}
+
 }  // namespace
 
 scan::SweepRequest sweep_over_panel(const MissionConfig& mission) {
@@ -30,6 +38,7 @@ scan::SweepRequest sweep_over_panel(const MissionConfig& mission) {
   request.left_m = layout.plate_min_m.x();
   request.right_m = layout.plate_max_m.x();
   for (const PanelLayout::Valve& valve : layout.valves) (void)request.handles.push_back(handle_of(valve));
+  request.proud_m = proud_m(layout);
   request.docking_shift_m = mission.docking.shift_m;
   request.docking_turn_rad = mission.docking.turn_rad;
   request.slowest_rad_s = mission.sweep_speed_rad_s;
@@ -86,6 +95,7 @@ void Look::begin_verify_reach(const StepTick& tick) {
   request.left_m = layout.plate_min_m.x();
   request.right_m = layout.plate_max_m.x();
   (void)request.handles.push_back(handle_of(valve));
+  request.proud_m = proud_m(layout);
   request.margin_m = 0.010;
   request.docking_shift_m = bench.map.doubt().shift_m;
   request.docking_turn_rad = bench.map.doubt().turn_rad + bench.map.doubt().spin_rad;

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
+
+#include "firmware/arm/gripper.hpp"
 
 namespace lf::scan {
 namespace {
@@ -12,11 +15,16 @@ constexpr double soft_margin_rad = 0.05;
 // Half the speed times a ramp of 0.18 s is 6 mrad at 0.065 rad/s and 0.8 rad/s^2; twice that for coordinated motions.
 constexpr double run_up_s = 0.012 / 0.065;
 constexpr double no_motion_rad = 1e-6;
-// The tool point to the panel's nominal plane: the handle's 107 mm, 10 mm of fingers beyond the tool point, 35 mm of docking error there, 30 mm spare.
-constexpr double tool_distance_m = 0.180;
+// The tool point to the panel's nominal plane, beyond what is proud of it and the fingers' tips: 33 mm of docking error there, 30 mm spare.
+constexpr double tool_spare_m = 0.063;
 constexpr double fan_spare_rad = 0.005;  // the line fades at its ends
-constexpr double shoulder_first_rad = 0.75, shoulder_step_rad = 0.10;
+// Of the shoulder angles tried: where their grid begins beyond the joint's limit, and its step, where it need not be wider to cover the range.
+constexpr double grid_begins_rad = 0.05, finest_shoulder_rad = 0.10;
+// Those from here on are tried first: lower ones lift the ARM 5E's stripe over no panel. All are where these give no sweep that is dense.
+constexpr double first_share = 0.45;
 constexpr int way_samples = 8;
+// With less an elbow that can look at the panel does not look back anywhere.
+constexpr double widest_elbow_rad = 2.3;
 
 bool valid(const SweepRequest& r, const LaserCalibration& laser) {
   const std::array values{r.top_m,           r.bottom_m,         r.left_m,         r.right_m,       r.margin_m,
@@ -31,8 +39,6 @@ bool valid(const SweepRequest& r, const LaserCalibration& laser) {
 }
 
 }  // namespace
-
-double SweepPlanner::shoulder(std::size_t i) { return shoulder_first_rad + shoulder_step_rad * static_cast<double>(i); }
 
 // Left and right border at the height of `border_m`, and the edge of each handle that the region reaches: points the stripe has to pass.
 SweepPlanner::Points SweepPlanner::points_to_pass(double border_m, double outward) const {
@@ -51,8 +57,8 @@ SweepPlanner::Points SweepPlanner::points_to_pass(double border_m, double outwar
 
 SweepPlanner::Laser SweepPlanner::at(double shoulder_rad, double elbow_rad) {
   ++poses_;
-  const Pose base_from_laser = arm_->base_from_laser(arm::JointVector(0, shoulder_rad, elbow_rad, 0), laser_);
-  return {base_from_laser.translation(), base_from_laser.linear().col(0)};
+  const Pose base_from_laser = arm_->base_from_laser(arm::JointVector(slew_rad_, shoulder_rad, elbow_rad, 0), laser_);
+  return {base_from_laser.translation(), normal_up_ * base_from_laser.linear().col(0)};
 }
 
 // How far all the points are on the laser plane's lower side (`side` -1: they are still to be passed) or its upper (1: they have been), at the
@@ -67,10 +73,35 @@ double SweepPlanner::beyond(const Laser& laser, const Points& points, double sid
   return least;
 }
 
-// The elbow that just puts the stripe beyond the points: the greater the elbow, the higher the stripe. NaN where no elbow does.
+// An elbow with a wide range turns the laser away from the panel at both its ends: draws them in to where it looks at it. False where it never does.
+bool SweepPlanner::look_ahead(double shoulder_rad, double& from_rad, double& to_rad) {
+  constexpr int steps = 32;
+  constexpr double least_cosine = 0.1;
+  const Vec3 inward = -request_.base_from_panel.linear().col(2);
+  const double first_rad = from_rad, step_rad = (to_rad - from_rad) / steps;
+  int first = -1, last = -1;
+  for (int i = 0; i <= steps; ++i) {
+    ++poses_;
+    const arm::JointVector q(slew_rad_, shoulder_rad, first_rad + i * step_rad, 0);
+    if (arm_->base_from_laser(q, laser_).linear().col(2).dot(inward) < least_cosine) {
+      if (first >= 0) break;
+      continue;
+    }
+    first = first < 0 ? i : first;
+    last = i;
+  }
+  if (first < 0) return false;
+  from_rad = first_rad + first * step_rad;
+  to_rad = first_rad + last * step_rad;
+  return true;
+}
+
+// The elbow that just puts the stripe beyond the points. NaN where no elbow does.
 double SweepPlanner::elbow_for(double shoulder_rad, const Points& points, double side) {
-  double good = side < 0 ? limits_.upper_rad[2] : limits_.lower_rad[2];
-  double bad = side < 0 ? limits_.lower_rad[2] : limits_.upper_rad[2];
+  const bool at_upper = side * elbow_lifts_ < 0;
+  double good = at_upper ? limits_.upper_rad[2] : limits_.lower_rad[2];
+  double bad = at_upper ? limits_.lower_rad[2] : limits_.upper_rad[2];
+  if (std::abs(good - bad) > widest_elbow_rad && !look_ahead(shoulder_rad, good, bad)) return std::numeric_limits<double>::quiet_NaN();
   if (!(beyond(at(shoulder_rad, good), points, side) >= 0)) return std::numeric_limits<double>::quiet_NaN();
   for (int i = 0; i < 12; ++i) {  // to 0.5 mrad
     const double middle = 0.5 * (good + bad);
@@ -100,9 +131,11 @@ bool SweepPlanner::fan_reaches(const Laser& laser, double y_m) const {
 void SweepPlanner::find_ends(std::size_t i) { ends_[i] = {elbow_for(shoulder(i), above_, -1), elbow_for(shoulder(i), below_, 1)}; }
 
 bool SweepPlanner::have_ends() {
-  const bool top = std::any_of(ends_.begin(), ends_.end(), [](const Ends& ends) { return std::isfinite(ends.start); });
-  const bool bottom = std::any_of(ends_.begin(), ends_.end(), [](const Ends& ends) { return std::isfinite(ends.end); });
-  best_.outcome = !top ? SweepOutcome::top_unreachable : !bottom ? SweepOutcome::bottom_unreachable : SweepOutcome::no_way;
+  const std::span<const Ends> tried = std::span(ends_).first(shoulders_);
+  const bool top = std::any_of(tried.begin(), tried.end(), [](const Ends& ends) { return std::isfinite(ends.start); });
+  const bool bottom = std::any_of(tried.begin(), tried.end(), [](const Ends& ends) { return std::isfinite(ends.end); });
+  if (best_.outcome == SweepOutcome::top_unreachable || best_.outcome == SweepOutcome::bottom_unreachable)
+    best_.outcome = !top ? SweepOutcome::top_unreachable : !bottom ? SweepOutcome::bottom_unreachable : SweepOutcome::no_way;
   return top && bottom;
 }
 
@@ -122,6 +155,7 @@ bool SweepPlanner::candidate(std::size_t from, std::size_t to, Candidate& out) {
 // Steps along the way: the stripe goes down all the time, the fan covers the region's width, the tool stays off the panel.
 SweepOutcome SweepPlanner::check_way(const Candidate& c, double& widest_m) {
   const Vec3 out_of_panel = request_.base_from_panel.linear().col(2);
+  const double tool_distance_m = request_.proud_m + arm::tip_beyond_tool_m(arm_->jaw(), arm::jaw_from_gap(arm_->jaw(), 0)) + tool_spare_m;
   const auto shoulder_at = [&](double f) { return shoulder(c.from) + f * (shoulder(c.to) - shoulder(c.from)); };
   const auto elbow_at = [&](double f) { return ends_[c.from].start + f * (ends_[c.to].end - ends_[c.from].start); };
   widest_m = 0;
@@ -132,7 +166,7 @@ SweepOutcome SweepPlanner::check_way(const Candidate& c, double& widest_m) {
     const double y_m = height_m(laser);
     const double spacing_m = y_m - height_m(at(shoulder_at(f_next), elbow_at(f_next)));
     if (!(spacing_m > 0)) return SweepOutcome::no_way;
-    const Vec3 tool_m = arm_->base_from_tool(arm::JointVector(0, shoulder_at(f), elbow_at(f), 0)).translation();
+    const Vec3 tool_m = arm_->base_from_tool(arm::JointVector(slew_rad_, shoulder_at(f), elbow_at(f), 0)).translation();
     ++poses_;
     if (out_of_panel.dot(tool_m - request_.base_from_panel.translation()) < tool_distance_m) return SweepOutcome::no_way;
     if (y_m > request_.top_m + request_.margin_m || y_m < request_.bottom_m - request_.margin_m) continue;
@@ -145,8 +179,8 @@ SweepOutcome SweepPlanner::check_way(const Candidate& c, double& widest_m) {
 SweepPlan SweepPlanner::result(const Candidate& c, double widest_m) const {
   SweepPlan plan;
   plan.outcome = SweepOutcome::ok;
-  plan.start_rad = {0, shoulder(c.from), ends_[c.from].start, 0};
-  plan.end_rad = {0, shoulder(c.to), ends_[c.to].end, 0};
+  plan.start_rad = {slew_rad_, shoulder(c.from), ends_[c.from].start, 0};
+  plan.end_rad = {slew_rad_, shoulder(c.to), ends_[c.to].end, 0};
   for (std::size_t i = 0; i < arm_joint_count; ++i) plan.speed_rad_s[i] = (plan.end_rad[i] - plan.start_rad[i]) / c.duration_s;
   plan.duration = Duration::from_s(c.duration_s);
   plan.widest_spacing_m = widest_m;
@@ -180,21 +214,65 @@ void SweepPlanner::begin(const arm::Arm& arm, const SweepRequest& request, const
   request_ = request;
   laser_ = laser;
   limits_ = arm.limits(soft_margin_rad + run_up_s * request.slowest_rad_s);
+  facing_ = 0;
+  best_.outcome = SweepOutcome::top_unreachable;  // until an end is found
+  planned_ = !face();
   above_ = points_to_pass(request.top_m, 1);
   below_ = points_to_pass(request.bottom_m, -1);
 }
 
+void SweepPlanner::try_shoulders(double least_share) {
+  const ArmModel::Joint& shoulder = arm_->joint(Joint::shoulder);
+  const double from_rad = shoulder.lower_rad + grid_begins_rad, to_rad = limits_.upper_rad[1];
+  shoulder_step_rad_ = std::max(finest_shoulder_rad, (to_rad - from_rad) / (most_shoulders - 1));
+  const double least_rad = std::max(limits_.lower_rad[1], std::lerp(shoulder.lower_rad, shoulder.upper_rad, least_share));
+  const double skipped = std::max(0.0, std::ceil((least_rad - from_rad) / shoulder_step_rad_));
+  first_shoulder_rad_ = from_rad + skipped * shoulder_step_rad_;
+  shoulders_ = first_shoulder_rad_ > to_rad ? 0 : 1 + static_cast<std::size_t>((to_rad - first_shoulder_rad_) / shoulder_step_rad_);
+  next_ = 0;
+}
+
+bool SweepPlanner::face() {
+  for (; facing_ < 2; ++facing_) {
+    const double plane_rad = facing_ == 0 ? pi : 0;  // the arm's plane, from the base's x
+    slew_rad_ = wrap(plane_rad - arm_->planar().mount_yaw_rad);
+    // The elbow turns about the plane's normal, -y of the base where the arm looks ahead; a laser that looks ahead, along x, is then turned down.
+    elbow_lifts_ = facing_ == 0 ? 1 : -1;
+    // The tool's x axis points up where the arm is folded back and the tool looks ahead, and down where the arm looks ahead.
+    normal_up_ = elbow_lifts_ * std::copysign(1.0, laser_.tool_from_laser.linear()(0, 0));
+    if (slew_rad_ < limits_.lower_rad[0] || slew_rad_ > limits_.upper_rad[0]) continue;
+    whole_range_ = false;
+    try_shoulders(first_share);
+    if (shoulders_ > 0) return true;
+  }
+  return false;
+}
+
+bool SweepPlanner::search_on() {
+  if (best_.outcome == SweepOutcome::ok && best_.widest_spacing_m <= request_.line_spacing_m) return false;
+  if (!whole_range_) {
+    whole_range_ = true;
+    try_shoulders(0);
+    return true;
+  }
+  ++facing_;
+  return face();
+}
+
 bool SweepPlanner::advance() {
-  constexpr std::size_t pairs = shoulder_steps * shoulder_steps;
-  for (poses_ = 0; !planned_ && poses_ < poses_a_share; ++next_) {
-    if (next_ < shoulder_steps) {
+  const std::size_t pairs = shoulders_ * shoulders_;
+  for (poses_ = 0; !planned_ && poses_ < poses_a_share;) {
+    bool over = false;  // with this way of facing the panel
+    if (next_ < shoulders_) {
       find_ends(next_);
-      if (next_ + 1 == shoulder_steps) planned_ = !have_ends();
+      over = next_ + 1 == shoulders_ && !have_ends();
     } else {
-      const std::size_t pair = next_ - shoulder_steps;
-      consider(pair / shoulder_steps, pair % shoulder_steps);
-      planned_ = pair + 1 == pairs;
+      const std::size_t pair = next_ - shoulders_;
+      consider(pair / shoulders_, pair % shoulders_);
+      over = pair + 1 == pairs;
     }
+    ++next_;
+    if (over) planned_ = !search_on();
   }
   return planned_;
 }

@@ -1,9 +1,10 @@
 // Plans how the arm moves the laser's stripe over the panel: from above to below, all joints at constant speed between run-up and run-out.
 //
-// Candidates start and end at shoulder angles of a grid, each with the elbow that puts the stripe just beyond the region for the whole docking
-// error; shoulder and elbow move together in proportion. Joints do not move below their stiction, so a sweep lasts no longer than its joints' ways
-// allow, and of all sweeps the one with the wanted density, or else the densest, is taken. For this arm that is nearly always the elbow alone, at the
-// shoulder angle the fan's width permits: with the shoulder going along, its shorter way has to be over sooner.
+// The slew holds the arm's plane along the base's x axis, facing the panel or folded back under the arm. Candidates start and end at shoulder angles of
+// a grid, each with the elbow that puts the stripe just beyond the region for the whole docking error; shoulder and elbow move together in proportion. Joints
+// do not move below their stiction, so a sweep lasts no longer than its joints' ways allow, and of all sweeps the one with the wanted density, or else the
+// densest, is taken. For the ARM 5E that is nearly always the elbow alone, at the shoulder angle the fan's width permits: with the shoulder going along,
+// its shorter way has to be over sooner.
 #pragma once
 
 #include <array>
@@ -32,6 +33,7 @@ struct SweepRequest {
     double height_m = 0.107;
   };
   StaticVector<Handle, PanelLayout::max_valves> handles;
+  double proud_m = 0.107;            // what the panel carries stands up to this high: the hand keeps beyond it
   double docking_shift_m = 0.020;    // either way along each of the base's axes: what `base_from_panel` may be wrong by
   double docking_turn_rad = 0.0349;  // either way about each of them, at the panel's origin
   double line_spacing_m = 0.0026;    // wanted between stripes
@@ -58,7 +60,8 @@ struct SweepPlan {
 };
 
 // Plans in shares, so that no control tick bears it all: begin(), then advance() until it is true.
-// Start and end stay 0.05 rad and the run-up inside the URDF's limits. Some 300 poses of the arm, 0.1 us each on a desktop.
+// Start and end stay 0.05 rad and the run-up inside the URDF's limits. Some 300 poses of the arm, 0.1 us each on a desktop; where the whole of the
+// shoulder's range is tried, up to some thousands.
 class SweepPlanner {
  public:
   void begin(const arm::Arm& arm, const SweepRequest& request, const LaserCalibration& laser);
@@ -67,8 +70,7 @@ class SweepPlanner {
   const SweepPlan& plan() const { return best_; }
 
  private:
-  // Shoulder angles tried. At less than 0.7 rad the elbow's stroke does not lift the stripe over the panel; beyond 1.5 the tool reaches it.
-  static constexpr std::size_t shoulder_steps = 8;
+  static constexpr std::size_t most_shoulders = 32;
   static constexpr int poses_a_share = 25;
 
   struct Laser {
@@ -84,10 +86,15 @@ class SweepPlanner {
     double mean_spacing_m = 0;
   };
 
-  static double shoulder(std::size_t i);
+  // The next shoulder angles to try; false when the search is over.
+  bool search_on();
+  bool face();
+  void try_shoulders(double least_share);
+  double shoulder(std::size_t i) const { return first_shoulder_rad_ + shoulder_step_rad_ * static_cast<double>(i); }
   Points points_to_pass(double border_m, double outward) const;
   Laser at(double shoulder_rad, double elbow_rad);
   double beyond(const Laser& laser, const Points& points, double side) const;
+  bool look_ahead(double shoulder_rad, double& from_rad, double& to_rad);
   double elbow_for(double shoulder_rad, const Points& points, double side);
   double height_m(const Laser& laser) const;
   bool fan_reaches(const Laser& laser, double y_m) const;
@@ -104,7 +111,14 @@ class SweepPlanner {
   LaserCalibration laser_;
   arm::JointLimits limits_;
   Points above_, below_;
-  std::array<Ends, shoulder_steps> ends_{};
+  int facing_ = 0;  // of two: folded back, then ahead
+  bool whole_range_ = false;
+  double slew_rad_ = 0;     // and the slew that it takes
+  double elbow_lifts_ = 1;  // 1: the greater the elbow, the higher the stripe; -1: the other way round
+  double normal_up_ = 1;    // times the laser's x: the plane's normal that points up where the laser looks ahead
+  double first_shoulder_rad_ = 0, shoulder_step_rad_ = 0;
+  std::size_t shoulders_ = 0;
+  std::array<Ends, most_shoulders> ends_{};
   std::size_t next_ = 0;  // shoulder angles first, then pairs of them
   int poses_ = 0;         // of this share
   bool planned_ = true;

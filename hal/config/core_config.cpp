@@ -18,6 +18,7 @@
 #include "hal/config/machine.hpp"
 #include "hal/config/motor_check.hpp"
 #include "hal/config/nearest.hpp"
+#include "hal/config/park_pose.hpp"
 #include "hal/config/share.hpp"
 #include "hal/config/sweep_check.hpp"
 #include "hal/config/task_check.hpp"
@@ -237,6 +238,7 @@ arm::VehicleShape vehicle_shape(const Machine& machine) {
 mission::MissionConfig mission_config(const Machine& machine) {
   mission::MissionConfig config = machine.mission;
   config.vehicle = vehicle_shape(machine);
+  config.park_rad = park_pose(machine);
   config.layout = machine.panel;
   config.use_lamps = machine.lamps_lit;
   config.camera_always_on = machine.camera_always_on;

@@ -37,6 +37,16 @@ void check_torques(const arm::Arm& arm, const safety::Limits& limits, std::vecto
   }
 }
 
+// The jaw grips with all that its drive gives it.
+void check_grip(const arm::Arm& arm, const safety::Limits& limits, std::vector<std::string>& problems) {
+  const double grip_nm = arm.joint(Joint::jaw).effort_nm, most_nm = limits.joints[static_cast<std::size_t>(Joint::jaw)].max_torque_nm;
+  if (grip_nm <= most_nm) return;
+  problems.push_back(
+      formatted("'joints.jaw.max_torque_nm' is %.4g: the jaw grips with its drive's peak torque, %.4g N m by the arm's description, "
+                "and would count as overloaded. It takes no less than that",
+                most_nm, grip_nm));
+}
+
 }  // namespace
 
 std::vector<std::string> pose_problems(const arm::Arm& arm, const safety::Limits& limits, const arm::JointVector& q_rad,
@@ -63,6 +73,7 @@ std::vector<std::string> pose_problems(const arm::Arm& arm, const safety::Limits
 std::vector<std::string> limits_problems(const safety::Limits& limits, const ControllerConfig& controller) {
   std::vector<std::string> problems = pose_problems(controller.arm, limits, controller.mission.park_rad, "the arm's folded pose");
   check_torques(controller.arm, limits, problems);
+  check_grip(controller.arm, limits, problems);
   const double exposure_s = controller.camera.exposure.s();
   if (limits.stale_image_s <= exposure_s)
     problems.push_back(formatted("'stale_image_s' is %.4g: an image cannot be there before its exposure has ended, after %.4g s",

@@ -81,7 +81,8 @@ struct Machine {
   Laser laser;
   Vehicle vehicle;
   std::string arm_urdf = "arm/arm5e.urdf";
-  arm::Arm arm = arm::arm5e();  // of `arm_urdf`: whoever reads the file fills it in; make_core() reads it itself
+  std::vector<double> park_rad{0, 0.60, 1.90, 0};  // folded: slew, shoulder, elbow and roll
+  arm::Arm arm = arm::arm5e();                     // of `arm_urdf`: whoever reads the file fills it in; make_core() reads it itself
   std::string safety_limits = "safety/limits.yaml";
   std::string mission_limits;  // a file of the same form, none of whose limits is wider; empty: `safety_limits` again
   std::string homing_file;     // of the joints' zeros; empty: none is known, and no joint takes power
@@ -96,6 +97,7 @@ struct Machine {
 void add_panel(Keys& all, std::string& file, DockedPanel& panel);
 void add_tasks(Keys& all, std::vector<Task>& tasks, const PanelNames& names, const std::string& doc);
 void add_valve_stops(Keys& all, ValveStops& valve);
+void add_arm(Keys& all, std::string& urdf, std::vector<double>& park_rad);
 void add_camera(Keys& all, Camera& camera);
 void add_laser(Keys& all, Laser& laser);
 void add_vehicle(Keys& all, Vehicle& vehicle);

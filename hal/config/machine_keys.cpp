@@ -45,6 +45,16 @@ void add_valve_stops(Keys& all, ValveStops& valve) {
       key("valve.stop_max_deg", "deg", -180, 180, &valve.stop_max_deg, "end stop, counter-clockwise; at most 350 degrees from the other"));
 }
 
+void add_arm(Keys& all, std::string& urdf, std::vector<double>& park_rad) {
+  constexpr double half_a_turn = 3.1416;
+  all.push_back(
+      key("arm.urdf", "", 0, 0, &urdf,
+          "the arm: slew, shoulder, elbow, roll and a jaw of two fingers; relative to this file's folder, then to the shipped files"));
+  all.push_back(
+      key("arm.park_rad", "rad", -half_a_turn, half_a_turn, &park_rad,
+          "[slew, shoulder, elbow, roll] of the folded arm: where it starts and ends, clear of the panel wherever that may stand"));
+}
+
 void add_camera(Keys& all, Camera& camera) {
   all.push_back(key("camera.exposure_us", "us", 10, 30000, &camera.exposure_us, "exposure"));
   all.push_back(key("camera.position_m", "m", -2, 2, &camera.position_m, "[x, y, z] in the arm's base frame"));

@@ -11,6 +11,7 @@
 #include "hal/config/joined.hpp"
 #include "hal/config/key_listing.hpp"
 #include "hal/config/key_schema.hpp"
+#include "hal/config/machine_file.hpp"
 #include "hal/config/panel_check.hpp"
 #include "hal/config/panel_file.hpp"
 #include "hal/config/read_arm.hpp"
@@ -55,15 +56,16 @@ void add_camera_source(Keys& all, VehicleConfig& c) {
 }
 
 void add_machine(Keys& all, VehicleConfig& c) {
+  all.push_back(
+      key("machine", "", 0, 0, &c.machine_file,
+          "a file of what the robot is, whose values the keys of this file overrule; found as arm.urdf is; empty: the default machine"));
   config::add_panel(all, c.panel_file, c.docked_panel);
   config::add_valve_stops(all, c.valve_stops);
   config::add_camera(all, c.machine.camera);
   config::add_laser(all, c.machine.laser);
   config::add_vehicle(all, c.machine.vehicle);
   all.push_back(key("lamps.lit", "", 0, 0, &c.machine.lamps_lit, "stills are taken with the lamps on"));
-  all.push_back(
-      key("arm.urdf", "", 0, 0, &c.machine.arm_urdf,
-          "the arm: slew, shoulder, elbow, roll and a jaw of two fingers; relative to this file's folder, then to the shipped files"));
+  config::add_arm(all, c.machine.arm_urdf, c.machine.park_rad);
   all.push_back(key("safety.limits", "", 0, 0, &c.machine.safety_limits, "the checksummed file of limits; found as arm.urdf is"));
   all.push_back(key("safety.mission_limits", "", 0, 0, &c.machine.mission_limits,
                     "a file of the same form with limits of this mission, none wider; empty: the same"));
@@ -191,6 +193,13 @@ YAML::Node read_keys(const std::string& path, VehicleConfig& config, std::vector
   const YAML::Node root = config::parse_yaml(config::read_text_file(path), source);
   if (!root.IsNull() && !root.IsMap()) source.refuse(root.Mark(), "a vehicle's configuration is a group of keys");
   if (!root.IsMap()) return root;
+  if (const std::string name = config::machine_named_in(root); !name.empty()) {
+    try {
+      config::read_machine_file(config::named_file(path, "machine", name), config.machine, problems);
+    } catch (const InputError& problem) {
+      problems.emplace_back(problem.what());
+    }
+  }
   // A file's names are not known yet: any is taken, and looked for later.
   if (!config::panel_named_in(root).empty()) config.machine.survey.names = {{}, {}, {}};
   config::read_map(root, "", "", keys(config), source);

@@ -6,6 +6,7 @@
 #include "firmware/arm/chain/ik.hpp"
 #include "hal/config/arm_chain.hpp"
 #include "hal/config/nearest.hpp"
+#include "host_sim/app/check_machine.hpp"
 #include "host_sim/app/check_panel.hpp"
 #include "host_sim/app/check_scene.hpp"
 #include "host_sim/app/checks.hpp"
@@ -221,11 +222,12 @@ void refuse_other_options(const CLI::App& command, const std::string& kind, cons
 }
 
 int check(const CLI::App& command, const Options& options) {
-  config::check_names({options.kind}, {"arm", "panel", "scene"}, "check");
+  config::check_names({options.kind}, {"arm", "machine", "panel", "scene"}, "check");
   if (options.kind != "arm") {
     refuse_other_options(command, options.kind,
                          {"--base", "--tool", "--approach", "--opening", "--packages", "--ignore-missing", "--postures"});
-    return (options.kind == "scene" ? check_scene : check_panel)(options.file, options.picture, options.json);
+    const auto check_one = options.kind == "scene" ? check_scene : options.kind == "machine" ? check_machine : check_panel;
+    return check_one(options.file, options.picture, options.json);
   }
   refuse_other_options(command, options.kind, {"--picture"});
   return check_arm(options);
@@ -234,14 +236,16 @@ int check(const CLI::App& command, const Options& options) {
 }  // namespace
 
 void add_check(CLI::App& app, Action& action) {
-  CLI::App* command =
-      app.add_subcommand("check",
-                         "Read a file strictly and tell what is in it and all that was assumed: an arm's URDF, with its "
-                         "joints, its inverse kinematics and where its tool comes; a panel, with what of it the robot can work; or a "
-                         "scene");
+  CLI::App* command = app.add_subcommand(
+      "check",
+      "Read a file strictly and tell what is in it and all that was assumed: an arm's URDF, with its "
+      "joints, its inverse kinematics and where its tool comes; a machine, with its joints, drives and sight; a panel, with "
+      "what of it the robot can work; or a scene");
   auto options = std::make_shared<Options>();
-  command->add_option("KIND", options->kind, "What FILE describes: arm, panel or scene")->required();
-  command->add_option("FILE", options->file, "An arm's URDF file, a scene's YAML file, or a panel's or a shipped panel's name")->required();
+  command->add_option("KIND", options->kind, "What FILE describes: arm, machine, panel or scene")->required();
+  command
+      ->add_option("FILE", options->file, "An arm's URDF file, a machine's or a scene's YAML file, or a panel's or a shipped panel's name")
+      ->required();
   command->add_option("--base", options->ends.base_link, "The link that the arm begins at; the root where it is not given")
       ->check(check_filled);
   command->add_option("--tool", options->ends.tool_link, "The link that carries the tool; needed where the arm ends at several")

@@ -2,6 +2,7 @@
 #include <memory>
 #include <sstream>
 
+#include "hal/config/machine_file.hpp"
 #include "hal/config/nearest.hpp"
 #include "host_sim/app/checks.hpp"
 #include "host_sim/app/command.hpp"
@@ -103,12 +104,22 @@ std::string new_panel() {
          "#    plate_m: 0.1\n";
 }
 
+std::string new_machine() {
+  return "# What your robot is: name this file with `machine: THIS_FILE` in a scenario and in the vehicle's configuration, or fly\n"
+         "#   lanternfish run default --set machine=THIS_FILE\n"
+         "# `lanternfish check machine THIS_FILE --picture machine.png` tells and draws it, and says whether it can do the default job.\n"
+         "# docs/your-arm.md leads from a maker's URDF to a mission. All that stands here is the default machine: what you leave out stays "
+         "so.\n"
+         "version: 1\n" +
+         config::machine_listing();
+}
+
 struct Options {
   std::string kind, name;
 };
 
 int make(const Options& options) {
-  config::check_names({options.kind}, {"panel", "scenario", "scene"}, "new");
+  config::check_names({options.kind}, {"machine", "panel", "scenario", "scene"}, "new");
   fs::path file = options.name;
   if (!file.has_filename() || file.filename() == "." || file.filename() == "..")
     throw InputError("'" + options.name + "' names a folder: give a file");
@@ -117,7 +128,10 @@ int make(const Options& options) {
     throw InputError("'" + options.name + "' ends in " + file.extension().string() + ": a " + options.kind + " ends in .yaml");
   std::error_code none;
   if (fs::exists(fs::symlink_status(file, none))) throw InputError(file.string() + ": is there already: another name, or take it away");
-  std::string text = options.kind == "scene" ? new_scene() : options.kind == "panel" ? new_panel() : new_scenario();
+  std::string text = options.kind == "scene"     ? new_scene()
+                     : options.kind == "panel"   ? new_panel()
+                     : options.kind == "machine" ? new_machine()
+                                                 : new_scenario();
   const std::string place = "THIS_FILE", word = shell_word(file.string());
   for (std::size_t at = text.find(place); at != std::string::npos; at = text.find(place, at + word.size()))
     text.replace(at, place.size(), word);
@@ -129,10 +143,10 @@ int make(const Options& options) {
 }  // namespace
 
 void add_new(CLI::App& app, Action& action) {
-  CLI::App* command =
-      app.add_subcommand("new", "Write a commented file of your own to begin with: a scenario that flies as it stands, a panel or a scene");
+  CLI::App* command = app.add_subcommand(
+      "new", "Write a commented file of your own to begin with: a scenario or a machine that flies as it stands, a panel or a scene");
   auto options = std::make_shared<Options>();
-  command->add_option("KIND", options->kind, "What to write: panel, scenario or scene")->required();
+  command->add_option("KIND", options->kind, "What to write: machine, panel, scenario or scene")->required();
   command->add_option("NAME", options->name, "The file, which ends in .yaml; that is added where it has no ending")
       ->required()
       ->check(check_printable);

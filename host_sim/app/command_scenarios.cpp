@@ -1,6 +1,7 @@
 #include <memory>
 
 #include "hal/config/fault_kinds.hpp"
+#include "hal/config/machine_file.hpp"
 #include "hal/config/panel_file.hpp"
 #include "host_sim/app/command.hpp"
 #include "host_sim/scenario/describe.hpp"
@@ -21,6 +22,7 @@ struct Options {
   bool faults = false;
   bool scene_schema = false;
   bool scene_keys = false;
+  bool machine_schema = false;
   bool panel_schema = false;
   bool panel_keys = false;
 };
@@ -47,6 +49,8 @@ int scenarios(const Options& options) {
     print("%s", scenario::scene_schema().c_str());
   } else if (options.scene_keys) {
     print("%s", scenario::scene_keys_markdown().c_str());
+  } else if (options.machine_schema) {
+    print("%s", config::machine_schema().c_str());
   } else if (options.panel_schema) {
     print("%s", config::panel_schema().c_str());
   } else if (options.panel_keys) {
@@ -80,6 +84,7 @@ void add_scenarios(CLI::App& app, Action& action) {
   command->add_flag("--faults", options->faults, "Print the table of all kinds of faults (Markdown)");
   command->add_flag("--scene-schema", options->scene_schema, "Print the JSON Schema of a scene's file");
   command->add_flag("--scene-keys", options->scene_keys, "Print the table of the keys of a scene's object (Markdown)");
+  command->add_flag("--machine-schema", options->machine_schema, "Print the JSON Schema of a machine's file");
   command->add_flag("--panel-schema", options->panel_schema, "Print the JSON Schema of a panel's file");
   command->add_flag("--panel-keys", options->panel_keys, "Print the table of the keys of a panel's file (Markdown)");
   command->add_flag("--json", options->json, "Print JSON");

@@ -27,6 +27,7 @@ std::vector<UsedFile> used_files(const scenario::Scenario& scenario) {
   for (const std::string& file : {scenario.arm.urdf, scenario.safety.limits, std::string(scenario::homing_file)})
     files.push_back({file, config::find_file(file, folder)});
   files.push_back({scenario::drive_objects_file, config::share_folder() / scenario::drive_objects_file});
+  if (!scenario.machine.empty()) files.push_back({scenario.machine, config::find_file(scenario.machine, folder)});
   if (!scenario.survey.file.empty()) files.push_back({scenario.panel_file, scenario.survey.file});
   if (scenario.objects) {
     const fs::path scene = config::find_file(scenario.scene, folder);
@@ -86,6 +87,23 @@ void keep_panel(scenario::Scenario& kept, const record::RunFolder& run) {
   run.write(kept.panel_file, config::read_text_file(file));
 }
 
+// A file that a machine's file names and that lies anywhere but beside the scenario.
+void keep_far(std::string& name, const fs::path& folder, const record::RunFolder& run) {
+  const fs::path file = config::find_file(name, folder);
+  if (name.empty() || config::is_shipped(file) || !beside(file, folder).empty()) return;
+  name = "machine/" + file.filename().string();
+  run.write(name, config::read_text_file(file));
+}
+
+// What the machine's file says stands in the scenario's keys, once they are all told.
+void keep_machine(scenario::Scenario& kept, const record::RunFolder& run) {
+  if (kept.machine.empty()) return;
+  kept.machine.clear();
+  const fs::path folder = fs::path(kept.file).parent_path();
+  keep_far(kept.arm.urdf, folder, run);
+  keep_far(kept.safety.limits, folder, run);
+}
+
 }  // namespace
 
 record::Experiment experiment_of(const scenario::Scenario& scenario) {
@@ -110,6 +128,7 @@ void keep_scenario(const scenario::Scenario& scenario, const record::RunFolder& 
   scenario::Scenario kept = scenario;
   if (scenario.objects) kept.scene = keep_scene(*scenario.objects, run);
   keep_panel(kept, run);
+  keep_machine(kept, run);
   name_whole(kept.arm.urdf, folder);
   name_whole(kept.safety.limits, folder);
   name_whole(kept.safety.mission_limits, folder);

@@ -114,7 +114,7 @@ void add_calibration(Keys& all, Scenario& s) {
 
 void add_machine(Keys& all, Scenario& s) {
   config::add_vehicle(all, s.vehicle);
-  all.push_back(key("arm.urdf", "", 0, 0, &s.arm.urdf, "the arm; relative to the scenario's folder, then to the shipped files"));
+  config::add_arm(all, s.arm.urdf, s.arm.park_rad);
   all.push_back(key("jaw.torque_nm", "N m", 0, 200, &s.jaw.torque_nm,
                     "closing torque at each finger, no less than the rated one; 0: as the URDF says"));
   all.push_back(key("jaw.pad_friction", "", 0, 1.2, &s.jaw.pad_friction, "friction of the finger pads; 0: as the URDF says"));
@@ -157,6 +157,9 @@ std::vector<Key> keys(Scenario& scenario) {
   all.push_back(key("description", "", 0, 0, &scenario.description, "one line that `lanternfish scenarios` shows"));
   all.push_back(key("time_limit_s", "s", 1, 7200, &scenario.time_limit_s, "simulated time after which the run is given up"));
   config::add_tasks(all, scenario.tasks, scenario.survey.names, "the job, in order");
+  all.push_back(
+      key("machine", "", 0, 0, &scenario.machine,
+          "a file of what the robot is, whose values the keys of this file overrule; found as arm.urdf is; empty: the default machine"));
   all.push_back(key("scene", "", 0, 0, &scenario.scene, "a file of what else stands about; found as arm.urdf is; empty: nothing"));
   add_place(all, scenario);
   config::add_panel(all, scenario.panel_file, scenario.docked_panel);

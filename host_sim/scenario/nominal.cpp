@@ -21,6 +21,7 @@ config::Machine machine_of(const Scenario& scenario, bool lamps_lit) {
   machine.laser = scenario.laser;
   machine.vehicle = scenario.vehicle;
   machine.arm_urdf = scenario.arm.urdf;
+  machine.park_rad = scenario.arm.park_rad;
   machine.arm = scenario.told_arm;
   machine.safety_limits = scenario.safety.limits;
   machine.mission_limits = scenario.safety.mission_limits;

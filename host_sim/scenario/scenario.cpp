@@ -9,6 +9,7 @@
 #include "hal/config/handle_check.hpp"
 #include "hal/config/joined.hpp"
 #include "hal/config/key_text.hpp"
+#include "hal/config/machine_file.hpp"
 #include "hal/config/nearest.hpp"
 #include "hal/config/panel_check.hpp"
 #include "hal/config/panel_file.hpp"
@@ -56,8 +57,8 @@ fs::path find_scenario(const std::string& file_or_name) {
 // A profile's name without an ending is a shipped one's.
 bool names_a_file(const std::string& path, const std::string& value) {
   if (path.starts_with("drives.") && path.ends_with("profile")) return looks_like_a_file(value);
-  return path == "arm.urdf" || path == "scene" || (path == "panel.file" && looks_like_a_file(value)) || path == "safety.limits" ||
-         path == "safety.mission_limits";
+  return path == "arm.urdf" || path == "machine" || path == "scene" || (path == "panel.file" && looks_like_a_file(value)) ||
+         path == "safety.limits" || path == "safety.mission_limits";
 }
 
 // Whoever types a name means the present folder; in the scenario's file a name means the file's own.
@@ -180,6 +181,44 @@ bool names_a_panel(const YAML::Node& root, const std::vector<std::string>& overr
          std::any_of(overrides.begin(), overrides.end(), [](const std::string& text) { return text.starts_with("panel.file="); });
 }
 
+// The machine's file that the scenario names, or the last override.
+std::string machine_named_in(const YAML::Node& root, const std::vector<std::string>& overrides) {
+  constexpr std::string_view start = "machine=";
+  std::string name = config::machine_named_in(root);
+  for (const std::string& text : overrides) {
+    if (!text.starts_with(start)) continue;
+    name = text.substr(start.size());
+    std::error_code none;
+    if (fs::is_regular_file(name, none)) name = fs::absolute(name).lexically_normal();
+  }
+  return name;
+}
+
+// What the robot is; the scenario's own keys, which are read after it, overrule it.
+void read_machine(Scenario& s, const std::string& name, std::vector<std::string>& problems) {
+  if (name.empty()) return;
+  config::Machine told;
+  told.arm_urdf = s.arm.urdf;
+  told.park_rad = s.arm.park_rad;
+  told.safety_limits = s.safety.limits;
+  told.camera = s.camera;
+  told.laser = s.laser;
+  told.vehicle = s.vehicle;
+  told.drives = s.drives;
+  try {
+    config::read_machine_file(config::named_file(s.file, "machine", name), told, problems);
+  } catch (const InputError& problem) {
+    problems.emplace_back(problem.what());
+  }
+  s.arm.urdf = told.arm_urdf;
+  s.arm.park_rad = told.park_rad;
+  s.safety.limits = told.safety_limits;
+  static_cast<config::Camera&>(s.camera) = told.camera;
+  static_cast<config::Laser&>(s.laser) = told.laser;
+  s.vehicle = told.vehicle;
+  s.drives = told.drives;
+}
+
 // For the checks that come before the core's.
 void read_arm(Scenario& scenario) {
   try {
@@ -254,6 +293,7 @@ Scenario load_scenario(const std::string& file_or_name, const std::vector<std::s
   const config::Source source = config::Source::of_file(path, problems);
   const YAML::Node root = config::parse_yaml(config::read_text_file(path), source);
   // A file's names are not known yet: any is taken, and looked for later.
+  read_machine(scenario, machine_named_in(root, overrides), problems);
   if (names_a_panel(root, overrides)) scenario.survey.names = {{}, {}, {}};
   if (!root.IsNull()) {
     if (!root.IsMap()) source.refuse(root.Mark(), "a scenario is a group of keys");

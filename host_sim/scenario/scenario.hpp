@@ -120,7 +120,8 @@ struct Calibration {
 };
 
 struct Arm {
-  std::string urdf = "arm/arm5e.urdf";
+  std::string urdf = config::Machine().arm_urdf;
+  std::vector<double> park_rad = config::Machine().park_rad;
 };
 
 struct Jaw {
@@ -183,6 +184,7 @@ struct Scenario {
   std::string file;  // where it was read
   std::string description;
   double time_limit_s = 400;
+  std::string machine;                       // a file of what the robot is; empty: as the keys of its groups say
   std::string scene;                         // a file of what else stands about; empty: nothing
   std::shared_ptr<const SceneFile> objects;  // what it says; null where there is none
   std::string panel_file;                    // what is on the panel; empty: as the next says

@@ -108,6 +108,9 @@ world::ValveConfig valve_config(const config::ValveNature& nature, const PanelLa
 world::WorldConfig world_config(const Scenario& scenario, const Sample& sample) {
   world::WorldConfig world;
   world.arm = true_arm(scenario);
+  const ArmJoint& jaw = world.arm.joints[std::size_t(Joint::jaw)];
+  world.start_rad.back() = std::clamp(world.start_rad.back(), jaw.lower_rad, jaw.upper_rad);
+  std::copy_n(scenario.arm.park_rad.begin(), std::min(scenario.arm.park_rad.size(), arm_joint_count), world.start_rad.begin());
   world.layout = true_layout(scenario.panel, sample);
   world.scene = scene::make_scene(world.arm, world.layout, scenario.survey.names);
   move_markers(world.scene[std::size_t(scene::BodyId::panel)], sample);

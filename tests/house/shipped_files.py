@@ -21,6 +21,7 @@ def main() -> int:
             wanted.add(f"scenarios/{scenario.name}")
             wanted.update(re.findall(r"^scene: (\S+)", scenario.read_text(), re.MULTILINE))
         wanted.update(f"panels/{panel.name}" for panel in (source / "shared" / "panels").glob("*.yaml"))
+        wanted.update(f"machines/{machine.name}" for machine in (source / "shared" / "machines").glob("*.yaml"))
         for scene in (source / "shared" / "scenes").glob("*.yaml"):
             wanted.update(f"scenes/{mesh}" for mesh in re.findall(r"file: (\S+)", scene.read_text()))
         missing = sorted(name for name in wanted if not (share / name).is_file())

@@ -127,16 +127,17 @@ TEST_F(BadInput, AnArmWithoutFrictionIsToldOnceAtTheStart) {
   EXPECT_EQ(run("run --no-outside --set time_limit_s=1 --out usual").err.find("note:"), std::string::npos);
 }
 
-// The core moves its own arm, whatever the simulated one is.
-TEST_F(BadInput, AnotherArmThanTheCoresIsToldAtTheStart) {
+TEST_F(BadInput, AnArmOfAnotherFormIsRefusedWithItsLine) {
   std::string urdf = text_of(std::string(LANTERNFISH_SOURCE_DIR) + "/shared/arm/arm5e.urdf");
-  const std::size_t at = urdf.find("upper=\"0.5488\"");
-  ASSERT_NE(at, std::string::npos);
-  const std::string arm = " --set arm.urdf=" + file("other.urdf", urdf.replace(at, 14, "upper=\"0.5588\"")) + " --set time_limit_s=1";
-  const std::string note = "other.urdf: another arm than the control core's: the limits of slew differ";
-  EXPECT_THAT(run("run default --no-outside --out r" + arm).err, HasSubstr(note));
-  EXPECT_THAT(run("campaign default --seeds 1 --out c" + arm).err, HasSubstr(note));
-  EXPECT_THAT(run("serve default --can no_such_can" + arm).err, HasSubstr(note));
+  const std::string fingers = "<origin xyz=\"0.04 0 0.045\"";
+  ASSERT_NE(urdf.find(fingers), std::string::npos);
+  const std::string arm =
+      " --set arm.urdf=" + file("other.urdf", urdf.replace(urdf.find(fingers), fingers.size(), "<origin xyz=\"0.05 0 0.045\""));
+  for (const char* command : {"run default", "campaign default --seeds 1", "serve default --can no_such_can", "reach default"}) {
+    const Said said = run(command + arm);
+    EXPECT_EQ(said.status, 2) << command;
+    EXPECT_THAT(said.err, ::testing::ContainsRegex("other.urdf:[0-9]+: joint 'finger_b' must be the mirror image of 'jaw'")) << command;
+  }
 }
 
 TEST_F(BadInput, ABadUrdfIsRefusedWithItsLine) {

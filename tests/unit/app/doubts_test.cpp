@@ -121,16 +121,17 @@ TEST_F(Doubts, APlaneThroughALine) {
   EXPECT_EQ(run("plane " + plane("band.csv", 1, 0.0005, 0.02, 300)).status, 0);
 }
 
-TEST_F(Doubts, ReachRefusesAnotherArmThanTheCores) {
+TEST_F(Doubts, ReachSurveysTheScenariosArm) {
   std::string urdf = text_of(std::string(LANTERNFISH_SOURCE_DIR) + "/shared/arm/arm5e.urdf");
-  EXPECT_EQ(run("reach --draws 1 --set arm.urdf=" + file("same.urdf", urdf)).status, 0);
-  const std::size_t at = urdf.find("upper=\"0.5488\"");
-  ASSERT_NE(at, std::string::npos);
-  const Said said = run("reach --draws 1 --out other.png --set arm.urdf=" + file("other.urdf", urdf.replace(at, 14, "upper=\"0.4488\"")));
-  EXPECT_EQ(said.status, 2);
-  EXPECT_THAT(said.err, HasSubstr("'arm.urdf' names another arm than the control core's"));
-  EXPECT_THAT(said.err, HasSubstr("the limits of slew differ"));
-  EXPECT_FALSE(std::filesystem::exists(folder() / "other.png"));
+  const auto survey = [&](const std::string& name) { return run("reach --json --draws 1 --set arm.urdf=" + file(name, urdf)); };
+  const std::string same = survey("same.urdf").out;
+  EXPECT_EQ(same, run("reach --json --draws 1").out);
+  const std::string tool = "xyz=\"0 0 0.1485\"";
+  ASSERT_NE(urdf.find(tool), std::string::npos);
+  urdf.replace(urdf.find(tool), tool.size(), "xyz=\"0 0 0.1700\"");  // longer by 21.5 mm
+  const Said longer = survey("longer.urdf");
+  EXPECT_NE(longer.out, same);
+  EXPECT_NE(longer.status, 2) << longer.err;
 }
 
 TEST_F(Doubts, AButtonOverTheMarkerIsRefusedByName) {

@@ -70,7 +70,7 @@ TEST(Report, OfSeveralValvesNamesEach) {
     if (task.task == "turn_valve") task.valve = "V<2>";
   }
   const std::string html = report_html(data);
-  for (const char* text : {"valve V&lt;2&gt; turned to (target", "turn valve V&lt;2&gt;", "valve V&lt;2&gt;&#39;s final angle"})
+  for (const char* text : {"valve V&lt;2&gt; turned to (target", "turn valve V&lt;2&gt;", "valve V&lt;2&gt;'s final angle"})
     EXPECT_THAT(html, HasSubstr(text));
   EXPECT_THAT(html, Not(HasSubstr("V<2>")));
 }

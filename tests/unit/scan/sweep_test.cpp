@@ -175,14 +175,55 @@ TEST(Sweep, SpacingIsWhatItSays) {
   EXPECT_NEAR(plan.widest_spacing_m, widest, 0.08 * widest);  // the plan looks at eight places
 }
 
+// A laser that is mounted steeply upward needs the shoulder where no other does.
+TEST(Sweep, IsFoundInTheWholeOfTheShouldersRange) {
+  LaserCalibration upward = test::nominal_laser();
+  upward.tool_from_laser.rotate(Eigen::AngleAxisd(1.4, Vec3::UnitY()));
+  const SweepRequest request = whole_panel();
+  const SweepPlan plan = plan_sweep(test::arm5e, request, upward);
+  ASSERT_EQ(plan.outcome, SweepOutcome::ok);
+  EXPECT_LT(std::min(plan.start_rad[1], plan.end_rad[1]), 0.7);
+  for (double x : {-0.425, 0.0, 0.425})
+    for (double y : {-0.403, 0.0, 0.247}) expect_scanned(plan, request.base_from_panel * Vec3(x, y, 0), upward);
+}
+
+// An arm that is mounted to look ahead has its sweeps with the elbow turning the other way.
+TEST(Sweep, OfAnArmThatLooksAheadFacesThePanel) {
+  ArmModel model = test::arm5e.model();
+  model.planar.mount_yaw_rad = 0;
+  model.joints[1].lower_rad = -0.5;
+  model.joints[1].upper_rad = 3;  // the upper arm comes back far enough for the forearm to stay before the panel
+  model.joints[2].lower_rad = -3;
+  model.joints[2].upper_rad = 3;
+  model.planar.elbow_offset_rad = 0;
+  const arm::Arm ahead(model);
+  const SweepRequest request = whole_panel();
+  const SweepPlan plan = plan_sweep(ahead, request, test::nominal_laser());
+  ASSERT_EQ(plan.outcome, SweepOutcome::ok);
+  EXPECT_EQ(plan.start_rad[0], 0);
+  const auto laser_at = [&](double f) { return ahead.base_from_laser(along(plan, f), test::nominal_laser()); };
+  const auto passed = [&](double f, const Vec3& point) {
+    const Pose pose = laser_at(f);
+    const Vec3 up = request.base_from_panel.linear().col(1), normal = pose.linear().col(0);
+    return std::copysign(1.0, up.dot(normal)) * normal.dot(point - pose.translation());
+  };
+  for (double x : {-0.425, 0.0, 0.425}) {
+    for (double y : {-0.403, 0.0, 0.247}) {
+      const Vec3 point = request.base_from_panel * Vec3(x, y, 0);
+      EXPECT_LT(passed(0, point), 0) << x << ", " << y;
+      EXPECT_GT(passed(1, point), 0) << x << ", " << y;
+    }
+  }
+}
+
 TEST(Sweep, SaysWhatStandsInItsWay) {
   const LaserCalibration laser = test::nominal_laser();
   SweepRequest request = whole_panel();
   request.top_m = 1.0;
   EXPECT_EQ(plan_sweep(test::arm5e, request, laser).outcome, SweepOutcome::top_unreachable);
-  LaserCalibration upward = laser;
-  upward.tool_from_laser.rotate(Eigen::AngleAxisd(1.4, Vec3::UnitY()));
-  EXPECT_EQ(plan_sweep(test::arm5e, whole_panel(), upward).outcome, SweepOutcome::bottom_unreachable);
+  ArmModel stiff = test::arm5e.model();
+  stiff.joints[2].lower_rad = 1.9;
+  EXPECT_EQ(plan_sweep(arm::Arm(stiff), whole_panel(), laser).outcome, SweepOutcome::bottom_unreachable);
   LaserCalibration narrow = laser;
   narrow.fan_half_angle_rad = 0.4;
   EXPECT_EQ(plan_sweep(test::arm5e, whole_panel(), narrow).outcome, SweepOutcome::fan_too_narrow);

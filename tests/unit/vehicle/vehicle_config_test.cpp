@@ -169,19 +169,36 @@ TEST(VehicleConfig, AValveThatTakesMoreThanTheArmGivesIsRefused) {
               ElementsAre(::testing::AllOf(HasSubstr("valve V1 needs 400 N m, the arm gives "), HasSubstr("See 'valves.V1.torque_nm'"))));
 }
 
-// The core would move a real arm by the kinematics of another one.
-TEST(VehicleConfig, AnotherArmThanTheCoresIsRefused) {
+TEST(VehicleConfig, TheCoreIsToldTheFilesArm) {
   const TemporaryFolder folder;
   std::ifstream shipped(LANTERNFISH_SOURCE_DIR "/shared/arm/arm5e.urdf");
   std::string urdf{std::istreambuf_iterator<char>(shipped), std::istreambuf_iterator<char>()};
-  folder.write("mine.urdf", urdf);
-  const std::string config = folder.write("v.yaml", "arm: {urdf: mine.urdf}\n");
-  EXPECT_THAT(problems_of(config), IsEmpty());
   const std::string counts = "166667";
   ASSERT_NE(urdf.find(counts), std::string::npos);
   folder.write("mine.urdf", urdf.replace(urdf.find(counts), counts.size(), "250000"));
-  EXPECT_THAT(problems_of(config),
-              ElementsAre(HasSubstr("'arm.urdf' names another arm than the control core's: the screw or gear of elbow")));
+  folder.write("machine.yaml", "version: 1\narm: {urdf: mine.urdf, park_rad: [0, 0.55, 1.9, 0]}\ncamera: {down_deg: 43}\n");
+  for (const char* told : {"arm: {urdf: mine.urdf, park_rad: [0, 0.55, 1.9, 0]}\ncamera: {down_deg: 43}\n", "machine: machine.yaml\n",
+                           "machine: machine.yaml\ncamera: {down_deg: 43}\n"}) {
+    std::vector<std::string> problems;
+    const VehicleConfig config = load_vehicle_config(folder.write("v.yaml", told), problems);
+    EXPECT_THAT(problems, IsEmpty()) << told;
+    EXPECT_EQ(config.core.controller.arm.joint(Joint::elbow).actuator.counts_per_m, 250000);
+    EXPECT_EQ(config.core.scan.arm.joint(Joint::elbow).actuator.counts_per_m, 250000);
+    EXPECT_EQ(config.core.controller.mission.park_rad[1], 0.55);
+    EXPECT_EQ(config.machine.camera.down_deg, 43);
+    // And the drive's own limits are that arm's counts.
+    const double upper_rad = config.core.controller.limits.joints[2].max_rad;
+    EXPECT_EQ(config.core.controller.network.drives[2].max_counts,
+              arm::counts_from_rad(config.core.controller.arm.joint(Joint::elbow), upper_rad));
+  }
+}
+
+TEST(VehicleConfig, AMachinesFileIsRefusedWithItsOwnName) {
+  const TemporaryFolder folder;
+  folder.write("machine.yaml", "version: 1\ncamera: {down: 43}\n");
+  EXPECT_THAT(problems_of(folder.write("v.yaml", "machine: machine.yaml\n")), ::testing::Contains(HasSubstr("machine.yaml:2: ")));
+  EXPECT_THAT(problems_of(folder.write("w.yaml", "machine: gone.yaml\n")),
+              ::testing::Contains(HasSubstr("'machine': there is no gone.yaml")));
 }
 
 // What is missing hides nothing else.

@@ -1,0 +1,34 @@
+// A machine's file: what the robot is, for both programs. A scenario or a vehicle's configuration names it, and its own keys overrule single values of it.
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "hal/config/key.hpp"
+#include "hal/config/machine.hpp"
+
+namespace lf::config {
+
+// What of a Machine the file says: arm, folded pose, limits, camera, laser, vehicle and drives. The pointers are into the argument.
+Keys machine_keys(Machine& machine);
+
+// Reads `file` over what `machine` holds; what the file does not say stays. The files that it names are looked for beside it, then among the shipped ones, and
+// stand in `machine` by their whole paths, the shipped ones by their names. Adds every problem to `problems`: no file, not YAML, no version, an unknown or
+// repeated key, a value out of its range, a file that is not there.
+void read_machine_file(const std::filesystem::path& file, Machine& machine, std::vector<std::string>& problems);
+
+// What 'machine' of a YAML document says; empty where it says nothing.
+std::string machine_named_in(const YAML::Node& root);
+
+// Of the file's table, the keys that `file` does not give; those of a single joint's drive are as for all. Throws InputError where it cannot be read.
+std::vector<std::string> keys_left_out(const std::filesystem::path& file);
+
+std::string machine_schema();
+
+// A commented file with every key at its default.
+std::string machine_listing();
+
+}  // namespace lf::config

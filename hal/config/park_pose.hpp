@@ -1,0 +1,12 @@
+// The folded arm, as a machine's keys have it and as the core takes it.
+#pragma once
+
+#include "hal/config/machine.hpp"
+
+namespace lf::config {
+
+// Throws InputError for another count of numbers than the arm has joints, and for an angle beyond a joint's stroke. The file of limits is held against the pose
+// elsewhere.
+arm::JointVector park_pose(const Machine& machine);
+
+}  // namespace lf::config

@@ -1,0 +1,146 @@
+#include "host_sim/app/check_machine.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <sstream>
+
+#include "firmware/arm/gripper.hpp"
+#include "hal/config/arm_notes.hpp"
+#include "hal/config/homing_file.hpp"
+#include "hal/config/joined.hpp"
+#include "hal/config/machine_file.hpp"
+#include "hal/config/share.hpp"
+#include "host_sim/app/command.hpp"
+#include "host_sim/app/outside_picture.hpp"
+#include "host_sim/scenario/instance.hpp"
+#include "host_sim/scenario/scenario.hpp"
+#include "shared/arm/arm_description.hpp"
+#include "shared/arm/make_model.hpp"
+#include "shared/input_error.hpp"
+
+namespace lf::app {
+namespace {
+
+// The file, read; what it names is found beside it.
+config::Machine machine_of(const std::string& file) {
+  config::Machine machine;
+  machine.file = file;
+  std::vector<std::string> problems;
+  config::read_machine_file(file, machine, problems);
+  if (!problems.empty()) throw InputError(config::joined(problems));
+  return machine;
+}
+
+// By the rules that a mission is held against before it begins, without the file that the user did not write.
+std::vector<std::string> problems_of_job(const std::string& file) {
+  std::vector<std::string> problems;
+  try {
+    scenario::check_runnable(scenario::load_scenario("default", {"machine=" + file}));
+  } catch (const InputError& error) {
+    std::istringstream lines(error.what());
+    for (std::string line; std::getline(lines, line);) {
+      const std::size_t colon = line.find(": ");
+      problems.push_back(colon == std::string::npos ? line : line.substr(colon + 2));
+    }
+  }
+  return problems;
+}
+
+struct Told {
+  std::string file;
+  config::Machine machine;
+  ArmDescription description;
+  arm::Arm arm;
+  std::vector<std::string> assumed, notes, problems;
+
+  explicit Told(const std::string& name)
+      : file(name),
+        machine(machine_of(name)),
+        description(load_arm_urdf(urdf())),
+        arm(make_model(description)),
+        assumed(config::keys_left_out(name)),
+        notes(config::arm_notes(urdf())),
+        problems(problems_of_job(std::filesystem::absolute(name).string())) {}
+
+  std::string urdf() const { return config::named_file(file, "arm.urdf", machine.arm_urdf); }
+  double reach_m() const { return std::abs(arm.planar().a0_m) + std::abs(arm.planar().a1_m) + arm.forearm().length_m; }
+  double jaw_opens_m() const { return arm::gap_from_jaw(arm.jaw(), arm.jaw().upper_rad); }
+};
+
+Json json_of(const Told& told) {
+  Json json{{"file", told.file}, {"arm", told.urdf()}, {"joints", Json::array()}};
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    const ArmJoint& joint = told.description.joints[i];
+    const config::JointDriveChoice drive = config::drive_of(told.machine.drives, i);
+    json["joints"].push_back({{"name", config::joint_name(i)},
+                              {"lower_rad", joint.lower_rad},
+                              {"upper_rad", joint.upper_rad},
+                              {"velocity_rad_s", joint.velocity_rad_s},
+                              {"rated_torque_nm", joint.rated_torque_nm},
+                              {"peak_torque_nm", joint.effort_nm},
+                              {"actuator", joint.actuator.counts_per_rad > 0 ? "gear" : "screw"},
+                              {"node", drive.node},
+                              {"profile", drive.profile},
+                              {"polarity", drive.polarity}});
+  }
+  json["ik"] = "planar";
+  json["reach_m"] = told.reach_m();
+  json["jaw_opens_m"] = told.jaw_opens_m();
+  json["thickest_bar_m"] = arm::thickest_bar_m(told.arm.jaw());
+  json["assumed"] = told.assumed;
+  json["notes"] = told.notes;
+  json["can"] = told.problems.empty();
+  json["problems"] = told.problems;
+  return json;
+}
+
+void tell(const Told& told) {
+  print("%s: the arm of %s\n", told.file.c_str(), told.urdf().c_str());
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    const ArmJoint& joint = told.description.joints[i];
+    const config::JointDriveChoice drive = config::drive_of(told.machine.drives, i);
+    print("  %-9s %7.1f to %6.1f deg, %5.1f deg/s, %5.1f N m rated, %5.1f peak, %-5s node %lld, %s%s\n", config::joint_name(i),
+          deg_from_rad(joint.lower_rad), deg_from_rad(joint.upper_rad), deg_from_rad(joint.velocity_rad_s), joint.rated_torque_nm,
+          joint.effort_nm, joint.actuator.counts_per_rad > 0 ? "gear," : "screw,", static_cast<long long>(drive.node),
+          drive.profile.c_str(), drive.polarity == "reversed" ? ", reversed" : "");
+  }
+  print("  inverse kinematics: planar, in closed form; the tool comes %.0f mm from the slew's axis at most\n", 1e3 * told.reach_m());
+  print("  the jaw opens to %.0f mm, and takes bars up to %.1f mm\n", 1e3 * told.jaw_opens_m(), 1e3 * arm::thickest_bar_m(told.arm.jaw()));
+  const std::array<double, 3>& camera = told.machine.camera.position_m;
+  print("  camera at %.3f %.3f %.3f m, %.1f deg down, %.1f deg to the right, focal length %.1f px\n", camera[0], camera[1], camera[2],
+        told.machine.camera.down_deg, told.machine.camera.right_deg, told.machine.camera.focal_px);
+  const std::array<double, 3>& laser = told.machine.laser.position_m;
+  print("  laser at %.3f %.3f %.3f m of the tool, a fan of %.0f deg\n", laser[0], laser[1], laser[2],
+        2 * told.machine.laser.fan_half_angle_deg);
+  print("  of the vehicle, %zu boxes and %zu capsules are kept clear\n", told.machine.vehicle.boxes_m.size(),
+        told.machine.vehicle.capsules_m.size());
+  if (!told.assumed.empty()) print("  not in the file, so as the default machine has it: %s\n", config::joined(told.assumed, ", ").c_str());
+  for (const std::string& note : told.notes) print("  note: %s\n", note.c_str());
+  if (told.problems.empty()) print("  it can do the default scenario's job\n");
+  for (const std::string& problem : told.problems) print("  it cannot do the default scenario's job: %s\n", problem.c_str());
+}
+
+}  // namespace
+
+int check_machine(const std::string& file, const std::string& picture, bool json) {
+  const Told told(file);
+  if (!picture.empty()) {
+    const scenario::Scenario usual = scenario::load_scenario("default", {});
+    scenario::Scenario shown = usual;
+    shown.arm.urdf = told.urdf();
+    shown.arm.park_rad = told.machine.park_rad;
+    shown.vehicle = told.machine.vehicle;
+    draw_outside(shown, usual, picture);
+  }
+  if (json) {
+    Json document = json_of(told);
+    if (!picture.empty()) document["picture"] = picture;
+    print_json(document);
+    return done;
+  }
+  tell(told);
+  if (!picture.empty()) print("picture: %s\n", picture.c_str());
+  return done;
+}
+
+}  // namespace lf::app

@@ -1,0 +1,101 @@
+// What a scenario's robot is where `machine` names a file of it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "hal/config/share.hpp"
+#include "hal/config/text_file.hpp"
+#include "host_sim/scenario/describe.hpp"
+#include "host_sim/scenario/instance.hpp"
+#include "host_sim/scenario/scenario.hpp"
+#include "shared/input_error.hpp"
+#include "tests/arm5e.hpp"
+#include "tests/unit/temporary_folder.hpp"
+
+namespace lf::scenario {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+std::string refusal(const std::string& scenario, const std::vector<std::string>& overrides = {}) {
+  try {
+    check_runnable(load_scenario(scenario, overrides));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+// A robot of its own beside a scenario: an arm with a longer forearm, in a folder of its own.
+class MachineKey : public testing::Test {
+ protected:
+  MachineKey() {
+    std::string urdf = config::read_text_file(config::share_folder() / "arm" / "arm5e.urdf");
+    const std::string tool = "xyz=\"0 0 0.1485\"";
+    urdf.replace(urdf.find(tool), tool.size(), "xyz=\"0 0 0.1600\"");
+    std::filesystem::create_directory(folder_ / "robot");
+    folder_.write("robot/long.urdf", urdf);
+    folder_.write("robot/machine.yaml",
+                  "version: 1\narm: {urdf: long.urdf, park_rad: [0, 0.5, 1.9, 0]}\ncamera: {down_deg: 42, right_deg: 20}\n");
+  }
+
+  std::string with(const std::string& yaml) const { return folder_.write("mine.yaml", yaml).string(); }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(MachineKey, SaysWhatTheRobotIs) {
+  const Scenario s = load_scenario(with("machine: robot/machine.yaml\n"));
+  EXPECT_EQ(s.arm.urdf, folder_ / "robot/long.urdf");
+  EXPECT_EQ(s.camera.down_deg, 42);
+  EXPECT_NEAR(s.told_arm.planar().d_m, test::arm5e.planar().d_m + 0.0115, 1e-12);
+  const Nominal nominal = make_nominal(s, true);
+  EXPECT_NEAR(nominal.controller.arm.planar().d_m, test::arm5e.planar().d_m + 0.0115, 1e-12);
+  EXPECT_NEAR(nominal.scan.arm.planar().d_m, test::arm5e.planar().d_m + 0.0115, 1e-12) << "the cloud is made with the same arm";
+  EXPECT_EQ(nominal.controller.mission.park_rad[1], 0.5);
+  EXPECT_EQ(make_truth(s, draw(s, 1), nominal, 1).world.start_rad[1], 0.5) << "and there the real arm stands";
+}
+
+TEST_F(MachineKey, IsOverruledByTheScenariosOwnKeys) {
+  const Scenario s = load_scenario(with("machine: robot/machine.yaml\ncamera: {down_deg: 44}\n"), {"arm.park_rad=[0.1, 0.6, 1.9, 0]"});
+  EXPECT_EQ(s.camera.down_deg, 44);
+  EXPECT_EQ(s.camera.right_deg, 20);
+  EXPECT_THAT(s.arm.park_rad, testing::ElementsAre(0.1, 0.6, 1.9, 0));
+}
+
+TEST_F(MachineKey, MayBeGivenAsAnOverride) {
+  const Scenario s = load_scenario("default", {"machine=" + (folder_ / "robot/machine.yaml")});
+  EXPECT_EQ(s.camera.down_deg, 42);
+  EXPECT_EQ(s.arm.urdf, folder_ / "robot/long.urdf");
+}
+
+TEST_F(MachineKey, OfTheShippedFileChangesNothing) {
+  Scenario shipped = load_scenario("default", {"machine=machines/arm5e.yaml"});
+  shipped.machine.clear();
+  EXPECT_EQ(scenario_yaml(shipped), scenario_yaml(load_scenario("default")));
+}
+
+TEST_F(MachineKey, IsRefusedWithItsOwnFilesAndLines) {
+  EXPECT_THAT(refusal(with("machine: robot/machin.yaml\n")),
+              AllOf(HasSubstr("mine.yaml: 'machine'"), HasSubstr("there is no robot/machin.yaml")));
+  folder_.write("robot/bad.yaml", "version: 1\ncamera:\n  down: 42\n");
+  EXPECT_THAT(refusal(with("machine: robot/bad.yaml\nwater: {attenuation: 1}\n")),
+              AllOf(HasSubstr("robot/bad.yaml:3: "), HasSubstr("mine.yaml:2: ")))
+      << "all problems of both files";
+}
+
+TEST_F(MachineKey, OfAnArmThatDoesNotFitIsRefusedBeforeItMoves) {
+  EXPECT_THAT(refusal(with("arm: {park_rad: [0, 0.6, 1.9]}\n")), HasSubstr("'arm.park_rad' takes 4 numbers"));
+  EXPECT_THAT(refusal(with("arm: {park_rad: [0, 0.6, 2.5, 0]}\n")), HasSubstr("'arm.park_rad' has 2.5 for the elbow"));
+  EXPECT_THAT(refusal(with("arm: {urdf: nowhere.urdf}\n")), HasSubstr("'arm.urdf': there is no nowhere.urdf"));
+  std::string urdf = config::read_text_file(folder_ / "robot/long.urdf");
+  const std::string jaw = "effort=\"20\" velocity=\"0.5\"/>\n    <lanternfish:drive";
+  ASSERT_NE(urdf.find(jaw), std::string::npos);
+  urdf.replace(urdf.find(jaw), 11, "effort=\"30\"");
+  folder_.write("strong.urdf", urdf);
+  EXPECT_THAT(refusal(with("arm: {urdf: strong.urdf}\n")),
+              HasSubstr("'joints.jaw.max_torque_nm' is 22: the jaw grips with its drive's peak torque, 30 N m"));
+}
+
+}  // namespace
+}  // namespace lf::scenario
