@@ -7,6 +7,7 @@
 #include "host_sim/serve/served_bus.hpp"
 #include "host_sim/serve/socket_can_link.hpp"
 #include "shared/arm/arm_description.hpp"
+#include "shared/arm/make_model.hpp"
 
 namespace {
 
@@ -24,8 +25,9 @@ void follow(lf::JointReading& joint, const lf::JointDrive& drive) {
 int serve(const char* interface) {
   using namespace lf;
   serve::SocketCanLink link(interface);
-  devices::NodeRack rack(devices::devices_config(load_arm_urdf(LANTERNFISH_SOURCE_DIR "/shared/arm/arm5e.urdf"), {}, 1), Time{});
-  serve::ServedBus bus(rack, link, serve::NodeSet::all());
+  const ArmDescription arm = load_arm_urdf(LANTERNFISH_SOURCE_DIR "/shared/arm/arm5e.urdf");
+  devices::NodeRack rack(devices::devices_config(arm, {}, 1), Time{});
+  serve::ServedBus bus(rack, link, serve::NodeSet::all(), make_model(arm));
   JointReadings readings{};
   for (std::size_t i = 0; i < joint_count; ++i) readings[i].position_rad = readings[i].motor_position_rad = start_rad[i];
   serve::Pace pace(link.now());

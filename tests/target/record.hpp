@@ -223,9 +223,49 @@ void pass(S& s, arm::TransmissionSetup& v) {
   pass_all(s, counts_per_rev, friction);
 }
 template <class S>
+void pass(S& s, ArmActuator& v) {
+  auto& [pivot_a, pivot_b, offset, counts_per_m, counts_per_rad] = v;
+  pass_all(s, pivot_a, pivot_b, offset, counts_per_m, counts_per_rad);
+}
+template <class S>
+void pass(S& s, ArmModel::Planar& v) {
+  auto& [mount_yaw, a0, a1, a2, d, shoulder_offset, elbow_offset] = v;
+  pass_all(s, mount_yaw, a0, a1, a2, d, shoulder_offset, elbow_offset);
+}
+template <class S>
+void pass(S& s, ArmModel::Joint& v) {
+  auto& [lower, upper, velocity, acceleration, effort, rated_torque, actuator] = v;
+  pass_all(s, lower, upper, velocity, acceleration, effort, rated_torque, actuator);
+}
+template <class S>
+void pass(S& s, ArmModel::Jaw& v) {
+  auto& [pivot_x, pivot_z, face_x, face_z, pad_width, pad_depth, lower, upper] = v;
+  pass_all(s, pivot_x, pivot_z, face_x, face_z, pad_width, pad_depth, lower, upper);
+}
+template <class S>
+void pass(S& s, ArmModel::Capsule& v) {
+  auto& [link, a_m, b_m, radius_m] = v;
+  pass_all(s, link, a_m, b_m, radius_m);
+}
+template <class S>
+void pass(S& s, ArmModel& v) {
+  auto& [planar, joints, origins, jaw, capsules] = v;
+  pass_all(s, planar, joints, origins, jaw, capsules);
+}
+template <class S>
+void pass(S& s, arm::Arm& v) {
+  ArmModel model = v.model();
+  pass(s, model);
+  v = arm::Arm(model);
+}
+template <class S>
+void pass(S& s, MissionSetup& v) {
+  auto& [arm, transmissions, camera, laser, markers, mission, limits, mission_limits] = v;
+  pass_all(s, arm, transmissions, camera, laser, markers, mission, limits, mission_limits);
+}
+template <class S>
 void pass(S& s, ControllerConfig& v) {
-  auto& [network, transmissions, camera, laser, markers, mission, limits, mission_limits] = v;
-  pass_all(s, network, transmissions, camera, laser, markers, mission, limits, mission_limits);
+  pass_all(s, static_cast<MissionSetup&>(v), v.network);
 }
 
 // What comes from the vision side.

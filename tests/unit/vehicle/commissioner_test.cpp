@@ -128,7 +128,7 @@ TEST(Commissioned, AJointThatSomethingRubsAgainstIsLeftOutAndTheOthersAreTakenOv
   commissioned.friction_found = {true, true, true, false, false};
   commissioned.friction = {{{1, 1e-3, 0.1}, {100, 1e-3, 0.1}, {1, 1e-3, 0.1}, {}, {}}};
   commissioned.how = "in the jig";
-  const std::vector<std::string> left_out = take_over(commissioned, motors, offsets).left_out;
+  const std::vector<std::string> left_out = take_over(test::arm5e, commissioned, motors, offsets).left_out;
   ASSERT_EQ(left_out.size(), 1U);
   EXPECT_NE(left_out[0].find("'shoulder.coulomb_mnm' is 100"), std::string::npos) << left_out[0];
   EXPECT_EQ(offsets.known, (std::array<bool, joint_count>{true, false, false, true, false})) << "the old zero may be as wrong";
@@ -152,7 +152,7 @@ TEST(Commissioned, AJointLeftOutForItsFrictionStaysOutUntilAFrictionWasMeasured)
     commissioned.friction_found[0] = friction_found;
     commissioned.friction[0] = {coulomb_mnm, 1e-3, 0.1};
     commissioned.how = "at its stop";
-    const std::vector<std::string> left_out = take_over(commissioned, motors, offsets).left_out;
+    const std::vector<std::string> left_out = take_over(test::arm5e, commissioned, motors, offsets).left_out;
     config::write_homing_file(file, offsets);
     return left_out;
   };
@@ -214,14 +214,14 @@ TEST(Commissioned, AZeroThatHasMovedIsTold) {
     commissioned.found = {true, true, false, true, true};
     commissioned.zero_counts = {0, 7, 0, -70'000, 900};
     commissioned.place_rad = {};
-    const double roll_counts_rad = test::arm5e.model().joints[3].counts_per_rad;
+    const double roll_counts_rad = test::arm5e.model().joints[3].actuator.counts_per_rad;
     const double stop_rad = test::arm5e.model().joints[0].lower_rad;
     commissioned.place_rad[0] = stop_rad;
     const std::int32_t short_of_it = arm::counts_from_rad(test::arm5e.joint(Joint::slew), stop_rad + std::abs(off_rad)) -
                                      arm::counts_from_rad(test::arm5e.joint(Joint::slew), stop_rad);
     commissioned.zero_counts[0] = off_rad > 0 ? short_of_it : -short_of_it;
     commissioned.zero_counts[3] += static_cast<std::int32_t>(std::lround(off_rad * roll_counts_rad));
-    const TakenOver taken = take_over(commissioned, motors, offsets);
+    const TakenOver taken = take_over(test::arm5e, commissioned, motors, offsets);
     EXPECT_TRUE(taken.left_out.empty());
     if (std::abs(off_rad) < 0.03) {
       EXPECT_EQ(taken.moved_rad, (std::array<double, joint_count>{}));
@@ -254,7 +254,7 @@ TEST(Commissioned, AZeroHasMovedWhereTheCommissioningOrTheFileSaysSo) {
   commissioned.place_rad = {};
   commissioned.zero_counts[3] = commissioned.zero_counts[4] = 900;
   commissioned.moved_rad = {0.2, 0.3, 0, 0, 0};
-  const TakenOver taken = take_over(commissioned, motors, offsets);
+  const TakenOver taken = take_over(test::arm5e, commissioned, motors, offsets);
   EXPECT_EQ(taken.moved_rad[0], 0.2) << "which the file does not know";
   EXPECT_EQ(taken.moved_rad[1], 0.3) << "which the file has where it was found";
   EXPECT_EQ(taken.moved_rad[2], 0);
@@ -276,7 +276,7 @@ TEST(Commissioned, AJointLeftOutForItsFrictionKeepsItsEarlierZeroAsADoubtfulOne)
   commissioned.place_rad = {};
   commissioned.friction_found = {true, true, false, false, false};
   commissioned.friction = {{{100, 1e-3, 0.1}, {100, 1e-3, 0.1}, {}, {}, {}}};
-  EXPECT_EQ(take_over(commissioned, motors, offsets).left_out.size(), 2u);
+  EXPECT_EQ(take_over(test::arm5e, commissioned, motors, offsets).left_out.size(), 2u);
   EXPECT_TRUE(offsets.zero_doubtful[0]);
   EXPECT_EQ(offsets.zero_counts[0], 11);
   EXPECT_FALSE(offsets.has_earlier_zero(1)) << "it had none";
