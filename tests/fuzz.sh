@@ -10,7 +10,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 declare -A wanted=([operator_line]=10000000 [frame_ring]=10000000 [can_core]=10000000 [can_devices]=10000000
-  [vehicle_yaml]=1000000 [scenario_yaml]=1000000 [scene_yaml]=1000000 [drive_yaml]=1000000 [small_yaml]=1000000 [urdf]=1000000 [mechanism]=1000000 [mesh]=1000000
+  [vehicle_yaml]=1000000 [scenario_yaml]=1000000 [scene_yaml]=1000000 [drive_yaml]=1000000 [small_yaml]=1000000 [robot_yaml]=1000000 [urdf]=1000000 [mechanism]=1000000 [mesh]=1000000
   [image_peaks]=100000 [image_marker]=100000 [cloud]=100000)
 most_kept=4096
 limit=(-max_total_time=60) seed=1 by_table='' keep='' targets=()

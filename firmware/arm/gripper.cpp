@@ -49,6 +49,27 @@ bool stands_empty(const ArmModel::Jaw& jaw, double jaw_rad, double bar_m) {
   return stands_closed(jaw, jaw_rad) || open;  // what is not a number is neither
 }
 
+double thinnest_bar_m(const ArmModel::Jaw& jaw) {
+  constexpr double told_apart_m = 0.0065;  // a grip's tolerance, and half a millimetre
+  return std::max(thinnest_bar_of_any_m, gap_from_jaw(jaw, jaw.lower_rad) + told_apart_m);
+}
+
+GripperConfig gripper_config(const ArmModel::Joint& joint) {
+  constexpr double grip_share = 0.3, hold_share = 0.1;        // of the peak torque
+  constexpr double closing_share = 0.5, opening_share = 0.8;  // of the top speed
+  constexpr double stall_counts = 3.7, spare = 1.4;           // of the encoder; of the time for the whole stroke
+  GripperConfig config;
+  config.grip_torque_nm = grip_share * joint.effort_nm;
+  config.hold_torque_nm = hold_share * joint.effort_nm;
+  config.closing_speed_rad_s = closing_share * joint.velocity_rad_s;
+  config.opening_speed_rad_s = opening_share * joint.velocity_rad_s;
+  config.ramp_rad_s2 = joint.acceleration_rad_s2;
+  config.stall_rad = std::max(config.stall_rad, stall_counts * rad_per_count(joint, 0.5 * (joint.lower_rad + joint.upper_rad)));
+  const double stroke_s = (joint.upper_rad - joint.lower_rad) / config.closing_speed_rad_s;
+  config.move_timeout = std::max(config.move_timeout, Duration::from_s(spare * stroke_s));
+  return config;
+}
+
 double jaw_opening_m(const ArmModel::Jaw& jaw, double bar_m) {
   return std::min(bar_m + 2 * reaching_room_m, gap_from_jaw(jaw, jaw.upper_rad));
 }

@@ -18,8 +18,9 @@ double pad_force_n(const ArmModel::Jaw& jaw, double jaw_torque_nm);
 // How far the fingers reach beyond the tool point along the tool axis, m.
 double tip_beyond_tool_m(const ArmModel::Jaw& jaw, double jaw_rad);
 
-// The thinnest bar that a closed jaw is told from: at its stop 1.3 mm of the ARM 5E stay open, and a stall within `bar_tolerance_m` of the bar counts as a grip.
-inline constexpr double thinnest_bar_m = 0.008;
+// The thinnest bar that a closed jaw is told from: at its stop 1.3 mm of the ARM 5E's stay open, and a stall within `bar_tolerance_m` of the bar counts as a grip.
+inline constexpr double thinnest_bar_of_any_m = 0.008;
+double thinnest_bar_m(const ArmModel::Jaw& jaw);
 // Closed to its stop, which leaves no more than some millimetres. An angle beyond the stop is one of a false zero, and tells nothing.
 bool stands_closed(const ArmModel::Jaw& jaw, double jaw_rad);
 // The fingers hold nothing of a jaw that stands so: closed, or open for reaching for such a bar. Open, they may still stand around it.
@@ -50,6 +51,9 @@ struct GripperConfig {
   double creep_s = 0.3;                             // pads that creep by less than snap_rad in this time hold: 0.033 rad/s; 0.013 was seen
   Duration move_timeout = Duration::from_ms(8000);  // the full stroke takes 5.6 s at the closing speed
 };
+
+// Of a jaw with other speeds, torques, stroke or encoder than the ARM 5E's, whose numbers stand above: the same shares of its own.
+GripperConfig gripper_config(const ArmModel::Joint& joint);
 
 enum class GripperState : std::uint8_t {
   idle,     // holds its position

@@ -138,7 +138,7 @@ Workbench::Workbench(const ControllerConfig& told)
       power(config.arm) {}
 
 arm::Gripper Workbench::new_gripper() const {
-  arm::Gripper fresh(jaw());
+  arm::Gripper fresh(jaw(), arm::gripper_config(config.arm.joint(Joint::jaw)));
   expect_bar(fresh);
   return fresh;
 }

@@ -91,9 +91,10 @@ void check_bar(const Machine& machine, std::size_t i, std::vector<std::string>& 
                        number(lowest_m) + " m with a bar of this " + key("thickness_m") +
                        aslant_text(machine.panel, machine.mission.docking, tilt_rad));
   const double thickest_m = thickest_bar_m(machine.arm.jaw(), valve);
-  if (valve.handle_thickness_m < arm::thinnest_bar_m)
+  const double thinnest_m = arm::thinnest_bar_m(machine.arm.jaw());
+  if (valve.handle_thickness_m < thinnest_m)
     problems.push_back(key("thickness_m") + " is " + number(valve.handle_thickness_m) + ": the jaw does not tell a bar thinner than " +
-                       number(arm::thinnest_bar_m) + " m from nothing");
+                       number(thinnest_m) + " m from nothing");
   if (valve.handle_thickness_m > thickest_m)
     problems.push_back(key("thickness_m") + " is " + number(valve.handle_thickness_m) + ": a bar of this " + key("length_m") + " can be " +
                        number(thickest_m) + " m thick, else its angle cannot be seen or the jaw does not open for it");

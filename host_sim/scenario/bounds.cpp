@@ -88,7 +88,8 @@ Bounds of_panel(const config::Key& key, const Scenario& s) {
   if (key.path == "panel.marker_size_m") return within(key, key.min, marker.plate_m * (1 - clearly));
   if (key.path == "panel.marker_plate_m")
     return within(key, marker.size_m * (1 + clearly), config::largest_marker_plate_m(panel, marker) * (1 - clearly));
-  if (key.path == "panel.handle_thickness_m") return within(key, arm::thinnest_bar_m, config::thickest_bar_m(s.told_arm.jaw(), valve));
+  if (key.path == "panel.handle_thickness_m")
+    return within(key, arm::thinnest_bar_m(s.told_arm.jaw()), config::thickest_bar_m(s.told_arm.jaw(), valve));
   if (key.path == "panel.pointer_length_m") return within(key, key.min, config::longest_mark_m(valve));
   return {key.min, key.max};
 }

@@ -345,6 +345,11 @@ void check_chain(const Urdf& urdf, const ArmDescription& arm) {
   expect(same(elbow.linear().col(2), across) && in_plane(elbow), "elbow", "must be parallel to the shoulder and in the arm's plane");
   expect(std::abs(roll.linear().col(2).dot(across)) < tolerance && in_plane(roll), "roll",
          "must be square to the elbow and in the arm's plane");
+  expect(same(roll.linear().col(1), across), "roll", "must have its y along the elbow's axis at angle 0");
+  constexpr double shortest_m = 0.01;
+  expect((elbow.translation() - shoulder.translation()).norm() > shortest_m, "elbow", "must stand more than 10 mm from the shoulder");
+  expect((roll * arm.wrist_from_tool.translation() - elbow.translation()).norm() > shortest_m, "tool",
+         "must stand more than 10 mm from the elbow");
   const Pose& tool = arm.wrist_from_tool;
   expect(tool.linear().isIdentity(tolerance) && tool.translation().head<2>().norm() < tolerance, "tool",
          "must lie on the roll axis, unturned");

@@ -9,24 +9,21 @@ namespace lf {
 
 namespace {
 
-// Denavit and Hartenberg's numbers of joint frames whose z is their axis. load_arm_urdf() has checked that the others are 0 or a quarter turn.
+double angle_of(const Vec3& in_plane) { return std::atan2(in_plane.y(), in_plane.x()); }
+
+// Joint frames stand in the arm's plane, turned as their author likes: load_arm_urdf() has checked no more than that. Angles are of directions in that plane.
 ArmModel::Planar planar(const ArmDescription& arm) {
-  const auto turn = [](const Pose& pose) { return std::atan2(pose.linear()(1, 0), pose.linear()(0, 0)); };
-  const auto along = [](const Pose& pose, double turn_rad) {
-    return std::cos(turn_rad) * pose.translation().x() + std::sin(turn_rad) * pose.translation().y();
-  };
-  const Pose& shoulder = arm.joints[1].parent_from_joint;
-  const Pose& elbow = arm.joints[2].parent_from_joint;
-  const Pose& roll = arm.joints[3].parent_from_joint;
+  const Vec3 to_shoulder = arm.joints[1].parent_from_joint.translation(), to_elbow = arm.joints[2].parent_from_joint.translation();
+  const Pose& elbow_from_roll = arm.joints[3].parent_from_joint;
+  const Vec3 tool_x = elbow_from_roll.linear().col(0), tool_z = elbow_from_roll.linear().col(2), to_roll = elbow_from_roll.translation();
   ArmModel::Planar n;
-  n.mount_yaw_rad = turn(arm.joints[0].parent_from_joint);
-  n.a0_m = along(shoulder, turn(shoulder));
-  n.shoulder_offset_rad = turn(elbow);
-  n.a1_m = along(elbow, n.shoulder_offset_rad);
-  n.elbow_offset_rad = turn(roll);
-  n.a2_m = along(roll, n.elbow_offset_rad);
-  const double to_roll_m = std::sin(n.elbow_offset_rad) * roll.translation().x() - std::cos(n.elbow_offset_rad) * roll.translation().y();
-  n.d_m = to_roll_m + arm.wrist_from_tool.translation().z();
+  n.mount_yaw_rad = angle_of(arm.joints[0].parent_from_joint.linear().col(0));
+  n.a0_m = to_shoulder.x();
+  n.a1_m = to_elbow.head<2>().norm();
+  n.shoulder_offset_rad = angle_of(to_elbow);
+  n.elbow_offset_rad = angle_of(arm.joints[2].parent_from_joint.linear().col(0)) + angle_of(tool_x) - n.shoulder_offset_rad;
+  n.a2_m = to_roll.dot(tool_x);
+  n.d_m = to_roll.dot(tool_z) + arm.wrist_from_tool.translation().z();
   return n;
 }
 

@@ -49,8 +49,36 @@ class GripperRun {
   double torque_ = 0;
 };
 
+// The numbers of a jaw are shares of what it can: those of the default machine are the defaults.
+TEST(GripperConfig, OfTheDefaultJawIsTheDefault) {
+  const GripperConfig ours = gripper_config(test::arm5e.joint(Joint::jaw)), usual;
+  EXPECT_DOUBLE_EQ(ours.grip_torque_nm, usual.grip_torque_nm);
+  EXPECT_DOUBLE_EQ(ours.hold_torque_nm, usual.hold_torque_nm);
+  EXPECT_DOUBLE_EQ(ours.closing_speed_rad_s, usual.closing_speed_rad_s);
+  EXPECT_DOUBLE_EQ(ours.opening_speed_rad_s, usual.opening_speed_rad_s);
+  EXPECT_DOUBLE_EQ(ours.ramp_rad_s2, usual.ramp_rad_s2);
+  EXPECT_DOUBLE_EQ(ours.stall_rad, usual.stall_rad);
+  EXPECT_EQ(ours.move_timeout, usual.move_timeout);
+  EXPECT_DOUBLE_EQ(thinnest_bar_m(test::jaw5e), thinnest_bar_of_any_m);
+}
+
+TEST(GripperConfig, OfAnotherJawFollowsIt) {
+  ArmModel::Joint slow = test::arm5e.joint(Joint::jaw);
+  slow.effort_nm = 5;
+  slow.velocity_rad_s = 0.1;
+  slow.actuator.counts_per_rad = 200;
+  const GripperConfig config = gripper_config(slow);
+  EXPECT_LT(config.grip_torque_nm, slow.effort_nm) << "it can be believed to hold";
+  EXPECT_LT(config.closing_speed_rad_s, slow.velocity_rad_s);
+  EXPECT_GT(config.move_timeout.s(), (slow.upper_rad - slow.lower_rad) / config.closing_speed_rad_s) << "and has the time to close";
+  EXPECT_GT(config.stall_rad, 3.0 / 200) << "a count is no motion";
+  ArmModel::Jaw wide = test::jaw5e;
+  wide.face_x_m -= 0.005;  // each pad 5 mm farther out: closed, they stand 10 mm apart
+  EXPECT_GT(thinnest_bar_m(wide), gap_from_jaw(wide, wide.lower_rad) + GripperConfig().bar_tolerance_m);
+}
+
 TEST(JawOpening, LeavesTheSameRoomBesideABarOfAnyThickness) {
-  for (const double bar_m : {thinnest_bar_m, 0.0126, 0.022, 0.050}) {
+  for (const double bar_m : {thinnest_bar_of_any_m, 0.0126, 0.022, 0.050}) {
     const double room_m = (jaw_opening_m(test::jaw5e, bar_m) - bar_m) / 2;
     EXPECT_NEAR(room_m, 0.024, 1e-12) << bar_m;
     EXPECT_NEAR(gap_from_jaw(test::jaw5e, jaw_from_gap(test::jaw5e, jaw_opening_m(test::jaw5e, bar_m))), jaw_opening_m(test::jaw5e, bar_m),
@@ -59,7 +87,7 @@ TEST(JawOpening, LeavesTheSameRoomBesideABarOfAnyThickness) {
   }
   EXPECT_NEAR(jaw_opening_m(test::jaw5e, thickest_bar_m(test::jaw5e)), gap_from_jaw(test::jaw5e, 1.3377), 1e-9);
   EXPECT_LE(jaw_opening_m(test::jaw5e, 1), gap_from_jaw(test::jaw5e, 1.3377)) << "no further than the jaw opens";
-  EXPECT_GT(thinnest_bar_m, gap_from_jaw(test::jaw5e, -0.05816) + 0.004) << "told from a closed jaw";
+  EXPECT_GT(thinnest_bar_of_any_m, gap_from_jaw(test::jaw5e, -0.05816) + 0.004) << "told from a closed jaw";
 }
 
 // The pads of the URDF's fingers, corner by corner in the wrist's frame.
@@ -159,7 +187,7 @@ TEST(Gripper, StaysInDoubtWhenItsNextOrderMovesItByAHair) {
 // Closed is closed, however thick the bar: a hose of 20 mm in a jaw for bars of 40 mm is something that is held.
 TEST(Gripper, MayHoldWhatFitsBetweenClosedAndOpen) {
   const double stop_rad = test::arm5e.model().joints[4].lower_rad;
-  for (const double bar_m : {thinnest_bar_m, 0.0126, 0.040, thickest_bar_m(test::jaw5e)}) {
+  for (const double bar_m : {thinnest_bar_of_any_m, 0.0126, 0.040, thickest_bar_m(test::jaw5e)}) {
     GripperConfig config;
     config.bar_m = bar_m;
     const Gripper gripper(test::jaw5e, config);

@@ -20,12 +20,12 @@ class DrawnArm {
     std::ifstream stream(LANTERNFISH_SOURCE_DIR "/shared/arm/arm5e.urdf");
     std::string text = (std::stringstream() << stream.rdbuf()).str();
     text.resize(text.find("<joint name=\"slew\""));
-    const double elbow_turn = draw(-pi, pi), roll_turn = draw(-pi, pi), upper_arm = draw(0.15, 0.9), across = draw(-0.2, 0.2),
-                 to_roll = draw(0.05, 0.5);
+    const double elbow_at = draw(-pi, pi), elbow_turn = draw(-pi, pi), roll_turn = draw(-pi, pi), upper_arm = draw(0.15, 0.9),
+                 across = draw(-0.2, 0.2), to_roll = draw(0.05, 0.5);
     const double quarter = pi / 2;
     text += joint("slew", "base", "slew", Vec3::Zero(), Vec3(0, 0, draw(-pi, pi)), "0 0 1", range(draw));
     text += joint("shoulder", "slew", "upper_arm", Vec3(draw(-0.2, 0.3), 0, 0), Vec3(quarter, 0, 0), "0 0 1", range(draw));
-    text += joint("elbow", "upper_arm", "forearm", upper_arm * Vec3(std::cos(elbow_turn), std::sin(elbow_turn), 0), Vec3(0, 0, elbow_turn),
+    text += joint("elbow", "upper_arm", "forearm", upper_arm * Vec3(std::cos(elbow_at), std::sin(elbow_at), 0), Vec3(0, 0, elbow_turn),
                   "0 0 1", range(draw));
     text += joint("roll", "forearm", "wrist",
                   across * Vec3(std::cos(roll_turn), std::sin(roll_turn), 0) + to_roll * Vec3(std::sin(roll_turn), -std::cos(roll_turn), 0),
