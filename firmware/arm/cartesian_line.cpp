@@ -141,6 +141,18 @@ bool CartesianLine::check() {
 
 Vec3 CartesianLine::tool_m(double t_s) const { return start_m_ + curve_.sample(t_s).position * (goal_m_ - start_m_); }
 
+// A way that grazes a place which no posture reaches, between two of its checks, waits before it.
+JointVector CartesianLine::solved(double fraction, double roll_rad) const {
+  constexpr int steps = 8;
+  const Vec3 way = goal_m_ - start_m_;
+  for (int back = 0; back < steps; ++back) {
+    const double at = std::max(0.0, fraction - static_cast<double>(back) / (steps * checks));
+    const IkResult ik = inverse_kinematics(*arm_, posture_, start_m_ + at * way, roll_rad, no_limit_margin_rad);
+    if (ik.outcome != IkOutcome::too_far && ik.outcome != IkOutcome::too_near && ik.outcome != IkOutcome::not_a_number) return ik.q_rad;
+  }
+  return start_rad_;
+}
+
 JointState CartesianLine::sample(double t_s) const {
   JointState state{start_rad_, JointVector::Zero(), JointVector::Zero()};
   const PathState s = curve_.sample(t_s);
@@ -148,7 +160,7 @@ JointState CartesianLine::sample(double t_s) const {
   const Vec3 way = goal_m_ - start_m_;
   const double turn = goal_roll_rad_ - start_rad_[3];
   const double roll = s.position < 1 ? start_rad_[3] + s.position * turn : goal_roll_rad_;
-  state.q_rad = inverse_kinematics(*arm_, posture_, start_m_ + s.position * way, roll, no_limit_margin_rad).q_rad;
+  state.q_rad = solved(s.position, roll);
   const Rates r = rates(*arm_, state.q_rad, way, turn);
   state.qd_rad_s = s.velocity * r.first;
   state.qdd_rad_s2 = s.acceleration * r.first + s.velocity * s.velocity * r.second;

@@ -37,6 +37,7 @@ class Surroundings {
   Surroundings(const Arm& arm, const PanelLayout& layout, const VehicleShape& vehicle)
       : arm_(arm), layout_(layout), panel_(layout), vehicle_(vehicle) {}
 
+  Surroundings(Arm&&, const PanelLayout&, const VehicleShape&) = delete;
   Surroundings(const Arm&, PanelLayout&&, const VehicleShape&) = delete;
   Surroundings(const Arm&, const PanelLayout&, VehicleShape&&) = delete;
 

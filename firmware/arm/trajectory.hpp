@@ -99,6 +99,7 @@ class CartesianLine {
  private:
   bool check();
   bool finish(PlanOutcome outcome, IkOutcome ik);
+  JointVector solved(double fraction, double roll_rad) const;
 
   const Arm* arm_ = nullptr;
   IkPosture posture_;  // kept all along

@@ -25,6 +25,7 @@ class Motion {
   Motion(const arm::Arm& arm, const safety::Limits& limits, const PanelLayout& layout, const arm::VehicleShape& vehicle,
          const arm::JointVector& park_rad)
       : arm_(arm), limits_(limits), surroundings_(arm, layout, vehicle), route_(park_rad) {}
+  Motion(arm::Arm&&, const safety::Limits&, const PanelLayout&, const arm::VehicleShape&, const arm::JointVector&) = delete;
   Motion(const arm::Arm&, const safety::Limits&, PanelLayout&&, const arm::VehicleShape&, const arm::JointVector&) = delete;
   Motion(const arm::Arm&, const safety::Limits&, const PanelLayout&, arm::VehicleShape&&, const arm::JointVector&) = delete;
 

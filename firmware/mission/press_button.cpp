@@ -22,15 +22,26 @@ constexpr double friction_nm = 8;
 constexpr Duration press_time = Duration::from_ms(250);
 
 // The tool point when the closed fingers' tip is at `tip_m`: behind it by the fingers' length along an approach axis that depends on the place itself.
-// Two rounds settle it to 0.1 mm, since the axis turns by 2 degrees over the fingers' length.
-// Of several postures the one nearest to `q_rad` as it comes in.
-bool tool_for_tip(const arm::Arm& arm, const Vec3& tip_m, double tip_beyond_m, double roll_rad, arm::JointVector& q_rad) {
+// Two rounds settle it to 0.1 mm for the ARM 5E, whose axis turns by 2 degrees over the fingers' length. In the posture asked for, or else the one that is nearest to
+// `q_rad` as it comes in.
+bool tool_for_tip(const arm::Arm& arm, const Vec3& tip_m, double tip_beyond_m, double roll_rad, std::optional<arm::IkPosture> posture,
+                  arm::JointVector& q_rad) {
+  constexpr int least_rounds = 4, most_rounds = 12;
+  constexpr double settled_m = 1e-4;
   Vec3 tool_m = tip_m;
-  for (int round = 0; round < 4; ++round) {
-    const arm::IkResult result = arm::inverse_kinematics(arm, tool_m, roll_rad, limit_margin_rad, q_rad);
-    if (result.outcome == arm::IkOutcome::not_a_number || result.outcome == arm::IkOutcome::too_far) return false;
+  for (int round = 1; round <= most_rounds; ++round) {
+    const arm::IkResult result = posture ? arm::inverse_kinematics(arm, *posture, tool_m, roll_rad, limit_margin_rad)
+                                         : arm::inverse_kinematics(arm, tool_m, roll_rad, limit_margin_rad, q_rad);
+    switch (result.outcome) {
+      case arm::IkOutcome::not_a_number:
+      case arm::IkOutcome::too_far:
+      case arm::IkOutcome::too_near: return false;
+      default: break;
+    }
+    posture = result.posture;
     q_rad = result.q_rad;
-    if (round == 3) return result.ok();
+    const Vec3 reached_m = tool_m + tip_beyond_m * arm.approach_axis(q_rad);
+    if (round >= least_rounds && (reached_m - tip_m).norm() <= settled_m) return result.ok();
     tool_m = tip_m - tip_beyond_m * arm.approach_axis(q_rad);
   }
   return false;
@@ -87,7 +98,7 @@ std::optional<arm::JointVector> PressButton::choose_roll(Workbench& bench) {
   const arm::JointLimits limits = bench.motion.limits(1);
   for (std::size_t k = 0; k < rolls_rad.size(); ++k) {
     arm::JointVector q = bench.measured_rad();
-    if (barred_[k] || !tool_for_tip(bench.config.arm, tip, closed_tip_beyond_tool_m(bench.jaw()), rolls_rad[k], q)) continue;
+    if (barred_[k] || !tool_for_tip(bench.config.arm, tip, closed_tip_beyond_tool_m(bench.jaw()), rolls_rad[k], std::nullopt, q)) continue;
     if (q[3] < limits.lower_rad[3] || q[3] > limits.upper_rad[3]) continue;
     roll_ = k;
     bench.tool_roll_rad = rolls_rad[k];
@@ -136,7 +147,8 @@ Progress PressButton::begin_press(Workbench& bench) {
   const double depth = the_button(bench).stroke_m + bench.mission().press_overtravel_m;
   const Vec3 tip = bench.map.button_m(bench.job.task().button) - bench.map.normal() * depth;
   arm::JointVector q = bench.motion.target();
-  if (!tool_for_tip(bench.config.arm, tip, closed_tip_beyond_tool_m(bench.jaw()), bench.tool_roll_rad, q))
+  if (!tool_for_tip(bench.config.arm, tip, closed_tip_beyond_tool_m(bench.jaw()), bench.tool_roll_rad,
+                    arm::posture_of(bench.config.arm, bench.motion.target()), q))
     return Progress::failed(StepFailure::unreachable);
   bench.go_straight(bench.config.arm.base_from_tool(q).translation(), bench.tool_roll_rad, bench.mission().press_speed_m_s,
                     bench.meant_parts());

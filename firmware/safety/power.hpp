@@ -63,6 +63,7 @@ class Power {
 
   // The arm is known by its place.
   explicit Power(const arm::Arm& arm) : arm_(&arm) {}
+  explicit Power(arm::Arm&&) = delete;
 
   void switch_on() { state_ = state_ == State::off ? State::on : state_; }
   // Category 1.

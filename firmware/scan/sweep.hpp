@@ -65,7 +65,7 @@ struct SweepPlan {
 class SweepPlanner {
  public:
   void begin(const arm::Arm& arm, const SweepRequest& request, const LaserCalibration& laser);
-  // Looks at some 25 poses more, at most 55. True when plan() stands.
+  // Looks at some 25 poses more, at most 120. True when plan() stands.
   bool advance();
   const SweepPlan& plan() const { return best_; }
 

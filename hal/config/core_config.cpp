@@ -19,6 +19,8 @@
 #include "hal/config/motor_check.hpp"
 #include "hal/config/nearest.hpp"
 #include "hal/config/park_pose.hpp"
+#include "hal/config/read_arm.hpp"
+#include "hal/config/roll_check.hpp"
 #include "hal/config/share.hpp"
 #include "hal/config/sweep_check.hpp"
 #include "hal/config/task_check.hpp"
@@ -26,7 +28,6 @@
 #include "hal/config/view_check.hpp"
 #include "hal/vision/calibration_file.hpp"
 #include "shared/arm/arm_description.hpp"
-#include "shared/arm/make_model.hpp"
 #include "shared/arm/motor.hpp"
 #include "shared/input_error.hpp"
 
@@ -95,7 +96,7 @@ std::map<std::string, DriveKind> read_profiles(const Machine& machine, const Ste
       try {
         profiles[name] = find_drive_kind(name, std::filesystem::path(machine.file).parent_path());
       } catch (const InputError& problem) {
-        throw InputError(machine.file + ": " + key + ": " + problem.what());
+        throw InputError(machine.told_in() + ": " + key + ": " + problem.what());
       }
     });
   }
@@ -105,7 +106,7 @@ std::map<std::string, DriveKind> read_profiles(const Machine& machine, const Ste
 // The profile's units, objects and option codes, and the machine's node numbers.
 void set_drive(const Machine& machine, std::size_t joint, const DriveKind& kind, const ArmJoint& description, canopen::DriveSetup& setup) {
   const JointDriveChoice choice = drive_of(machine.drives, joint);
-  const std::string where = machine.file + ": drives." + joint_name(joint);
+  const std::string where = machine.told_in() + ": drives." + joint_name(joint);
   check_motor(choice, joint, description, where);
   setup.node = static_cast<std::uint8_t>(choice.node);
   // A drive that says its rated torque is only checked against a stated one; one that does not, has the arm's description's.
@@ -133,7 +134,7 @@ void note_assumed_ratings(const Machine& machine, const std::map<std::string, Dr
     assumed += text;
   }
   if (assumed.empty()) return;
-  core.notes.push_back(machine.file + ": the rated torque of these motors is assumed from the arm's description: " + assumed +
+  core.notes.push_back(machine.told_in() + ": the rated torque of these motors is assumed from the arm's description: " + assumed +
                        ". Their drives do not say it, and all torques are shares of it: state 'drives.<joint>.rated_torque_nm'");
 }
 
@@ -173,7 +174,7 @@ void check_network(const Machine& machine, const canopen::NetworkConfig& network
     const auto node_of = [&](std::size_t i) { return i < joint_count ? network.drives[i].node : network.io.node; };
     std::size_t first = 0;
     while (node_of(first) != node_of(offender)) ++first;
-    throw InputError(machine.file + ": " + name_of(first) + " and " + name_of(offender) + " have the same node number, " +
+    throw InputError(machine.told_in() + ": " + name_of(first) + " and " + name_of(offender) + " have the same node number, " +
                      std::to_string(node_of(offender)));
   }
   if (error == canopen::ConfigError::positions) {
@@ -185,9 +186,9 @@ void check_network(const Machine& machine, const canopen::NetworkConfig& network
         "its profile makes %.6g of the drive's units of one of the arm's counts: over the joint's range the drive would count beyond the "
         "2147483647 that 32 bits hold. Set a coarser position unit in the drive and in its profile, or check 'counts_per_rev'",
         units);
-    throw InputError(machine.file + ": " + name_of(offender) + ": " + text);
+    throw InputError(machine.told_in() + ": " + name_of(offender) + ": " + text);
   }
-  throw InputError(machine.file + ": " + (offender < joint_count ? name_of(offender) : "outputs, or the bus") + ": " +
+  throw InputError(machine.told_in() + ": " + (offender < joint_count ? name_of(offender) : "outputs, or the bus") + ": " +
                    canopen::name(error));
 }
 
@@ -218,7 +219,7 @@ LaserCalibration laser_calibration(const Laser& laser) {
   return calibration;
 }
 
-[[noreturn]] void refuse(const Machine& machine, const std::string& message) { throw InputError(machine.file + ": " + message); }
+[[noreturn]] void refuse(const Machine& machine, const std::string& message) { throw InputError(machine.told_in() + ": " + message); }
 
 arm::VehicleShape vehicle_shape(const Machine& machine) {
   arm::VehicleShape shape;
@@ -411,8 +412,9 @@ Core assemble(Machine machine, const Steps& steps) {
   ControllerConfig& controller = core.controller;
   ArmDescription description;
   const bool arm = steps.take([&] {
-    description = load_arm_urdf(named_file(machine.file, "arm.urdf", machine.arm_urdf));
-    machine.arm = arm::Arm(make_model(description));
+    const std::string urdf = named_file(machine.file, "arm.urdf", machine.arm_urdf);
+    description = load_arm_urdf(urdf);
+    machine.arm = arm_of(description, urdf);
   });
   controller.arm = core.scan.arm = machine.arm;
   const bool limits =
@@ -464,6 +466,9 @@ Core assemble(Machine machine, const Steps& steps) {
   if (arm) {
     core.hand_torque_nm = hand_torque_nm(description, controller.arm.jaw());
     for (const std::string& problem : torque_problems(machine, core.hand_torque_nm)) steps.take([&] { refuse(machine, problem); });
+  }
+  if (arm && limits) {
+    for (const std::string& problem : roll_problems(machine, controller.mission_limits)) steps.take([&] { refuse(machine, problem); });
   }
   bool workable = true;
   if (arm && limits && mission) {

@@ -95,7 +95,10 @@ void check_bar(const Machine& machine, std::size_t i, std::vector<std::string>& 
   if (valve.handle_thickness_m < thinnest_m)
     problems.push_back(key("thickness_m") + " is " + number(valve.handle_thickness_m) + ": the jaw does not tell a bar thinner than " +
                        number(thinnest_m) + " m from nothing");
-  if (valve.handle_thickness_m > thickest_m)
+  if (thickest_m <= 0)
+    problems.push_back(key("thickness_m") + ": this jaw takes no bar at all, it opens to " +
+                       number(arm::gap_from_jaw(machine.arm.jaw(), machine.arm.jaw().upper_rad)) + " m");
+  else if (valve.handle_thickness_m > thickest_m)
     problems.push_back(key("thickness_m") + " is " + number(valve.handle_thickness_m) + ": a bar of this " + key("length_m") + " can be " +
                        number(thickest_m) + " m thick, else its angle cannot be seen or the jaw does not open for it");
   if (valve.has_pointer() && valve.pointer_length_m > longest_mark_m(valve))

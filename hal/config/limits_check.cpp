@@ -37,6 +37,36 @@ void check_torques(const arm::Arm& arm, const safety::Limits& limits, std::vecto
   }
 }
 
+// What is wider than the arm itself never speaks: another arm's file, or degrees written for radians.
+void check_fit(const arm::Arm& arm, const safety::Limits& limits, std::vector<std::string>& problems) {
+  constexpr double beyond_rad = 0.03, faster = 1.35, of_peak = 0.9;
+  constexpr double longest_stop_s = 1.0;  // at 1.1 s a stop takes the power, moving or not
+  for (std::size_t i = 0; i < joint_count; ++i) {
+    const ArmModel::Joint& joint = arm.model().joints[i];
+    const safety::JointLimit& limit = limits.joints[i];
+    if (limit.min_rad < joint.lower_rad - beyond_rad || limit.max_rad > joint.upper_rad + beyond_rad)
+      problems.push_back(formatted("'joints.%s' has min_rad and max_rad at %.5g and %.5g: the arm's own stroke is %.5g to %.5g rad",
+                                   joint_names[i], limit.min_rad, limit.max_rad, joint.lower_rad, joint.upper_rad));
+    if (limit.max_speed_rad_s > faster * joint.velocity_rad_s)
+      problems.push_back(
+          formatted("'joints.%s.max_speed_rad_s' is %.4g: the joint's top speed is %.4g rad/s, and a fifth more is a runaway",
+                    joint_names[i], limit.max_speed_rad_s, joint.velocity_rad_s));
+    if (joint.velocity_rad_s > longest_stop_s * joint.acceleration_rad_s2)
+      problems.push_back(
+          formatted("the %s takes %.3g s to stop from its top speed by the arm's description: a stop takes its power after 1.1 s",
+                    joint_names[i], joint.velocity_rad_s / joint.acceleration_rad_s2));
+  }
+  for (std::size_t i = 0; i < arm_joint_count; ++i) {
+    const double contact_nm = mission::free_motion_guard(limits).contact_torque_nm[static_cast<Eigen::Index>(i)];
+    const double peak_nm = arm.model().joints[i].effort_nm;
+    if (contact_nm >= of_peak * peak_nm)
+      problems.push_back(
+          formatted("'max_contact_torque_nm' and 'joints.%s.max_torque_nm' make a rise of %.3g N m a contact of the %s: its drive "
+                    "gives %.3g N m at most, and would never show one",
+                    joint_names[i], contact_nm, joint_names[i], peak_nm));
+  }
+}
+
 // The jaw grips with all that its drive gives it.
 void check_grip(const arm::Arm& arm, const safety::Limits& limits, std::vector<std::string>& problems) {
   const double grip_nm = arm.joint(Joint::jaw).effort_nm, most_nm = limits.joints[static_cast<std::size_t>(Joint::jaw)].max_torque_nm;
@@ -74,6 +104,7 @@ std::vector<std::string> limits_problems(const safety::Limits& limits, const Con
   std::vector<std::string> problems = pose_problems(controller.arm, limits, controller.mission.park_rad, "the arm's folded pose");
   check_torques(controller.arm, limits, problems);
   check_grip(controller.arm, limits, problems);
+  check_fit(controller.arm, limits, problems);
   const double exposure_s = controller.camera.exposure.s();
   if (limits.stale_image_s <= exposure_s)
     problems.push_back(formatted("'stale_image_s' is %.4g: an image cannot be there before its exposure has ended, after %.4g s",

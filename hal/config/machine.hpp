@@ -73,7 +73,10 @@ struct Drives {
 };
 
 struct Machine {
-  std::string file;  // where it was read; the files it names are looked for beside it, then among the shipped ones
+  std::string file;       // where it was read; the files it names are looked for beside it, then among the shipped ones
+  std::string told_also;  // the machine's file that it names; empty: none
+  // Where a value comes from that messages speak of.
+  std::string told_in() const { return told_also.empty() ? file : file + " with machine " + told_also; }
   PanelLayout panel;
   PanelSurvey survey;  // of the panel: where it was read, and what its features are called
   Camera camera;

@@ -6,6 +6,7 @@
 #include "hal/config/homing_file.hpp"
 #include "hal/config/key_listing.hpp"
 #include "hal/config/key_schema.hpp"
+#include "hal/config/nearest.hpp"
 #include "hal/config/share.hpp"
 #include "hal/config/text_file.hpp"
 #include "hal/config/yaml_reader.hpp"
@@ -18,30 +19,65 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::int64_t version = 1;
+const std::vector<std::string> group_names{"version", "arm", "safety", "camera", "laser", "vehicle", "drives", "outputs"};
+constexpr const char* what_it_has =
+    "a machine's file has version, arm, safety, camera, laser, vehicle, drives and outputs; what is done, and before what, a scenario says";
 
-// A profile's name without an ending is a shipped one's.
-bool is_a_profile_file(const std::string& name) {
-  return name.find('/') != std::string::npos || name.ends_with(".yaml") || name.ends_with(".yml");
-}
+// A name without an ending is a shipped one's.
+bool is_a_file(const std::string& name) { return name.find('/') != std::string::npos || name.ends_with(".yaml") || name.ends_with(".yml"); }
 
-void settle_name(const fs::path& file, const char* key, std::string& name, std::vector<std::string>& problems) {
+// What is not there is told here, and `usual` is taken for it, so that nobody tells it again.
+void settle_name(const fs::path& file, const fs::path& teller, const std::string& key, std::string& name, const std::string& usual,
+                 std::vector<std::string>& problems) {
   try {
-    const fs::path found = named_file(file.string(), key, name);
-    if (!is_shipped(found)) name = fs::absolute(found).lexically_normal().string();
+    if (name.empty()) throw InputError(file.string() + ": '" + key + "' is empty: it names a file");
+    const fs::path found = named_file(file.string(), key.c_str(), name);
+    // A shipped file keeps its name where whoever named the machine finds the same one by it.
+    std::error_code none;
+    const bool same = is_shipped(found) && fs::equivalent(find_file(name, teller), found, none);
+    if (!same) name = fs::absolute(found).lexically_normal().string();
   } catch (const InputError& problem) {
     problems.emplace_back(problem.what());
+    name = usual;
   }
 }
 
 void settle_names(const fs::path& file, Machine& machine, std::vector<std::string>& problems) {
-  settle_name(file, "arm.urdf", machine.arm_urdf, problems);
-  settle_name(file, "safety.limits", machine.safety_limits, problems);
-  if (is_a_profile_file(machine.drives.profile)) settle_name(file, "drives.profile", machine.drives.profile, problems);
+  const Machine usual;
+  const fs::path teller = fs::path(machine.file).parent_path();
+  settle_name(file, teller, "arm.urdf", machine.arm_urdf, usual.arm_urdf, problems);
+  settle_name(file, teller, "safety.limits", machine.safety_limits, usual.safety_limits, problems);
+  if (is_a_file(machine.drives.profile))
+    settle_name(file, teller, "drives.profile", machine.drives.profile, usual.drives.profile, problems);
   for (std::size_t i = 0; i < joint_count; ++i) {
     std::string& profile = machine.drives.joints[i].profile;
-    const std::string key = std::string("drives.") + joint_name(i) + ".profile";
-    if (is_a_profile_file(profile)) settle_name(file, key.c_str(), profile, problems);
+    if (is_a_file(profile)) settle_name(file, teller, std::string("drives.") + joint_name(i) + ".profile", profile, "", problems);
   }
+}
+
+// Groups that it has not: most are a scenario's.
+void refuse_groups(YAML::Node& root, const Source& source, std::vector<std::string>& problems) {
+  std::vector<std::string> foreign;
+  for (const auto& entry : root) {
+    const std::string name = entry.first.IsScalar() ? entry.first.Scalar() : "";
+    const std::string group = name.substr(0, name.find('.'));
+    if (std::find(group_names.begin(), group_names.end(), group) != group_names.end()) continue;
+    try {
+      const std::string near = suggestion(group, group_names);
+      source.refuse(entry.first.Mark(), "unknown key '" + name + "'" + (near.empty() ? std::string(": ") + what_it_has : near));
+    } catch (const InputError& problem) {
+      problems.emplace_back(problem.what());
+      foreign.push_back(name);
+    }
+  }
+  for (const std::string& name : foreign) root.remove(name);
+}
+
+void check_counts(const fs::path& file, const Machine& machine, std::vector<std::string>& problems) {
+  if (machine.park_rad.size() != arm_joint_count)
+    problems.push_back(file.string() + ": 'arm.park_rad' takes 4 numbers: slew, shoulder, elbow and roll");
+  if (machine.camera.distortion.size() != 5)
+    problems.push_back(file.string() + ": 'camera.distortion' takes 5 numbers: k1, k2, p1, p2, k3");
 }
 
 }  // namespace
@@ -60,20 +96,27 @@ Keys machine_keys(Machine& machine) {
 void read_machine_file(const fs::path& file, Machine& machine, std::vector<std::string>& problems) {
   const Source source = Source::of_file(file.string(), problems);
   try {
-    const YAML::Node root = parse_yaml(read_text_file(file), source);
-    if (!root.IsMap())
-      source.refuse(root.Mark(), "a machine is a group of keys: version, arm, safety, camera, laser, vehicle, drives, outputs");
+    YAML::Node root = parse_yaml(read_text_file(file), source);
+    if (!root.IsMap()) source.refuse(root.Mark(), what_it_has);
     std::int64_t given = 0;
     Keys table = machine_keys(machine);
     table.push_back(key("version", "", version, version, &given, ""));
     if (!root["version"]) problems.push_back(file.string() + ": has no version: this program reads 'version: 1'");
+    refuse_groups(root, source, problems);
     read_map(root, "", "", table, source);
+    check_counts(file, machine, problems);
+    const bool own_arm = machine.arm_urdf != Machine().arm_urdf;
+    if (own_arm && machine.safety_limits == Machine().safety_limits)
+      problems.push_back(file.string() +
+                         ": 'arm.urdf' is an arm of your own: 'safety.limits' has to name its limits, the shipped ones are the ARM 5E's");
   } catch (const InputError& problem) {
     problems.emplace_back(problem.what());
     return;
   }
   settle_names(file, machine, problems);
 }
+
+std::string machine_file_of(const std::string& name) { return is_a_file(name) || name.empty() ? name : "machines/" + name + ".yaml"; }
 
 std::string machine_named_in(const YAML::Node& root) {
   if (!root.IsMap()) return "";

@@ -16,9 +16,12 @@ namespace lf::config {
 Keys machine_keys(Machine& machine);
 
 // Reads `file` over what `machine` holds; what the file does not say stays. The files that it names are looked for beside it, then among the shipped ones, and
-// stand in `machine` by their whole paths, the shipped ones by their names. Adds every problem to `problems`: no file, not YAML, no version, an unknown or
+// stand in `machine` by their whole paths, or, where `machine.file` finds the same shipped file by it, by their names. Adds every problem to `problems`: no file, not YAML, no version, an unknown or
 // repeated key, a value out of its range, a file that is not there.
 void read_machine_file(const std::filesystem::path& file, Machine& machine, std::vector<std::string>& problems);
+
+// A shipped machine's name, "arm5e", as the file that it means; any other name stays.
+std::string machine_file_of(const std::string& name);
 
 // What 'machine' of a YAML document says; empty where it says nothing.
 std::string machine_named_in(const YAML::Node& root);

@@ -9,7 +9,7 @@ namespace lf::config {
 
 arm::JointVector park_pose(const Machine& machine) {
   if (machine.park_rad.size() != arm_joint_count)
-    throw InputError(machine.file + ": 'arm.park_rad' takes 4 numbers: slew, shoulder, elbow and roll");
+    throw InputError(machine.told_in() + ": 'arm.park_rad' takes 4 numbers: slew, shoulder, elbow and roll");
   arm::JointVector q;
   for (std::size_t i = 0; i < arm_joint_count; ++i) {
     const ArmModel::Joint& joint = machine.arm.model().joints[i];
@@ -18,7 +18,7 @@ arm::JointVector park_pose(const Machine& machine) {
     char text[160];
     std::snprintf(text, sizeof text, ": 'arm.park_rad' has %.5g for the %s, whose stroke is %.5g to %.5g rad", machine.park_rad[i],
                   joint_name(i), joint.lower_rad, joint.upper_rad);
-    throw InputError(machine.file + text);
+    throw InputError(machine.told_in() + text);
   }
   return q;
 }

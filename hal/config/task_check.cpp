@@ -6,6 +6,7 @@
 #include "hal/config/handle_check.hpp"
 #include "hal/config/limits_check.hpp"
 #include "hal/config/panel_check.hpp"
+#include "hal/config/roll_check.hpp"
 #include "hal/config/task_reach.hpp"
 #include "hal/config/view_check.hpp"
 
@@ -66,6 +67,7 @@ std::string tasks_problem(const Machine& machine, const Core& core, const missio
   for (const std::string& problem : handle_problems(with_tasks)) return problem;
   for (const std::string& problem : low_button_problems(with_tasks)) return problem;
   for (const std::string& problem : torque_problems(with_tasks, core.hand_torque_nm)) return problem;
+  for (const std::string& problem : roll_problems(with_tasks, limits)) return problem;
   for (const std::string& problem : view_problems(with_tasks, core.controller.camera)) return problem;
   for (const Place& place : places_of_tasks(with_tasks)) {
     const arm::IkResult ik = pose_at(machine.arm, machine.panel, place);

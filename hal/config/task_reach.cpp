@@ -58,7 +58,7 @@ arm::IkResult pose_at(const arm::Arm& arm, const PanelLayout& panel, const Place
   arm::IkResult ik = arm::inverse_kinematics(arm, tip_m, 0);
   for (int round = 0; round < 3 && place.tip_m > 0; ++round) {
     if (ik.outcome == arm::IkOutcome::not_a_number || ik.outcome == arm::IkOutcome::too_far) break;
-    ik = arm::inverse_kinematics(arm, tip_m - place.tip_m * arm.approach_axis(ik.q_rad), 0, arm::default_limit_margin_rad, ik.q_rad);
+    ik = arm::inverse_kinematics(arm, ik.posture, tip_m - place.tip_m * arm.approach_axis(ik.q_rad), 0);
   }
   return ik;
 }

@@ -66,6 +66,8 @@ class Commissioning {
   };
 
   explicit Commissioning(const Config& config);
+  Commissioning(const Commissioning&) = delete;  // what takes the power knows the arm by its place
+  Commissioning& operator=(const Commissioning&) = delete;
 
   void on_frame(const CanFrame& frame, Time t) { network_.on_frame(frame, t); }
   const canopen::IoModule& io() const { return network_.io(); }

@@ -11,6 +11,7 @@
 #include "hal/config/joined.hpp"
 #include "hal/config/key_listing.hpp"
 #include "hal/config/key_schema.hpp"
+#include "hal/config/key_text.hpp"
 #include "hal/config/machine_file.hpp"
 #include "hal/config/panel_check.hpp"
 #include "hal/config/panel_file.hpp"
@@ -98,9 +99,8 @@ void add_running(Keys& all, VehicleConfig& c) {
 bool page_sized(std::int64_t bytes) { return bytes % static_cast<std::int64_t>(frame_ring_page) == 0; }
 
 // A calibration overrules both. A value that is the default's counts as not given: a file that is printed with its defaults has to be read back.
-void check_calibration(const config::Machine& machine, const std::function<void(const std::string&)>& refuse) {
+void check_calibration(const config::Machine& machine, const config::Camera& usual, const std::function<void(const std::string&)>& refuse) {
   if (machine.camera_calibration.empty()) return;
-  const config::Camera usual;
   constexpr const char* remedy = ": the calibration has both focal length and distortion, leave the other key out";
   if (machine.camera.focal_px != usual.focal_px) refuse(std::string("'camera.calibration' stands beside 'camera.focal_px'") + remedy);
   if (machine.camera.distortion != usual.distortion) refuse(std::string("'camera.calibration' stands beside 'camera.distortion'") + remedy);
@@ -122,7 +122,7 @@ void check_together(const VehicleConfig& c, const std::string& file, std::vector
   if (c.log_folder.empty()) refuse("'log.folder' names no folder");
   if (c.lock_folder.empty()) refuse("'lock_folder' names no folder");
   if (c.machine.camera.distortion.size() != 5) refuse("'camera.distortion' takes 5 numbers: k1, k2, p1, p2, k3");
-  check_calibration(c.machine, refuse);
+  check_calibration(c.machine, c.machines_camera, refuse);
   const PanelLayout& panel = c.machine.panel;
   if ((panel.plate_min_m.array() >= panel.plate_max_m.array()).any()) refuse("'panel.plate_min_m' is not below 'panel.plate_max_m'");
   for (std::size_t i = 0; i < panel.markers.size(); ++i) {
@@ -135,15 +135,6 @@ void check_together(const VehicleConfig& c, const std::string& file, std::vector
   const double between_ms = c.machine.mission.camera_syncs * can_map::sync_period.s() * 1e3;
   if (c.match_window_us * 1e-3 >= between_ms / 2)
     refuse("'camera.match_window_us' is half the time between two exposures or more: an image could belong to either");
-}
-
-// For the checks that come before the core's; that it cannot be read is told with these.
-void read_arm(config::Machine& machine) {
-  try {
-    machine.arm = config::read_arm(config::named_file(machine.file, "arm.urdf", machine.arm_urdf));
-  } catch (const InputError&) {
-    return;
-  }
 }
 
 // A file that is missing may be one that was misspelt. Its place is kept, so that commissioning writes where was read.
@@ -187,22 +178,46 @@ void find_places(VehicleConfig& c, std::vector<std::string>& problems) {
 }
 
 // The file's root, a map or nothing.
-YAML::Node read_keys(const std::string& path, VehicleConfig& config, std::vector<std::string>& problems) {
+std::vector<std::string> texts_of(config::Machine& machine) {
+  std::vector<std::string> texts;
+  for (const config::Key& key : config::machine_keys(machine)) texts.push_back(config::value_text(key));
+  return texts;
+}
+
+// A real robot is said once: a key that was left in the file, and says another thing than the machine's, would move another arm.
+void refuse_contradictions(VehicleConfig& c, const std::vector<std::string>& machines, std::vector<std::string>& problems) {
+  const Keys table = config::machine_keys(c.machine);
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const std::string own = config::value_text(table[i]);
+    if (own != machines[i])
+      problems.push_back(c.machine.file + ": '" + table[i].path + "' is " + own + " here and " + machines[i] + " in " +
+                         c.machine.told_also + ": leave it out in one of them");
+  }
+}
+
+// `follow`: reads the machine's file as well, where one is named.
+YAML::Node read_keys(const std::string& path, VehicleConfig& config, std::vector<std::string>& problems, bool follow = true) {
   config.machine.file = path;
   const config::Source source = config::Source::of_file(path, problems);
   const YAML::Node root = config::parse_yaml(config::read_text_file(path), source);
   if (!root.IsNull() && !root.IsMap()) source.refuse(root.Mark(), "a vehicle's configuration is a group of keys");
   if (!root.IsMap()) return root;
-  if (const std::string name = config::machine_named_in(root); !name.empty()) {
+  const std::string name = follow ? config::machine_named_in(root) : "";
+  if (!name.empty()) {
     try {
-      config::read_machine_file(config::named_file(path, "machine", name), config.machine, problems);
+      const std::filesystem::path found = config::named_file(path, "machine", config::machine_file_of(name));
+      config.machine.told_also = found.string();
+      config::read_machine_file(found, config.machine, problems);
+      config.machines_camera = config.machine.camera;
     } catch (const InputError& problem) {
       problems.emplace_back(problem.what());
     }
   }
   // A file's names are not known yet: any is taken, and looked for later.
   if (!config::panel_named_in(root).empty()) config.machine.survey.names = {{}, {}, {}};
+  const std::vector<std::string> machines = texts_of(config.machine);
   config::read_map(root, "", "", keys(config), source);
+  if (!name.empty()) refuse_contradictions(config, machines, problems);
   return root;
 }
 
@@ -261,7 +276,7 @@ StopSocket stop_socket(const std::string& path) {
   VehicleConfig config;
   bool given = false;
   try {
-    given = gives_socket(read_keys(path, config, found.problems));
+    given = gives_socket(read_keys(path, config, found.problems, false));
   } catch (const InputError& error) {
     found.problems.emplace_back(error.what());
     return found;
@@ -306,7 +321,7 @@ VehicleConfig load_vehicle_config(const std::string& path, std::vector<std::stri
   const bool panel_known = config::settle_panel(path, config.panel_file, config.docked_panel, config.valve_stops, config.machine.panel,
                                                 config.machine.survey, problems);
   if (!panel_known) config.machine.tasks = config::Machine().tasks;  // its own name what nobody has read
-  read_arm(config.machine);
+  config.machine.arm = config::arm_for_checks(path, config.machine.arm_urdf);
   check_together(config, path, problems);
   find_homing(config, problems);
   config.core = config::make_core(config.machine, problems);

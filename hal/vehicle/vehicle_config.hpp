@@ -16,7 +16,8 @@ namespace lf::hal {
 // Once it is loaded, paths are absolute: those that the file has are relative to its folder.
 struct VehicleConfig {
   config::Machine machine;
-  std::string machine_file;  // what the robot is; empty: as the keys of its groups say
+  config::Camera machines_camera;  // as the machine's file has it, before the own keys
+  std::string machine_file;        // what the robot is; empty: as the keys of its groups say
   // The panel's keys: what `machine.panel` is made of.
   std::string panel_file;
   config::DockedPanel docked_panel;

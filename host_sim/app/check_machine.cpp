@@ -1,21 +1,25 @@
 #include "host_sim/app/check_machine.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <sstream>
 
 #include "firmware/arm/gripper.hpp"
 #include "hal/config/arm_notes.hpp"
+#include "hal/config/drive_kind.hpp"
 #include "hal/config/homing_file.hpp"
 #include "hal/config/joined.hpp"
+#include "hal/config/limits_file.hpp"
 #include "hal/config/machine_file.hpp"
+#include "hal/config/park_pose.hpp"
+#include "hal/config/read_arm.hpp"
 #include "hal/config/share.hpp"
 #include "host_sim/app/command.hpp"
 #include "host_sim/app/outside_picture.hpp"
 #include "host_sim/scenario/instance.hpp"
 #include "host_sim/scenario/scenario.hpp"
 #include "shared/arm/arm_description.hpp"
-#include "shared/arm/make_model.hpp"
 #include "shared/input_error.hpp"
 
 namespace lf::app {
@@ -27,6 +31,21 @@ config::Machine machine_of(const std::string& file) {
   machine.file = file;
   std::vector<std::string> problems;
   config::read_machine_file(file, machine, problems);
+  const auto take = [&problems](const auto& step) {
+    try {
+      step();
+    } catch (const InputError& problem) {
+      problems.emplace_back(problem.what());
+    }
+  };
+  if (problems.empty()) {
+    take([&] { (void)config::read_limits(config::named_file(file, "safety.limits", machine.safety_limits)); });
+    take([&] { machine.arm = config::read_arm(config::named_file(file, "arm.urdf", machine.arm_urdf)); });
+    take([&] { (void)config::park_pose(machine); });
+    for (std::size_t i = 0; i < joint_count; ++i)
+      take([&] { (void)config::find_drive_kind(config::drive_of(machine.drives, i).profile, std::filesystem::path(file).parent_path()); });
+  }
+  problems.erase(std::unique(problems.begin(), problems.end()), problems.end());
   if (!problems.empty()) throw InputError(config::joined(problems));
   return machine;
 }
@@ -57,7 +76,7 @@ struct Told {
       : file(name),
         machine(machine_of(name)),
         description(load_arm_urdf(urdf())),
-        arm(make_model(description)),
+        arm(config::arm_of(description, urdf())),
         assumed(config::keys_left_out(name)),
         notes(config::arm_notes(urdf())),
         problems(problems_of_job(std::filesystem::absolute(name).string())) {}
@@ -89,7 +108,7 @@ Json json_of(const Told& told) {
   json["thickest_bar_m"] = arm::thickest_bar_m(told.arm.jaw());
   json["assumed"] = told.assumed;
   json["notes"] = told.notes;
-  json["can"] = told.problems.empty();
+  json["can_do_default_job"] = told.problems.empty();
   json["problems"] = told.problems;
   return json;
 }
@@ -122,8 +141,9 @@ void tell(const Told& told) {
 
 }  // namespace
 
-int check_machine(const std::string& file, const std::string& picture, bool json) {
-  const Told told(file);
+int check_machine(const std::string& name, const std::string& picture, bool json) {
+  const std::string named = config::machine_file_of(name);
+  const Told told(named == name ? name : (config::share_folder() / named).string());
   if (!picture.empty()) {
     const scenario::Scenario usual = scenario::load_scenario("default", {});
     scenario::Scenario shown = usual;

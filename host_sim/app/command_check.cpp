@@ -265,7 +265,7 @@ void add_check(CLI::App& app, Action& action) {
       ->check(check_folder);
   command->add_flag("--ignore-missing", options->ignore_missing, "Leave out collision shapes whose mesh is missing, and say so");
   command->add_option("--postures", options->postures, "Random postures to try; 200 where it is not given")->check(within(0, 100000));
-  command->add_option("--picture", options->picture, "panel, scene: draw it with the default robot, a .png file")->check(check_png);
+  command->add_option("--picture", options->picture, "machine, panel, scene: draw it, a .png file")->check(check_png);
   command->add_flag("--json", options->json, "Print JSON");
   command->callback([options, command, &action] { action = [options, command] { return check(*command, *options); }; });
 }

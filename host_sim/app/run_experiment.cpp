@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "hal/config/drive_kind.hpp"
+#include "hal/config/machine_file.hpp"
 #include "hal/config/panel_file.hpp"
 #include "hal/config/share.hpp"
 #include "hal/config/text_file.hpp"
@@ -27,7 +28,7 @@ std::vector<UsedFile> used_files(const scenario::Scenario& scenario) {
   for (const std::string& file : {scenario.arm.urdf, scenario.safety.limits, std::string(scenario::homing_file)})
     files.push_back({file, config::find_file(file, folder)});
   files.push_back({scenario::drive_objects_file, config::share_folder() / scenario::drive_objects_file});
-  if (!scenario.machine.empty()) files.push_back({scenario.machine, config::find_file(scenario.machine, folder)});
+  if (!scenario.machine.empty()) files.push_back({scenario.machine, config::find_file(config::machine_file_of(scenario.machine), folder)});
   if (!scenario.survey.file.empty()) files.push_back({scenario.panel_file, scenario.survey.file});
   if (scenario.objects) {
     const fs::path scene = config::find_file(scenario.scene, folder);
@@ -87,21 +88,41 @@ void keep_panel(scenario::Scenario& kept, const record::RunFolder& run) {
   run.write(kept.panel_file, config::read_text_file(file));
 }
 
-// A file that a machine's file names and that lies anywhere but beside the scenario.
-void keep_far(std::string& name, const fs::path& folder, const record::RunFolder& run) {
-  const fs::path file = config::find_file(name, folder);
-  if (name.empty() || config::is_shipped(file) || !beside(file, folder).empty()) return;
-  name = "machine/" + file.filename().string();
+// A file that a machine's file names by its whole path: one beside the scenario is in the run's folder as the scenario's own are, one that lies anywhere else in a
+// folder of the machine's.
+std::string keep_named(const fs::path& file, const fs::path& folder, const record::RunFolder& run) {
+  const fs::path near = beside(file, folder);
+  if (!near.empty()) return near.string();
+  const std::string name = "machine/" + file.filename().string();
   run.write(name, config::read_text_file(file));
+  return name;
 }
 
-// What the machine's file says stands in the scenario's keys, once they are all told.
+void keep_name(std::string& name, const fs::path& folder, const record::RunFolder& run) {
+  const fs::path file = config::find_file(name, folder);
+  if (!name.empty() && !config::is_shipped(file)) name = keep_named(file, folder, run);
+}
+
+// With the profiles that it begins with.
+void keep_profile(std::string& name, const fs::path& folder, const record::RunFolder& run) {
+  if (name.find('/') == std::string::npos) return;  // a shipped one's name
+  for (const std::string& base : config::find_drive_kind(name, folder).like) {
+    if (!config::is_shipped(base)) (void)keep_named(base, folder, run);
+  }
+  keep_name(name, folder, run);
+}
+
+// What the machine's file says stands in the scenario's keys, once they are all told. The file is kept beside what it names.
 void keep_machine(scenario::Scenario& kept, const record::RunFolder& run) {
   if (kept.machine.empty()) return;
-  kept.machine.clear();
   const fs::path folder = fs::path(kept.file).parent_path();
-  keep_far(kept.arm.urdf, folder, run);
-  keep_far(kept.safety.limits, folder, run);
+  const fs::path file = config::find_file(config::machine_file_of(kept.machine), folder);
+  if (!config::is_shipped(file)) (void)keep_named(file, folder, run);
+  kept.machine.clear();
+  keep_name(kept.arm.urdf, folder, run);
+  keep_name(kept.safety.limits, folder, run);
+  keep_profile(kept.drives.profile, folder, run);
+  for (auto& drive : kept.drives.joints) keep_profile(drive.profile, folder, run);
 }
 
 }  // namespace

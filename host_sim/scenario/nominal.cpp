@@ -15,6 +15,7 @@ namespace {
 config::Machine machine_of(const Scenario& scenario, bool lamps_lit) {
   config::Machine machine;
   machine.file = scenario.file;
+  machine.told_also = scenario.machine;
   machine.panel = scenario.panel;
   machine.survey = scenario.survey;
   machine.camera = scenario.camera;

@@ -57,8 +57,8 @@ fs::path find_scenario(const std::string& file_or_name) {
 // A profile's name without an ending is a shipped one's.
 bool names_a_file(const std::string& path, const std::string& value) {
   if (path.starts_with("drives.") && path.ends_with("profile")) return looks_like_a_file(value);
-  return path == "arm.urdf" || path == "machine" || path == "scene" || (path == "panel.file" && looks_like_a_file(value)) ||
-         path == "safety.limits" || path == "safety.mission_limits";
+  return path == "arm.urdf" || (path == "machine" && looks_like_a_file(value)) || path == "scene" ||
+         (path == "panel.file" && looks_like_a_file(value)) || path == "safety.limits" || path == "safety.mission_limits";
 }
 
 // Whoever types a name means the present folder; in the scenario's file a name means the file's own.
@@ -69,7 +69,43 @@ void take_from_here(const Key& key) {
   if (fs::is_regular_file(**name, none)) **name = fs::absolute(**name).lexically_normal();
 }
 
-void apply_override(Scenario& scenario, const std::string& text) {
+// What the robot is, all of it. Keys that are read after it overrule it.
+void read_machine(Scenario& s, const fs::path& file, std::vector<std::string>& problems) {
+  config::Machine told;
+  told.file = s.file;
+  told.drives = simulated_drives();
+  config::read_machine_file(file, told, problems);
+  s.arm.urdf = told.arm_urdf;
+  s.arm.park_rad = told.park_rad;
+  s.safety.limits = told.safety_limits;
+  static_cast<config::Camera&>(s.camera) = told.camera;
+  static_cast<config::Laser&>(s.laser) = told.laser;
+  s.vehicle = told.vehicle;
+  s.drives = told.drives;
+}
+
+void read_named_machine(Scenario& s, const YAML::Node& root, std::vector<std::string>& problems) {
+  const std::string name = config::machine_named_in(root);
+  if (name.empty()) return;
+  try {
+    read_machine(s, config::named_file(s.file, "machine", config::machine_file_of(name)), problems);
+  } catch (const InputError& problem) {
+    problems.emplace_back(problem.what());
+  }
+}
+
+// A machine of --set comes after the scenario's own keys, and before the overrides that follow it.
+void take_machine(Scenario& s, const config::Source& source, std::vector<std::string>& problems) {
+  const fs::path shipped = config::find_file(config::machine_file_of(s.machine), fs::path(s.file).parent_path());
+  std::error_code none;
+  if (fs::is_directory(s.machine, none)) source.refuse(YAML::Mark::null_mark(), "'machine': " + s.machine + " is a folder, not a file");
+  if (!fs::is_regular_file(shipped, none))
+    source.refuse(YAML::Mark::null_mark(),
+                  "'machine': there is no " + s.machine + " here, nor beside the scenario, nor among the shipped files");
+  read_machine(s, shipped, problems);
+}
+
+void apply_override(Scenario& scenario, const std::string& text, std::vector<std::string>& problems) {
   const config::Source source = config::Source::of_override(text);
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0) source.refuse(YAML::Mark::null_mark(), "needs the form path.to.key=value");
@@ -82,6 +118,7 @@ void apply_override(Scenario& scenario, const std::string& text) {
   if (found == table.end()) source.refuse(YAML::Mark::null_mark(), "unknown key '" + path + "'" + config::suggest_path(path, table));
   config::read_value(parse_yaml(text.substr(equals + 1), source), path, *found, source);
   take_from_here(*found);
+  if (path == "machine" && !scenario.machine.empty()) take_machine(scenario, source, problems);
 }
 
 double longest_stroke_m(const PanelLayout& panel) {
@@ -181,53 +218,6 @@ bool names_a_panel(const YAML::Node& root, const std::vector<std::string>& overr
          std::any_of(overrides.begin(), overrides.end(), [](const std::string& text) { return text.starts_with("panel.file="); });
 }
 
-// The machine's file that the scenario names, or the last override.
-std::string machine_named_in(const YAML::Node& root, const std::vector<std::string>& overrides) {
-  constexpr std::string_view start = "machine=";
-  std::string name = config::machine_named_in(root);
-  for (const std::string& text : overrides) {
-    if (!text.starts_with(start)) continue;
-    name = text.substr(start.size());
-    std::error_code none;
-    if (fs::is_regular_file(name, none)) name = fs::absolute(name).lexically_normal();
-  }
-  return name;
-}
-
-// What the robot is; the scenario's own keys, which are read after it, overrule it.
-void read_machine(Scenario& s, const std::string& name, std::vector<std::string>& problems) {
-  if (name.empty()) return;
-  config::Machine told;
-  told.arm_urdf = s.arm.urdf;
-  told.park_rad = s.arm.park_rad;
-  told.safety_limits = s.safety.limits;
-  told.camera = s.camera;
-  told.laser = s.laser;
-  told.vehicle = s.vehicle;
-  told.drives = s.drives;
-  try {
-    config::read_machine_file(config::named_file(s.file, "machine", name), told, problems);
-  } catch (const InputError& problem) {
-    problems.emplace_back(problem.what());
-  }
-  s.arm.urdf = told.arm_urdf;
-  s.arm.park_rad = told.park_rad;
-  s.safety.limits = told.safety_limits;
-  static_cast<config::Camera&>(s.camera) = told.camera;
-  static_cast<config::Laser&>(s.laser) = told.laser;
-  s.vehicle = told.vehicle;
-  s.drives = told.drives;
-}
-
-// For the checks that come before the core's.
-void read_arm(Scenario& scenario) {
-  try {
-    scenario.told_arm = config::read_arm(config::named_file(scenario.file, "arm.urdf", scenario.arm.urdf));
-  } catch (const InputError&) {
-    return;  // told with the job's problems
-  }
-}
-
 void read_scene(Scenario& scenario, std::vector<std::string>& problems) {
   if (scenario.scene.empty()) return;
   try {
@@ -293,7 +283,7 @@ Scenario load_scenario(const std::string& file_or_name, const std::vector<std::s
   const config::Source source = config::Source::of_file(path, problems);
   const YAML::Node root = config::parse_yaml(config::read_text_file(path), source);
   // A file's names are not known yet: any is taken, and looked for later.
-  read_machine(scenario, machine_named_in(root, overrides), problems);
+  read_named_machine(scenario, root, problems);
   if (names_a_panel(root, overrides)) scenario.survey.names = {{}, {}, {}};
   if (!root.IsNull()) {
     if (!root.IsMap()) source.refuse(root.Mark(), "a scenario is a group of keys");
@@ -301,14 +291,14 @@ Scenario load_scenario(const std::string& file_or_name, const std::vector<std::s
   }
   for (const std::string& text : overrides) {
     try {
-      apply_override(scenario, text);
+      apply_override(scenario, text, problems);
     } catch (const InputError& problem) {
       problems.emplace_back(problem.what());
     }
   }
   if (!config::settle_panel(path, scenario.panel_file, scenario.docked_panel, scenario.valve, scenario.panel, scenario.survey, problems))
     throw InputError(config::joined(problems));
-  read_arm(scenario);
+  scenario.told_arm = config::arm_for_checks(scenario.file, scenario.arm.urdf);
   read_scene(scenario, problems);
   check_together(scenario, overrides.empty() ? source.name() : source.name() + " with --set", problems);
   if (problems.empty()) return scenario;

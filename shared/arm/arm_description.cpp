@@ -3,9 +3,11 @@
 #include <tinyxml2.h>
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <set>
 #include <string_view>
 
 #include "shared/arm/motor.hpp"
@@ -38,6 +40,11 @@ class Urdf {
     for (const XMLElement* e = robot_->FirstChildElement(tag); e != nullptr; e = e->NextSiblingElement(tag))
       if (name == text(e, "name")) return e;
     fail(robot_, "no <" + std::string(tag) + "> named '" + name + "'");
+  }
+
+  template <class Look>
+  void each(const char* tag, const Look& look) const {
+    for (const XMLElement* e = robot_->FirstChildElement(tag); e != nullptr; e = e->NextSiblingElement(tag)) look(e);
   }
 
   const XMLElement* child(const XMLElement* parent, const char* tag) const {
@@ -263,6 +270,12 @@ void read_drive(const Urdf& urdf, ArmJoint& joint) {
     joint.actuator = read_screw(urdf, screw, joint);
   else
     joint.actuator.counts_per_rad = 1 / urdf.positive(urdf.child(e, "lanternfish:gear"), "rad_per_count");
+  constexpr double most_counts = 1e9, beyond_m = 1;  // 32 bits, and room for a zero that is elsewhere
+  const double stroke_rad = std::max(std::abs(joint.lower_rad), std::abs(joint.upper_rad)) + 0.1;
+  if (!(joint.actuator.counts_per_rad * stroke_rad < most_counts) || !(joint.actuator.counts_per_m * beyond_m < most_counts))
+    urdf.fail(e, urdf.label(e) + ": over its stroke it has more counts than 32 bits hold");
+  if (joint.actuator.counts_per_rad > 0 && joint.actuator.counts_per_rad * (joint.upper_rad - joint.lower_rad) < 10)
+    urdf.fail(e, urdf.label(e) + ": its gear has fewer than ten counts over its stroke");
 }
 
 ArmJoint read_mimic(const Urdf& urdf, const ArmJoint& jaw) {
@@ -287,11 +300,41 @@ scene::Shape read_pad(const Urdf& urdf, const char* finger) {
   urdf.fail(link, urdf.label(link) + " has no <collision> named 'pad', the box by which it holds");
 }
 
+// A part that nobody reads would be in nobody's way: neither seen nor kept clear.
+void check_parts(const Urdf& urdf) {
+  std::vector<std::string> links(link_names.begin(), link_names.end()), joints(joint_names.begin(), joint_names.end());
+  links.emplace_back("tool");
+  joints.insert(joints.end(), {"finger_b", "tool"});
+  const auto known = [](const std::vector<std::string>& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  std::set<std::string> seen;
+  urdf.each("joint", [&](const XMLElement* e) {
+    const std::string name = urdf.text(e, "name");
+    if (!seen.insert(name).second) urdf.fail(e, urdf.label(e) + " is there twice");
+    if (!known(joints, name) && urdf.text(e, "type") != "fixed")
+      urdf.fail(e, urdf.label(e) +
+                       " can move: missions fly arms of slew, shoulder, elbow, roll and jaw only. `lanternfish check arm FILE --tool LINK` "
+                       "reads any other");
+  });
+  seen.clear();
+  urdf.each("link", [&](const XMLElement* e) {
+    const std::string name = urdf.text(e, "name");
+    if (!seen.insert(name).second) urdf.fail(e, urdf.label(e) + " is there twice");
+    if ((name == "tool" || !known(links, name)) && e->FirstChildElement("collision") != nullptr)
+      urdf.fail(e, urdf.label(e) + ": nobody keeps its collision shapes clear. Put them into the link that carries it");
+  });
+}
+
 // Each gets a capsule in the core, but for those of the base.
 void check_shapes(const Urdf& urdf, const ArmDescription& arm) {
   std::size_t shapes = 0;
   for (std::size_t link = 1; link < arm.links.size(); ++link) {
+    const std::size_t before = shapes;
     for (const scene::Shape& shape : arm.links[link].shapes) shapes += shape.collides ? 1 : 0;
+    if (shapes == before)
+      urdf.fail(urdf.named("link", arm.links[link].name),
+                "link '" + arm.links[link].name + "' has no <collision>: nothing of it would be kept clear of panel, vehicle and arm");
     if (shapes > capacity::arm_shapes)
       urdf.fail(urdf.named("link", arm.links[link].name), "with this link the arm has " + std::to_string(shapes) +
                                                               " collision shapes; the core holds " + std::to_string(capacity::arm_shapes) +
@@ -314,6 +357,17 @@ void check_jaw(const Urdf& urdf, const ArmDescription& arm) {
   expect(square(arm.finger_b) && (arm.finger_b.axis - Vec3::UnitY()).norm() < tolerance &&
              (arm.finger_b.parent_from_joint.translation() - mirrored).norm() < tolerance,
          "finger_b", "must be the mirror image of 'jaw': about the wrist's y, at -x");
+  const auto half_gap_m = [&](double q) {
+    const Vec3 face = arm.pad.body_from_shape.translation() + Vec3(arm.pad.size_m.x() / 2, 0, 0);
+    return -(a.parent_from_joint.translation().x() + face.x() * std::cos(q) - face.z() * std::sin(q));
+  };
+  expect(arm.pad.body_from_shape.translation().z() > 0.001, "jaw", "must have its pads beyond their axis");
+  expect(half_gap_m(a.lower_rad) > -tolerance, "jaw", "must not close so far that its pads overlap: raise its lower limit");
+  constexpr int steps = 16;
+  for (int i = 0; i < steps; ++i) {
+    const double q = std::lerp(a.lower_rad, a.upper_rad, static_cast<double>(i) / steps);
+    expect(half_gap_m(q + (a.upper_rad - a.lower_rad) / steps) > half_gap_m(q), "jaw", "must open over its whole range");
+  }
   const scene::Shape other = read_pad(urdf, "finger_b");
   const Vec3 pad = arm.pad.body_from_shape.translation();
   if ((other.body_from_shape.translation() - pad.cwiseProduct(Vec3(-1, 1, 1))).norm() > tolerance ||
@@ -367,6 +421,7 @@ ArmDescription load_arm_urdf(const std::string& path) {
   }
   arm.finger_b = read_mimic(urdf, arm.joints[static_cast<std::size_t>(Joint::jaw)]);
   arm.wrist_from_tool = urdf.origin(joint_between(urdf, "tool", "fixed", "wrist", "tool"));
+  check_parts(urdf);
   check_shapes(urdf, arm);
   check_chain(urdf, arm);
   arm.pad = read_pad(urdf, "finger_a");

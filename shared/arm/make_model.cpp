@@ -20,8 +20,10 @@ ArmModel::Planar planar(const ArmDescription& arm) {
   n.mount_yaw_rad = angle_of(arm.joints[0].parent_from_joint.linear().col(0));
   n.a0_m = to_shoulder.x();
   n.a1_m = to_elbow.head<2>().norm();
-  n.shoulder_offset_rad = angle_of(to_elbow);
-  n.elbow_offset_rad = angle_of(arm.joints[2].parent_from_joint.linear().col(0)) + angle_of(tool_x) - n.shoulder_offset_rad;
+  const Vec3 shoulder_x = arm.joints[1].parent_from_joint.linear().col(0);
+  const double turn_rad = std::atan2(shoulder_x.z(), shoulder_x.x());  // of the shoulder's own frame, in the plane that the slew turns
+  n.shoulder_offset_rad = turn_rad + angle_of(to_elbow);
+  n.elbow_offset_rad = angle_of(arm.joints[2].parent_from_joint.linear().col(0)) + angle_of(tool_x) - angle_of(to_elbow);
   n.a2_m = to_roll.dot(tool_x);
   n.d_m = to_roll.dot(tool_z) + arm.wrist_from_tool.translation().z();
   return n;

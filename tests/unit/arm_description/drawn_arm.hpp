@@ -1,6 +1,7 @@
 // An arm of the core's form that nobody chose: the shipped one's links on joints at drawn places, with drawn ranges and fingers.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <random>
@@ -24,14 +25,17 @@ class DrawnArm {
                  across = draw(-0.2, 0.2), to_roll = draw(0.05, 0.5);
     const double quarter = pi / 2;
     text += joint("slew", "base", "slew", Vec3::Zero(), Vec3(0, 0, draw(-pi, pi)), "0 0 1", range(draw));
-    text += joint("shoulder", "slew", "upper_arm", Vec3(draw(-0.2, 0.3), 0, 0), Vec3(quarter, 0, 0), "0 0 1", range(draw));
+    text += joint("shoulder", "slew", "upper_arm", Vec3(draw(-0.2, 0.3), 0, 0), Vec3(quarter, draw(-1.5, 1.5), 0), "0 0 1", range(draw));
     text += joint("elbow", "upper_arm", "forearm", upper_arm * Vec3(std::cos(elbow_at), std::sin(elbow_at), 0), Vec3(0, 0, elbow_turn),
                   "0 0 1", range(draw));
     text += joint("roll", "forearm", "wrist",
                   across * Vec3(std::cos(roll_turn), std::sin(roll_turn), 0) + to_roll * Vec3(std::sin(roll_turn), -std::cos(roll_turn), 0),
                   Vec3(quarter, 0, roll_turn), "0 0 1", range(draw));
-    const Vec3 pivot(draw(-0.08, -0.035), 0, draw(-0.1, 0.1));
-    const Vec2 opens(draw(-0.06, 0), draw(0.2, 1.3));
+    const Vec3 pivot(draw(-0.06, -0.036), 0, draw(-0.1, 0.1));  // the pads meet at an angle below 0
+    // From where the pads meet, or later: the shipped fingers on other axes.
+    const double face_x = 0.0337, face_z = 0.0985, reach = std::hypot(face_x, face_z);
+    const double shut = std::acos(std::clamp(-pivot.x() / reach, -1.0, 1.0)) - std::atan2(face_z, face_x);
+    const Vec2 opens(std::min(shut + draw(0.001, 0.05), -1e-4), std::max(shut, 0.0) + draw(0.2, 0.6));
     text += joint("jaw", "wrist", "finger_a", pivot, Vec3::Zero(), "0 -1 0", opens);
     text += joint("finger_b", "wrist", "finger_b", pivot.cwiseProduct(Vec3(-1, 1, 1)), Vec3::Zero(), "0 1 0", opens);
     text += "<link name=\"tool\"/><joint name=\"tool\" type=\"fixed\"><parent link=\"wrist\"/><child link=\"tool\"/><origin xyz=\"0 0 " +

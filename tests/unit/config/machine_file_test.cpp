@@ -68,16 +68,40 @@ TEST(MachineFile, SaysOnlyWhatItSays) {
 TEST(MachineFile, FindsWhatItNamesBesideItAndThenAmongTheShipped) {
   const test::TemporaryFolder folder;
   folder.write("my.urdf", read_text_file(share_folder() / "arm" / "arm5e.urdf"));
+  folder.write("my_limits.yaml", "");
   folder.write("profile.yaml", "");
   const auto file = folder.write("machine.yaml",
-                                 "version: 1\narm: {urdf: my.urdf}\nsafety: {limits: safety/limits.yaml}\ndrives: {profile: epos4, roll: "
+                                 "version: 1\narm: {urdf: my.urdf}\nsafety: {limits: my_limits.yaml}\ndrives: {profile: epos4, roll: "
                                  "{profile: ./profile.yaml}}\n");
   const Read named = read(file);
   EXPECT_THAT(named.problems, IsEmpty());
   EXPECT_EQ(named.machine.arm_urdf, folder / "my.urdf");
-  EXPECT_EQ(named.machine.safety_limits, "safety/limits.yaml") << "a shipped file keeps its name";
+  EXPECT_EQ(named.machine.safety_limits, folder / "my_limits.yaml");
   EXPECT_EQ(named.machine.drives.profile, "epos4");
   EXPECT_EQ(named.machine.drives.joints[3].profile, folder / "profile.yaml");
+}
+
+// A robot's folder may have files of the same names as the shipped ones, and so may the folder of whoever names the machine.
+TEST(MachineFile, NamesAShippedFileByItsWholePathWhereTheNameMeansAnotherOne) {
+  const test::TemporaryFolder folder;
+  std::filesystem::create_directories(folder / "mission/arm");
+  folder.write("mission/arm/arm5e.urdf", "another arm");
+  Read named;
+  named.machine.file = folder / "mission/mine.yaml";
+  read_machine_file(folder.write("machine.yaml", "version: 1\narm: {urdf: arm/arm5e.urdf}\n"), named.machine, named.problems);
+  EXPECT_THAT(named.problems, IsEmpty());
+  EXPECT_EQ(named.machine.arm_urdf, std::filesystem::absolute(share_folder() / "arm" / "arm5e.urdf"));
+}
+
+TEST(MachineFile, OfAnArmOfOnesOwnNamesItsLimits) {
+  const test::TemporaryFolder folder;
+  folder.write("my.urdf", "");
+  EXPECT_THAT(read(folder.write("machine.yaml", "version: 1\narm: {urdf: my.urdf}\n")).problems,
+              ElementsAre(HasSubstr("'safety.limits' has to name its limits")));
+}
+
+TEST(MachineFile, IsTheSchemasThatIsShipped) {
+  EXPECT_EQ(read_text_file(share_folder() / "machines" / "machine.schema.json"), machine_schema());
 }
 
 TEST(MachineFile, TellsWhichOfItsKeysAreTheDefaultMachines) {
@@ -101,8 +125,11 @@ TEST(MachineFile, IsRefusedWithTheLineOfEachProblem) {
         Case{"version: 1\ncamera:\n  down_deg: 95\n", ":3: ", "95"},
         Case{"version: 1\nlaser:\n  position_m: [0, 1]\n", ":3: ", "laser.position_m"},
         Case{"version: 1\narm:\n  urdf: nowhere.urdf\n", ": ", "there is no nowhere.urdf"},
-        Case{"version: 1\nsafety: {limits: /}\n", ": ", "is a folder"}, Case{"version: 1\npanel: {file: pandora}\n", ":2: ", "panel"},
-        Case{"- version: 1\n", ":1: ", "a machine is a group of keys"},
+        Case{"version: 1\nsafety: {limits: /}\n", ": ", "is a folder"},
+        Case{"version: 1\npanel: {file: pandora}\n", ":2: ", "a scenario says"},
+        Case{"version: 1\narm: {park_rad: [0, 1]}\n", ": ", "'arm.park_rad' takes 4 numbers"},
+        Case{"version: 1\narm: {urdf: \"\"}\n", ": ", "'arm.urdf' is empty"},
+        Case{"- version: 1\n", ":1: ", "a machine's file has version, arm"},
         Case{"version: 1\ncamera: {down_deg: 30, down_deg: 31}\n", ":2: ", "down_deg"}, Case{"version: 1\ncamera: [\n", ":", ""}}) {
     const test::TemporaryFolder folder;
     const Read refused = read(folder.write("machine.yaml", bad.text));

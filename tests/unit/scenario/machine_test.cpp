@@ -35,8 +35,10 @@ class MachineKey : public testing::Test {
     urdf.replace(urdf.find(tool), tool.size(), "xyz=\"0 0 0.1600\"");
     std::filesystem::create_directory(folder_ / "robot");
     folder_.write("robot/long.urdf", urdf);
+    folder_.write("robot/limits.yaml", config::read_text_file(config::share_folder() / "safety" / "limits.yaml"));
     folder_.write("robot/machine.yaml",
-                  "version: 1\narm: {urdf: long.urdf, park_rad: [0, 0.5, 1.9, 0]}\ncamera: {down_deg: 42, right_deg: 20}\n");
+                  "version: 1\narm: {urdf: long.urdf, park_rad: [0, 0.5, 1.9, 0]}\nsafety: {limits: limits.yaml}\ncamera: {down_deg: 42, "
+                  "right_deg: 20}\n");
   }
 
   std::string with(const std::string& yaml) const { return folder_.write("mine.yaml", yaml).string(); }
@@ -69,10 +71,25 @@ TEST_F(MachineKey, MayBeGivenAsAnOverride) {
   EXPECT_EQ(s.arm.urdf, folder_ / "robot/long.urdf");
 }
 
+// A scenario that spells out all of its keys would hide the machine.
+TEST_F(MachineKey, OfAnOverrideOverrulesWhatTheScenarioSays) {
+  const std::string spelled_out = scenario_yaml(load_scenario("default"));
+  const Scenario s = load_scenario(
+      with(spelled_out), {"camera.down_deg=40", "machine=\"" + (folder_ / "robot/machine.yaml") + "\"", "laser.fan_half_angle_deg=41"});
+  EXPECT_EQ(s.arm.urdf, folder_ / "robot/long.urdf");
+  EXPECT_EQ(s.camera.down_deg, 42) << "it comes after the first override";
+  EXPECT_EQ(s.laser.fan_half_angle_deg, 41) << "and before the last";
+  EXPECT_THAT(refusal("default", {"machine=nowhere.yaml"}),
+              HasSubstr("--set machine=nowhere.yaml: 'machine': there is no nowhere.yaml here"));
+  EXPECT_THAT(refusal("default", {"machine=" + folder_.path().string() + "/robot"}), HasSubstr("is a folder"));
+}
+
 TEST_F(MachineKey, OfTheShippedFileChangesNothing) {
-  Scenario shipped = load_scenario("default", {"machine=machines/arm5e.yaml"});
-  shipped.machine.clear();
-  EXPECT_EQ(scenario_yaml(shipped), scenario_yaml(load_scenario("default")));
+  for (const char* name : {"arm5e", "machines/arm5e.yaml"}) {
+    Scenario shipped = load_scenario("default", {std::string("machine=") + name});
+    shipped.machine.clear();
+    EXPECT_EQ(scenario_yaml(shipped), scenario_yaml(load_scenario("default")));
+  }
 }
 
 TEST_F(MachineKey, IsRefusedWithItsOwnFilesAndLines) {
@@ -87,14 +104,34 @@ TEST_F(MachineKey, IsRefusedWithItsOwnFilesAndLines) {
 TEST_F(MachineKey, OfAnArmThatDoesNotFitIsRefusedBeforeItMoves) {
   EXPECT_THAT(refusal(with("arm: {park_rad: [0, 0.6, 1.9]}\n")), HasSubstr("'arm.park_rad' takes 4 numbers"));
   EXPECT_THAT(refusal(with("arm: {park_rad: [0, 0.6, 2.5, 0]}\n")), HasSubstr("'arm.park_rad' has 2.5 for the elbow"));
+  folder_.write("robot/folded.yaml", "version: 1\narm: {park_rad: [0, 0.6, 2.5, 0]}\n");
+  EXPECT_THAT(refusal(with("machine: robot/folded.yaml\n")),
+              AllOf(HasSubstr("with machine robot/folded.yaml"), HasSubstr("2.5 for the elbow")));
   EXPECT_THAT(refusal(with("arm: {urdf: nowhere.urdf}\n")), HasSubstr("'arm.urdf': there is no nowhere.urdf"));
-  std::string urdf = config::read_text_file(folder_ / "robot/long.urdf");
-  const std::string jaw = "effort=\"20\" velocity=\"0.5\"/>\n    <lanternfish:drive";
-  ASSERT_NE(urdf.find(jaw), std::string::npos);
-  urdf.replace(urdf.find(jaw), 11, "effort=\"30\"");
-  folder_.write("strong.urdf", urdf);
-  EXPECT_THAT(refusal(with("arm: {urdf: strong.urdf}\n")),
-              HasSubstr("'joints.jaw.max_torque_nm' is 22: the jaw grips with its drive's peak torque, 30 N m"));
+}
+
+// The shipped arm with one text of its URDF replaced, under the ARM 5E's limits.
+TEST_F(MachineKey, OfAnArmThatItsLimitsDoNotFitIsRefused) {
+  const std::string shipped = config::read_text_file(config::share_folder() / "arm" / "arm5e.urdf");
+  const auto told = [&](const std::string& was, const std::string& is) {
+    std::string urdf = shipped;
+    EXPECT_NE(urdf.find(was), std::string::npos) << was;
+    folder_.write("other.urdf", urdf.replace(urdf.find(was), was.size(), is));
+    return refusal(with("arm: {urdf: other.urdf}\n"));
+  };
+  EXPECT_EQ(told("lower=\"0\"", "lower=\"0.0\""), "");
+  EXPECT_THAT(told("rated_torque_nm=\"20\"", "rated_torque_nm=\"19\""), "");
+  EXPECT_THAT(told("lower=\"-1.5708\"", "lower=\"-0.7\""), HasSubstr("the arm's own stroke is -0.7 to"));
+  EXPECT_THAT(told("effort=\"80\" velocity=\"0.36\"", "effort=\"80\" velocity=\"0.1\""),
+              HasSubstr("'joints.slew.max_speed_rad_s' is 0.42"));
+  EXPECT_THAT(told("acceleration_rad_s2=\"0.5\"", "acceleration_rad_s2=\"0.05\""), HasSubstr("the shoulder takes 3.6 s to stop"));
+  EXPECT_THAT(told("lower=\"-3.141592653589793\" upper=\"3.141592653589793\"", "lower=\"-0.5\" upper=\"0.5\""),
+              AllOf(HasSubstr("cannot be turned toward 90"), HasSubstr("the wrist's roll goes from -29 to 29 deg")));
+  std::string strong = shipped;
+  const std::string jaw = "effort=\"20\"";
+  for (std::size_t at = strong.find(jaw); at != std::string::npos; at = strong.find(jaw)) strong.replace(at, jaw.size(), "effort=\"30\"");
+  folder_.write("other.urdf", strong);
+  EXPECT_THAT(refusal(with("arm: {urdf: other.urdf}\n")), HasSubstr("the jaw grips with its drive's peak torque, 30 N m"));
 }
 
 }  // namespace
