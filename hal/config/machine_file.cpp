@@ -105,15 +105,16 @@ void read_machine_file(const fs::path& file, Machine& machine, std::vector<std::
     refuse_groups(root, source, problems);
     read_map(root, "", "", table, source);
     check_counts(file, machine, problems);
-    const bool own_arm = machine.arm_urdf != Machine().arm_urdf;
-    if (own_arm && machine.safety_limits == Machine().safety_limits)
-      problems.push_back(file.string() +
-                         ": 'arm.urdf' is an arm of your own: 'safety.limits' has to name its limits, the shipped ones are the ARM 5E's");
   } catch (const InputError& problem) {
     problems.emplace_back(problem.what());
     return;
   }
+  const bool own_arm = machine.arm_urdf != Machine().arm_urdf, own_limits = machine.safety_limits != Machine().safety_limits;
+  const std::size_t told = problems.size();
   settle_names(file, machine, problems);
+  if (own_arm && !own_limits && problems.size() == told)
+    problems.push_back(file.string() +
+                       ": 'arm.urdf' is an arm of your own: 'safety.limits' has to name its limits, the shipped ones are the ARM 5E's");
 }
 
 std::string machine_file_of(const std::string& name) { return is_a_file(name) || name.empty() ? name : "machines/" + name + ".yaml"; }

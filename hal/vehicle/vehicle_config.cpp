@@ -57,9 +57,9 @@ void add_camera_source(Keys& all, VehicleConfig& c) {
 }
 
 void add_machine(Keys& all, VehicleConfig& c) {
-  all.push_back(
-      key("machine", "", 0, 0, &c.machine_file,
-          "a file of what the robot is, whose values the keys of this file overrule; found as arm.urdf is; empty: the default machine"));
+  all.push_back(key("machine", "", 0, 0, &c.machine_file,
+                    "a file of what the robot is, or a shipped one's name; a key of this file that says another thing is refused; found as "
+                    "arm.urdf is; empty: the default machine, but for what the keys say"));
   config::add_panel(all, c.panel_file, c.docked_panel);
   config::add_valve_stops(all, c.valve_stops);
   config::add_camera(all, c.machine.camera);

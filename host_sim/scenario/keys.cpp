@@ -157,9 +157,9 @@ std::vector<Key> keys(Scenario& scenario) {
   all.push_back(key("description", "", 0, 0, &scenario.description, "one line that `lanternfish scenarios` shows"));
   all.push_back(key("time_limit_s", "s", 1, 7200, &scenario.time_limit_s, "simulated time after which the run is given up"));
   config::add_tasks(all, scenario.tasks, scenario.survey.names, "the job, in order");
-  all.push_back(
-      key("machine", "", 0, 0, &scenario.machine,
-          "a file of what the robot is, whose values the keys of this file overrule; found as arm.urdf is; empty: the default machine"));
+  all.push_back(key("machine", "", 0, 0, &scenario.machine,
+                    "a file of what the robot is, or a shipped one's name, whose values the keys of this file overrule; found as arm.urdf "
+                    "is; empty: the robot is as the keys say"));
   all.push_back(key("scene", "", 0, 0, &scenario.scene, "a file of what else stands about; found as arm.urdf is; empty: nothing"));
   add_place(all, scenario);
   config::add_panel(all, scenario.panel_file, scenario.docked_panel);

@@ -78,7 +78,7 @@ _lanternfish() {
       case $before in
         --set) compopt -o nospace; COMPREPLY=($(compgen -W "$(lanternfish scenarios --keys 2>/dev/null | sed -n "s/^| .\([a-z_.]*\). | .*/\1=/p")" -- "$word")); return ;;
       esac
-      options='--help --set --schema --keys --faults --scene-schema --scene-keys --panel-schema --panel-keys --json'
+      options='--help --set --schema --keys --faults --scene-schema --scene-keys --machine-schema --panel-schema --panel-keys --json'
       [[ $word == -* ]] || { COMPREPLY=($(compgen -W "$(lanternfish scenarios 2>/dev/null | cut -d" " -f1)" -- "$word")); COMPREPLY+=($(compgen -f -- "$word")); return; }
       ;;
     'reach')
@@ -127,8 +127,9 @@ _lanternfish() {
         --z) :; return ;;
         --roll) :; return ;;
         --margin) :; return ;;
+        --arm) compopt -o filenames; COMPREPLY=($(compgen -f -- "$word")); return ;;
       esac
-      options='--help --x --y --z --roll --margin --json'
+      options='--help --x --y --z --roll --margin --arm --json'
       ;;
     'check')
       case $before in

@@ -68,6 +68,32 @@ TEST_F(RunFolder, RunsAgainFromItsOwnResolvedScenario) {
 }
 
 // A run knows its own files again, and its user's are left.
+// A machine beside the scenario, or in a folder of its own: all that it names comes along, and the arm that flies again is the one that flew.
+TEST_F(RunFolder, RunsAgainWithTheMachineThatFlew) {
+  std::string urdf = text_of(std::string(LANTERNFISH_SOURCE_DIR) + "/shared/arm/arm5e.urdf");
+  const std::string tool = "xyz=\"0 0 0.1485\"";
+  ASSERT_NE(urdf.find(tool), std::string::npos);
+  urdf.replace(urdf.find(tool), tool.size(), "xyz=\"0 0 0.1545\"");
+  const std::string limits = text_of(std::string(LANTERNFISH_SOURCE_DIR) + "/shared/safety/limits.yaml");
+  const std::string profile = text_of(std::string(LANTERNFISH_SOURCE_DIR) + "/shared/drives/lanternfish.yaml");
+  std::filesystem::create_directory(folder() / "robot");
+  for (const std::string& place : {std::string(), std::string("robot/")}) {
+    SCOPED_TRACE(place);
+    file(place + "our.urdf", urdf);
+    file(place + "ours.yaml", limits);
+    file(place + "drive.yaml", profile);
+    file(place + "robot.yaml", "version: 1\narm: {urdf: our.urdf}\nsafety: {limits: ours.yaml}\ndrives: {profile: drive.yaml}\n");
+    file("mine.yaml", "time_limit_s: 4\nmachine: " + place + "robot.yaml\n");
+    ASSERT_EQ(run("run ./mine.yaml --no-outside --seed 3 --out first").status, 1);
+    for (const char* name : {"our.urdf", "ours.yaml", "drive.yaml", "robot.yaml"}) std::filesystem::remove(folder() / (place + name));
+    std::filesystem::rename(folder() / "first", folder() / "moved");
+    const Said again = run("run moved/scenario.yaml --no-outside --seed 3 --out second");
+    EXPECT_EQ(again.status, 1) << again.err;
+    EXPECT_EQ(result_of("second")["digest"], result_of("moved")["digest"]);
+    for (const char* name : {"moved", "second"}) std::filesystem::remove_all(folder() / name);
+  }
+}
+
 TEST_F(RunFolder, IsWrittenAgainUnlessItHoldsFilesOfItsUser) {
   file("our.urdf", text_of(std::string(LANTERNFISH_SOURCE_DIR) + "/shared/arm/arm5e.urdf"));
   file("my.yaml", "time_limit_s: 2\narm: {urdf: our.urdf}\n");

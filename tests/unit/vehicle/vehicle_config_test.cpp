@@ -176,7 +176,10 @@ TEST(VehicleConfig, TheCoreIsToldTheFilesArm) {
   const std::string counts = "166667";
   ASSERT_NE(urdf.find(counts), std::string::npos);
   folder.write("mine.urdf", urdf.replace(urdf.find(counts), counts.size(), "250000"));
-  folder.write("machine.yaml", "version: 1\narm: {urdf: mine.urdf, park_rad: [0, 0.55, 1.9, 0]}\ncamera: {down_deg: 43}\n");
+  std::ifstream limits(LANTERNFISH_SOURCE_DIR "/shared/safety/limits.yaml");
+  folder.write("limits.yaml", std::string{std::istreambuf_iterator<char>(limits), std::istreambuf_iterator<char>()});
+  folder.write("machine.yaml",
+               "version: 1\narm: {urdf: mine.urdf, park_rad: [0, 0.55, 1.9, 0]}\nsafety: {limits: limits.yaml}\ncamera: {down_deg: 43}\n");
   for (const char* told : {"arm: {urdf: mine.urdf, park_rad: [0, 0.55, 1.9, 0]}\ncamera: {down_deg: 43}\n", "machine: machine.yaml\n",
                            "machine: machine.yaml\ncamera: {down_deg: 43}\n"}) {
     std::vector<std::string> problems;
@@ -191,6 +194,16 @@ TEST(VehicleConfig, TheCoreIsToldTheFilesArm) {
     EXPECT_EQ(config.core.controller.network.drives[2].max_counts,
               arm::counts_from_rad(config.core.controller.arm.joint(Joint::elbow), upper_rad));
   }
+}
+
+// A line left over from before the machine's file would move another arm.
+TEST(VehicleConfig, AKeyThatContradictsTheMachinesFileIsRefused) {
+  const TemporaryFolder folder;
+  folder.write("machine.yaml", "version: 1\ncamera: {down_deg: 43}\n");
+  EXPECT_THAT(
+      problems_of(folder.write("v.yaml", "machine: machine.yaml\ncamera: {down_deg: 44}\n")),
+      ElementsAre(::testing::AllOf(HasSubstr("'camera.down_deg' is 44 here and 43 in "), HasSubstr("leave it out in one of them"))));
+  EXPECT_TRUE(stop_socket(folder.write("w.yaml", "machine: gone.yaml\n")).told) << "a stop reads no other file";
 }
 
 TEST(VehicleConfig, AMachinesFileIsRefusedWithItsOwnName) {
