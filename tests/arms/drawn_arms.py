@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Flies the docked mission with arms that nobody chose: drawn_arms.py LANTERNFISH ARM5E_URDF LIMITS FOLDER [--arms N] [--seed S] [--json FILE]
 
-Each arm is the shipped one, larger or smaller, with other ranges, strengths, gears and fingers, and the robot around it: the laser's place on the forearm and
-the panel's distance go with its size. A mission succeeds, ends safely with its reason, or is refused before it begins. Exit status 1 where one reports a success
+Each arm is the shipped one, larger or smaller, with other ranges, gears, screws, strengths and pads, and the robot around it: limits, the laser's place on the
+forearm and the panel's distance go with its size. A mission succeeds, ends safely with its reason, or is refused before it begins. Exit status 1 where one reports a success
 that the world does not show, or ends without a reason, and where fewer than the share asked for succeed of those that were not refused.
 """
 import argparse
@@ -21,29 +21,45 @@ def numbers(text):
     return [float(word) for word in text.split()]
 
 
+def replaced(text, pattern, new):
+    """Every match anew; a pattern without one draws nothing, and would not be missed."""
+    text, count = re.subn(pattern, new, text)
+    if count == 0:
+        sys.exit(f"{pattern!r} is not in the URDF: it has changed, and this program has not")
+    return text
+
+
 def scaled(text, attribute, factor):
-    return re.sub(rf'(?<=[\s<]){attribute}="([^"]*)"', lambda m: f'{attribute}="' + " ".join(repr(v * factor) for v in numbers(m[1])) + '"', text)
+    return replaced(text, rf'(?<=[\s<]){attribute}="([^"]*)"', lambda m: f'{attribute}="' + " ".join(repr(v * factor) for v in numbers(m[1])) + '"')
 
 
 def draw_arm(urdf, draw):
     """The URDF's text, and by how much the arm is larger."""
-    size = draw(0.90, 1.10)
-    text = urdf
-    text = re.sub(r'<origin xyz="([^"]*)"', lambda m: '<origin xyz="' + " ".join(repr(v * size) for v in numbers(m[1])) + '"', text)
+    size = draw(0.88, 1.12)
+    text = replaced(urdf, r'<origin xyz="([^"]*)"', lambda m: '<origin xyz="' + " ".join(repr(v * size) for v in numbers(m[1])) + '"')
     for attribute in ("size", "radius", "length", "pivot_a_m", "pivot_b_m"):
         text = scaled(text, attribute, size)
     text = scaled(text, "counts_per_m", 1 / size * draw(0.8, 1.3))
-    text = re.sub(r'<mass value="([^"]*)"', lambda m: f'<mass value="{float(m[1]) * size**3!r}"', text)
-    text = re.sub(r'\bn="([^"]*)"', lambda m: f'n="{float(m[1]) * size**3!r}"', text)
+    text = replaced(text, r'<mass value="([^"]*)"', lambda m: f'<mass value="{float(m[1]) * size**3!r}"')
+    text = replaced(text, r'\bn="([^"]*)"', lambda m: f'n="{float(m[1]) * size**3!r}"')
     for attribute in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"):
         text = scaled(text, attribute, size**5)
-    text = re.sub(r'lower="0" upper="1.58665"', f'lower="0" upper="{draw(1.50, 1.62)!r}"', text)
-    text = re.sub(r'lower="0" upper="2.15294"', f'lower="0" upper="{draw(2.10, 2.25)!r}"', text)
-    text = re.sub(r'lower="-1.5708" upper="0.5488"', f'lower="{draw(-1.57, -0.6)!r}" upper="{draw(0.45, 0.56)!r}"', text)
-    text = re.sub(r'rad_per_count="3.14e-3"', f'rad_per_count="{draw(1e-3, 4e-3)!r}"', text)
-    stronger = draw(0.85, 1.4)
-    text = re.sub(r'effort="([^"]*)"', lambda m: f'effort="{float(m[1]) * stronger!r}"', text)
-    text = re.sub(r'rated_torque_nm="([^"]*)"', lambda m: f'rated_torque_nm="{float(m[1]) * stronger!r}"', text)
+    # Ranges, the roll's and the jaw's among them.
+    text = replaced(text, 'lower="-1.5708" upper="0.5488"', f'lower="{draw(-1.57, -0.6)!r}" upper="{draw(0.45, 0.56)!r}"')
+    text = replaced(text, 'lower="0" upper="1.58665"', f'lower="0" upper="{draw(1.50, 1.62)!r}"')
+    text = replaced(text, 'lower="0" upper="2.15294"', f'lower="0" upper="{draw(2.10, 2.25)!r}"')
+    text = replaced(text, 'lower="-3.141592653589793" upper="3.141592653589793"', f'lower="{draw(-3.14, -2.6)!r}" upper="{draw(2.6, 3.14)!r}"')
+    opens = draw(0.9, 1.35)
+    text = replaced(text, 'upper="1.3377"', f'upper="{opens!r}"')
+    # Gears, and what the drives give.
+    text = replaced(text, 'rad_per_count="3.14e-3"', f'rad_per_count="{draw(1e-3, 4e-3)!r}"')
+    text = replaced(text, 'rad_per_count="5.37e-4"', f'rad_per_count="{draw(3e-4, 9e-4)!r}"')
+    stronger = draw(0.8, 1.4)
+    text = replaced(text, r'effort="([^"]*)"', lambda m: f'effort="{float(m[1]) * stronger!r}"')
+    text = replaced(text, r'rated_torque_nm="([^"]*)"', lambda m: f'rated_torque_nm="{float(m[1]) * stronger!r}"')
+    # Wider or narrower pads.
+    wide = draw(0.8, 1.3)
+    text = replaced(text, r'(<collision name="pad">.*?<box size="\S+ )(\S+)', lambda m: f"{m[1]}{float(m[2]) * wide!r}")
     return text, size
 
 
