@@ -52,14 +52,14 @@ class GripperRun {
 // The numbers of a jaw are shares of what it can: those of the default machine are the defaults.
 TEST(GripperConfig, OfTheDefaultJawIsTheDefault) {
   const GripperConfig ours = gripper_config(test::arm5e.joint(Joint::jaw)), usual;
-  EXPECT_DOUBLE_EQ(ours.grip_torque_nm, usual.grip_torque_nm);
-  EXPECT_DOUBLE_EQ(ours.hold_torque_nm, usual.hold_torque_nm);
-  EXPECT_DOUBLE_EQ(ours.closing_speed_rad_s, usual.closing_speed_rad_s);
-  EXPECT_DOUBLE_EQ(ours.opening_speed_rad_s, usual.opening_speed_rad_s);
-  EXPECT_DOUBLE_EQ(ours.ramp_rad_s2, usual.ramp_rad_s2);
-  EXPECT_DOUBLE_EQ(ours.stall_rad, usual.stall_rad);
+  EXPECT_NEAR(ours.grip_torque_nm, usual.grip_torque_nm, 1e-12);
+  EXPECT_NEAR(ours.hold_torque_nm, usual.hold_torque_nm, 1e-12);
+  EXPECT_NEAR(ours.closing_speed_rad_s, usual.closing_speed_rad_s, 1e-12);
+  EXPECT_NEAR(ours.opening_speed_rad_s, usual.opening_speed_rad_s, 1e-12);
+  EXPECT_NEAR(ours.ramp_rad_s2, usual.ramp_rad_s2, 1e-12);
+  EXPECT_NEAR(ours.stall_rad, usual.stall_rad, 1e-12);
   EXPECT_EQ(ours.move_timeout, usual.move_timeout);
-  EXPECT_DOUBLE_EQ(thinnest_bar_m(test::jaw5e), thinnest_bar_of_any_m);
+  EXPECT_NEAR(thinnest_bar_m(test::jaw5e), thinnest_bar_of_any_m, 1e-12);
 }
 
 TEST(GripperConfig, OfAnotherJawFollowsIt) {
