@@ -49,7 +49,9 @@ class Draw {
   std::string operator()(Vec2*) { return list(2); }
   std::string operator()(std::array<Vec2, 3>*) { return "[" + list(2) + ", " + list(2) + ", " + list(2) + "]"; }
   std::string operator()(std::vector<double>*) {
-    return list(key_.path == "camera.distortion" ? 5 : 1 + static_cast<std::size_t>(3 * share()));
+    if (key_.path == "camera.distortion") return list(5);
+    if (key_.path == "arm.park_rad") return list(arm_joint_count);
+    return list(1 + static_cast<std::size_t>(3 * share()));
   }
   template <std::size_t Count>
   std::string operator()(std::vector<std::array<double, Count>>*) {

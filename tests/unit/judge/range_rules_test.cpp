@@ -174,8 +174,9 @@ TEST(RangeRules, OfSeveralKeysOneIsNamed) {
 TEST(RangeRules, EveryKeyThatIsDrawnHasItsWords) {
   scenario::Scenario scenario;
   for (const config::Key& key : scenario::keys(scenario)) {
-    const bool not_drawn = key.path == "description" || key.path == "time_limit_s" || key.path == "scene" || key.path == "faults" ||
-                           key.path == "expect.failure" || key.path == "safety.limits" || key.path == "safety.mission_limits";
+    const bool not_drawn = key.path == "description" || key.path == "machine" || key.path == "time_limit_s" || key.path == "scene" ||
+                           key.path == "faults" || key.path == "expect.failure" || key.path == "safety.limits" ||
+                           key.path == "safety.mission_limits";
     EXPECT_EQ(words_for(key.path).empty(), not_drawn) << key.path;
   }
 }

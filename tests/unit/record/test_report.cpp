@@ -69,8 +69,9 @@ TEST(Report, OfSeveralValvesNamesEach) {
   for (TaskRecord& task : data.result.tasks) {
     if (task.task == "turn_valve") task.valve = "V<2>";
   }
+  data.errors = report_errors(data.result, 0.42);
   const std::string html = report_html(data);
-  for (const char* text : {"valve V&lt;2&gt; turned to (target", "turn valve V&lt;2&gt;", "valve V&lt;2&gt;'s final angle"})
+  for (const char* text : {"valve V&lt;2&gt; turned to (target", "turn valve V&lt;2&gt;", "valve V&lt;2&gt;&#39;s final angle"})
     EXPECT_THAT(html, HasSubstr(text));
   EXPECT_THAT(html, Not(HasSubstr("V<2>")));
 }
