@@ -11,7 +11,7 @@ namespace lf::config {
 
 namespace {
 
-// Of the rated torque of the arm that the core was built of: a change that its free motion makes by itself, with whatever motors. At 9 N m of 30 a sweep after
+// Of the rated torque by the arm's description: a change that its free motion makes by itself, with whatever motors. At 9 N m of 30 a sweep after
 // a turn was taken for a contact (seed 52).
 constexpr double free_motion_share = 0.3;
 

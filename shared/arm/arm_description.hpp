@@ -1,4 +1,4 @@
-// The arm as its URDF tells it: links, joints, actuators, and the real joints' faults. Hosted side only; the core has constants made of it.
+// The arm as its URDF tells it: links, joints, actuators, and the real joints' faults. Hosted side only; the core has numbers made of it (make_model.hpp).
 //
 // The URDF is plain and opens in any viewer; what URDF has no words for stands in <lanternfish:...> elements inside <joint>.
 #pragma once
