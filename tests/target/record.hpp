@@ -245,7 +245,9 @@ void pass(S& s, ArmModel::Jaw& v) {
 template <class S>
 void pass(S& s, ArmModel::Capsule& v) {
   auto& [link, a_m, b_m, radius_m] = v;
-  pass_all(s, link, a_m, b_m, radius_m);
+  auto number = static_cast<std::uint32_t>(link);  // a size is of another width on the two
+  pass_all(s, number, a_m, b_m, radius_m);
+  link = number;
 }
 template <class S>
 void pass(S& s, ArmModel& v) {
