@@ -22,7 +22,7 @@ Pose tool_of(const ArmDescription& arm, const arm::JointVector& q) {
 
 arm::Arm arm_of(const ArmDescription& description, const std::string& urdf_file) {
   constexpr double same = 1e-6;  // m, and of a rotation's numbers
-  const arm::Arm arm(make_model(description));
+  arm::Arm arm(make_model(description));
   for (const double share : {0.0, 0.3, 0.5, 0.8, 1.0}) {
     arm::JointVector q;
     for (std::size_t i = 0; i < arm_joint_count; ++i) {

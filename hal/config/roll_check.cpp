@@ -45,7 +45,9 @@ std::vector<std::string> roll_problems(const Machine& machine, const safety::Lim
     if (!at_bar.ok()) continue;
     const PanelLayout::Valve& handle = machine.panel.valves[*valve];
     const double to_rad = rad_from_deg(task.to_deg);
-    for (double from_rad = handle.handle_min_rad; from_rad <= handle.handle_max_rad; from_rad += step_rad) {
+    const int steps = static_cast<int>((handle.handle_max_rad - handle.handle_min_rad) / step_rad);
+    for (int i = 0; i <= steps; ++i) {
+      const double from_rad = handle.handle_min_rad + i * step_rad;
       if (std::abs(from_rad - to_rad) < nearly_there_rad || can_begin(machine, at_bar.q_rad, from_rad, to_rad, range)) continue;
       char text[240];
       std::snprintf(text, sizeof text, ": a handle at %.0f deg cannot be turned toward %.0f: the wrist's roll goes from %.0f to %.0f deg",

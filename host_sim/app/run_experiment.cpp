@@ -93,7 +93,7 @@ void keep_panel(scenario::Scenario& kept, const record::RunFolder& run) {
 std::string keep_named(const fs::path& file, const fs::path& folder, const record::RunFolder& run) {
   const fs::path near = beside(file, folder);
   if (!near.empty()) return near.string();
-  const std::string name = "machine/" + file.filename().string();
+  std::string name = "machine/" + file.filename().string();
   run.write(name, config::read_text_file(file));
   return name;
 }

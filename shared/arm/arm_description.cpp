@@ -292,7 +292,7 @@ scene::Shape read_pad(const Urdf& urdf, const char* finger) {
   for (const XMLElement* c = link->FirstChildElement("collision"); c != nullptr; c = c->NextSiblingElement("collision")) {
     const char* const name = c->Attribute("name");
     if (name == nullptr || std::strcmp(name, "pad") != 0) continue;
-    const scene::Shape pad = read_collision(urdf, c);
+    scene::Shape pad = read_collision(urdf, c);
     if (pad.kind != scene::ShapeKind::box || !pad.body_from_shape.linear().isIdentity(1e-9))
       urdf.fail(c, "the pad must be a box, not turned");
     return pad;
