@@ -39,7 +39,9 @@ void check_torques(const arm::Arm& arm, const safety::Limits& limits, std::vecto
 
 // What is wider than the arm itself never speaks: another arm's file, or degrees written for radians.
 void check_fit(const arm::Arm& arm, const safety::Limits& limits, std::vector<std::string>& problems) {
-  constexpr double beyond_rad = 0.03, faster = 1.35, of_peak = 0.9;
+  constexpr double beyond_rad = 0.03;     // the shipped jaw's, whose zero may be 5 mrad off, lie 0.022 beyond its stops
+  constexpr double faster = 1.35;         // the shipped ones are 1.17 to 1.3 times the joints' top speeds
+  constexpr double of_peak = 0.9;         // the rest is what a reading may lack
   constexpr double longest_stop_s = 1.0;  // at 1.1 s a stop takes the power, moving or not
   for (std::size_t i = 0; i < joint_count; ++i) {
     const ArmModel::Joint& joint = arm.model().joints[i];
@@ -49,12 +51,13 @@ void check_fit(const arm::Arm& arm, const safety::Limits& limits, std::vector<st
                                    joint_names[i], limit.min_rad, limit.max_rad, joint.lower_rad, joint.upper_rad));
     if (limit.max_speed_rad_s > faster * joint.velocity_rad_s)
       problems.push_back(
-          formatted("'joints.%s.max_speed_rad_s' is %.4g: the joint's top speed is %.4g rad/s, and a fifth more is a runaway",
+          formatted("'joints.%s.max_speed_rad_s' is %.4g: the joint's top speed is %.4g rad/s. Take a fifth more: at a third more a "
+                    "runaway would not be told",
                     joint_names[i], limit.max_speed_rad_s, joint.velocity_rad_s));
     if (joint.velocity_rad_s > longest_stop_s * joint.acceleration_rad_s2)
-      problems.push_back(
-          formatted("the %s takes %.3g s to stop from its top speed by the arm's description: a stop takes its power after 1.1 s",
-                    joint_names[i], joint.velocity_rad_s / joint.acceleration_rad_s2));
+      problems.push_back(formatted(
+          "no limits fit this arm: its %s takes %.3g s to stop from its top speed by its URDF, and a stop takes the power after 1.1 s",
+          joint_names[i], joint.velocity_rad_s / joint.acceleration_rad_s2));
   }
   for (std::size_t i = 0; i < arm_joint_count; ++i) {
     const double contact_nm = mission::free_motion_guard(limits).contact_torque_nm[static_cast<Eigen::Index>(i)];

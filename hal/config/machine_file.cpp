@@ -73,11 +73,16 @@ void refuse_groups(YAML::Node& root, const Source& source, std::vector<std::stri
   for (const std::string& name : foreign) root.remove(name);
 }
 
-void check_counts(const fs::path& file, const Machine& machine, std::vector<std::string>& problems) {
-  if (machine.park_rad.size() != arm_joint_count)
+// As with names: what is told here is not told again.
+void check_counts(const fs::path& file, Machine& machine, std::vector<std::string>& problems) {
+  if (machine.park_rad.size() != arm_joint_count) {
     problems.push_back(file.string() + ": 'arm.park_rad' takes 4 numbers: slew, shoulder, elbow and roll");
-  if (machine.camera.distortion.size() != 5)
+    machine.park_rad = Machine().park_rad;
+  }
+  if (machine.camera.distortion.size() != Machine().camera.distortion.size()) {
     problems.push_back(file.string() + ": 'camera.distortion' takes 5 numbers: k1, k2, p1, p2, k3");
+    machine.camera.distortion = Machine().camera.distortion;
+  }
 }
 
 }  // namespace

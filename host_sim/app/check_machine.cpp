@@ -54,7 +54,7 @@ config::Machine machine_of(const std::string& file) {
 std::vector<std::string> problems_of_job(const std::string& file) {
   std::vector<std::string> problems;
   try {
-    scenario::check_runnable(scenario::load_scenario("default", {"machine=" + file}));
+    scenario::check_runnable(scenario::load_scenario("default", {"machine=" + Json(file).dump()}));
   } catch (const InputError& error) {
     std::istringstream lines(error.what());
     for (std::string line; std::getline(lines, line);) {
@@ -76,7 +76,7 @@ struct Told {
       : file(name),
         machine(machine_of(name)),
         description(load_arm_urdf(urdf())),
-        arm(config::arm_of(description, urdf())),
+        arm(machine.arm),
         assumed(config::keys_left_out(name)),
         notes(config::arm_notes(urdf())),
         problems(problems_of_job(std::filesystem::absolute(name).string())) {}

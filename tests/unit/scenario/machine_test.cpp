@@ -124,7 +124,7 @@ TEST_F(MachineKey, OfAnArmThatItsLimitsDoNotFitIsRefused) {
   EXPECT_THAT(told("lower=\"-1.5708\"", "lower=\"-0.7\""), HasSubstr("the arm's own stroke is -0.7 to"));
   EXPECT_THAT(told("effort=\"80\" velocity=\"0.36\"", "effort=\"80\" velocity=\"0.1\""),
               HasSubstr("'joints.slew.max_speed_rad_s' is 0.42"));
-  EXPECT_THAT(told("acceleration_rad_s2=\"0.5\"", "acceleration_rad_s2=\"0.05\""), HasSubstr("the shoulder takes 3.6 s to stop"));
+  EXPECT_THAT(told("acceleration_rad_s2=\"0.5\"", "acceleration_rad_s2=\"0.05\""), HasSubstr("its shoulder takes 3.6 s to stop"));
   EXPECT_THAT(told("lower=\"-3.141592653589793\" upper=\"3.141592653589793\"", "lower=\"-0.5\" upper=\"0.5\""),
               AllOf(HasSubstr("cannot be turned toward 90"), HasSubstr("the wrist's roll goes from -29 to 29 deg")));
   std::string strong = shipped;
