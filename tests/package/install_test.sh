@@ -61,7 +61,7 @@ if [ -e "$daemon" ]; then
     [ -s "$root/$file" ] || { echo "not installed: /$file"; exit 1; }
   done
   # Every page that the configuration and the units name is there.
-  for page in $(grep -oh '[a-z]*\.md' "$root/etc/lanternfish/vehicle.yaml" "$root"/usr/lib/systemd/system/lanternfish*.service | sort -u); do
+  for page in $(grep -oh '[a-z-]*\.md' "$root/etc/lanternfish/vehicle.yaml" "$root"/usr/lib/systemd/system/lanternfish*.service | sort -u); do
     [ -s "$root/usr/share/doc/lanternfishd/$page" ] || { echo "the package names $page and has it not"; exit 1; }
   done
   in_root lanternfishd --config /etc/lanternfish/vehicle.yaml doctor --machine || [ $? = 3 ]
