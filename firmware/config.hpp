@@ -13,7 +13,7 @@ namespace lf {
 // What the mission works with.
 struct MissionSetup {
   arm::Arm arm = arm::arm5e();
-  std::array<arm::TransmissionSetup, joint_count> transmissions;  // between the drives' motors and the joints
+  PerJoint<arm::TransmissionSetup> transmissions;  // between the drives' motors and the joints
   CameraCalibration camera;
   LaserCalibration laser;
   MarkerCalibrations markers;  // of the panel, no two with the same id

@@ -46,7 +46,7 @@ class Controller {
   bool on_command(Command command, Time t);  // an order without arguments
 
   // Its drive was heard to lose its position while another program had the bus: no power before it has a zero again.
-  void lose_zero(Joint joint) { network_.axis(joint).lose_zero(); }
+  void lose_zero(std::size_t joint) { network_.axis(joint).lose_zero(); }
   // What the core before this one did not know of its jaw, this one does not know.
   void doubt_jaw() { mission_.doubt_jaw(); }
 

@@ -266,7 +266,7 @@ void BasicScanPipeline<capacity>::add_points(bool final) {
 // False when the stripe has to wait.
 template <ScanCapacity capacity>
 bool BasicScanPipeline<capacity>::add_points(const Stripe& stripe, bool final) {
-  std::array<double, arm_joint_count> q_rad{};
+  PerArmJoint<double> q_rad{};
   const scan::JointHistory::Outcome outcome =
       stripe.count == 0 ? scan::JointHistory::Outcome::done : joints_.at(stripe.mid_exposure, final, q_rad);
   if (outcome == scan::JointHistory::Outcome::wait) return false;
@@ -278,7 +278,7 @@ bool BasicScanPipeline<capacity>::add_points(const Stripe& stripe, bool final) {
     stats_.points_no_joints += static_cast<std::uint32_t>(stripe.count);
     return true;
   }
-  const arm::JointVector q(q_rad[0], q_rad[1], q_rad[2], q_rad[3]);
+  const arm::JointVector q(q_rad.data());
   const Pose base_from_laser = config_.arm.base_from_laser(q, config_.laser);
   arm_ = config_.arm.link_capsules(q, jaw_while_scanning_rad);
   const std::span<const scan::Peak> peaks = std::span(stripe.peaks).first(stripe.count);

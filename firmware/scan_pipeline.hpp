@@ -205,8 +205,10 @@ inline constexpr ScanCapacity full_scan{.stripes_told = 7};
 using ScanPipeline = BasicScanPipeline<full_scan>;
 static_assert(sizeof(ScanPipeline) <= 6 * 1024 * 1024, "a computer's, or a board's external 8 MB");
 
-// What a board's build keeps less of an arm's shapes than this one.
-inline constexpr std::size_t desktop_arm = (capacity::arm_shapes - 16) * 2 * sizeof(arm::Capsule);
+// What a board's build keeps less of an arm's shapes and joints than this one.
+inline constexpr std::size_t desktop_arm =
+    (capacity::arm_shapes - 16) * (sizeof(ArmModel::Capsule) + sizeof(arm::Capsule)) +
+    (capacity::arm_joints - 4) * (scan::JointHistory::capacity * sizeof(double) + sizeof(ArmModel::Joint) + sizeof(Pose));
 
 // Whole images, a quarter of the points: the camera triggered at 12.5 Hz (mission.camera_syncs 20), with every second column, fills it in the same sweep.
 inline constexpr ScanCapacity compact_scan{.cloud_points = 65'536, .stripes = 2};

@@ -43,9 +43,9 @@ struct Telemetry {
   Time t;
   mission::Step step = mission::Step::idle;
   bool joints_valid = false;  // each drive has answered lately; if not, the joints' numbers below say nothing
-  std::array<double, joint_count> target_rad{};
-  std::array<double, joint_count> actual_rad{};
-  std::array<double, joint_count> torque_nm{};
+  PerJoint<double> target_rad{};
+  PerJoint<double> actual_rad{};
+  PerJoint<double> torque_nm{};
   std::uint8_t outputs = 0;  // asked of the output node
   std::uint32_t rejected_inputs = 0;
   std::array<std::uint32_t, safety::fault_count> faults{};

@@ -36,7 +36,7 @@ ArmModel::Joint joint(const arm_geometry::JointNumbers& n) {
 
 ArmModel::Jaw jaw() {
   const arm_geometry::JawNumbers& n = arm_geometry::jaw;
-  const arm_geometry::JointNumbers& joint = arm_geometry::joints[static_cast<std::size_t>(Joint::jaw)];
+  const arm_geometry::JointNumbers& joint = arm_geometry::joints.back();
   return {.pivot_x_m = n.pivot_x_m,
           .pivot_z_m = n.pivot_z_m,
           .face_x_m = n.face_x_m,
@@ -53,11 +53,11 @@ ArmModel arm5e_model() {
   static_assert(arm_geometry::capsules.size() <= capacity::arm_shapes);
   ArmModel model;
   model.planar = planar();
-  for (std::size_t i = 0; i < joint_count; ++i) model.joints[i] = joint(arm_geometry::joints[i]);
-  for (std::size_t i = 0; i < model.origins.size(); ++i) model.origins[i] = pose_of(arm_geometry::joint_origins[i]);
+  for (std::size_t i = 0; i < model.joint_count(); ++i) model.joints[i] = joint(arm_geometry::joints[i]);
+  for (std::size_t i = 0; i < arm_geometry::joint_origins.size(); ++i) model.origins[i] = pose_of(arm_geometry::joint_origins[i]);
   model.jaw = jaw();
   for (const arm_geometry::CapsuleNumbers& n : arm_geometry::capsules)
-    (void)model.capsules.push_back({n.link, vec3(n.a_m), vec3(n.b_m), n.radius_m});
+    (void)model.capsules.push_back(ArmModel::Capsule(n.link, vec3(n.a_m), vec3(n.b_m), n.radius_m));
   return model;
 }
 

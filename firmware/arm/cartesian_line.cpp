@@ -48,16 +48,15 @@ Rates rates(const Arm& arm, const JointVector& q_rad, const Vec3& way_m, double 
 }
 
 IkOutcome limit_passed(const JointVector& q_rad, const JointLimits& limits) {
-  constexpr std::array<IkOutcome, arm_joint_count> reasons{IkOutcome::slew_limit, IkOutcome::shoulder_limit, IkOutcome::elbow_limit,
-                                                           IkOutcome::roll_limit};
-  for (std::size_t i = 0; i < arm_joint_count; ++i)
+  constexpr std::array reasons{IkOutcome::slew_limit, IkOutcome::shoulder_limit, IkOutcome::elbow_limit, IkOutcome::roll_limit};
+  for (std::size_t i = 0; i < reasons.size(); ++i)
     if (q_rad[i] < limits.lower_rad[i] - 1e-9 || q_rad[i] > limits.upper_rad[i] + 1e-9) return reasons[i];
   return IkOutcome::ok;
 }
 
 // Lowers the fraction's own limits so that every joint keeps to its own: half of each acceleration for the path's, half for its curvature.
 void respect(const Rates& rates, const JointLimits& limits, double& velocity, double& acceleration, double& jerk) {
-  for (std::size_t i = 0; i < arm_joint_count; ++i) {
+  for (std::size_t i = 0; i < limits.joints; ++i) {
     const double second = std::abs(rates.second[i]);
     // The largest within half a step of this check, to second order.
     const double first = std::abs(rates.first[i]) + second / (2 * CartesianLine::checks);
@@ -84,11 +83,13 @@ void CartesianLine::begin(const Arm& arm, const JointVector& start_rad, const Ve
   *this = CartesianLine();
   arm_ = &arm;
   start_rad_ = start_rad;
-  goal_roll_rad_ = start_rad[3];
-  if (!start_rad.allFinite()) return;
+  const std::size_t roll = arm.roll_joint();
+  goal_roll_rad_ = start_rad[roll];
+  if (!arm.is_planar()) result_.ik = IkOutcome::other_form;
+  if (!arm.is_planar() || !start_rad.allFinite()) return;
   start_m_ = goal_m_ = arm.base_from_tool(start_rad).translation();
   way_m_ = goal_m - start_m_;
-  if (!way_m_.allFinite() || !std::isfinite(goal_roll_rad - start_rad[3])) return;
+  if (!way_m_.allFinite() || !std::isfinite(goal_roll_rad - start_rad[roll])) return;
   goal_roll_rad_ = goal_roll_rad;
   const double length = way_m_.norm();
   velocity_ = length > 0 ? line.speed_m_s / length : HUGE_VAL;

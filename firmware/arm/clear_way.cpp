@@ -6,36 +6,14 @@
 namespace lf::arm {
 namespace {
 
-constexpr std::size_t forearm = 3, wrist = 4, finger = 5;  // scene::BodyId
-
 constexpr Distances nowhere_near{HUGE_VAL, HUGE_VAL, HUGE_VAL};
-
-// How far from each joint's axis any point of what it moves can be, at most, in whatever pose the joints after it are.
-JointVector reach_m(const Arm& arm, double jaw_rad) {
-  const ArmModel::Planar& n = arm.planar();
-  const LinkPoses links = arm.base_from_links(JointVector::Zero(), jaw_rad);
-  const Vec3 elbow = links[forearm - 1].translation();
-  const Vec3 roll_axis = links[wrist - 1].linear().col(2);
-  double from_roll_axis = 0, from_elbow = 0;
-  for (const Capsule& capsule : arm.link_capsules(JointVector::Zero(), jaw_rad)) {
-    if (capsule.link < forearm) continue;
-    for (const Vec3& end : {capsule.a_m, capsule.b_m}) {
-      const double aside = (end - links[wrist - 1].translation()).cross(roll_axis).norm();
-      if (capsule.link >= wrist) from_roll_axis = std::max(from_roll_axis, aside + capsule.radius_m);
-      // The roll carries it round an axis that passes the elbow at a2.
-      from_elbow = std::max(from_elbow, std::hypot(std::abs(n.a2_m) + aside, (end - elbow).dot(roll_axis)) + capsule.radius_m);
-    }
-  }
-  const double from_shoulder = std::abs(n.a1_m) + from_elbow;
-  return {std::abs(n.a0_m) + from_shoulder, from_shoulder, from_elbow, from_roll_axis};
-}
 
 // The largest of all the jaw's angles: the fingers turn about axes of their own, so that what is farthest out at one end is not at the other.
 JointVector reach_m(const Arm& arm, const JawSweep& jaw) {
   constexpr int angles = 4;
-  JointVector most = reach_m(arm, jaw.high_rad);
+  JointVector most = arm.reach_m(jaw.high_rad);
   for (int i = 0; i < angles && jaw.low_rad < jaw.high_rad; ++i)
-    most = most.cwiseMax(reach_m(arm, jaw.low_rad + (jaw.high_rad - jaw.low_rad) * i / angles));
+    most = most.cwiseMax(arm.reach_m(jaw.low_rad + (jaw.high_rad - jaw.low_rad) * i / angles));
   return most;
 }
 
@@ -43,8 +21,8 @@ JointVector reach_m(const Arm& arm, const JawSweep& jaw) {
 double jaw_reach_m(const Arm& arm) {
   double most = 0;
   for (const ArmModel::Capsule& n : arm.model().capsules) {
-    if (n.link < finger) continue;
-    most = std::max({most, std::hypot(n.a_m.x(), n.a_m.z()) + n.radius_m, std::hypot(n.b_m.x(), n.b_m.z()) + n.radius_m});
+    if (n.link() <= arm.arm_joints()) continue;
+    for (const Vec3& end : {n.a_m(), n.b_m()}) most = std::max(most, std::hypot(end.x(), end.z()) + n.radius_m());
   }
   return most;
 }

@@ -72,11 +72,11 @@ double segment_to_cylinder(const Vec3& a, const Vec3& way, double radius_m, doub
   return distance(t);
 }
 
-// Links as scene::BodyId counts them.
-constexpr std::size_t slew = 1, upper_arm = 2, forearm = 3, first_finger = 5;
-
-// Pairs that can meet: not the same link, not neighbours, and not the two fingers, which are meant to.
-bool can_meet(std::size_t low, std::size_t high) { return (low == slew && high >= forearm) || (low == upper_arm && high > forearm); }
+// Pairs that can meet, links as scene::BodyId counts them: not the same link, not neighbours, and not the fingers with each other or with the two last links: they
+// are meant to, or open sideways, ahead of these.
+bool can_meet(std::size_t low, std::size_t high, std::size_t arm_joints) {
+  return low > 0 && high > low + 1 && (high <= arm_joints || low + 1 < arm_joints);
+}
 
 }  // namespace
 
@@ -181,7 +181,7 @@ Clearance PanelShape::clearance(const LinkCapsules& capsules, const Pose& base_f
     const Vec3 a = panel_from_base * capsule.a_m;
     const Vec3 b = panel_from_base * capsule.b_m;
     const Vec3 low = a.cwiseMin(b), high = a.cwiseMax(b);
-    const PanelParts left_out = capsule.link >= first_finger ? ignored | ignored_by_fingers : ignored;
+    const PanelParts left_out = capsule.link > capsules.arm_joints() ? ignored | ignored_by_fingers : ignored;
     for (const Solid& solid : solids_) {
       if ((left_out & bit(solid.part)) != 0) continue;
       const Vec3 gap = (low - solid.centre_m).cwiseMax(solid.centre_m - high) - solid.half_m;
@@ -198,7 +198,7 @@ Clearance PanelShape::clearance(const LinkCapsules& capsules, const Pose& base_f
 double clearance_to_vehicle(const LinkCapsules& capsules, const VehicleShape& vehicle) {
   double least = HUGE_VAL;
   for (const Capsule& capsule : capsules) {
-    if (capsule.link < upper_arm) continue;
+    if (capsule.link < 2) continue;  // the first link turns in its place
     const Vec3 low = capsule.a_m.cwiseMin(capsule.b_m), high = capsule.a_m.cwiseMax(capsule.b_m);
     const auto could_be_nearer = [&](const Vec3& low_m, const Vec3& high_m, double radius_m) {
       return (low - high_m).cwiseMax(low_m - high).cwiseMax(0.0).norm() - radius_m - capsule.radius_m < least;
@@ -220,7 +220,7 @@ double clearance_to_itself(const LinkCapsules& capsules) {
   double least = HUGE_VAL;
   for (const Capsule& a : capsules)
     for (const Capsule& b : capsules)
-      if (can_meet(a.link, b.link)) least = std::min(least, clearance_between(a, b));
+      if (can_meet(a.link, b.link, capsules.arm_joints())) least = std::min(least, clearance_between(a, b));
   return least;
 }
 

@@ -1,7 +1,7 @@
 // Lets a gripping arm give way: what it holds may not be just where it was seen, and a rigid arm would force it there.
 //
 // An admittance of joints: a torque that has risen over what it was before the grip moves the joint's target the way it is pushed, at a speed in
-// proportion, down to a dead band and up to a largest offset. Slew, shoulder and elbow give way; the roll does the turning and does not.
+// proportion, down to a dead band and up to a largest offset. The joints before the roll give way; the roll does the turning and does not.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,10 @@
 namespace lf::arm {
 
 struct ComplianceConfig {
+  explicit ComplianceConfig(std::size_t arm_joints = 4) : give_rad_s_nm(each_joint(arm_joints, 0.0015, 0)) {}
+
   // With 4000 N m/rad of drives and contact a load decays within 1 / (0.0015 * 4000) s = 0.17 s; loop and filter lag by 0.07 s.
-  JointVector give_rad_s_nm{0.0015, 0.0015, 0.0015, 0};
+  JointVector give_rad_s_nm;
   double dead_nm = 2;  // the drift of the torque's baseline moves nothing
   double largest_rad_s = 0.05;
   double largest_rad = 0.05;     // 20 mm at the elbow's 0.4 m
@@ -25,7 +27,7 @@ struct ComplianceConfig {
 
 class Compliance {
  public:
-  explicit Compliance(const ComplianceConfig& config = {}) : config_(config) {}
+  explicit Compliance(const ComplianceConfig& config = ComplianceConfig()) : config_(config) {}
 
   // No offset, nothing learned.
   void reset() { *this = Compliance(config_); }

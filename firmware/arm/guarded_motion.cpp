@@ -5,6 +5,9 @@
 namespace lf::arm {
 namespace {
 
+// Rows past an arm's own joints stay 0, and no threshold is below that.
+constexpr std::size_t arm_joints = capacity::arm_joints;
+
 constexpr double hardly_there = 0.25;  // of the contact's torque
 
 // Counts samples in a row for which `says_so`; true once there are `wanted` of them.
@@ -25,11 +28,11 @@ void GuardedMotion::latch(GuardState state, GuardCause cause, std::size_t joint)
   if (state_ == GuardState::overload || state_ == state) return;
   state_ = state;
   cause_ = cause;
-  joint_ = static_cast<Joint>(joint);
+  joint_ = joint;
 }
 
 void GuardedMotion::observe(const JointVector& command_rad, double dt_s) {
-  for (std::size_t i = 0; i < arm_joint_count; ++i) {
+  for (std::size_t i = 0; i < arm_joints; ++i) {
     const auto joint = static_cast<Eigen::Index>(i);
     if (samples_ == 1)
       commands_[i].reset(command_rad[joint]);
@@ -59,7 +62,7 @@ GuardState GuardedMotion::update(Time t, const JointVector& command_rad, const J
   observe(command_rad, dt_s);
   velocity_rad_s_ = velocity_rad_s;
 
-  for (std::size_t i = 0; i < arm_joint_count; ++i) {
+  for (std::size_t i = 0; i < arm_joints; ++i) {
     const auto joint = static_cast<Eigen::Index>(i);
     const bool over = std::abs(filtered_.sure_excess_nm(joint, 0)) > config_.overload_torque_nm[i];
     const bool pushed = !learning && std::abs(filtered_.sure_excess_nm(joint, baseline_nm_[joint])) > config_.contact_torque_nm[i];

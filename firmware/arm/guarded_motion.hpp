@@ -15,13 +15,18 @@
 namespace lf::arm {
 
 struct GuardConfig {
-  JointVector contact_torque_nm{4.0, 4.0, 4.0, 2.0};      // rise over the baseline. 10 N at the tool, 0.4 m from the shoulder, are 4 N m
-  JointVector overload_torque_nm{45.0, 45.0, 45.0, 9.0};  // without regard to the baseline; 1.5 x the rated torque
-  JointVector following_rad{0.03, 0.03, 0.03, 0.12};      // command less position; 3 x the lag at full speed with a position loop of 20 / s
-  double filter_s = 0.012;                                // first-order low pass of the torque: 3 SYNCs, against single outliers
-  double baseline_s = 1.0;                                // time constant with which the baseline follows while free
-  std::uint32_t learning = 25;  // samples averaged into the first baseline: 0.1 s; no contact is reported meanwhile, an overload is
-  std::uint32_t debounce = 3;   // samples in a row that say so before it is believed
+  explicit GuardConfig(std::size_t arm_joints = 4)
+      : contact_torque_nm(each_joint(arm_joints, 4, 2)),
+        overload_torque_nm(each_joint(arm_joints, 45, 9)),
+        following_rad(each_joint(arm_joints, 0.03, 0.12)) {}
+
+  JointVector contact_torque_nm;   // rise over the baseline. 10 N at the tool, 0.4 m from the shoulder, are 4 N m
+  JointVector overload_torque_nm;  // without regard to the baseline; 1.5 x the rated torque
+  JointVector following_rad;       // command less position; 3 x the lag at full speed with a position loop of 20 / s
+  double filter_s = 0.012;         // first-order low pass of the torque: 3 SYNCs, against single outliers
+  double baseline_s = 1.0;         // time constant with which the baseline follows while free
+  std::uint32_t learning = 25;     // samples averaged into the first baseline: 0.1 s; no contact is reported meanwhile, an overload is
+  std::uint32_t debounce = 3;      // samples in a row that say so before it is believed
 };
 
 enum class GuardState : std::uint8_t {
@@ -35,7 +40,7 @@ enum class GuardCause : std::uint8_t { none, torque, following_error };
 
 class GuardedMotion {
  public:
-  explicit GuardedMotion(const GuardConfig& config = {}) : config_(config) {}
+  explicit GuardedMotion(const GuardConfig& config = GuardConfig()) : config_(config) {}
 
   // Starts anew: forgets the baseline.
   void reset();
@@ -46,7 +51,7 @@ class GuardedMotion {
 
   GuardState state() const { return state_; }
   GuardCause cause() const { return cause_; }
-  Joint joint() const { return joint_; }  // that showed it first
+  std::size_t joint() const { return joint_; }  // that showed it first
   bool touched() const { return state_ == GuardState::contact || state_ == GuardState::overload; }
   const JointVector& excess_torque_nm() const { return excess_nm_; }  // filtered torque less baseline
   const JointVector& baseline_nm() const { return baseline_nm_; }     // of free motion, as far as it is learned
@@ -67,7 +72,7 @@ class GuardedMotion {
   GuardConfig config_;
   GuardState state_ = GuardState::learning;
   GuardCause cause_ = GuardCause::none;
-  Joint joint_ = Joint::slew;
+  std::size_t joint_ = 0;
   Time last_;
   std::uint32_t samples_ = 0;
   std::uint32_t refused_ = 0;
@@ -77,10 +82,10 @@ class GuardedMotion {
   JointVector error_rad_ = JointVector::Zero();
   JointVector position_rad_ = JointVector::Zero();
   JointVector free_position_rad_ = JointVector::Zero(), free_command_rad_ = JointVector::Zero();  // when the excess was hardly there
-  std::array<JointObserver, arm_joint_count> commands_{};
+  PerArmJoint<JointObserver> commands_{};
   JointVector command_rad_s_ = JointVector::Zero();
   JointVector velocity_rad_s_ = JointVector::Zero();
-  std::array<std::uint32_t, arm_joint_count> torque_run_{}, following_run_{}, overload_run_{};
+  PerArmJoint<std::uint32_t> torque_run_{}, following_run_{}, overload_run_{};
 };
 
 }  // namespace lf::arm

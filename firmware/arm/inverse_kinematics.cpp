@@ -9,6 +9,12 @@
 namespace lf::arm {
 namespace {
 
+IkResult no_form() {
+  IkResult none;
+  none.outcome = IkOutcome::other_form;
+  return none;
+}
+
 // A joint angle counts as inside a limit that it passes by less than rounding can make of it.
 constexpr double rounding_rad = 1e-12;
 
@@ -112,11 +118,13 @@ const char* name(IkOutcome outcome) {
     case IkOutcome::shoulder_limit: return "shoulder limit";
     case IkOutcome::elbow_limit: return "elbow limit";
     case IkOutcome::roll_limit: return "roll limit";
+    case IkOutcome::other_form: return "arm of another form";
   }
   return "unknown";
 }
 
 IkPosture posture_of(const Arm& arm, const JointVector& q_rad) {
+  if (!arm.is_planar()) return {};
   const PlanarChain chain(arm.planar(), q_rad);
   const double bend_rad = wrap(q_rad[2] + arm.planar().elbow_offset_rad + arm.forearm().angle_rad);
   return {chain.tool_r_m >= 0 ? IkBranch::front : IkBranch::folded, bend_rad < 0};
@@ -124,6 +132,7 @@ IkPosture posture_of(const Arm& arm, const JointVector& q_rad) {
 
 IkResult inverse_kinematics(const Arm& arm, const Vec3& tool_m, double roll_rad, double limit_margin_rad,
                             const std::optional<JointVector>& near_rad) {
+  if (!arm.is_planar()) return no_form();
   if (!std::isfinite(tool_m.squaredNorm() + roll_rad + limit_margin_rad)) return {};
   std::array<Facing, 2> facings{facing(arm, IkBranch::folded, tool_m, limit_margin_rad),
                                 facing(arm, IkBranch::front, tool_m, limit_margin_rad)};
@@ -150,22 +159,23 @@ IkResult inverse_kinematics(const Arm& arm, const Vec3& tool_m, double roll_rad,
 }
 
 IkResult inverse_kinematics(const Arm& arm, IkPosture posture, const Vec3& tool_m, double roll_rad, double limit_margin_rad) {
+  if (!arm.is_planar()) return no_form();
   if (!std::isfinite(tool_m.squaredNorm() + roll_rad + limit_margin_rad)) return {};
   const Facing one = facing(arm, posture.branch, tool_m, limit_margin_rad);
   return with_roll(arm, solve(arm, tool_m, one, limit_margin_rad)[posture.bent_back ? 1 : 0], one.excess_rad, roll_rad, limit_margin_rad);
 }
 
 std::optional<BarRolls> rolls_for_bar(const Arm& arm, const JointVector& q_rad, const Vec3& bar) {
-  const PlanarChain chain(arm.planar(), q_rad);
+  const Mat3 tool = arm.base_from_unrolled_tool(q_rad).linear();
   const double length = bar.norm();
-  const double along_x = bar.dot(chain.tool_x());
-  const double along_y = bar.dot(chain.across());
+  const double along_x = bar.dot(tool.col(0));
+  const double along_y = bar.dot(tool.col(1));
   const double square = std::hypot(along_x, along_y);
   constexpr double sin_min = 0.1987;  // 0.2 rad
-  if (!std::isfinite(length) || !q_rad.head<3>().allFinite() || !(square > sin_min * length)) return std::nullopt;
+  if (!std::isfinite(length) || !tool.allFinite() || !(square > sin_min * length)) return std::nullopt;
   // At a roll of rho, tool y is (-sin rho, cos rho) in tool x and y at roll 0.
   const double roll = std::atan2(-along_x, along_y);
-  return BarRolls{{roll, wrap(roll + pi)}, std::atan2(std::abs(bar.dot(chain.tool_z())), square)};
+  return BarRolls{{roll, wrap(roll + pi)}, std::atan2(std::abs(bar.dot(tool.col(2))), square)};
 }
 
 std::optional<double> roll_for_turn(const BarRolls& rolls, double turn_rad, double lower_rad, double upper_rad) {

@@ -1,4 +1,4 @@
-// From a tool point and a roll to joint angles, in closed form: no iteration, no starting guess, and a reason where there is no answer.
+// From a tool point and a roll to joint angles, for arms of the planar form, in closed form: no iteration, no starting guess, and a reason where there is no answer.
 //
 // A position fixes the approach axis: the arm has three joints besides the roll. The slew faces the target (front) or looks away from it with the arm
 // folded under (folded), and the elbow's triangle of upper arm and forearm bends one way or the other: of up to four postures those within the limits
@@ -22,6 +22,7 @@ enum class IkOutcome : std::uint8_t {
   shoulder_limit,
   elbow_limit,
   roll_limit,
+  other_form,  // the arm is not of the form that has these closed forms (ArmModel::Form)
 };
 const char* name(IkOutcome outcome);
 

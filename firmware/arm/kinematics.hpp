@@ -1,5 +1,6 @@
 // An arm held by value, and where its parts are for given joint angles, in closed form.
 //
+// Of an arm of any form: from joint to joint along the chain. Of the planar form:
 // The slew turns a vertical plane about base z; shoulder and elbow move within that plane; the roll axis lies in it. So a pose is a planar sum:
 // with psi = slew + mount yaw, e = (cos psi, sin psi, 0), beta = shoulder + its offset, gamma = beta + elbow + its offset,
 //   elbow = (a0 + a1 cos beta) e + (a1 sin beta) z,   tool = elbow + a2 (cos gamma e + sin gamma z) + d (sin gamma e - cos gamma z).
@@ -15,14 +16,25 @@
 
 namespace lf::arm {
 
-// slew, shoulder, elbow, roll, in radians (or rad/s, rad/s^2 where so named).
-using JointVector = Eigen::Matrix<double, 4, 1>;
+// One row for each of the arm's joints, base to tip, in radians (or rad/s, rad/s^2 where so named). Rows past an arm's own joints are 0.
+using JointVector = Eigen::Matrix<double, capacity::arm_joints, 1>;
+// Of an arm of this form.
+inline JointVector planar_joints(double slew_rad, double shoulder_rad, double elbow_rad, double roll_rad) {
+  JointVector all = JointVector::Zero();
+  all.head<4>() << slew_rad, shoulder_rad, elbow_rad, roll_rad;
+  return all;
+}
+// Of an arm of so many joints: `before` for those before the roll, `roll` for the last.
+inline JointVector each_joint(std::size_t arm_joints, double before, double roll) {
+  JointVector all = JointVector::Zero();
+  for (std::size_t i = 0; i < arm_joints; ++i) all[static_cast<Eigen::Index>(i)] = i + 1 < arm_joints ? before : roll;
+  return all;
+}
 // Linear velocity of the tool point (m/s) above angular velocity (rad/s), both in the base frame, per rad/s of each joint.
-using Jacobian = Eigen::Matrix<double, 6, 4>;
+using Jacobian = Eigen::Matrix<double, 6, capacity::arm_joints>;
 
-// base_from_link of slew, upper_arm, forearm, wrist, finger_a and finger_b, in this order.
-inline constexpr std::size_t moving_link_count = 6;
-using LinkPoses = std::array<Pose, moving_link_count>;
+// base_from_link of the arm's links, base to tip, then of finger_a and finger_b.
+using LinkPoses = std::array<Pose, ArmModel::max_links>;
 
 // A link's outline for clearances, in the base frame: all points within `radius_m` of the segment a-b. Contains the link's collision shape.
 struct Capsule {
@@ -34,7 +46,11 @@ struct Capsule {
 // Of one pose. Without a value beyond its size: a pose is asked for every microsecond, and most of the room is not used.
 class LinkCapsules {
  public:
-  LinkCapsules() {}  // NOLINT(modernize-use-equals-default): that would set all of it to zero
+  // Of an arm with so many joints that place the tool: links beyond are fingers.
+  explicit LinkCapsules(std::size_t arm_joints = 4)
+      : arm_joints_(arm_joints) {}  // items_ stays as it is: setting it to zero would take its time
+
+  std::size_t arm_joints() const { return arm_joints_; }
 
   std::size_t size() const { return size_; }
   const Capsule& operator[](std::size_t i) const { return items_[i]; }
@@ -47,10 +63,12 @@ class LinkCapsules {
  private:
   std::array<Capsule, capacity::arm_shapes> items_;
   std::size_t size_ = 0;
+  std::size_t arm_joints_;
 };
 
 // What each joint may do; by default what the arm can.
 struct JointLimits {
+  std::size_t joints = 0;  // whose rows count
   JointVector lower_rad = JointVector::Zero(), upper_rad = JointVector::Zero();
   JointVector velocity_rad_s = JointVector::Zero(), acceleration_rad_s2 = JointVector::Zero(), jerk_rad_s3 = JointVector::Zero();
 };
@@ -61,10 +79,17 @@ class Arm {
   explicit Arm(const ArmModel& model);
 
   const ArmModel& model() const { return model_; }
-  const ArmModel::Planar& planar() const { return model_.planar; }
-  const ArmModel::Joint& joint(Joint which) const { return model_.joints[static_cast<std::size_t>(which)]; }
+  bool is_planar() const { return model_.form == ArmModel::Form::planar; }
+  const ArmModel::Planar& planar() const { return model_.planar; }  // of that form
+  const ArmModel::Joint& joint(std::size_t i) const { return model_.joints[i]; }
+  // Those that place the tool, and all, the jaw's too.
+  std::size_t arm_joints() const { return model_.arm_joints; }
+  std::size_t joint_count() const { return model_.joint_count(); }
+  std::size_t roll_joint() const { return model_.arm_joints - 1; }
+  std::size_t jaw_joint() const { return model_.arm_joints; }
+  std::size_t link_count() const { return model_.joint_count() + 1; }  // that move
   const ArmModel::Jaw& jaw() const { return model_.jaw; }
-  // From the elbow straight to the tool point.
+  // From the elbow straight to the tool point, of the planar form.
   struct Forearm {
     double length_squared_m2 = 0, length_m = 0;
     double angle_rad = 0;  // from the forearm's own x direction
@@ -75,7 +100,9 @@ class Arm {
   Pose base_from_tool(const JointVector& q_rad) const;
   // The tool axis (tool z) in the base frame; it does not depend on the roll.
   Vec3 approach_axis(const JointVector& q_rad) const;
-  // The laser, given in the tool frame at roll 0 and carried by slew, shoulder and elbow: the roll in `q_rad` is ignored.
+  // The tool frame at roll 0: what the joints before the roll make of it.
+  Pose base_from_unrolled_tool(const JointVector& q_rad) const;
+  // The laser, given in the tool frame at roll 0 and carried by the joints before the roll: the roll in `q_rad` is ignored.
   Pose base_from_laser(const JointVector& q_rad, const LaserCalibration& laser) const;
   // Geometric Jacobian of the tool point.
   Jacobian jacobian(const JointVector& q_rad) const;
@@ -87,7 +114,11 @@ class Arm {
   // 0.1 s is 25 control periods, above the drives' bandwidth and below what sets the arm swinging.
   JointLimits limits(double position_margin_rad = 0, double speed_fraction = 1, double jerk_time_s = 0.1) const;
 
+  // How far from each joint's axis any point of what it moves can be, at most, with the jaw at `jaw_rad`, in whatever pose the joints after it are.
+  JointVector reach_m(double jaw_rad) const;
+
  private:
+  JointVector planar_reach_m(double jaw_rad) const;
   ArmModel model_;
   Forearm forearm_;
 };

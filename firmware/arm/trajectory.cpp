@@ -12,7 +12,7 @@ bool plan_fraction(const JointVector& way_rad, const JointLimits& limits, SCurve
   if (longest == 0) return curve.plan(0, 1, 1, 1);
   const JointVector way = way_rad.cwiseAbs() / longest;  // in radians of the joint that moves most, so that tiny ways divide nothing tiny
   double velocity = HUGE_VAL, acceleration = HUGE_VAL, jerk = HUGE_VAL;
-  for (std::size_t i = 0; i < arm_joint_count; ++i) {
+  for (std::size_t i = 0; i < limits.joints; ++i) {
     if (way[i] == 0) continue;
     velocity = std::min(velocity, limits.velocity_rad_s[i] / way[i]);
     acceleration = std::min(acceleration, limits.acceleration_rad_s2[i] / way[i]);
@@ -22,9 +22,11 @@ bool plan_fraction(const JointVector& way_rad, const JointLimits& limits, SCurve
 }
 
 bool valid(const JointLimits& limits) {
+  const auto joints = static_cast<Eigen::Index>(limits.joints);
+  if (joints < 1 || joints > limits.velocity_rad_s.size()) return false;
   return limits.velocity_rad_s.allFinite() && limits.acceleration_rad_s2.allFinite() && limits.jerk_rad_s3.allFinite() &&
-         limits.velocity_rad_s.minCoeff() > 0 && limits.acceleration_rad_s2.minCoeff() > 0 && limits.jerk_rad_s3.minCoeff() > 0 &&
-         limits.lower_rad.allFinite() && limits.upper_rad.allFinite();
+         limits.velocity_rad_s.head(joints).minCoeff() > 0 && limits.acceleration_rad_s2.head(joints).minCoeff() > 0 &&
+         limits.jerk_rad_s3.head(joints).minCoeff() > 0 && limits.lower_rad.allFinite() && limits.upper_rad.allFinite();
 }
 
 // A position measured at a limit may lie past it by an encoder's tick: moving away from there must be possible.
@@ -97,7 +99,7 @@ PlanOutcome ConstantSpeedSweep::plan(const JointVector& from_rad, const JointVec
   // The ramp to full speed v with acceleration a and jerk j takes v/a + a/j, or 2 sqrt(v/j) when full acceleration is not reached.
   double jerk_time_s = 0;
   double ramp_s = 0;
-  for (std::size_t i = 0; i < arm_joint_count; ++i) {
+  for (std::size_t i = 0; i < limits.joints; ++i) {
     jerk_time_s = std::max(jerk_time_s, limits.acceleration_rad_s2[i] / limits.jerk_rad_s3[i]);
     ramp_s = std::max({ramp_s, speed[i] / limits.acceleration_rad_s2[i], std::sqrt(speed[i] / limits.jerk_rad_s3[i])});
   }
@@ -148,7 +150,7 @@ JointState ConstantSpeedSweep::sample(double t_s) const {
 }
 
 JointStop::JointStop(const JointState& from, const JointLimits& limits) {
-  for (std::size_t i = 0; i < arm_joint_count; ++i) {
+  for (std::size_t i = 0; i < limits.joints; ++i) {
     PathState state{from.q_rad[i], from.qd_rad_s[i], from.qdd_rad_s2[i]};
     if (!std::isfinite(state.position)) state = {};
     if (!std::isfinite(state.velocity) || !std::isfinite(state.acceleration)) state = {state.position, 0, 0};
@@ -164,7 +166,7 @@ double JointStop::duration_s() const {
 
 JointState JointStop::sample(double t_s) const {
   JointState state;
-  for (std::size_t i = 0; i < arm_joint_count; ++i) {
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
     const PathState joint = joints_[i].sample(t_s);
     state.q_rad[i] = joint.position;
     state.qd_rad_s[i] = joint.velocity;

@@ -71,7 +71,7 @@ struct LinePlan {
   double speed_m_s = 0;          // that will be reached: lower than asked for where a joint's limit, or the way's shortness, says so
 };
 
-// The tool point along a straight line, the roll from start to goal in proportion. Checked along the whole way before it starts: every point has joint
+// The tool point along a straight line, for arms of the planar form, the roll from start to goal in proportion. Checked along the whole way before it starts: every point has joint
 // angles within the limits, and the speed is lowered until no joint passes its own.
 class CartesianLine {
  public:
@@ -146,7 +146,7 @@ class JointStop {
   JointState sample(double t_s) const;
 
  private:
-  std::array<StopCurve, arm_joint_count> joints_;
+  PerArmJoint<StopCurve> joints_;
 };
 
 }  // namespace lf::arm

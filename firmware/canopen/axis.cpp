@@ -68,7 +68,8 @@ const char* name(AxisFault fault) {
 }
 
 Axis::Axis(const DriveSetup& setup, const NetworkConfig& config)
-    : setup_(setup),
+    : setup_(&setup),
+      quick_stop_option_(setup.quick_stop_option),
       sync_period_(config.sync_period),
       transition_timeout_(config.transition_timeout + setup.profile.brake_opens + setup.profile.brake_closes),
       limits_{setup.max_speed_counts_s, setup.following_window_counts} {}
@@ -85,7 +86,7 @@ void Axis::request(AxisRequest request) {
 }
 
 bool Axis::set_target_counts(std::int32_t counts) {
-  const std::int32_t low = std::min(setup_.min_counts, target_counts_), high = std::max(setup_.max_counts, target_counts_);
+  const std::int32_t low = std::min(setup_->min_counts, target_counts_), high = std::max(setup_->max_counts, target_counts_);
   if (!enabled() || counts < low || counts > high) {
     ++stats_.targets_refused;
     return false;
@@ -95,12 +96,12 @@ bool Axis::set_target_counts(std::int32_t counts) {
 }
 
 void Axis::set_limits_here(const AxisLimits& limits) {
-  limits_.max_speed_counts_s = std::min(limits.max_speed_counts_s, setup_.max_speed_counts_s);
-  limits_.following_window_counts = std::min(limits.following_window_counts, setup_.following_window_counts);
+  limits_.max_speed_counts_s = std::min(limits.max_speed_counts_s, setup_->max_speed_counts_s);
+  limits_.following_window_counts = std::min(limits.following_window_counts, setup_->following_window_counts);
 }
 
 void Axis::set_torque_offset_permille(std::int16_t permille) {
-  const auto limit = static_cast<std::int16_t>(std::min<std::uint16_t>(setup_.max_torque_of(rated_torque_unm_), 0x7FFF));
+  const auto limit = static_cast<std::int16_t>(std::min<std::uint16_t>(setup_->max_torque_of(rated_torque_unm_), 0x7FFF));
   torque_offset_permille_ = enabled() ? std::clamp(permille, static_cast<std::int16_t>(-limit), limit) : std::int16_t{0};
 }
 
@@ -163,9 +164,9 @@ void Axis::go_online(const NodeBoot& boot, Time now) {
   forget_state();
   online_ = true;
   rated_torque_unm_ = boot.rated_torque_unm;
-  setup_.quick_stop_option = boot.quick_stop_option;
+  quick_stop_option_ = boot.quick_stop_option;
   waiting_since_ = now;
-  if (setup_.homing_method == 0) homed_ = setup_.zero_known && !zero_lost_;
+  if (setup_->homing_method == 0) homed_ = setup_->zero_known && !zero_lost_;
 }
 
 void Axis::go_offline() {
@@ -177,10 +178,10 @@ void Axis::lose_node() {
   if (online_) latch(AxisFault::node_lost);
 }
 
-void Axis::forget_home() { homed_ = setup_.homing_method == 0 && setup_.zero_known && !zero_lost_; }
+void Axis::forget_home() { homed_ = setup_->homing_method == 0 && setup_->zero_known && !zero_lost_; }
 
 void Axis::on_emcy(std::uint16_t code) {
-  if (!setup_.profile.loses_position(code)) return;
+  if (!setup_->profile.loses_position(code)) return;
   lose_zero();
   if (online_ && seen_) latch(AxisFault::drive_fault);
 }
@@ -193,9 +194,9 @@ void Axis::lose_zero() {
 
 void Axis::on_tpdo(const CanFrame& frame, Time sync) {
   statusword_ = get<std::uint16_t>(frame, can_map::drive_tpdo1::statusword);
-  const DriveScale& scale = setup_.profile.scale;
+  const DriveScale& scale = setup_->profile.scale;
   const std::int64_t counts = scale.counts(get<std::int32_t>(frame, can_map::drive_tpdo1::position));
-  actual_counts_ = static_cast<std::int32_t>(counts - setup_.encoder_zero_counts);
+  actual_counts_ = static_cast<std::int32_t>(counts - setup_->encoder_zero_counts);
   torque_permille_ = clamped(scale.torque.over(scale.sign * get<std::int16_t>(frame, can_map::drive_tpdo1::torque)));
   actual_time_ = sync;
   if (!seen_) target_counts_ = wanted_counts_ = actual_counts_;
@@ -243,7 +244,7 @@ void Axis::watch_brake(Time now) {
     operating_since_ = now;
     return;
   }
-  const DriveProfile& profile = setup_.profile;
+  const DriveProfile& profile = setup_->profile;
   if (now - operating_since_ < profile.brake_opens) return;
   if (!profile.waits_to_follow || drive_follows() || mode_ != OperationMode::cyclic_position) brake_open_ = true;
 }
@@ -253,9 +254,9 @@ bool Axis::follows_badly(Time now) {
   const std::int64_t apart = following_counts() < 0 ? -following_counts() : following_counts();
   const bool follows = enabled() && mode_ == OperationMode::cyclic_position;
   if (!follows || apart <= limits_.following_window_counts) in_step_since_ = now;
-  const Duration timeout = Duration::from_ms(std::max<int>(setup_.following_timeout_ms, least_following_timeout_ms));
+  const Duration timeout = Duration::from_ms(std::max<int>(setup_->following_timeout_ms, least_following_timeout_ms));
   const Duration late = std::min(timeout * 2, Duration::from_ms(latest_following_timeout_ms));
-  return now - in_step_since_ > (setup_.profile.master_times_following ? timeout : late);
+  return now - in_step_since_ > (setup_->profile.master_times_following ? timeout : late);
 }
 
 DriveGoal Axis::goal() const {
@@ -266,7 +267,7 @@ DriveGoal Axis::goal() const {
     case AxisRequest::quick_stop: return DriveGoal::quick_stop;
     case AxisRequest::hold_enabled:
       if (!mode_settled()) return DriveGoal::disabled;
-      return setup_.quick_stop_option >= 5 ? DriveGoal::resumed : DriveGoal::enabled;
+      return quick_stop_option_ >= 5 ? DriveGoal::resumed : DriveGoal::enabled;
     case AxisRequest::home: return homing_ == HomingPhase::enable || homing_ == HomingPhase::run ? DriveGoal::enabled : DriveGoal::disabled;
     default: return DriveGoal::disabled;
   }
@@ -363,7 +364,7 @@ void Axis::step_homing(Time now) {
     homing_ = HomingPhase::idle;
     return;
   }
-  if (setup_.homing_method == 0) {
+  if (setup_->homing_method == 0) {
     request_ = AxisRequest::disable;
     return;
   }
@@ -372,7 +373,7 @@ void Axis::step_homing(Time now) {
     homing_since_ = now;
     homed_ = false;
   }
-  if (now - homing_since_ > setup_.homing_timeout) return latch(AxisFault::homing_timeout);
+  if (now - homing_since_ > setup_->homing_timeout) return latch(AxisFault::homing_timeout);
   switch (homing_) {
     case HomingPhase::enter_mode:
       if (mode_settled()) homing_ = HomingPhase::enable;
@@ -422,11 +423,11 @@ void Axis::step_target() {
 
 bool Axis::make_rpdo(CanFrame& frame) const {
   if (!online_ || !seen_) return false;
-  const DriveProfile& profile = setup_.profile;
+  const DriveProfile& profile = setup_->profile;
   const std::uint8_t length = profile.torque_offset ? can_map::drive_rpdo1::length : can_map::drive_rpdo1::torque_offset;
-  frame = empty_frame(cob_id::rpdo1 + setup_.node, length);
+  frame = empty_frame(cob_id::rpdo1 + setup_->node, length);
   put(frame, can_map::drive_rpdo1::controlword, controlword_);
-  const std::int64_t counts = std::int64_t{target_counts_} + setup_.encoder_zero_counts;
+  const std::int64_t counts = std::int64_t{target_counts_} + setup_->encoder_zero_counts;
   put(frame, can_map::drive_rpdo1::target_position, profile.scale.drive_position(counts));
   if (profile.torque_offset) {
     put(frame, can_map::drive_rpdo1::torque_offset, clamped(profile.scale.torque.times(profile.scale.sign * torque_offset_permille_)));

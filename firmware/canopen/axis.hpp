@@ -80,7 +80,11 @@ class Axis {
   };
 
   Axis() = default;
+  // `setup` is known by its place.
   Axis(const DriveSetup& setup, const NetworkConfig& config);
+
+  // The same set-up, elsewhere.
+  void find_setup(const DriveSetup& setup) { setup_ = &setup; }
 
   // The core's side. Asking once is enough; `reset_fault` and `home` asked again after they ended start again. Ignored while offline. What leads to power
   // is refused, and counted, for a joint without a known zero.
@@ -107,7 +111,7 @@ class Axis {
   // The drive has said that its position is lost. Outlives faults, resets and boots: it ends with a homing, or with the axis.
   bool zero_lost() const { return zero_lost_; }
   void lose_zero();  // told by somebody else who has heard its drive
-  bool may_have_power() const { return setup_.may_have_power() && !(zero_lost_ && setup_.homing_method == 0); }
+  bool may_have_power() const { return setup_->may_have_power() && !(zero_lost_ && setup_->homing_method == 0); }
   AxisFault fault() const { return fault_; }
   // The latest values, those of the SYNC at `actual_time()`.
   std::int32_t actual_counts() const { return actual_counts_; }
@@ -125,7 +129,9 @@ class Axis {
   DriveState drive_state() const { return decode_statusword(statusword_); }
   // The motor's rated torque in micro newton metres, found at boot: 6076 in its unit, or what the machine's file states.
   std::uint32_t rated_torque_unm() const { return rated_torque_unm_; }
-  const DriveSetup& setup() const { return setup_; }
+  const DriveSetup& setup() const { return *setup_; }
+  // 605A, as the drive took it.
+  std::int16_t quick_stop_option() const { return quick_stop_option_; }
   const Stats& stats() const { return stats_; }
 
   // The network's side.
@@ -146,7 +152,7 @@ class Axis {
   void forget_state();
   void supervise(Time now);
   void watch_brake(Time now);
-  bool may_move() const { return brake_open_ || (setup_.profile.brake_opens == Duration{} && !setup_.profile.waits_to_follow); }
+  bool may_move() const { return brake_open_ || (setup_->profile.brake_opens == Duration{} && !setup_->profile.waits_to_follow); }
   bool follows_badly(Time now);
   void latch(AxisFault fault);
   DriveGoal goal() const;
@@ -163,7 +169,8 @@ class Axis {
   void step_target();
   bool handshake_over() const { return syncs_since_change_ >= handshake_syncs; }
 
-  DriveSetup setup_;
+  const DriveSetup* setup_ = nullptr;
+  std::int16_t quick_stop_option_ = 0;
   Duration sync_period_;
   Duration transition_timeout_;
   AxisLimits limits_;

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "firmware/canopen/drive_profile.hpp"
-#include "shared/messages/joint_io.hpp"
+#include "shared/messages/capacity.hpp"
 #include "shared/messages/static_vector.hpp"
 
 namespace lf::canopen {
@@ -61,9 +61,8 @@ struct NodeBoot {
 };
 
 struct BootReport {
-  static constexpr std::size_t node_count = joint_count + 1;
   BootState state = BootState::idle;
-  std::array<NodeBoot, node_count> nodes{};  // the drives in the order of Joint, then the output node
+  StaticVector<NodeBoot, capacity::nodes> nodes;  // the drives in the order of the joints, then the output node
 
   // The first node that failed; nullptr if none did.
   const NodeBoot* failed() const {

@@ -95,13 +95,13 @@ struct DriveProfile {
   std::int16_t abort_fallback = 0;
 
   // Checked and written after the identity and before everything else.
-  static constexpr std::size_t max_objects = 24;  // the longest shipped profile has 11
+  static constexpr std::size_t max_objects = 16;  // the longest shipped profile has 11
   StaticVector<BootStep, max_objects> objects;
-  static constexpr std::size_t max_absences = 16;  // the longest shipped profile has 9
+  static constexpr std::size_t max_absences = 12;  // the longest shipped profile has 9
   StaticVector<Absence, max_absences> absences;
 
   // EMCY codes with which the drive says that its encoder's position is lost: the joint's zero is no longer where it was found.
-  static constexpr std::size_t max_position_lost = 16;  // the longest shipped profile has 2
+  static constexpr std::size_t max_position_lost = 8;  // the longest shipped profile has 2
   StaticVector<std::uint16_t, max_position_lost> position_lost;
 
   bool loses_position(std::uint16_t emcy) const {

@@ -27,20 +27,25 @@ const char* name(Refusal refusal) {
   return "unknown";
 }
 
-Network::Network(const NetworkConfig& config) : config_(config), io_(config) {
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    nodes_[i] = Node(config.drives[i].node, config);
-    axes_[i] = Axis(config.drives[i], config);
+Network::Network(const NetworkConfig& config) : NetworkState(config) {
+  for (const DriveSetup& drive : config_.drives) {
+    (void)nodes_.push_back(Node(drive.node, config));  // as many as the configuration has room for
+    (void)axes_.push_back(Axis(drive, config));
   }
-  nodes_[io_index] = Node(config.io.node, config);
+  (void)nodes_.push_back(Node(config.io.node, config));
+}
+
+// The axes of a copy have their set-ups in it.
+Network::Network(const Network& other) : NetworkState(other) {
+  for (std::size_t i = 0; i < axes_.size(); ++i) axes_[i].find_setup(config_.drives[i]);
 }
 
 BootContext Network::context(std::size_t node) const {
-  return {&config_, node < joint_count ? &config_.drives[node] : nullptr, nodes_[node].id(), 0};
+  return {&config_, node < drive_count() ? &config_.drives[node] : nullptr, nodes_[node].id(), 0};
 }
 
 void Network::start_boot(Time now) {
-  std::size_t offender = node_count;
+  std::size_t offender = 0;
   if (check(config_, offender) != ConfigError::none) {
     misconfigured_node_ = offender;
     boot_ = BootState::failed;
@@ -52,7 +57,7 @@ void Network::start_boot(Time now) {
   nodes_started_ = false;
   running_ = true;
   boot_ = BootState::running;
-  for (std::size_t i = 0; i < node_count; ++i) nodes_[i].start_boot(now, context(i));
+  for (std::size_t i = 0; i < node_count(); ++i) nodes_[i].start_boot(now, context(i));
 }
 
 void Network::go_offline() {
@@ -63,11 +68,12 @@ void Network::go_offline() {
 BootReport Network::boot() const {
   BootReport report;
   report.state = boot_;
-  for (std::size_t i = 0; i < node_count; ++i) report.nodes[i] = nodes_[i].boot().report();
-  if (misconfigured_node_ < node_count) {
-    report.nodes[misconfigured_node_].node = nodes_[misconfigured_node_].id();
-    report.nodes[misconfigured_node_].state = BootState::failed;
-    report.nodes[misconfigured_node_].failure = BootFailure::configuration;
+  for (const Node& node : nodes_) (void)report.nodes.push_back(node.boot().report());
+  if (misconfigured_node_) {
+    NodeBoot& node = report.nodes[*misconfigured_node_];
+    node.node = nodes_[*misconfigured_node_].id();
+    node.state = BootState::failed;
+    node.failure = BootFailure::configuration;
   }
   return report;
 }
@@ -118,7 +124,7 @@ void Network::shut_down() {
 }
 
 std::optional<std::size_t> Network::index_of(std::uint8_t node) const {
-  for (std::size_t i = 0; i < node_count; ++i) {
+  for (std::size_t i = 0; i < node_count(); ++i) {
     if (nodes_[i].id() == node) return i;
   }
   return std::nullopt;
@@ -180,12 +186,12 @@ void Network::refuse_foreign_master(std::uint32_t id) {
 }
 
 void Network::on_tpdo(std::size_t node, const CanFrame& frame) {
-  const std::uint8_t length = node == io_index ? IoModule::tpdo_length : can_map::drive_tpdo1::length;
+  const std::uint8_t length = node == io_index() ? IoModule::tpdo_length : can_map::drive_tpdo1::length;
   if (frame.length < length) return refuse(Refusal::pdo_too_short);
   if (frame.length > length) return refuse(Refusal::pdo_too_long);
   if (!nodes_[node].started()) return refuse(Refusal::pdo_before_start);
   nodes_[node].on_process_data();
-  if (node == io_index) {
+  if (node == io_index()) {
     if (io_.seen() && io_.actual_time() == last_sync_) ++stats_.pdo_repeated;
     return io_.on_tpdo(frame, last_sync_);
   }
@@ -198,7 +204,7 @@ void Network::on_emcy(std::size_t node, const CanFrame& frame, Time now) {
   if (frame.length != 8) return refuse(Refusal::bad_length);
   const Emcy emcy = decode_emcy(frame, now);
   nodes_[node].on_emcy(emcy);
-  if (node < joint_count) axes_[node].on_emcy(emcy.code);
+  if (node < drive_count()) axes_[node].on_emcy(emcy.code);
   ++stats_.emcys;
   if (emcy_count_ == emcy_history) {
     ++stats_.emcys_forgotten;
@@ -230,9 +236,9 @@ void Network::tick(Time now, Outbox& outbox) {
   last_sync_ = now;
   ++stats_.syncs;
 
-  for (std::size_t i = 0; i < node_count; ++i) {
+  for (std::size_t i = 0; i < node_count(); ++i) {
     nodes_[i].step(now, context(i));
-    if (nodes_[i].take_restart() && i < joint_count) axes_[i].forget_home();
+    if (nodes_[i].take_restart() && i < drive_count()) axes_[i].forget_home();
   }
   if (boot_ == BootState::running) step_boot(now);
   // Until the nodes are stopped, no later order gives power back.
@@ -259,10 +265,10 @@ void Network::step_boot(Time now) {
 
 // All of them at first; later one that restarted before its first data and was configured anew.
 void Network::start_configured(Time now) {
-  for (std::size_t i = 0; i < node_count; ++i) {
+  for (std::size_t i = 0; i < node_count(); ++i) {
     if (!nodes_[i].boot().configured()) continue;
-    if (i < joint_count) axes_[i].go_online(nodes_[i].boot().report(), now);
-    if (i == io_index) io_.go_online();
+    if (i < drive_count()) axes_[i].go_online(nodes_[i].boot().report(), now);
+    if (i == io_index()) io_.go_online();
     nodes_[i].boot().release(now);
   }
 }
@@ -271,7 +277,7 @@ void Network::give_up_boot() {
   boot_ = BootState::failed;
   go_offline();
   if (!nodes_started_) return;
-  for (std::size_t i = 0; i < node_count; ++i) {
+  for (std::size_t i = 0; i < node_count(); ++i) {
     nmt_due_[i] = NmtCommand::enter_pre_operational;
     nodes_[i].boot().stand_down();
   }
@@ -280,14 +286,14 @@ void Network::give_up_boot() {
 void Network::stop_nodes() {
   boot_ = BootState::idle;
   go_offline();
-  for (std::size_t i = 0; i < node_count; ++i) {
+  for (std::size_t i = 0; i < node_count(); ++i) {
     nmt_due_[i] = NmtCommand::stop;
     nodes_[i].boot().stand_down();
   }
 }
 
 void Network::step_axes(Time now) {
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < drive_count(); ++i) {
     if (nodes_[i].fault().link()) axes_[i].lose_node();
     axes_[i].step(now, nodes_[i].sdo());
   }
@@ -333,7 +339,7 @@ void Network::send_guard_requests(Time now, Outbox& outbox) {
 }
 
 void Network::send_nmt(Outbox& outbox) {
-  for (std::size_t i = 0; i < node_count; ++i) {
+  for (std::size_t i = 0; i < node_count(); ++i) {
     std::optional<NmtCommand> command = nodes_[i].boot().take_nmt();
     if (!command) command = std::exchange(nmt_due_[i], std::nullopt);
     if (!command) continue;

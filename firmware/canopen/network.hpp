@@ -1,4 +1,4 @@
-// The front door of the CAN bus: the master of five CiA 402 drives and one CiA 401 output node.
+// The front door of the CAN bus: the master of the joints' CiA 402 drives and of one CiA 401 output node.
 //
 // Feed it every frame that arrives and call `tick` once a SYNC period; it answers with the frames to send, in the order to send them: SYNC, RPDOs,
 // master heartbeat, NMT, SDO. Nothing blocks, allocates or reads a clock. A frame that is not understood is refused and counted by its cause.
@@ -6,7 +6,7 @@
 //   Network network(config);
 //   network.start_boot(now);
 //   every 4 ms:  for (frames that arrived) network.on_frame(frame, time_of_arrival);
-//                decide: network.axis(Joint::elbow).set_target_counts(...), network.io().trigger_camera(...)
+//                decide: network.axis(2).set_target_counts(...), network.io().trigger_camera(...)
 //                outbox.clear(); network.tick(now, outbox); send(outbox)
 #pragma once
 
@@ -26,7 +26,7 @@
 
 namespace lf::canopen {
 
-// A tick sends at most SYNC + 6 RPDOs + heartbeat + 5 guard requests + 6 NMT + 6 SDO aborts + 6 SDO requests = 31.
+// A tick sends at most SYNC, heartbeat, and for each node an RPDO, a guard request, NMT, an SDO abort and an SDO request: 52 of ten nodes.
 using Outbox = StaticVector<CanFrame, 64>;
 
 // Why a frame was refused.
@@ -67,12 +67,43 @@ struct NetworkStats {
   }
 };
 
-class Network {
+// What a network remembers.
+class NetworkState {
+ protected:
+  explicit NetworkState(const NetworkConfig& config) : config_(config), io_(config) {}
+
+  NetworkConfig config_;
+  StaticVector<Node, capacity::nodes> nodes_;
+  StaticVector<Axis, capacity::joints> axes_;
+  IoModule io_;
+  BootState boot_ = BootState::idle;
+  bool running_ = false;  // SYNC and heartbeat are produced
+  bool nodes_started_ = false;
+  bool boot_up_sent_ = false;
+  bool bus_off_ = false;
+  ForeignFrames foreign_;
+  std::optional<Time> foreign_nmt_;
+  std::optional<std::size_t> misconfigured_node_;  // what `check` found
+  std::uint8_t shut_down_syncs_ = 0;               // left until NMT stop; 0: not shutting down
+  std::array<std::optional<NmtCommand>, capacity::nodes> nmt_due_{};
+  Time last_sync_;
+  Time next_heartbeat_;
+  static constexpr std::size_t emcy_history = 16;  // a drive sends one or two at a fault: those of eight nodes fit
+  std::array<Emcy, emcy_history> emcys_{};
+  std::size_t emcy_first_ = 0, emcy_count_ = 0;
+  NetworkStats stats_;
+};
+
+class Network : NetworkState {
  public:
-  static constexpr std::size_t node_count = BootReport::node_count;
-  static constexpr std::size_t io_index = joint_count;  // nodes are indexed as joints, then the output node
+  // Nodes are indexed as the joints, then the output node.
+  std::size_t drive_count() const { return axes_.size(); }
+  std::size_t node_count() const { return nodes_.size(); }
+  std::size_t io_index() const { return axes_.size(); }
 
   explicit Network(const NetworkConfig& config);
+  Network(const Network& other);
+  Network& operator=(const Network&) = delete;
 
   // Resets and configures every node, all at once, and starts them when all are configured. Call again to boot anew after a failure or a reboot:
   // every axis goes offline, disabled and without latched faults. An invalid configuration fails at once.
@@ -86,8 +117,8 @@ class Network {
 
   // Every joint has a known zero, or a drive that finds it.
   bool may_have_power() const;
-  Axis& axis(Joint joint) { return axes_[static_cast<std::size_t>(joint)]; }
-  const Axis& axis(Joint joint) const { return axes_[static_cast<std::size_t>(joint)]; }
+  Axis& axis(std::size_t joint) { return axes_[joint]; }
+  const Axis& axis(std::size_t joint) const { return axes_[joint]; }
   IoModule& io() { return io_; }
   const IoModule& io() const { return io_; }
 
@@ -151,27 +182,6 @@ class Network {
   void send_guard_requests(Time now, Outbox& outbox);
   void send_nmt(Outbox& outbox);
   void send_sdo(Time now, Outbox& outbox);
-
-  NetworkConfig config_;
-  std::array<Node, node_count> nodes_;
-  std::array<Axis, joint_count> axes_;
-  IoModule io_;
-  BootState boot_ = BootState::idle;
-  bool running_ = false;  // SYNC and heartbeat are produced
-  bool nodes_started_ = false;
-  bool boot_up_sent_ = false;
-  bool bus_off_ = false;
-  ForeignFrames foreign_;
-  std::optional<Time> foreign_nmt_;
-  std::size_t misconfigured_node_ = node_count;  // what `check` found; node_count: nothing
-  std::uint8_t shut_down_syncs_ = 0;             // left until NMT stop; 0: not shutting down
-  std::array<std::optional<NmtCommand>, node_count> nmt_due_{};
-  Time last_sync_;
-  Time next_heartbeat_;
-  static constexpr std::size_t emcy_history = 16;  // a drive sends one or two at a fault: all six nodes' fit
-  std::array<Emcy, emcy_history> emcys_{};
-  std::size_t emcy_first_ = 0, emcy_count_ = 0;
-  NetworkStats stats_;
 };
 
 }  // namespace lf::canopen

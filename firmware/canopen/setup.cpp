@@ -79,7 +79,9 @@ ConfigError check_drive(const DriveSetup& drive) {
   return ConfigError::none;
 }
 
-std::uint8_t node_of(const NetworkConfig& config, std::size_t i) { return i < joint_count ? config.drives[i].node : config.io.node; }
+std::uint8_t node_of(const NetworkConfig& config, std::size_t i) {
+  return i < config.drives.size() ? config.drives[i].node : config.io.node;
+}
 
 }  // namespace
 
@@ -98,24 +100,24 @@ bool DriveSetup::is_other_motor(std::uint32_t rated_torque_unm) const {
 ConfigError check(const NetworkConfig& config, std::size_t& offender) {
   std::uint8_t value = 0;
   std::int8_t exponent = 0;
-  offender = joint_count;
+  offender = config.drives.size();
   if (!interpolation_period(config.sync_period, value, exponent) || config.sync_period > longest_sync_period)
     return ConfigError::sync_period;
   const Duration shortest = config.sync_period;
   for (const Duration timeout : {config.sdo_timeout, config.boot_up_timeout, config.start_timeout, config.transition_timeout}) {
     if (timeout < shortest) return ConfigError::timeout;
   }
-  for (std::size_t i = 0; i <= joint_count; ++i) {
+  for (std::size_t i = 0; i <= config.drives.size(); ++i) {
     offender = i;
     const std::uint8_t node = node_of(config, i);
     if (node < 1 || node >= can_map::master_node) return ConfigError::node_id;
     for (std::size_t other = 0; other < i; ++other) {
       if (node_of(config, other) == node) return ConfigError::node_twice;
     }
-    if (i == joint_count) break;
+    if (i == config.drives.size()) break;
     if (const ConfigError error = check_drive(config.drives[i]); error != ConfigError::none) return error;
   }
-  offender = joint_count;
+  offender = config.drives.size();
   return ConfigError::none;
 }
 

@@ -6,7 +6,8 @@
 
 #include "firmware/canopen/drive_profile.hpp"
 #include "shared/can/can_map.hpp"
-#include "shared/messages/joint_io.hpp"
+#include "shared/messages/capacity.hpp"
+#include "shared/messages/static_vector.hpp"
 #include "shared/messages/time.hpp"
 
 namespace lf::canopen {
@@ -71,7 +72,7 @@ struct IoSetup {
 };
 
 struct NetworkConfig {
-  std::array<DriveSetup, joint_count> drives{};
+  StaticVector<DriveSetup, capacity::joints> drives;  // in the order of the joints
   IoSetup io;
   Duration sync_period = can_map::sync_period;             // 60C2 (and 1006): whole thousandths of 10^k s that fit one byte, see `valid`
   Duration sdo_timeout = Duration::from_ms(500);           // for each answer; servers on real drives take up to 100 ms while they store
@@ -98,7 +99,7 @@ enum class ConfigError : std::uint8_t {
 };
 const char* name(ConfigError error);
 
-// First thing wrong with `config`. `drive` is set to the index of the offender (joint_count: the output node or the network).
+// First thing wrong with `config`. `drive` is set to the index of the offender (the number of drives: the output node or the network).
 ConfigError check(const NetworkConfig& config, std::size_t& offender);
 
 // 60C2: period = value * 10^exponent s, in milliseconds (exponent -3) where these fit: many drives take no other exponent. False when no byte and exponent

@@ -7,9 +7,9 @@
 namespace lf::mission {
 
 void limit_axes(const arm::Arm& arm, canopen::Network& network) {
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    const ArmModel::Joint& joint = arm.model().joints[i];
-    canopen::Axis& axis = network.axis(static_cast<Joint>(i));
+  for (std::size_t i = 0; i < std::min(arm.joint_count(), network.drive_count()); ++i) {
+    const ArmModel::Joint& joint = arm.joint(i);
+    canopen::Axis& axis = network.axis(i);
     const double here_rad = arm::rad_from_counts(joint, axis.actual_counts());
     const double target_rad = arm::rad_from_counts(joint, axis.target_counts());
     const double coarsest_rad = std::max(arm::rad_per_count(joint, here_rad), arm::rad_per_count(joint, target_rad));

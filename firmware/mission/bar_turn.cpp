@@ -21,21 +21,21 @@ bool BarTurn::plan(const arm::Arm& arm, const arm::JointVector& start_rad, const
   direction_ = to_rad < from_rad ? -1 : 1;
   if (!curve_.plan(std::abs(to_rad - from_rad), limits.speed_rad_s, limits.acceleration_rad_s2, limits.jerk_rad_s3)) return false;
   constexpr int checks = 64;  // a turn of 130 degrees in steps of 2: the roll's nearest branch cannot be missed
-  double roll = start_rad[3];
+  double roll = start_rad[arm.roll_joint()];
   for (int i = 0; i <= checks; ++i) {
     roll = roll_at(from_rad + (to_rad - from_rad) * i / checks, roll);
     if (!(roll >= roll_min_rad && roll <= roll_max_rad)) return false;
   }
   goal_rad_ = start_rad;
-  goal_rad_[3] = roll;
+  goal_rad_[arm.roll_joint()] = roll;
   return true;
 }
 
 double BarTurn::handle_rad(double t_s) const { return from_rad_ + direction_ * curve_.sample(t_s).position; }
 
 arm::JointVector BarTurn::sample(double t_s) {
-  const double roll = roll_at(handle_rad(t_s), q_rad_[3]);
-  if (std::isfinite(roll)) q_rad_[3] = roll;
+  double& roll = q_rad_[arm_->roll_joint()];
+  if (const double next = roll_at(handle_rad(t_s), roll); std::isfinite(next)) roll = next;
   return q_rad_;
 }
 

@@ -33,7 +33,8 @@ void ClearRoute::begin(const arm::JointVector& from_rad, const arm::JointVector&
   points_ = {};
   barrier_ = arm::Barrier::none;
   via_[0] = park_rad_;
-  via_[0][3] = to_rad[3];
+  const std::size_t roll = surroundings.arm().roll_joint();
+  via_[0][roll] = to_rad[roll];
   via_[1] = to_rad;
   leaving_ = wanted_from(from_rad, jaw_rad, surroundings);
   look_at(Leg::straight, surroundings);

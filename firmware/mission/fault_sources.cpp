@@ -93,7 +93,7 @@ void FaultSources::collect_contact(const StepTick& tick) {
 void FaultSources::collect_jaw(const StepTick& tick) {
   const Workbench& bench = tick.bench;
   if (!bench.powered || bench.gripper.state() != arm::GripperState::lost) return;
-  tick.faults.report(Fault::following_error, static_cast<std::int32_t>(Joint::jaw));
+  tick.faults.report(Fault::following_error, static_cast<std::int32_t>(bench.config.arm.jaw_joint()));
 }
 
 void FaultSources::collect_timeout(const StepTick& tick) {
@@ -102,8 +102,8 @@ void FaultSources::collect_timeout(const StepTick& tick) {
   if (margin_s <= 0 || tick.clock.elapsed(tick.now) <= limit) return;
   // What keeps the arm from being enabled is a drive that does not leave its fault, or else one that does not do as it is told.
   for (const bool in_fault : {true, false}) {
-    for (std::size_t i = 0; i < joint_count && tick.step == Step::enable; ++i) {
-      const canopen::Axis& axis = tick.network.axis(static_cast<Joint>(i));
+    for (std::size_t i = 0; i < tick.network.drive_count() && tick.step == Step::enable; ++i) {
+      const canopen::Axis& axis = tick.network.axis(i);
       const bool asked = axis.requested() == canopen::AxisRequest::hold_enabled;
       if (in_fault ? !axis.drive_in_fault() : !asked || axis.enabled()) continue;
       tick.faults.report({Fault::drive_fault, static_cast<std::int32_t>(i), tick.network.fault(i).emcy_code});

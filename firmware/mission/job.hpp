@@ -43,8 +43,9 @@ class Job {
 
   const TaskResults& results() const { return results_; }
   std::size_t index() const { return index_; }
-  PanelMap::Valves valves() const;  // that its tasks turn
-  const Task& task() const { return results_[index_].task; }
+  PanelMap::Valves valves() const;                            // that its tasks turn
+  const Task& task() const { return results_[index_].task; }  // of a job that has one
+  bool turns() const { return !results_.empty() && task().kind == Task::Kind::turn_valve; }
   TaskResult& result() { return results_[index_]; }
 
   bool may_try_again(Step step) const { return tries(step) + 1u < tries_allowed_; }

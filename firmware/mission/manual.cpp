@@ -33,15 +33,16 @@ bool keeps_to_workspace(const Workbench& bench, std::size_t joint, double to_rad
 }  // namespace
 
 std::optional<double> jog_goal_rad(const Order& order, const Workbench& bench) {
-  const auto joint = static_cast<std::size_t>(order.joint);
-  if (joint >= joint_count || !std::isfinite(order.by_rad) || std::abs(order.by_rad) > largest_jog_rad) return std::nullopt;
-  const bool arm = joint < arm_joint_count;
+  const std::size_t joint = order.joint;
+  if (joint >= bench.config.arm.joint_count() || !std::isfinite(order.by_rad) || std::abs(order.by_rad) > largest_jog_rad)
+    return std::nullopt;
+  const bool arm = joint < bench.config.arm.arm_joints();
   // The arm would drag along what the jaw holds. A jog moves no joint but its own: the operator opens or closes the jaw first.
   if (arm && bench.jaw_may_hold()) return std::nullopt;
   const double from = arm ? bench.motion.target()[static_cast<Eigen::Index>(joint)] : bench.watch.joints().position_rad[joint];
   const double to = from + order.by_rad;
   const safety::JointLimit& limit = bench.config.mission_limits.joints[joint];
-  const ArmModel::Joint& stroke = bench.config.arm.joint(order.joint);
+  const ArmModel::Joint& stroke = bench.config.arm.joint(joint);
   const double low = std::max(limit.min_rad, stroke.lower_rad), high = std::min(limit.max_rad, stroke.upper_rad);
   const bool inside = to >= low && to <= high;
   const bool toward_it = (from < low && to > from && to <= high) || (from > high && to < from && to >= low);
@@ -54,7 +55,7 @@ void Manual::begin(const StepTick& tick) {
   if (tick.step != Step::jog) return;
   Workbench& bench = tick.bench;
   bench.job.forget_tries(Step::jog);
-  jaw_waits_ = jog_.joint == Joint::jaw;
+  jaw_waits_ = jog_.joint == bench.config.arm.jaw_joint();
   arm::JointVector goal = bench.motion.target();
   if (!jaw_waits_) goal[static_cast<Eigen::Index>(jog_.joint)] = jog_.goal_rad;
   bench.motion.jog(goal, bench.room(jaw_waits_ ? jog_.goal_rad : bench.jaw_rad()), bench.jaw_rad(), jog_speed_fraction);
@@ -75,7 +76,7 @@ Progress Manual::run_jog(const StepTick& tick) {
   if (!motion.is_done()) return motion;
   if (jaw_waits_) bench.gripper.turn_to(jog_.goal_rad);
   jaw_waits_ = false;
-  const bool jaw_moves = jog_.joint == Joint::jaw && bench.gripper.state() == arm::GripperState::opening;
+  const bool jaw_moves = jog_.joint == bench.config.arm.jaw_joint() && bench.gripper.state() == arm::GripperState::opening;
   return Progress::done_if(!jaw_moves);
 }
 

@@ -49,10 +49,9 @@ void Mission::tick(Time now, canopen::Network& network, ScanOrders& orders, Tele
 
 // Reads the joints, and passes them on to the vision thread while it may need them.
 void Mission::observe(const StepTick& tick) {
-  std::array<double, joint_count> rad{};
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    const auto joint = static_cast<Joint>(i);
-    rad[i] = arm::rad_from_counts(bench_.config.arm.joint(joint), tick.network.axis(joint).actual_counts());
+  PerJoint<double> rad{};
+  for (std::size_t i = 0; i < bench_.config.arm.joint_count(); ++i) {
+    rad[i] = arm::rad_from_counts(bench_.config.arm.joint(i), tick.network.axis(i).actual_counts());
   }
   const Time before = joints().t;
   bench_.watch.observe(tick.network, rad, tick.now);
@@ -60,7 +59,7 @@ void Mission::observe(const StepTick& tick) {
   ScanCommand sample;
   sample.kind = ScanCommand::Kind::joint_sample;
   sample.joints.t = joints().t;
-  for (std::size_t i = 0; i < arm_joint_count; ++i) sample.joints.q_rad[i] = joints().position_rad[i];
+  for (std::size_t i = 0; i < bench_.config.arm.arm_joints(); ++i) sample.joints.q_rad[i] = joints().position_rad[i];
   tick.send(sample);
 }
 
@@ -118,7 +117,8 @@ void Mission::record(const StepTick& tick, const safety::FaultReport& report, Re
 void Mission::give_up(const safety::FaultReport& cause) {
   const bool leaves = step_ == Step::abandon || step_ == Step::abandon_back || step_ == Step::stow;
   const bool felt = outcome_.fault == Fault::step_failed && may_be_misled(static_cast<StepFailure>(outcome_.code));
-  const bool explains = leaves && felt && cause.fault == Fault::following_error && cause.code < static_cast<std::int32_t>(arm_joint_count);
+  const bool explains =
+      leaves && felt && cause.fault == Fault::following_error && cause.code < static_cast<std::int32_t>(bench_.config.arm.arm_joints());
   if (ended() || (bench_.course == Course::giving_up && !explains)) return;
   bench_.course = Course::giving_up;
   outcome_.stage = row(step_).stage;
@@ -304,15 +304,14 @@ void Mission::drive(const StepTick& tick) {
   bench_.motion.step(tick.network.config().sync_period.s());
   if (yielding() && joints().valid && !on_hold()) bench_.compliance.update(joints().t, bench_.measured_nm());
   const arm::JointVector target = bench_.pushed_target();
-  for (std::size_t i = 0; i < arm_joint_count; ++i) {
-    const auto joint = static_cast<Joint>(i);
-    tick.network.axis(joint).set_target_counts(arm::counts_from_rad(bench_.config.arm.joint(joint), target[static_cast<Eigen::Index>(i)]));
+  for (std::size_t i = 0; i < bench_.config.arm.arm_joints(); ++i) {
+    tick.network.axis(i).set_target_counts(arm::counts_from_rad(bench_.config.arm.joint(i), target[static_cast<Eigen::Index>(i)]));
   }
   if (!joints().valid || on_hold()) return;
-  const auto jaw = static_cast<std::size_t>(Joint::jaw);
+  const std::size_t jaw = bench_.config.arm.jaw_joint();
   const double jaw_rad = bench_.gripper.update(joints().t, joints().position_rad[jaw],
                                                {joints().torque_nm[jaw], joints().torque_low_nm[jaw], joints().torque_high_nm[jaw]});
-  tick.network.axis(Joint::jaw).set_target_counts(arm::counts_from_rad(bench_.config.arm.joint(Joint::jaw), jaw_rad));
+  tick.network.axis(jaw).set_target_counts(arm::counts_from_rad(bench_.config.arm.joint(jaw), jaw_rad));
 }
 
 // A slew that runs off squeezes the bar against the jaw. The friction of its gear hides that from its motor long before it is an overload, so the lag tells it.
@@ -332,11 +331,10 @@ void Mission::report(const StepTick& tick) {
   telemetry.t = tick.now;
   telemetry.step = step_;
   telemetry.joints_valid = joints().valid;
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    const auto joint = static_cast<Joint>(i);
+  for (std::size_t i = 0; i < bench_.config.arm.joint_count(); ++i) {
     telemetry.actual_rad[i] = joints().position_rad[i];
     telemetry.torque_nm[i] = joints().torque_nm[i];
-    telemetry.target_rad[i] = arm::rad_from_counts(bench_.config.arm.joint(joint), tick.network.axis(joint).target_counts());
+    telemetry.target_rad[i] = arm::rad_from_counts(bench_.config.arm.joint(i), tick.network.axis(i).target_counts());
   }
   telemetry.outputs = tick.network.io().wanted_outputs();
   telemetry.faults = fault_counts_;

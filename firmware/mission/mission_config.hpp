@@ -29,9 +29,9 @@ struct MissionConfig {
   arm::PanelDoubt docking{.shift_m = 0.020, .turn_rad = 0.0349};
   arm::VehicleShape vehicle;  // what the arm must not touch
 
-  arm::JointVector park_rad{0.0, 0.60, 1.90, 0.0};  // folded, clear of the panel at every docking error
-  bool use_lamps = true;                            // for stills; sweeps are dark but for the laser
-  bool camera_always_on = false;                    // a frame every camera period even when nobody needs it, for the record
+  arm::JointVector park_rad = arm::planar_joints(0.0, 0.60, 1.90, 0.0);  // folded, clear of the panel at every docking error
+  bool use_lamps = true;                                                 // for stills; sweeps are dark but for the laser
+  bool camera_always_on = false;  // a frame every camera period even when nobody needs it, for the record
 
   // The camera: every tenth SYNC is 25 Hz. Of five frames one is taken without the laser, the background of the other four.
   std::uint32_t camera_syncs = 10;

@@ -17,10 +17,11 @@ bool Mission::order(const Order& order, Time now) {
     case Command::hold: hold(now); return true;
     case Command::resume: resume(now); return true;
     case Command::set_tasks:
-      if (!Job::makes_sense(order.tasks, bench_.mission().layout)) return false;
+      if (!bench_.may_work() || !Job::makes_sense(order.tasks, bench_.mission().layout)) return false;
       bench_.job.set(order.tasks);
       return true;
     case Command::start:
+      if (bench_.job.results().empty() || !bench_.may_work()) return false;
       // A job moves within the limits: a joint that was found outside of them is jogged back first.
       if (step_ == Step::ready && bench_.watch.any_outside()) return false;
       break;

@@ -15,7 +15,7 @@ constexpr double hold_ramp_s = 0.5;
 
 arm::JointLimits Motion::limits(double speed_fraction) const {
   arm::JointLimits limits = arm_.limits(0, speed_fraction);
-  for (std::size_t i = 0; i < arm_joint_count; ++i) {
+  for (std::size_t i = 0; i < limits.joints; ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     limits.lower_rad[k] = std::max(limits.lower_rad[k], limits_.joints[i].min_rad);
     limits.upper_rad[k] = std::min(limits.upper_rad[k], limits_.joints[i].max_rad);
@@ -127,7 +127,7 @@ void Motion::advance_sweep() {
   if (!sweep_planner_.advance()) return;
   const scan::SweepPlan& plan = sweep_planner_.plan();
   if (plan.outcome != scan::SweepOutcome::ok) return refuse(StepFailure::unreachable);
-  const auto joints = [](const std::array<double, arm_joint_count>& q) { return arm::JointVector(q[0], q[1], q[2], q[3]); };
+  const auto joints = [](const PerArmJoint<double>& q) { return arm::JointVector(q.data()); };
   const arm::PlanOutcome outcome = sweep_.plan(joints(plan.start_rad), joints(plan.end_rad), plan.duration.s(), limits(1));
   if (outcome != arm::PlanOutcome::ok) return refuse(StepFailure::unreachable);
   way_.begin(sweep_.start_rad(), surroundings_, wanted_everywhere);
@@ -148,9 +148,11 @@ void Motion::sweep() { begin(Kind::sweep, sweep_.duration_s()); }
 void Motion::turn(double from_rad, double to_rad, const Room& room, double jaw_rad, double speed_rad_s,
                   const arm::JointVector& pushed_rad) {
   const arm::JointLimits limits = this->limits(1);
+  const std::size_t roll = arm_.roll_joint();
   BarTurn::Limits bar;
   bar.speed_rad_s = speed_rad_s;
-  if (!turn_.plan(arm_, target_.q_rad, room.base_from_panel.linear(), from_rad, to_rad, bar, limits.lower_rad[3], limits.upper_rad[3])) {
+  if (!turn_.plan(arm_, target_.q_rad, room.base_from_panel.linear(), from_rad, to_rad, bar, limits.lower_rad[roll],
+                  limits.upper_rad[roll])) {
     return refuse(StepFailure::unreachable);
   }
   // The tool stays where it is: what is near stays near.

@@ -15,8 +15,8 @@ namespace lf::mission {
 // What waits of an order. `set_tasks`, `hold` and `resume` take effect on arrival and never wait.
 struct WaitingOrder {
   Command command = Command::start;
-  Joint joint = Joint::slew;  // jog
-  double goal_rad = 0;        // jog: where the joint is to end
+  std::size_t joint = 0;  // jog
+  double goal_rad = 0;    // jog: where the joint is to end
   Time arrived;
   Time expires;
 };

@@ -39,7 +39,7 @@ using Tasks = StaticVector<Task, MissionConfig::max_tasks>;
 
 struct Order {
   Command command = Command::start;
-  Joint joint = Joint::slew;  // jog
+  std::size_t joint = 0;  // jog
   double by_rad =
       0;        // jog: at most `largest_jog_rad`, and not out of the joint's limits; where it stands outside of them, only toward them
   Tasks tasks;  // set_tasks

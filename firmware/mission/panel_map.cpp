@@ -63,7 +63,7 @@ StepFailure PanelMap::update(const PanelResult& result, Valves wanted) {
   fit_ = {};
   if (!result.fit.valid) return StepFailure::no_panel;
   if (result.fit.points < min_plane_points) return StepFailure::too_few_points;
-  const scan::PanelFrame frame = scan::find_panel_frame(result, markers_, camera_, scan::PanelFrameConfig{});
+  const scan::PanelFrame frame = scan::find_panel_frame(result, *markers_, *camera_, scan::PanelFrameConfig{});
   fit_ = fit_of(result, frame);
   const StepFailure failure = judge(result, frame);
   if (failure != StepFailure::none) return failure;

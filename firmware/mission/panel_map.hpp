@@ -24,9 +24,12 @@ class PanelMap {
   static_assert(PanelLayout::max_valves <= 32);
   static constexpr Valves bit(std::size_t valve) { return Valves{1} << valve; }
 
-  // `layout` outlives the map.
+  // All three outlive the map.
   PanelMap(const PanelLayout& layout, const MarkerCalibrations& markers, const CameraCalibration& camera)
-      : layout_(&layout), markers_(markers), camera_(camera), markers_beyond_m_(markers_beyond_m(markers)) {}
+      : layout_(&layout), markers_(&markers), camera_(&camera), markers_beyond_m_(markers_beyond_m(markers)) {}
+
+  PanelMap(const PanelLayout&, MarkerCalibrations&&, const CameraCalibration&) = delete;
+  PanelMap(const PanelLayout&, const MarkerCalibrations&, CameraCalibration&&) = delete;
 
   // Takes an answer of panel vision: the panel's place, and how the handles of these valves stand; what is known of the others stays. With none wanted, the handle of any
   // one has to be seen at its place. On a failure what was known before stays.
@@ -86,8 +89,8 @@ class PanelMap {
   static double markers_beyond_m(const MarkerCalibrations& markers);
 
   const PanelLayout* layout_;
-  MarkerCalibrations markers_;
-  CameraCalibration camera_;
+  const MarkerCalibrations* markers_;
+  const CameraCalibration* camera_;
   CalibrationFit fit_;
   std::size_t told_valve_ = 0;
   // How much farther a marker is from the panel's origin than where the doubt was measured: what turns about the marker moves the origin.

@@ -99,7 +99,8 @@ std::optional<arm::JointVector> PressButton::choose_roll(Workbench& bench) {
   for (std::size_t k = 0; k < rolls_rad.size(); ++k) {
     arm::JointVector q = bench.measured_rad();
     if (barred_[k] || !tool_for_tip(bench.config.arm, tip, closed_tip_beyond_tool_m(bench.jaw()), rolls_rad[k], std::nullopt, q)) continue;
-    if (q[3] < limits.lower_rad[3] || q[3] > limits.upper_rad[3]) continue;
+    const std::size_t roll = bench.roll();
+    if (q[roll] < limits.lower_rad[roll] || q[roll] > limits.upper_rad[roll]) continue;
     roll_ = k;
     bench.tool_roll_rad = rolls_rad[k];
     return q;
@@ -160,7 +161,7 @@ Progress PressButton::run_press(const StepTick& tick) {
   if (pressed_) return Progress::done_if(tick.settled(bench.motion.done(), press_time));
   if (bench.motion.planning()) return Progress::running();
   if (!met_something()) sense(tick);
-  if (const std::optional<Joint> misled = misled_joint(bench)) {
+  if (const std::optional<std::size_t> misled = misled_joint(bench)) {
     tick.faults.report(safety::Fault::following_error, static_cast<std::int32_t>(*misled));
     return Progress::running();
   }
@@ -198,7 +199,7 @@ void PressButton::sense(const StepTick& tick) {
 void PressButton::watch_on_hold(const StepTick& tick) {
   if (pressed_ || met_something()) return;
   sense(tick);
-  const std::optional<Joint> misled = misled_joint(tick.bench);
+  const std::optional<std::size_t> misled = misled_joint(tick.bench);
   if (pushed_joint_) {
     tick.bench.stay_where_measured();
     return report_felt(misled, *pushed_joint_, tick.faults);
@@ -223,23 +224,23 @@ void PressButton::learn_under_way(const Workbench& bench) {
 void PressButton::compare_with_rest() {
   if (!rest_nm_ || guard_.state() != arm::GuardState::free) return;
   Eigen::Index joint = 0;
-  if ((guard_.baseline_nm() - *rest_nm_).cwiseAbs().maxCoeff(&joint) > friction_nm) pushed_joint_ = static_cast<Joint>(joint);
+  if ((guard_.baseline_nm() - *rest_nm_).cwiseAbs().maxCoeff(&joint) > friction_nm) pushed_joint_ = static_cast<std::size_t>(joint);
   rest_nm_.reset();
 }
 
-std::optional<Joint> PressButton::misled_joint(const Workbench& bench) const {
-  const std::optional<Joint> unseen = pushed_joint_ ? bench.unseen_joint() : std::nullopt;
+std::optional<std::size_t> PressButton::misled_joint(const Workbench& bench) const {
+  const std::optional<std::size_t> unseen = pushed_joint_ ? bench.unseen_joint() : std::nullopt;
   return unseen ? unseen : bench.misled_joint(guard_);
 }
 
-// The drives' force along the press is the least-squares one for the torques of slew, shoulder and elbow: the roll has no part in it.
+// The drives' force along the press is the least-squares one for the torques of the joints before the roll, which has no part in it.
 void PressButton::feel(const StepTick& tick) {
   const Workbench& bench = tick.bench;
   if (guard_.state() == arm::GuardState::learning || !bench.watch.joints().valid) return;
   const arm::JointVector q = bench.measured_rad();
   const Vec3 inward = -bench.map.normal();
   arm::JointVector along = (inward.transpose() * bench.config.arm.jacobian(q).topRows<3>()).transpose();
-  along[3] = 0;
+  along[bench.roll()] = 0;
   const double force_n = along.dot(guard_.excess_torque_nm()) / along.squaredNorm();
   const Vec3 tip = bench.config.arm.base_from_tool(q) * Vec3(0, 0, closed_tip_beyond_tool_m(bench.jaw()));
   const double depth_m = (tip - bench.map.button_m(bench.job.task().button)).dot(inward);

@@ -37,7 +37,7 @@ class PressButton {
   void compare_with_rest();
   bool met_something() const { return guard_.touched() || pushed_joint_; }
   // The joint by whose own doing it is no button and no contact.
-  std::optional<Joint> misled_joint(const Workbench& bench) const;
+  std::optional<std::size_t> misled_joint(const Workbench& bench) const;
   void feel(const StepTick& tick);
   // What stopped the finger, or what it is that nothing did.
   StepFailure judge(const Workbench& bench) const;
@@ -52,7 +52,7 @@ class PressButton {
   StepFailure barrier_ = StepFailure::none;      // what it was, the last time
   bool pressed_ = false;
   bool learned_under_way_ = false;
-  std::optional<Joint> pushed_joint_;        // its torque changed by more than friction, and most, since rest
+  std::optional<std::size_t> pushed_joint_;  // its torque changed by more than friction, and most, since rest
   std::optional<arm::JointVector> rest_nm_;  // what the joints took at rest, until it is compared
   double bottom_m_ = 0;                      // the tip's depth below the face where it is believed to be, at the press's end
 };

@@ -31,7 +31,10 @@ void StartUp::begin_boot(const StepTick& tick) {
   const MissionSetup& config = tick.bench.config;
   const safety::LimitsVerdict verdict = safety::check(config.limits);
   const bool tighter = safety::is_tighter(config.mission_limits, config.limits);
-  if (verdict == safety::LimitsVerdict::good && tighter) return tick.network.start_boot(tick.now);
+  // Of other joints than the arm's, or a bus of other drives.
+  const std::size_t joints = config.arm.joint_count();
+  const bool fits = config.limits.joints.size() == joints && tick.network.drive_count() == joints;
+  if (verdict == safety::LimitsVerdict::good && tighter && fits) return tick.network.start_boot(tick.now);
   tick.faults.report(Fault::limits_refused, verdict != safety::LimitsVerdict::good ? static_cast<std::int32_t>(verdict) : 100);
 }
 
@@ -50,8 +53,8 @@ Progress StartUp::run_enable(const StepTick& tick) {
   tick.bench.power.switch_on();
   // An axis without a homed zero is powered when it is homed.
   bool all = true;
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    canopen::Axis& axis = tick.network.axis(static_cast<Joint>(i));
+  for (std::size_t i = 0; i < tick.network.drive_count(); ++i) {
+    canopen::Axis& axis = tick.network.axis(i);
     // A fault from before is reset. One that comes once power was asked for is a fault of this mission.
     const bool asked = axis.requested() == canopen::AxisRequest::hold_enabled;
     // Power that was taken by hardware (safe torque off) does not come back without an order.
@@ -77,8 +80,8 @@ Progress StartUp::run_enable(const StepTick& tick) {
 Progress StartUp::run_home(const StepTick& tick) {
   Workbench& bench = tick.bench;
   bool all = true;
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    canopen::Axis& axis = tick.network.axis(static_cast<Joint>(i));
+  for (std::size_t i = 0; i < tick.network.drive_count(); ++i) {
+    canopen::Axis& axis = tick.network.axis(i);
     if (axis.enabled() && axis.homed()) continue;
     all = false;
     if (axis.setup().homing_method != 0) tick.clock.expect(axis.setup().homing_timeout);
@@ -102,7 +105,7 @@ Progress StartUp::run_home(const StepTick& tick) {
 
 // What a drive complained of before it was enabled is past; not every drive withdraws it.
 void StartUp::forget_complaints(const StepTick& tick) {
-  for (std::size_t node = 0; node < canopen::Network::node_count; ++node) {
+  for (std::size_t node = 0; node < tick.network.node_count(); ++node) {
     if (!tick.network.fault(node).link()) tick.network.acknowledge(node);
   }
 }
@@ -111,7 +114,7 @@ void StartUp::forget_complaints(const StepTick& tick) {
 void StartUp::tolerate_excursion(const StepTick& tick) {
   safety::Watch& watch = tick.bench.watch;
   watch.tolerate_excursion(true);
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < tick.network.drive_count(); ++i) {
     if (!watch.outside(i)) continue;
     safety::FaultReport report{Fault::joint_limit, static_cast<std::int32_t>(i)};
     report.only_counted = true;

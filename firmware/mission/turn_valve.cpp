@@ -25,7 +25,8 @@ std::optional<double> roll_for(const Workbench& bench, const arm::JointVector& q
   const double about = from_rad - to_rad;
   const double turn = about + wrap(to->roll_rad[0] - from->roll_rad[0] - about, pi / 2);
   const arm::JointLimits limits = bench.motion.limits(1);
-  return arm::roll_for_turn(*from, turn, limits.lower_rad[3] + limit_margin_rad, limits.upper_rad[3] - limit_margin_rad);
+  return arm::roll_for_turn(*from, turn, limits.lower_rad[bench.roll()] + limit_margin_rad,
+                            limits.upper_rad[bench.roll()] - limit_margin_rad);
 }
 
 // The whole way to the task's angle, or as much of it as the wrist can turn and the next look can tell apart: the rest comes after that look.
@@ -105,8 +106,9 @@ Progress TurnValve::run_reach(const StepTick& tick) {
 }
 
 void TurnValve::begin_advance(Workbench& bench) {
-  arm::GuardConfig config;
-  config.contact_torque_nm = arm::JointVector(8, 8, 8, 3);  // 20 N at the tool; the pads may brush the bar
+  const std::size_t joints = bench.config.arm.arm_joints();
+  arm::GuardConfig config(joints);
+  config.contact_torque_nm = arm::each_joint(joints, 8, 3);  // 20 N at the tool; the pads may brush the bar
   guard_ = arm::GuardedMotion(config);
   bench.go_straight(bench.map.handle_centre_m(bench.job.task().valve), bench.tool_roll_rad, bench.mission().approach_speed_m_s,
                     bench.meant_parts());
@@ -118,7 +120,7 @@ Progress TurnValve::run_advance(const StepTick& tick) {
   if (!motion.is_running() || bench.motion.planning()) return motion;
   bench.feel(guard_, tick.now);
   if (!guard_.touched()) return Progress::running();
-  if (const std::optional<Joint> misled = bench.misled_joint(guard_)) {
+  if (const std::optional<std::size_t> misled = bench.misled_joint(guard_)) {
     tick.faults.report(safety::Fault::following_error, static_cast<std::int32_t>(*misled));
     return Progress::running();
   }
@@ -169,7 +171,8 @@ Progress TurnValve::run_turn(const StepTick& tick) {
 }
 
 bool TurnValve::stalled(const StepTick& tick) {
-  if (std::abs(tick.bench.motion.target()[3] - tick.bench.measured_rad()[3]) < stalled_rad) following_since_ = tick.now;
+  const std::size_t roll = tick.bench.roll();
+  if (std::abs(tick.bench.motion.target()[roll] - tick.bench.measured_rad()[roll]) < stalled_rad) following_since_ = tick.now;
   return tick.now - following_since_ > stalled_for;
 }
 

@@ -22,17 +22,17 @@ constexpr double slow_lag_rad = 0.006;
 constexpr double gives_way_m = 0.006;
 
 // While the load of a press is let off its change is no contact. Nor is the load: a press may leave 28 N m in the shoulder's gear, which holds it by itself.
-arm::GuardConfig unwinding_guard() {
-  arm::GuardConfig guard;
+arm::GuardConfig unwinding_guard(const arm::Arm& arm) {
+  arm::GuardConfig guard(arm.arm_joints());
   guard.contact_torque_nm.setConstant(HUGE_VAL);
   guard.overload_torque_nm.setConstant(HUGE_VAL);
   return guard;
 }
 
 // While the jaw holds something the arm hardly moves: it lags by 5 mrad at most. The roll turns, and has a rule of its own.
-arm::GuardConfig gripping_guard() {
-  arm::GuardConfig guard = unwinding_guard();
-  guard.following_rad = {0.025, 0.025, 0.025, HUGE_VAL};
+arm::GuardConfig gripping_guard(const arm::Arm& arm) {
+  arm::GuardConfig guard = unwinding_guard(arm);
+  guard.following_rad = arm::each_joint(arm.arm_joints(), 0.025, HUGE_VAL);
   guard.learning = 1;
   return guard;
 }
@@ -58,8 +58,9 @@ CameraWork::Config camera_config(const ControllerConfig& config) {
 }  // namespace
 
 arm::GuardConfig free_motion_guard(const safety::Limits& limits) {
-  arm::GuardConfig guard;
-  for (std::size_t i = 0; i < arm_joint_count; ++i) {
+  const std::size_t arm_joints = limits.joints.empty() ? 0 : limits.joints.size() - 1;  // the last is the jaw's
+  arm::GuardConfig guard(arm_joints);
+  for (std::size_t i = 0; i < arm_joints; ++i) {
     const auto joint = static_cast<Eigen::Index>(i);
     guard.contact_torque_nm[joint] = std::min(limits.max_contact_torque_nm, contact_share * limits.joints[i].max_torque_nm);
     guard.overload_torque_nm[joint] = load_share * limits.joints[i].max_torque_nm;
@@ -67,9 +68,9 @@ arm::GuardConfig free_motion_guard(const safety::Limits& limits) {
   return guard;
 }
 
-bool lags_without_load(const arm::GuardedMotion& guard) {
+bool lags_without_load(const arm::Arm& arm, const arm::GuardedMotion& guard) {
   // Over free motion's estimated torque: 10 N at the tool. The friction's doubt is within.
-  const arm::JointVector load_nm(4, 4, 4, 2);
+  const arm::JointVector load_nm = arm::each_joint(arm.arm_joints(), 4, 2);
   const auto joint = static_cast<Eigen::Index>(guard.joint());
   return guard.touched() && guard.cause() == arm::GuardCause::following_error && std::abs(guard.excess_torque_nm()[joint]) < load_nm[joint];
 }
@@ -111,7 +112,7 @@ bool has_seized(const arm::Arm& arm, const arm::GuardedMotion& guard) {
 }
 
 bool does_not_follow(const arm::Arm& arm, const arm::GuardedMotion& guard) {
-  return lags_without_load(guard) || runs_off(guard) || drives_itself_off(guard) || has_seized(arm, guard);
+  return lags_without_load(arm, guard) || runs_off(guard) || drives_itself_off(guard) || has_seized(arm, guard);
 }
 
 bool was_behind_before(const arm::Arm& arm, const arm::GuardedMotion& guard) {
@@ -133,12 +134,13 @@ Workbench::Workbench(const ControllerConfig& told)
       map(config.mission.layout, config.markers, config.camera),
       job(told.mission.tasks, told.mission.tries),
       gripper(new_gripper()),
-      grip_guard(gripping_guard()),
+      compliance(arm::ComplianceConfig(config.arm.arm_joints())),
+      grip_guard(gripping_guard(config.arm)),
       back_guard(free_motion_guard(told.mission_limits)),
       power(config.arm) {}
 
 arm::Gripper Workbench::new_gripper() const {
-  arm::Gripper fresh(jaw(), arm::gripper_config(config.arm.joint(Joint::jaw)));
+  arm::Gripper fresh(jaw(), arm::gripper_config(config.arm.joint(config.arm.jaw_joint())));
   expect_bar(fresh);
   return fresh;
 }
@@ -151,7 +153,7 @@ void Workbench::expect_bar(arm::Gripper& of) const {
 
 double Workbench::bar_m() const {
   const PanelLayout& layout = config.mission.layout;
-  return job.task().kind == Task::Kind::turn_valve ? layout.valves[job.task().valve].handle_thickness_m : thickest_bar_m(layout);
+  return job.turns() ? layout.valves[job.task().valve].handle_thickness_m : thickest_bar_m(layout);
 }
 
 bool Workbench::jaw_may_hold() const {
@@ -164,20 +166,20 @@ void Workbench::take_up_task() {
 }
 
 arm::JointVector Workbench::measured_rad() const {
-  arm::JointVector q;
-  for (std::size_t i = 0; i < arm_joint_count; ++i) q[static_cast<Eigen::Index>(i)] = watch.joints().position_rad[i];
+  arm::JointVector q = arm::JointVector::Zero();
+  for (std::size_t i = 0; i < config.arm.arm_joints(); ++i) q[static_cast<Eigen::Index>(i)] = watch.joints().position_rad[i];
   return q;
 }
 
 arm::JointVector Workbench::measured_rad_s() const {
-  arm::JointVector rad_s;
-  for (std::size_t i = 0; i < arm_joint_count; ++i) rad_s[static_cast<Eigen::Index>(i)] = watch.joints().velocity_rad_s[i];
+  arm::JointVector rad_s = arm::JointVector::Zero();
+  for (std::size_t i = 0; i < config.arm.arm_joints(); ++i) rad_s[static_cast<Eigen::Index>(i)] = watch.joints().velocity_rad_s[i];
   return rad_s;
 }
 
 arm::JointTorques Workbench::measured_nm() const {
   arm::JointTorques torques;
-  for (std::size_t i = 0; i < arm_joint_count; ++i) {
+  for (std::size_t i = 0; i < config.arm.arm_joints(); ++i) {
     const auto joint = static_cast<Eigen::Index>(i);
     torques.nm[joint] = watch.joints().torque_nm[i];
     torques.low_nm[joint] = watch.joints().torque_low_nm[i];
@@ -196,6 +198,7 @@ Room Workbench::room(double jaw_goal_rad, arm::PanelParts meant) const {
 }
 
 arm::PanelParts Workbench::meant_parts() const {
+  if (job.results().empty()) return 0;
   if (job.task().kind == Task::Kind::turn_valve) return arm::bit(arm::PanelPart::valve(job.task().valve));
   return arm::bit(arm::PanelPart::button(job.task().button)) | arm::bit(arm::PanelPart::plate());
 }
@@ -255,21 +258,21 @@ void Workbench::stay_where_pushed() {
   compliance.reset();
 }
 
-void report_felt(std::optional<Joint> misled, Joint felt_by, safety::FaultArbiter& faults) {
+void report_felt(std::optional<std::size_t> misled, std::size_t felt_by, safety::FaultArbiter& faults) {
   faults.report(misled ? safety::Fault::following_error : safety::Fault::unexpected_contact,
                 static_cast<std::int32_t>(misled.value_or(felt_by)));
 }
 
-std::optional<Joint> Workbench::unseen_joint() const {
-  for (const Joint joint : {Joint::slew, Joint::shoulder, Joint::elbow}) {
+std::optional<std::size_t> Workbench::unseen_joint() const {
+  for (std::size_t joint = 0; joint < config.arm.roll_joint(); ++joint) {
     if (watch.shows_nothing(joint)) return joint;
   }
   return std::nullopt;
 }
 
-std::optional<Joint> Workbench::misled_joint(const arm::GuardedMotion& guard) const {
+std::optional<std::size_t> Workbench::misled_joint(const arm::GuardedMotion& guard) const {
   if (!guard.touched()) return std::nullopt;
-  if (const std::optional<Joint> unseen = unseen_joint()) return unseen;
+  if (const std::optional<std::size_t> unseen = unseen_joint()) return unseen;
   return does_not_follow(config.arm, guard) || watch.shows_nothing(guard.joint()) ? std::optional(guard.joint()) : std::nullopt;
 }
 
@@ -280,14 +283,14 @@ void Workbench::report_touch(const arm::GuardedMotion& guard, safety::FaultArbit
 
 void Workbench::let_off_roll() {
   arm::JointVector rest_rad = motion.target();
-  rest_rad[3] = measured_rad()[3];
+  rest_rad[roll()] = measured_rad()[roll()];
   motion.start_at(rest_rad);
 }
 
 void Workbench::begin_back_off() {
-  back_guard = arm::GuardedMotion(wound_up ? unwinding_guard() : free_motion_guard(config.mission_limits));
+  back_guard = arm::GuardedMotion(wound_up ? unwinding_guard(config.arm) : free_motion_guard(config.mission_limits));
   back_from_m_ = config.arm.base_from_tool(motion.target()).translation();
-  go_straight(standoff_m, motion.target()[3], config.mission.approach_speed_m_s, meant_parts());
+  go_straight(standoff_m, motion.target()[roll()], config.mission.approach_speed_m_s, meant_parts());
 }
 
 void Workbench::guard_back_off(Time now) {
@@ -299,12 +302,12 @@ void Workbench::guard_back_off(Time now) {
   if (!motion.planning() && watch.joints().valid) feel(back_guard, now);
 }
 
-std::optional<Joint> Workbench::misled_on_the_way_back() const {
-  if (const std::optional<Joint> misled = misled_joint(back_guard)) return misled;
+std::optional<std::size_t> Workbench::misled_on_the_way_back() const {
+  if (const std::optional<std::size_t> misled = misled_joint(back_guard)) return misled;
   if (gripper.state() != arm::GripperState::open) return std::nullopt;
   // The jaw is open and the roll was let off: what its motor still pushes with is no contact. Another joint that was overloaded and behind its target before the arm left has
   // seized or is pinned. It loses its power either way.
-  const bool roll_pushes = back_guard.state() == arm::GuardState::overload && back_guard.joint() == Joint::roll;
+  const bool roll_pushes = back_guard.state() == arm::GuardState::overload && back_guard.joint() == config.arm.roll_joint();
   return roll_pushes || was_behind_before(config.arm, back_guard) ? std::optional(back_guard.joint()) : std::nullopt;
 }
 
@@ -317,7 +320,7 @@ void Workbench::watch_back_off_on_hold(const StepTick& tick) {
 Progress Workbench::follow_back_off(const StepTick& tick) {
   guard_back_off(tick.now);
   if (!back_guard.touched()) return follow_motion();
-  if (const std::optional<Joint> misled = misled_on_the_way_back()) {
+  if (const std::optional<std::size_t> misled = misled_on_the_way_back()) {
     tick.faults.report(safety::Fault::following_error, static_cast<std::int32_t>(*misled));
     return Progress::running();
   }

@@ -33,7 +33,7 @@ enum class Course : std::uint8_t {
 arm::GuardConfig free_motion_guard(const safety::Limits& limits);
 
 // A joint stays behind its target, and nothing holds it back: its encoder or its drive is not to be trusted.
-bool lags_without_load(const arm::GuardedMotion& guard);
+bool lags_without_load(const arm::Arm& arm, const arm::GuardedMotion& guard);
 // It pushes its joint away from the set-point: a drive that has run off. What is touched makes a drive push towards its set-point.
 bool runs_off(const arm::GuardedMotion& guard);
 // Its motor's torque is what moves it otherwise than its set-point: what is touched pushes against the motor. Or it leaves its set-point at a speed to which
@@ -79,14 +79,17 @@ struct Workbench {
   // The bar of the task under way, or, where that is none, the panel's thickest; and how far the jaw opens to reach for it.
   double bar_m() const;
   double jaw_open_m() const { return arm::jaw_opening_m(jaw(), bar_m()); }
+  // Tasks are planned for arms of the planar form: of any other an operator homes and jogs the joints.
+  bool may_work() const { return config.arm.is_planar(); }
   // Something may be between the pads, the panel's thickest bar as well as the task's.
   bool jaw_may_hold() const;
   const MissionConfig& mission() const { return config.mission; }
   const ArmModel::Jaw& jaw() const { return config.arm.jaw(); }
+  std::size_t roll() const { return config.arm.roll_joint(); }
   arm::JointVector measured_rad() const;
   arm::JointVector measured_rad_s() const;
   arm::JointTorques measured_nm() const;
-  double jaw_rad() const { return watch.joints().position_rad[static_cast<std::size_t>(Joint::jaw)]; }
+  double jaw_rad() const { return watch.joints().position_rad[config.arm.jaw_joint()]; }
   // What is around the arm, as far as it is known, while the jaw goes from where it is to `jaw_goal_rad`. The fingers may touch the parts `meant`.
   Room room(double jaw_goal_rad, arm::PanelParts meant = 0) const;
   // What the fingers are to touch in the task under way: the handle with its stem, or the button, before the plate that its cap stands on.
@@ -105,10 +108,10 @@ struct Workbench {
   // The guard learns of the arm on its motion's way.
   void feel(arm::GuardedMotion& guard, Time t) const;
   // The first of slew, shoulder and elbow that may run off unseen.
-  std::optional<Joint> unseen_joint() const;
+  std::optional<std::size_t> unseen_joint() const;
   // Of what it has felt: the joint that makes it no contact, by its drive's own doing. One that may run off unseen may have pushed the arm so that another joint
   // feels it.
-  std::optional<Joint> misled_joint(const arm::GuardedMotion& guard) const;
+  std::optional<std::size_t> misled_joint(const arm::GuardedMotion& guard) const;
   // Reports what the guard has felt: a contact that is not meant, or a joint that does not follow.
   void report_touch(const arm::GuardedMotion& guard, safety::FaultArbiter& faults) const;
 
@@ -131,7 +134,7 @@ struct Workbench {
   void expect_bar(arm::Gripper& of) const;
   Room room_on_the_way(double jaw_opening_m);
   void guard_back_off(Time now);
-  std::optional<Joint> misled_on_the_way_back() const;
+  std::optional<std::size_t> misled_on_the_way_back() const;
   Vec3 back_from_m_ = Vec3::Zero();
   std::optional<double> jaw_order_m_;  // what the jaw does once the way is clear
 };
@@ -154,6 +157,6 @@ struct StepTick {
 };
 
 // What was felt: the contact of the joint that felt it, or, where there is one, the joint that does not follow.
-void report_felt(std::optional<Joint> misled, Joint felt_by, safety::FaultArbiter& faults);
+void report_felt(std::optional<std::size_t> misled, std::size_t felt_by, safety::FaultArbiter& faults);
 
 }  // namespace lf::mission

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "firmware/safety/faults.hpp"
+#include "shared/messages/capacity.hpp"
 #include "shared/messages/static_vector.hpp"
 
 namespace lf::safety {
@@ -19,9 +20,9 @@ struct FaultReport {
   bool only_counted = false;  // the mission knows of it and goes on
 };
 
-// A tick's worst case: the watch reports 55 (two for the links, nine for another master, two for each of six nodes, six for each of five joints, the
-// workspace and the output node), the mission's own sources 12.
-using FaultReports = StaticVector<FaultReport, 72>;
+// A tick's worst case: of the watch two for the links, nine for another master, two for each node, six for each joint, the workspace and the output node; of the
+// mission's own sources 12; and some more.
+using FaultReports = StaticVector<FaultReport, 30 + 2 * capacity::nodes + 6 * capacity::joints>;
 
 // What a reaction depends on besides fault and phase.
 struct Circumstances {

@@ -82,7 +82,8 @@ double workspace_excursion_m(const Limits& limits, const Vec3& point_m) {
 }
 
 bool is_tighter(const Limits& tighter, const Limits& limits) {
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  if (tighter.joints.size() != limits.joints.size()) return false;
+  for (std::size_t i = 0; i < limits.joints.size(); ++i) {
     const JointLimit& inner = tighter.joints[i];
     const JointLimit& outer = limits.joints[i];
     if (!(inner.min_rad >= outer.min_rad && inner.max_rad <= outer.max_rad)) return false;

@@ -8,7 +8,8 @@
 #include <cstdint>
 
 #include "shared/geometry/pose.hpp"
-#include "shared/messages/joint_io.hpp"
+#include "shared/messages/capacity.hpp"
+#include "shared/messages/static_vector.hpp"
 #include "shared/messages/time.hpp"
 
 namespace lf::safety {
@@ -23,7 +24,7 @@ struct JointLimit {
 };
 
 struct Limits {
-  std::array<JointLimit, joint_count> joints{};
+  StaticVector<JointLimit, capacity::joints> joints;
   // The tool point stays inside this box of the base frame. Its X bound is the panel's farthest face: touching is the guarded motions' business.
   std::array<double, 3> workspace_min_m{};
   std::array<double, 3> workspace_max_m{};

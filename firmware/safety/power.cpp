@@ -11,7 +11,7 @@ namespace {
 
 // Since it was last booted, or ever. One that was lost or taken out of operation was heard before.
 bool never_heard(const canopen::Network& network, std::size_t joint) {
-  return network.axis(static_cast<Joint>(joint)).state() == canopen::AxisState::offline && !network.fault(joint).link();
+  return network.axis(joint).state() == canopen::AxisState::offline && !network.fault(joint).link();
 }
 
 }  // namespace
@@ -45,7 +45,7 @@ void Power::remove(Time now, canopen::Network& network) {
   state_ = State::removing;
   since_ = now;
   // What NMT has taken out of operation takes no process data.
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < network.drive_count(); ++i) {
     if (told_by_nmt_[i] && !network.restarted_as_told(i)) network.reset_node(i, now);
   }
   insist_at_ = network.foreign_nmt_since(now, insist_period) ? now : now + heed_time;
@@ -70,7 +70,7 @@ void Power::insist(Time now, canopen::Network& network) {
   if (now < insist_at_) return;
   insist_at_ = now + (network.foreign_nmt_since(now, insist_period) ? insist_period_beside : insist_period);
   restart_unheard(now, network);
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < network.drive_count(); ++i) {
     if (never_heard(network, i) || heeds(i, now, network)) continue;
     if (state_ == State::stopping && !taken_[i]) {
       network.stop_node(i);
@@ -85,7 +85,7 @@ void Power::insist(Time now, canopen::Network& network) {
 
 // One that has restarted already stays so: nothing but a boot or another master gives it power.
 void Power::restart_unheard(Time now, canopen::Network& network) {
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < network.drive_count(); ++i) {
     if (never_heard(network, i) && !network.restarted_as_told(i)) network.reset_node(i, now);
   }
 }
@@ -93,7 +93,7 @@ void Power::restart_unheard(Time now, canopen::Network& network) {
 // A drive that is not heard may hear, and brakes in good order then: it is given time before NMT makes it deaf to process data. Where none is heard, nobody
 // knows which of them hear.
 bool Power::heeds(std::size_t joint, Time now, const canopen::Network& network) const {
-  const canopen::Axis& axis = network.axis(static_cast<Joint>(joint));
+  const canopen::Axis& axis = network.axis(joint);
   if (axis.fresh(now) && taken_[joint]) return !axis.powered() || now - *taken_[joint] < heed_time;
   if (axis.fresh(now)) return state_ == State::stopping ? !axis.runs() : !axis.powered();
   if (network.fault(joint).left_operational || network.foreign_nmt_since(now, insist_period)) return false;
@@ -102,8 +102,8 @@ bool Power::heeds(std::size_t joint, Time now, const canopen::Network& network) 
 }
 
 bool Power::hears_none(Time now, const canopen::Network& network) {
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    if (network.axis(static_cast<Joint>(i)).fresh(now)) return false;
+  for (std::size_t i = 0; i < network.drive_count(); ++i) {
+    if (network.axis(i).fresh(now)) return false;
   }
   return true;
 }
@@ -127,8 +127,8 @@ void Power::tick(const JointStates& joints, Time now, canopen::Network& network)
     if (confirmed(now, network)) state_ = State::off;
   } else if (state_ == State::off) {
     // Nothing comes on by itself; a drive that does, or that is heard again after a silence, is told off.
-    for (std::size_t i = 0; i < joint_count; ++i) {
-      const canopen::Axis& axis = network.axis(static_cast<Joint>(i));
+    for (std::size_t i = 0; i < network.drive_count(); ++i) {
+      const canopen::Axis& axis = network.axis(i);
       if (axis.fresh(now) && axis.powered()) return remove(now, network);
     }
   }
@@ -136,13 +136,13 @@ void Power::tick(const JointStates& joints, Time now, canopen::Network& network)
 
 // Of the quick stop, 6085. Options 1 and 5 of 605A brake by another object, and a drive without 6085 by its maker's number.
 Duration Power::ramp(const JointStates& joints, std::size_t joint, const canopen::Network& network) const {
-  const auto which = static_cast<Joint>(joint);
-  const canopen::DriveSetup& setup = network.axis(which).setup();
-  const bool by_6085 = (setup.quick_stop_option == 2 || setup.quick_stop_option == 6) && setup.quick_stop_counts_s2 != 0 &&
+  const canopen::DriveSetup& setup = network.axis(joint).setup();
+  const std::int16_t option = network.axis(joint).quick_stop_option();
+  const bool by_6085 = (option == 2 || option == 6) && setup.quick_stop_counts_s2 != 0 &&
                        setup.profile.absence(canopen::BootValue::quick_stop_deceleration) == nullptr;
   Duration ramp;
   if (joints.speed_known[joint] && setup.quick_stop_counts_s2 != 0) {
-    const double counts_per_rad = 1 / std::abs(arm::rad_per_count(arm_->joint(which), joints.position_rad[joint]));
+    const double counts_per_rad = 1 / std::abs(arm::rad_per_count(arm_->joint(joint), joints.position_rad[joint]));
     const double to_still_rad_s = std::max(0.0, std::abs(joints.velocity_rad_s[joint]) - still_rad / still_time.s());
     ramp = Duration::from_s(to_still_rad_s * counts_per_rad / setup.quick_stop_counts_s2);
   }
@@ -151,8 +151,8 @@ Duration Power::ramp(const JointStates& joints, std::size_t joint, const canopen
 
 Power::Standing Power::standing(const JointStates& joints, Time now, const canopen::Network& network) {
   Standing stands;
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    const canopen::Axis& axis = network.axis(static_cast<Joint>(i));
+  for (std::size_t i = 0; i < network.drive_count(); ++i) {
+    const canopen::Axis& axis = network.axis(i);
     // What has no power is not waited for: a screw may be driven back.
     if (axis.confirmed_unpowered(now) && now - since_ >= heed_time) continue;
     if (!joints.fresh[i]) {
@@ -179,9 +179,9 @@ Power::Standing Power::standing(const JointStates& joints, Time now, const canop
 
 // What stands does not wait under power for the ramp of a joint that nobody hears.
 void Power::take_heard(const JointStates& joints, Time now, canopen::Network& network) {
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < network.drive_count(); ++i) {
     if (!joints.fresh[i] || taken_[i]) continue;
-    network.axis(static_cast<Joint>(i)).request(canopen::AxisRequest::remove_power);
+    network.axis(i).request(canopen::AxisRequest::remove_power);
     taken_[i] = now;
   }
 }
@@ -189,11 +189,11 @@ void Power::take_heard(const JointStates& joints, Time now, canopen::Network& ne
 // By another master's NMT, a restart, or a deadline of its own. What has left operation sends nothing, so that it brakes since it was heard last; one that was silent
 // while it was in operation brakes since it was found to have left.
 void Power::note_what_left(Time now, const canopen::Network& network) {
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < network.drive_count(); ++i) {
     const canopen::NodeFault& fault = network.fault(i);
     if (left_[i] || !(fault.rebooted || fault.left_operational)) continue;
     left_[i] = true;
-    const canopen::Axis& axis = network.axis(static_cast<Joint>(i));
+    const canopen::Axis& axis = network.axis(i);
     const bool was_silent = axis.seen() && network.operational_at(i) - axis.actual_time() > heed_time;
     if (was_silent && !told_by_nmt_[i]) brakes_since_[i] = now;
   }
@@ -205,15 +205,15 @@ void Power::insist_on_outputs(Time now, canopen::Network& network) {
   const bool known_off = io.fresh(now) && io.outputs() == 0;
   if (known_off || io.wanted_outputs() != 0 || !io.seen()) outputs_off_since_ = now;
   if (now - outputs_off_since_ < heed_time) return;
-  network.stop_node(canopen::Network::io_index);
+  network.stop_node(network.io_index());
   outputs_off_since_ = now + (insist_period - heed_time);
 }
 
 // A statusword that was sent before the drive heard the order says nothing of it: a drive on its way up would be taken for down.
 bool Power::confirmed(Time now, const canopen::Network& network) const {
   if (now - since_ < network.config().sync_period * (canopen::Axis::handshake_syncs + 1)) return false;
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    const canopen::Axis& axis = network.axis(static_cast<Joint>(i));
+  for (std::size_t i = 0; i < network.drive_count(); ++i) {
+    const canopen::Axis& axis = network.axis(i);
     // A node that this master has restarted has no power. One that booted up by itself may have it: NMT reset communication leaves some drives theirs.
     if (network.restarted_as_told(i) || axis.confirmed_unpowered(now)) continue;
     const bool given_time = state_ == State::removing && now - since_ >= blind_time;

@@ -103,15 +103,15 @@ class Power {
   State state_ = State::off;
   Time insist_at_;
   Time since_;  // of the state
-  std::array<double, joint_count> rest_rad_{};
-  std::array<std::int32_t, joint_count> rest_counts_{};
-  std::array<Time, joint_count> rest_since_{};
-  std::array<bool, joint_count> told_by_nmt_{};  // since the stop began: deaf to process data
-  std::array<bool, joint_count> left_{};         // out of operation, or booted anew: brakes without being told
-  std::array<Time, joint_count> brakes_since_{};
-  std::array<std::optional<Time>, joint_count> taken_{};  // its power, since it stood
-  Time outputs_off_since_;                                // heard to be off, or not wanted to be
-  int deaf_ticks_ = 0;                                    // in a row
+  PerJoint<double> rest_rad_{};
+  PerJoint<std::int32_t> rest_counts_{};
+  PerJoint<Time> rest_since_{};
+  PerJoint<bool> told_by_nmt_{};  // since the stop began: deaf to process data
+  PerJoint<bool> left_{};         // out of operation, or booted anew: brakes without being told
+  PerJoint<Time> brakes_since_{};
+  PerJoint<std::optional<Time>> taken_{};  // its power, since it stood
+  Time outputs_off_since_;                 // heard to be off, or not wanted to be
+  int deaf_ticks_ = 0;                     // in a row
 };
 
 const char* name(Power::State state);

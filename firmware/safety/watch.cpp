@@ -19,22 +19,22 @@ constexpr int overload_ticks = 75;  // 300 ms
 
 }  // namespace
 
-void Watch::observe(const canopen::Network& network, const std::array<double, joint_count>& rad, Time now) {
+void Watch::observe(const canopen::Network& network, const PerJoint<double>& rad, Time now) {
   joints_.valid = true;
   Time newest;
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    const canopen::Axis& axis = network.axis(static_cast<Joint>(i));
+  for (std::size_t i = 0; i < arm_->joint_count(); ++i) {
+    const canopen::Axis& axis = network.axis(i);
     joints_.fresh[i] = is_fresh(axis, now) && std::isfinite(rad[i]);
     joints_.valid = joints_.valid && joints_.fresh[i];
     if (axis.actual_time() > newest) newest = axis.actual_time();
   }
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < arm_->joint_count(); ++i) {
     if (joints_.fresh[i]) joints_.position_rad[i] = rad[i];
   }
   if (!joints_.valid) return;
   const double dt_s = (newest - joints_.t).s();
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    const canopen::Axis& axis = network.axis(static_cast<Joint>(i));
+  for (std::size_t i = 0; i < arm_->joint_count(); ++i) {
+    const canopen::Axis& axis = network.axis(i);
     // A drive that homes by its own method changes its zero: its reading leaps, and the joint does not.
     const bool zero_changes = axis.requested() == canopen::AxisRequest::home;
     if (!observing_ || dt_s > 0.1 || zero_changes) {
@@ -52,7 +52,7 @@ void Watch::observe(const canopen::Network& network, const std::array<double, jo
 }
 
 void Watch::observe_torque(const canopen::Axis& axis, std::size_t joint) {
-  const ArmModel::Joint& which = arm_->model().joints[joint];
+  const ArmModel::Joint& which = arm_->joint(joint);
   const double q = joints_.position_rad[joint], rated_nm = axis.rated_torque_unm() * 1e-6;
   const arm::Transmission transmission(which, transmissions_[joint]);
   const arm::TorqueEstimate torque =
@@ -72,21 +72,21 @@ void Watch::observe_encoder(const canopen::Axis& axis, std::size_t joint, Time n
   sample.t = now;
   sample.actual_counts = axis.actual_counts();
   sample.target_counts = axis.target_counts();
-  sample.rad_per_count = arm::rad_per_count(arm_->model().joints[joint], joints_.position_rad[joint]);
+  sample.rad_per_count = arm::rad_per_count(arm_->joint(joint), joints_.position_rad[joint]);
   sample.torque_nm = joints_.torque_nm[joint];
   sample.load_nm = load_share * limit_nm;
   sample.follows = axis.enabled();
   sample.holds_much = at_least_nm(joint) >= much_share * limit_nm;
   sample.motor_at_limit = std::abs(axis.torque_permille()) >= motor_share * axis.setup().max_torque_of(axis.rated_torque_unm());
   const bool stuck = encoders_[joint].update(sample);
-  stuck_[joint] = stuck && joint < static_cast<std::size_t>(Joint::roll);
+  stuck_[joint] = stuck && joint < arm_->roll_joint();
 }
 
 double Watch::at_least_nm(std::size_t joint) const {
   return arm::TorqueEstimate{joints_.torque_nm[joint], joints_.torque_low_nm[joint], joints_.torque_high_nm[joint]}.at_least_nm();
 }
 
-bool Watch::shows_nothing(Joint joint) const { return encoders_[static_cast<std::size_t>(joint)].shows_nothing(); }
+bool Watch::shows_nothing(std::size_t joint) const { return encoders_[joint].shows_nothing(); }
 
 // Half a SYNC period more than the limit, for the loop's jitter.
 bool Watch::is_fresh(const canopen::Axis& axis, Time now) const {
@@ -102,14 +102,14 @@ double Watch::excursion_rad(std::size_t joint) const {
 bool Watch::outside(std::size_t joint) const { return excursion_rad(joint) > position_tolerance_rad; }
 
 bool Watch::any_outside() const {
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < arm_->joint_count(); ++i) {
     if (outside(i)) return true;
   }
   return tool_outside_;
 }
 
 void Watch::tolerate_excursion(bool tolerate) {
-  for (std::size_t i = 0; i < joint_count; ++i) tolerated_rad_[i] = tolerate ? excursion_rad(i) : 0;
+  for (std::size_t i = 0; i < arm_->joint_count(); ++i) tolerated_rad_[i] = tolerate ? excursion_rad(i) : 0;
   tolerating_ = tolerate;
   tolerated_m_ = HUGE_VAL;  // as far as the tool is out in the next check
 }
@@ -125,10 +125,10 @@ void Watch::check(const canopen::Network& network, const Vec3& tool_m, Vigilance
   if (vigilance == Vigilance::bus) return stood_.fill(false);
   check_nodes(network, vigilance, now, began);
   if (vigilance == Vigilance::nodes) {
-    for (std::size_t i = 0; i < joint_count; ++i) check_standing(network, i, began);
+    for (std::size_t i = 0; i < arm_->joint_count(); ++i) check_standing(network, i, began);
     return;
   }
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < arm_->joint_count(); ++i) {
     check_drive(network, i, began);
     if (joints_.valid) check_joint(i, began);
   }
@@ -151,16 +151,16 @@ void Watch::check_bus(const canopen::Network& network, Time now, FaultArbiter& b
 // While drives are being enabled an old latched silence is being reset: only the data themselves count then.
 void Watch::check_nodes(const canopen::Network& network, Vigilance vigilance, Time now, FaultArbiter& began) {
   const canopen::IoModule& io = network.io();
-  const canopen::NodeFault& io_link = network.fault(canopen::Network::io_index);
+  const canopen::NodeFault& io_link = network.fault(network.io_index());
   const bool io_failed = io_link.heartbeat_lost || (io_link.emcy_active && io_link.error_register != 0);
-  const auto io_code = static_cast<std::int32_t>(canopen::Network::io_index);
+  const auto io_code = static_cast<std::int32_t>(network.io_index());
   const bool io_silent = io.seen() && !io.fresh(now);
   raise(io_failed || io_silent, 0, {Fault::io_lost, io_code, io_link.emcy_code}, began);
-  for (std::size_t node = 0; node < canopen::Network::node_count; ++node) {
+  for (std::size_t node = 0; node < network.node_count(); ++node) {
     const canopen::NodeFault& link = network.fault(node);
     const auto code = static_cast<std::int32_t>(node);
-    if (node < joint_count) {
-      const canopen::Axis& axis = network.axis(static_cast<Joint>(node));
+    if (node < network.drive_count()) {
+      const canopen::Axis& axis = network.axis(node);
       raise(link.heartbeat_lost, node, {Fault::node_lost, code, link.emcy_code}, began);
       const bool latched = vigilance == Vigilance::joints && axis.fault() == canopen::AxisFault::stale;
       const bool stale = latched || !joints_.fresh[node];
@@ -173,7 +173,7 @@ void Watch::check_nodes(const canopen::Network& network, Vigilance vigilance, Ti
 // The EMCY may come before the statusword, or after it.
 void Watch::check_drive(const canopen::Network& network, std::size_t joint, FaultArbiter& began) {
   using canopen::AxisFault;
-  const AxisFault fault = network.axis(static_cast<Joint>(joint)).fault();
+  const AxisFault fault = network.axis(joint).fault();
   const canopen::NodeFault& link = network.fault(joint);
   const auto code = static_cast<std::int32_t>(joint);
   raise(fault == AxisFault::following_error || stuck_[joint], joint, {Fault::following_error, code, link.emcy_code}, began);
@@ -184,7 +184,7 @@ void Watch::check_drive(const canopen::Network& network, std::size_t joint, Faul
 
 // Others are still being enabled, or homed. An error that was latched before this one took power is being reset.
 void Watch::check_standing(const canopen::Network& network, std::size_t joint, FaultArbiter& began) {
-  const canopen::Axis& axis = network.axis(static_cast<Joint>(joint));
+  const canopen::Axis& axis = network.axis(joint);
   const bool stands = axis.requested() == canopen::AxisRequest::hold_enabled;
   stood_[joint] = stands && (stood_[joint] || axis.enabled());
   if (!stood_[joint]) return;

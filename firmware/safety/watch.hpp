@@ -19,15 +19,15 @@ namespace lf::safety {
 
 // The joints as the drives report them.
 struct JointStates {
-  std::array<double, joint_count> position_rad{};
-  std::array<double, joint_count> velocity_rad_s{};  // observed
-  std::array<bool, joint_count> speed_known{};       // not so while a drive homes by its own method, and changes its zero
-  std::array<double, joint_count> torque_nm{};       // that the drives give the joints, estimated from their motors'
-  std::array<double, joint_count> torque_low_nm{};   // and its bounds
-  std::array<double, joint_count> torque_high_nm{};  //
-  std::array<bool, joint_count> fresh{};
+  PerJoint<double> position_rad{};
+  PerJoint<double> velocity_rad_s{};  // observed
+  PerJoint<bool> speed_known{};       // not so while a drive homes by its own method, and changes its zero
+  PerJoint<double> torque_nm{};       // that the drives give the joints, estimated from their motors'
+  PerJoint<double> torque_low_nm{};   // and its bounds
+  PerJoint<double> torque_high_nm{};  //
+  PerJoint<bool> fresh{};
   Time t;              // of the SYNC they belong to
-  bool valid = false;  // all five are fresh: only then are speeds, torques and the time brought up to date
+  bool valid = false;  // all are fresh: only then are speeds, torques and the time brought up to date
 };
 
 // How much there is to watch.
@@ -40,20 +40,20 @@ enum class Vigilance : std::uint8_t {
 class Watch {
  public:
   // The arm is known by its place. `foreign`: what the network has counted of another master's, and what was reported already.
-  using Transmissions = std::array<arm::TransmissionSetup, joint_count>;
+  using Transmissions = PerJoint<arm::TransmissionSetup>;
   explicit Watch(const arm::Arm& arm, const Limits& limits, const Transmissions& transmissions = {},
                  const canopen::ForeignFrames& foreign = {})
       : arm_(&arm), limits_(limits), transmissions_(transmissions), foreign_(foreign) {}
 
   // Reads the joints; call once a tick after the frames came in. `rad` are the positions decoded from counts.
-  void observe(const canopen::Network& network, const std::array<double, joint_count>& rad, Time now);
+  void observe(const canopen::Network& network, const PerJoint<double>& rad, Time now);
   const JointStates& joints() const { return joints_; }
 
   // Faults that began in this tick: each is reported once, and again only after it went away. `tool_m`: the tool point in the base frame.
   void check(const canopen::Network& network, const Vec3& tool_m, Vigilance vigilance, Time now, FaultArbiter& began);
 
   // Its position stands still while its set-point goes on.
-  bool shows_nothing(Joint joint) const;
+  bool shows_nothing(std::size_t joint) const;
   // Beyond its limits by more than noise.
   bool outside(std::size_t joint) const;
   bool any_outside() const;
@@ -81,20 +81,20 @@ class Watch {
   const arm::Arm* arm_;
   Limits limits_;
   Transmissions transmissions_;
-  std::array<arm::JointObserver, joint_count> observers_;
-  std::array<arm::TorqueObserver, joint_count> torque_observers_;
+  PerJoint<arm::JointObserver> observers_;
+  PerJoint<arm::TorqueObserver> torque_observers_;
   bool observing_ = false;
   JointStates joints_;
-  std::array<StuckEncoder, joint_count> encoders_;
-  std::array<bool, joint_count> stuck_{};  // the roll's turn and the jaw's gripper have rules of their own
-  std::array<bool, joint_count> stood_{};  // under power, while others were still being enabled
-  std::array<int, joint_count> overload_ticks_{};
+  PerJoint<StuckEncoder> encoders_;
+  PerJoint<bool> stuck_{};  // the roll's turn and the jaw's gripper have rules of their own
+  PerJoint<bool> stood_{};  // under power, while others were still being enabled
+  PerJoint<int> overload_ticks_{};
   bool tolerating_ = false;
   double tolerated_m_ = 0;  // of the tool, outside of its workspace
   bool tool_outside_ = false;
-  std::array<double, joint_count> tolerated_rad_{};                          // outside of the limits
+  PerJoint<double> tolerated_rad_{};                                         // outside of the limits
   static constexpr std::size_t index_count = canopen::ForeignFrames::slots;  // joints, nodes, another master's identifiers
-  static_assert(joint_count <= index_count && canopen::Network::node_count <= index_count);
+  static_assert(capacity::nodes <= index_count);
   std::array<std::array<bool, index_count>, fault_count> present_{};
   canopen::ForeignFrames foreign_;  // known of
 };

@@ -23,7 +23,7 @@ bool JointHistory::add(const JointSample& sample_in) {
   return true;
 }
 
-auto JointHistory::at(Time t, bool final, std::array<double, arm_joint_count>& q_rad) const -> Outcome {
+auto JointHistory::at(Time t, bool final, PerArmJoint<double>& q_rad) const -> Outcome {
   if (size_ == 0 || t > sample(size_ - 1).t) return final ? Outcome::gap : Outcome::wait;
   if (t < sample(0).t) return Outcome::too_old;
   // The first sample after t, by bisection; samples are in the order of their times.
@@ -50,7 +50,7 @@ auto JointHistory::at(Time t, bool final, std::array<double, arm_joint_count>& q
 // Least squares of 1, x, x^2 over the samples `first` to `last`, x their time from `t` in units of the half window: the joint at t is the first
 // coefficient, a weighted mean of the samples. With fewer than five samples, or most on one side of t, a parabola would extrapolate noise: a
 // straight line then.
-void JointHistory::fit(std::size_t first, std::size_t last, Time t, std::array<double, arm_joint_count>& q_rad) const {
+void JointHistory::fit(std::size_t first, std::size_t last, Time t, PerArmJoint<double>& q_rad) const {
   const double unit_s = (can_map::sync_period * half_window).s();
   const auto place = [&](std::size_t i) { return (sample(i).t - t).s() / unit_s; };
   std::array<double, 5> moments{};  // sums of x^0 .. x^4
@@ -73,7 +73,7 @@ void JointHistory::fit(std::size_t first, std::size_t last, Time t, std::array<d
   for (std::size_t i = first; i <= last; ++i) {
     const double x = place(i);
     const double share = weights.dot(Vec3(1, x, x * x));
-    for (std::size_t j = 0; j < arm_joint_count; ++j) q_rad[j] += share * sample(i).q_rad[j];
+    for (std::size_t j = 0; j < q_rad.size(); ++j) q_rad[j] += share * sample(i).q_rad[j];
   }
 }
 

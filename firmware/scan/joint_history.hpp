@@ -30,13 +30,13 @@ class JointHistory {
   bool add(const JointSample& sample);
 
   // The joints at `t`. `final`: no more samples will come, those there are have to do (at least one after `t`).
-  Outcome at(Time t, bool final, std::array<double, arm_joint_count>& q_rad) const;
+  Outcome at(Time t, bool final, PerArmJoint<double>& q_rad) const;
 
   void clear() { size_ = 0; }
 
  private:
   const JointSample& sample(std::size_t age) const;  // 0 is the oldest
-  void fit(std::size_t first, std::size_t last, Time t, std::array<double, arm_joint_count>& q_rad) const;
+  void fit(std::size_t first, std::size_t last, Time t, PerArmJoint<double>& q_rad) const;
 
   std::array<JointSample, capacity> ring_{};
   std::size_t next_ = 0;

@@ -57,7 +57,7 @@ SweepPlanner::Points SweepPlanner::points_to_pass(double border_m, double outwar
 
 SweepPlanner::Laser SweepPlanner::at(double shoulder_rad, double elbow_rad) {
   ++poses_;
-  const Pose base_from_laser = arm_->base_from_laser(arm::JointVector(slew_rad_, shoulder_rad, elbow_rad, 0), laser_);
+  const Pose base_from_laser = arm_->base_from_laser(arm::planar_joints(slew_rad_, shoulder_rad, elbow_rad, 0), laser_);
   return {base_from_laser.translation(), normal_up_ * base_from_laser.linear().col(0)};
 }
 
@@ -82,7 +82,7 @@ bool SweepPlanner::look_ahead(double shoulder_rad, double& from_rad, double& to_
   int first = -1, last = -1;
   for (int i = 0; i <= steps; ++i) {
     ++poses_;
-    const arm::JointVector q(slew_rad_, shoulder_rad, first_rad + i * step_rad, 0);
+    const arm::JointVector q = arm::planar_joints(slew_rad_, shoulder_rad, first_rad + i * step_rad, 0);
     if (arm_->base_from_laser(q, laser_).linear().col(2).dot(inward) < least_cosine) {
       if (first >= 0) break;
       continue;
@@ -166,7 +166,7 @@ SweepOutcome SweepPlanner::check_way(const Candidate& c, double& widest_m) {
     const double y_m = height_m(laser);
     const double spacing_m = y_m - height_m(at(shoulder_at(f_next), elbow_at(f_next)));
     if (!(spacing_m > 0)) return SweepOutcome::no_way;
-    const Vec3 tool_m = arm_->base_from_tool(arm::JointVector(slew_rad_, shoulder_at(f), elbow_at(f), 0)).translation();
+    const Vec3 tool_m = arm_->base_from_tool(arm::planar_joints(slew_rad_, shoulder_at(f), elbow_at(f), 0)).translation();
     ++poses_;
     if (out_of_panel.dot(tool_m - request_.base_from_panel.translation()) < tool_distance_m) return SweepOutcome::no_way;
     if (y_m > request_.top_m + request_.margin_m || y_m < request_.bottom_m - request_.margin_m) continue;
@@ -181,7 +181,7 @@ SweepPlan SweepPlanner::result(const Candidate& c, double widest_m) const {
   plan.outcome = SweepOutcome::ok;
   plan.start_rad = {slew_rad_, shoulder(c.from), ends_[c.from].start, 0};
   plan.end_rad = {slew_rad_, shoulder(c.to), ends_[c.to].end, 0};
-  for (std::size_t i = 0; i < arm_joint_count; ++i) plan.speed_rad_s[i] = (plan.end_rad[i] - plan.start_rad[i]) / c.duration_s;
+  for (std::size_t i = 0; i < plan.speed_rad_s.size(); ++i) plan.speed_rad_s[i] = (plan.end_rad[i] - plan.start_rad[i]) / c.duration_s;
   plan.duration = Duration::from_s(c.duration_s);
   plan.widest_spacing_m = widest_m;
   return plan;
@@ -208,7 +208,7 @@ void SweepPlanner::consider(std::size_t from, std::size_t to) {
 void SweepPlanner::begin(const arm::Arm& arm, const SweepRequest& request, const LaserCalibration& laser) {
   best_ = SweepPlan{};
   next_ = 0;
-  planned_ = !valid(request, laser);
+  planned_ = !valid(request, laser) || !arm.is_planar();
   if (planned_) return;
   arm_ = &arm;
   request_ = request;
@@ -222,7 +222,7 @@ void SweepPlanner::begin(const arm::Arm& arm, const SweepRequest& request, const
 }
 
 void SweepPlanner::try_shoulders(double least_share) {
-  const ArmModel::Joint& shoulder = arm_->joint(Joint::shoulder);
+  const ArmModel::Joint& shoulder = arm_->joint(1);
   const double from_rad = shoulder.lower_rad + grid_begins_rad, to_rad = limits_.upper_rad[1];
   shoulder_step_rad_ = std::max(finest_shoulder_rad, (to_rad - from_rad) / (most_shoulders - 1));
   const double least_rad = std::max(limits_.lower_rad[1], std::lerp(shoulder.lower_rad, shoulder.upper_rad, least_share));

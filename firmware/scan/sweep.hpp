@@ -47,16 +47,16 @@ enum class SweepOutcome : std::uint8_t {
   bottom_unreachable,  // nor below it
   fan_too_narrow,      // the stripe is shorter than the region is wide
   no_way,              // between the ends the tool comes too near to the panel, or the stripe turns back
-  bad_request,         // not a number, or an empty region
+  bad_request,         // not a number, an empty region, or an arm of another form than the planar one
 };
 
 struct SweepPlan {
   SweepOutcome outcome = SweepOutcome::bad_request;
-  std::array<double, arm_joint_count> start_rad{};
-  std::array<double, arm_joint_count> end_rad{};
-  std::array<double, arm_joint_count> speed_rad_s{};  // signed; 0 for joints at rest, else at or above `slowest_rad_s`
-  Duration duration;                                  // start to end at that speed; run-up and run-out come on top
-  double widest_spacing_m = 0;                        // between stripes on the region at `stripe_period`
+  PerArmJoint<double> start_rad{};
+  PerArmJoint<double> end_rad{};
+  PerArmJoint<double> speed_rad_s{};  // signed; 0 for joints at rest, else at or above `slowest_rad_s`
+  Duration duration;                  // start to end at that speed; run-up and run-out come on top
+  double widest_spacing_m = 0;        // between stripes on the region at `stripe_period`
 };
 
 // Plans in shares, so that no control tick bears it all: begin(), then advance() until it is true.

@@ -1,6 +1,5 @@
 #include "hal/config/arm_notes.hpp"
 
-#include "hal/config/homing_file.hpp"
 #include "shared/arm/arm_description.hpp"
 
 namespace lf::config {
@@ -9,8 +8,8 @@ std::vector<std::string> arm_notes(const std::string& urdf_file) {
   const ArmDescription arm = load_arm_urdf(urdf_file);
   std::vector<std::string> notes;
   std::string frictionless;
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    if (!arm.joints[i].friction.stated) frictionless += (frictionless.empty() ? "" : ", ") + std::string(joint_name(i));
+  for (std::size_t i = 0; i < arm.joints.size(); ++i) {
+    if (!arm.joints[i].friction.stated) frictionless += (frictionless.empty() ? "" : ", ") + arm.joints[i].name;
   }
   if (frictionless.empty()) return notes;
   notes.push_back(

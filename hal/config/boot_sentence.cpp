@@ -6,7 +6,6 @@
 
 #include "firmware/canopen/sdo_abort.hpp"
 #include "hal/config/drive_kind.hpp"
-#include "hal/config/homing_file.hpp"
 
 namespace lf::config {
 
@@ -119,10 +118,10 @@ std::string boot_sentence(const canopen::NodeBoot& boot, const std::string& who)
   return head + what_happened(boot, named(index, sub)) + ". " + remedy(index, boot.abort_code);
 }
 
-std::string boot_sentences(const canopen::BootReport& report) {
+std::string boot_sentences(const canopen::BootReport& report, const JointNames& names) {
   std::string all;
   for (std::size_t i = 0; i < report.nodes.size(); ++i) {
-    const std::string one = boot_sentence(report.nodes[i], i < joint_count ? joint_name(i) : "outputs");
+    const std::string one = boot_sentence(report.nodes[i], i < names.size() ? names[i] : "outputs");
     if (!one.empty()) all += "; " + one;
   }
   return all;

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "firmware/canopen/boot_report.hpp"
+#include "shared/arm/joint_names.hpp"
 
 namespace lf::config {
 
@@ -11,6 +12,6 @@ namespace lf::config {
 std::string boot_sentence(const canopen::NodeBoot& boot, const std::string& who);
 
 // Of all nodes that failed, each after "; ".
-std::string boot_sentences(const canopen::BootReport& report);
+std::string boot_sentences(const canopen::BootReport& report, const JointNames& names);
 
 }  // namespace lf::config

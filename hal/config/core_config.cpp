@@ -87,11 +87,11 @@ class Steps {
 std::map<std::string, DriveKind> read_profiles(const Machine& machine, const Steps& steps) {
   std::map<std::string, DriveKind> profiles;
   std::set<std::string> tried;
-  for (std::size_t joint = 0; joint < joint_count; ++joint) {
+  for (std::size_t joint = 0; joint < machine.joints.size(); ++joint) {
     const std::string& name = drive_of(machine.drives, joint).profile;
     if (!tried.insert(name).second) continue;
     const bool of_all = machine.drives.joints[joint].profile.empty();
-    const std::string key = std::string("drives.") + (of_all ? "" : std::string(joint_name(joint)) + ".") + "profile";
+    const std::string key = "drives." + (of_all ? "" : machine.joints[joint] + ".") + "profile";
     steps.take([&] {
       try {
         profiles[name] = find_drive_kind(name, std::filesystem::path(machine.file).parent_path());
@@ -106,8 +106,8 @@ std::map<std::string, DriveKind> read_profiles(const Machine& machine, const Ste
 // The profile's units, objects and option codes, and the machine's node numbers.
 void set_drive(const Machine& machine, std::size_t joint, const DriveKind& kind, const ArmJoint& description, canopen::DriveSetup& setup) {
   const JointDriveChoice choice = drive_of(machine.drives, joint);
-  const std::string where = machine.told_in() + ": drives." + joint_name(joint);
-  check_motor(choice, joint, description, where);
+  const std::string where = machine.told_in() + ": drives." + description.name;
+  check_motor(choice, description, where);
   setup.node = static_cast<std::uint8_t>(choice.node);
   // A drive that says its rated torque is only checked against a stated one; one that does not, has the arm's description's.
   const bool described = choice.rated_torque_nm == 0 && kind.rating == "configured";
@@ -117,19 +117,19 @@ void set_drive(const Machine& machine, std::size_t joint, const DriveKind& kind,
         {choice.counts_per_rev, described ? motor.rated_torque_nm : choice.rated_torque_nm, choice.rated_current_a,
          choice.polarity == "reversed"},
         where, setup);
-  check_position_unit(choice, joint, description, kind, where);
+  check_position_unit(choice, description, kind, where);
 }
 
 // Of the joints whose drives do not say their motors' rating, and nobody else does.
 void note_assumed_ratings(const Machine& machine, const std::map<std::string, DriveKind>& profiles, const ArmDescription& description,
                           Core& core) {
   std::string assumed;
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < description.joints.size(); ++i) {
     const JointDriveChoice choice = drive_of(machine.drives, i);
     const auto kind = profiles.find(choice.profile);
     if (kind == profiles.end() || kind->second.rating != "configured" || choice.rated_torque_nm > 0) continue;
     char text[64];
-    std::snprintf(text, sizeof text, "%s%s %.3g N m", assumed.empty() ? "" : ", ", joint_name(i),
+    std::snprintf(text, sizeof text, "%s%s %.3g N m", assumed.empty() ? "" : ", ", description.joints[i].name.c_str(),
                   motor_of(description.joints[i], choice.counts_per_rev).rated_torque_nm);
     assumed += text;
   }
@@ -160,7 +160,8 @@ std::uint16_t torque_cap_permille(const ArmJoint& joint, const safety::JointLimi
 
 canopen::NetworkConfig network_config(const arm::Arm& arm, const safety::Limits& limits) {
   canopen::NetworkConfig network;
-  for (std::size_t i = 0; i < joint_count; ++i) network.drives[i] = drive_setup(arm.model().joints[i], limits.joints[i]);
+  for (std::size_t i = 0; i < arm.joint_count(); ++i)
+    (void)network.drives.push_back(drive_setup(arm.joint(i), limits.joints[i]));  // they fit: the arm does
   return network;
 }
 
@@ -169,9 +170,10 @@ void check_network(const Machine& machine, const canopen::NetworkConfig& network
   std::size_t offender = 0;
   const canopen::ConfigError error = canopen::check(network, offender);
   if (error == canopen::ConfigError::none) return;
-  const auto name_of = [](std::size_t i) { return i < joint_count ? std::string("drives.") + joint_name(i) : std::string("outputs"); };
+  const std::size_t drives = network.drives.size();
+  const auto name_of = [&](std::size_t i) { return i < drives ? "drives." + machine.joints[i] : std::string("outputs"); };
   if (error == canopen::ConfigError::node_twice) {
-    const auto node_of = [&](std::size_t i) { return i < joint_count ? network.drives[i].node : network.io.node; };
+    const auto node_of = [&](std::size_t i) { return i < drives ? network.drives[i].node : network.io.node; };
     std::size_t first = 0;
     while (node_of(first) != node_of(offender)) ++first;
     throw InputError(machine.told_in() + ": " + name_of(first) + " and " + name_of(offender) + " have the same node number, " +
@@ -188,7 +190,7 @@ void check_network(const Machine& machine, const canopen::NetworkConfig& network
         units);
     throw InputError(machine.told_in() + ": " + name_of(offender) + ": " + text);
   }
-  throw InputError(machine.told_in() + ": " + (offender < joint_count ? name_of(offender) : "outputs, or the bus") + ": " +
+  throw InputError(machine.told_in() + ": " + (offender < drives ? name_of(offender) : "outputs, or the bus") + ": " +
                    canopen::name(error));
 }
 
@@ -243,11 +245,12 @@ mission::MissionConfig mission_config(const Machine& machine) {
   config.layout = machine.panel;
   config.use_lamps = machine.lamps_lit;
   config.camera_always_on = machine.camera_always_on;
-  config.tasks = core_tasks(machine.tasks, machine.survey.names, machine.file);
+  if (!machine.tasks.empty()) config.tasks = core_tasks(machine.tasks, machine.survey.names, machine.file);
   return config;
 }
 
 bool check_reach_of_tasks(const Machine& machine, const Steps& steps) {
+  if (!machine.arm.is_planar()) return false;
   bool all = true;
   for (const Place& place : places_of_tasks(machine)) {
     const arm::IkResult ik = pose_at(machine.arm, machine.panel, place);
@@ -264,11 +267,12 @@ bool check_reach_of_tasks(const Machine& machine, const Steps& steps) {
 // The entry of a limits file that keeps the arm from its work, before anything moves.
 bool check_limits(const Machine& machine, const std::string& file, const safety::Limits& limits, const ControllerConfig& controller,
                   const Steps& steps) {
-  std::vector<std::string> problems = limits_problems(limits, controller);
+  std::vector<std::string> problems = limits_problems(limits, controller, machine.joints);
   for (const Place& place : places_of_tasks(machine)) {
     const arm::IkResult ik = pose_at(machine.arm, machine.panel, place);
     if (!ik.ok()) continue;
-    for (const std::string& problem : pose_problems(controller.arm, limits, ik.q_rad, place.what)) problems.push_back(problem);
+    for (const std::string& problem : pose_problems(controller.arm, machine.joints, limits, ik.q_rad, place.what))
+      problems.push_back(problem);
   }
   for (const std::string& problem : problems) steps.take([&] { throw InputError(file + ": " + problem); });
   return problems.empty();
@@ -297,8 +301,8 @@ void check_exposure(const Machine& machine) {
 // The wrist turns about the tool axis, the bar about the panel's normal: so far apart the wrist is faster than the bar by 1 / cos.
 void check_turn_speed(const Machine& machine, std::size_t valve, const ArmDescription& description, const safety::Limits& limits) {
   const double tilt_rad = steepest_rad(machine.arm, machine.panel, place_of_valve(machine, valve), machine.mission.docking);
-  const auto roll = static_cast<std::size_t>(Joint::roll);
-  const double fastest = std::cos(tilt_rad) * std::min(description.joints[roll].velocity_rad_s, limits.joints[roll].max_speed_rad_s);
+  const double fastest =
+      std::cos(tilt_rad) * std::min(description.roll().velocity_rad_s, limits.joints[machine.arm.roll_joint()].max_speed_rad_s);
   if (machine.mission.turn_speed_rad_s <= fastest) return;
   char text[128];
   std::snprintf(text, sizeof text, "'mission.turn_speed_rad_s' is %.3g: with this wrist a handle turns at most at %.3g rad/s",
@@ -308,8 +312,7 @@ void check_turn_speed(const Machine& machine, std::size_t valve, const ArmDescri
 
 // The wrist's peak, or the couple of two pads that press on the bar's ends.
 double hand_torque_nm(const ArmDescription& description, const ArmModel::Jaw& jaw) {
-  const auto effort_nm = [&](Joint joint) { return description.joints[static_cast<std::size_t>(joint)].effort_nm; };
-  return std::min(arm::pad_force_n(jaw, effort_nm(Joint::jaw)) * jaw.pad_width_m, effort_nm(Joint::roll));
+  return std::min(arm::pad_force_n(jaw, description.jaw().effort_nm) * jaw.pad_width_m, description.roll().effort_nm);
 }
 
 // Where the panel and what stands proud of it can be: the worst docking error moves a corner of the plate by 20 mm and, over half a metre, by
@@ -366,29 +369,27 @@ mission::Tasks core_tasks(const std::vector<Task>& tasks, const PanelNames& name
 namespace {
 
 // A joint without a line in the file, and every joint without a file, takes no power.
-void set_zeros(const Machine& machine, const std::filesystem::path& folder, const ArmDescription* arm, Core& core) {
+void set_zeros(const Machine& machine, const std::filesystem::path& folder, const ArmDescription& arm, Core& core) {
   ControllerConfig& controller = core.controller;
   const std::string& file = machine.homing_file;
   canopen::NetworkConfig& network = controller.network;
-  for (canopen::DriveSetup& drive : network.drives) drive.zero_known = false;
+  for (canopen::DriveSetup& drive : network.drives) drive.zero_known = file.empty() && machine.zeros_by_construction;
   if (file.empty()) return;
   const std::string found = find_file(file, folder);
-  HomingOffsets offsets = read_homing_file(found);
+  HomingOffsets offsets = read_homing_file(found, machine.joints);
   const HomingOffsets in_file = offsets;
-  if (arm != nullptr) {
-    std::array<Motor, joint_count> motors;
-    for (std::size_t i = 0; i < joint_count; ++i) motors[i] = motor_of(arm->joints[i], drive_of(machine.drives, i).counts_per_rev);
-    for (const std::string& doubtful : leave_out_doubtful(offsets, motors))
-      core.notes.push_back(found + ": " + doubtful + ". Until then this joint takes no power");
-  }
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  PerJoint<Motor> motors;
+  for (std::size_t i = 0; i < machine.joints.size(); ++i) motors[i] = motor_of(arm.joints[i], drive_of(machine.drives, i).counts_per_rev);
+  for (const std::string& doubtful : leave_out_doubtful(offsets, motors))
+    core.notes.push_back(found + ": " + doubtful + ". Until then this joint takes no power");
+  for (std::size_t i = 0; i < network.drives.size(); ++i) {
     if (in_file.zero_doubtful[i] && !in_file.friction_doubtful[i])
-      core.notes.push_back(found + ": the " + joint_name(i) +
+      core.notes.push_back(found + ": the " + machine.joints[i] +
                            "'s zero is doubtful: a commissioning found it elsewhere, or did not come to its end. This joint takes no power "
                            "until it is commissioned again");
     if (in_file.friction_doubtful[i])
       core.notes.push_back(
-          found + ": the " + joint_name(i) +
+          found + ": the " + machine.joints[i] +
           "'s friction was doubtful when it was last measured. This joint takes no power until a commissioning measures it again");
     network.drives[i].zero_known = offsets.known[i];
     network.drives[i].encoder_zero_counts = offsets.zero_counts[i];
@@ -400,7 +401,7 @@ void set_zeros(const Machine& machine, const std::filesystem::path& folder, cons
 void tighten(const Machine& machine, ControllerConfig& controller) {
   if (machine.mission_limits.empty()) return;
   const std::string found = named_file(machine.file, "safety.mission_limits", machine.mission_limits);
-  const safety::Limits tighter = read_limits(found);
+  const safety::Limits tighter = read_limits(found, machine.joints);
   if (!safety::is_tighter(tighter, controller.limits))
     throw InputError(found + ": 'safety.mission_limits' tightens limits, and one of these is wider than in 'safety.limits'");
   controller.mission_limits = tighter;
@@ -411,14 +412,17 @@ Core assemble(Machine machine, const Steps& steps) {
   Core core;
   ControllerConfig& controller = core.controller;
   ArmDescription description;
-  const bool arm = steps.take([&] {
+  const bool arm = !machine.arm_told && steps.take([&] {
     const std::string urdf = named_file(machine.file, "arm.urdf", machine.arm_urdf);
     description = load_arm_urdf(urdf);
     machine.arm = arm_of(description, urdf);
+    machine.joints = description.names();
   });
   controller.arm = core.scan.arm = machine.arm;
-  const bool limits =
-      steps.take([&] { controller.limits = read_limits(named_file(machine.file, "safety.limits", machine.safety_limits)); });
+  // Of a machine's own arm that cannot be read nobody knows what its joints are called.
+  const bool limits = (arm || (!machine.arm_told && machine.joints == JointNames())) && steps.take([&] {
+    controller.limits = read_limits(named_file(machine.file, "safety.limits", machine.safety_limits), machine.joints);
+  });
   controller.mission_limits = controller.limits;
   const bool tightened = limits && steps.take([&] { tighten(machine, controller); });
   bool drives_known = false;
@@ -426,8 +430,9 @@ Core assemble(Machine machine, const Steps& steps) {
   if (arm && limits) {
     controller.network = network_config(machine.arm, controller.limits);
     controller.network.io.node = static_cast<std::uint8_t>(machine.drives.output_node);
+    core.error_texts = ErrorTexts(machine.joints);
     bool drives = true;
-    for (std::size_t i = 0; i < joint_count; ++i) {
+    for (std::size_t i = 0; i < machine.joints.size(); ++i) {
       controller.transmissions[i] = transmission_of(description.joints[i], drive_of(machine.drives, i).counts_per_rev);
       controller.network.drives[i].max_torque_permille =
           torque_cap_permille(description.joints[i], controller.limits.joints[i], controller.transmissions[i]);
@@ -440,7 +445,7 @@ Core assemble(Machine machine, const Steps& steps) {
     drives_known = drives;
     note_assumed_ratings(machine, profiles, description, core);
   }
-  steps.take([&] { set_zeros(machine, folder, arm ? &description : nullptr, core); });
+  if (arm) steps.take([&] { set_zeros(machine, folder, description, core); });
   if (drives_known) steps.take([&] { check_network(machine, controller.network); });
   controller.camera = camera_calibration(machine.camera);
   const bool camera = steps.take([&] {
@@ -456,8 +461,15 @@ Core assemble(Machine machine, const Steps& steps) {
   set_region(machine.panel, core.scan.triangulation);
   set_frame_rate(machine.mission, core.scan);
   steps.take([&] { check_exposure(machine); });
+  // What follows is about jobs at a panel, for which arms of one form are planned.
+  if (arm && !machine.arm.is_planar() && !machine.tasks.empty()) steps.take([&] { refuse(machine, no_jobs); });
+  if (arm && mission && !machine.arm.is_planar()) {
+    steps.take([&] {
+      if (const std::optional<std::string> problem = fold_problem(controller, machine.survey)) refuse(machine, *problem);
+    });
+  }
   const bool reach = check_reach_of_tasks(machine, steps);
-  if (arm && limits) {
+  if (arm && limits && machine.arm.is_planar()) {
     for (std::size_t i = 0; i < machine.panel.valves.size(); ++i) {
       if (machine.survey.file.empty() || turns(machine, i))
         steps.take([&] { check_turn_speed(machine, i, description, controller.mission_limits); });
@@ -467,7 +479,7 @@ Core assemble(Machine machine, const Steps& steps) {
     core.hand_torque_nm = hand_torque_nm(description, controller.arm.jaw());
     for (const std::string& problem : torque_problems(machine, core.hand_torque_nm)) steps.take([&] { refuse(machine, problem); });
   }
-  if (arm && limits) {
+  if (arm && limits && machine.arm.is_planar()) {
     for (const std::string& problem : roll_problems(machine, controller.mission_limits)) steps.take([&] { refuse(machine, problem); });
   }
   bool workable = true;
@@ -478,12 +490,12 @@ Core assemble(Machine machine, const Steps& steps) {
       workable = check_limits(machine, named_file(machine.file, "safety.mission_limits", machine.mission_limits), controller.mission_limits,
                               controller, steps);
   }
-  if (camera) {
+  if (camera && machine.arm.is_planar()) {
     for (const std::string& problem : view_problems(machine, controller.camera)) steps.take([&] { refuse(machine, problem); });
   }
-  if (limits && mission && reach && workable) {
+  if (limits && mission && reach && workable && machine.arm.is_planar()) {
     steps.take([&] {
-      if (const std::optional<std::string> problem = sweep_problem(controller, machine.survey)) refuse(machine, *problem);
+      if (const std::optional<std::string> problem = sweep_problem(controller, machine.joints, machine.survey)) refuse(machine, *problem);
     });
   }
   return core;

@@ -2,8 +2,6 @@
 
 #include <array>
 
-#include "shared/messages/joint_names.hpp"
-
 namespace lf::config {
 
 namespace {
@@ -91,8 +89,8 @@ std::vector<std::string> fault_kind_names() {
   return names;
 }
 
-std::vector<std::string> fault_nodes(FaultPlace place) {
-  std::vector<std::string> nodes(joint_names.begin(), joint_names.end());
+std::vector<std::string> fault_nodes(FaultPlace place, const JointNames& names) {
+  std::vector<std::string> nodes(names.begin(), names.end());
   if (place == node || place == node_or_master) nodes.emplace_back("io");
   if (place == node_or_master) nodes.emplace_back("master");
   if (place != drive && place != node && place != node_or_master) return {""};

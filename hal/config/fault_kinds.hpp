@@ -8,10 +8,12 @@
 #include <string_view>
 #include <vector>
 
+#include "shared/arm/joint_names.hpp"
+
 namespace lf::config {
 
 enum class FaultPlace : std::uint8_t {
-  drive,           // needs a node: slew, shoulder, elbow, roll or jaw
+  drive,           // needs a node: one of the joints
   node,            // needs a node: a drive or io
   node_or_master,  // needs a node: a drive, io or master
   frames,          // needs a can_id
@@ -35,7 +37,7 @@ const FaultKind* find_fault_kind(std::string_view name);
 std::vector<std::string> fault_kind_names();
 
 // The nodes that a fault of this place can happen to, "" alone where it takes none.
-std::vector<std::string> fault_nodes(FaultPlace place);
+std::vector<std::string> fault_nodes(FaultPlace place, const JointNames& names = {});
 
 // A Markdown table of all kinds; docs/scenarios.md holds it.
 std::string fault_kinds_markdown();

@@ -6,7 +6,6 @@
 #include "firmware/telemetry.hpp"
 #include "hal/config/cause.hpp"
 #include "shared/messages/joint_io.hpp"
-#include "shared/messages/joint_names.hpp"
 
 namespace lf::config {
 
@@ -29,7 +28,7 @@ std::string bus_text(std::int32_t code) {
   }
 }
 
-std::string cause(Fault fault, std::int32_t code, const mission::Sight& sight) {
+std::string cause(Fault fault, std::int32_t code, const ErrorTexts& texts, const mission::Sight& sight) {
   switch (fault) {
     case Fault::node_lost:
     case Fault::node_rebooted:
@@ -39,8 +38,8 @@ std::string cause(Fault fault, std::int32_t code, const mission::Sight& sight) {
     case Fault::joint_limit:
     case Fault::overspeed:
     case Fault::overload:
-    case Fault::unexpected_contact: return node_text(code);
-    case Fault::boot_failed: return code < 0 ? "" : node_text(code);
+    case Fault::unexpected_contact: return texts.node_name(code);
+    case Fault::boot_failed: return code < 0 ? "" : texts.node_name(code);
     case Fault::step_failed:
     case Fault::vision_poor: return cause_of(fault, code, sight).name;
     case Fault::second_master: return "identifier " + hex(static_cast<unsigned>(code));
@@ -54,14 +53,9 @@ std::string cause(Fault fault, std::int32_t code, const mission::Sight& sight) {
 
 }  // namespace
 
-std::string node_text(std::int32_t index) {
-  const bool known = index >= 0 && index < static_cast<std::int32_t>(node_names.size());
-  return known ? node_names[static_cast<std::size_t>(index)] : std::to_string(index);
-}
-
 std::string fault_text(Fault fault, std::int32_t code, std::uint16_t emcy, const ErrorTexts& texts, const mission::Sight& sight) {
   std::string text = safety::name(fault);
-  if (const std::string why = cause(fault, code, sight); !why.empty()) text += ": " + why;
+  if (const std::string why = cause(fault, code, texts, sight); !why.empty()) text += ": " + why;
   const bool failed = fault == Fault::step_failed || fault == Fault::vision_poor;
   if (const std::string what_to_do = failed ? cause_of(fault, code, sight).remedy : ""; !what_to_do.empty())
     text += " (" + what_to_do + ")";

@@ -135,6 +135,7 @@ double longest_mark_m(const PanelLayout::Valve& valve) { return valve.handle_len
 
 std::vector<std::string> handle_problems(const Machine& machine) {
   std::vector<std::string> problems;
+  if (!machine.arm.is_planar()) return problems;  // nothing is turned or pressed
   for (std::size_t i = 0; i < machine.panel.valves.size(); ++i) check_stops(machine.survey, i, machine.panel.valves[i], problems);
   check_tasks(machine, problems);
   // What nobody turns may be what it is, but for the docked mission's: its keys say what a hand can work.

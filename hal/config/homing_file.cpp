@@ -14,23 +14,21 @@
 #include "hal/config/text_file.hpp"
 #include "hal/config/yaml_reader.hpp"
 #include "shared/input_error.hpp"
-#include "shared/messages/joint_names.hpp"
 
 namespace lf::config {
 
-const char* joint_name(std::size_t joint) { return joint < joint_names.size() ? joint_names[joint] : "?"; }
-
-HomingOffsets read_homing_file(const std::string& path) {
+HomingOffsets read_homing_file(const std::string& path, const JointNames& names) {
   const Source source = Source::of_file(path);
   const YAML::Node root = parse_yaml(read_text_file(path), source);
-  if (root.IsNull()) return {};
-  if (!root.IsMap()) source.refuse(root.Mark(), "not a file of homing offsets");
   HomingOffsets offsets;
+  offsets.names = names;
+  if (root.IsNull()) return offsets;
+  if (!root.IsMap()) source.refuse(root.Mark(), "not a file of homing offsets");
   Keys table;
   constexpr double low = std::numeric_limits<std::int32_t>::min() / 2.0, high = std::numeric_limits<std::int32_t>::max() / 2.0;
   constexpr double most_mnm = 1e5;
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    const std::string joint = std::string(joint_name(i));
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const std::string& joint = names[i];
     table.push_back(key(joint + ".zero_counts", "counts", low, high, &offsets.zero_counts[i], ""));
     table.push_back(key(joint + ".zero_doubtful", "", 0, 0, &offsets.zero_doubtful[i], ""));
     table.push_back(key(joint + ".found", "", 0, 0, &offsets.found[i], ""));
@@ -39,22 +37,26 @@ HomingOffsets read_homing_file(const std::string& path) {
     table.push_back(key(joint + ".friction_doubtful", "", 0, 0, &offsets.friction_doubtful[i], ""));
     table.push_back(key(joint + ".friction_rms_mnm", "mN m", 0, most_mnm, &offsets.friction[i].rms_mnm, ""));
   }
+  for (const auto& joint : root) {
+    if (joint.first.IsScalar() && !names.find(joint.first.Scalar()) && names != JointNames())
+      source.refuse(joint.first.Mark(),
+                    "'" + joint.first.Scalar() + "': these zeros are of another arm; this one's joints are " + names.listed());
+  }
   read_map(root, "", "", table, source);
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    const YAML::Node joint = root[joint_name(i)];
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const YAML::Node joint = root[names[i]];
     if (!joint || (offsets.friction_doubtful[i] && !offsets.zero_doubtful[i])) continue;
-    if (!joint["zero_counts"])
-      source.refuse(joint.Mark(), std::string("'") + joint_name(i) + ".zero_counts' is missing: commission this joint");
+    if (!joint["zero_counts"]) source.refuse(joint.Mark(), "'" + names[i] + ".zero_counts' is missing: commission this joint");
     if (offsets.friction_doubtful[i]) continue;
     offsets.known[i] = !offsets.zero_doubtful[i];
     offsets.friction_known[i] = joint["coulomb_mnm"] && joint["viscous_mnm_s"];
     if (!offsets.friction_known[i] && (joint["coulomb_mnm"] || joint["viscous_mnm_s"]))
-      source.refuse(joint.Mark(), std::string("'") + joint_name(i) + "' has one of coulomb_mnm and viscous_mnm_s: a friction needs both");
+      source.refuse(joint.Mark(), "'" + names[i] + "' has one of coulomb_mnm and viscous_mnm_s: a friction needs both");
   }
   return offsets;
 }
 
-std::optional<std::string> friction_problem(std::size_t joint, const JointFriction& found, const Motor& motor) {
+std::optional<std::string> friction_problem(const std::string& joint, const JointFriction& found, const Motor& motor) {
   // The simulator's friction goes up to twice (viscous: ten times) the description's. Commissioning finds the roll's a quarter too large, the others to 2 %.
   constexpr double most_coulomb = 3, most_viscous = 10, fit_error = 1.1;
   const auto problem = [&](const char* key, double value_mnm, double described_nm, double times,
@@ -66,7 +68,7 @@ std::optional<std::string> friction_problem(std::size_t joint, const JointFricti
         text, sizeof text,
         "'%s.%s' is %.4g: with this motor it is 0 to %.4g (the arm's description has %.4g). See whether something rubs, and commission the "
         "joint again; or correct the friction in the arm's description",
-        joint_name(joint), key, value_mnm, most_mnm, 1e3 * described_nm);
+        joint.c_str(), key, value_mnm, most_mnm, 1e3 * described_nm);
     return text;
   };
   // A description without friction leaves the motor's rating as the bound: no motor turns against more.
@@ -74,11 +76,11 @@ std::optional<std::string> friction_problem(std::size_t joint, const JointFricti
   return problem("viscous_mnm_s", found.viscous_mnm_s, motor.viscous_nm_s, most_viscous, motor.rated_torque_nm / motor.top_speed_rad_s);
 }
 
-std::vector<std::string> leave_out_doubtful(HomingOffsets& offsets, const std::array<Motor, joint_count>& motors) {
+std::vector<std::string> leave_out_doubtful(HomingOffsets& offsets, const PerJoint<Motor>& motors) {
   std::vector<std::string> left_out;
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < offsets.names.size(); ++i) {
     if (!offsets.friction_known[i]) continue;
-    const std::optional<std::string> problem = friction_problem(i, offsets.friction[i], motors[i]);
+    const std::optional<std::string> problem = friction_problem(offsets.names[i], offsets.friction[i], motors[i]);
     if (!problem) continue;
     left_out.push_back(*problem);
     offsets.doubt_friction(i);
@@ -121,7 +123,7 @@ int rename_through(const std::string& from, const std::string& to) {
 
 std::string joint_line(const HomingOffsets& offsets, std::size_t joint) {
   std::ostringstream line;
-  line << joint_name(joint) << ": {";
+  line << offsets.names[joint] << ": {";
   if (offsets.zero_doubtful[joint] || !offsets.friction_doubtful[joint]) line << "zero_counts: " << offsets.zero_counts[joint] << ", ";
   if (offsets.zero_doubtful[joint]) line << "zero_doubtful: true, ";
   if (offsets.friction_doubtful[joint]) line << "friction_doubtful: true, ";
@@ -165,7 +167,7 @@ void write_homing_file(const std::string& path, const HomingOffsets& offsets) {
   std::ostringstream out;
   out << "# Written by `lanternfishd commission`: what each drive's absolute encoder counts where the arm's own count is 0,\n"
          "# and the friction of its motor and gear, in mN m at the motor's shaft, with what the fit left of it.\n";
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < offsets.names.size(); ++i) {
     if (offsets.known[i] || offsets.zero_doubtful[i] || offsets.friction_doubtful[i]) out << joint_line(offsets, i);
   }
   const std::string partial = path + ".partial";

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "firmware/arm/transmission.hpp"
+#include "shared/arm/joint_names.hpp"
 #include "shared/arm/motor.hpp"
 #include "shared/messages/joint_io.hpp"
 
@@ -23,15 +24,16 @@ struct JointFriction {
 };
 
 struct HomingOffsets {
-  std::array<std::int32_t, joint_count> zero_counts{};
-  std::array<bool, joint_count> known{};
+  JointNames names;  // whose they are
+  PerJoint<std::int32_t> zero_counts{};
+  PerJoint<bool> known{};
   // The joint was found elsewhere than `zero_counts` has it, something rubs in it, or its commissioning did not come to its end. It is not known, and a later commissioning compares with these counts.
-  std::array<bool, joint_count> zero_doubtful{};
-  std::array<bool, joint_count> friction_known{};
+  PerJoint<bool> zero_doubtful{};
+  PerJoint<bool> friction_known{};
   // A friction that cannot be was found, and none since: the joint is not known, whatever zero was found.
-  std::array<bool, joint_count> friction_doubtful{};
-  std::array<JointFriction, joint_count> friction{};
-  std::array<std::string, joint_count> found;  // how and when, a line for people
+  PerJoint<bool> friction_doubtful{};
+  PerJoint<JointFriction> friction{};
+  PerJoint<std::string> found;  // how and when, a line for people
 
   bool has_earlier_zero(std::size_t joint) const;  // known, or doubtful: one to compare with
   void doubt_zero(std::size_t joint);              // keeps its counts, if it has any
@@ -46,16 +48,14 @@ void set_friction(const HomingOffsets& offsets, std::size_t joint, arm::Friction
 
 // Friction that this motor cannot have, in words with the key that says so, or nothing: a typing error, another machine's file, or a joint that something rubs
 // against. The bounds are those of a scenario's friction.*, over what the arm's description has.
-std::optional<std::string> friction_problem(std::size_t joint, const JointFriction& found, const Motor& motor);
+std::optional<std::string> friction_problem(const std::string& joint, const JointFriction& found, const Motor& motor);
 
 // Joints with such a friction are no longer known and count as doubtful, so that they take no power until they are commissioned again. A sentence for each.
-std::vector<std::string> leave_out_doubtful(HomingOffsets& offsets, const std::array<Motor, joint_count>& motors);
-
-const char* joint_name(std::size_t joint);  // "slew" ...
+std::vector<std::string> leave_out_doubtful(HomingOffsets& offsets, const PerJoint<Motor>& motors);
 
 // Throws InputError with file and line: unreadable or malformed, an unknown joint, one without its number, a doubtful zero without its counts, a number out of range. An empty file knows no
 // joint.
-HomingOffsets read_homing_file(const std::string& path);
+HomingOffsets read_homing_file(const std::string& path, const JointNames& names);
 // Writes the joints that are known, and those whose zero or friction is doubtful. Replaces the file as a whole or not at all, a loss of power included. Throws
 // InputError with the cause.
 void write_homing_file(const std::string& path, const HomingOffsets& offsets);

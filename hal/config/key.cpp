@@ -56,12 +56,12 @@ Keys keys(Task& task, const std::vector<std::string>& buttons) {
               "press these buttons, one after the other, by their names: left, centre and right on the docked mission's panel", buttons)};
 }
 
-Keys keys(Fault& fault) {
+Keys keys(Fault& fault, const JointNames& joints) {
   return {key("at_s", "s", 0, 7200, &fault.at_s, "when it happens, from power-on"),
           key("at_step", "", 0, 0, &fault.at_step, "in place of at_s: when the mission first enters this step", step_names()),
           key("after_s", "s", 0, 7200, &fault.after_s, "how long after at_step began"),
           key("kind", "", 0, 0, &fault.kind, "what happens: see the table of faults", fault_kind_names()),
-          key("node", "", 0, 0, &fault.node, "to which node, where the kind is a node's", fault_nodes(FaultPlace::node_or_master)),
+          key("node", "", 0, 0, &fault.node, "to which node, where the kind is a node's", fault_nodes(FaultPlace::node_or_master, joints)),
           key("duration_s", "s", 0, 7200, &fault.duration_s, "how long; 0 for the rest of the run"),
           key("can_id", "", 0, 0x7FF, &fault.can_id, "drop_frames: the identifier whose frames are lost")};
 }

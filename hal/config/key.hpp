@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "hal/config/spread.hpp"
+#include "shared/arm/joint_names.hpp"
 #include "shared/geometry/pose.hpp"
 #include "shared/panel/panel_layout.hpp"
 
@@ -47,7 +48,8 @@ struct Key {
   double max = 0;
   KeyValue value;                    // where it is kept
   std::vector<std::string> words{};  // what a text, or each text of a list, may be; empty: anything
-  std::vector<std::string> names{};  // of the panel's buttons, where the value is tasks; empty: any name is taken
+  std::vector<std::string>
+      names{};  // of the panel's buttons, where the value is tasks; empty: any name is taken. Of the joints, where it is faults
 };
 
 using Keys = std::vector<Key>;
@@ -60,7 +62,7 @@ Key key(std::string path, std::string unit, double min, double max, KeyValue val
 // The pointers are into the argument.
 // `buttons`: the panel's; empty: any name is taken.
 Keys keys(Task& task, const std::vector<std::string>& buttons);  // paths "turn_valve.valve", "turn_valve.to_deg", "press_buttons.order"
-Keys keys(Fault& fault);
+Keys keys(Fault& fault, const JointNames& joints = {});
 
 // "a number", "a number or {min: , max: }", "true or false" ...: what the key takes, in words.
 std::string type_name(const Key& key);

@@ -66,7 +66,10 @@ std::string key_listing(const Keys& table, const Keys& defaults) {
     const std::string value = value_text(table[i]);
     const std::string line = std::string(2 * parts.size(), ' ') + name + ": " + value;
     const std::size_t blanks = line.size() < comments_from ? comments_from - line.size() : 1;
-    out += line + std::string(blanks, ' ') + "# " + comment_of(table[i], value, value_text(defaults[i])) + "\n";
+    // Another arm's drives have no defaults of their own names.
+    const auto usual = std::find_if(defaults.begin(), defaults.end(), [&](const Key& key) { return key.path == table[i].path; });
+    out +=
+        line + std::string(blanks, ' ') + "# " + comment_of(table[i], value, usual == defaults.end() ? value : value_text(*usual)) + "\n";
   }
   return out;
 }

@@ -5,7 +5,6 @@
 
 #include "hal/config/text_file.hpp"
 #include "hal/config/yaml_reader.hpp"
-#include "shared/messages/joint_names.hpp"
 
 namespace lf::config {
 
@@ -13,10 +12,10 @@ namespace {
 
 constexpr double any = 1e6;
 
-std::vector<Key> limit_keys(safety::Limits& limits, std::string& checksum) {
+std::vector<Key> limit_keys(safety::Limits& limits, const JointNames& names, std::string& checksum) {
   std::vector<Key> all;
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    const std::string joint = std::string("joints.") + joint_names[i] + ".";
+  for (std::size_t i = 0; i < limits.joints.size(); ++i) {
+    const std::string joint = "joints." + names[i] + ".";
     all.push_back({joint + "min_rad", "", "rad", -any, any, &limits.joints[i].min_rad});
     all.push_back({joint + "max_rad", "", "rad", -any, any, &limits.joints[i].max_rad});
     all.push_back({joint + "max_speed_rad_s", "", "rad/s", 0, any, &limits.joints[i].max_speed_rad_s});
@@ -46,13 +45,21 @@ std::string hex(std::uint32_t value) {
 
 }  // namespace
 
-safety::Limits read_limits(const std::string& path) {
+safety::Limits read_limits(const std::string& path, const JointNames& names) {
   const Source source = Source::of_file(path);
   const YAML::Node root = parse_yaml(read_text_file(path), source);
   if (!root.IsMap()) source.refuse(root.Mark(), "not a file of safety limits");
   safety::Limits limits;
+  for (std::size_t i = 0; i < names.size(); ++i) (void)limits.joints.push_back({});  // no more than the core's arms have
   std::string checksum;
-  const std::vector<Key> table = limit_keys(limits, checksum);
+  const std::vector<Key> table = limit_keys(limits, names, checksum);
+  if (const YAML::Node joints = root["joints"]; joints && joints.IsMap()) {
+    for (const auto& joint : joints) {
+      if (joint.first.IsScalar() && !names.find(joint.first.Scalar()) && names != JointNames())
+        source.refuse(joint.first.Mark(),
+                      "'joints." + joint.first.Scalar() + "': these limits are of another arm; this one's joints are " + names.listed());
+    }
+  }
   read_map(root, "", "", table, source);
   for (const Key& key : table) {
     if (!has_path(root, key.path)) source.refuse(root.Mark(), "'" + key.path + "' is missing: every limit has to be stated");

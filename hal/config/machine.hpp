@@ -68,7 +68,7 @@ struct Drives {
   std::string profile = "lanternfish";  // a shipped one's name, or a file
   double counts_per_rev = 64;           // of the arm's counts in a revolution of the motor: a hall sensor's 16 lines
   double rated_current_a = 0;           // at the rated torque; 0: not stated
-  std::array<JointDriveChoice, joint_count> joints;
+  PerJoint<JointDriveChoice> joints;
   std::int64_t output_node = can_map::io_node;
 };
 
@@ -85,10 +85,13 @@ struct Machine {
   Vehicle vehicle;
   std::string arm_urdf = "arm/arm5e.urdf";
   std::vector<double> park_rad{0, 0.60, 1.90, 0};  // folded: slew, shoulder, elbow and roll
+  JointNames joints;                               // of the same
+  bool arm_told = false;                           // why that file cannot be read: nobody says it again
   arm::Arm arm = arm::arm5e();                     // of `arm_urdf`: whoever reads the file fills it in; make_core() reads it itself
   std::string safety_limits = "safety/limits.yaml";
-  std::string mission_limits;  // a file of the same form, none of whose limits is wider; empty: `safety_limits` again
-  std::string homing_file;     // of the joints' zeros; empty: none is known, and no joint takes power
+  std::string mission_limits;          // a file of the same form, none of whose limits is wider; empty: `safety_limits` again
+  std::string homing_file;             // of the joints' zeros; empty: none is known, and no joint takes power
+  bool zeros_by_construction = false;  // without a homing file: the drives count as the arm does, as simulated ones do
   Drives drives;
   mission::MissionConfig mission;  // its speeds, distances and tries; layout, lamps and tasks are filled from the rest
   std::vector<Task> tasks{Task{}, Task{Task::Kind::press_buttons}};
@@ -104,7 +107,7 @@ void add_arm(Keys& all, std::string& urdf, std::vector<double>& park_rad);
 void add_camera(Keys& all, Camera& camera);
 void add_laser(Keys& all, Laser& laser);
 void add_vehicle(Keys& all, Vehicle& vehicle);
-void add_drives(Keys& all, Drives& drives);
+void add_drives(Keys& all, Drives& drives, const JointNames& names);
 void add_mission(Keys& all, mission::MissionConfig& mission);
 
 // The drive of a joint with everything stated: its node, profile's name, and figures.

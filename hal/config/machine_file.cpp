@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "hal/config/homing_file.hpp"
 #include "hal/config/key_listing.hpp"
 #include "hal/config/key_schema.hpp"
 #include "hal/config/nearest.hpp"
+#include "hal/config/park_pose.hpp"
 #include "hal/config/share.hpp"
 #include "hal/config/text_file.hpp"
 #include "hal/config/yaml_reader.hpp"
+#include "shared/arm/arm_description.hpp"
 #include "shared/input_error.hpp"
 
 namespace lf::config {
@@ -49,9 +50,9 @@ void settle_names(const fs::path& file, Machine& machine, std::vector<std::strin
   settle_name(file, teller, "safety.limits", machine.safety_limits, usual.safety_limits, problems);
   if (is_a_file(machine.drives.profile))
     settle_name(file, teller, "drives.profile", machine.drives.profile, usual.drives.profile, problems);
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < machine.joints.size(); ++i) {
     std::string& profile = machine.drives.joints[i].profile;
-    if (is_a_file(profile)) settle_name(file, teller, std::string("drives.") + joint_name(i) + ".profile", profile, "", problems);
+    if (is_a_file(profile)) settle_name(file, teller, "drives." + machine.joints[i] + ".profile", profile, "", problems);
   }
 }
 
@@ -75,8 +76,8 @@ void refuse_groups(YAML::Node& root, const Source& source, std::vector<std::stri
 
 // As with names: what is told here is not told again.
 void check_counts(const fs::path& file, Machine& machine, std::vector<std::string>& problems) {
-  if (machine.park_rad.size() != arm_joint_count) {
-    problems.push_back(file.string() + ": 'arm.park_rad' takes 4 numbers: slew, shoulder, elbow and roll");
+  if (const std::string problem = park_problem(machine); !problem.empty()) {
+    problems.push_back(file.string() + ": " + problem);
     machine.park_rad = Machine().park_rad;
   }
   if (machine.camera.distortion.size() != Machine().camera.distortion.size()) {
@@ -94,7 +95,7 @@ Keys machine_keys(Machine& machine) {
   add_camera(all, machine.camera);
   add_laser(all, machine.laser);
   add_vehicle(all, machine.vehicle);
-  add_drives(all, machine.drives);
+  add_drives(all, machine.drives, machine.joints);
   return all;
 }
 
@@ -104,12 +105,19 @@ void read_machine_file(const fs::path& file, Machine& machine, std::vector<std::
     YAML::Node root = parse_yaml(read_text_file(file), source);
     if (!root.IsMap()) source.refuse(root.Mark(), what_it_has);
     std::int64_t given = 0;
+    const bool own = machine.arm_urdf == Machine().arm_urdf;
+    const std::size_t before = problems.size();
+    machine.joints = joints_or_why(root, file, machine.joints, problems);
+    machine.arm_told = problems.size() > before;
     Keys table = machine_keys(machine);
     table.push_back(key("version", "", version, version, &given, ""));
     if (!root["version"]) problems.push_back(file.string() + ": has no version: this program reads 'version: 1'");
     refuse_groups(root, source, problems);
     read_map(root, "", "", table, source);
     check_counts(file, machine, problems);
+    if (own && machine.joints != JointNames() && machine.park_rad == Machine().park_rad)
+      problems.push_back(file.string() +
+                         ": 'arm.park_rad' is missing: the folded pose of an arm of other joints than the default's has to be stated");
   } catch (const InputError& problem) {
     problems.emplace_back(problem.what());
     return;
@@ -130,9 +138,33 @@ std::string machine_named_in(const YAML::Node& root) {
   return name && name.IsScalar() ? name.Scalar() : "";
 }
 
+JointNames joints_named_in(const YAML::Node& root, const fs::path& file, const JointNames& usual) {
+  if (!root.IsMap()) return usual;
+  const YAML::Node group = root["arm"];
+  const YAML::Node named = group && group.IsMap() ? group["urdf"] : root["arm.urdf"];
+  if (!named || !named.IsScalar() || named.Scalar().empty()) return usual;
+  return load_arm_urdf(named_file(file.string(), "arm.urdf", named.Scalar())).names();
+}
+
+void forget_joints(YAML::Node& root) {
+  root.remove("drives");
+  if (YAML::Node arm = root["arm"]; arm && arm.IsMap()) arm.remove("park_rad");
+}
+
+JointNames joints_or_why(YAML::Node& root, const fs::path& file, const JointNames& usual, std::vector<std::string>& problems) {
+  try {
+    return joints_named_in(root, file, usual);
+  } catch (const InputError& problem) {
+    problems.emplace_back(problem.what());
+    forget_joints(root);
+    return usual;
+  }
+}
+
 std::vector<std::string> keys_left_out(const fs::path& file) {
   const YAML::Node root = parse_yaml(read_text_file(file), Source::of_file(file.string()));
   Machine machine;
+  machine.joints = joints_named_in(root, file, machine.joints);
   std::vector<std::string> left_out;
   for (const Key& one : machine_keys(machine)) {
     if (std::count(one.path.begin(), one.path.end(), '.') > 1) continue;

@@ -26,6 +26,14 @@ std::string machine_file_of(const std::string& name);
 // What 'machine' of a YAML document says; empty where it says nothing.
 std::string machine_named_in(const YAML::Node& root);
 
+// What the joints of the arm are called that 'arm.urdf' of a YAML document names, beside `file`; `usual` where it names none. Keys of the joints' drives are called
+// by them. Throws InputError where the URDF cannot be read.
+JointNames joints_named_in(const YAML::Node& root, const std::filesystem::path& file, const JointNames& usual);
+// Takes out of `root` what goes by the names of an arm that cannot be read: its drives and its folded pose.
+void forget_joints(YAML::Node& root);
+// joints_named_in(), and forgets them where that cannot be read. Adds why to `problems`.
+JointNames joints_or_why(YAML::Node& root, const std::filesystem::path& file, const JointNames& usual, std::vector<std::string>& problems);
+
 // Of the file's table, the keys that `file` does not give; those of a single joint's drive are as for all. Throws InputError where it cannot be read.
 std::vector<std::string> keys_left_out(const std::filesystem::path& file);
 

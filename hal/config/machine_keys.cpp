@@ -1,5 +1,5 @@
-#include "hal/config/homing_file.hpp"
 #include "hal/config/machine.hpp"
+#include "shared/can/default_node.hpp"
 
 namespace lf::config {
 
@@ -77,15 +77,15 @@ void add_vehicle(Keys& all, Vehicle& v) {
                     "the same, round: [x, y, z, x, y, z, radius], the ends of its axis; camera and lamps among them"));
 }
 
-void add_drives(Keys& all, Drives& d) {
+void add_drives(Keys& all, Drives& d, const JointNames& names) {
   constexpr double most_counts = 1e6, most_nm = 1000, most_a = 1000;
   all.push_back(key("drives.profile", "", 0, 0, &d.profile, "make of the joints' drives: a shipped profile's name, or a file"));
   all.push_back(key("drives.counts_per_rev", "counts", fewest_counts_per_rev, most_counts, &d.counts_per_rev,
                     "the arm's counts in a revolution of a motor: fewer than in a turn of the joint"));
   all.push_back(key("drives.rated_current_a", "A", 0, most_a, &d.rated_current_a,
                     "a motor's current at its rated torque, for drives that count in it; 0: not stated"));
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    const std::string joint = std::string("drives.") + joint_name(i) + ".";
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const std::string joint = "drives." + names[i] + ".";
     JointDriveChoice& one = d.joints[i];
     all.push_back(key(joint + "node", "", 0, 126, &one.node, "node number on the bus; 0: that of the CAN map"));
     all.push_back(key(joint + "profile", "", 0, 0, &one.profile, "make of this drive; empty: drives.profile"));
@@ -103,7 +103,7 @@ void add_drives(Keys& all, Drives& d) {
 
 JointDriveChoice drive_of(const Drives& drives, std::size_t joint) {
   JointDriveChoice one = drives.joints[joint];
-  if (one.node == 0) one.node = can_map::drive_nodes[joint];
+  if (one.node == 0) one.node = can_map::default_node(joint);
   if (one.profile.empty()) one.profile = drives.profile;
   if (one.counts_per_rev == 0) one.counts_per_rev = drives.counts_per_rev;
   if (one.rated_current_a == 0) one.rated_current_a = drives.rated_current_a;

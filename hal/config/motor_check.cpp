@@ -5,7 +5,6 @@
 #include <cstdio>
 
 #include "firmware/canopen/setup.hpp"
-#include "hal/config/homing_file.hpp"
 #include "shared/arm/motor.hpp"
 #include "shared/input_error.hpp"
 
@@ -17,7 +16,7 @@ double rounded_up(double value) { return std::ceil(value * 1e4) / 1e4; }
 
 }  // namespace
 
-void check_motor(const JointDriveChoice& choice, std::size_t joint, const ArmJoint& description, const std::string& where) {
+void check_motor(const JointDriveChoice& choice, const ArmJoint& description, const std::string& where) {
   constexpr double direct_drive = 0.999;  // a ratio of 1, computed
   char text[448];
   const double ratio = best_motor_ratio(description, choice.counts_per_rev);
@@ -27,7 +26,7 @@ void check_motor(const JointDriveChoice& choice, std::size_t joint, const ArmJoi
         "'counts_per_rev' is %.6g: the motor would turn %.3g times for a turn of the joint, and a gear slows down. It is how many of the "
         "arm's counts (%.4g to a radian of the %s at most) go to a revolution of the motor, and at most %.5g. The encoder's resolution is "
         "position.units_per_rev of the drive's profile",
-        choice.counts_per_rev, ratio, ratio * choice.counts_per_rev / (2 * pi), joint_name(joint),
+        choice.counts_per_rev, ratio, ratio * choice.counts_per_rev / (2 * pi), description.name.c_str(),
         std::floor(ratio * choice.counts_per_rev));
     throw InputError(where + ": " + text);
   }
@@ -53,8 +52,7 @@ void check_motor(const JointDriveChoice& choice, std::size_t joint, const ArmJoi
   throw InputError(where + ": " + text);
 }
 
-void check_position_unit(const JointDriveChoice& choice, std::size_t joint, const ArmJoint& description, const DriveKind& kind,
-                         const std::string& where) {
+void check_position_unit(const JointDriveChoice& choice, const ArmJoint& description, const DriveKind& kind, const std::string& where) {
   constexpr double coarsest_rad = 0.001;
   const double counts = kind.position.per_count > 0 ? 1 / kind.position.per_count : choice.counts_per_rev / kind.position.per_rev;
   // Where a count turns the joint farthest.
@@ -67,7 +65,7 @@ void check_position_unit(const JointDriveChoice& choice, std::size_t joint, cons
       "one unit of the drive's positions is %.6g of the arm's counts, which is %.4g mrad of the %s where it is most. It may be 1 mrad, or "
       "one count where that is more: a joint that stays behind could not be told from one that follows. Set a finer unit in the drive, and "
       "state it in its profile: ",
-      counts, 1000 * counts / counts_per_rad, joint_name(joint));
+      counts, 1000 * counts / counts_per_rad, description.name.c_str());
   const std::size_t left = sizeof text - static_cast<std::size_t>(used);
   if (kind.position.per_count > 0)
     std::snprintf(text + used, left, "position.units_per_count of %.4f or more", rounded_up(1 / most));

@@ -11,11 +11,10 @@
 namespace lf::config {
 
 // Throws InputError with `where`, the key's place, and what to state instead.
-void check_motor(const JointDriveChoice& choice, std::size_t joint, const ArmJoint& description, const std::string& where);
+void check_motor(const JointDriveChoice& choice, const ArmJoint& description, const std::string& where);
 
 // The core tells a joint that lags from one that follows by 1 mrad and some of the arm's counts: a unit of the drive's positions may be 1 mrad anywhere on the
 // joint's stroke, or one count where that is coarser.
-void check_position_unit(const JointDriveChoice& choice, std::size_t joint, const ArmJoint& description, const DriveKind& kind,
-                         const std::string& where);
+void check_position_unit(const JointDriveChoice& choice, const ArmJoint& description, const DriveKind& kind, const std::string& where);
 
 }  // namespace lf::config

@@ -87,7 +87,7 @@ bool presses(const std::vector<Task>& tasks, const std::string& button) {
 // Of buttons that are alike one problem is told: on the docked mission's panel all are.
 std::vector<std::string> low_button_problems(const Machine& machine) {
   std::vector<std::string> problems;
-  if (!presses(machine.tasks)) return problems;
+  if (!presses(machine.tasks) || !machine.arm.is_planar()) return problems;
   const PanelSurvey& survey = machine.survey;
   for (std::size_t i = 0; i < machine.panel.buttons.size(); ++i) {
     const PanelLayout::Button& button = machine.panel.buttons[i];

@@ -8,5 +8,7 @@ namespace lf::config {
 // Throws InputError for another count of numbers than the arm has joints, and for an angle beyond a joint's stroke. The file of limits is held against the pose
 // elsewhere.
 arm::JointVector park_pose(const Machine& machine);
+// What is wrong with its count, or nothing.
+std::string park_problem(const Machine& machine);
 
 }  // namespace lf::config

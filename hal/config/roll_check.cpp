@@ -32,8 +32,8 @@ bool can_begin(const Machine& machine, const arm::JointVector& q_rad, double fro
 }  // namespace
 
 std::vector<std::string> roll_problems(const Machine& machine, const safety::Limits& limits) {
-  const ArmModel::Joint& roll = machine.arm.joint(Joint::roll);
-  const safety::JointLimit& limit = limits.joints[static_cast<std::size_t>(Joint::roll)];
+  const ArmModel::Joint& roll = machine.arm.joint(machine.arm.roll_joint());
+  const safety::JointLimit& limit = limits.joints[machine.arm.roll_joint()];
   const double off_rad = margin_rad + machine.mission.docking.turn_rad;
   const RollRange range{std::max(roll.lower_rad, limit.min_rad) + off_rad, std::min(roll.upper_rad, limit.max_rad) - off_rad};
   std::vector<std::string> problems;

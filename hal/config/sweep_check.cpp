@@ -1,6 +1,7 @@
 #include "hal/config/sweep_check.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdarg>
 #include <cstdio>
 
@@ -132,21 +133,37 @@ std::string too_near(const char* when, const Nearest& nearest) {
          formatted("; it has to keep %.0f mm off", 1e3 * mission::clearance_m) + nearest.keys;
 }
 
-JointVector vector_of(const std::array<double, arm_joint_count>& q) { return {q[0], q[1], q[2], q[3]}; }
+JointVector vector_of(const PerArmJoint<double>& q) { return JointVector(q.data()); }
 
 // With what of the limits keeps the arm from it, where that is seen at the sweep's ends.
-std::string unreachable_text(const arm::Arm& arm, const safety::Limits& limits, const PanelLayout& panel, const scan::SweepPlan& plan) {
+std::string unreachable_text(const arm::Arm& arm, const JointNames& names, const safety::Limits& limits, const PanelLayout& panel,
+                             const scan::SweepPlan& plan) {
   std::string text =
       "the arm does not reach the poses from which the laser is swept over the panel: see 'laser.position_m'" + place_text(panel);
-  std::vector<std::string> problems = pose_problems(arm, limits, vector_of(plan.start_rad), "the sweep's start");
-  for (const std::string& problem : pose_problems(arm, limits, vector_of(plan.end_rad), "the sweep's end")) problems.push_back(problem);
+  std::vector<std::string> problems = pose_problems(arm, names, limits, vector_of(plan.start_rad), "the sweep's start");
+  for (const std::string& problem : pose_problems(arm, names, limits, vector_of(plan.end_rad), "the sweep's end"))
+    problems.push_back(problem);
   for (const std::string& problem : problems) text += "; in the safety limits " + problem;
   return text;
 }
 
 }  // namespace
 
-std::optional<std::string> sweep_problem(const ControllerConfig& controller, const PanelSurvey& survey) {
+std::optional<std::string> fold_problem(const ControllerConfig& controller, const PanelSurvey& survey) {
+  constexpr int angles = 8;
+  const Neighbours neighbours(controller.arm, controller.mission, survey);
+  const ArmModel::Jaw& jaw = controller.arm.jaw();
+  Nearest nearest;
+  for (int i = 0; i <= angles; ++i) {
+    const double jaw_rad = std::lerp(jaw.lower_rad, jaw.upper_rad, static_cast<double>(i) / angles);
+    const Nearest parked = neighbours.of(controller.mission.park_rad, jaw_rad);
+    if (parked.distance_m < nearest.distance_m) nearest = parked;
+  }
+  if (nearest.distance_m >= mission::clearance_m) return std::nullopt;
+  return too_near("'arm.park_rad': folded up", nearest);
+}
+
+std::optional<std::string> sweep_problem(const ControllerConfig& controller, const JointNames& names, const PanelSurvey& survey) {
   const mission::MissionConfig& mission = controller.mission;
   const Neighbours neighbours(controller.arm, mission, survey);
   const double jaw_rad = arm::jaw_from_gap(controller.arm.jaw(), 0);
@@ -180,7 +197,7 @@ std::optional<std::string> sweep_problem(const ControllerConfig& controller, con
   while (motion.planning()) motion.step(can_map::sync_period.s());
   if (motion.failure() == StepFailure::none) return std::nullopt;
   if (motion.failure() == StepFailure::unreachable)
-    return unreachable_text(controller.arm, controller.mission_limits, mission.layout, plan);
+    return unreachable_text(controller.arm, names, controller.mission_limits, mission.layout, plan);
 
   // The sweep, and the straight way to it: the core looks at more poses, and stops at the first that is too near.
   constexpr int poses = 200;

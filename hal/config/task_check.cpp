@@ -64,6 +64,7 @@ std::string tasks_problem(const Machine& machine, const Core& core, const missio
   const safety::Limits& limits = core.controller.mission_limits;
   Machine with_tasks = machine;
   with_tasks.tasks = as_in_a_file(tasks, machine.survey.names);
+  if (!machine.arm.is_planar()) return no_jobs;
   for (const std::string& problem : handle_problems(with_tasks)) return problem;
   for (const std::string& problem : low_button_problems(with_tasks)) return problem;
   for (const std::string& problem : torque_problems(with_tasks, core.hand_torque_nm)) return problem;
@@ -72,7 +73,7 @@ std::string tasks_problem(const Machine& machine, const Core& core, const missio
   for (const Place& place : places_of_tasks(with_tasks)) {
     const arm::IkResult ik = pose_at(machine.arm, machine.panel, place);
     if (!ik.ok()) return place.what + " is out of the arm's reach at its nominal place: " + excess_text(ik);
-    for (const std::string& problem : pose_problems(machine.arm, limits, ik.q_rad, place.what)) return problem;
+    for (const std::string& problem : pose_problems(machine.arm, machine.joints, limits, ik.q_rad, place.what)) return problem;
   }
   return "";
 }

@@ -220,9 +220,9 @@ void ValueReader::operator()(std::vector<Task>* value) const {
 }
 
 // What is wrong between the keys of a fault: at which of them, and what. Nothing when it can happen.
-std::optional<std::pair<const char*, std::string>> problem_of(const Fault& fault, bool timed) {
+std::optional<std::pair<const char*, std::string>> problem_of(const Fault& fault, bool timed, const JointNames& joints) {
   const FaultPlace place = find_fault_kind(fault.kind)->place;
-  const std::vector<std::string> nodes = fault_nodes(place);
+  const std::vector<std::string> nodes = fault_nodes(place, joints);
   const bool right_node = std::find(nodes.begin(), nodes.end(), fault.node) != nodes.end();
   if (fault.node.empty() && !right_node) return {{"node", fault.kind + " needs a node"}};
   if (!right_node) return {{"node", fault.kind + (nodes.size() == 1 ? " takes no node" : " does not happen to " + fault.node)}};
@@ -255,10 +255,11 @@ Fault ValueReader::fault(const YAML::Node& item, const std::string& shown) const
   if (!item.IsMap()) source_.refuse(item.Mark(), "'" + shown + "' takes a group of keys, not " + shape_of(item));
   Fault fault;
   const std::size_t told = source_.problems() != nullptr ? source_.problems()->size() : 0;
-  read_map(item, "", shown + ".", keys(fault), source_);
+  const JointNames joints = key_.names.empty() ? JointNames() : JointNames(key_.names);
+  read_map(item, "", shown + ".", keys(fault, joints), source_);
   const bool complete = source_.problems() == nullptr || source_.problems()->size() == told;
   if (!item["kind"]) source_.refuse(item.Mark(), "'" + shown + "' has no kind");
-  if (const auto problem = problem_of(fault, item["at_s"] || item["at_step"]); complete && problem)
+  if (const auto problem = problem_of(fault, item["at_s"] || item["at_step"], joints); complete && problem)
     source_.refuse(item.Mark(), "'" + shown + "." + problem->first + "': " + problem->second);
   return fault;
 }

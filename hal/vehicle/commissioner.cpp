@@ -37,7 +37,7 @@ std::string now_text() {
 // Where that cannot be done the joints stay in doubt there, and the next daemon says so.
 void lift(const Marks& marks, const std::string& file) {
   try {
-    (void)write_offsets(file, marks.lifted_from(config::read_homing_file(file)));
+    (void)write_offsets(file, marks.lifted_from(config::read_homing_file(file, marks.before.names)));
   } catch (const InputError&) {
   }
 }
@@ -49,7 +49,8 @@ Commissioner::Commissioner(const VehicleConfig& config, LoopRings& rings, Log lo
   file_is_shipped_ = !file_.empty() && config::is_shipped(file_);
   const std::filesystem::path folder = std::filesystem::path(config.machine.file).parent_path();
   const ArmDescription arm = load_arm_urdf(config::find_file(config.machine.arm_urdf, folder));
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  names_ = arm.names();
+  for (std::size_t i = 0; i < arm.joints.size(); ++i) {
     backlash_rad_[i] = arm.joints[i].backlash_rad;
     motors_[i] = motor_of(arm.joints[i], core_.transmissions[i].counts_per_rev);
   }
@@ -85,15 +86,15 @@ void Commissioner::lose_zeros(const JointSet& lost) {
 
 void Commissioner::forget_in_file(const JointSet& lost) {
   JointSet to_forget{};
-  for (std::size_t i = 0; i < joint_count; ++i) to_forget[i] = lost[i] && !forgotten_[i];
+  for (std::size_t i = 0; i < to_forget.size(); ++i) to_forget[i] = lost[i] && !forgotten_[i];
   if (!any(to_forget) || file_.empty() || file_is_shipped_ || forgetting_ != nullptr || monotonic_now() < try_again_) return;
   auto forgetting = std::make_shared<Forgetting>();
   forgetting->joints = to_forget;
-  const bool posted = worker_.post([forgetting, file = file_] {
+  const bool posted = worker_.post([forgetting, file = file_, names = names_] {
     std::string problem;
     try {
-      config::HomingOffsets offsets = config::read_homing_file(file);
-      for (std::size_t i = 0; i < joint_count; ++i) {
+      config::HomingOffsets offsets = config::read_homing_file(file, names);
+      for (std::size_t i = 0; i < names.size(); ++i) {
         if (forgetting->joints[i]) offsets.forget_zero(i);
       }
       config::write_homing_file(file, offsets);
@@ -119,10 +120,10 @@ void Commissioner::note_forgotten() {
   last_tried_ = forgetting->joints;
   try_again_ = gone ? Time{} : monotonic_now() + forget_again_after;
   Json names = Json::array();
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < names_.size(); ++i) {
     if (!forgetting->joints[i]) continue;
     forgotten_[i] = gone;
-    names.push_back(config::joint_name(i));
+    names.push_back(names_[i]);
   }
   if (told && !gone) return;
   Json line{{"t_s", monotonic_now().s()}, {"kind", "zeros_lost"}, {"joints", names}, {"file", file_}};
@@ -133,8 +134,8 @@ void Commissioner::note_forgotten() {
 
 std::string Commissioner::unknown_joints() const {
   JointSet unknown{};
-  for (std::size_t i = 0; i < joint_count; ++i) unknown[i] = zero_lost_[i] || disowned_[i] || !core_.network.drives[i].may_have_power();
-  return names_of(unknown);
+  for (std::size_t i = 0; i < names_.size(); ++i) unknown[i] = zero_lost_[i] || disowned_[i] || !core_.network.drives[i].may_have_power();
+  return names_of(unknown, names_);
 }
 
 std::optional<std::string> Commissioner::begin(const CommissionOrder& order, Time ordered) {
@@ -147,6 +148,7 @@ std::optional<std::string> Commissioner::begin(const CommissionOrder& order, Tim
   prepared_ = std::make_shared<Prepared>();
   Commissioning::Config setup;
   setup.arm = core_.arm;
+  setup.names = names_;
   setup.network = core_.network;
   // It presses with thousandths of each drive's own rating, and reads them back as such.
   for (canopen::DriveSetup& drive : setup.network.drives) drive.described_torque_unm = 0;
@@ -155,17 +157,17 @@ std::optional<std::string> Commissioner::begin(const CommissionOrder& order, Tim
   setup.backlash_rad = backlash_rad_;
   setup.here = order.here;
   setup.moved = order.moved;
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < names_.size(); ++i) {
     bool& known = setup.network.drives[i].zero_known;
     known = known && !zero_lost_[i];
   }
-  constexpr auto jaw = static_cast<std::size_t>(Joint::jaw);
+  const std::size_t jaw = core_.arm.jaw_joint();
   setup.jaw_known = setup.network.drives[jaw].zero_known && !jaw_doubted_ && !disowned_[jaw];
   const bool posted = worker_.post([prepared = prepared_, setup, file = file_, lost = zero_lost_, core = core_]() mutable {
     std::string problem;
     try {
-      prepared->marks = Marks::of(setup.joints, lost, config::read_homing_file(file), core);
-      for (std::size_t i = 0; i < joint_count; ++i) {
+      prepared->marks = Marks::of(setup.joints, lost, config::read_homing_file(file, setup.names), core);
+      for (std::size_t i = 0; i < setup.names.size(); ++i) {
         if (prepared->marks.before.has_earlier_zero(i)) setup.zero_in_file[i] = prepared->marks.before.zero_counts[i];
       }
       problem = write_offsets(file, prepared->marks.marked);
@@ -230,8 +232,8 @@ std::string Commissioner::disown(const std::string& why) {
   std::string text = why + ": nothing moves";
   if (!order_.moved) return text;
   disowned_ = either(disowned_, order_.joints);
-  return text +
-         ". These joints' zeros have moved, as the order says, and take no power until they are commissioned: " + names_of(order_.joints);
+  return text + ". These joints' zeros have moved, as the order says, and take no power until they are commissioned: " +
+         names_of(order_.joints, names_);
 }
 
 // A disk that takes its time must not have the arm move when nobody expects it any more.
@@ -287,9 +289,9 @@ void Commissioner::take_back(const CommissioningResult& result) {
   const bool well = ended->state() == Commissioning::State::done;
   const JointSet lost = ended->zeros_lost();
   JointSet lost_again{};
-  for (std::size_t i = 0; i < joint_count; ++i) lost_again[i] = well && ended->found()[i] && lost[i];
+  for (std::size_t i = 0; i < names_.size(); ++i) lost_again[i] = well && ended->found()[i] && lost[i];
   std::string failed = well ? "" : std::string(ended->failure());
-  if (any(lost_again)) failed = "a drive lost its position again after its zero was found: " + names_of(lost_again);
+  if (any(lost_again)) failed = "a drive lost its position again after its zero was found: " + names_of(lost_again, names_);
   without_power_ = ended->without_power();
   zero_lost_ = either(zero_lost_, lost);
   store(*ended, failed);
@@ -322,7 +324,7 @@ Commissioned Commissioner::findings_of(const Commissioning& ended) const {
   all.how = (order_.here ? "in the jig, " : "at its stop, ") + now_text() + " UTC";
   all.moved_rad = ended.moved_rad();
   all.lost = either(either(ended.lost_before_found(), ended.zeros_lost()), zero_lost_);
-  for (std::size_t i = 0; i < joint_count; ++i) all.found[i] = all.found[i] && !ended.zeros_lost()[i];
+  for (std::size_t i = 0; i < names_.size(); ++i) all.found[i] = all.found[i] && !ended.zeros_lost()[i];
   return all;
 }
 
@@ -333,23 +335,23 @@ void Commissioner::store(const Commissioning& ended, const std::string& failed) 
   last_ = {{"state", "under way"}};  // also of one that ended before its begin was told
   prepared_ = std::make_shared<Prepared>();
   const Commissioned commissioned = findings_of(ended);
-  for (std::size_t i = 0; i < joint_count; ++i) still_lost_[i] = zero_lost_[i] && !commissioned.found[i];
+  for (std::size_t i = 0; i < names_.size(); ++i) still_lost_[i] = zero_lost_[i] && !commissioned.found[i];
   JointSet disowned{};  // their earlier zeros are wrong, by the order's own words, and no other was found
-  for (std::size_t i = 0; i < joint_count; ++i) disowned[i] = order_.moved && order_.joints[i] && !commissioned.found[i];
-  bool changes_core = failed.empty() || any(disowned) || any(ended.zeros_lost()) || leaves_doubt(ended, motors_);
+  for (std::size_t i = 0; i < names_.size(); ++i) disowned[i] = order_.moved && order_.joints[i] && !commissioned.found[i];
+  bool changes_core = failed.empty() || any(disowned) || any(ended.zeros_lost()) || leaves_doubt(ended, motors_, names_);
   const bool posted =
-      worker_.post([prepared = prepared_, file = file_, commissioned, core = core_, motors = motors_, marks = marks_,
+      worker_.post([prepared = prepared_, file = file_, commissioned, core = core_, names = names_, motors = motors_, marks = marks_,
                     still_lost = still_lost_, failed = failed, moved_as_ordered = order_.moved, disowned, changes_core]() mutable {
         std::string problem;
         TakenOver taken;
         config::HomingOffsets offsets;
         try {
-          offsets = marks.lifted_from(config::read_homing_file(file));
+          offsets = marks.lifted_from(config::read_homing_file(file, names));
           const JointSet gone = with_a_zero(commissioned.lost, offsets);
           forget_lost(commissioned.lost, offsets, core);
           const config::HomingOffsets before = offsets;
           if (changes_core) taken = take_over(core.arm, commissioned, motors, offsets);
-          if (failed.empty() && !moved_as_ordered) failed = found_elsewhere(taken);
+          if (failed.empty() && !moved_as_ordered) failed = found_elsewhere(taken, names);
           const JointSet doubted = changes_core ? either(disowned, doubted_joints(commissioned, taken, offsets)) : JointSet{};
           const std::string unwritten_for = write_offsets(file, failed.empty() ? offsets : with_doubts(before, doubted, offsets, core));
           problem = ending(failed, unwritten_for, doubted, gone, marks);
@@ -361,14 +363,14 @@ void Commissioner::store(const Commissioning& ended, const std::string& failed) 
             taken.left_out.insert(taken.left_out.end(), cut.begin(), cut.end());
             use_zeros(offsets, commissioned.found, still_lost, core);
           } else {
-            tell_moved(taken);
+            tell_moved(taken, names);
             deny_power(doubted, core, offsets);
           }
         } catch (const InputError& error) {
           // The file cannot be read, so that what was found cannot be compared with it.
           const JointSet denied = either(either(commissioned.found, disowned), commissioned.lost);
           problem = (failed.empty() ? "" : failed + ". ") + "Nothing was written: " + error.what() +
-                    (any(denied) ? ". These joints take no power until they are commissioned again: " + names_of(denied) : "");
+                    (any(denied) ? ". These joints take no power until they are commissioned again: " + names_of(denied, names) : "");
           deny_power(denied, core, offsets);
           changes_core = changes_core || any(denied);
         }
@@ -393,7 +395,7 @@ void Commissioner::install() {
   std::string why;
   for (const std::string& sentence : prepared_->taken.left_out) why += (why.empty() ? "these joints take no power: " : "; ") + sentence;
   if (!prepared_->problem.empty()) {
-    for (std::size_t i = 0; i < joint_count && prepared_->core; ++i)
+    for (std::size_t i = 0; i < names_.size() && prepared_->core; ++i)
       core_.network.drives[i].zero_known = core_.network.drives[i].zero_known && prepared_->offsets.known[i] && !zero_lost_[i];
     const Json failed{
         {"state", "failed"}, {"why", prepared_->problem + (why.empty() ? "" : "; " + why)}, {"without_power", without_power_}};
@@ -401,12 +403,12 @@ void Commissioner::install() {
   }
   use_zeros(prepared_->offsets, prepared_->found, still_lost_, core_);
   Json zeros = Json::object(), moved = Json::object();
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < names_.size(); ++i) {
     const canopen::DriveSetup& drive = core_.network.drives[i];  // what the core has, whatever else the file says
     if (prepared_->offsets.known[i]) forgotten_[i] = false;
     if (prepared_->found[i] && drive.zero_known) disowned_[i] = false;
-    if (drive.zero_known) zeros[config::joint_name(i)] = drive.encoder_zero_counts;
-    if (prepared_->taken.moved_rad[i] > 0) moved[config::joint_name(i)] = prepared_->taken.moved_rad[i];
+    if (drive.zero_known) zeros[names_[i]] = drive.encoder_zero_counts;
+    if (prepared_->taken.moved_rad[i] > 0) moved[names_[i]] = prepared_->taken.moved_rad[i];
   }
   zero_lost_ = still_lost_;
   Json outcome{{"state", "done"}, {"zeros", zeros}, {"friction", friction_json(prepared_->offsets)}, {"file", file_}};

@@ -110,8 +110,9 @@ class Commissioner {
   std::shared_ptr<Forgetting> forgetting_;
   std::string file_;
   bool file_is_shipped_ = false;
-  std::array<double, joint_count> backlash_rad_{};
-  std::array<Motor, joint_count> motors_;
+  JointNames names_;
+  PerJoint<double> backlash_rad_{};
+  PerJoint<Motor> motors_;
   LoopRings& rings_;
   Log log_;
   Stage stage_ = Stage::idle;

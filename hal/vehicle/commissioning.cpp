@@ -34,14 +34,8 @@ constexpr double least_rub_windows = 1, most_rub_windows = 4;
 // Of the drives' best: a third of the torque has to do.
 constexpr double rub_acceleration = 0.25;
 
-// The jaw first: what it held has then been let go of.
-constexpr std::array<std::size_t, joint_count> order{4, 0, 1, 2, 3};
-
 // Of a target's lead over its joint: then it presses.
 constexpr double nearly_all = 0.9;
-
-// The jaw's lower stop may be met by what is between its fingers.
-double direction(std::size_t joint) { return static_cast<Joint>(joint) == Joint::jaw ? 1 : -1; }
 
 // The sum over all senders of what another master has sent as RPDOs.
 std::uint32_t foreign_set_points(const canopen::Network& network) {
@@ -58,7 +52,7 @@ std::uint32_t foreign_set_points(const canopen::Network& network) {
 Commissioning::Commissioning(const Config& config) : config_(config), network_(gentle_network(config)), power_(config_.arm) {}
 
 double Commissioning::stop_rad(std::size_t joint) const {
-  const ArmModel::Joint& stroke = config_.arm.model().joints[joint];
+  const ArmModel::Joint& stroke = config_.arm.joint(joint);
   return direction(joint) < 0 ? stroke.lower_rad : stroke.upper_rad;
 }
 
@@ -68,18 +62,18 @@ double Commissioning::shut_rad() const { return config_.arm.jaw().lower_rad + 0.
 // Whether a joint stands is all that they tell here: where its zero is nobody knows, and a screw's counts are taken for those in the middle of its stroke.
 safety::JointStates Commissioning::joint_states(Time now) const {
   safety::JointStates joints;
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    const canopen::Axis& axis = network_.axis(static_cast<Joint>(i));
-    const ArmModel::Joint& stroke = config_.arm.model().joints[i];
+  for (std::size_t i = 0; i < joint_count(); ++i) {
+    const canopen::Axis& axis = network_.axis(i);
+    const ArmModel::Joint& stroke = config_.arm.joint(i);
     joints.fresh[i] = axis.fresh(now);
     joints.position_rad[i] = axis.actual_counts() * arm::rad_per_count(stroke, 0.5 * (stroke.lower_rad + stroke.upper_rad));
   }
   return joints;
 }
 
-std::array<double, joint_count> Commissioning::places_rad() const {
-  std::array<double, joint_count> places{};
-  for (std::size_t i = 0; i < joint_count && !config_.here; ++i) places[i] = stop_rad(i);
+PerJoint<double> Commissioning::places_rad() const {
+  PerJoint<double> places{};
+  for (std::size_t i = 0; i < joint_count() && !config_.here; ++i) places[i] = stop_rad(i);
   return places;
 }
 
@@ -107,22 +101,22 @@ void Commissioning::fail(const char* why, Time now) {
 
 void Commissioning::fail_joint(const char* why, Time now) {
   fail(why, now);
-  std::snprintf(failure_.data(), failure_.size(), "%s: %s", config::joint_name(joint_), why);
+  std::snprintf(failure_.data(), failure_.size(), "%s: %s", config_.names[joint_].c_str(), why);
 }
 
 // What a failed one has found is not kept.
-std::array<bool, joint_count> Commissioning::zeros_lost() const {
-  std::array<bool, joint_count> lost{};
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    const canopen::Axis& one = network_.axis(static_cast<Joint>(i));
+PerJoint<bool> Commissioning::zeros_lost() const {
+  PerJoint<bool> lost{};
+  for (std::size_t i = 0; i < joint_count(); ++i) {
+    const canopen::Axis& one = network_.axis(i);
     lost[i] = one.zero_lost() && !(state_ == State::done && found_[i] && one.stats().zeros_lost == losses_when_found_[i]);
   }
   return lost;
 }
 
-std::array<bool, joint_count> Commissioning::lost_before_found() const {
-  std::array<bool, joint_count> lost{};
-  for (std::size_t i = 0; i < joint_count; ++i) lost[i] = found_[i] && losses_when_found_[i] > 0;
+PerJoint<bool> Commissioning::lost_before_found() const {
+  PerJoint<bool> lost{};
+  for (std::size_t i = 0; i < joint_count(); ++i) lost[i] = found_[i] && losses_when_found_[i] > 0;
   return lost;
 }
 
@@ -145,8 +139,8 @@ void Commissioning::tick(Time now, canopen::Outbox& outbox) {
 
 // A drive that was just told to take power has not heard it yet.
 void Commissioning::note_power(Time now) {
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    const canopen::Axis& one = network_.axis(static_cast<Joint>(i));
+  for (std::size_t i = 0; i < joint_count(); ++i) {
+    const canopen::Axis& one = network_.axis(i);
     const bool off = one.confirmed_unpowered(now) && one.requested() != canopen::AxisRequest::hold_enabled;
     if (one.fresh(now) && one.powered()) powered_[i] = true;
     if (off || network_.restarted_as_told(i)) powered_[i] = false;
@@ -179,11 +173,11 @@ void Commissioning::watch(Time now) {
     return fail("the emergency-stop chain is open", now);
   }
   if (network_.foreign_frames() != foreign_frames_) return fail("another master is on the bus", now);
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    const canopen::Axis& one = network_.axis(static_cast<Joint>(i));
+  for (std::size_t i = 0; i < joint_count(); ++i) {
+    const canopen::Axis& one = network_.axis(i);
     if (one.fault() == canopen::AxisFault::none) continue;
     fail(canopen::name(one.fault()), now);
-    std::snprintf(failure_.data(), failure_.size(), "%s: %s", config::joint_name(i), canopen::name(one.fault()));
+    std::snprintf(failure_.data(), failure_.size(), "%s: %s", config_.names[i].c_str(), canopen::name(one.fault()));
     return;
   }
   if (now - joint_since_ > config_.longest) fail_joint("no stop was found in time", now);
@@ -235,12 +229,13 @@ void Commissioning::step(Time now) {
 }
 
 const char* Commissioning::why_not() const {
-  constexpr auto jaw = static_cast<std::size_t>(Joint::jaw);
-  const bool arm_moves = std::any_of(config_.joints.begin(), config_.joints.begin() + arm_joint_count, [](bool one) { return one; });
+  const std::size_t jaw = config_.arm.jaw_joint();
+  const bool arm_moves =
+      std::any_of(config_.joints.begin(), config_.joints.begin() + config_.arm.arm_joints(), [](bool one) { return one; });
   if (!arm_moves || config_.joints[jaw]) return nullptr;
-  if (!config_.jaw_known || network_.axis(Joint::jaw).zero_lost()) return "nobody knows whether the jaw is empty: commission it, too";
-  const std::int32_t counts = network_.axis(Joint::jaw).actual_counts() - config_.network.drives[jaw].encoder_zero_counts;
-  if (arm::stands_closed(config_.arm.jaw(), arm::rad_from_counts(config_.arm.joint(Joint::jaw), counts))) return nullptr;
+  if (!config_.jaw_known || network_.axis(jaw).zero_lost()) return "nobody knows whether the jaw is empty: commission it, too";
+  const std::int32_t counts = network_.axis(jaw).actual_counts() - config_.network.drives[jaw].encoder_zero_counts;
+  if (arm::stands_closed(config_.arm.jaw(), arm::rad_from_counts(config_.arm.joint(jaw), counts))) return nullptr;
   return "the jaw is not closed: what is between its fingers would move with the arm, or be in its way. Commission the jaw, too, which "
          "opens and closes it";
 }
@@ -252,13 +247,13 @@ void Commissioning::begin_work(Time now) {
 }
 
 void Commissioning::next_joint(Time now) {
-  while (turn_ < joint_count && !config_.joints[order[turn_]]) ++turn_;
+  while (turn_ < joint_count() && !config_.joints[in_turn(turn_)]) ++turn_;
   joint_since_ = now;
-  if (turn_ < joint_count) {
-    joint_ = order[turn_];
+  if (turn_ < joint_count()) {
+    joint_ = in_turn(turn_);
     return go(State::enabling, now);
   }
-  joint_ = joint_count;
+  joint_ = joint_count();
   network_.shut_down();
   go(State::stopping, now);
 }
@@ -270,30 +265,28 @@ void Commissioning::end_joint(Time now) {
 }
 
 void Commissioning::take_here(Time now) {
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    if (config_.joints[i])
-      take_zero(i, network_.axis(static_cast<Joint>(i)).actual_counts() - arm::counts_from_rad(config_.arm.model().joints[i], 0));
+  for (std::size_t i = 0; i < joint_count(); ++i) {
+    if (config_.joints[i]) take_zero(i, network_.axis(i).actual_counts() - arm::counts_from_rad(config_.arm.joint(i), 0));
   }
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < joint_count(); ++i) {
     if (ends_elsewhere(i, now)) return;
   }
-  turn_ = joint_count;
+  turn_ = joint_count();
   next_joint(now);
 }
 
 void Commissioning::take_zero(std::size_t joint, std::int32_t zero_counts) {
   zero_counts_[joint] = zero_counts;
   found_[joint] = true;
-  losses_when_found_[joint] = network_.axis(static_cast<Joint>(joint)).stats().zeros_lost;
+  losses_when_found_[joint] = network_.axis(joint).stats().zeros_lost;
   moved_rad_[joint] = off_earlier_rad(joint);
 }
 
 double Commissioning::off_earlier_rad(std::size_t joint) const {
-  if (network_.axis(static_cast<Joint>(joint)).zero_lost()) return 0;
+  if (network_.axis(joint).zero_lost()) return 0;
   const canopen::DriveSetup& drive = config_.network.drives[joint];
   const auto off_rad = [&](std::int32_t earlier_counts) {
-    return zero_moved_rad(config_.arm.model().joints[joint], places_rad()[joint],
-                          static_cast<double>(zero_counts_[joint]) - earlier_counts);
+    return zero_moved_rad(config_.arm.joint(joint), places_rad()[joint], static_cast<double>(zero_counts_[joint]) - earlier_counts);
   };
   const double off_known = drive.zero_known ? off_rad(drive.encoder_zero_counts) : 0;
   const double off_file = config_.zero_in_file[joint] ? off_rad(*config_.zero_in_file[joint]) : 0;
@@ -386,7 +379,7 @@ void Commissioning::ease(Time now) {
   }
   stop_counts_ = actual + (actual - *easing_counts_) * load / (easing_load_ - load);
   const double touching_rad = stop_rad(joint_) + way * 0.5 * config_.backlash_rad[joint_];
-  const double zero = stop_counts_ - arm::exact_counts_from_rad(config_.arm.model().joints[joint_], touching_rad);
+  const double zero = stop_counts_ - arm::exact_counts_from_rad(config_.arm.joint(joint_), touching_rad);
   take_zero(joint_, static_cast<std::int32_t>(std::lround(zero)));
   target_ = actual;
   begin_rubbing(now);
@@ -402,8 +395,8 @@ double Commissioning::started_off_stop() const {
 }
 
 double Commissioning::goal_counts() const {
-  if (static_cast<Joint>(joint_) != Joint::jaw) return started_off_stop();
-  return reopening_ ? off_stop_counts() : zero_counts_[joint_] + arm::exact_counts_from_rad(config_.arm.joint(Joint::jaw), shut_rad());
+  if (!is_jaw(joint_)) return started_off_stop();
+  return reopening_ ? off_stop_counts() : zero_counts_[joint_] + arm::exact_counts_from_rad(config_.arm.joint(joint_), shut_rad());
 }
 
 // The stretch begins off the stop and goes where the joint has just come from: there is nothing on it.
@@ -460,7 +453,7 @@ void Commissioning::back_off(Time now) {
   const double goal = goal_counts();
   const double step = config_.speed_fraction * drive.max_speed_counts_s * network_.config().sync_period.s();
   const std::int32_t actual = axis().actual_counts();
-  const bool closing = static_cast<Joint>(joint_) == Joint::jaw && !reopening_;
+  const bool closing = is_jaw(joint_) && !reopening_;
   if (presses_too_hard()) return closing ? reopen(now) : fail_pressing(now);
   target_ = std::clamp(target_ + std::clamp(goal - target_, -step, step), actual - lead, actual + lead);
   (void)axis().set_target_counts(static_cast<std::int32_t>(std::lround(target_)));

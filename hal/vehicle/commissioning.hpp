@@ -21,6 +21,7 @@
 #include "firmware/safety/power.hpp"
 #include "hal/config/homing_file.hpp"
 #include "hal/vehicle/friction_fit.hpp"
+#include "hal/vehicle/joint_set.hpp"
 #include "shared/messages/joint_io.hpp"
 #include "shared/messages/time.hpp"
 
@@ -30,13 +31,13 @@ class Commissioning {
  public:
   struct Config {
     arm::Arm arm = arm::arm5e();
+    JointNames names;
     canopen::NetworkConfig network;
-    std::array<bool, joint_count> joints{true, true, true, true, true};
-    std::array<double, joint_count>
-        backlash_rad{};  // of each gear, as the arm's description has it: the motor touches half of it beyond the stop
-    std::array<arm::TransmissionSetup, joint_count> transmissions;  // their friction, as far as it is known before
+    JointSet joints = all_joints();
+    PerJoint<double> backlash_rad{};  // of each gear, as the arm's description has it: the motor touches half of it beyond the stop
+    PerJoint<arm::TransmissionSetup> transmissions;  // their friction, as far as it is known before
     // Known there or doubtful: compared with, beside the zero that is known in `network`.
-    std::array<std::optional<std::int32_t>, joint_count> zero_in_file;
+    PerJoint<std::optional<std::int32_t>> zero_in_file;
     bool moved = false;           // its encoder or its stop was changed: its zero may be elsewhere
     bool here = false;            // the arm stands at its zero, in a jig: nothing is moved
     bool jaw_known = false;       // its zero in `network` is true, and its encoder is believed
@@ -72,7 +73,7 @@ class Commissioning {
   void on_frame(const CanFrame& frame, Time t) { network_.on_frame(frame, t); }
   const canopen::IoModule& io() const { return network_.io(); }
   // Before its first tick: its drive has lost its position, as somebody else has heard.
-  void lose_zero(Joint joint) { network_.axis(joint).lose_zero(); }
+  void lose_zero(std::size_t joint) { network_.axis(joint).lose_zero(); }
   void tick(Time now, canopen::Outbox& outbox);
   // Stops what moves, takes the power, and ends as failed for this reason. The first reason holds.
   void stop(const char* why);
@@ -86,22 +87,22 @@ class Commissioning {
   // No drive that this one powered has power: each has said so since. A drive that is no longer heard counts as powered.
   bool without_power() const;
   std::size_t joint() const { return joint_; }  // under work
-  const std::array<std::int32_t, joint_count>& zero_counts() const { return zero_counts_; }
-  const std::array<bool, joint_count>& found() const { return found_; }
+  const PerJoint<std::int32_t>& zero_counts() const { return zero_counts_; }
+  const PerJoint<bool>& found() const { return found_; }
   // By how much a zero is off the one known in `network`, or the file's, whichever is farther, where it is more than told_move_rad; 0 otherwise.
-  const std::array<double, joint_count>& moved_rad() const { return moved_rad_; }
+  const PerJoint<double>& moved_rad() const { return moved_rad_; }
   // Joints whose drive said that it has lost its position, less those that were found after it.
-  std::array<bool, joint_count> zeros_lost() const;
+  PerJoint<bool> zeros_lost() const;
   // Joints whose drive said that it has lost its position before they were found: no earlier zero of theirs means anything.
-  std::array<bool, joint_count> lost_before_found() const;
+  PerJoint<bool> lost_before_found() const;
   // Where each zero is found: the joint's stop, in a jig 0.
-  std::array<double, joint_count> places_rad() const;
+  PerJoint<double> places_rad() const;
   // Not found for a joint that had too little way to its stop, or whose torques make no sense.
-  const std::array<bool, joint_count>& friction_found() const { return friction_found_; }
-  const std::array<config::JointFriction, joint_count>& friction() const { return friction_; }
+  const PerJoint<bool>& friction_found() const { return friction_found_; }
+  const PerJoint<config::JointFriction>& friction() const { return friction_; }
 
  private:
-  canopen::Axis& axis() { return network_.axis(static_cast<Joint>(joint_)); }
+  canopen::Axis& axis() { return network_.axis(joint_); }
   void go(State state, Time now);
   void fail(const char* why, Time now);
   void fail_joint(const char* why, Time now);
@@ -132,6 +133,12 @@ class Commissioning {
   void back_off(Time now);
   void reopen(Time now);  // the jaw, which met something on its way to being closed
   bool stands(Time now, bool pressing);
+  std::size_t joint_count() const { return config_.arm.joint_count(); }
+  bool is_jaw(std::size_t joint) const { return joint == config_.arm.jaw_joint(); }
+  // The jaw first: what it held has then been let go of.
+  std::size_t in_turn(std::size_t turn) const { return turn == 0 ? config_.arm.jaw_joint() : turn - 1; }
+  // The jaw's lower stop may be met by what is between its fingers.
+  double direction(std::size_t joint) const { return is_jaw(joint) ? 1 : -1; }
   double off_stop_counts() const;
   double started_off_stop() const;  // where it was, off the stop
   double goal_counts() const;       // where it is left
@@ -143,16 +150,16 @@ class Commissioning {
   bool booted_ = false;
   const char* stop_reason_ = nullptr;
   bool emergency_stopped_ = false;
-  std::array<bool, joint_count> powered_{};  // asked to take power, and not heard to be without it since
+  PerJoint<bool> powered_{};  // asked to take power, and not heard to be without it since
   std::array<char, 200> failure_{};
   std::size_t turn_ = 0;  // of the joints, in their order
   std::size_t joint_ = 0;
-  std::array<std::int32_t, joint_count> zero_counts_{};
-  std::array<bool, joint_count> found_{};
-  std::array<double, joint_count> moved_rad_{};
-  std::array<std::uint32_t, joint_count> losses_when_found_{};  // of each zero
-  std::array<bool, joint_count> friction_found_{};
-  std::array<config::JointFriction, joint_count> friction_{};
+  PerJoint<std::int32_t> zero_counts_{};
+  PerJoint<bool> found_{};
+  PerJoint<double> moved_rad_{};
+  PerJoint<std::uint32_t> losses_when_found_{};  // of each zero
+  PerJoint<bool> friction_found_{};
+  PerJoint<config::JointFriction> friction_{};
   Time since_;        // in this state
   Time joint_since_;  // with this joint
   Time moved_;        // when it last counted

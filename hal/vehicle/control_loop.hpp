@@ -105,9 +105,9 @@ class ControlLoop {
     const mission::Standing standing = controller_->mission().standing();
     if (stopping_ || (standing != mission::Standing::idle && standing != mission::Standing::ended)) return false;
     if (!controller_->mission().power().off()) return false;
-    for (std::size_t i = 0; i < joint_count; ++i) {
+    for (std::size_t i = 0; i < controller_->network().drive_count(); ++i) {
       // What its drive said last: after a mission the nodes are stopped, and say no more.
-      if (controller_->network().axis(static_cast<Joint>(i)).powered()) return false;
+      if (controller_->network().axis(i).powered()) return false;
     }
     return true;
   }
@@ -143,15 +143,14 @@ class ControlLoop {
 
   // It hears the drives from now on, and may have been made before they said so.
   void tell_lost_zeros(Commissioning& begun) const {
-    for (std::size_t i = 0; i < joint_count; ++i) {
-      const auto joint = static_cast<Joint>(i);
-      if (controller_->network().axis(joint).zero_lost()) begun.lose_zero(joint);
+    for (std::size_t i = 0; i < controller_->network().drive_count(); ++i) {
+      if (controller_->network().axis(i).zero_lost()) begun.lose_zero(i);
     }
   }
 
   // Its drive has lost it, and it was not found since.
   bool zero_lost(const Controller& core, std::size_t joint) const {
-    const canopen::Axis& axis = core.network().axis(static_cast<Joint>(joint));
+    const canopen::Axis& axis = core.network().axis(joint);
     return axis.zero_lost() && !(found_[joint] && axis.stats().zeros_lost == losses_when_found_[joint]);
   }
 
@@ -161,22 +160,21 @@ class ControlLoop {
     order.command = Command::set_tasks;
     for (const mission::TaskResult& result : before.mission().tasks()) (void)order.tasks.push_back(result.task);
     (void)next.on_order(order, now_);
-    for (std::size_t i = 0; i < joint_count; ++i) {
-      const auto joint = static_cast<Joint>(i);
-      if (zero_lost(before, i)) next.lose_zero(joint);
+    const std::size_t joints = before.network().drive_count();
+    for (std::size_t i = 0; i < joints; ++i) {
+      if (zero_lost(before, i)) next.lose_zero(i);
     }
-    if (before.mission().jaw_doubted() && !found_[static_cast<std::size_t>(Joint::jaw)]) next.doubt_jaw();
+    if (before.mission().jaw_doubted() && !found_[joints - 1]) next.doubt_jaw();  // the jaw is the last
     found_.fill(false);
   }
 
   // The core was not told what its drives said meanwhile.
   void note_zeros(const Commissioning& ended) {
-    const std::array<bool, joint_count> lost = ended.zeros_lost();
-    for (std::size_t i = 0; i < joint_count; ++i) {
-      const auto joint = static_cast<Joint>(i);
-      if (lost[i]) controller_->lose_zero(joint);
+    const PerJoint<bool> lost = ended.zeros_lost();
+    for (std::size_t i = 0; i < controller_->network().drive_count(); ++i) {
+      if (lost[i]) controller_->lose_zero(i);
       found_[i] = ended.state() == Commissioning::State::done && ended.found()[i] && !lost[i];
-      losses_when_found_[i] = controller_->network().axis(joint).stats().zeros_lost;
+      losses_when_found_[i] = controller_->network().axis(i).stats().zeros_lost;
     }
   }
 
@@ -255,10 +253,10 @@ class ControlLoop {
     report_.faults_after_end = mission.faults_after_end();
     report_.tasks = mission.tasks();
     const canopen::Network& network = controller_->network();
-    for (std::size_t i = 0; i < joint_count; ++i) {
-      report_.axes[i] = network.axis(static_cast<Joint>(i)).state();
-      report_.zeros_lost[i] = zero_lost(*controller_, i) && !network.axis(static_cast<Joint>(i)).may_have_power();
-      report_.axis_faults[i] = network.axis(static_cast<Joint>(i)).fault();
+    for (std::size_t i = 0; i < network.drive_count(); ++i) {
+      report_.axes[i] = network.axis(i).state();
+      report_.zeros_lost[i] = zero_lost(*controller_, i) && !network.axis(i).may_have_power();
+      report_.axis_faults[i] = network.axis(i).fault();
     }
     report_.jaw_doubted = mission.jaw_doubted();
     const canopen::IoModule& io = commissioning_ != nullptr ? commissioning_->io() : network.io();
@@ -281,8 +279,8 @@ class ControlLoop {
   Commissioning* commissioning_ = nullptr;  // lent
   bool core_has_turned_ = true;             // since the last one
   // Of the last one, for the core that brings its zeros; and how often each had been lost by then.
-  std::array<bool, joint_count> found_{};
-  std::array<std::uint32_t, joint_count> losses_when_found_{};
+  PerJoint<bool> found_{};
+  PerJoint<std::uint32_t> losses_when_found_{};
   TickOutput out_;
   ControlReport report_;
   Probe probe_;

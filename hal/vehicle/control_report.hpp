@@ -21,12 +21,12 @@ struct ControlReport {
   mission::Outcome outcome;
   mission::FaultCounts faults_after_end{};
   StaticVector<mission::TaskResult, mission::MissionConfig::max_tasks> tasks;
-  std::array<canopen::AxisState, joint_count> axes{};
-  std::array<bool, joint_count> zeros_lost{};  // the joint needs a zero: its drive has lost its position, and does not home by itself
-  std::uint32_t cores_taken = 0;               // exchanges of the core before this report
-  std::uint32_t commissionings_ended = 0;      // that had begun, before this report
-  bool jaw_doubted = false;                    // the core does not know what the jaw holds
-  std::array<canopen::AxisFault, joint_count> axis_faults{};
+  PerJoint<canopen::AxisState> axes{};
+  PerJoint<bool> zeros_lost{};             // the joint needs a zero: its drive has lost its position, and does not home by itself
+  std::uint32_t cores_taken = 0;           // exchanges of the core before this report
+  std::uint32_t commissionings_ended = 0;  // that had begun, before this report
+  bool jaw_doubted = false;                // the core does not know what the jaw holds
+  PerJoint<canopen::AxisFault> axis_faults{};
   std::uint8_t inputs = 0, outputs = 0;  // of the output node, bits of can_map
   bool inputs_fresh = false;             // it says so now: it is in operation
   canopen::BootReport boot;

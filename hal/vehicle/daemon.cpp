@@ -84,6 +84,7 @@ OrderDesk::Ways Daemon::ways(const Surroundings& surroundings) {
   }
   ways.interface = config_.interface;
   ways.names = config_.machine.survey.names;
+  ways.joints = config_.core.error_texts.names();
   ways.why_not = [this](const mission::Tasks& tasks) {
     const std::string beyond = config::turn_problem(tasks, config_.core.controller.mission.layout, config_.machine.survey.names);
     return beyond.empty() ? config::tasks_problem(config_.machine, config_.core, tasks) : beyond;

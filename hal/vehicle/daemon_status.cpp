@@ -20,7 +20,8 @@ Json Daemon::status() const {
   if (now.control.commissioning) {
     json["standing"] = "commissioning";
     json["commissioning"] = {{"state", name(now.control.commissioning_state)}};
-    if (now.control.commissioning_joint < joint_count) json["commissioning"]["joint"] = config::joint_name(now.control.commissioning_joint);
+    const JointNames& joints = config_.core.error_texts.names();
+    if (now.control.commissioning_joint < joints.size()) json["commissioning"]["joint"] = joints[now.control.commissioning_joint];
   } else if (const Json last = commissioner_.last(); !last.is_null()) {
     json["commissioning"] = last;
   }

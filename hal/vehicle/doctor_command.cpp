@@ -28,9 +28,9 @@ using doctor::Grade;
 ConfiguredDrives drives_of(const VehicleConfig& vehicle) {
   ConfiguredDrives drives;
   const auto folder = std::filesystem::path(vehicle.machine.file).parent_path();
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < vehicle.machine.joints.size(); ++i) {
     const config::JointDriveChoice drive = config::drive_of(vehicle.machine.drives, i);
-    drives[static_cast<std::uint8_t>(drive.node)] = {config::joint_name(i), config::find_drive_kind(drive.profile, folder)};
+    drives[static_cast<std::uint8_t>(drive.node)] = {vehicle.machine.joints[i], config::find_drive_kind(drive.profile, folder)};
   }
   return drives;
 }
@@ -49,7 +49,9 @@ std::vector<FoundNode> read_bus(const VehicleConfig& vehicle, const std::vector<
   if (const auto held = locked_by_another(vehicle.lock_folder, interface)) throw EnvironmentLacks(*held + "; stop it first");
   SocketCan::Config config;
   config.interface = interface;
-  config.filters = core_filters();
+  std::vector<std::uint8_t> nodes{static_cast<std::uint8_t>(vehicle.machine.drives.output_node)};
+  for (const auto& [node, drive] : configured) nodes.push_back(node);
+  config.filters = core_filters(nodes);
   for (std::uint32_t node = 1; node <= 126; ++node) config.filters.push_back(CanFilter::exactly(0x580 + node));
   SocketCan can(config);
   if (const PortStatus error = can.open(); error != port_ok) throw EnvironmentLacks(SocketCan::explain(error, interface));

@@ -11,19 +11,20 @@ namespace {
 double moved_rad(const arm::Arm& arm, const Commissioned& commissioned, const config::HomingOffsets& offsets, std::size_t joint) {
   if (!offsets.has_earlier_zero(joint)) return commissioned.moved_rad[joint];
   const double off_counts = static_cast<double>(commissioned.zero_counts[joint]) - offsets.zero_counts[joint];
-  const double off_rad = zero_moved_rad(arm.model().joints[joint], commissioned.place_rad[joint], off_counts);
+  const double off_rad = zero_moved_rad(arm.joint(joint), commissioned.place_rad[joint], off_counts);
   return std::max(commissioned.moved_rad[joint], off_rad > told_move_rad ? off_rad : 0);
 }
 
 // Why a joint that was found stays without power for its friction, in words.
-std::optional<std::string> friction_doubt(const Commissioned& commissioned, const std::array<Motor, joint_count>& motors,
+std::optional<std::string> friction_doubt(const Commissioned& commissioned, const PerJoint<Motor>& motors,
                                           const config::HomingOffsets& offsets, std::size_t joint) {
-  if (commissioned.friction_found[joint]) return config::friction_problem(joint, commissioned.friction[joint], motors[joint]);
+  if (commissioned.friction_found[joint])
+    return config::friction_problem(offsets.names[joint], commissioned.friction[joint], motors[joint]);
   const bool doubtful =
       offsets.friction_doubtful[joint] ||
-      (offsets.friction_known[joint] && config::friction_problem(joint, offsets.friction[joint], motors[joint]).has_value());
+      (offsets.friction_known[joint] && config::friction_problem(offsets.names[joint], offsets.friction[joint], motors[joint]).has_value());
   if (!doubtful) return std::nullopt;
-  return std::string("the ") + config::joint_name(joint) +
+  return "the " + offsets.names[joint] +
          "'s friction was doubtful before, and no friction was measured now. Commission it away from its stop, without --here";
 }
 
@@ -31,19 +32,18 @@ std::optional<std::string> friction_doubt(const Commissioned& commissioned, cons
 
 Json friction_json(const config::HomingOffsets& offsets) {
   Json all = Json::object();
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < offsets.names.size(); ++i) {
     const config::JointFriction& friction = offsets.friction[i];
     if (offsets.friction_known[i])
-      all[config::joint_name(i)] = {
+      all[offsets.names[i]] = {
           {"coulomb_mnm", friction.coulomb_mnm}, {"viscous_mnm_s", friction.viscous_mnm_s}, {"rms_mnm", friction.rms_mnm}};
   }
   return all;
 }
 
-TakenOver take_over(const arm::Arm& arm, const Commissioned& commissioned, const std::array<Motor, joint_count>& motors,
-                    config::HomingOffsets& offsets) {
+TakenOver take_over(const arm::Arm& arm, const Commissioned& commissioned, const PerJoint<Motor>& motors, config::HomingOffsets& offsets) {
   TakenOver taken;
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < offsets.names.size(); ++i) {
     if (!commissioned.found[i]) continue;
     taken.moved_rad[i] = moved_rad(arm, commissioned, offsets, i);
     if (const std::optional<std::string> why = friction_doubt(commissioned, motors, offsets, i)) {
@@ -64,38 +64,37 @@ TakenOver take_over(const arm::Arm& arm, const Commissioned& commissioned, const
   return taken;
 }
 
-bool leaves_doubt(const Commissioning& ended, const std::array<Motor, joint_count>& motors) {
-  for (std::size_t i = 0; i < joint_count; ++i) {
+bool leaves_doubt(const Commissioning& ended, const PerJoint<Motor>& motors, const JointNames& names) {
+  for (std::size_t i = 0; i < names.size(); ++i) {
     if (ended.moved_rad()[i] > 0) return true;
-    if (ended.friction_found()[i] && config::friction_problem(i, ended.friction()[i], motors[i])) return true;
+    if (ended.friction_found()[i] && config::friction_problem(names[i], ended.friction()[i], motors[i])) return true;
   }
   return false;
 }
 
-std::string found_elsewhere(const TakenOver& taken) {
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    if (taken.moved_rad[i] > 0) return std::string(config::joint_name(i)) + ": its zero was found elsewhere than the homing file has it";
+std::string found_elsewhere(const TakenOver& taken, const JointNames& names) {
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (taken.moved_rad[i] > 0) return names[i] + ": its zero was found elsewhere than the homing file has it";
   }
   return "";
 }
 
-void tell_moved(TakenOver& taken) {
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    if (taken.moved_rad[i] > 0)
-      taken.left_out.push_back(std::string("the ") + config::joint_name(i) + "'s zero has moved, and the new one was not written");
+void tell_moved(TakenOver& taken, const JointNames& names) {
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (taken.moved_rad[i] > 0) taken.left_out.push_back("the " + names[i] + "'s zero has moved, and the new one was not written");
   }
 }
 
 JointSet doubted_joints(const Commissioned& commissioned, const TakenOver& taken, const config::HomingOffsets& offsets) {
   JointSet doubted{};
-  for (std::size_t i = 0; i < joint_count; ++i)
+  for (std::size_t i = 0; i < doubted.size(); ++i)
     doubted[i] = commissioned.found[i] && (taken.moved_rad[i] > 0 || offsets.friction_doubtful[i]);
   return doubted;
 }
 
 JointSet with_a_zero(const JointSet& lost, const config::HomingOffsets& offsets) {
   JointSet both{};
-  for (std::size_t i = 0; i < joint_count; ++i) both[i] = lost[i] && offsets.has_earlier_zero(i);
+  for (std::size_t i = 0; i < both.size(); ++i) both[i] = lost[i] && offsets.has_earlier_zero(i);
   return both;
 }
 
@@ -104,26 +103,27 @@ std::string ending(const std::string& failed, const std::string& unwritten_for, 
   if (!unwritten_for.empty())
     return (failed.empty() ? "" : failed + ". ") + "Nothing was written: " + unwritten_for +
            ". In the homing file these joints' zeros are still marked doubtful, so that a daemon started anew gives them no power: " +
-           names_of(marks.joints);
+           names_of(marks.joints, marks.before.names);
   if (failed.empty()) return "";
   if (!any(doubted) && !any(gone)) return "nothing was written: " + failed;
   std::string text = failed;
-  if (any(doubted)) text += ". In the homing file the zeros of these joints are doubtful now: " + names_of(doubted);
-  if (any(gone)) text += ". These are no longer in the homing file, since their drives have lost their positions: " + names_of(gone);
+  if (any(doubted)) text += ". In the homing file the zeros of these joints are doubtful now: " + names_of(doubted, marks.before.names);
+  if (any(gone))
+    text += ". These are no longer in the homing file, since their drives have lost their positions: " + names_of(gone, marks.before.names);
   return text + ". Nothing else was written";
 }
 
 std::vector<std::string> cut_off(const config::HomingOffsets& offsets, const JointSet& found, const ControllerConfig& core) {
   std::vector<std::string> sentences;
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < core.network.drives.size(); ++i) {
     if (!found[i] && core.network.drives[i].zero_known && offsets.friction_doubtful[i] && !offsets.friction_known[i])
-      sentences.push_back(std::string("the homing file has the ") + config::joint_name(i) + "'s friction as doubtful");
+      sentences.push_back("the homing file has the " + offsets.names[i] + "'s friction as doubtful");
   }
   return sentences;
 }
 
 void deny_power(const JointSet& denied, ControllerConfig& core, config::HomingOffsets& offsets) {
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < core.network.drives.size(); ++i) {
     bool& known = core.network.drives[i].zero_known;
     known = known && !denied[i];
     offsets.known[i] = known;
@@ -131,7 +131,7 @@ void deny_power(const JointSet& denied, ControllerConfig& core, config::HomingOf
 }
 
 void use_zeros(const config::HomingOffsets& offsets, const JointSet& found, const JointSet& still_lost, ControllerConfig& core) {
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < core.network.drives.size(); ++i) {
     canopen::DriveSetup& drive = core.network.drives[i];
     if (found[i]) {
       drive.encoder_zero_counts = offsets.zero_counts[i];

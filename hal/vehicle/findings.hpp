@@ -21,13 +21,13 @@ Json friction_json(const config::HomingOffsets& offsets);
 // What a commissioning has found.
 struct Commissioned {
   JointSet found{};
-  std::array<std::int32_t, joint_count> zero_counts{};
+  PerJoint<std::int32_t> zero_counts{};
   JointSet friction_found{};
-  std::array<config::JointFriction, joint_count> friction{};
-  std::string how;                            // and when
-  std::array<double, joint_count> place_rad;  // where each zero was found: the joint's stop, or 0 in a jig
+  PerJoint<config::JointFriction> friction{};
+  std::string how;             // and when
+  PerJoint<double> place_rad;  // where each zero was found: the joint's stop, or 0 in a jig
   // By how much it was found off its earlier zero, as the commissioning compared it; 0 where that is less than what is told.
-  std::array<double, joint_count> moved_rad{};
+  PerJoint<double> moved_rad{};
   JointSet lost{};  // its drive has lost its position, before a zero was found or after: no earlier zero of it means anything
 };
 
@@ -35,19 +35,18 @@ struct TakenOver {
   std::vector<std::string> left_out;  // a sentence for each joint that takes no power
   // By how much each zero has moved, as the angle at its place: against the file's earlier one, or as the commissioning compared it, whichever is more. 0 where
   // there was none, or it moved by less than what is told.
-  std::array<double, joint_count> moved_rad{};
+  PerJoint<double> moved_rad{};
 };
 // Takes it over into `offsets`. A joint whose friction cannot be is no longer known there, and stays out until a friction was measured that can be: a zero
 // alone does not show that what rubbed is gone.
-TakenOver take_over(const arm::Arm& arm, const Commissioned& commissioned, const std::array<Motor, joint_count>& motors,
-                    config::HomingOffsets& offsets);
+TakenOver take_over(const arm::Arm& arm, const Commissioned& commissioned, const PerJoint<Motor>& motors, config::HomingOffsets& offsets);
 
 // Of a commissioning that failed: a zero was found elsewhere, or something rubs.
-bool leaves_doubt(const Commissioning& ended, const std::array<Motor, joint_count>& motors);
+bool leaves_doubt(const Commissioning& ended, const PerJoint<Motor>& motors, const JointNames& names);
 // The file was changed while the joint moved, so that the commissioning could not compare with it. Empty: it was not.
-std::string found_elsewhere(const TakenOver& taken);
+std::string found_elsewhere(const TakenOver& taken, const JointNames& names);
 // Adds a sentence for each zero that has moved and was not written.
-void tell_moved(TakenOver& taken);
+void tell_moved(TakenOver& taken, const JointNames& names);
 // Found elsewhere than its earlier zero, or with a friction that cannot be. `offsets` is what was taken over.
 JointSet doubted_joints(const Commissioned& commissioned, const TakenOver& taken, const config::HomingOffsets& offsets);
 // The joints of `lost` that have a zero in the file, doubtful or not.

@@ -17,12 +17,12 @@ std::int32_t any_count(const canopen::DriveSetup& drive) {
 }  // namespace
 
 std::uint16_t pressing_permille(const Commissioning::Config& config, std::size_t joint) {
-  return config.arm.model().joints[joint].actuator.counts_per_rad > 0 ? config.gear_permille : config.screw_permille;
+  return config.arm.joint(joint).actuator.counts_per_rad > 0 ? config.gear_permille : config.screw_permille;
 }
 
 canopen::NetworkConfig gentle_network(const Commissioning::Config& config) {
   canopen::NetworkConfig network = config.network;
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < network.drives.size(); ++i) {
     canopen::DriveSetup& drive = network.drives[i];
     drive.encoder_zero_counts = 0;
     drive.zero_known = true;  // what is looked for: all counts here are the encoder's own, and wide open

@@ -7,7 +7,7 @@
 namespace lf::hal {
 
 JointSet either(JointSet one, const JointSet& other) {
-  for (std::size_t i = 0; i < joint_count; ++i) one[i] = one[i] || other[i];
+  for (std::size_t i = 0; i < one.size(); ++i) one[i] = one[i] || other[i];
   return one;
 }
 
@@ -15,12 +15,12 @@ bool any(const JointSet& joints) {
   return std::any_of(joints.begin(), joints.end(), [](bool one) { return one; });
 }
 
-std::string names_of(const JointSet& joints) {
-  std::string names;
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    if (joints[i]) names += (names.empty() ? "" : ", ") + std::string(config::joint_name(i));
+std::string names_of(const JointSet& joints, const JointNames& names) {
+  std::string all;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (joints[i]) all += (all.empty() ? "" : ", ") + names[i];
   }
-  return names;
+  return all;
 }
 
 std::string write_offsets(const std::string& file, const config::HomingOffsets& offsets) {
@@ -33,7 +33,7 @@ std::string write_offsets(const std::string& file, const config::HomingOffsets& 
 }
 
 void forget_lost(const JointSet& lost, config::HomingOffsets& offsets, ControllerConfig& core) {
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < core.network.drives.size(); ++i) {
     if (!lost[i]) continue;
     offsets.forget_zero(i);
     core.network.drives[i].zero_known = false;
@@ -42,7 +42,7 @@ void forget_lost(const JointSet& lost, config::HomingOffsets& offsets, Controlle
 
 config::HomingOffsets with_doubts(config::HomingOffsets before, const JointSet& doubted, const config::HomingOffsets& taken_over,
                                   const ControllerConfig& core) {
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < core.network.drives.size(); ++i) {
     if (!doubted[i]) continue;
     const canopen::DriveSetup& drive = core.network.drives[i];
     if (!before.has_earlier_zero(i) && drive.zero_known) {
@@ -59,7 +59,7 @@ config::HomingOffsets with_doubts(config::HomingOffsets before, const JointSet& 
 
 Marks Marks::of(const JointSet& joints, const JointSet& lost, config::HomingOffsets file, const ControllerConfig& core) {
   JointSet compared{};
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < joints.size(); ++i) {
     if (lost[i]) file.forget_zero(i);
     compared[i] = joints[i] && !lost[i];
   }
@@ -67,7 +67,7 @@ Marks Marks::of(const JointSet& joints, const JointSet& lost, config::HomingOffs
 }
 
 config::HomingOffsets Marks::lifted_from(config::HomingOffsets file) const {
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < joints.size(); ++i) {
     const bool as_marked = file.zero_doubtful[i] == marked.zero_doubtful[i] && file.known[i] == marked.known[i] &&
                            file.friction_doubtful[i] == marked.friction_doubtful[i] &&
                            (!file.zero_doubtful[i] || file.zero_counts[i] == marked.zero_counts[i]);

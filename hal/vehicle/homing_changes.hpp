@@ -6,14 +6,13 @@
 
 #include "firmware/config.hpp"
 #include "hal/config/homing_file.hpp"
+#include "hal/vehicle/joint_set.hpp"
 
 namespace lf::hal {
 
-using JointSet = std::array<bool, joint_count>;
-
 JointSet either(JointSet one, const JointSet& other);
 bool any(const JointSet& joints);
-std::string names_of(const JointSet& joints);  // "slew, elbow"
+std::string names_of(const JointSet& joints, const JointNames& names);  // "slew, elbow"
 
 // The cause when it cannot be written; empty: it was.
 std::string write_offsets(const std::string& file, const config::HomingOffsets& offsets);

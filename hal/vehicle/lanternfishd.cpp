@@ -337,7 +337,7 @@ void add_commission(CLI::App& app, const Options& options, Action& action) {
 // What completes the arguments of orders.
 command_line::WordSources word_sources() {
   std::string joints = "printf \"%s\\n\"";
-  for (std::size_t i = 0; i < joint_count; ++i) joints += std::string(" ") + config::joint_name(i);
+  for (const std::string& joint : JointNames()) joints += " " + joint;  // the default machine's
   return {{"JOINT", {joints}}, {"--joint", {joints}}, {"--press", {"printf \"%s\\n\" left centre right"}}};
 }
 

@@ -93,7 +93,7 @@ std::optional<std::string> OrderDesk::take(const std::string& line, unsigned use
   one.user = user;
   one.since = monotonic_now();
   one.stops_before = stops_given_;
-  ParsedOrder parsed = parse_order(line, ways_.names);
+  ParsedOrder parsed = parse_order(line, ways_.names, ways_.joints);
   if (const auto* why = std::get_if<std::string>(&parsed)) return finish(one, refused(*why));
   one.request = std::get<OperatorRequest>(parsed);
   if (const std::optional<Json> answer = judge(one)) return finish(one, *answer);

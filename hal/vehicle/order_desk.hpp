@@ -36,6 +36,7 @@ class OrderDesk {
     std::function<User(unsigned)> look_up;                      // may block: called on a thread of its own
     std::string interface;                                      // for messages
     PanelNames names;                                           // by which orders name valves and buttons
+    JointNames joints;                                          // and joints
     std::function<std::string()> no_sight;                      // why there is no camera, in words; empty: there is one
     std::function<std::string(const mission::Tasks&)> why_not;  // tasks that this machine cannot do, in words; empty: it can
     Commissioner* commissioner = nullptr;                       // of the same thread; outlives the desk

@@ -98,28 +98,26 @@ std::optional<Command> command_of(const std::string& request) {
   return std::nullopt;
 }
 
-Joint joint_of(const Value& name) {
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    if (name.get_ref<const std::string&>() == config::joint_name(i)) return static_cast<Joint>(i);
-  }
-  refuse("no joint " + quoted(name.get<std::string>()) + ": slew, shoulder, elbow, roll or jaw");
-}
-
-void read_jog(const Value& request, mission::Order& order) {
-  allow_only(request, "jog", {"do", "joint", "by_deg"});
-  const Value& joint = member(request, "joint");
-  const Value& by = member(request, "by_deg");
-  if (!joint.is_string() || !by.is_number()) refuse("jog takes \"joint\" and \"by_deg\"");
-  order.joint = joint_of(joint);
-  order.by_rad = rad_from_deg(by.get<double>());
-  if (!std::isfinite(order.by_rad) || std::abs(order.by_rad) > mission::largest_jog_rad) refuse("a jog is of 20 deg at most");
-}
-
 // "left, centre or right"
 std::string listed(const std::vector<std::string>& names, const char* last = " or ") {
   std::string text;
   for (std::size_t i = 0; i < names.size(); ++i) text += (i == 0 ? "" : i + 1 == names.size() ? last : ", ") + names[i];
   return names.empty() ? "none" : text;
+}
+
+std::size_t joint_of(const Value& name, const JointNames& joints) {
+  if (const std::optional<std::size_t> joint = joints.find(name.get_ref<const std::string&>())) return *joint;
+  refuse("no joint " + quoted(name.get<std::string>()) + ": " + listed({joints.begin(), joints.end()}));
+}
+
+void read_jog(const Value& request, const JointNames& joints, mission::Order& order) {
+  allow_only(request, "jog", {"do", "joint", "by_deg"});
+  const Value& joint = member(request, "joint");
+  const Value& by = member(request, "by_deg");
+  if (!joint.is_string() || !by.is_number()) refuse("jog takes \"joint\" and \"by_deg\"");
+  order.joint = joint_of(joint, joints);
+  order.by_rad = rad_from_deg(by.get<double>());
+  if (!std::isfinite(order.by_rad) || std::abs(order.by_rad) > mission::largest_jog_rad) refuse("a jog is of 20 deg at most");
 }
 
 config::Task read_turn(const Value& turn, const PanelNames& names) {
@@ -183,28 +181,28 @@ bool flag(const Value& request, const char* name) {
   return value.is_boolean() && value.get<bool>();
 }
 
-void read_joints(const Value& joints, CommissionOrder& order) {
+void read_joints(const Value& joints, const JointNames& names, CommissionOrder& order) {
   if (joints.is_null()) return;
   if (!joints.is_array() || joints.empty()) refuse("\"joints\" is a list of joints, one or more");
   order.joints = {};
   for (const Value& joint : joints) {
     if (!joint.is_string()) refuse("\"joints\" is a list of joints, one or more");
-    order.joints[static_cast<std::size_t>(joint_of(joint))] = true;
+    order.joints[joint_of(joint, names)] = true;
   }
 }
 
-void read_commission(const Value& request, CommissionOrder& order) {
+void read_commission(const Value& request, const JointNames& names, CommissionOrder& order) {
   allow_only(request, "commission", {"do", "joints", "here", "clear", "moved"});
   order.here = flag(request, "here");
   if (!order.here && !flag(request, "clear"))
     refuse("commissioning moves the arm against its stops: clear its reach, then say so with \"clear\": true (--clear)");
-  read_joints(member(request, "joints"), order);
+  read_joints(member(request, "joints"), names, order);
   order.moved = flag(request, "moved");
   if (order.moved && std::count(order.joints.begin(), order.joints.end(), true) != 1)
     refuse("\"moved\" (--moved) says that a joint's encoder or stop was changed: commission this joint alone, with \"joints\" (--joint)");
 }
 
-OperatorRequest read_request(std::string_view line, const PanelNames& names) {
+OperatorRequest read_request(std::string_view line, const PanelNames& names, const JointNames& joints) {
   if (nested_too_deep(line)) refuse("nested too deep: a request is a JSON object such as {\"do\": \"status\"}");
   const Value request = Value::parse(line, nullptr, false);
   const Value& what = member(request, "do");
@@ -217,11 +215,11 @@ OperatorRequest read_request(std::string_view line, const PanelNames& names) {
   read.for_the_core = command.has_value();
   if (command) read.order.command = *command;
   if (command == Command::jog) {
-    read_jog(request, read.order);
+    read_jog(request, joints, read.order);
   } else if (command == Command::set_tasks) {
     read_tasks(request, names, read.order);
   } else if (name == "commission") {
-    read_commission(request, read.commission);
+    read_commission(request, joints, read.commission);
   } else {
     allow_only(request, read.right->request, {"do"});
   }
@@ -230,9 +228,9 @@ OperatorRequest read_request(std::string_view line, const PanelNames& names) {
 
 }  // namespace
 
-ParsedOrder parse_order(std::string_view line, const PanelNames& names) {
+ParsedOrder parse_order(std::string_view line, const PanelNames& names, const JointNames& joints) {
   try {
-    return read_request(line, names);
+    return read_request(line, names, joints);
   } catch (const Wrong& wrong) {
     return wrong.why;
   } catch (const std::exception& error) {  // of the JSON library: no path to it is known

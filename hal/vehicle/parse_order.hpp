@@ -10,14 +10,16 @@
 #include <variant>
 
 #include "firmware/mission/orders.hpp"
+#include "hal/vehicle/joint_set.hpp"
 #include "hal/vehicle/operator_rights.hpp"
+#include "shared/arm/joint_names.hpp"
 #include "shared/panel/panel_names.hpp"
 
 namespace lf::hal {
 
 // {"do": "commission", "joints": ["slew"], "clear": true}
 struct CommissionOrder {
-  std::array<bool, joint_count> joints{true, true, true, true, true};
+  JointSet joints = all_joints();
   bool here = false;   // the arm stands at its zero, in a jig: nothing moves
   bool moved = false;  // the encoder or the stop of the one joint was changed: its zero may be elsewhere
 };
@@ -32,6 +34,7 @@ struct OperatorRequest {
 // The text says what is wrong: one line of valid UTF-8, at most some 200 letters.
 using ParsedOrder = std::variant<OperatorRequest, std::string>;
 
-ParsedOrder parse_order(std::string_view line, const PanelNames& names = {});  // names: of the panel's features
+// `names`: of the panel's features.
+ParsedOrder parse_order(std::string_view line, const PanelNames& names = {}, const JointNames& joints = {});
 
 }  // namespace lf::hal

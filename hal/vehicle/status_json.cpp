@@ -173,8 +173,9 @@ Json status_json(const ControlReport& control, const Telemetry& telemetry, const
   }
   json["tasks"] = tasks_json(control, names);
   if (const Json fit = config::fit_json(telemetry.sight.fit, control.tasks); !fit.empty()) json["fit"] = fit;
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    Json joint{{"joint", config::joint_name(i)},
+  const JointNames& joints = texts.names();
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    Json joint{{"joint", joints[i]},
                {"state", canopen::name(control.axes[i])},
                {"actual_rad", telemetry.actual_rad[i]},
                {"target_rad", telemetry.target_rad[i]},
@@ -184,8 +185,7 @@ Json status_json(const ControlReport& control, const Telemetry& telemetry, const
   }
   for (std::size_t i = 0; i < control.boot.nodes.size(); ++i) {
     Json node = node_json(control.boot.nodes[i]);
-    if (const std::string why = config::boot_sentence(control.boot.nodes[i], i < joint_count ? config::joint_name(i) : "outputs");
-        !why.empty())
+    if (const std::string why = config::boot_sentence(control.boot.nodes[i], i < joints.size() ? joints[i] : "outputs"); !why.empty())
       node["why"] = why;
     json["nodes"].push_back(node);
   }

@@ -70,7 +70,7 @@ void add_machine(Keys& all, VehicleConfig& c) {
   all.push_back(key("safety.limits", "", 0, 0, &c.machine.safety_limits, "the checksummed file of limits; found as arm.urdf is"));
   all.push_back(key("safety.mission_limits", "", 0, 0, &c.machine.mission_limits,
                     "a file of the same form with limits of this mission, none wider; empty: the same"));
-  config::add_drives(all, c.machine.drives);
+  config::add_drives(all, c.machine.drives, c.machine.joints);
   config::add_mission(all, c.machine.mission);
 }
 
@@ -213,6 +213,14 @@ YAML::Node read_keys(const std::string& path, VehicleConfig& config, std::vector
       problems.emplace_back(problem.what());
     }
   }
+  // A stop asks for nothing but its socket: drives go by names that only the arm's file has.
+  YAML::Node readable = root;
+  std::vector<std::string> told_later;  // by the core's own checks
+  if (follow)
+    config.machine.joints = config::joints_or_why(readable, path, config.machine.joints, told_later);
+  else
+    readable.remove("drives");
+  if (config.machine.arm_told) config::forget_joints(readable);
   // A file's names are not known yet: any is taken, and looked for later.
   if (!config::panel_named_in(root).empty()) config.machine.survey.names = {{}, {}, {}};
   const std::vector<std::string> machines = texts_of(config.machine);
@@ -321,7 +329,9 @@ VehicleConfig load_vehicle_config(const std::string& path, std::vector<std::stri
   const bool panel_known = config::settle_panel(path, config.panel_file, config.docked_panel, config.valve_stops, config.machine.panel,
                                                 config.machine.survey, problems);
   if (!panel_known) config.machine.tasks = config::Machine().tasks;  // its own name what nobody has read
-  config.machine.arm = config::arm_for_checks(path, config.machine.arm_urdf);
+  const config::NamedArm arm = config::arm_for_checks(path, config.machine.arm_urdf);
+  config.machine.arm = arm.arm;
+  config.machine.joints = arm.joints;
   check_together(config, path, problems);
   find_homing(config, problems);
   config.core = config::make_core(config.machine, problems);

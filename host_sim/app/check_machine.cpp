@@ -39,10 +39,14 @@ config::Machine machine_of(const std::string& file) {
     }
   };
   if (problems.empty()) {
-    take([&] { (void)config::read_limits(config::named_file(file, "safety.limits", machine.safety_limits)); });
-    take([&] { machine.arm = config::read_arm(config::named_file(file, "arm.urdf", machine.arm_urdf)); });
+    take([&] { (void)config::read_limits(config::named_file(file, "safety.limits", machine.safety_limits), machine.joints); });
+    take([&] {
+      const config::NamedArm arm = config::read_arm(config::named_file(file, "arm.urdf", machine.arm_urdf));
+      machine.arm = arm.arm;
+      machine.joints = arm.joints;
+    });
     take([&] { (void)config::park_pose(machine); });
-    for (std::size_t i = 0; i < joint_count; ++i)
+    for (std::size_t i = 0; i < machine.joints.size(); ++i)
       take([&] { (void)config::find_drive_kind(config::drive_of(machine.drives, i).profile, std::filesystem::path(file).parent_path()); });
   }
   problems.erase(std::unique(problems.begin(), problems.end()), problems.end());
@@ -82,16 +86,22 @@ struct Told {
         problems(problems_of_job(std::filesystem::absolute(name).string())) {}
 
   std::string urdf() const { return config::named_file(file, "arm.urdf", machine.arm_urdf); }
-  double reach_m() const { return std::abs(arm.planar().a0_m) + std::abs(arm.planar().a1_m) + arm.forearm().length_m; }
+  // From the first joint to the tool, the arm stretched as far as its links are long.
+  double reach_m() const {
+    if (arm.is_planar()) return std::abs(arm.planar().a0_m) + std::abs(arm.planar().a1_m) + arm.forearm().length_m;
+    double length_m = std::abs(arm.model().tool_z_m);
+    for (std::size_t i = 1; i < arm.arm_joints(); ++i) length_m += arm.model().origins[i].translation().norm();
+    return length_m;
+  }
   double jaw_opens_m() const { return arm::gap_from_jaw(arm.jaw(), arm.jaw().upper_rad); }
 };
 
 Json json_of(const Told& told) {
   Json json{{"file", told.file}, {"arm", told.urdf()}, {"joints", Json::array()}};
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < told.description.joints.size(); ++i) {
     const ArmJoint& joint = told.description.joints[i];
     const config::JointDriveChoice drive = config::drive_of(told.machine.drives, i);
-    json["joints"].push_back({{"name", config::joint_name(i)},
+    json["joints"].push_back({{"name", joint.name},
                               {"lower_rad", joint.lower_rad},
                               {"upper_rad", joint.upper_rad},
                               {"velocity_rad_s", joint.velocity_rad_s},
@@ -102,7 +112,7 @@ Json json_of(const Told& told) {
                               {"profile", drive.profile},
                               {"polarity", drive.polarity}});
   }
-  json["ik"] = "planar";
+  json["ik"] = told.arm.is_planar() ? "planar" : "none";
   json["reach_m"] = told.reach_m();
   json["jaw_opens_m"] = told.jaw_opens_m();
   json["thickest_bar_m"] = arm::thickest_bar_m(told.arm.jaw());
@@ -115,15 +125,21 @@ Json json_of(const Told& told) {
 
 void tell(const Told& told) {
   print("%s: the arm of %s\n", told.file.c_str(), told.urdf().c_str());
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < told.description.joints.size(); ++i) {
     const ArmJoint& joint = told.description.joints[i];
     const config::JointDriveChoice drive = config::drive_of(told.machine.drives, i);
-    print("  %-9s %7.1f to %6.1f deg, %5.1f deg/s, %5.1f N m rated, %5.1f peak, %-5s node %lld, %s%s\n", config::joint_name(i),
+    print("  %-9s %7.1f to %6.1f deg, %5.1f deg/s, %5.1f N m rated, %5.1f peak, %-5s node %lld, %s%s\n", joint.name.c_str(),
           deg_from_rad(joint.lower_rad), deg_from_rad(joint.upper_rad), deg_from_rad(joint.velocity_rad_s), joint.rated_torque_nm,
           joint.effort_nm, joint.actuator.counts_per_rad > 0 ? "gear," : "screw,", static_cast<long long>(drive.node),
           drive.profile.c_str(), drive.polarity == "reversed" ? ", reversed" : "");
   }
-  print("  inverse kinematics: planar, in closed form; the tool comes %.0f mm from the slew's axis at most\n", 1e3 * told.reach_m());
+  if (told.arm.is_planar())
+    print("  inverse kinematics: planar, in closed form; the tool comes %.0f mm from the slew's axis at most\n", 1e3 * told.reach_m());
+  else
+    print(
+        "  of another form than slew, shoulder, elbow and roll, for which jobs are planned: it can be commissioned, homed and jogged. The "
+        "tool comes %.0f mm from the first joint at most\n",
+        1e3 * told.reach_m());
   print("  the jaw opens to %.0f mm, and takes bars up to %.1f mm\n", 1e3 * told.jaw_opens_m(), 1e3 * arm::thickest_bar_m(told.arm.jaw()));
   const std::array<double, 3>& camera = told.machine.camera.position_m;
   print("  camera at %.3f %.3f %.3f m, %.1f deg down, %.1f deg to the right, focal length %.1f px\n", camera[0], camera[1], camera[2],
@@ -149,6 +165,9 @@ int check_machine(const std::string& name, const std::string& picture, bool json
     scenario::Scenario shown = usual;
     shown.arm.urdf = told.urdf();
     shown.arm.park_rad = told.machine.park_rad;
+    shown.joints = told.machine.joints;
+    shown.told_arm = told.arm;
+    shown.drives = told.machine.drives;
     shown.vehicle = told.machine.vehicle;
     draw_outside(shown, usual, picture);
   }

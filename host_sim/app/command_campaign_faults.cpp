@@ -102,6 +102,7 @@ int fault_campaign(const CampaignOptions& options) {
   const Shard shard = parse_shard(options.shard);
   check_names_early(options);
   const scenario::Scenario base = scenario::load_scenario(options.scenario, options.set);
+  scenario::check_runnable(base);
   std::string kind = options.pairs ? "fault-pairs" : "faults";
   if (options.rendered) kind += "-rendered";
   if (options.into != usual_share_of_step) kind += "-into-" + config::number_text(options.into);

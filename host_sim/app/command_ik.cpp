@@ -8,7 +8,6 @@
 #include "host_sim/app/checks.hpp"
 #include "host_sim/app/command.hpp"
 #include "shared/input_error.hpp"
-#include "shared/messages/joint_names.hpp"
 
 namespace lf::app {
 
@@ -26,11 +25,12 @@ constexpr double farthest = 1000;
 
 bool is_length(arm::IkOutcome outcome) { return outcome == arm::IkOutcome::too_far || outcome == arm::IkOutcome::too_near; }
 
-Json answer(const arm::Arm& arm, const arm::IkResult& ik) {
+Json answer(const config::NamedArm& named, const arm::IkResult& ik) {
+  const arm::Arm& arm = named.arm;
   Json json{{"reachable", ik.ok()}};
   if (ik.ok()) {
     const Vec3 approach = arm.approach_axis(ik.q_rad);
-    for (std::size_t i = 0; i < arm_joint_count; ++i) json["joints_rad"][joint_names[i]] = ik.q_rad[Eigen::Index(i)];
+    for (std::size_t i = 0; i < arm.arm_joints(); ++i) json["joints_rad"][named.joints[i]] = ik.q_rad[Eigen::Index(i)];
     json["approach"] = {approach.x(), approach.y(), approach.z()};
     json["branch"] = ik.posture.branch == arm::IkBranch::front ? "front" : "folded";
   } else {
@@ -40,7 +40,8 @@ Json answer(const arm::Arm& arm, const arm::IkResult& ik) {
   return json;
 }
 
-void tell(const arm::Arm& arm, const arm::IkResult& ik) {
+void tell(const config::NamedArm& named, const arm::IkResult& ik) {
+  const arm::Arm& arm = named.arm;
   if (!ik.ok()) {
     if (is_length(ik.outcome)) {
       print("not reachable: %s by %.1f mm\n", arm::name(ik.outcome), 1e3 * ik.excess);
@@ -49,9 +50,9 @@ void tell(const arm::Arm& arm, const arm::IkResult& ik) {
     }
     return;
   }
-  for (std::size_t i = 0; i < arm_joint_count; ++i) {
+  for (std::size_t i = 0; i < arm.arm_joints(); ++i) {
     const double q_rad = ik.q_rad[Eigen::Index(i)];
-    print("%-9s %9.5f rad  %8.3f deg\n", joint_names[i], q_rad, deg_from_rad(q_rad));
+    print("%-9s %9.5f rad  %8.3f deg\n", named.joints[i].c_str(), q_rad, deg_from_rad(q_rad));
   }
   const Vec3 approach = arm.approach_axis(ik.q_rad);
   print("approach  %.5f %.5f %.5f\n", approach.x(), approach.y(), approach.z());
@@ -68,9 +69,13 @@ int ik(const Options& options) {
     std::snprintf(text, sizeof text, "ik: %s takes a number from -%g to %g, not %g", name, farthest, farthest, value);
     throw InputError(text);
   }
-  const arm::Arm arm = config::read_arm(config::find_file(options.arm, ""));
+  const config::NamedArm arm = config::read_arm(config::find_file(options.arm, ""));
+  if (!arm.arm.is_planar())
+    throw InputError(
+        "ik: " + options.arm +
+        " is of another form than slew, shoulder, elbow and roll, which ik solves in closed form: `lanternfish check arm` tries any");
   const arm::IkResult result =
-      arm::inverse_kinematics(arm, Vec3(options.x_m, options.y_m, options.z_m), options.roll_rad, options.margin_rad);
+      arm::inverse_kinematics(arm.arm, Vec3(options.x_m, options.y_m, options.z_m), options.roll_rad, options.margin_rad);
   if (options.json) {
     print_json(answer(arm, result));
   } else {

@@ -74,7 +74,7 @@ std::vector<std::string> doubts_of(const std::vector<ReachTarget>& targets) {
 int reach(const Options& options) {
   const std::string format = picture_format(options.out);
   scenario::Scenario scenario = scenario::load_scenario(options.scenario, options.set);
-  scenario.told_arm = config::read_arm(config::named_file(scenario.file, "arm.urdf", scenario.arm.urdf));  // or why it cannot be read
+  scenario.told_arm = config::read_arm(config::named_file(scenario.file, "arm.urdf", scenario.arm.urdf)).arm;  // or why it cannot be read
   // At the height of the first of each kind: on most panels all of a kind are alike.
   std::vector<ReachGrid> grids;
   if (!scenario.panel.buttons.empty())

@@ -102,7 +102,7 @@ int run(const Options& options) {
   request.seed = options.seed;
   request.can = options.can;
   request.nodes = serve::NodeSet::parse(options.nodes);
-  if (!options.homing.empty()) request.zero_counts = config::read_homing_file(options.homing).zero_counts;
+  if (!options.homing.empty()) request.zero_counts = config::read_homing_file(options.homing, request.scenario.joints).zero_counts;
   request.camera = options.camera;
   request.renderer = options.renderer;
   request.render_threads = options.render_threads;

@@ -22,7 +22,17 @@ constexpr double longest_s = 300;    // of a mission, after its fault
 constexpr double by_hand_s = 6;      // of an arm that waits for orders
 constexpr double over_s = 3;         // of a mission that had ended before
 
+std::vector<std::uint8_t> nodes_of(const scenario::Scenario& scenario) {
+  std::vector<std::uint8_t> nodes;
+  for (std::size_t i = 0; i < scenario.told_arm.joint_count(); ++i)
+    nodes.push_back(static_cast<std::uint8_t>(config::drive_of(scenario.drives, i).node));
+  nodes.push_back(static_cast<std::uint8_t>(scenario.drives.output_node));
+  return nodes;
+}
+
 struct Watched {
+  explicit Watched(const scenario::Scenario& scenario) : safety(nodes_of(scenario)) {}
+
   judge::SafetyObserver safety;
   judge::TruthObserver truth;
   hal::SimObservers all{&safety, &truth};
@@ -58,11 +68,11 @@ bool unfelt_push(const Flight& flight, const Watched& watched, const MatrixRow& 
   const bool pushed =
       std::any_of(row.causes.begin(), row.causes.end(), [](const judge::Cause& cause) { return cause.rule->kind == "obstacle"; });
   if (!pushed) return false;
+  const scene::BodyId obstacle = scene::OwnBodies(flight.arm_joints()).obstacle();
   const auto& results = flight.mission().tasks();
   world::ContactReport contacts = world.contacts();
-  std::erase_if(contacts.unintended, [](const world::UnintendedContact& touch) {
-    return touch.a == scene::BodyId::obstacle || touch.b == scene::BodyId::obstacle;
-  });
+  std::erase_if(contacts.unintended,
+                [obstacle](const world::UnintendedContact& touch) { return touch.a == obstacle || touch.b == obstacle; });
   if (judge::contradiction({results.data(), results.size()}, watched.truth.watched(world), contacts, flight.panel_names())) return false;
   return !judge::felt_a_push(watched.safety.seen());
 }
@@ -71,6 +81,7 @@ bool unfelt_push(const Flight& flight, const Watched& watched, const MatrixRow& 
 RowResult fly_row(const config::Drives& drives, Flight& flight, Watched& watched, FaultWalk& walk, const MatrixRow& row) {
   judge::Situation situation;
   situation.causes = row.causes;
+  situation.names = flight.error_texts().names();
   situation.deceleration_rad_s2 = flight.deceleration_rad_s2();
   situation.gear_gives_rad = flight.gear_gives_rad();
   situation.slips_rad = flight.slips_rad();
@@ -87,7 +98,7 @@ RowResult fly_row(const config::Drives& drives, Flight& flight, Watched& watched
     config::Fault fault = row.causes[i].fault();
     if (fault.kind == "limits_refused") continue;  // it has been told
     fault.at_s = begin.s() + later_s;
-    flight.platform().add_fault(scenario::sim_fault(fault, drives));
+    flight.platform().add_fault(scenario::sim_fault(fault, drives, flight.error_texts().names()));
   }
   const double limit_s = situation.over                                                                 ? over_s
                          : walk.by_hand() && mission::row(row.moment.step).phase == safety::Phase::free ? by_hand_s
@@ -161,7 +172,7 @@ RowResult described(const MatrixRow& row, RowResult result) {
 // Rows of one walk, in the order of their times.
 void fly_walk(const scenario::Scenario& base, const std::string& name, const std::vector<const MatrixRow*>& rows, Copies& copies) {
   FaultWalk walk(name);
-  Watched watched;
+  Watched watched(base);
   Flight flight(walk.with_its_faults(base), 1, watched.all);
   for (const MatrixRow* row : rows) {
     while (flight.now().s() < row->moment.at_s && !interrupted()) {
@@ -179,7 +190,7 @@ void fly_from_power_on(const scenario::Scenario& base, const MatrixRow& row, Cop
     FaultWalk walk(row.moment.walk);
     scenario::Scenario told = walk.with_its_faults(base);
     for (const judge::Cause& cause : row.causes) told.faults.push_back(cause.fault());
-    Watched watched;
+    Watched watched(base);
     Flight flight(told, 1, watched.all);
     walk.give_orders(flight);
     flight.step();
@@ -191,7 +202,7 @@ void fly_from_power_on(const scenario::Scenario& base, const MatrixRow& row, Cop
 void fly_rendered(const scenario::Scenario& base, const MatrixRow& row, Copies& copies) {
   copies.start(row.name(), [&] {
     FaultWalk walk(row.moment.walk);
-    Watched watched;
+    Watched watched(base);
     Flight flight(walk.with_its_faults(base), 1, watched.all, Sight::rendered);
     double begun_s = -1;
     while (begun_s < 0 || flight.now().s() < begun_s + row.moment.into_s) {

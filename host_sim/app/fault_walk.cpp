@@ -93,7 +93,7 @@ void FaultWalk::start_anew(Flight& flight) {
 void FaultWalk::jog(Flight& flight) {
   mission::Order jog;
   jog.command = Command::jog;
-  jog.joint = Joint::slew;
+  jog.joint = 0;
   jog.by_rad = -0.2;
   if (waiting_s_ < 0) waiting_s_ = flight.now().s();
   if (flight.now().s() > waiting_s_ + wait_s) jogged_ = flight.order(jog);

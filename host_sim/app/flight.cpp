@@ -10,7 +10,7 @@ Flight::Flight(const scenario::Scenario& scenario, std::uint64_t seed, hal::SimO
   hal::SimConfig sim = scenario::make_truth(scenario, sample, nominal, 1);
   sim.given_sight = sight == Sight::given;
   names_ = scenario.survey.names;
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < sim.devices.drives.size(); ++i) {
     deceleration_rad_s2_[i] = sim.devices.drives[i].max_acceleration_rad_s2;
     has_own_drives_ = has_own_drives_ && sim.devices.drives[i].habit == nullptr;
     const canopen::Ratio& position = nominal.controller.network.drives[i].profile.scale.position;

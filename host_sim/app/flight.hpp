@@ -36,20 +36,21 @@ class Flight {
   hal::SimPlatform& platform() { return *platform_; }
   // Of the panel's features.
   const PanelNames& panel_names() const { return names_; }
+  std::size_t arm_joints() const { return error_texts_.names().arm_joints(); }
   // Of the joints' drives.
   const config::ErrorTexts& error_texts() const { return error_texts_; }
   // Of the joints, by their drives' best: what a stop may take.
-  const std::array<double, joint_count>& deceleration_rad_s2() const { return deceleration_rad_s2_; }
+  const PerJoint<double>& deceleration_rad_s2() const { return deceleration_rad_s2_; }
   // Every drive is the simulator's own, which keeps its deadline for process data.
   bool has_own_drives() const { return has_own_drives_; }
   // Of the joints, by which one may be off its motor: half of its gear's play, and the wind-up under the motor's rated torque.
-  const std::array<double, joint_count>& gear_gives_rad() const { return gear_gives_rad_; }
-  const std::array<double, joint_count>& slips_rad() const { return slips_rad_; }
+  const PerJoint<double>& gear_gives_rad() const { return gear_gives_rad_; }
+  const PerJoint<double>& slips_rad() const { return slips_rad_; }
   // Of each drive's position, for an encoder's count.
-  const std::array<double, joint_count>& units_per_count() const { return units_per_count_; }
+  const PerJoint<double>& units_per_count() const { return units_per_count_; }
 
  private:
-  std::array<double, joint_count> deceleration_rad_s2_{}, gear_gives_rad_{}, slips_rad_{}, units_per_count_{};
+  PerJoint<double> deceleration_rad_s2_{}, gear_gives_rad_{}, slips_rad_{}, units_per_count_{};
   bool has_own_drives_ = true;
   config::ErrorTexts error_texts_;
   PanelNames names_;

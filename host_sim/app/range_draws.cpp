@@ -50,7 +50,7 @@ class Draw {
   std::string operator()(std::array<Vec2, 3>*) { return "[" + list(2) + ", " + list(2) + ", " + list(2) + "]"; }
   std::string operator()(std::vector<double>*) {
     if (key_.path == "camera.distortion") return list(5);
-    if (key_.path == "arm.park_rad") return list(arm_joint_count);
+    if (key_.path == "arm.park_rad") return list(JointNames().arm_joints());
     return list(1 + static_cast<std::size_t>(3 * share()));
   }
   template <std::size_t Count>

@@ -15,34 +15,34 @@ void turn_by(record::ReportPart& part, const ArmJoint& joint, scene::BodyId pare
 }  // namespace
 
 std::vector<record::ReportPart> report_parts_of(const world::WorldConfig& config) {
+  const scene::OwnBodies own(config.arm.arm_joints());
   std::vector<record::ReportPart> parts(config.scene.size());
   for (std::size_t i = 0; i < parts.size(); ++i) {
     parts[i].name = config.scene[i].name;
     parts[i].shapes = config.scene[i].shapes;
   }
-  parts[std::size_t(scene::BodyId::vehicle)].group = record::PartGroup::vehicle;
+  parts[scene::OwnBodies::vehicle].group = record::PartGroup::vehicle;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     if (config.scene[i].role != scene::Role::object && config.scene[i].role != scene::Role::intruder) continue;
     parts[i].group = record::PartGroup::panel;
     parts[i].parent_from_part = config.scene[i].base_from_body;
   }
-  for (std::size_t i = 0; i < joint_count; ++i)
-    turn_by(parts[i + 1], config.arm.joints[i], static_cast<scene::BodyId>(i), static_cast<int>(i));
-  turn_by(parts[std::size_t(scene::BodyId::finger_b)], config.arm.finger_b, scene::BodyId::wrist, static_cast<int>(Joint::jaw));
+  for (std::size_t i = 0; i < config.arm.joints.size(); ++i) turn_by(parts[i + 1], config.arm.joints[i], i, static_cast<int>(i));
+  turn_by(parts[own.finger_b()], config.arm.finger_b, own.hand, static_cast<int>(config.arm.arm_joints()));
 
-  record::ReportPart& panel = parts[std::size_t(scene::BodyId::panel)];
+  record::ReportPart& panel = parts[own.panel()];
   panel.group = record::PartGroup::panel;
   panel.parent_from_part = config.base_from_panel;
-  int coordinate = static_cast<int>(joint_count);
+  int coordinate = static_cast<int>(config.arm.joints.size());
   const auto place = [&](std::size_t body, const Vec2& at_m) -> record::ReportPart& {
     record::ReportPart& part = parts[body];
     part.group = record::PartGroup::controls;
-    part.parent = index_of(scene::BodyId::panel);
+    part.parent = index_of(own.panel());
     part.parent_from_part.translation() = Vec3(at_m.x(), at_m.y(), 0);
     part.coordinate = coordinate++;
     return part;
   };
-  std::size_t body = scene::first_feature;
+  std::size_t body = own.first_feature();
   for (const PanelLayout::Valve& valve : config.layout.valves) place(body++, valve.at_m);
   for (const PanelLayout::Button& layout : config.layout.buttons) {
     record::ReportPart& button = place(body++, layout.at_m);

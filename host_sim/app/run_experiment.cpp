@@ -25,8 +25,8 @@ struct UsedFile {
 std::vector<UsedFile> used_files(const scenario::Scenario& scenario) {
   const fs::path folder = fs::path(scenario.file).parent_path();
   std::vector<UsedFile> files;
-  for (const std::string& file : {scenario.arm.urdf, scenario.safety.limits, std::string(scenario::homing_file)})
-    files.push_back({file, config::find_file(file, folder)});
+  for (const std::string& file : {scenario.arm.urdf, scenario.safety.limits}) files.push_back({file, config::find_file(file, folder)});
+  if (scenario.joints == JointNames()) files.push_back({scenario::homing_file, config::find_file(scenario::homing_file, folder)});
   files.push_back({scenario::drive_objects_file, config::share_folder() / scenario::drive_objects_file});
   if (!scenario.machine.empty()) files.push_back({scenario.machine, config::find_file(config::machine_file_of(scenario.machine), folder)});
   if (!scenario.survey.file.empty()) files.push_back({scenario.panel_file, scenario.survey.file});
@@ -39,7 +39,7 @@ std::vector<UsedFile> used_files(const scenario::Scenario& scenario) {
   }
   const std::string& tighter = scenario.safety.mission_limits;
   if (!tighter.empty()) files.push_back({tighter, config::find_file(tighter, folder)});
-  for (std::size_t joint = 0; joint < joint_count; ++joint) {
+  for (std::size_t joint = 0; joint < scenario.joints.size(); ++joint) {
     const config::DriveKind kind = config::find_drive_kind(config::drive_of(scenario.drives, joint).profile, folder);
     files.push_back({kind.name + ".yaml", kind.file});
     for (const std::string& base : kind.like) files.push_back({fs::path(base).filename().string(), base});

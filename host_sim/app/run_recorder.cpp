@@ -26,15 +26,15 @@ RunRecorder::RunRecorder(const record::RunFolder* folder, const config::ErrorTex
       bus_(files_, digest_),
       phases_(digest_, texts, std::move(say)),
       events_(files_, texts),
-      curves_(files_, bus_),
-      motion_(arm, names),
+      curves_(files_, bus_, texts.names()),
+      motion_(arm, texts.names(), names),
       panel_(files_),
-      peaks_(noise_of(optics)),
+      peaks_(noise_of(optics), scene::own_bodies(optics.scene).panel()),
       pictures_(files_) {}
 
-void RunRecorder::keep_raw_images(const arm::Arm& arm, const CameraCalibration& camera, const LaserCalibration& laser,
-                                  const optics::OpticsConfig& optics) {
-  all_.add(raw_images_.emplace(files_, arm, camera, laser, optics));
+void RunRecorder::keep_raw_images(const arm::Arm& arm, const JointNames& joints, const CameraCalibration& camera,
+                                  const LaserCalibration& laser, const optics::OpticsConfig& optics) {
+  all_.add(raw_images_.emplace(files_, arm, joints, camera, laser, optics));
 }
 
 void RunRecorder::after_control(const mission::Mission& mission) {

@@ -30,7 +30,7 @@ class RunRecorder {
   RunRecorder& operator=(const RunRecorder&) = delete;
 
   // Keeps the camera's pictures as they are; before the run.
-  void keep_raw_images(const arm::Arm& arm, const CameraCalibration& camera, const LaserCalibration& laser,
+  void keep_raw_images(const arm::Arm& arm, const JointNames& joints, const CameraCalibration& camera, const LaserCalibration& laser,
                        const optics::OpticsConfig& optics);
 
   hal::SimObserver& observer() { return all_; }

@@ -27,7 +27,8 @@ std::optional<record::FailureRecord> failure_of(const Controller& controller, co
                                                 const RunRecorder& recorder, const scenario::Scenario& scenario, bool interrupted) {
   const mission::Outcome& outcome = controller.mission().outcome();
   if (outcome.ended && outcome.success) return std::nullopt;
-  const std::string boot = outcome.fault == safety::Fault::boot_failed ? config::boot_sentences(controller.network().boot()) : "";
+  const std::string boot =
+      outcome.fault == safety::Fault::boot_failed ? config::boot_sentences(controller.network().boot(), texts.names()) : "";
   if (outcome.ended) {
     const mission::Sight& sight = controller.mission().sight();
     record::FailureRecord failure{outcome.stage, reason_of(outcome, texts, sight) + boot};
@@ -94,7 +95,7 @@ std::vector<std::string> faults_not_made(const scenario::Scenario& scenario, con
   for (const config::Fault& fault : scenario.faults) {
     double begins_s = fault.at_s;
     if (!fault.at_step.empty()) {
-      const std::optional<Time> step = platform.entered(scenario::sim_fault(fault, scenario.drives).at_step);
+      const std::optional<Time> step = platform.entered(scenario::sim_fault(fault, scenario.drives, scenario.joints).at_step);
       begins_s = step ? step->s() + fault.after_s : HUGE_VAL;
     }
     if (begins_s <= platform.now().s()) continue;
@@ -209,11 +210,11 @@ std::vector<double> phase_percent(const scenario::Sample& s) {
 
 }  // namespace
 
-record::DrawnRecord drawn(const scenario::Sample& s) {
+record::DrawnRecord drawn(const scenario::Sample& s, std::size_t joints) {
   const auto metres = [](const Vec3& v) { return std::vector<double>{v.x(), v.y(), v.z()}; };
   const auto degrees = [](const Vec3& v) { return std::vector<double>{deg_from_rad(v.x()), deg_from_rad(v.y()), deg_from_rad(v.z())}; };
   std::vector<double> joint_offset_deg;
-  for (const double offset_rad : s.joint_offset_rad) joint_offset_deg.push_back(deg_from_rad(offset_rad));
+  for (std::size_t i = 0; i < joints; ++i) joint_offset_deg.push_back(deg_from_rad(s.joint_offset_rad[i]));
   // Of the docked mission's buttons one size is drawn, of a file's each has its own: equal ones are told once.
   std::vector<double> start_deg, friction_nm, handle_m, button_shift_m, button_size_m, marker_shift_m, marker_turn_deg, marker_size_m,
       marker_flat_m;

@@ -40,8 +40,8 @@ record::ErrorRecord score(const RunRecorder& recorder, const hal::SimConfig& tru
 std::map<std::string, std::uint64_t> rejected_inputs(const Controller& controller, const ScanPipeline& pipeline,
                                                      const hal::CoreRings& rings);
 
-// The drawn quantities, for the report.
+// The drawn quantities, for the report; `joints`: how many the arm has.
 std::vector<std::pair<std::string, std::string>> conditions(const scenario::Sample& sample);
-record::DrawnRecord drawn(const scenario::Sample& sample);
+record::DrawnRecord drawn(const scenario::Sample& sample, std::size_t joints);
 
 }  // namespace lf::app

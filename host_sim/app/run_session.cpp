@@ -67,7 +67,8 @@ class Session {
         ticks_(static_cast<std::size_t>(request.scenario.time_limit_s / can_map::sync_period.s()) + 1),
         frames_(16384) {
     if (request.record_images)
-      recorder_.keep_raw_images(nominal_.controller.arm, nominal_.controller.camera, nominal_.controller.laser, sim_.optics);
+      recorder_.keep_raw_images(nominal_.controller.arm, nominal_.error_texts.names(), nominal_.controller.camera,
+                                nominal_.controller.laser, sim_.optics);
     recorder_.events().say({{"t_s", 0.0},
                             {"kind", "begin"},
                             {"config", request.scenario.file},
@@ -109,7 +110,7 @@ class Session {
 
   bool safe() const {
     const JointReadings joints = platform_->world().readings();
-    for (std::size_t i = 0; i < joint_count; ++i) {
+    for (std::size_t i = 0; i < nominal_.controller.arm.joint_count(); ++i) {
       if (platform_->devices().power(i) != devices::DrivePower::off || std::abs(joints[i].velocity_rad_s) >= standing_rad_s) return false;
     }
     return true;
@@ -152,7 +153,7 @@ class Session {
     result.provenance = request_.provenance;
     result.provenance.scenario_file = request_.scenario.file;
     if (!request_.experiment.empty()) result.provenance.experiment = record::hash_of(request_.experiment);
-    result.drawn = drawn(sample_);
+    result.drawn = drawn(sample_, request_.scenario.joints.size());
     judge(result);
     result.faults = recorder_.events().faults();
     result.faults_left_out = recorder_.events().faults_left_out();

@@ -68,7 +68,7 @@ double distance_to_surface_m(const Vec3& point_m, const scene::Shape& shape) {
 }
 
 std::vector<double> cloud_errors_mm(std::span<const CloudPoint> cloud, const scene::Scene& scene, const scene::BodyPoses& poses) {
-  constexpr auto first = static_cast<std::size_t>(scene::BodyId::panel);
+  const scene::BodyId first = scene::own_bodies(scene).panel();
   scene::BodyPoses body_from_base;
   for (const Pose& base_from_body : poses) body_from_base.push_back(base_from_body.inverse());
   std::vector<std::vector<std::optional<TriangleTree>>> meshes(scene.size());  // of each body's shapes

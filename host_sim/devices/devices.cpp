@@ -79,14 +79,14 @@ CanFrame foreign_frame(const DeviceFault& fault) {
 }
 
 // A master that runs the arm sends all of its frames in every SYNC period.
-std::vector<CanFrame> foreign_frames(const DeviceFault& fault) {
+std::vector<CanFrame> foreign_frames(const DeviceFault& fault, const DevicesConfig& config) {
   if (fault.kind != DeviceFaultKind::foreign_master) return {foreign_frame(fault)};
   DeviceFault part = fault;
   part.kind = DeviceFaultKind::foreign_sync;
   std::vector<CanFrame> frames{foreign_frame(part)};
   part.kind = DeviceFaultKind::foreign_rpdo;
-  for (const std::uint8_t node : can_map::drive_nodes) {
-    part.node = node;
+  for (const DriveConfig& drive : config.drives) {
+    part.node = drive.node;
     frames.push_back(foreign_frame(part));
   }
   part.kind = DeviceFaultKind::foreign_heartbeat;
@@ -108,7 +108,7 @@ void Devices::Impl::set_second_master(const DeviceFault& fault, bool on) {
 void Devices::Impl::run_second_master() {
   for (Foreign& each : foreign) {
     if (now < each.due) continue;
-    for (const CanFrame& frame : foreign_frames(each.what)) bus.send(second_master, frame, now);
+    for (const CanFrame& frame : foreign_frames(each.what, rack.config())) bus.send(second_master, frame, now);
     each.due = each.due + period_of(each.what);
   }
 }
@@ -121,7 +121,7 @@ void Devices::Impl::run_bus(Time until) {
 void Devices::Impl::deliver(const BusRecord& record) {
   if (tap) tap(record);
   if (record.sender != can_map::master_node && !bus.bus_off(can_map::master_node)) to_master.push_back(record);
-  for (std::size_t slot = 0; slot < NodeRack::slots; ++slot) {
+  for (std::size_t slot = 0; slot < rack.slots(); ++slot) {
     const std::uint8_t id = rack.node(slot).id();
     if (id == record.sender || bus.bus_off(id)) continue;
     rack.receive(slot, record.frame, record.delivered);
@@ -172,7 +172,7 @@ void Devices::step(Time t, const JointReadings& readings) {
   d.now = t;
   d.rack.tick(t, readings, [&d](const DeviceFault& fault, bool on) { d.set_bus_fault(fault, on); });
   d.run_second_master();
-  for (std::size_t slot = 0; slot < NodeRack::slots; ++slot) d.collect(slot, t);
+  for (std::size_t slot = 0; slot < d.rack.slots(); ++slot) d.collect(slot, t);
 }
 
 const JointDrives& Devices::drives() const { return impl_->rack.drives(); }

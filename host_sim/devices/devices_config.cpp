@@ -5,6 +5,7 @@
 
 #include "host_sim/devices/drive/actuator.hpp"
 #include "shared/arm/motor.hpp"
+#include "shared/can/default_node.hpp"
 #include "shared/can/object_tables.hpp"
 #include "shared/input_error.hpp"
 
@@ -122,12 +123,12 @@ DriveConfig drive_config(const ArmJoint& joint, std::uint8_t node) {
   return drive;
 }
 
-DevicesConfig devices_config(const ArmDescription& arm, const std::array<double, joint_count>& joint_offsets_rad, std::uint64_t seed) {
+DevicesConfig devices_config(const ArmDescription& arm, const PerJoint<double>& joint_offsets_rad, std::uint64_t seed) {
   DevicesConfig config;
   config.seed = seed;
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    config.drives[i] = drive_config(arm.joints[i], can_map::drive_nodes[i]);
-    config.drives[i].encoder_offset_rad = joint_offsets_rad[i];
+  for (std::size_t i = 0; i < arm.joints.size(); ++i) {
+    config.drives.push_back(drive_config(arm.joints[i], can_map::default_node(i)));
+    config.drives.back().encoder_offset_rad = joint_offsets_rad[i];
   }
   return config;
 }

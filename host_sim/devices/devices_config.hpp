@@ -111,7 +111,7 @@ struct DeviceFault {
 };
 
 struct DevicesConfig {
-  std::array<DriveConfig, joint_count> drives;
+  std::vector<DriveConfig> drives;  // in the order of the joints
   IoConfig io;
   std::uint64_t seed = 1;
   Duration boot_time = Duration::from_ms(150);  // from power or NMT reset node to the boot-up message
@@ -119,8 +119,8 @@ struct DevicesConfig {
   std::vector<DeviceFault> faults;
 };
 
-// The five drives of `arm` at the nodes of the CAN map. Joint i reads `joint_offsets_rad[i]` too much.
-DevicesConfig devices_config(const ArmDescription& arm, const std::array<double, joint_count>& joint_offsets_rad, std::uint64_t seed);
+// The drives of `arm`, at the nodes of the CAN map as far as it has any, then at those after them. Joint i reads `joint_offsets_rad[i]` too much.
+DevicesConfig devices_config(const ArmDescription& arm, const PerJoint<double>& joint_offsets_rad, std::uint64_t seed);
 
 // Throws InputError with what cannot be: see Devices.
 void check(const DevicesConfig& config);

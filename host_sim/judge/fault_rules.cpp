@@ -5,8 +5,8 @@
 #include <cstdio>
 
 #include "hal/config/fault_kinds.hpp"
+#include "shared/arm/joint_names.hpp"
 #include "shared/can/can_map.hpp"
-#include "shared/messages/joint_names.hpp"
 
 namespace lf::judge {
 
@@ -101,11 +101,19 @@ const std::vector<FaultRule>& rules() {
   return all;
 }
 
+// The matrix is flown on the default machine.
+const JointNames& known() {
+  static const JointNames names;
+  return names;
+}
+
+std::uint32_t number_of(std::size_t index) { return index < can_map::drive_nodes.size() ? can_map::drive_nodes[index] : can_map::io_node; }
+
 // A lost frame's identifier from "tpdo slew".
 std::int64_t frame_of(const std::string& node) {
-  for (std::size_t i = 0; i < node_names.size(); ++i) {
-    if (!node.ends_with(std::string(" ") + node_names[i])) continue;
-    const std::uint32_t id = i < joint_count ? can_map::drive_nodes[i] : can_map::io_node;
+  for (std::size_t i = 0; i < known().node_count(); ++i) {
+    if (!node.ends_with(" " + known().node(i))) continue;
+    const std::uint32_t id = number_of(i);
     for (const auto& [sort, function] : frame_sorts) {
       if (node.starts_with(sort)) return function + id;
     }
@@ -122,10 +130,10 @@ bool has_any(const std::string& reason, const std::vector<std::string>& words) {
 
 // The node as a reason says it: ": elbow", "output node", or in the identifier of a frame for it.
 bool names_node(const std::string& reason, const std::string& node) {
-  const auto index = static_cast<std::size_t>(std::find(node_names.begin(), node_names.end(), node) - node_names.begin());
-  if (index == node_names.size()) return false;
-  if (index == joint_count && reason.find("output node") != std::string::npos) return true;
-  const std::uint32_t id = index < joint_count ? can_map::drive_nodes[index] : can_map::io_node;
+  const std::optional<std::size_t> index = known().find_node(node);
+  if (!index) return false;
+  if (*index == known().size() && reason.find("output node") != std::string::npos) return true;
+  const std::uint32_t id = number_of(*index);
   for (const std::uint32_t function : {first_rpdo, sdo_request}) {
     char identifier[8];
     std::snprintf(identifier, sizeof identifier, "0x%04X", function + id);
@@ -177,8 +185,8 @@ std::vector<Cause> all_causes() {
       for (const std::string& node : config::fault_nodes(place)) causes.push_back({&rule, node});
       continue;
     }
-    for (const char* node : node_names) {
-      for (const std::string& sort : rule.frames) causes.push_back({&rule, sort + " " + node});
+    for (std::size_t i = 0; i < known().node_count(); ++i) {
+      for (const std::string& sort : rule.frames) causes.push_back({&rule, sort + " " + known().node(i)});
     }
   }
   return causes;

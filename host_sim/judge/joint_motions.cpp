@@ -48,8 +48,8 @@ bool JointMotions::gives_way(const Moment& moment, std::size_t joint, double unw
   return double(high->angle_rad[joint]) - double(low->angle_rad[joint]) <= gives_rad;
 }
 
-bool JointMotions::swings(const Moment& moment, std::uint8_t joints) const {
-  for (std::size_t joint = 0; joint < joint_count; ++joint) {
+bool JointMotions::swings(const Moment& moment, JointBits joints) const {
+  for (std::size_t joint = 0; joint < situation_.names.size(); ++joint) {
     const bool fast = (joints & bit_of(joint)) != 0 && moment.speed_rad_s[joint] >= figures_.standing_rad_s;
     if (fast && travels_in(moment, quiver_ms, &Moment::angle_rad, joint)) return true;
   }
@@ -58,7 +58,7 @@ bool JointMotions::swings(const Moment& moment, std::uint8_t joints) const {
 
 bool JointMotions::travels(std::size_t from) const {
   const double least_rad = figures_.standing_rad_s * static_cast<double>(moments_.size() - from) * ms;
-  for (std::size_t joint = 0; joint < joint_count; ++joint) {
+  for (std::size_t joint = 0; joint < situation_.names.size(); ++joint) {
     const auto by_angle = [joint](const Moment& a, const Moment& b) { return a.angle_rad[joint] < b.angle_rad[joint]; };
     const auto [low, high] = std::minmax_element(moments_.begin() + std::ptrdiff_t(from), moments_.end(), by_angle);
     if (high->angle_rad[joint] - low->angle_rad[joint] > least_rad) return true;
@@ -66,8 +66,7 @@ bool JointMotions::travels(std::size_t from) const {
   return false;
 }
 
-bool JointMotions::travels_in(const Moment& moment, std::ptrdiff_t around_ms, const std::array<float, joint_count> Moment::*rad,
-                              std::size_t joint) const {
+bool JointMotions::travels_in(const Moment& moment, std::ptrdiff_t around_ms, const PerJoint<float> Moment::*rad, std::size_t joint) const {
   const std::ptrdiff_t index = &moment - moments_.data(), size = std::ssize(moments_);
   const auto by_angle = [&](const Moment& a, const Moment& b) { return (a.*rad)[joint] < (b.*rad)[joint]; };
   const auto [low, high] = std::minmax_element(moments_.begin() + std::max<std::ptrdiff_t>(0, index - around_ms),

@@ -26,14 +26,13 @@ class JointMotions {
   // farther than its gear gives.
   bool gives_way(const Moment& moment, std::size_t joint, double unwound_s) const;
   // One of the joints, a bit each, is faster than what stands, and does not only quiver.
-  bool swings(const Moment& moment, std::uint8_t joints) const;
+  bool swings(const Moment& moment, JointBits joints) const;
   // From a moment to the last one, by more than a joint that stands.
   bool travels(std::size_t from) const;
 
  private:
   // By more than what stands, in so many milliseconds to either side of it.
-  bool travels_in(const Moment& moment, std::ptrdiff_t around_ms, const std::array<float, joint_count> Moment::*rad,
-                  std::size_t joint) const;
+  bool travels_in(const Moment& moment, std::ptrdiff_t around_ms, const PerJoint<float> Moment::*rad, std::size_t joint) const;
   bool motor_moves(const Moment& moment, std::size_t joint) const;
   // A screw that stands under a load settles when its drive lets go of it: at that moment, and by no more than it slips.
   bool settles_without_power(const Moment& moment, std::size_t joint) const;

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "shared/messages/joint_names.hpp"
-
 namespace lf::judge {
 
 namespace {
@@ -14,9 +12,9 @@ bool loses_for_good(const Cause& cause, const char* frames) {
 
 }  // namespace
 
-std::size_t node_index(const std::string& node) {
+std::size_t node_index(const std::string& node, const JointNames& names) {
   const std::string name = node.substr(node.find_last_of(' ') + 1);  // "slew" of "tpdo slew"
-  return static_cast<std::size_t>(std::find(node_names.begin(), node_names.end(), name) - node_names.begin());
+  return names.find_node(name).value_or(names.node_count());
 }
 
 bool cut_off(const Cause& cause) { return cause.rule->kind == "silent" || cause.rule->kind == "bus_off"; }
@@ -47,14 +45,14 @@ std::optional<double> told_by_a_frame_s(const Seen& seen, const Cause& cause, do
 
 bool told_by_a_frame(const Cause& cause) { return cause.rule->report == Report::frame || cause.rule->report == Report::second_master; }
 
-Deadline report_of(const Seen& seen, const Cause& cause, double begins_s, const SafetyFigures& figures) {
+Deadline report_of(const Seen& seen, const Cause& cause, double begins_s, const JointNames& names, const SafetyFigures& figures) {
   const double stop_s = figures.stop_ms * ms, unread_s = figures.unread_ms * ms, self_stop_s = figures.self_stop_s;
   switch (cause.rule->report) {
     case Report::frame:
     case Report::second_master: return {&cause, told_by_a_frame_s(seen, cause, begins_s).value_or(begins_s), stop_s};
     case Report::silence: {
-      const std::size_t node = node_index(cause.node);
-      const bool known = (cut_off(cause) || is_unheard(cause)) && node < seen.last_heard_s.size();
+      const std::size_t node = node_index(cause.node, names);
+      const bool known = (cut_off(cause) || is_unheard(cause)) && node < names.node_count();
       const double heard_s = known ? seen.last_heard_s[node] : begins_s;
       return {&cause, std::max(heard_s, begins_s - sync_s), cuts_off_the_master(cause) ? self_stop_s : unread_s};
     }

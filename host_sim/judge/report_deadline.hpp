@@ -21,8 +21,8 @@ struct Deadline {
   double end_s() const { return at_s + allowed_s; }
 };
 
-// Of "slew" or "tpdo slew" among `node_names`; their number for none of them.
-std::size_t node_index(const std::string& node);
+// Of "slew" or "tpdo slew" among the nodes; their number for none of them.
+std::size_t node_index(const std::string& node, const JointNames& names);
 // A drive that hears nothing of the master any more.
 bool cut_off(const Cause& cause);
 // A drive that hears NMT commands, and no process data.
@@ -42,6 +42,6 @@ bool deafens_the_master(const Cause& cause);
 std::optional<double> told_by_a_frame_s(const Seen& seen, const Cause& cause, double begins_s);
 bool told_by_a_frame(const Cause& cause);
 // `begins_s`: of the cause, since watching began.
-Deadline report_of(const Seen& seen, const Cause& cause, double begins_s, const SafetyFigures& figures);
+Deadline report_of(const Seen& seen, const Cause& cause, double begins_s, const JointNames& names, const SafetyFigures& figures);
 
 }  // namespace lf::judge

@@ -25,15 +25,17 @@ void SafetyObserver::begin(const devices::Devices& devices, Time now) {
   devices_ = &devices;
   begin_ = now;
   seen_ = {};
+  seen_.arm_joints = drive_count() - 1;
 }
 
 void SafetyObserver::on_bus_frame(const devices::BusRecord& record) {
   const CanFrame& frame = record.frame;
-  const std::size_t node = frame.id & node_mask;
+  const std::optional<std::size_t> index = index_of(frame.id & node_mask);
+  const bool of_drive = index && *index < drive_count();
   const bool from_master = record.sender == can_map::master_node;
-  if (from_master && (frame.id & function_mask) == first_rpdo && node >= 1 && node <= joint_count) {
-    run_ordered_[node - 1] = (frame.data[0] & run_bits) == run_bits;
-    if (devices_ != nullptr && record.delivered >= begin_ && run_ordered_[node - 1]) note_target(node - 1, frame);
+  if (from_master && (frame.id & function_mask) == first_rpdo && of_drive) {
+    run_ordered_[*index] = (frame.data[0] & run_bits) == run_bits;
+    if (devices_ != nullptr && record.delivered >= begin_ && run_ordered_[*index]) note_target(*index, frame);
   }
   if (devices_ == nullptr || record.delivered < begin_) return;
   const double t_s = (record.delivered - begin_).s();
@@ -43,7 +45,12 @@ void SafetyObserver::on_bus_frame(const devices::BusRecord& record) {
   }
   if (from_master) return;
   judge_report(frame, t_s);
-  if ((frame.id & function_mask) == first_tpdo && node >= 1 && node <= seen_.last_heard_s.size()) seen_.last_heard_s[node - 1] = t_s;
+  if ((frame.id & function_mask) == first_tpdo && index) seen_.last_heard_s[*index] = t_s;
+}
+
+std::optional<std::size_t> SafetyObserver::index_of(std::size_t node) const {
+  const auto found = std::find(nodes_.begin(), nodes_.end(), node);
+  return found == nodes_.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - nodes_.begin()));
 }
 
 void SafetyObserver::note_target(std::size_t joint, const CanFrame& frame) {
@@ -57,11 +64,12 @@ void SafetyObserver::note_target(std::size_t joint, const CanFrame& frame) {
 void SafetyObserver::judge_report(const CanFrame& frame, double t_s) {
   const std::uint32_t function = frame.id & function_mask;
   const std::size_t node = frame.id & node_mask;
-  const bool of_drive = node >= 1 && node <= joint_count;
+  const std::optional<std::size_t> index = index_of(node);
+  const bool of_drive = index && *index < drive_count(), of_io = index && *index == drive_count();
   const bool fault = function == first_tpdo && of_drive && (frame.data[0] & status_fault) != 0;
   const bool emcy = function == emergency && node != 0 && (frame.data[0] != 0 || frame.data[1] != 0);
   const bool rebooted = function == heartbeat && frame.data[0] == boot_up;
-  const bool chain_open = function == first_tpdo && node == can_map::io_node && (frame.data[0] & can_map::input_estop_closed) == 0;
+  const bool chain_open = function == first_tpdo && of_io && (frame.data[0] & can_map::input_estop_closed) == 0;
   if ((fault || emcy || rebooted || chain_open) && !seen_.fault_reported_s) seen_.fault_reported_s = t_s;
   if (fault && !seen_.drive_fault_s) seen_.drive_fault_s = t_s;
   if (chain_open && !seen_.chain_open_s) seen_.chain_open_s = t_s;
@@ -71,14 +79,14 @@ void SafetyObserver::on_step(Time, const world::World& world) {
   if (devices_ == nullptr) return;
   Moment moment;
   const JointReadings readings = world.readings();
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < drive_count(); ++i) {
     moment.speed_rad_s[i] = static_cast<float>(std::abs(readings[i].velocity_rad_s));
     moment.angle_rad[i] = static_cast<float>(readings[i].position_rad);
     moment.motor_rad[i] = static_cast<float>(readings[i].motor_position_rad);
-    if (i < arm_joint_count && moment.speed_rad_s[i] >= moves_rad_s)
+    if (i + 1 < drive_count() && moment.speed_rad_s[i] >= moves_rad_s)
       moment.works_nm[i] = static_cast<float>(std::copysign(1.0, readings[i].velocity_rad_s) * readings[i].torque_nm);
     const devices::DrivePower power = devices_->power(i);
-    const auto bit = static_cast<std::uint8_t>(1u << i);
+    const auto bit = static_cast<JointBits>(1u << i);
     if (power != devices::DrivePower::off) moment.power |= bit;
     if (power == devices::DrivePower::operation && run_ordered_[i]) moment.told_to_run |= bit;
   }

@@ -7,7 +7,6 @@
 
 #include "host_sim/judge/joint_motions.hpp"
 #include "host_sim/judge/report_deadline.hpp"
-#include "shared/messages/joint_names.hpp"
 
 namespace lf::judge {
 
@@ -32,8 +31,6 @@ double last_s(const std::vector<Moment>& moments, double from_s, Is is) {
 
 // Until an order acts: up to a SYNC period until the SYNC, one that is interpolated, and the arm's own compliance.
 constexpr std::size_t takes_effect_ms = 20;
-
-constexpr auto all_joints = static_cast<std::uint8_t>((1U << joint_count) - 1);
 
 class Judge {
  public:
@@ -60,6 +57,10 @@ class Judge {
   }
 
  private:
+  const JointNames& names() const { return situation_.names; }
+  JointBits all_joints() const { return static_cast<JointBits>((1U << names().size()) - 1); }
+  std::size_t node_index(const std::string& node) const { return judge::node_index(node, names()); }
+
   void wrong(const std::string& what) { verdict_.wrong.push_back(what); }
 
   // Of all causes that have to stop the arm, the one by which it has to be stopped first.
@@ -70,7 +71,7 @@ class Judge {
     for (std::size_t i = 0; i < situation_.causes.size(); ++i) {
       const Cause& cause = situation_.causes[i];
       if (!demands_stop(cause) || (stops > 1 && never_heard(i))) continue;
-      const Deadline deadline = delayed_by_a_cut(report_of(seen_, cause, situation_.begins_s[i], figures_));
+      const Deadline deadline = delayed_by_a_cut(report_of(seen_, cause, situation_.begins_s[i], names(), figures_));
       if (!strictest || deadline.end_s() < strictest->end_s()) strictest = deadline;
     }
     // None of several was told: the last of them to begin has stopped the arm, or has to.
@@ -79,7 +80,7 @@ class Judge {
       for (std::size_t i = 0; i < situation_.causes.size(); ++i) {
         if (demands_stop(situation_.causes[i])) last = i;
       }
-      strictest = delayed_by_a_cut(report_of(seen_, situation_.causes[last], situation_.begins_s[last], figures_));
+      strictest = delayed_by_a_cut(report_of(seen_, situation_.causes[last], situation_.begins_s[last], names(), figures_));
     }
     return strictest;
   }
@@ -135,11 +136,11 @@ class Judge {
 
   // Bit a joint.
   template <class Is>
-  std::uint8_t joints_that(Is is) const {
-    std::uint8_t bits = 0;
+  JointBits joints_that(Is is) const {
+    JointBits bits = 0;
     for (const Cause& cause : situation_.causes) {
       const std::size_t joint = node_index(cause.node);
-      if (is(cause) && joint < joint_count) bits |= static_cast<std::uint8_t>(1u << joint);
+      if (is(cause) && joint < names().size()) bits |= static_cast<JointBits>(1u << joint);
     }
     return bits;
   }
@@ -148,14 +149,14 @@ class Judge {
   double unreached_off_s(double from_s) const {
     double ramp_s = 0;
     const auto at = static_cast<std::size_t>(from_s / ms);
-    for (std::size_t joint = 0; joint < joint_count && at < moments_.size(); ++joint)
+    for (std::size_t joint = 0; joint < names().size() && at < moments_.size(); ++joint)
       ramp_s = std::max(ramp_s, moments_[at].speed_rad_s[joint] / situation_.deceleration_rad_s2[joint]);
     return ramp_s + figures_.unreached_off_s;
   }
 
   // Their process data are lost both ways, and nothing else.
-  std::uint8_t joints_unreached() const {
-    return static_cast<std::uint8_t>(joints_that(loses_process_data) & joints_that(is_unheard) & ~joints_that(cut_off));
+  JointBits joints_unreached() const {
+    return static_cast<JointBits>(joints_that(loses_process_data) & joints_that(is_unheard) & ~joints_that(cut_off));
   }
 
   bool master_is_cut_off() const { return has(cuts_off_the_master); }
@@ -168,8 +169,8 @@ class Judge {
   // A drive that runs off and an encoder that stands report nothing: the core has to see that the joint is not where it should be. Of the joints that move the arm:
   // roll and jaw turn in their place, between their stops.
   void goes_not_far() {
-    const std::uint8_t misled = joints_that(misleads_its_joint);
-    for (std::size_t joint = 0; joint < static_cast<std::size_t>(Joint::roll) && !moments_.empty(); ++joint) {
+    const JointBits misled = joints_that(misleads_its_joint);
+    for (std::size_t joint = 0; joint + 1 < names().arm_joints() && !moments_.empty(); ++joint) {
       if ((misled >> joint & 1u) == 0) continue;
       double begin_s = HUGE_VAL;
       for (std::size_t i = 0; i < situation_.causes.size(); ++i) {
@@ -180,28 +181,27 @@ class Judge {
       const auto by_angle = [joint](const Moment& a, const Moment& b) { return a.angle_rad[joint] < b.angle_rad[joint]; };
       const auto [low, high] = std::minmax_element(moments_.begin() + std::ptrdiff_t(from), moments_.end(), by_angle);
       const double gone_rad = double(high->angle_rad[joint]) - double(low->angle_rad[joint]);
-      if (gone_rad > figures_.misled_rad)
-        wrong(std::string(joint_names[joint]) + formatted(" goes %.2f rad while its drive misleads", gone_rad));
+      if (gone_rad > figures_.misled_rad) wrong(names()[joint] + formatted(" goes %.2f rad while its drive misleads", gone_rad));
     }
   }
 
   void stop(const Deadline& deadline) {
-    const std::uint8_t cut = joints_that(cut_off);
+    const JointBits cut = joints_that(cut_off);
     // Whose process data are lost later has to hear of it; who is cut off hears no NMT either.
-    const auto untold = static_cast<std::uint8_t>(
+    const auto untold = static_cast<JointBits>(
         joints_that([&](const Cause& cause) { return loses_process_data(cause) && begins_s(cause) < deadline.end_s(); }) & ~cut);
-    const auto told_to_run_s = [&](std::uint8_t joints) {
+    const auto told_to_run_s = [&](JointBits joints) {
       return last_s(moments_, deadline.at_s, [&](const Moment& m) { return (m.told_to_run & joints) != 0; });
     };
-    const double on_bus_s = told_to_run_s(static_cast<std::uint8_t>(~(cut | untold)));
+    const double on_bus_s = told_to_run_s(static_cast<JointBits>(~(cut | untold)));
     verdict_.stop_ms = (on_bus_s - deadline.at_s) / ms;
     if (on_bus_s > deadline.end_s() + ms) wrong(formatted("still told to run %.0f ms after the report", *verdict_.stop_ms));
     const bool halts = deadline.cause != nullptr && deadline.cause->rule->report == Report::halt;
-    const std::uint8_t unreached = joints_unreached();
+    const JointBits unreached = joints_unreached();
     const double by_restart_s = told_to_run_s(unreached);
     if (by_restart_s > deadline.end_s() + unreached_off_s(deadline.end_s()) + ms)
       wrong(formatted("still runs unreached %.0f ms after the report", (by_restart_s - deadline.at_s) / ms));
-    const double by_nmt_s = told_to_run_s(untold & static_cast<std::uint8_t>(~unreached));
+    const double by_nmt_s = told_to_run_s(untold & static_cast<JointBits>(~unreached));
     const double late_s = halts ? figures_.unheeded_lowering_s : figures_.unheeded_stop_s;
     if (by_nmt_s > deadline.end_s() + late_s + ms)
       wrong(formatted("still runs without process data %.0f ms after the report", (by_nmt_s - deadline.at_s) / ms));
@@ -223,9 +223,9 @@ class Judge {
   double begins_s(const Cause& cause) const { return situation_.begins_s[static_cast<std::size_t>(&cause - situation_.causes.data())]; }
 
   void stands(double from_s) {
-    const std::uint8_t cut = joints_that(cut_off), untold = joints_that(loses_process_data);
+    const JointBits cut = joints_that(cut_off), untold = joints_that(loses_process_data);
     double standing_s = from_s;
-    for (std::size_t joint = 0; joint < joint_count; ++joint) {
+    for (std::size_t joint = 0; joint < names().size(); ++joint) {
       const auto at = static_cast<std::size_t>(from_s / ms), bit = std::size_t{1} << joint;
       // A drive brakes from the SYNC on that follows the order: until then it does what it was told before.
       double speed = 0;
@@ -243,34 +243,34 @@ class Judge {
       standing_s = std::max(standing_s, moved_s);
       verdict_.gave_way = verdict_.gave_way || went_s < moved_s;
       if (went_s - from_s > allowed_s)
-        wrong(std::string(joint_names[joint]) + formatted(" moves %.2f s after the stop, %.2f s are allowed", went_s - from_s, allowed_s));
+        wrong(names()[joint] + formatted(" moves %.2f s after the stop, %.2f s are allowed", went_s - from_s, allowed_s));
     }
     verdict_.standing_s = standing_s - from_s;
     verdict_.gripped = last_s(moments_, from_s, [this](const Moment& m) { return m.power == 0 && m.grip_n >= figures_.touch_n; }) > from_s;
   }
 
   void loses_power(double from_s, bool halts) {
-    const double standing_s = stood_s(all_joints, from_s);
-    auto untold = static_cast<std::uint8_t>(joints_that(loses_process_data) & ~joints_that(cut_off));
-    const auto reachable = static_cast<std::uint8_t>(master_is_cut_off() ? 0 : ~(joints_that(cut_off) | untold));
-    const auto powered_s = [&](std::uint8_t joints) {
+    const double standing_s = stood_s(all_joints(), from_s);
+    auto untold = static_cast<JointBits>(joints_that(loses_process_data) & ~joints_that(cut_off));
+    const auto reachable = static_cast<JointBits>(master_is_cut_off() ? 0 : ~(joints_that(cut_off) | untold));
+    const auto powered_s = [&](JointBits joints) {
       return last_s(moments_, from_s, [&](const Moment& m) { return (m.power & joints) != 0; });
     };
-    const std::uint8_t unreached = joints_unreached();
+    const JointBits unreached = joints_unreached();
     if (!master_is_cut_off() && powered_s(unreached) - from_s > unreached_off_s(from_s) + ms)
       wrong(formatted("power is off %.2f s after the stop of a drive that nothing reaches", powered_s(unreached) - from_s));
-    untold &= static_cast<std::uint8_t>(~unreached);
+    untold &= static_cast<JointBits>(~unreached);
     const double late_s = halts ? figures_.unheeded_lowering_s : figures_.unheeded_off_s;
     if (!master_is_cut_off() && powered_s(untold) - standing_s > figures_.off_after_standing_s + late_s + ms)
       wrong(formatted("power is off %.2f s after standing without process data", powered_s(untold) - standing_s));
     const double off_s = last_s(moments_, from_s, [](const Moment& m) { return m.power != 0; });
     verdict_.stop_to_off_s = off_s - from_s;
     verdict_.power_off_s = 0;
-    const std::uint8_t silenced = joints_silenced();
-    const auto heard = static_cast<std::uint8_t>(all_joints & ~silenced);
+    const JointBits silenced = joints_silenced();
+    const auto heard = static_cast<JointBits>(all_joints() & ~silenced);
     double late_off_s = loses_power_standing(reachable & heard, stood_s(heard, from_s), 0);
-    for (std::size_t joint = 0; joint < joint_count; ++joint) {
-      const auto bit = static_cast<std::uint8_t>(1U << joint);
+    for (std::size_t joint = 0; joint < names().size(); ++joint) {
+      const auto bit = static_cast<JointBits>(1U << joint);
       if ((reachable & silenced & bit) != 0)
         late_off_s = std::max(late_off_s, loses_power_standing(bit, standing_s, from_s + ramp_s(joint)));
     }
@@ -280,7 +280,7 @@ class Judge {
   }
 
   // They stand since `stood_s`, and the master could not take them for standing before `ramp_over_s`. How long they keep their power, if that is too long; else 0.
-  double loses_power_standing(std::uint8_t joints, double stood_s, double ramp_over_s) {
+  double loses_power_standing(JointBits joints, double stood_s, double ramp_over_s) {
     if (joints == 0) return 0;
     const double off_s = last_s(moments_, stood_s, [joints](const Moment& m) { return (m.power & joints) != 0; });
     verdict_.power_off_s = std::max(verdict_.power_off_s.value_or(0), off_s - stood_s);
@@ -288,9 +288,9 @@ class Judge {
   }
 
   // A drive holds a joint that swings in its gear until its ramp has ended.
-  double stood_s(std::uint8_t joints, double from_s) const {
+  double stood_s(JointBits joints, double from_s) const {
     double stood_s = from_s;
-    for (std::size_t joint = 0; joint < joint_count; ++joint) {
+    for (std::size_t joint = 0; joint < names().size(); ++joint) {
       if ((joints >> joint & 1U) != 0) stood_s = std::max(stood_s, stood_s_[joint]);
     }
     const double swung_s = last_s(moments_, from_s, [this, joints](const Moment& m) { return m.power != 0 && motions_.swings(m, joints); });
@@ -298,11 +298,11 @@ class Judge {
   }
 
   // The master does not hear them, by what happened and not by what it did itself.
-  std::uint8_t joints_silenced() const {
+  JointBits joints_silenced() const {
     const auto silences_all = [](const Cause& cause) {
       return deafens_the_master(cause) || cause.rule->kind == "foreign_nmt" || cause.rule->kind == "foreign_reset";
     };
-    return has(silences_all) ? all_joints : joints_that(is_unheard);
+    return has(silences_all) ? all_joints() : joints_that(is_unheard);
   }
 
   // From the speed at which it was heard last, until it stands.
@@ -334,7 +334,7 @@ class Judge {
     for (std::size_t i = 0; i < situation_.causes.size(); ++i) {
       const Cause& cause = situation_.causes[i];
       if (!ends_it(cause) || is_a_drives_fault(cause)) continue;
-      const double end_s = report_of(seen_, cause, situation_.begins_s[i], figures_).end_s();
+      const double end_s = report_of(seen_, cause, situation_.begins_s[i], names(), figures_).end_s();
       first_s = std::min(first_s.value_or(end_s), end_s);
     }
     return first_s;
@@ -352,9 +352,9 @@ class Judge {
       if (powered_s > *ends_s + figures_.off_after_standing_s)
         wrong(formatted("power is on %.2f s after powering up had to end", powered_s - *ends_s));
     }
-    const std::uint8_t runs_off =
-        others_are_enabled ? joints_that([](const Cause& cause) { return cause.rule->kind == "runaway"; }) : std::uint8_t{0};
-    for (std::size_t joint = 0; joint < joint_count; ++joint) {
+    const JointBits runs_off =
+        others_are_enabled ? joints_that([](const Cause& cause) { return cause.rule->kind == "runaway"; }) : JointBits{0};
+    for (std::size_t joint = 0; joint < names().size(); ++joint) {
       // Without power the joints settle in their gears.
       const auto moves = [&](const Moment& m) { return m.power != 0 && motions_.moves(m, joint, 0); };
       const double moved_s = last_s(moments_, 0, moves);
@@ -363,7 +363,7 @@ class Judge {
       // It was enabled while the fault was still on its way to the core.
       if (ends_s && since_s < *ends_s && moved_s <= *ends_s + figures_.settling_s) continue;
       if ((runs_off >> joint & 1u) != 0 && moved_s - since_s <= figures_.off_after_stop_s) continue;
-      wrong(std::string(joint_names[joint]) + formatted(" moves from %.2f to %.2f s although powering up had to end", since_s, moved_s));
+      wrong(names()[joint] + formatted(" moves from %.2f to %.2f s although powering up had to end", since_s, moved_s));
     }
   }
 
@@ -413,7 +413,7 @@ class Judge {
     const auto misled = std::find_if(causes.begin(), causes.end(), misleads);
     if (std::count_if(causes.begin(), causes.end(), misleads) != 1 || misled->rule->kind != "following") return false;
     const std::size_t joint = node_index(misled->node);
-    if (joint >= joint_count || names_another(joint)) return false;
+    if (joint >= names().size() || names_another(joint)) return false;
     const auto& told = seen_.told_to_go[joint];
     return told && double(told->second) - double(told->first) <= 2 * situation_.units_per_count[joint];
   }
@@ -421,8 +421,8 @@ class Judge {
   // In the reason, without the advice in brackets.
   bool names_another(std::size_t joint) const {
     const std::string said = ending_.reason.substr(0, ending_.reason.find('('));
-    for (std::size_t other = 0; other < joint_count; ++other) {
-      if (other != joint && said.find(joint_names[other]) != std::string::npos) return true;
+    for (std::size_t other = 0; other < names().size(); ++other) {
+      if (other != joint && said.find(names()[other]) != std::string::npos) return true;
     }
     return false;
   }
@@ -453,7 +453,7 @@ class Judge {
   const Ending& ending_;
   const SafetyFigures& figures_;
   Verdict verdict_;
-  std::array<double, joint_count> stood_s_{};  // since when each does
+  PerJoint<double> stood_s_{};  // since when each does
 };
 
 }  // namespace

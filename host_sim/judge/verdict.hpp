@@ -32,7 +32,7 @@ struct SafetyFigures {
   double quivers_rad = 0.001;     // by which a joint whose motor stands may quiver under a load: half a millimetre at the tool
   // What an arm has to feel, at each joint: 33 N at the tool, and a third of it for what current and friction leave in doubt. Not the core's own limits: one that
   // feels less than this has missed it.
-  std::array<double, arm_joint_count> felt_nm{17, 17, 17, 4.3};
+  double felt_nm = 17, felt_by_roll_nm = 4.3;
   // By which slew, shoulder and elbow may go while their drive, or their encoder, misleads: the core's window of 0.15 rad, the 0.2 s that it gives, and the ramp, at
   // the slew's 0.42 rad/s and half as much again.
   double misled_rad = 0.5;
@@ -58,17 +58,24 @@ struct Ending {
 };
 
 struct Situation {
+  static PerJoint<double> ones() {
+    PerJoint<double> all;
+    all.fill(1);
+    return all;
+  }
+
+  JointNames names;  // of the machine
   std::vector<Cause> causes;
   std::vector<double> begins_s;  // of each, since watching began
   bool powering_up = false;      // the first fault came in the boot phase, before any drive has power
   bool over = false;             // the mission had ended before
   bool fails_anyway = false;     // it was on its way to a failure of another cause, which is what its reason names
-  std::array<double, joint_count> deceleration_rad_s2{};
-  std::array<double, joint_count> units_per_count{1, 1, 1, 1, 1};  // of each drive's position, for an encoder's count
+  PerJoint<double> deceleration_rad_s2{};
+  PerJoint<double> units_per_count = ones();  // of each drive's position, for an encoder's count
   // By which a joint may be off its motor: half of its gear's play, and the wind-up under what a motor at its rated torque holds, and the gear alone, too.
-  std::array<double, joint_count> gear_gives_rad{};
+  PerJoint<double> gear_gives_rad{};
   // By which its motor may slip as its power goes: half of its gear's play, and the wind-up under what the drive held and the gear alone does not.
-  std::array<double, joint_count> slips_rad{};
+  PerJoint<double> slips_rad{};
 };
 
 struct Verdict {

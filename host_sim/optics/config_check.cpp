@@ -63,7 +63,7 @@ void check(const CameraConfig& camera) {
 }
 
 void check(const LaserConfig& laser, std::size_t bodies) {
-  require(static_cast<std::size_t>(laser.body) < bodies, "laser: there is no such body");
+  require(laser.body < bodies, "laser: there is no such body");
   require_pose(laser.body_from_laser, "laser: body_from_laser");
   require_range(laser.fan_half_angle_rad, 0.001, 1.5, "laser: fan_half_angle_rad");
   require_range(laser.cone_rad, -1, 1, "laser: cone_rad");
@@ -80,7 +80,7 @@ void check(const LaserConfig& laser, std::size_t bodies) {
 }
 
 void check(const LampConfig& lamp, std::size_t bodies) {
-  require(static_cast<std::size_t>(lamp.body) < bodies, "lamp: there is no such body");
+  require(lamp.body < bodies, "lamp: there is no such body");
   require_pose(lamp.body_from_lamp, "lamp: body_from_lamp");
   require_light(lamp.intensity_w_sr, "lamp: intensity_w_sr");
   require_range(lamp.cone_half_angle_rad, 0.01, pi, "lamp: cone_half_angle_rad");

@@ -68,12 +68,12 @@ struct Optics::Impl {
   void light(const Shot& shot, Shader& shader) const {
     if (shot.laser > 0) {
       for (std::size_t i = 0; i < lasers.size(); ++i) {
-        shader.sheets.emplace_back(lasers[i], shot.poses[static_cast<std::size_t>(lasers[i].body)], patterns[i], shot.laser);
+        shader.sheets.emplace_back(lasers[i], shot.poses[lasers[i].body], patterns[i], shot.laser);
         if (water.scatters()) shader.sheets.back().meet(scene);
       }
     }
     if (shot.lamps > 0) {
-      for (const LampConfig& lamp : lamps) shader.lamps.emplace_back(lamp, shot.poses[static_cast<std::size_t>(lamp.body)], shot.lamps);
+      for (const LampConfig& lamp : lamps) shader.lamps.emplace_back(lamp, shot.poses[lamp.body], shot.lamps);
     }
   }
 

@@ -65,7 +65,7 @@ struct Pattern {
 
 // A laser line in its own frame: x the plane's normal, z the fan's central ray, origin the emitter. With `pattern` an image takes the line's place.
 struct LaserConfig {
-  scene::BodyId body = scene::BodyId::forearm;
+  scene::BodyId body = 3;                   // the default arm's forearm
   Pose body_from_laser = Pose::Identity();  // the true one, mounting error included
   double fan_half_angle_rad = 0.70;
   double cone_rad = 0;             // the sheet's half-angle error: 0 a plane; otherwise the cone that a tilted port bends it to, toward +x
@@ -87,7 +87,7 @@ struct LaserConfig {
 
 // A lamp with a soft-edged cone about its z axis.
 struct LampConfig {
-  scene::BodyId body = scene::BodyId::vehicle;
+  scene::BodyId body = scene::OwnBodies::vehicle;
   Pose body_from_lamp = Pose::Identity();
   Rgb intensity_w_sr{4.5f, 5.f, 4.5f};
   double cone_half_angle_rad = 0.87;  // half intensity

@@ -48,7 +48,7 @@ StillView::StillView(const Camera& camera, const Tiles& tiles, const scene::Scen
 bool StillView::find_stale(const scene::BodyPoses& poses, const std::vector<scene::BodyId>& lamp_bodies, float lamp_share) {
   std::vector<Pose> fixed_poses;
   for (const std::size_t body : fixed_) fixed_poses.push_back(poses[body]);
-  for (const scene::BodyId body : lamp_bodies) fixed_poses.push_back(poses[static_cast<std::size_t>(body)]);
+  for (const scene::BodyId body : lamp_bodies) fixed_poses.push_back(poses[body]);
   const bool all = lamp_bodies != lamp_bodies_ || lamp_share != lamp_share_ ||
                    !std::equal(fixed_poses.begin(), fixed_poses.end(), fixed_poses_.begin(), fixed_poses_.end(), same);
   lamp_bodies_ = lamp_bodies;

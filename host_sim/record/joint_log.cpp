@@ -4,22 +4,20 @@
 #include <cstdio>
 #include <string>
 
-#include "shared/messages/joint_names.hpp"
-
 namespace lf::record {
 
-JointLog::JointLog(const std::filesystem::path& path) : sink_(path) {
+JointLog::JointLog(const std::filesystem::path& path, const JointNames& joints) : sink_(path), joints_(joints.size()) {
   std::string header = "t_s";
-  for (const char* name : joint_names) {
-    for (const char* what : {"_rad", "_target_rad", "_torque_nm"}) header += std::string(",") + name + what;
+  for (const std::string& name : joints) {
+    for (const char* what : {"_rad", "_target_rad", "_torque_nm"}) header += "," + name + what;
   }
   sink_.write(header + "\n");
 }
 
 bool JointLog::write(const Telemetry& telemetry) noexcept {
-  std::array<char, 512> line;
+  std::array<char, 1024> line;
   int length = std::snprintf(line.data(), line.size(), "%.6f", telemetry.t.s());
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < joints_; ++i) {
     const auto used = static_cast<std::size_t>(length);
     length += telemetry.joints_valid ? std::snprintf(line.data() + used, line.size() - used, ",%.7f,%.7f,%.3f", telemetry.actual_rad[i],
                                                      telemetry.target_rad[i], telemetry.torque_nm[i])

@@ -9,13 +9,14 @@
 
 #include "firmware/telemetry.hpp"
 #include "host_sim/record/file_sink.hpp"
+#include "shared/arm/joint_names.hpp"
 
 namespace lf::record {
 
 class JointLog {
  public:
   // Throws InputError when the file cannot be opened.
-  explicit JointLog(const std::filesystem::path& path);
+  JointLog(const std::filesystem::path& path, const JointNames& joints);
 
   // Never throws; after a failed write nothing more is written and sink().error() has the cause.
   bool write(const Telemetry& telemetry) noexcept;
@@ -24,6 +25,7 @@ class JointLog {
 
  private:
   FileSink sink_;
+  std::size_t joints_;
 };
 
 }  // namespace lf::record

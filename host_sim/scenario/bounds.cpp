@@ -102,9 +102,9 @@ Bounds of_latency(const config::Key& key, const Scenario& s) {
 // Of a joint's motor, or of all of them.
 Bounds of_drives(const config::Key& key, const Scenario& s, const ArmDescription& arm) {
   Bounds bounds{key.min, key.max};
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < arm.joints.size(); ++i) {
     const bool all = key.path == "drives.counts_per_rev";
-    if (!all && !key.path.starts_with("drives." + std::string(config::joint_name(i)) + ".")) continue;
+    if (!all && !key.path.starts_with("drives." + arm.joints[i].name + ".")) continue;
     const double counts = config::drive_of(s.drives, i).counts_per_rev;
     if (key.path.ends_with(".counts_per_rev"))
       bounds = within(key, bounds.min, std::min(bounds.max, best_motor_ratio(arm.joints[i], counts) * counts * (1 - clearly)));
@@ -126,7 +126,7 @@ LongestLatencies longest_latencies(const Scenario& s) {
   const bool own = !s.safety.mission_limits.empty();
   const std::string file =
       config::named_file(s.file, own ? "safety.mission_limits" : "safety.limits", own ? s.safety.mission_limits : s.safety.limits);
-  const safety::Limits limits = config::read_limits(file);
+  const safety::Limits limits = config::read_limits(file, s.joints);
   return {std::max(0.0, 1e3 * (limits.stale_image_s - image_reserve_s)), std::max(0.0, 1e3 * (limits.vision_timeout_s - vision_reserve_s)),
           file};
 }
@@ -139,7 +139,7 @@ Bounds bounds_of(const config::Key& key, const Scenario& scenario, const ArmDesc
   }
   if (key.path.starts_with("buttons.")) return of_buttons(key, scenario);
   if (key.path.starts_with("panel.")) return of_panel(key, scenario);
-  if (key.path == "jaw.torque_nm") return within(key, arm.joints[static_cast<std::size_t>(Joint::jaw)].rated_torque_nm, key.max);
+  if (key.path == "jaw.torque_nm") return within(key, arm.jaw().rated_torque_nm, key.max);
   if (key.path.starts_with("latency.")) return of_latency(key, scenario);
   if (key.path.starts_with("drives.")) return of_drives(key, scenario, arm);
   return {key.min, key.max};

@@ -2,7 +2,6 @@
 
 #include <string>
 
-#include "shared/messages/joint_names.hpp"
 #include "shared/random.hpp"
 
 namespace lf::scenario {
@@ -103,10 +102,10 @@ Sample draw(const Scenario& s, std::uint64_t seed) {
   sample.camera_turn_rad = draws.degrees_each_axis(s.mounting.camera_deg, "mounting.camera_deg");
   sample.laser_shift_m = draws.each_axis(s.mounting.laser_m, "mounting.laser_m");
   sample.laser_turn_rad = draws.degrees_each_axis(s.mounting.laser_deg, "mounting.laser_deg");
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    sample.joint_offset_rad[i] = draws.degrees(s.mounting.joints_deg, std::string("mounting.joints_deg.") + joint_names[i]);
+  for (std::size_t i = 0; i < s.joints.size(); ++i) {
+    sample.joint_offset_rad[i] = draws.degrees(s.mounting.joints_deg, "mounting.joints_deg." + s.joints[i]);
     const auto friction = [&](const Spread& spread, const char* name) {
-      return draws.of(spread, std::string("friction.") + name + "." + joint_names[i]);
+      return draws.of(spread, std::string("friction.") + name + "." + s.joints[i]);
     };
     sample.coulomb[i] = friction(s.friction.coulomb, "coulomb");
     sample.viscous[i] = friction(s.friction.viscous, "viscous");

@@ -45,9 +45,9 @@ struct Sample {
   Vec3 camera_turn_rad = Vec3::Zero();
   Vec3 laser_shift_m = Vec3::Zero();  // in the laser frame
   Vec3 laser_turn_rad = Vec3::Zero();
-  std::array<double, joint_count> joint_offset_rad{};
-  std::array<double, joint_count> coulomb{}, viscous{}, efficiency{}, back_efficiency{};  // over the description's
-  std::array<double, joint_count> breakaway{}, one_way{}, pivot_m{};
+  PerJoint<double> joint_offset_rad{};
+  PerJoint<double> coulomb{}, viscous{}, efficiency{}, back_efficiency{};  // over the description's
+  PerJoint<double> breakaway{}, one_way{}, pivot_m{};
   // The true machine, over its calibration.
   Vec2 principal_point_px = Vec2::Zero();
   double focal_ratio = 1, lens_ratio = 1, beam_ratio = 1;

@@ -32,12 +32,12 @@ void add_job_problems(const Scenario& scenario, std::vector<std::string>& proble
 hal::SimConfig make_truth(const Scenario& scenario, const Sample& sample, const Nominal& nominal, int render_threads);
 
 // A scenario's fault as the simulated platform takes it, at the node that `drives` gives the joint. Throws InputError for a kind that there is not.
-hal::SimFault sim_fault(const Fault& fault, const config::Drives& drives);
+hal::SimFault sim_fault(const Fault& fault, const config::Drives& drives, const JointNames& joints);
 // The same for the devices alone, which know of times but not of steps.
-devices::DeviceFault device_fault(const Fault& fault, const config::Drives& drives);
+devices::DeviceFault device_fault(const Fault& fault, const config::Drives& drives, const JointNames& joints);
 
 // Drives that are not served are overheard on the bus at the CAN map's nodes, in encoder counts and forward. Throws InputError for one of another kind.
-void check_overheard(const config::Drives& drives, std::size_t joint);
+void check_overheard(const config::Drives& drives, const JointNames& joints, std::size_t joint);
 
 // base_from_panel with the sample's docking error: shifted along the base's axes, turned about them at the panel's origin (roll, then pitch, then yaw).
 Pose true_base_from_panel(const PanelLayout& layout, const Sample& sample);

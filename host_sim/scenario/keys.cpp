@@ -166,9 +166,10 @@ std::vector<Key> keys(Scenario& scenario) {
   add_sight(all, scenario);
   add_calibration(all, scenario);
   add_machine(all, scenario);
-  config::add_drives(all, scenario.drives);
+  config::add_drives(all, scenario.drives, scenario.joints);
   config::add_mission(all, scenario.mission);
   all.push_back(key("faults", "", 0, 0, &scenario.faults, "what goes wrong, and when"));
+  all.back().names.assign(scenario.joints.begin(), scenario.joints.end());
   std::vector<std::string> failures{Expect::nothing};
   for (std::size_t i = 0; i < safety::fault_count; ++i) failures.emplace_back(safety::name(static_cast<safety::Fault>(i)));
   all.push_back(key("expect.failure", "", 0, 0, &scenario.expect.failure,

@@ -24,9 +24,13 @@ config::Machine machine_of(const Scenario& scenario, bool lamps_lit) {
   machine.arm_urdf = scenario.arm.urdf;
   machine.park_rad = scenario.arm.park_rad;
   machine.arm = scenario.told_arm;
+  machine.joints = scenario.joints;
+  machine.arm_told = scenario.arm_told;
   machine.safety_limits = scenario.safety.limits;
   machine.mission_limits = scenario.safety.mission_limits;
-  machine.homing_file = homing_file;
+  // The shipped file has the default machine's joints.
+  if (scenario.joints == JointNames()) machine.homing_file = homing_file;
+  machine.zeros_by_construction = true;
   machine.drives = scenario.drives;
   machine.mission = scenario.mission;
   machine.tasks = scenario.tasks;
@@ -59,7 +63,7 @@ void check_latencies(const Scenario& scenario, std::vector<std::string>& problem
 
 void check_jaw(const Scenario& scenario, std::vector<std::string>& problems) {
   const std::string file = config::named_file(scenario.file, "arm.urdf", scenario.arm.urdf);
-  const double rated_nm = load_arm_urdf(file).joints[static_cast<std::size_t>(Joint::jaw)].rated_torque_nm;
+  const double rated_nm = load_arm_urdf(file).jaw().rated_torque_nm;
   if (scenario.jaw.torque_nm == 0 || scenario.jaw.torque_nm >= rated_nm) return;
   problems.push_back(
       scenario.file + ": " +

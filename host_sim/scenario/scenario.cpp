@@ -82,6 +82,8 @@ void read_machine(Scenario& s, const fs::path& file, std::vector<std::string>& p
   static_cast<config::Laser&>(s.laser) = told.laser;
   s.vehicle = told.vehicle;
   s.drives = told.drives;
+  s.joints = told.joints;
+  s.arm_told = told.arm_told;
 }
 
 void read_named_machine(Scenario& s, const YAML::Node& root, std::vector<std::string>& problems) {
@@ -118,6 +120,7 @@ void apply_override(Scenario& scenario, const std::string& text, std::vector<std
   if (found == table.end()) source.refuse(YAML::Mark::null_mark(), "unknown key '" + path + "'" + config::suggest_path(path, table));
   config::read_value(parse_yaml(text.substr(equals + 1), source), path, *found, source);
   take_from_here(*found);
+  if (path == "arm.urdf") scenario.joints = config::arm_for_checks(scenario.file, scenario.arm.urdf).joints;
   if (path == "machine" && !scenario.machine.empty()) take_machine(scenario, source, problems);
 }
 
@@ -206,7 +209,6 @@ void check_together(const Scenario& s, const std::string& where, std::vector<std
   if (s.camera.distortion.size() != 5) refuse("'camera.distortion' takes 5 numbers: k1, k2, p1, p2, k3");
   std::size_t tasks = 0;
   for (const Task& task : s.tasks) tasks += task.kind == Task::Kind::turn_valve ? 1 : task.order.size();
-  if (tasks == 0) refuse("'tasks' is empty: there is nothing to do");
   if (tasks > mission::MissionConfig::max_tasks) {
     refuse("'tasks' has " + std::to_string(tasks) + " turns and presses; the core holds " +
            std::to_string(mission::MissionConfig::max_tasks));
@@ -244,6 +246,7 @@ config::Machine work_of(const Scenario& s) {
   work.mission = s.mission;
   work.tasks = s.tasks;
   work.arm = s.told_arm;
+  work.joints = s.joints;
   return work;
 }
 
@@ -284,6 +287,11 @@ Scenario load_scenario(const std::string& file_or_name, const std::vector<std::s
   const YAML::Node root = config::parse_yaml(config::read_text_file(path), source);
   // A file's names are not known yet: any is taken, and looked for later.
   read_named_machine(scenario, root, problems);
+  // The core's own checks tell why an arm cannot be read.
+  std::vector<std::string> told_later;
+  YAML::Node readable = root;
+  if (root.IsMap()) scenario.joints = config::joints_or_why(readable, path, scenario.joints, told_later);
+  if (root.IsMap() && scenario.arm_told) config::forget_joints(readable);
   if (names_a_panel(root, overrides)) scenario.survey.names = {{}, {}, {}};
   if (!root.IsNull()) {
     if (!root.IsMap()) source.refuse(root.Mark(), "a scenario is a group of keys");
@@ -298,11 +306,13 @@ Scenario load_scenario(const std::string& file_or_name, const std::vector<std::s
   }
   if (!config::settle_panel(path, scenario.panel_file, scenario.docked_panel, scenario.valve, scenario.panel, scenario.survey, problems))
     throw InputError(config::joined(problems));
-  scenario.told_arm = config::arm_for_checks(scenario.file, scenario.arm.urdf);
+  const config::NamedArm arm = config::arm_for_checks(scenario.file, scenario.arm.urdf);
+  scenario.told_arm = arm.arm;
+  scenario.joints = arm.joints;
   read_scene(scenario, problems);
   check_together(scenario, overrides.empty() ? source.name() : source.name() + " with --set", problems);
   if (problems.empty()) return scenario;
-  if (!scenario.tasks.empty() && config::names_known(scenario.tasks, scenario.survey.names)) add_job_problems(scenario, problems);
+  if (scenario.tasks.empty() || config::names_known(scenario.tasks, scenario.survey.names)) add_job_problems(scenario, problems);
   throw InputError(config::joined(problems));
 }
 

@@ -203,6 +203,8 @@ struct Scenario {
   config::Vehicle vehicle;
   Arm arm;
   arm::Arm told_arm = arm::arm5e();  // of arm.urdf, read with the file; what cannot be read is told with the job's problems
+  JointNames joints;                 // of the same
+  bool arm_told = false;             // as a machine has it
   Jaw jaw;
   Physics physics;
   Friction friction;

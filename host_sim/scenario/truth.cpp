@@ -37,10 +37,11 @@ Pose small_pose(const Vec3& shift_m, const Vec3& turn_rad) {
 
 ArmDescription true_arm(const Scenario& scenario) {
   ArmDescription arm = load_arm_urdf(config::find_file(scenario.arm.urdf, std::filesystem::path(scenario.file).parent_path()));
-  if (scenario.jaw.torque_nm > 0) arm.joints[std::size_t(Joint::jaw)].effort_nm = arm.finger_b.effort_nm = scenario.jaw.torque_nm;
+  if (scenario.jaw.torque_nm > 0) arm.jaw().effort_nm = arm.finger_b.effort_nm = scenario.jaw.torque_nm;
   if (scenario.jaw.pad_friction > 0) {
-    for (const scene::BodyId finger : {scene::BodyId::finger_a, scene::BodyId::finger_b}) {
-      for (scene::Shape& shape : arm.links[std::size_t(finger)].shapes) shape.friction = scenario.jaw.pad_friction;
+    const scene::OwnBodies own(arm.arm_joints());
+    for (const scene::BodyId finger : {own.finger_a(), own.finger_b()}) {
+      for (scene::Shape& shape : arm.links[finger].shapes) shape.friction = scenario.jaw.pad_friction;
     }
   }
   return arm;
@@ -108,12 +109,19 @@ world::ValveConfig valve_config(const config::ValveNature& nature, const PanelLa
 world::WorldConfig world_config(const Scenario& scenario, const Sample& sample) {
   world::WorldConfig world;
   world.arm = true_arm(scenario);
-  const ArmJoint& jaw = world.arm.joints[std::size_t(Joint::jaw)];
-  world.start_rad.back() = std::clamp(world.start_rad.back(), jaw.lower_rad, jaw.upper_rad);
-  std::copy_n(scenario.arm.park_rad.begin(), std::min(scenario.arm.park_rad.size(), arm_joint_count), world.start_rad.begin());
+  const ArmJoint& jaw = world.arm.jaw();
+  const std::size_t arm_joints = world.arm.arm_joints();
+  world.start_rad = {};
+  world.drive_stiffness_nm_rad = {};
+  for (std::size_t i = 0; i <= arm_joints; ++i)
+    world.drive_stiffness_nm_rad[i] = i + 1 >= arm_joints ? world::end_stiffness_nm_rad
+                                      : i == 0            ? world::first_stiffness_nm_rad
+                                                          : world::stiffness_nm_rad;
+  world.start_rad[arm_joints] = std::clamp(world::half_open_rad, jaw.lower_rad, jaw.upper_rad);
+  std::copy_n(scenario.arm.park_rad.begin(), std::min(scenario.arm.park_rad.size(), arm_joints), world.start_rad.begin());
   world.layout = true_layout(scenario.panel, sample);
   world.scene = scene::make_scene(world.arm, world.layout, scenario.survey.names);
-  move_markers(world.scene[std::size_t(scene::BodyId::panel)], sample);
+  move_markers(world.scene[scene::OwnBodies(arm_joints).panel()], sample);
   world.base_from_panel = true_base_from_panel(scenario.panel, sample);
   if (scenario.objects) {
     for (scene::Body& object : placed_objects(*scenario.objects, world.base_from_panel)) world.scene.push_back(std::move(object));
@@ -194,7 +202,8 @@ optics::OpticsConfig optics_config(const Scenario& scenario, const Sample& sampl
   optics.cameras.push_back(camera);
 
   optics::LaserConfig laser;
-  const Pose forearm_from_tool = world.arm.joints[std::size_t(Joint::roll)].parent_from_joint * world.arm.wrist_from_tool;
+  laser.body = scene::OwnBodies(world.arm.arm_joints()).before_hand();
+  const Pose forearm_from_tool = world.arm.roll().parent_from_joint * world.arm.wrist_from_tool;
   laser.body_from_laser =
       forearm_from_tool * nominal.controller.laser.tool_from_laser * small_pose(sample.laser_shift_m, sample.laser_turn_rad);
   // Bent to a cone, the sheet keeps its middle where the calibration found it.
@@ -282,10 +291,8 @@ mission::Step step_of(const std::string& name) {
   return mission::Step::count;
 }
 
-std::uint8_t node_number(const std::string& name, const config::Drives& drives) {
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    if (name == config::joint_name(i)) return static_cast<std::uint8_t>(config::drive_of(drives, i).node);
-  }
+std::uint8_t node_number(const std::string& name, const config::Drives& drives, const JointNames& joints) {
+  if (const std::optional<std::size_t> joint = joints.find(name)) return static_cast<std::uint8_t>(config::drive_of(drives, *joint).node);
   return name == "io" ? static_cast<std::uint8_t>(drives.output_node) : name == "master" ? can_map::master_node : 0;
 }
 
@@ -297,14 +304,14 @@ std::vector<std::string> makes_of(const std::string& profile, const std::filesys
 
 // A simulated motor is the one of the arm's description, and a drive that says its rating says that motor's. The boot refuses a drive that says another
 // rating than the stated one.
-void check_rating(const config::JointDriveChoice& choice, const config::DriveKind& kind, std::size_t joint,
+void check_rating(const config::JointDriveChoice& choice, const config::DriveKind& kind, const std::string& joint,
                   const devices::DriveConfig& drive) {
   const double stated_nm = choice.rated_torque_nm, said_nm = drive.rated_torque_nm;
   if (stated_nm == 0 || kind.rating != "object" || std::abs(said_nm - stated_nm) <= rating_apart_share * stated_nm) return;
   char text[200];
   std::snprintf(text, sizeof text,
                 "'drives.%s.rated_torque_nm' is %.4g: the simulated drive says %.4g N m, the arm's description's, and would not be booted",
-                config::joint_name(joint), stated_nm, said_nm);
+                joint.c_str(), stated_nm, said_nm);
   throw InputError(text);
 }
 
@@ -315,7 +322,7 @@ void set_make(const config::Drives& drives, std::size_t joint, const std::filesy
   drive.node = static_cast<std::uint8_t>(choice.node);
   devices::set_motor(arm_joint, choice.counts_per_rev, drive);
   const config::DriveKind kind = config::find_drive_kind(choice.profile, folder);
-  check_rating(choice, kind, joint, drive);
+  check_rating(choice, kind, arm_joint.name, drive);
   drive.vendor = kind.identity.vendor;
   drive.product = kind.identity.product;
   drive.rated_current_a = choice.rated_current_a;
@@ -335,13 +342,13 @@ void set_make(const config::Drives& drives, std::size_t joint, const std::filesy
     const bool simulated = shipped == "lanternfish" || shipped.starts_with("cia402") || devices::find_habit(shipped) != nullptr;
     if (simulated) list += (list.empty() ? "" : ", ") + shipped;
   }
-  throw InputError(std::string("drives.") + config::joint_name(joint) + ": there is no simulated drive '" + choice.profile +
+  throw InputError("drives." + arm_joint.name + ": there is no simulated drive '" + choice.profile +
                    "': a profile of your own is simulated as the one that it is 'like', and that takes " + list);
 }
 
 devices::DevicesConfig device_config(const Scenario& scenario, const Sample& sample, const ArmDescription& arm) {
   devices::DevicesConfig config = devices::devices_config(arm, sample.joint_offset_rad, sample.devices_seed);
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < arm.joints.size(); ++i) {
     devices::DriveConfig& drive = config.drives[i];
     drive.torque_noise_ratio = scenario.physics.torque_noise_ratio;
     drive.water_celsius = scenario.physics.water_celsius;
@@ -385,11 +392,12 @@ void add_clashes(const Scenario& scenario, std::vector<std::string>& problems) {
 
 void check_runnable(const Scenario& scenario) {
   std::vector<std::string> problems;
+  if (scenario.tasks.empty()) problems.push_back(scenario.file + ": 'tasks' is empty: there is nothing to do");
   add_job_problems(scenario, problems);
   if (!problems.empty()) throw InputError(config::joined(problems));
   add_clashes(scenario, problems);
   const ArmDescription arm = true_arm(scenario);
-  for (std::size_t joint = 0; joint < joint_count; ++joint) {
+  for (std::size_t joint = 0; joint < arm.joints.size(); ++joint) {
     devices::DriveConfig drive;
     try {
       set_make(scenario.drives, joint, std::filesystem::path(scenario.file).parent_path(), arm.joints[joint], drive);
@@ -400,18 +408,17 @@ void check_runnable(const Scenario& scenario) {
   if (!problems.empty()) throw InputError(config::joined(problems));
 }
 
-void check_overheard(const config::Drives& drives, std::size_t joint) {
+void check_overheard(const config::Drives& drives, const JointNames& joints, std::size_t joint) {
   const config::JointDriveChoice drive = config::drive_of(drives, joint);
   const bool plain = drive.profile == "lanternfish" || drive.profile == "cia402";
-  if (drive.node == can_map::drive_nodes[joint] && plain && drive.polarity == "forward") return;
-  throw InputError(std::string("drives.") + config::joint_name(joint) +
+  if (joint < can_map::drive_nodes.size() && drive.node == can_map::drive_nodes[joint] && plain && drive.polarity == "forward") return;
+  throw InputError("drives." + joints[joint] +
                    ": a drive that is not served is overheard only at its node of the CAN map, in encoder counts and forward. One that "
                    "reports encoder counts is followed under that node with 'drives." +
-                   config::joint_name(joint) +
-                   ".profile' cia402; of another, serve the node (`--nodes`) and leave the real drive off this bus");
+                   joints[joint] + ".profile' cia402; of another, serve the node (`--nodes`) and leave the real drive off this bus");
 }
 
-hal::SimFault sim_fault(const Fault& fault, const config::Drives& drives) {
+hal::SimFault sim_fault(const Fault& fault, const config::Drives& drives, const JointNames& joints) {
   hal::SimFault out;
   out.at_s = fault.at_s;
   out.at_step = step_of(fault.at_step);
@@ -422,19 +429,19 @@ hal::SimFault sim_fault(const Fault& fault, const config::Drives& drives) {
     out.kind = kind;
     return out;
   }
-  out.device = device_fault(fault, drives);
+  out.device = device_fault(fault, drives, joints);
   return out;
 }
 
-devices::DeviceFault device_fault(const Fault& fault, const config::Drives& drives) {
-  if (!fault.node.empty() && node_number(fault.node, drives) == 0) {
-    const std::vector<std::string> nodes = config::fault_nodes(config::FaultPlace::node_or_master);
+devices::DeviceFault device_fault(const Fault& fault, const config::Drives& drives, const JointNames& joints) {
+  if (!fault.node.empty() && node_number(fault.node, drives, joints) == 0) {
+    const std::vector<std::string> nodes = config::fault_nodes(config::FaultPlace::node_or_master, joints);
     const std::string nearest = config::suggestion(fault.node, nodes);
     throw InputError("no node '" + fault.node + "'" + (nearest.empty() ? "; there are the joints, io and master" : nearest));
   }
   for (const auto& [name, kind] : device_kinds) {
     if (fault.kind == name)
-      return {fault.at_s, kind, node_number(fault.node, drives), fault.duration_s, static_cast<std::uint32_t>(fault.can_id)};
+      return {fault.at_s, kind, node_number(fault.node, drives, joints), fault.duration_s, static_cast<std::uint32_t>(fault.can_id)};
   }
   throw InputError("the devices have no fault '" + fault.kind + "'");
 }
@@ -458,7 +465,7 @@ hal::SimConfig make_truth(const Scenario& scenario, const Sample& sample, const 
   sim.devices = device_config(scenario, sample, sim.world.arm);
   for (const Fault& fault : scenario.faults) {
     if (fault.kind == limits_refused) continue;  // make_nominal's
-    const hal::SimFault made = sim_fault(fault, scenario.drives);
+    const hal::SimFault made = sim_fault(fault, scenario.drives, scenario.joints);
     const bool timed_by_devices = made.kind == hal::SimFaultKind::device && made.at_step == mission::Step::count;
     timed_by_devices ? sim.devices.faults.push_back(made.device) : sim.faults.push_back(made);
   }

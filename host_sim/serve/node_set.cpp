@@ -24,7 +24,7 @@ int number(const std::string& word, const std::string& text) {
 
 }  // namespace
 
-std::uint8_t node_in(std::size_t slot) { return slot < joint_count ? can_map::drive_nodes[slot] : can_map::io_node; }
+std::uint8_t node_in(std::size_t slot) { return slot < can_map::drive_nodes.size() ? can_map::drive_nodes[slot] : can_map::io_node; }
 
 NodeSet NodeSet::all() {
   NodeSet set;
@@ -45,8 +45,8 @@ NodeSet NodeSet::parse(const std::string& text) {
     if (last < first) refuse(text);
     for (int node = first; node <= last; ++node) {
       std::size_t slot = 0;
-      while (slot < set.served_.size() && node_in(slot) != node) ++slot;
-      if (slot == set.served_.size()) refuse(text);
+      while (slot <= can_map::drive_nodes.size() && node_in(slot) != node) ++slot;
+      if (slot > can_map::drive_nodes.size()) refuse(text);
       set.served_[slot] = any = true;
     }
   }
@@ -58,9 +58,13 @@ bool NodeSet::empty() const {
   return std::none_of(served_.begin(), served_.end(), [](bool served) { return served; });
 }
 
+bool NodeSet::is_all() const {
+  return std::all_of(served_.begin(), served_.end(), [](bool served) { return served; });
+}
+
 std::string NodeSet::text() const {
   std::string text;
-  for (std::size_t slot = 0; slot < served_.size(); ++slot) {
+  for (std::size_t slot = 0; slot <= can_map::drive_nodes.size(); ++slot) {
     if (served_[slot]) text += (text.empty() ? "" : ", ") + std::to_string(node_in(slot));
   }
   return text.empty() ? "none" : text;

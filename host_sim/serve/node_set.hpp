@@ -17,10 +17,11 @@ class NodeSet {
 
   bool has(std::size_t slot) const { return served_[slot]; }
   bool empty() const;
+  bool is_all() const;
   std::string text() const;  // "1, 2, 6", "none"
 
  private:
-  std::array<bool, devices::NodeRack::slots> served_{};
+  std::array<bool, capacity::nodes> served_{};
 };
 
 // The node in a slot of the rack.

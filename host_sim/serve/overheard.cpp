@@ -19,7 +19,7 @@ constexpr double longest_gap_s = 0.1;  // reports further apart say nothing of t
 
 void OverheardDrives::hear(const CanFrame& frame, Time t) {
   if (frame.length < can_map::drive_tpdo1::length) return;
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < can_map::drive_nodes.size(); ++i) {
     if (frame.id != canopen::cob_id::tpdo1 + can_map::drive_nodes[i]) continue;
     Report& report = reports_[i];
     const std::int64_t counts = std::int64_t{canopen::get<std::int32_t>(frame, can_map::drive_tpdo1::position)} - zero_counts_[i];

@@ -18,8 +18,7 @@ namespace lf::serve {
 class OverheardDrives {
  public:
   // `zero_counts`: what each real drive's encoder counts where the arm's own count is 0.
-  explicit OverheardDrives(const ArmModel& arm, const std::array<std::int32_t, joint_count>& zero_counts = {})
-      : arm_(arm), zero_counts_(zero_counts) {}
+  explicit OverheardDrives(const ArmModel& arm, const PerJoint<std::int32_t>& zero_counts = {}) : arm_(arm), zero_counts_(zero_counts) {}
 
   void hear(const CanFrame& frame, Time t);
   // The joint's motor, as its drive last reported it; nothing before it did.
@@ -36,8 +35,8 @@ class OverheardDrives {
     bool heard = false;
   };
   ArmModel arm_;
-  std::array<std::int32_t, joint_count> zero_counts_;
-  std::array<Report, joint_count> reports_{};
+  PerJoint<std::int32_t> zero_counts_;
+  PerJoint<Report> reports_{};
 };
 
 class OverheardOutputs {

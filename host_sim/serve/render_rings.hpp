@@ -21,7 +21,8 @@
 
 namespace lf::serve {
 
-inline constexpr std::uint32_t kind_exposure = 2;  // RecordInfo::kind of what follows here; 1 had twelve bodies
+inline constexpr std::uint32_t kind_exposure =
+    3;  // RecordInfo::kind of what follows here; 1 had twelve bodies, 2 no room for an arm of more than four joints
 
 // base_from_body of each of `bodies` bodies: rotation column by column, then translation in metres. Doubles, so that the picture is the very one of a single process.
 // Then the shares of the exposure during which laser and lamps are on, and the time of its middle, s. Its length and number are the record's.

@@ -7,8 +7,9 @@
 namespace lf::serve {
 
 ServeLoop::ServeLoop(const hal::SimConfig& config, const NodeSet& served, CanLink& link, LoopCamera* camera, Say say,
-                     const std::array<std::int32_t, joint_count>& real_zero_counts)
-    : world_(config.world),
+                     const PerJoint<std::int32_t>& real_zero_counts)
+    : joints_(config.world.arm.names()),
+      world_(config.world),
       rack_(config.devices, Time{}),
       link_(link),
       bus_(rack_, link, served, make_model(config.world.arm), real_zero_counts),

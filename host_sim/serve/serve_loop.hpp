@@ -28,7 +28,7 @@ class ServeLoop {
   // `camera` may be null: then exposures are taken and nothing is seen. Power comes on at the first turn. `link`, `camera` and `say` outlive the loop.
   // `real_zero_counts` are those of the drives that are not served.
   ServeLoop(const hal::SimConfig& config, const NodeSet& served, CanLink& link, LoopCamera* camera, Say say,
-            const std::array<std::int32_t, joint_count>& real_zero_counts = {});
+            const PerJoint<std::int32_t>& real_zero_counts = {});
 
   // One millisecond: returns when it is done.
   void turn();
@@ -40,10 +40,12 @@ class ServeLoop {
   devices::NodeRack& rack() { return rack_; }
   const world::World& world() const { return world_; }
   LoopCamera* camera() { return camera_; }
+  const JointNames& joints() const { return joints_; }
 
  private:
   void say_link_changes();
 
+  JointNames joints_;
   world::World world_;
   devices::NodeRack rack_;
   CanLink& link_;

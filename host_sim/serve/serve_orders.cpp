@@ -53,9 +53,9 @@ void make_fault(std::istringstream& words, ServeLoop& loop) {
     }
   }
   config::Drives drives;
-  for (std::size_t i = 0; i < joint_count; ++i) drives.joints[i].node = loop.rack().node(i).id();
-  drives.output_node = loop.rack().node(devices::NodeRack::io_slot).id();
-  loop.rack().add_fault(scenario::device_fault(fault, drives), loop.simulated());
+  for (std::size_t i = 0; i < loop.rack().io_slot(); ++i) drives.joints[i].node = loop.rack().node(i).id();
+  drives.output_node = loop.rack().node(loop.rack().io_slot()).id();
+  loop.rack().add_fault(scenario::device_fault(fault, drives, loop.joints()), loop.simulated());
 }
 
 }  // namespace

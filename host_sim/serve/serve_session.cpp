@@ -9,6 +9,7 @@
 #include "host_sim/serve/render_rings.hpp"
 #include "host_sim/serve/serve_orders.hpp"
 #include "host_sim/serve/socket_can_link.hpp"
+#include "shared/input_error.hpp"
 
 namespace lf::serve {
 
@@ -46,13 +47,15 @@ void warm_up(const world::WorldConfig& config) {
 
 ServeResult serve(const ServeRequest& request, bool (*stop)()) {
   const ServeLoop::Say say = request.say ? request.say : [](const std::string&) {};
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    if (!request.nodes.has(i)) scenario::check_overheard(request.scenario.drives, i);
+  if (request.scenario.joints.size() != JointNames().size() && !request.nodes.is_all())
+    throw InputError("--nodes: of an arm that has not five drives all nodes are served, or none is simulated: leave it out");
+  for (std::size_t i = 0; i < request.scenario.told_arm.joint_count(); ++i) {
+    if (!request.nodes.has(i)) scenario::check_overheard(request.scenario.drives, request.scenario.joints, i);
   }
   const scenario::Sample sample = scenario::draw(request.scenario, request.seed);
   const scenario::Nominal nominal = scenario::make_nominal(request.scenario, sample.lamps_lit);
   hal::SimConfig sim = scenario::make_truth(request.scenario, sample, nominal, request.render_threads);
-  for (std::size_t i = 0; i < joint_count; ++i) sim.devices.drives[i].encoder_zero_counts = request.zero_counts[i];
+  for (std::size_t i = 0; i < sim.devices.drives.size(); ++i) sim.devices.drives[i].encoder_zero_counts = request.zero_counts[i];
   say_what_cannot_be(sim, say);
   std::optional<record::CandumpLog> log;
   if (request.folder != nullptr) log.emplace(request.folder->file("can0.log"), request.can);

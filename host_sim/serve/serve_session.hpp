@@ -19,9 +19,9 @@ struct ServeRequest {
   std::uint64_t seed = 1;
   std::string can;  // SocketCAN interface
   NodeSet nodes = NodeSet::all();
-  std::array<std::int32_t, joint_count> zero_counts{};  // where the drives count from: the served ones, and the real ones that are followed
-  std::string camera = "none";                          // see open_frame_target()
-  std::string renderer;                                 // file of a renderer elsewhere (render_rings.hpp); empty: a thread here
+  PerJoint<std::int32_t> zero_counts{};  // where the drives count from: the served ones, and the real ones that are followed
+  std::string camera = "none";           // see open_frame_target()
+  std::string renderer;                  // file of a renderer elsewhere (render_rings.hpp); empty: a thread here
   int render_threads = 1;
   std::string orders;                           // FIFO of orders (serve_orders.hpp); empty: none
   const record::RunFolder* folder = nullptr;    // gets can0.log; null keeps nothing

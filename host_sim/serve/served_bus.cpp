@@ -10,7 +10,7 @@ namespace lf::serve {
 namespace {
 
 constexpr int most_frames = 128;  // of a millisecond: a full bus at 1 Mbit/s has 21 of the shortest
-constexpr std::size_t nobody = devices::NodeRack::slots;
+constexpr std::size_t nobody = capacity::nodes;
 
 }  // namespace
 
@@ -42,7 +42,7 @@ bool ServedBus::receive(const Pace& pace) {
 }
 
 void ServedBus::dispatch(const CanFrame& frame, std::size_t sender, Time t) {
-  for (std::size_t slot = 0; slot < devices::NodeRack::slots; ++slot) {
+  for (std::size_t slot = 0; slot < rack_.slots(); ++slot) {
     if (slot == sender || !served_.has(slot) || off_bus_[slot] > 0) continue;
     rack_.receive(slot, frame, t);
     collect(slot);
@@ -84,7 +84,7 @@ void ServedBus::step(Time t, const JointReadings& readings) {
     rack_.power_on(t, readings);
   }
   rack_.tick(t, readings, [&](const devices::DeviceFault& fault, bool on) { set_fault(fault, on, t); });
-  for (std::size_t slot = 0; slot < devices::NodeRack::slots; ++slot) collect(slot);
+  for (std::size_t slot = 0; slot < rack_.slots(); ++slot) collect(slot);
   flush(t);
 }
 
@@ -97,26 +97,26 @@ void ServedBus::set_fault(const devices::DeviceFault& fault, bool on, Time t) {
     }
   }
   const std::size_t slot = rack_.slot_of(fault.node);
-  if (fault.kind != devices::DeviceFaultKind::bus_off || slot == nobody) return;
+  if (fault.kind != devices::DeviceFaultKind::bus_off || slot == rack_.slots()) return;
   off_bus_[slot] += on ? 1 : -1;
   on ? rack_.node(slot).bus_off(t) : rack_.node(slot).bus_recovered(t);
 }
 
 JointDrives ServedBus::drives(const JointReadings& readings) const {
   JointDrives drives = rack_.drives();
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < rack_.io_slot(); ++i) {
     if (!served_.has(i)) drives[i] = real_drives_.follow(i, readings[i].motor_position_rad);
   }
   return drives;
 }
 
 Outputs ServedBus::outputs() const {
-  if (served_.has(devices::NodeRack::io_slot)) return {rack_.laser_on(), rack_.lamps_on()};
+  if (served_.has(rack_.io_slot())) return {rack_.laser_on(), rack_.lamps_on()};
   return {real_outputs_.laser_on(), real_outputs_.lamps_on()};
 }
 
 std::optional<devices::Exposure> ServedBus::take_exposure() {
-  return served_.has(devices::NodeRack::io_slot) ? rack_.take_exposure() : real_outputs_.take_exposure();
+  return served_.has(rack_.io_slot()) ? rack_.take_exposure() : real_outputs_.take_exposure();
 }
 
 void ServedBus::count(const CanFrame& frame) { stats_.bits += devices::frame_bits(frame) + devices::interframe_bits; }

@@ -30,7 +30,7 @@ class ServedBus {
 
   // `real_zero_counts`: see OverheardDrives.
   ServedBus(devices::NodeRack& rack, CanLink& link, const NodeSet& served, const ArmModel& arm,
-            const std::array<std::int32_t, joint_count>& real_zero_counts = {})
+            const PerJoint<std::int32_t>& real_zero_counts = {})
       : rack_(rack), link_(link), served_(served), real_drives_(arm, real_zero_counts) {
     // What grows by the hour looks like a leak, and in the tests of the daemon like one of the daemon's.
     stats_.answer_us.reserve(most_answers);
@@ -69,7 +69,7 @@ class ServedBus {
   OverheardOutputs real_outputs_;
   std::vector<CanFrame> outgoing_;
   std::vector<std::uint32_t> dropped_ids_;
-  std::array<int, devices::NodeRack::slots> off_bus_{};
+  std::array<int, capacity::nodes> off_bus_{};
   std::function<void(Time, const CanFrame&)> tap_;
   bool powered_ = false;
   int link_error_ = 0;

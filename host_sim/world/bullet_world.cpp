@@ -8,32 +8,32 @@
 namespace lf::world {
 namespace {
 
-using scene::BodyId, scene::Role;
+using scene::Role;
 
 bool is_arm(Role role) { return role == Role::link || role == Role::hand || role == Role::finger; }
 
 // Whether two bodies can ever meet: not neighbours in the arm's chain, whose shapes overlap at the joint, nor what stands still together, nor the panel and what is set
 // in it, nor an obstacle and anything but the arm and objects. Objects stand still, as vehicle and panel do, and meet all that moves.
-bool can_meet(int first, int second, const std::vector<Role>& roles) {
+bool can_meet(int first, int second, const std::vector<Role>& roles, const scene::OwnBodies& own) {
   if (first < 0 || second < 0 || first == second) return false;
   const auto low = std::size_t(std::min(first, second)), high = std::size_t(std::max(first, second));
   const Role a = roles[low], b = roles[high];
   if (b == Role::object) return a != Role::vehicle && a != Role::panel && a != Role::object;
   if (!is_arm(a) && !is_arm(b)) return false;
   if (!is_arm(b)) return true;  // the arm comes before all that it can meet but the vehicle
-  if (low <= std::size_t(BodyId::forearm) && high == low + 1) return false;
-  return !(b == Role::finger &&
-           (low == std::size_t(BodyId::wrist) || low == std::size_t(BodyId::forearm)));  // the jaw opens sideways, ahead of the forearm
+  if (low < own.hand && high == low + 1) return false;
+  return !(b == Role::finger && (low == own.hand || low == own.before_hand()));  // the jaw opens sideways, ahead of the forearm
 }
 
 struct PairFilter : btOverlapFilterCallback {
-  explicit PairFilter(const scene::Scene& scene) {
+  explicit PairFilter(const scene::Scene& scene) : own(scene::own_bodies(scene)) {
     for (const scene::Body& body : scene) roles.push_back(body.role);
   }
   std::vector<Role> roles;
+  scene::OwnBodies own;
   bool needBroadphaseCollision(btBroadphaseProxy* a, btBroadphaseProxy* b) const override {
     return can_meet(static_cast<const btCollisionObject*>(a->m_clientObject)->getUserIndex(),
-                    static_cast<const btCollisionObject*>(b->m_clientObject)->getUserIndex(), roles);
+                    static_cast<const btCollisionObject*>(b->m_clientObject)->getUserIndex(), roles, own);
   }
 };
 

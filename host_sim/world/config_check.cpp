@@ -45,11 +45,11 @@ void check_button(const ButtonConfig& button, const std::string& name) {
 }
 
 void check_arm(const WorldConfig& config) {
-  for (std::size_t i = 1; i < ArmDescription::link_count; ++i) {
+  for (std::size_t i = 1; i < config.arm.links.size(); ++i) {
     expect_positive(config.arm.links[i].mass_kg, "arm link " + config.arm.links[i].name + " mass");
     expect(std::isfinite(config.arm.links[i].wet_weight_n), "arm link " + config.arm.links[i].name + " wet weight", "must be finite");
   }
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < config.arm.joints.size(); ++i) {
     const ArmJoint& joint = config.arm.joints[i];
     expect(joint.lower_rad < joint.upper_rad, "arm joint " + joint.name, "needs lower < upper");
     expect(config.start_rad[i] >= joint.lower_rad && config.start_rad[i] <= joint.upper_rad, "start_rad of " + joint.name,
@@ -60,11 +60,11 @@ void check_arm(const WorldConfig& config) {
   }
 }
 
-void check_scene(const scene::Scene& scene, const PanelLayout& layout) {
+void check_scene(const scene::Scene& scene, const PanelLayout& layout, std::size_t arm_joints) {
   PanelNames names;
   names.valves.resize(layout.valves.size());
   names.buttons.resize(layout.buttons.size());
-  const scene::Scene own = scene::bare_scene(layout, names);
+  const scene::Scene own = scene::bare_scene(layout, names, std::vector<std::string>(arm_joints));
   expect(scene.size() >= own.size() && scene.size() <= scene::max_bodies, "scene",
          "must have its " + std::to_string(own.size()) + " own bodies, and " + std::to_string(scene::max_bodies) + " at most");
   for (std::size_t i = 0; i < own.size(); ++i) expect(scene[i].role == own[i].role, "scene", "must begin with its own bodies");
@@ -80,7 +80,7 @@ void check_scene(const scene::Scene& scene, const PanelLayout& layout) {
 void check(const WorldConfig& config) {
   expect(config.base_from_panel.matrix().allFinite() && config.base_from_panel.linear().isUnitary(1e-6), "base_from_panel",
          "must be a finite rotation and translation");
-  check_scene(config.scene, config.layout);
+  check_scene(config.scene, config.layout, config.arm.arm_joints());
   expect(config.valves.size() == config.layout.valves.size(), "valves", "must be as many as the layout's");
   expect(config.buttons.size() == config.layout.buttons.size(), "buttons", "must be as many as the layout's");
   expect(config.vehicle_com_m.allFinite(), "vehicle_com_m", "must be finite");

@@ -53,6 +53,7 @@ ContactSensor::ContactSensor(double window_s, double judged_window_s, double ste
     : judged_window_s_(judged_window_s),
       step_s_(step_s),
       vehicle_com_m_(vehicle_com_m),
+      own_(scene::own_bodies(scene)),
       tool_(window_s, step_s),
       base_(window_s, step_s),
       handle_(window_s, step_s),
@@ -73,12 +74,12 @@ void ContactSensor::take(const std::vector<ContactImpulse>& impulses, const Pose
       if (own == Role::handle) add(handle, contact.impulse_n_s, Vec3::Zero());
       if (!is_robot(own) || is_robot(other)) continue;
       add(base, contact.impulse_n_s, contact.point_m - vehicle_com_m_);
-      add(on_body_now_[std::size_t(contact.b)], -contact.impulse_n_s, Vec3::Zero());
+      add(on_body_now_[contact.b], -contact.impulse_n_s, Vec3::Zero());
       if (is_beyond_wrist(own)) {
         add(tool, tool_from_base * contact.impulse_n_s, tool_from_base * (contact.point_m - base_from_tool.translation()));
       }
       if (own == Role::finger && other == Role::handle) {
-        add(grip[contact.a == BodyId::finger_a ? 0 : 1], tool_from_base * contact.impulse_n_s, Vec3::Zero());
+        add(grip[contact.a == own_.finger_a() ? 0 : 1], tool_from_base * contact.impulse_n_s, Vec3::Zero());
       }
     }
     if (!contact_is_intended(role(seen.a), role(seen.b))) add_to_unintended(seen, time_s);
@@ -126,7 +127,7 @@ ContactReport ContactSensor::report() const {
   report.grip_force_n = 0.5 * (std::abs(grip_[0].mean().force_n.x()) + std::abs(grip_[1].mean().force_n.x()));
   report.largest_force_n = largest_force_n();
   report.peak_force_n = peak_force_n_;
-  report.obstacle_force_n = on_body_[std::size_t(BodyId::obstacle)].mean().force_n.norm();
+  report.obstacle_force_n = on_body_[own_.obstacle()].mean().force_n.norm();
   for (const Unintended& pair : unintended_) report.unintended.push_back(pair.contact);
   return report;
 }

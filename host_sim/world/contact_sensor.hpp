@@ -14,7 +14,7 @@ namespace lf::world {
 
 // The impulse of the last step on body `a` by body `b`, in B.
 struct ContactImpulse {
-  scene::BodyId a{}, b{};
+  scene::BodyId a = 0, b = 0;
   Vec3 point_m = Vec3::Zero();
   Vec3 impulse_n_s = Vec3::Zero();
 };
@@ -49,12 +49,13 @@ class ContactSensor {
     std::string name;
     scene::Role role{};
   };
-  scene::Role role(scene::BodyId body) const { return bodies_[static_cast<std::size_t>(body)].role; }
-  const std::string& name(scene::BodyId body) const { return bodies_[static_cast<std::size_t>(body)].name; }
+  scene::Role role(scene::BodyId body) const { return bodies_[body].role; }
+  const std::string& name(scene::BodyId body) const { return bodies_[body].name; }
 
   double judged_window_s_, step_s_;
   Vec3 vehicle_com_m_;
   std::vector<Touchable> bodies_;
+  scene::OwnBodies own_;
   ForceWindow tool_, base_, handle_;
   std::array<ForceWindow, 2> grip_;
   std::vector<ForceWindow> on_body_;  // by the robot, on each body that is not of it

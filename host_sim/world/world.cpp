@@ -23,8 +23,6 @@
 namespace lf::world {
 namespace {
 
-using scene::BodyId;
-
 // The valve and the buttons join the simulation when the arm comes this near, and leave it once they rest and it is gone: at rest they change nothing. The arm
 // moves by less than 2 mm a step.
 constexpr double near_m = 0.02;
@@ -73,6 +71,7 @@ class Digest {
 
 struct World::Impl {
   WorldConfig config;
+  scene::OwnBodies own;
   BulletWorld bullet;
   ArmBody arm;
   CollisionShape panel_shape;
@@ -90,10 +89,11 @@ struct World::Impl {
 
   explicit Impl(const WorldConfig& from)
       : config(checked(from)),
+        own(scene::own_bodies(config.scene)),
         bullet(config.solver_iterations, config.restitution, config.scene),
         arm(config.arm, config.scene,
             {config.start_rad, config.joint_drag_nm_s, config.drive_stiffness_nm_rad, config.step_s, config.drag_coefficient}),
-        panel_shape(make_collision_shape(config.scene[std::size_t(BodyId::panel)], Pose::Identity())),
+        panel_shape(make_collision_shape(config.scene[own.panel()], Pose::Identity())),
         own_bodies(scene::own_body_count(config.scene)),
         sensor(config.force_window_s, config.judged_window_s, config.step_s, config.vehicle_com_m, config.scene),
         handle_is_there(config.valves.size(), true) {
@@ -101,7 +101,7 @@ struct World::Impl {
     arm.part().enter(bullet.get());
     panel = std::make_unique<btRigidBody>(0, nullptr, panel_shape.compound.get());
     panel->setWorldTransform(to_bullet(config.base_from_panel));
-    panel->setUserIndex(int(BodyId::panel));
+    panel->setUserIndex(int(own.panel()));
     bullet.get().addCollisionObject(panel.get());
     for (std::size_t i = own_bodies; i < config.scene.size(); ++i)
       objects.push_back(std::make_unique<FixedObject>(bullet.get(), config.scene[i], config.scene[i].base_from_body, int(i)));
@@ -151,7 +151,7 @@ struct World::Impl {
   }
 
   void add_valves_and_buttons() {
-    std::size_t body = scene::first_feature;
+    std::size_t body = own.first_feature();
     for (std::size_t i = 0; i < config.valves.size(); ++i, ++body)
       valves.emplace_back(config.valves[i], base_from_place(config, config.layout.valves[i].at_m), config.scene[body], int(body),
                           config.step_s);
@@ -215,14 +215,15 @@ void World::break_handle(std::size_t valve) {
 }
 
 void World::push_obstacle() {
-  const Vec3 wrist_m = impl_->arm.base_from_link(std::size_t(BodyId::wrist)).translation();
-  if (!impl_->obstacle) impl_->obstacle = std::make_unique<Obstacle>(impl_->bullet.get(), wrist_m, int(BodyId::obstacle));
+  const Vec3 wrist_m = impl_->arm.base_from_link(impl_->own.hand).translation();
+  if (!impl_->obstacle) impl_->obstacle = std::make_unique<Obstacle>(impl_->bullet.get(), wrist_m, int(impl_->own.obstacle()));
 }
 
-void World::block_jaw(double lower_rad, double upper_rad) { impl_->arm.limit(Joint::jaw, lower_rad, upper_rad); }
+void World::block_jaw(double lower_rad, double upper_rad) { impl_->arm.limit_jaw(lower_rad, upper_rad); }
 
 double World::time_s() const { return double(impl_->steps) * impl_->config.step_s; }
 JointReadings World::readings() const { return impl_->arm.readings(); }
+Pose World::base_from_panel() const { return impl_->config.base_from_panel; }
 Pose World::base_from_tool() const { return impl_->arm.base_from_tool(); }
 std::size_t World::valve_count() const { return impl_->valves.size(); }
 double World::valve_angle_rad(std::size_t valve) const { return impl_->valves.at(valve).angle_rad(); }
@@ -236,9 +237,9 @@ scene::BodyPoses World::base_from_body() const {
   scene::BodyPoses poses;
   poses.reserve(impl_->config.scene.size());
   for (const scene::Body& body : impl_->config.scene) poses.push_back(body.base_from_body);
-  for (std::size_t i = 0; i < ArmDescription::link_count; ++i) poses[i] = impl_->arm.base_from_link(i);
-  poses[std::size_t(BodyId::panel)] = impl_->config.base_from_panel;
-  std::size_t body = scene::first_feature;
+  for (std::size_t i = 0; i < impl_->config.arm.links.size(); ++i) poses[i] = impl_->arm.base_from_link(i);
+  poses[impl_->own.panel()] = impl_->config.base_from_panel;
+  std::size_t body = impl_->own.first_feature();
   for (const ValveBody& valve : impl_->valves) poses[body++] = valve.base_from_handle();
   for (const ButtonBody& button : impl_->buttons) poses[body++] = button.base_from_cap();
   return poses;

@@ -46,6 +46,12 @@ struct ButtonConfig {
   double mass_kg = 0.25;  // cap, plunger and water; below 0.2 kg a bottomed cap overtravels (Bullet, 1 kHz, 30 iterations)
 };
 
+// What screws, links and pads give way by under load, lumped at the joints: of the first joint, of roll and jaw, and of those between. 4000 N m/rad is 30 kN/m at the
+// tool, and 0.2 mm of sag from the default arm's weight in water.
+inline constexpr double first_stiffness_nm_rad = 1500, stiffness_nm_rad = 4000, end_stiffness_nm_rad = 1000;
+// At which a run finds the jaw.
+inline constexpr double half_open_rad = 0.3;
+
 struct WorldConfig {
   ArmDescription arm;
   PanelLayout layout;
@@ -53,11 +59,10 @@ struct WorldConfig {
   Pose base_from_panel = Pose::Identity();  // true
   std::vector<ValveConfig> valves{{}};      // as the layout's
   std::vector<ButtonConfig> buttons{{}, {}, {}};
-  std::array<double, joint_count> start_rad{0, 0.60, 1.90, 0, 0.3};  // parked, jaw half open
-  Vec3 vehicle_com_m = Vec3(-0.5, 0, -0.3);                          // where the base wrench is taken, in B
-  // What screws, links and pads give way by under load, lumped at the joints; 0 rigid. 4000 N m/rad is 30 kN/m at the tool, and 0.2 mm of sag from the arm's
-  // weight in water.
-  std::array<double, joint_count> drive_stiffness_nm_rad{1500, 4000, 4000, 1000, 1000};
+  PerJoint<double> start_rad{0, 0.60, 1.90, 0, half_open_rad};  // parked
+  Vec3 vehicle_com_m = Vec3(-0.5, 0, -0.3);                     // where the base wrench is taken, in B
+  PerJoint<double> drive_stiffness_nm_rad{first_stiffness_nm_rad, stiffness_nm_rad, stiffness_nm_rad, end_stiffness_nm_rad,
+                                          end_stiffness_nm_rad};  // 0 rigid
   double drag_coefficient =
       1.1;  // of the links across the flow: a cylinder's at Reynolds numbers of 1e3 to 1e5 (Hoerner, Fluid-Dynamic Drag, 1965)
   double joint_drag_nm_s = 0.5;  // viscous, each arm joint in water, per rad/s; the jaw's fingers a tenth of it
@@ -76,9 +81,9 @@ struct ButtonState {
 
 // Two bodies that should not have met.
 struct UnintendedContact {
-  scene::BodyId a{}, b{};   // in their order
-  double first_s = 0;       // since the world began
-  double peak_force_n = 0;  // over `judged_window_s`
+  scene::BodyId a = 0, b = 0;  // in their order
+  double first_s = 0;          // since the world began
+  double peak_force_n = 0;     // over `judged_window_s`
   std::string name_a, name_b;
 };
 
@@ -123,6 +128,7 @@ class World {
   JointReadings readings() const;
   scene::BodyPoses base_from_body() const;
   Pose base_from_tool() const;
+  Pose base_from_panel() const;  // true
   std::size_t valve_count() const;
   double valve_angle_rad(std::size_t valve) const;
   double valve_speed_rad_s(std::size_t valve) const;

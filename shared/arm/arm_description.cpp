@@ -1,135 +1,22 @@
 #include "shared/arm/arm_description.hpp"
 
-#include <tinyxml2.h>
-
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <set>
 #include <string_view>
 
 #include "shared/arm/motor.hpp"
+#include "shared/arm/urdf.hpp"
 #include "shared/input_error.hpp"
-#include "shared/messages/joint_names.hpp"
 
 namespace lf {
 namespace {
 
-using tinyxml2::XMLElement;
-
-constexpr std::array<const char*, ArmDescription::link_count> link_names{"base",  "slew",     "upper_arm", "forearm",
-                                                                         "wrist", "finger_a", "finger_b"};
-
-// Elements and attributes of one URDF, with the place of what is wrong.
-class Urdf {
- public:
-  explicit Urdf(const std::string& file) : file_(file) {
-    if (document_.LoadFile(file.c_str()) != tinyxml2::XML_SUCCESS) throw InputError(file, document_.ErrorLineNum(), load_error());
-    robot_ = document_.RootElement();
-    if (robot_ == nullptr) throw InputError(file, 0, "has no element");
-    if (std::strcmp(robot_->Name(), "robot") != 0) fail(robot_, "expected <robot>, found <" + std::string(robot_->Name()) + ">");
-  }
-
-  [[noreturn]] void fail(const XMLElement* at, const std::string& message) const {
-    throw InputError(file_, at != nullptr ? at->GetLineNum() : 0, message);
-  }
-
-  const XMLElement* named(const char* tag, const std::string& name) const {
-    for (const XMLElement* e = robot_->FirstChildElement(tag); e != nullptr; e = e->NextSiblingElement(tag))
-      if (name == text(e, "name")) return e;
-    fail(robot_, "no <" + std::string(tag) + "> named '" + name + "'");
-  }
-
-  template <class Look>
-  void each(const char* tag, const Look& look) const {
-    for (const XMLElement* e = robot_->FirstChildElement(tag); e != nullptr; e = e->NextSiblingElement(tag)) look(e);
-  }
-
-  const XMLElement* child(const XMLElement* parent, const char* tag) const {
-    const XMLElement* e = parent->FirstChildElement(tag);
-    if (e == nullptr) fail(parent, label(parent) + " has no <" + tag + ">");
-    return e;
-  }
-
-  std::string text(const XMLElement* e, const char* attribute) const {
-    const char* value = e->Attribute(attribute);
-    if (value == nullptr) fail(e, label(e) + " has no " + attribute);
-    return value;
-  }
-
-  template <int N>
-  Eigen::Matrix<double, N, 1> numbers(const XMLElement* e, const char* attribute) const {
-    const std::string value = text(e, attribute);
-    const auto bad = [&] {
-      fail(e, label(e) + ": " + attribute + "=\"" + value + "\" is not " + (N == 1 ? "a number" : std::to_string(N) + " numbers"));
-    };
-    Eigen::Matrix<double, N, 1> result;
-    const char* at = value.data();
-    const char* const end = at + value.size();
-    const auto skip_spaces = [&] {
-      while (at != end && std::isspace(static_cast<unsigned char>(*at)) != 0) ++at;
-    };
-    for (int i = 0; i < N; ++i) {
-      skip_spaces();
-      const auto [next, error] = std::from_chars(at, end, result[i]);
-      if (error != std::errc() || !std::isfinite(result[i])) bad();
-      at = next;
-    }
-    skip_spaces();
-    if (at != end) bad();
-    return result;
-  }
-
-  double number(const XMLElement* e, const char* attribute) const { return numbers<1>(e, attribute)[0]; }
-  double positive(const XMLElement* e, const char* attribute) const {
-    const double value = number(e, attribute);
-    if (value <= 0) fail(e, label(e) + ": " + attribute + " must be positive");
-    return value;
-  }
-  double not_negative(const XMLElement* e, const char* attribute) const {
-    const double value = number(e, attribute);
-    if (value < 0) fail(e, label(e) + ": " + attribute + " must not be negative");
-    return value;
-  }
-
-  // The <origin> of `e`; identity when it has none, as URDF has it.
-  Pose origin(const XMLElement* e) const {
-    Pose pose = Pose::Identity();
-    const XMLElement* const origin = e->FirstChildElement("origin");
-    if (origin == nullptr) return pose;
-    if (origin->Attribute("xyz") != nullptr) pose.translation() = numbers<3>(origin, "xyz");
-    if (origin->Attribute("rpy") == nullptr) return pose;
-    const Vec3 rpy = numbers<3>(origin, "rpy");
-    using Eigen::AngleAxisd;
-    pose.linear() =
-        (AngleAxisd(rpy.z(), Vec3::UnitZ()) * AngleAxisd(rpy.y(), Vec3::UnitY()) * AngleAxisd(rpy.x(), Vec3::UnitX())).toRotationMatrix();
-    return pose;
-  }
-
-  // "joint 'elbow'", or "<limit>" for what has no name.
-  static std::string label(const XMLElement* e) {
-    std::string label = e->Name();
-    if (const char* const name = e->Attribute("name")) return label.append(" '").append(name).append("'");
-    return label.insert(0, 1, '<').append(1, '>');
-  }
-
- private:
-  std::string load_error() const {
-    switch (document_.ErrorID()) {
-      case tinyxml2::XML_ERROR_FILE_NOT_FOUND: return "no such file";
-      case tinyxml2::XML_ERROR_FILE_COULD_NOT_BE_OPENED:
-      case tinyxml2::XML_ERROR_FILE_READ_ERROR: return "cannot be read";
-      case tinyxml2::XML_ERROR_EMPTY_DOCUMENT: return "is empty";
-      default: return std::string("is not well-formed XML (") + document_.ErrorName() + ")";
-    }
-  }
-
-  std::string file_;
-  tinyxml2::XMLDocument document_;
-  const XMLElement* robot_ = nullptr;
-};
+// Of the planar form.
+constexpr std::array planar_links{"base", "slew", "upper_arm", "forearm", "wrist"};
+constexpr std::array planar_joints{"slew", "shoulder", "elbow", "roll"};
 
 scene::Shape read_geometry(const Urdf& urdf, const XMLElement* e) {
   scene::Shape shape;
@@ -184,7 +71,7 @@ Mat3 read_inertia(const Urdf& urdf, const XMLElement* inertial) {
   return inertia;
 }
 
-ArmLink read_link(const Urdf& urdf, const char* name) {
+ArmLink read_link(const Urdf& urdf, const std::string& name) {
   const XMLElement* const e = urdf.named("link", name);
   const XMLElement* const inertial = urdf.child(e, "inertial");
   ArmLink link;
@@ -200,10 +87,11 @@ ArmLink read_link(const Urdf& urdf, const char* name) {
   return link;
 }
 
-const XMLElement* joint_between(const Urdf& urdf, const char* name, const char* type, const char* parent, const char* child) {
+const XMLElement* joint_between(const Urdf& urdf, const std::string& name, const char* type, const std::string& parent,
+                                const std::string& child) {
   const XMLElement* const e = urdf.named("joint", name);
   if (urdf.text(e, "type") != type) urdf.fail(e, urdf.label(e) + " must be of type " + type);
-  const auto expect = [&](const char* tag, const char* link) {
+  const auto expect = [&](const char* tag, const std::string& link) {
     const XMLElement* const end = urdf.child(e, tag);
     if (urdf.text(end, "link") != link) urdf.fail(end, urdf.label(e) + ": its " + tag + " must be link '" + link + "'");
   };
@@ -213,7 +101,7 @@ const XMLElement* joint_between(const Urdf& urdf, const char* name, const char* 
 }
 
 // What every moving joint has: place, axis and limits.
-ArmJoint read_joint(const Urdf& urdf, const char* name, const char* parent, const char* child) {
+ArmJoint read_joint(const Urdf& urdf, const std::string& name, const std::string& parent, const std::string& child) {
   const XMLElement* const e = joint_between(urdf, name, "revolute", parent, child);
   const XMLElement* const limit = urdf.child(e, "limit");
   ArmJoint joint;
@@ -278,8 +166,8 @@ void read_drive(const Urdf& urdf, ArmJoint& joint) {
     urdf.fail(e, urdf.label(e) + ": its gear has fewer than ten counts over its stroke");
 }
 
-ArmJoint read_mimic(const Urdf& urdf, const ArmJoint& jaw) {
-  ArmJoint finger_b = read_joint(urdf, "finger_b", "wrist", "finger_b");
+ArmJoint read_mimic(const Urdf& urdf, const ArmJoint& jaw, const std::string& hand) {
+  ArmJoint finger_b = read_joint(urdf, "finger_b", hand, "finger_b");
   const XMLElement* const mimic = urdf.child(urdf.named("joint", "finger_b"), "mimic");
   if (urdf.text(mimic, "joint") != jaw.name || urdf.number(mimic, "multiplier") != 1 || urdf.number(mimic, "offset") != 0)
     urdf.fail(mimic, "joint 'finger_b' must mimic 'jaw' with multiplier 1 and offset 0");
@@ -300,11 +188,64 @@ scene::Shape read_pad(const Urdf& urdf, const char* finger) {
   urdf.fail(link, urdf.label(link) + " has no <collision> named 'pad', the box by which it holds");
 }
 
+// What the arm is made of, base to tip: its links, "base" first, and the joints between them.
+struct ArmParts {
+  std::vector<std::string> links, joints;
+  bool planar = false;
+};
+
+std::string link_of(const Urdf& urdf, const XMLElement* joint, const char* end) { return urdf.text(urdf.child(joint, end), "link"); }
+
+// Files and messages have the joints by their names, beside others.
+void check_name(const Urdf& urdf, const std::string& joint) {
+  constexpr std::array taken{"io", "master", "outputs", "all", "profile", "counts_per_rev", "rated_current_a", "jaw"};
+  const auto letter = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-'; };
+  const bool plain =
+      !joint.empty() && std::isalpha(static_cast<unsigned char>(joint.front())) != 0 && std::all_of(joint.begin(), joint.end(), letter);
+  if (plain && std::find(taken.begin(), taken.end(), joint) == taken.end()) return;
+  urdf.fail(urdf.named("joint", joint), "joint '" + joint +
+                                            "': a joint's name is a letter and then letters, digits, _ and -, and none that limits, drives "
+                                            "or faults have for something else");
+}
+
+// An arm that calls its first joint 'slew' is of the form for which the core has closed forms, or is refused. Of any other it is the chain from the base to the
+// link that carries the tool.
+ArmParts parts_of(const Urdf& urdf) {
+  ArmParts arm;
+  std::vector<const XMLElement*> joints;
+  urdf.each("joint", [&](const XMLElement* e) {
+    joints.push_back(e);
+    arm.planar = arm.planar || urdf.text(e, "name") == planar_joints.front();
+  });
+  if (arm.planar) {
+    arm.links.assign(planar_links.begin(), planar_links.end());
+    arm.joints.assign(planar_joints.begin(), planar_joints.end());
+    return arm;
+  }
+  arm.links.push_back(link_of(urdf, urdf.named("joint", "tool"), "parent"));
+  while (arm.links.back() != "base") {
+    const auto before =
+        std::find_if(joints.begin(), joints.end(), [&](const XMLElement* e) { return link_of(urdf, e, "child") == arm.links.back(); });
+    if (before == joints.end())
+      urdf.fail(urdf.named("link", arm.links.back()), "link '" + arm.links.back() + "' hangs on no joint: an arm begins at link 'base'");
+    arm.joints.push_back(urdf.text(*before, "name"));
+    arm.links.push_back(link_of(urdf, *before, "parent"));
+    if (arm.joints.size() > capacity::arm_joints)
+      urdf.fail(*before, "the arm has more than " + std::to_string(capacity::arm_joints) +
+                             " joints before its jaw, or hangs on itself; the core holds " + std::to_string(capacity::arm_joints));
+  }
+  if (arm.joints.size() < 2) urdf.fail(urdf.named("joint", "tool"), "the arm has fewer than two joints before its jaw");
+  for (const std::string& joint : arm.joints) check_name(urdf, joint);
+  std::reverse(arm.links.begin(), arm.links.end());
+  std::reverse(arm.joints.begin(), arm.joints.end());
+  return arm;
+}
+
 // A part that nobody reads would be in nobody's way: neither seen nor kept clear.
-void check_parts(const Urdf& urdf) {
-  std::vector<std::string> links(link_names.begin(), link_names.end()), joints(joint_names.begin(), joint_names.end());
-  links.emplace_back("tool");
-  joints.insert(joints.end(), {"finger_b", "tool"});
+void check_parts(const Urdf& urdf, const ArmParts& arm) {
+  std::vector<std::string> links = arm.links, joints = arm.joints;
+  links.insert(links.end(), {"finger_a", "finger_b", "tool"});
+  joints.insert(joints.end(), {"jaw", "finger_b", "tool"});
   const auto known = [](const std::vector<std::string>& names, const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
   };
@@ -313,9 +254,10 @@ void check_parts(const Urdf& urdf) {
     const std::string name = urdf.text(e, "name");
     if (!seen.insert(name).second) urdf.fail(e, urdf.label(e) + " is there twice");
     if (!known(joints, name) && urdf.text(e, "type") != "fixed")
-      urdf.fail(e, urdf.label(e) +
-                       " can move: missions fly arms of slew, shoulder, elbow, roll and jaw only. `lanternfish check arm FILE --tool LINK` "
-                       "reads any other");
+      urdf.fail(
+          e, urdf.label(e) +
+                 " can move, and is none of the arm's: the arm has the joints from link 'base' to the one that carries 'tool', 'jaw' and "
+                 "'finger_b'. `lanternfish check arm FILE --tool LINK` reads any other");
   });
   seen.clear();
   urdf.each("link", [&](const XMLElement* e) {
@@ -348,7 +290,7 @@ void check_jaw(const Urdf& urdf, const ArmDescription& arm) {
   const auto expect = [&](bool holds, const char* joint, const char* message) {
     if (!holds) urdf.fail(urdf.named("joint", joint), std::string("joint '") + joint + "' " + message);
   };
-  const ArmJoint& a = arm.joints[static_cast<std::size_t>(Joint::jaw)];
+  const ArmJoint& a = arm.jaw();
   const auto square = [&](const ArmJoint& joint) {
     return joint.parent_from_joint.linear().isIdentity(tolerance) && std::abs(joint.parent_from_joint.translation().y()) < tolerance;
   };
@@ -375,6 +317,35 @@ void check_jaw(const Urdf& urdf, const ArmDescription& arm) {
     urdf.fail(urdf.named("link", "finger_b"), "link 'finger_b': its pad must be the mirror image of finger_a's");
 }
 
+// What the core asks of an arm whose form has no closed forms of its own.
+void check_any_chain(const Urdf& urdf, const ArmDescription& arm) {
+  constexpr double tolerance = 1e-9;
+  const ArmJoint& roll = arm.roll();
+  if ((roll.axis - Vec3::UnitZ()).norm() > tolerance)
+    urdf.fail(urdf.named("joint", roll.name),
+              "joint '" + roll.name + "' must turn about its own z: the last of the arm's joints rolls the tool");
+  // It is not held against the vehicle that it stands on.
+  constexpr double turns_in_place_m = 0.15;
+  const ArmJoint& first = arm.joints.front();
+  for (const scene::Shape& shape : arm.links[1].shapes) {
+    if (!shape.collides) continue;
+    const Vec3 centre = shape.body_from_shape.translation();
+    const double beyond_m =
+        shape.kind == scene::ShapeKind::box ? shape.size_m.norm() / 2 : std::hypot(shape.size_m.x(), shape.size_m.z() / 2);
+    const double out_m = centre.cross(first.axis).norm() + beyond_m;
+    if (out_m > turns_in_place_m)
+      urdf.fail(urdf.named("link", arm.links[1].name), "link '" + arm.links[1].name + "' comes " +
+                                                           std::to_string(std::lround(1e3 * out_m)) + " mm from the axis of '" +
+                                                           first.name +
+                                                           "': the first link is not kept clear of the vehicle that it stands on, and may "
+                                                           "reach 150 mm. Give what is longer a link of its own");
+  }
+  const Pose& tool = arm.wrist_from_tool;
+  if (!tool.linear().isIdentity(tolerance) || tool.translation().head<2>().norm() > tolerance)
+    urdf.fail(urdf.named("joint", "tool"),
+              "joint 'tool' must lie on the z axis of joint '" + roll.name + "', unturned: that joint rolls the tool about its approach");
+}
+
 // The closed forms of the core hold for one kind of chain only: slew axis through the base's origin, then shoulder and elbow parallel and square to it,
 // the roll axis square to these, and everything in the one plane that the slew turns.
 void check_chain(const Urdf& urdf, const ArmDescription& arm) {
@@ -383,8 +354,8 @@ void check_chain(const Urdf& urdf, const ArmDescription& arm) {
   };
   constexpr double tolerance = 1e-9;
   const auto same = [](const Vec3& a, const Vec3& b) { return (a - b).norm() < tolerance; };
-  for (std::size_t i = 0; i < arm_joint_count; ++i)
-    expect(same(arm.joints[i].axis, Vec3::UnitZ()), joint_names[i], "must turn about its own z");
+  for (std::size_t i = 0; i < arm.arm_joints(); ++i)
+    expect(same(arm.joints[i].axis, Vec3::UnitZ()), planar_joints[i], "must turn about its own z");
   const Pose slew = arm.joints[0].parent_from_joint;
   const Pose shoulder = slew * arm.joints[1].parent_from_joint;
   const Pose elbow = shoulder * arm.joints[2].parent_from_joint;
@@ -411,19 +382,31 @@ void check_chain(const Urdf& urdf, const ArmDescription& arm) {
 
 }  // namespace
 
+JointNames ArmDescription::names() const {
+  std::vector<std::string> names;
+  for (const ArmJoint& joint : joints) names.push_back(joint.name);
+  return JointNames(names);
+}
+
 ArmDescription load_arm_urdf(const std::string& path) {
   const Urdf urdf(path);
+  const ArmParts parts = parts_of(urdf);
+  const std::string& hand = parts.links.back();
   ArmDescription arm;
-  for (std::size_t i = 0; i < link_names.size(); ++i) arm.links[i] = read_link(urdf, link_names[i]);
-  for (std::size_t i = 0; i < joint_names.size(); ++i) {
-    arm.joints[i] = read_joint(urdf, joint_names[i], link_names[i], link_names[i + 1]);
-    read_drive(urdf, arm.joints[i]);
+  arm.form = parts.planar ? ArmModel::Form::planar : ArmModel::Form::chain;
+  for (const std::string& link : parts.links) arm.links.push_back(read_link(urdf, link));
+  for (const char* finger : {"finger_a", "finger_b"}) arm.links.push_back(read_link(urdf, finger));
+  for (std::size_t i = 0; i < parts.joints.size(); ++i) {
+    arm.joints.push_back(read_joint(urdf, parts.joints[i], parts.links[i], parts.links[i + 1]));
+    read_drive(urdf, arm.joints.back());
   }
-  arm.finger_b = read_mimic(urdf, arm.joints[static_cast<std::size_t>(Joint::jaw)]);
-  arm.wrist_from_tool = urdf.origin(joint_between(urdf, "tool", "fixed", "wrist", "tool"));
-  check_parts(urdf);
+  arm.joints.push_back(read_joint(urdf, "jaw", hand, "finger_a"));
+  read_drive(urdf, arm.joints.back());
+  arm.finger_b = read_mimic(urdf, arm.jaw(), hand);
+  arm.wrist_from_tool = urdf.origin(joint_between(urdf, "tool", "fixed", hand, "tool"));
+  check_parts(urdf, parts);
   check_shapes(urdf, arm);
-  check_chain(urdf, arm);
+  parts.planar ? check_chain(urdf, arm) : check_any_chain(urdf, arm);
   arm.pad = read_pad(urdf, "finger_a");
   check_jaw(urdf, arm);
   return arm;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "shared/arm/arm_model.hpp"
+#include "shared/arm/joint_names.hpp"
 #include "shared/geometry/pose.hpp"
 #include "shared/messages/joint_io.hpp"
 #include "shared/scene/scene.hpp"
@@ -48,16 +49,22 @@ struct ArmJoint {
   ArmFriction friction;
 };
 
-// Bodies in the order of scene::BodyId: base (vehicle), slew, upper_arm, forearm, wrist, finger_a, finger_b.
-// Joint i moves body i + 1, whose parent is body i; finger_b hangs on the wrist and mimics finger_a (opening positive on both).
-// The slew's parent_from_joint carries the mount, base_from_arm: a body's pose is the product of parent_from_joint and the turn about `axis`, nothing else.
+// Bodies in the order of scene::BodyId: base (vehicle), the arm's links, base to tip, finger_a, finger_b.
+// Joint i moves body i + 1, whose parent is body i; finger_b hangs on the arm's last link and mimics finger_a (opening positive on both).
+// The first joint's parent_from_joint carries the mount, base_from_arm: a body's pose is the product of parent_from_joint and the turn about `axis`, nothing else.
 struct ArmDescription {
-  static constexpr std::size_t link_count = 7;
-  std::array<ArmLink, link_count> links;
-  std::array<ArmJoint, joint_count> joints;
+  std::vector<ArmLink> links;
+  std::vector<ArmJoint> joints;  // the arm's, base to tip; the last of them turns about the tool's axis, the roll. After them the jaw's
+  ArmModel::Form form = ArmModel::Form::planar;
   ArmJoint finger_b;                        // mimic of the jaw joint
   Pose wrist_from_tool = Pose::Identity();  // the tool frame on the wrist body
   scene::Shape pad;                         // of finger_a: the box whose +x face holds
+
+  std::size_t arm_joints() const { return joints.size() - 1; }
+  const ArmJoint& roll() const { return joints[joints.size() - 2]; }
+  const ArmJoint& jaw() const { return joints.back(); }
+  ArmJoint& jaw() { return joints.back(); }
+  JointNames names() const;
 };
 
 // Reads and checks a URDF. Throws InputError with file and line: unreadable file, missing joint or link, limits that are not numbers or

@@ -1,11 +1,13 @@
 // An arm in the numbers that the core works with: made of a URDF when a program starts, or by the build for a core without files.
 //
-// The arm is of one form. The slew turns a vertical plane about base z; shoulder and elbow, parallel, move within that plane; the roll axis lies in it, and the
-// tool point on the roll axis. Two fingers, each the other's mirror image, turn about axes square to the tool's x-z plane.
+// An arm is a chain of joints that turn, the last of them, the roll, about the tool's own axis. Two fingers, each the other's mirror image, turn about axes square
+// to the tool's x-z plane. Arms of one form have closed forms of their own: the slew turns a vertical plane about base z; shoulder and elbow, parallel, move
+// within that plane; the roll axis lies in it, and the tool point on the roll axis.
 #pragma once
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include "shared/geometry/pose.hpp"
 #include "shared/messages/capacity.hpp"
@@ -26,6 +28,10 @@ struct ArmActuator {
 };
 
 struct ArmModel {
+  enum class Form : std::uint8_t {
+    planar,  // slew, shoulder, elbow, roll
+    chain,   // any other
+  };
   // Denavit and Hartenberg's numbers, as far as this form has any that are not 0 or a quarter turn.
   struct Planar {
     double mount_yaw_rad = 0;  // base_from_arm is a turn by this about z
@@ -51,22 +57,49 @@ struct ArmModel {
     double pad_width_m = 0, pad_depth_m = 0;
     double lower_rad = 0, upper_rad = 0;
   };
-  // All points within `radius_m` of the segment a-b.
-  struct Capsule {
-    std::size_t link = 0;  // its scene::BodyId: 1 slew .. 6 finger_b
-    Vec3 a_m = Vec3::Zero();
-    Vec3 b_m = Vec3::Zero();
-    double radius_m = 0;
+  // All points within a radius of the segment a-b. Small, since a core holds many: figures are rounded, and the radius is grown by what that may be.
+  class Capsule {
+   public:
+    Capsule() = default;
+    Capsule(std::size_t link, const Vec3& a_m, const Vec3& b_m, double radius_m)
+        : a_m_(a_m.cast<float>()),
+          b_m_(b_m.cast<float>()),
+          radius_m_(static_cast<float>(radius_m + rounding_m)),
+          link_(static_cast<std::uint8_t>(link)) {}
+
+    std::size_t link() const { return link_; }  // its scene::BodyId
+    Vec3 a_m() const { return a_m_.cast<double>(); }
+    Vec3 b_m() const { return b_m_.cast<double>(); }
+    double radius_m() const { return radius_m_; }
+    static constexpr double rounding_m = 1e-6;  // of numbers below 4 m, and of the radius itself
+
+   private:
+    Eigen::Vector3f a_m_ = Eigen::Vector3f::Zero(), b_m_ = Eigen::Vector3f::Zero();
+    float radius_m_ = 0;
+    std::uint8_t link_ = 0;
   };
 
-  Planar planar;
-  std::array<Joint, joint_count> joints;
-  // parent_from_joint of slew, shoulder, elbow, roll, jaw (finger_a) and finger_b.
-  std::array<Pose, joint_count + 1> origins{Pose::Identity(), Pose::Identity(), Pose::Identity(),
-                                            Pose::Identity(), Pose::Identity(), Pose::Identity()};
+  std::size_t arm_joints =
+      4;  // that place the tool, base to tip; the last of them turns about the tool's own axis, the roll. The jaw comes after them
+  std::size_t joint_count() const { return arm_joints + 1; }
+
+  Form form = Form::planar;
+  Planar planar;        // of that form
+  double tool_z_m = 0;  // the tool point on the roll's axis, in the last link's frame
+  PerJoint<Joint> joints;
+  // parent_from_joint of the arm's joints, of the jaw (finger_a) and of finger_b. Links' frames are turned so that each of the arm's joints turns about its z.
+  static constexpr std::size_t max_links = capacity::joints + 1;
+  std::array<Pose, max_links> origins = at_the_parent();
   Jaw jaw;
   // Contain the collision shapes of the moving links; each in its link's frame.
   StaticVector<Capsule, capacity::arm_shapes> capsules;
+
+ private:
+  static std::array<Pose, max_links> at_the_parent() {
+    std::array<Pose, max_links> origins;
+    origins.fill(Pose::Identity());
+    return origins;
+  }
 };
 
 }  // namespace lf

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "shared/geometry/pose.hpp"
 
@@ -30,7 +31,7 @@ ArmModel::Planar planar(const ArmDescription& arm) {
 }
 
 ArmModel::Jaw jaw(const ArmDescription& arm) {
-  const ArmJoint& joint = arm.joints[static_cast<std::size_t>(Joint::jaw)];
+  const ArmJoint& joint = arm.jaw();
   const Vec3 pivot = joint.parent_from_joint.translation(), pad = arm.pad.body_from_shape.translation();
   return {.pivot_x_m = pivot.x(),
           .pivot_z_m = pivot.z() - arm.wrist_from_tool.translation().z(),
@@ -67,12 +68,20 @@ ArmModel::Capsule capsule(std::size_t link, const scene::Shape& shape) {
   }
 }
 
+// That takes z to the axis, by the shortest way.
+Mat3 turn_to(const Vec3& axis) { return Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), axis).toRotationMatrix(); }
+
 }  // namespace
 
 ArmModel make_model(const ArmDescription& description) {
   ArmModel model;
-  model.planar = planar(description);
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  model.arm_joints = description.arm_joints();
+  model.form = description.form;
+  if (description.form == ArmModel::Form::planar) model.planar = planar(description);
+  model.tool_z_m = description.wrist_from_tool.translation().z();
+  // The core's joints turn about their own z. A link's frame is turned so, and what is given in it as well.
+  std::vector<Mat3> link_from_turned(description.links.size(), Mat3::Identity());
+  for (std::size_t i = 0; i < description.joints.size(); ++i) {
     const ArmJoint& joint = description.joints[i];
     model.joints[i] = {.lower_rad = joint.lower_rad,
                        .upper_rad = joint.upper_rad,
@@ -81,13 +90,18 @@ ArmModel make_model(const ArmDescription& description) {
                        .effort_nm = joint.effort_nm,
                        .rated_torque_nm = joint.rated_torque_nm,
                        .actuator = joint.actuator};
-    model.origins[i] = joint.parent_from_joint;
+    const bool of_arm = i < description.arm_joints();
+    if (of_arm && !joint.axis.isApprox(Vec3::UnitZ(), 1e-12)) link_from_turned[i + 1] = turn_to(joint.axis);
+    model.origins[i] = Pose(link_from_turned[i].transpose()) * joint.parent_from_joint * Pose(link_from_turned[i + 1]);
   }
-  model.origins[joint_count] = description.finger_b.parent_from_joint;
+  const std::size_t fingers = description.joints.size();
+  model.origins[fingers] = Pose(link_from_turned[fingers - 1].transpose()) * description.finger_b.parent_from_joint;
   model.jaw = jaw(description);
-  for (std::size_t link = 1; link < ArmDescription::link_count; ++link) {  // no capsule resembles the base's plate
-    for (const scene::Shape& shape : description.links[link].shapes) {
-      if (shape.collides) (void)model.capsules.push_back(capsule(link, shape));
+  for (std::size_t link = 1; link < description.links.size(); ++link) {  // no capsule resembles the base's plate
+    for (scene::Shape shape : description.links[link].shapes) {
+      if (!shape.collides) continue;
+      shape.body_from_shape = Pose(link_from_turned[link].transpose()) * shape.body_from_shape;
+      (void)model.capsules.push_back(capsule(link, shape));
     }
   }
   return model;

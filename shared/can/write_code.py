@@ -35,7 +35,7 @@ def header(table):
              f"inline constexpr std::uint8_t master_node = 0x{bus['master_node']:02X};"]
     for key in ("master_heartbeat", "master_heartbeat_timeout", "node_heartbeat", "node_heartbeat_timeout", "process_data_deadline"):
         lines.append(f"inline constexpr Duration {key} = Duration::from_ms({bus[key + '_ms']});")
-    lines += ["", "// Drives in the order of `Joint`.", f"inline constexpr std::array<std::uint8_t, joint_count> drive_nodes{{{', '.join(drives)}}};"]
+    lines += ["", "// The default machine's drives in the order of its joints.", f"inline constexpr std::array<std::uint8_t, {len(drives)}> drive_nodes{{{', '.join(drives)}}};"]
     lines += [f"inline constexpr std::uint8_t {n.device.code}_node = {n.number};" for n in table.nodes if not n.joint]
     lines += ["", "// Process data of transmission type 1: entries as in 1600 and 1A00 (index << 16 | sub << 8 | bits), and each value's first byte."]
     for device in table.devices:

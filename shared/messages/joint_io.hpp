@@ -6,12 +6,16 @@
 #include <array>
 #include <cstddef>
 
+#include "shared/messages/capacity.hpp"
+
 namespace lf {
 
-// The joints in the order of the arm's chain, and of the CAN nodes 1 to 5.
-enum class Joint : std::size_t { slew = 0, shoulder = 1, elbow = 2, roll = 3, jaw = 4 };
-inline constexpr std::size_t joint_count = 5;      // with the jaw
-inline constexpr std::size_t arm_joint_count = 4;  // those that place the tool
+// One of each joint: the arm's, base to tip, and after the last of them the jaw. What lies past an arm's own number of joints is not used.
+template <class T>
+using PerJoint = std::array<T, capacity::joints>;
+// One of each joint that places the tool.
+template <class T>
+using PerArmJoint = std::array<T, capacity::arm_joints>;
 
 // From the world to the drive.
 struct JointReading {
@@ -30,7 +34,7 @@ struct JointDrive {
       0;  // with which it holds against being pushed back: friction helps it there. Less than `torque_limit_nm` counts as that
 };
 
-using JointReadings = std::array<JointReading, joint_count>;
-using JointDrives = std::array<JointDrive, joint_count>;
+using JointReadings = PerJoint<JointReading>;
+using JointDrives = PerJoint<JointDrive>;
 
 }  // namespace lf

@@ -12,7 +12,7 @@ namespace lf {
 // The arm's joints at a SYNC, decoded from the drives' answers.
 struct JointSample {
   Time t;
-  std::array<double, arm_joint_count> q_rad{};
+  PerArmJoint<double> q_rad{};
 };
 
 // Why an exposure was asked for.

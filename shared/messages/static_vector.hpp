@@ -1,6 +1,7 @@
 // A vector with its storage inside: the core's only growing container.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <concepts>
 #include <cstddef>
@@ -40,6 +41,9 @@ class StaticVector {
   const T& operator[](std::size_t i) const { return items_[i]; }
   T& back() { return items_[size_ - 1]; }
   const T& back() const { return items_[size_ - 1]; }
+  friend bool operator==(const StaticVector& a, const StaticVector& b) requires std::equality_comparable<T> {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end());
+  }
   T* data() { return items_.data(); }
   const T* data() const { return items_.data(); }
   T* begin() { return items_.data(); }

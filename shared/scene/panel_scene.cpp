@@ -1,5 +1,7 @@
 #include "shared/scene/panel_scene.hpp"
 
+#include <algorithm>
+
 namespace lf::scene {
 namespace {
 
@@ -122,11 +124,17 @@ void add_button(Body& body, const PanelLayout::Button& button, const Albedo& col
 }  // namespace
 
 Scene make_scene(const ArmDescription& arm, const PanelLayout& layout, const PanelNames& names) {
-  Scene scene = bare_scene(layout, names);
-  for (std::size_t i = 0; i < ArmDescription::link_count; ++i) scene[i].shapes = arm.links[i].shapes;
-  add_vehicle(scene[std::size_t(BodyId::vehicle)]);
-  add_panel(scene[std::size_t(BodyId::panel)], layout);
-  std::size_t body = first_feature;
+  std::vector<std::string> links;
+  for (std::size_t i = 0; i < arm.arm_joints(); ++i) {
+    links.push_back(arm.links[i + 1].name);
+    std::replace(links.back().begin(), links.back().end(), '_', ' ');
+  }
+  Scene scene = bare_scene(layout, names, links);
+  const OwnBodies own(arm.arm_joints());
+  for (std::size_t i = 0; i < arm.links.size(); ++i) scene[i].shapes = arm.links[i].shapes;
+  add_vehicle(scene[OwnBodies::vehicle]);
+  add_panel(scene[own.panel()], layout);
+  std::size_t body = own.first_feature();
   for (const PanelLayout::Valve& valve : layout.valves) add_handle(scene[body++], valve);
   for (std::size_t i = 0; i < layout.buttons.size(); ++i) add_button(scene[body++], layout.buttons[i], cap_colours[i % cap_colours.size()]);
   return scene;

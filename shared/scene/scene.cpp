@@ -2,16 +2,25 @@
 
 namespace lf::scene {
 
-Scene bare_scene(const PanelLayout& layout, const PanelNames& names) {
-  Scene scene{{"vehicle", {}, Role::vehicle}, {"slew", {}, Role::link},   {"upper arm", {}, Role::link},
-              {"forearm", {}, Role::link},    {"wrist", {}, Role::hand},  {"finger a", {}, Role::finger},
-              {"finger b", {}, Role::finger}, {"panel", {}, Role::panel}, {"obstacle", {}, Role::intruder}};
+Scene bare_scene(const PanelLayout& layout, const PanelNames& names, const std::vector<std::string>& links) {
+  if (links.empty()) return bare_scene(layout, names, {"slew", "upper arm", "forearm", "wrist"});
+  Scene scene{{"vehicle", {}, Role::vehicle}};
+  for (const std::string& link : links) scene.push_back({link, {}, &link == &links.back() ? Role::hand : Role::link});
+  for (const char* finger : {"finger a", "finger b"}) scene.push_back({finger, {}, Role::finger});
+  scene.push_back({"panel", {}, Role::panel});
+  scene.push_back({"obstacle", {}, Role::intruder});
   for (std::size_t i = 0; i < layout.valves.size(); ++i) {
     const std::string& name = names.valves.at(i);
     scene.push_back({name == "valve" ? "handle" : name + "'s handle", {}, Role::handle});
   }
   for (std::size_t i = 0; i < layout.buttons.size(); ++i) scene.push_back({names.buttons.at(i) + " button", {}, Role::button});
   return scene;
+}
+
+OwnBodies own_bodies(const Scene& scene) {
+  std::size_t hand = 0;
+  while (hand < scene.size() && scene[hand].role != Role::hand) ++hand;
+  return OwnBodies(hand);
 }
 
 std::vector<std::size_t> bodies_of(const Scene& scene, Role role) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "shared/geometry/pose.hpp"
+#include "shared/messages/capacity.hpp"
 #include "shared/panel/panel_layout.hpp"
 #include "shared/panel/panel_names.hpp"
 
@@ -51,29 +52,36 @@ struct Body {
   Pose base_from_body = Pose::Identity();  // of an object; where the others are the world says
 };
 
-// Indices of the bodies that each Scene begins with. The panel's handles follow, then its buttons, then objects.
-enum class BodyId : std::size_t {
-  vehicle,  // what is bolted to the arm's base: skid, camera and lamp housings
-  slew,
-  upper_arm,
-  forearm,  // with the laser
-  wrist,
-  finger_a,
-  finger_b,
-  panel,
-  obstacle,  // what a fault of the scenario pushes against the arm: met in contacts, not seen
+// Which body of a Scene: its place there.
+using BodyId = std::size_t;
+
+// The bodies that each Scene begins with: what is bolted to the arm's base (skid, camera and lamp housings), the arm's links, base to tip, finger_a and finger_b,
+// the panel, and an obstacle, which a fault of the scenario pushes against the arm: met in contacts, not seen. The panel's handles follow, then its buttons, then objects.
+struct OwnBodies {
+  explicit constexpr OwnBodies(std::size_t arm_joints) : hand(arm_joints) {}
+
+  static constexpr BodyId vehicle = 0;
+  BodyId hand;                                                 // the last link, which carries the fingers
+  constexpr BodyId before_hand() const { return hand - 1; }    // with the laser
+  constexpr BodyId finger_a() const { return hand + 1; }       // and finger_b
+  constexpr BodyId finger_b() const { return hand + 2; }       //
+  constexpr BodyId panel() const { return hand + 3; }          //
+  constexpr BodyId obstacle() const { return hand + 4; }       //
+  constexpr BodyId first_feature() const { return hand + 5; }  // the first handle, or, on a panel without valves, the first button
 };
-inline constexpr std::size_t first_feature = 9;  // index of the first handle, or, on a panel without valves, of the first button
 inline constexpr std::size_t max_objects = 51;
 // Of a Scene: a record of the served renderer has 9 kB of poses then.
-inline constexpr std::size_t max_bodies = first_feature + PanelLayout::max_valves + PanelLayout::max_buttons + max_objects;
+inline constexpr std::size_t max_bodies =
+    OwnBodies(capacity::arm_joints).first_feature() + PanelLayout::max_valves + PanelLayout::max_buttons + max_objects;
 
 using Scene = std::vector<Body>;
 using BodyPoses = std::vector<Pose>;  // base_from_body of each body of a Scene
 
-// The robot's and the panel's bodies, named and in their order, without shapes.
-Scene bare_scene(const PanelLayout& layout, const PanelNames& names);
+// The robot's and the panel's bodies, named and in their order, without shapes. `links`: of the arm, the default machine's where none are given.
+Scene bare_scene(const PanelLayout& layout, const PanelNames& names, const std::vector<std::string>& links = {});
 inline Scene bare_scene() { return bare_scene(PanelLayout{}, PanelNames{}); }
+// Of a scene that begins with them.
+OwnBodies own_bodies(const Scene& scene);
 
 // Indices of all bodies of a role, in their order: handles as the layout's valves, buttons as its buttons.
 std::vector<std::size_t> bodies_of(const Scene& scene, Role role);

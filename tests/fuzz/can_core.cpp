@@ -6,6 +6,7 @@
 
 #include "firmware/canopen/cob_id.hpp"
 #include "firmware/canopen/network.hpp"
+#include "tests/arm5e_joints.hpp"
 #include "tests/fuzz/can_frames.hpp"
 #include "tests/unit/canopen/scripted_node.hpp"
 
@@ -47,8 +48,7 @@ std::vector<Beginning> make_beginnings() {
     }
     (void)bus.run_until([&] { return bus.network.boot().state != canopen::BootState::running; }, Duration::from_s(20));
     keep(bus);
-    for (std::size_t i = 0; i < joint_count; ++i)
-      bus.network.axis(static_cast<Joint>(i)).request(homes ? AxisRequest::home : AxisRequest::hold_enabled);
+    for (std::size_t i = 0; i < arm5e_joint::count; ++i) bus.network.axis(i).request(homes ? AxisRequest::home : AxisRequest::hold_enabled);
     for (const int steps : {4, 10, 100}) {
       bus.step(steps);
       keep(bus);
@@ -107,7 +107,7 @@ class OrderBook {
 class Session {
  public:
   Session(Network& network, Time now) : network_(network), now_(now) {
-    for (std::size_t i = 0; i < joint_count; ++i) books_[i].begin(network.axis(static_cast<Joint>(i)));
+    for (std::size_t i = 0; i < arm5e_joint::count; ++i) books_[i].begin(network.axis(i));
   }
 
   void run(Input& in) {
@@ -128,8 +128,8 @@ class Session {
     const std::uint32_t more = what >> 3U;
     switch (what & 7U) {
       case 0: return receive(frame_of(in, in.byte(), more & 7U, static_cast<std::uint8_t>(in.byte() % 10U)));
-      case 1: return receive(frame_of(in, 0x3, more % 7U, more % 7U == 6 ? Network::node_count : 8));  // TPDO 1
-      case 2: return receive(frame_of(in, 0xE, more & 7U, 1));                                         // heartbeat
+      case 1: return receive(frame_of(in, 0x3, more % 7U, more % 7U == 6 ? (arm5e_joint::count + 1) : 8));  // TPDO 1
+      case 2: return receive(frame_of(in, 0xE, more & 7U, 1));                                              // heartbeat
       case 3: return answer_sdo(in, more % 6U);
       case 4: return receive(more < 16 ? frame_of(in, 0x1, more & 7U, 8) : any_frame(in));  // EMCY
       case 5: return command(in, more);
@@ -149,7 +149,7 @@ class Session {
   void answer_as_drives(std::uint8_t what) {
     static constexpr std::array<std::uint8_t, 8> states{0x40, 0x21, 0x23, 0x27, 0x07, 0x0F, 0x08, 0x00};
     constexpr std::uint8_t remote_and_follows = 0x12;  // bits 9 and 12
-    for (std::size_t i = 0; i < joint_count; ++i) {
+    for (std::size_t i = 0; i < arm5e_joint::count; ++i) {
       const bool obeys = (what & (1U << i)) != 0;
       status_[i] = obeys ? obeyed(status_[i], told_[i].data[0]) : states[what >> 5U];
       CanFrame tpdo;
@@ -188,14 +188,14 @@ class Session {
   }
 
   void command(Input& in, std::uint32_t which) {
-    canopen::Axis& axis = network_.axis(static_cast<Joint>(which % joint_count));
+    canopen::Axis& axis = network_.axis(which % arm5e_joint::count);
     switch (in.byte() % 12U) {
       case 0: network_.start_boot(now_); return write_down(AxisRequest::disable);
       case 1: network_.shut_down(); return write_down(AxisRequest::disable);
       case 2: network_.quick_stop_all(); return write_down(AxisRequest::quick_stop);
       case 3: network_.disable_all(); return write_down(AxisRequest::disable);
       case 4: network_.remove_power(); return write_down(AxisRequest::remove_power);
-      case 5: return network_.acknowledge(which % Network::node_count);
+      case 5: return network_.acknowledge(which % (arm5e_joint::count + 1));
       case 6: return network_.io().set_outputs(in.byte());
       case 7: return (void)network_.io().trigger_camera(Duration::from_us(in.take<std::uint16_t>()));
       case 8: return (void)axis.set_target_counts(in.take<std::int32_t>());
@@ -203,13 +203,13 @@ class Session {
       default: {
         const auto request = static_cast<AxisRequest>(in.byte() % 6U);
         axis.request(request);
-        return books_[which % joint_count].order(request, axis);
+        return books_[which % arm5e_joint::count].order(request, axis);
       }
     }
   }
 
   void write_down(AxisRequest request) {
-    for (std::size_t i = 0; i < joint_count; ++i) books_[i].order(request, network_.axis(static_cast<Joint>(i)));
+    for (std::size_t i = 0; i < arm5e_joint::count; ++i) books_[i].order(request, network_.axis(i));
   }
 
   void tick(std::int32_t ms) {
@@ -219,9 +219,9 @@ class Session {
     network_.tick(now_, outbox);
     expect(outbox.size() <= 31 && network_.stats().outbox_overflows == 0, "a tick sends what it says it does");
     for (const CanFrame& frame : outbox) check(frame);
-    for (std::size_t i = 0; i < joint_count; ++i) {
-      check(network_.axis(static_cast<Joint>(i)));
-      books_[i].see(network_.axis(static_cast<Joint>(i)));
+    for (std::size_t i = 0; i < arm5e_joint::count; ++i) {
+      check(network_.axis(i));
+      books_[i].see(network_.axis(i));
     }
   }
 
@@ -230,14 +230,14 @@ class Session {
     const std::uint32_t function = id::function_of(frame.id & 0x7FFU), node = id::node_of(frame.id);
     const bool guard = (frame.id & CanFrame::remote_flag) != 0 && function == id::heartbeat;
     const bool own = frame.id == id::nmt || frame.id == id::sync || frame.id == id::heartbeat + can_map::master_node ||
-                     ((function == id::rpdo1 || function == id::sdo_request) && node >= 1 && node <= Network::node_count);
+                     ((function == id::rpdo1 || function == id::sdo_request) && node >= 1 && node <= (arm5e_joint::count + 1));
     expect(guard || own, "the master sends what is its own");
     expect(frame.length <= 8, "a frame has at most 8 bytes");
     if (guard) return;
     for (std::size_t i = frame.length; i < frame.data.size(); ++i) expect(frame.data[i] == 0, "what is not sent is 0");
     if (function == id::sdo_request) asked_[node - 1] = frame;
-    if (function == id::rpdo1 && node <= joint_count) told_[node - 1] = frame;
-    if (function == id::rpdo1 && node <= joint_count) books_[node - 1].check(frame, network_.axis(static_cast<Joint>(node - 1)));
+    if (function == id::rpdo1 && node <= arm5e_joint::count) told_[node - 1] = frame;
+    if (function == id::rpdo1 && node <= arm5e_joint::count) books_[node - 1].check(frame, network_.axis(node - 1));
   }
 
   static void check(const canopen::Axis& axis) {
@@ -248,10 +248,10 @@ class Session {
   Network& network_;
   Time now_;
   int ticks_ = 0;
-  std::array<OrderBook, joint_count> books_;
-  std::array<CanFrame, joint_count> told_{};        // the newest RPDO
-  std::array<std::uint8_t, joint_count> status_{};  // the low byte of the statusword that was answered
-  std::array<CanFrame, Network::node_count> asked_{};
+  PerJoint<OrderBook> books_;
+  PerJoint<CanFrame> told_{};        // the newest RPDO
+  PerJoint<std::uint8_t> status_{};  // the low byte of the statusword that was answered
+  std::array<CanFrame, (arm5e_joint::count + 1)> asked_{};
 };
 
 }  // namespace

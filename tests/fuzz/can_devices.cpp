@@ -13,6 +13,7 @@
 #include "host_sim/devices/drive/drive_dictionary.hpp"
 #include "host_sim/devices/io_node.hpp"
 #include "shared/arm/arm_description.hpp"
+#include "tests/arm5e_joints.hpp"
 #include "tests/fuzz/can_frames.hpp"
 
 namespace lf::fuzz {
@@ -27,8 +28,8 @@ constexpr int most_ticks = 600;
 std::vector<DriveConfig> all_drives() {
   const ArmDescription arm = load_arm_urdf((config::share_folder() / "arm" / "arm5e.urdf").string());
   std::vector<DriveConfig> all;
-  for (std::size_t i = 0; i < joint_count; ++i) all.push_back(drive_config(arm.joints[i], static_cast<std::uint8_t>(i + 1)));
-  const DriveConfig elbow = all[static_cast<std::size_t>(Joint::elbow)];
+  for (std::size_t i = 0; i < arm5e_joint::count; ++i) all.push_back(drive_config(arm.joints[i], static_cast<std::uint8_t>(i + 1)));
+  const DriveConfig elbow = all[arm5e_joint::elbow];
   for (const DriveHabit& habit : drive_habits()) {
     DriveConfig drive = elbow;
     drive.habit = &habit;

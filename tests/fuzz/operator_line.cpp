@@ -4,6 +4,7 @@
 
 #include "hal/vehicle/order_desk.hpp"
 #include "hal/vehicle/parse_order.hpp"
+#include "tests/arm5e_joints.hpp"
 #include "tests/fuzz/input.hpp"
 
 namespace lf::fuzz {
@@ -20,7 +21,7 @@ void check_refusal(const std::string& why) {
 void check_request(const hal::OperatorRequest& request) {
   expect(request.right != nullptr, "a request has its row");
   expect(std::isfinite(request.order.by_rad) && std::abs(request.order.by_rad) <= mission::largest_jog_rad, "a jog is within its range");
-  expect(static_cast<std::size_t>(request.order.joint) < joint_count, "a joint is one of the arm's");
+  expect(static_cast<std::size_t>(request.order.joint) < arm5e_joint::count, "a joint is one of the arm's");
   for (const auto& task : request.order.tasks) expect(std::abs(task.to_rad) <= 3.2 && task.button < 3, "a task is within its range");
 }
 

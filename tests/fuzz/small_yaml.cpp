@@ -23,9 +23,10 @@ void refused_or(const Read& read) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static lf::fuzz::MemoryFile file;
   const std::string path = file.holding({data, size});
-  refused_or(
-      [&] { lf::fuzz::expect(lf::safety::check(lf::config::read_limits(path)) == lf::safety::LimitsVerdict::good, "limits are good"); });
-  refused_or([&] { (void)lf::config::read_homing_file(path); });
+  refused_or([&] {
+    lf::fuzz::expect(lf::safety::check(lf::config::read_limits(path, {})) == lf::safety::LimitsVerdict::good, "limits are good");
+  });
+  refused_or([&] { (void)lf::config::read_homing_file(path, {}); });
   refused_or([&] {
     const lf::CameraIntrinsics camera = lf::vision::read_camera_calibration(path);
     lf::fuzz::expect(camera.fx > 0 && camera.fy > 0 && std::isfinite(camera.cx + camera.cy), "a camera's figures are numbers");

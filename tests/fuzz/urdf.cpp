@@ -19,7 +19,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                      "the core's lengths are numbers");
     lf::fuzz::expect(model.capsules.size() <= model.capsules.capacity(), "no shape is left out");
     for (const lf::ArmModel::Capsule& capsule : model.capsules)
-      lf::fuzz::expect(capsule.radius_m > 0 && (capsule.a_m + capsule.b_m).allFinite(), "a capsule's figures are numbers");
+      lf::fuzz::expect(capsule.radius_m() > 0 && (capsule.a_m() + capsule.b_m()).allFinite(), "a capsule's figures are numbers");
     for (const lf::ArmLink& link : arm.links) lf::fuzz::expect(link.mass_kg > 0 && std::isfinite(link.wet_weight_n), "a link has mass");
   } catch (const lf::InputError& refused) {
     lf::fuzz::expect(refused.what()[0] != '\0', "a refusal says why");

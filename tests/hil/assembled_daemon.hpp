@@ -31,6 +31,7 @@
 #include "host_sim/scenario/instance.hpp"
 #include "host_sim/serve/serve_loop.hpp"
 #include "tests/arm5e.hpp"
+#include "tests/arm5e_joints.hpp"
 #include "tests/hil/pair_linux.hpp"
 #include "tests/unit/temporary_folder.hpp"
 
@@ -79,7 +80,7 @@ inline hal::SimConfig make_sea() {
   hal::SimConfig sea = scenario::make_truth(scenario, sample, nominal, 1);
   sea.world.base_from_panel.translation().x() += 2;                          // nothing within reach
   sea.world.start_rad[4] = test::arm5e.model().joints[4].lower_rad + 0.004;  // closed: the arm may be commissioned without it
-  for (std::size_t i = 0; i < joint_count; ++i) sea.devices.drives[i].encoder_offset_rad = 0;
+  for (std::size_t i = 0; i < arm5e_joint::count; ++i) sea.devices.drives[i].encoder_offset_rad = 0;
   return sea;
 }
 
@@ -92,7 +93,7 @@ class Sea {
         loop_.turn();
         const JointDrives& drives = loop_.rack().drives();
         any_powered_ = std::any_of(drives.begin(), drives.end(), [](const JointDrive& drive) { return !drive.released; });
-        for (std::size_t i = 0; i < joint_count; ++i) actual_rad_[i] = loop_.world().readings()[i].position_rad;
+        for (std::size_t i = 0; i < arm5e_joint::count; ++i) actual_rad_[i] = loop_.world().readings()[i].position_rad;
         if (bus_off_.exchange(false)) link_.set_master_off(true);
         if (restarted_.exchange(false)) link_.set_master_off(false);
         if (const std::uint32_t told = emcy_.exchange(0); told != 0) send_emcy(static_cast<std::uint8_t>(told >> 16), told & 0xFFFF);
@@ -125,7 +126,7 @@ class Sea {
   serve::ServeLoop loop_;
   std::atomic<bool> stops_{false}, any_powered_{false}, bus_off_{false}, restarted_{false};
   std::atomic<std::uint32_t> emcy_{0};  // node and code; 0: none
-  std::array<std::atomic<double>, joint_count> actual_rad_{};
+  PerJoint<std::atomic<double>> actual_rad_{};
   std::thread thread_;
 };
 

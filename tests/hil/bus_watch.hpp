@@ -8,6 +8,7 @@
 #include "firmware/canopen/codec.hpp"
 #include "host_sim/devices/devices.hpp"
 #include "shared/can/can_map.hpp"
+#include "tests/arm5e_joints.hpp"
 
 namespace lf::test {
 
@@ -16,7 +17,7 @@ class BusWatch {
   void on_frame(const devices::BusRecord& record) {
     const CanFrame& frame = record.frame;
     const bool from_master = record.sender == can_map::master_node;
-    for (std::size_t i = 0; i < joint_count; ++i) {
+    for (std::size_t i = 0; i < arm5e_joint::count; ++i) {
       const std::uint8_t node = can_map::drive_nodes[i];
       if (from_master && frame.id == 0x200u + node) on_controlword(i, canopen::get<std::uint16_t>(frame, 0), record.delivered);
       if (!from_master && frame.id == 0x180u + node) statusword_[i] = canopen::get<std::uint16_t>(frame, 0);
@@ -36,7 +37,8 @@ class BusWatch {
   // The first time since the mark that every drive had been sent a quick stop, or a power off.
   std::optional<Time> all_stopped() const {
     std::optional<Time> latest;
-    for (const std::optional<Time>& t : quick_stop_) {
+    for (std::size_t i = 0; i < arm5e_joint::count; ++i) {
+      const std::optional<Time>& t = quick_stop_[i];
       if (!t) return std::nullopt;
       if (!latest || *t > *latest) latest = t;
     }
@@ -57,7 +59,7 @@ class BusWatch {
     }
   }
   bool any_power(const devices::Devices& devices) const {
-    for (std::size_t i = 0; i < joint_count; ++i) {
+    for (std::size_t i = 0; i < arm5e_joint::count; ++i) {
       if (powered(i, devices)) return true;
     }
     return false;
@@ -73,8 +75,8 @@ class BusWatch {
     }
   }
 
-  std::array<std::optional<Time>, joint_count> quick_stop_{};
-  std::array<std::optional<std::uint16_t>, joint_count> statusword_{};
+  PerJoint<std::optional<Time>> quick_stop_{};
+  PerJoint<std::optional<std::uint16_t>> statusword_{};
   std::optional<Time> first_open_;
   Time last_closed_;
 };

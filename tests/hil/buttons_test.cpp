@@ -4,6 +4,7 @@
 #include <string>
 
 #include "tests/arm5e.hpp"
+#include "tests/arm5e_joints.hpp"
 #include "tests/hil/operator.hpp"
 
 namespace lf::test {
@@ -187,7 +188,7 @@ TEST(AValve, IsNoSuccessWithSomethingBetweenTheFingers) {
   rig.run_for(1);
   EXPECT_FALSE(rig.outcome().success) << rig.story();
   EXPECT_EQ(rig.outcome().code, static_cast<std::int32_t>(StepFailure::jaw_not_closed)) << rig.story();
-  EXPECT_GT(arm::gap_from_jaw(test::jaw5e, angle_rad(rig, Joint::jaw)), 0.04) << "it still holds it";
+  EXPECT_GT(arm::gap_from_jaw(test::jaw5e, angle_rad(rig, arm5e_joint::jaw)), 0.04) << "it still holds it";
 }
 
 // The jaw's motor seizes before the second look: its torque rises while it stands.
@@ -199,8 +200,8 @@ TEST(APress, IsNotBegunWithAJawThatHasSeized) {
   ASSERT_TRUE(rig.run_to_end()) << rig.story();
   EXPECT_FALSE(rig.outcome().success) << rig.story();
   EXPECT_EQ(rig.outcome().fault, safety::Fault::following_error) << rig.story();
-  EXPECT_EQ(rig.outcome().code, static_cast<std::int32_t>(Joint::jaw)) << rig.story();
-  EXPECT_GT(arm::gap_from_jaw(test::jaw5e, angle_rad(rig, Joint::jaw)), 0.02) << "it has not closed";
+  EXPECT_EQ(rig.outcome().code, static_cast<std::int32_t>(arm5e_joint::jaw)) << rig.story();
+  EXPECT_GT(arm::gap_from_jaw(test::jaw5e, angle_rad(rig, arm5e_joint::jaw)), 0.02) << "it has not closed";
   EXPECT_EQ(rig.world().button(0).presses, 0u);
   EXPECT_EQ(rig.world().button(0).depth_m, 0) << "it was touched";
 }

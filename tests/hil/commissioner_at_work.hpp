@@ -11,12 +11,14 @@
 
 #include "hal/vehicle/commissioner.hpp"
 #include "hal/vehicle/tick_clock.hpp"
+#include "tests/arm5e_joint_names.hpp"
+#include "tests/arm5e_joints.hpp"
 #include "tests/hil/commissioning_bench.hpp"
 #include "tests/unit/temporary_folder.hpp"
 
 namespace lf::test {
 
-inline constexpr std::array<bool, joint_count> only_jaw{false, false, false, false, true};
+inline constexpr PerJoint<bool> only_jaw{false, false, false, false, true};
 
 // The test plays the control thread.
 class AtWork {
@@ -28,8 +30,8 @@ class AtWork {
   // The arm's joints have the simulated drives' zeros.
   void write_homing(const std::string& jaw) {
     std::string text;
-    for (std::size_t i = 0; i < arm_joint_count; ++i)
-      text += std::string(config::joint_name(i)) + ": {zero_counts: " + std::to_string(somewhere[i]) + "}\n";
+    for (std::size_t i = 0; i < arm5e_joint::of_arm; ++i)
+      text += std::string(arm5e_joint::name(i)) + ": {zero_counts: " + std::to_string(somewhere[i]) + "}\n";
     folder.write("homing.yaml", text + jaw);
   }
   // As the daemon, anew.
@@ -47,7 +49,7 @@ class AtWork {
     return done();
   }
   // Lent by the commissioner; null where it is not.
-  hal::Commissioning* begin(const std::array<bool, joint_count>& joints, bool moved = false) {
+  hal::Commissioning* begin(const PerJoint<bool>& joints, bool moved = false) {
     hal::CommissionOrder order;
     order.joints = joints;
     order.moved = moved;
@@ -80,7 +82,7 @@ class AtWork {
     return wait_for([&] { return !commissioner->busy(); });
   }
 
-  config::HomingOffsets file() const { return config::read_homing_file(folder / "homing.yaml"); }
+  config::HomingOffsets file() const { return config::read_homing_file(folder / "homing.yaml", {}); }
   std::string why() const { return commissioner->last()["why"]; }
 
   const TemporaryFolder folder;

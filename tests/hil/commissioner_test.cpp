@@ -12,6 +12,7 @@
 #include <string>
 
 #include "tests/arm5e.hpp"
+#include "tests/arm5e_joints.hpp"
 #include "tests/hil/commissioner_at_work.hpp"
 
 namespace lf::test {
@@ -61,8 +62,8 @@ TEST_P(CommissioningWhoseFileCannotBeWritten, LeavesAJointInDoubtWithoutPower) {
   EXPECT_NE(last["why"].get<std::string>().find(unwritten.why != nullptr ? unwritten.why : ""), std::string::npos) << last;
   for (const Command command : {Command::start, Command::home})
     EXPECT_EQ(core->on_command(command, Time::from_s(1)), unwritten.why == nullptr);
-  EXPECT_EQ(core->network().axis(Joint::jaw).setup().may_have_power(), unwritten.why == nullptr);
-  EXPECT_TRUE(core->network().axis(Joint::elbow).setup().may_have_power());
+  EXPECT_EQ(core->network().axis(arm5e_joint::jaw).setup().may_have_power(), unwritten.why == nullptr);
+  EXPECT_TRUE(core->network().axis(arm5e_joint::elbow).setup().may_have_power());
   EXPECT_NE(last["why"].get<std::string>().find("gives them no power: jaw"), std::string::npos) << last;
   work.start();
   EXPECT_EQ(work.commissioner->unknown_joints(), "jaw")
@@ -73,7 +74,7 @@ TEST_P(CommissioningWhoseFileCannotBeWritten, LeavesAJointInDoubtWithoutPower) {
 // order was refused once: given again, or to a daemon that was started anew, it was taken without a word.
 TEST(CommissioningThatFails, LeavesAJointThatItFoundElsewhereWithoutPowerUntilTheOrderSaysThatItHasMoved) {
   AtWork work(somewhere[4] - 700);
-  const auto commission = [&](const std::array<bool, joint_count>& joints, bool moved) {
+  const auto commission = [&](const PerJoint<bool>& joints, bool moved) {
     Bench bench(somewhere);
     Commissioning* lent = work.begin(joints, moved);
     ASSERT_NE(lent, nullptr);
@@ -83,10 +84,10 @@ TEST(CommissioningThatFails, LeavesAJointThatItFoundElsewhereWithoutPowerUntilTh
     ASSERT_NE(core, nullptr);
     ASSERT_TRUE(work.take_over());
     EXPECT_EQ(work.commissioner->unknown_joints(), moved ? "" : "jaw");
-    EXPECT_EQ(core->network().axis(Joint::jaw).setup().may_have_power(), moved);
-    EXPECT_TRUE(core->network().axis(Joint::elbow).setup().may_have_power());
+    EXPECT_EQ(core->network().axis(arm5e_joint::jaw).setup().may_have_power(), moved);
+    EXPECT_TRUE(core->network().axis(arm5e_joint::elbow).setup().may_have_power());
     const config::HomingOffsets left = work.file();
-    EXPECT_EQ(left.known, (std::array<bool, joint_count>{true, true, true, true, moved}));
+    EXPECT_EQ(left.known, (PerJoint<bool>{true, true, true, true, moved}));
     EXPECT_EQ(left.zero_doubtful[4], !moved);
     if (moved) return;
     EXPECT_EQ(left.zero_counts[4], somewhere[4] - 700) << "the old one";
@@ -127,8 +128,8 @@ TEST(CommissioningThatFails, LeavesAJointWithoutPowerThatTheFileDoesNotKnow) {
   const std::unique_ptr<Controller> core = work.end(lent);
   ASSERT_NE(core, nullptr);
   ASSERT_TRUE(work.take_over());
-  EXPECT_FALSE(core->network().axis(Joint::jaw).setup().may_have_power());
-  EXPECT_TRUE(core->network().axis(Joint::elbow).setup().may_have_power());
+  EXPECT_FALSE(core->network().axis(arm5e_joint::jaw).setup().may_have_power());
+  EXPECT_TRUE(core->network().axis(arm5e_joint::elbow).setup().may_have_power());
   EXPECT_EQ(work.commissioner->unknown_joints(), "jaw");
   EXPECT_TRUE(work.file().zero_doubtful[4]);
   EXPECT_EQ(work.file().zero_counts[4], somewhere[4] - 700);
@@ -146,7 +147,7 @@ TEST(CommissioningThatEndsWell, FailsWhereTheFileHasAnotherZeroByThen) {
   const std::unique_ptr<Controller> core = work.end(lent);
   ASSERT_NE(core, nullptr);
   ASSERT_TRUE(work.take_over());
-  EXPECT_FALSE(core->network().axis(Joint::jaw).setup().may_have_power());
+  EXPECT_FALSE(core->network().axis(arm5e_joint::jaw).setup().may_have_power());
   EXPECT_EQ(work.commissioner->last()["state"], "failed");
   EXPECT_NE(work.why().find("jaw: its zero was found elsewhere than the homing file has it"), std::string::npos) << work.why();
   EXPECT_TRUE(work.file().zero_doubtful[4]);
@@ -164,8 +165,8 @@ TEST(CommissioningThatFails, LeavesAnEarlierJointThatRubsWithoutPower) {
   const std::unique_ptr<Controller> core = work.end(lent);
   ASSERT_NE(core, nullptr);
   ASSERT_TRUE(work.take_over());
-  EXPECT_FALSE(core->network().axis(Joint::jaw).setup().may_have_power());
-  EXPECT_TRUE(core->network().axis(Joint::slew).setup().may_have_power());
+  EXPECT_FALSE(core->network().axis(arm5e_joint::jaw).setup().may_have_power());
+  EXPECT_TRUE(core->network().axis(arm5e_joint::slew).setup().may_have_power());
   EXPECT_EQ(work.commissioner->unknown_joints(), "jaw");
   EXPECT_NE(work.why().find("it was called off. In the homing file the zeros of these joints are doubtful now: jaw. Nothing else"),
             std::string::npos)
@@ -206,7 +207,7 @@ TEST(CommissioningThatFails, SaysThatNothingWasWrittenWhereTheFileCannotBe) {
   const std::unique_ptr<Controller> core = work.end(lent);
   ASSERT_NE(core, nullptr);
   ASSERT_TRUE(work.take_over());
-  EXPECT_FALSE(core->network().axis(Joint::jaw).setup().may_have_power());
+  EXPECT_FALSE(core->network().axis(arm5e_joint::jaw).setup().may_have_power());
   EXPECT_NE(work.why().find("jaw: its zero was found 0.38 rad from where it was"), std::string::npos) << work.why();
   EXPECT_NE(work.why().find("Nothing was written: "), std::string::npos) << work.why();
 }
@@ -214,7 +215,7 @@ TEST(CommissioningThatFails, SaysThatNothingWasWrittenWhereTheFileCannotBe) {
 // A joint that was found elsewhere, and a file that somebody changes meanwhile: what was found cannot be compared with it. A commissioning of another joint
 // that ended well gave the joint its power back, with the zero that had just been found wrong.
 TEST(CommissioningThatFails, LeavesNoPowerToAJointWhoseFileWasUnreadableByThen) {
-  const auto off = static_cast<std::int32_t>(0.2 / std::abs(arm::rad_per_count(test::arm5e.joint(Joint::slew), 0)));
+  const auto off = static_cast<std::int32_t>(0.2 / std::abs(arm::rad_per_count(test::arm5e.joint(arm5e_joint::slew), 0)));
   Bench bench(somewhere);
   AtWork work(somewhere[4]);
   std::string text = work.folder.read("homing.yaml");
@@ -248,7 +249,7 @@ TEST(CommissioningThatFails, TakesThePowerThatItSaysItTakesWhereTheFileIsUnreada
   ASSERT_NE(core, nullptr);
   ASSERT_TRUE(work.take_over());
   EXPECT_NE(work.why().find("take no power until they are commissioned again: jaw"), std::string::npos) << work.why();
-  EXPECT_FALSE(core->network().axis(Joint::jaw).setup().may_have_power());
+  EXPECT_FALSE(core->network().axis(arm5e_joint::jaw).setup().may_have_power());
   EXPECT_EQ(work.commissioner->unknown_joints(), "jaw");
 }
 
@@ -378,7 +379,7 @@ TEST(CommissioningUnderWay, LeavesAJointThatHasMovedWithoutPowerWhereItIsCalledO
   const std::unique_ptr<Controller> core = work.end(lent);
   ASSERT_NE(core, nullptr);
   ASSERT_TRUE(work.take_over());
-  EXPECT_FALSE(core->network().axis(Joint::jaw).setup().may_have_power());
+  EXPECT_FALSE(core->network().axis(arm5e_joint::jaw).setup().may_have_power());
   EXPECT_EQ(work.commissioner->unknown_joints(), "jaw");
   EXPECT_TRUE(work.file().zero_doubtful[4]);
   EXPECT_NE(work.why().find("doubtful now: jaw"), std::string::npos) << work.why();
@@ -397,7 +398,7 @@ TEST(CommissioningUnderWay, TakesNoZeroOfAnotherJointFromAChangedFile) {
   const std::unique_ptr<Controller> core = work.end(lent);
   ASSERT_NE(core, nullptr);
   ASSERT_TRUE(work.take_over());
-  EXPECT_EQ(core->network().axis(Joint::slew).setup().encoder_zero_counts, somewhere[0]);
+  EXPECT_EQ(core->network().axis(arm5e_joint::slew).setup().encoder_zero_counts, somewhere[0]);
   EXPECT_EQ(work.file().zero_counts[0], somewhere[0] + 5000) << "the file is whose it is";
 }
 

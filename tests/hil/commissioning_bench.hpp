@@ -14,11 +14,12 @@
 #include "hal/vehicle/commissioning.hpp"
 #include "host_sim/scenario/instance.hpp"
 #include "tests/arm5e.hpp"
+#include "tests/arm5e_joints.hpp"
 
 namespace lf::test {
 
-using Zeros = std::array<std::int32_t, joint_count>;
-using Angles = std::array<double, joint_count>;
+using Zeros = PerJoint<std::int32_t>;
+using Angles = PerJoint<double>;
 
 inline constexpr Zeros somewhere{12'345, -70'000, 7, 100'123, -54'321};
 // Folded, the jaw closed.
@@ -40,7 +41,7 @@ class CommissioningBench {
     truth.world.base_from_panel.translation().x() += 2;
     truth.world.start_rad = start_rad;
     truth.devices.faults = faults;
-    for (std::size_t i = 0; i < joint_count; ++i) {
+    for (std::size_t i = 0; i < arm5e_joint::count; ++i) {
       truth.devices.drives[i].encoder_zero_counts = zeros[i];
       truth.devices.drives[i].encoder_offset_rad = 0;
       backlash_rad_[i] = truth.world.arm.joints[i].backlash_rad;
@@ -56,7 +57,7 @@ class CommissioningBench {
     config.backlash_rad = backlash_rad_;
     config.transmissions = nominal_.controller.transmissions;
     // The jaw's zero is an old one, the others' are not known.
-    for (std::size_t i = 0; i < joint_count; ++i) config.network.drives[i].zero_known = i == 4;
+    for (std::size_t i = 0; i < arm5e_joint::count; ++i) config.network.drives[i].zero_known = i == 4;
     config.network.drives[4].encoder_zero_counts = zeros_[4];
     config.jaw_known = true;
     return config;
@@ -87,17 +88,17 @@ class CommissioningBench {
 
   // Half a count is what rounding costs.
   double tolerance_rad(std::size_t joint) const {
-    return allowed_rad + 0.5 * arm::rad_per_count(test::arm5e.joint(static_cast<Joint>(joint)), angles()[joint]);
+    return allowed_rad + 0.5 * arm::rad_per_count(test::arm5e.joint(joint), angles()[joint]);
   }
   // How far the angle at the joint's place is off when the zero is taken to be `zero_counts`.
   double error_rad(std::size_t joint, std::int32_t zero_counts) const {
-    const double per_count = arm::rad_per_count(test::arm5e.joint(static_cast<Joint>(joint)), angles()[joint]);
+    const double per_count = arm::rad_per_count(test::arm5e.joint(joint), angles()[joint]);
     return (zero_counts - zeros_[joint]) * per_count;
   }
 
   Angles angles() const {
     Angles all{};
-    for (std::size_t i = 0; i < joint_count; ++i) all[i] = platform_->world().readings()[i].position_rad;
+    for (std::size_t i = 0; i < arm5e_joint::count; ++i) all[i] = platform_->world().readings()[i].position_rad;
     return all;
   }
   const scenario::Nominal& nominal() const { return nominal_; }
@@ -108,7 +109,7 @@ class CommissioningBench {
  private:
   Zeros zeros_;
   Angles backlash_rad_{};
-  std::array<devices::DriveConfig, joint_count> drives_;
+  std::vector<devices::DriveConfig> drives_;
   scenario::Nominal nominal_;
   hal::SimObserver nobody_;
   std::function<void(CanFrame&)> ear_;

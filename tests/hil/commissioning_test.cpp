@@ -13,6 +13,8 @@
 #include <vector>
 
 #include "tests/arm5e.hpp"
+#include "tests/arm5e_joint_names.hpp"
+#include "tests/arm5e_joints.hpp"
 #include "tests/hil/commissioning_bench.hpp"
 
 namespace lf::test {
@@ -23,9 +25,9 @@ using Bench = CommissioningBench;
 
 void expect_found(const Bench& bench, const Commissioning& commissioning) {
   ASSERT_EQ(commissioning.state(), Commissioning::State::done) << commissioning.failure();
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    EXPECT_TRUE(commissioning.found()[i]) << config::joint_name(i);
-    EXPECT_LE(std::abs(bench.error_rad(i, commissioning.zero_counts()[i])), bench.tolerance_rad(i)) << config::joint_name(i);
+  for (std::size_t i = 0; i < arm5e_joint::count; ++i) {
+    EXPECT_TRUE(commissioning.found()[i]) << arm5e_joint::name(i);
+    EXPECT_LE(std::abs(bench.error_rad(i, commissioning.zero_counts()[i])), bench.tolerance_rad(i)) << arm5e_joint::name(i);
   }
 }
 
@@ -48,7 +50,7 @@ INSTANTIATE_TEST_SUITE_P(AnyPlace, CommissioningFrom,
 TEST(CommissionedArm, HasItsFrictionFound) {
   const auto viscous_share = [](std::size_t joint) { return joint % 2 == 0 || joint == 3 ? 3.0 : 0.2; };
   Bench bench(somewhere, parked, {}, [&](hal::SimConfig& truth) {
-    for (std::size_t i = 0; i < joint_count; ++i) {
+    for (std::size_t i = 0; i < arm5e_joint::count; ++i) {
       devices::GearFriction& friction = truth.devices.drives[i].friction;
       friction.coulomb_nm *= i % 2 == 0 ? 1.2 : 0.8;
       friction.viscous_nm_s *= viscous_share(i);
@@ -57,20 +59,20 @@ TEST(CommissionedArm, HasItsFrictionFound) {
   Commissioning commissioning(bench.config());
   bench.run(commissioning);
   ASSERT_EQ(commissioning.state(), Commissioning::State::done) << commissioning.failure();
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    ASSERT_TRUE(commissioning.friction_found()[i]) << config::joint_name(i);
+  for (std::size_t i = 0; i < arm5e_joint::count; ++i) {
+    ASSERT_TRUE(commissioning.friction_found()[i]) << arm5e_joint::name(i);
     const config::JointFriction& found = commissioning.friction()[i];
     const devices::DriveConfig& drive = bench.drive(i);
     // A count of the roll is 3 mrad: at a creep it stands between counts, and its gear breaks away again and again. It is found 24 % too large, the others to 1.5 %.
     const bool stops = i == 3;
     EXPECT_NEAR(1e-3 * found.coulomb_mnm, drive.friction.coulomb_nm, (stops ? 0.3 : 0.03) * drive.friction.coulomb_nm)
-        << config::joint_name(i);
+        << arm5e_joint::name(i);
     // At the top speed the viscous friction that the core believes in is 4 % of the rated torque; the true one, 12 % or 0.8 %, is found to 2 %, the roll's to 4 %.
     const double top_rad_s = 0.04 * drive.rated_torque_nm / bench.nominal().controller.transmissions[i].friction.viscous_nm_s;
     EXPECT_NEAR(1e-3 * found.viscous_mnm_s * top_rad_s, drive.friction.viscous_nm_s * top_rad_s,
                 (stops ? 0.04 : 0.02) * drive.rated_torque_nm)
-        << config::joint_name(i);
-    EXPECT_LT(found.rms_mnm, 20 * drive.rated_torque_nm) << config::joint_name(i) << ": 2 % of the rated torque";
+        << arm5e_joint::name(i);
+    EXPECT_LT(found.rms_mnm, 20 * drive.rated_torque_nm) << arm5e_joint::name(i) << ": 2 % of the rated torque";
     // The doubt shrinks to what the fit left, and a twentieth for another day.
     arm::Friction told = bench.nominal().controller.transmissions[i].friction;
     const double before = told.doubt;
@@ -78,8 +80,8 @@ TEST(CommissionedArm, HasItsFrictionFound) {
     offsets.friction_known[i] = true;
     offsets.friction[i] = found;
     config::set_friction(offsets, i, told);
-    EXPECT_LT(told.doubt, before) << config::joint_name(i);
-    EXPECT_NEAR(told.doubt * told.coulomb_nm, 0.05 * told.coulomb_nm + 1e-3 * found.rms_mnm, 1e-9) << config::joint_name(i);
+    EXPECT_LT(told.doubt, before) << arm5e_joint::name(i);
+    EXPECT_NEAR(told.doubt * told.coulomb_nm, 0.05 * told.coulomb_nm + 1e-3 * found.rms_mnm, 1e-9) << arm5e_joint::name(i);
   }
 }
 
@@ -94,11 +96,11 @@ TEST(CommissionedArm, IsWhereTheCoreTakesItToBe) {
   found.zero_counts = commissioning.zero_counts();
   found.known = commissioning.found();
   config::write_homing_file(file, found);
-  const config::HomingOffsets read = config::read_homing_file(file);
+  const config::HomingOffsets read = config::read_homing_file(file, {});
   std::filesystem::remove(file);
 
   ControllerConfig config = bench.nominal().controller;
-  for (std::size_t i = 0; i < joint_count; ++i) config.network.drives[i].encoder_zero_counts = read.zero_counts[i];
+  for (std::size_t i = 0; i < arm5e_joint::count; ++i) config.network.drives[i].encoder_zero_counts = read.zero_counts[i];
   hal::Lockstep<hal::SimPlatform> lockstep(bench.platform(), config, bench.nominal().scan);
   lockstep.step();
   ASSERT_TRUE(lockstep.controller().on_command(Command::home, lockstep.now()));
@@ -107,13 +109,13 @@ TEST(CommissionedArm, IsWhereTheCoreTakesItToBe) {
   for (int i = 0; i < 250; ++i) lockstep.step();
   EXPECT_EQ(lockstep.controller().mission().step(), mission::Step::ready) << "it stands within its limits after commissioning";
   EXPECT_EQ(lockstep.controller().mission().joints().valid, true);
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < arm5e_joint::count; ++i) {
     const double told = lockstep.controller().mission().joints().position_rad[i];
     const JointReading truth = bench.platform().world().readings()[i];
-    EXPECT_NEAR(told, truth.motor_position_rad, bench.tolerance_rad(i)) << config::joint_name(i);
-    EXPECT_NEAR(told, truth.position_rad, 0.003) << config::joint_name(i) << ", which its load may bend";
+    EXPECT_NEAR(told, truth.motor_position_rad, bench.tolerance_rad(i)) << arm5e_joint::name(i);
+    EXPECT_NEAR(told, truth.position_rad, 0.003) << arm5e_joint::name(i) << ", which its load may bend";
     const double left_rad = i == 4 ? test::arm5e.model().joints[4].lower_rad : parked[i];
-    EXPECT_NEAR(truth.position_rad, left_rad, 0.01) << config::joint_name(i) << ", back where it was, and the jaw closed";
+    EXPECT_NEAR(truth.position_rad, left_rad, 0.01) << arm5e_joint::name(i) << ", back where it was, and the jaw closed";
   }
 }
 
@@ -124,7 +126,7 @@ TEST(CommissioningOfOneJoint, MovesNoOther) {
   Commissioning commissioning(config);
   bench.run(commissioning);
   ASSERT_EQ(commissioning.state(), Commissioning::State::done) << commissioning.failure();
-  EXPECT_EQ(commissioning.found(), (std::array<bool, joint_count>{false, false, true, false, false}));
+  EXPECT_EQ(commissioning.found(), (PerJoint<bool>{false, false, true, false, false}));
   EXPECT_LE(std::abs(bench.error_rad(2, commissioning.zero_counts()[2])), bench.tolerance_rad(2));
   for (const std::size_t other : {0u, 1u, 3u, 4u}) EXPECT_NEAR(bench.angles()[other], parked[other], 0.005);
   EXPECT_NEAR(bench.angles()[2], parked[2], 0.01) << "back where it was";
@@ -141,12 +143,12 @@ TEST(CommissioningWithSomethingInTheJaw, OpensAndClosesTheJawBeforeTheArmMoves) 
   bench.run(commissioning, [&] {
     opened = opened || bench.angles()[4] > open_rad;
     closed = closed || (opened && bench.angles()[4] < closed_rad);
-    for (std::size_t i = 0; i < arm_joint_count && !closed; ++i) EXPECT_NEAR(bench.angles()[i], holding[i], 0.005);
+    for (std::size_t i = 0; i < arm5e_joint::of_arm && !closed; ++i) EXPECT_NEAR(bench.angles()[i], holding[i], 0.005);
     return false;
   });
   expect_found(bench, commissioning);
   EXPECT_LT(bench.angles()[4], closed_rad) << "and it stays closed";
-  for (std::size_t i = 0; i < arm_joint_count; ++i) EXPECT_TRUE(commissioning.friction_found()[i]);
+  for (std::size_t i = 0; i < arm5e_joint::of_arm; ++i) EXPECT_TRUE(commissioning.friction_found()[i]);
 }
 
 // The arm stands so that the valve's bar is between the fingers: opened, they close on it again.
@@ -157,7 +159,7 @@ TEST(CommissioningWithSomethingInTheJaw, MovesNoArmJointWhereTheJawDoesNotClose)
   bench.run(commissioning);
   EXPECT_EQ(commissioning.state(), Commissioning::State::failed);
   EXPECT_NE(commissioning.failure().find("jaw: something is between its fingers"), std::string_view::npos) << commissioning.failure();
-  for (std::size_t i = 0; i < arm_joint_count; ++i) EXPECT_NEAR(bench.angles()[i], holding[i], 0.005);
+  for (std::size_t i = 0; i < arm5e_joint::of_arm; ++i) EXPECT_NEAR(bench.angles()[i], holding[i], 0.005);
   EXPECT_GT(bench.angles()[4], 0.9) << "it has opened again";
   EXPECT_FALSE(bench.any_powered());
 }
@@ -218,13 +220,13 @@ TEST_P(CommissioningOfAJointThatIsFoundElsewhere, FailsAndMovesNoOther) {
   bench.run(commissioning);
   EXPECT_EQ(commissioning.state(), elsewhere.ordered ? Commissioning::State::done : Commissioning::State::failed)
       << commissioning.failure();
-  EXPECT_NEAR(commissioning.moved_rad()[4], 700 * arm::rad_per_count(test::arm5e.joint(Joint::jaw), 0), 0.005);
+  EXPECT_NEAR(commissioning.moved_rad()[4], 700 * arm::rad_per_count(test::arm5e.joint(arm5e_joint::jaw), 0), 0.005);
   if (!elsewhere.ordered) {
     const std::string failure(commissioning.failure());
     EXPECT_NE(failure.find("jaw: its zero was found 0.38 rad from where it was"), std::string::npos) << failure;
     EXPECT_NE(failure.find("alone with --moved"), std::string::npos) << failure;
   }
-  for (std::size_t i = 0; i < arm_joint_count; ++i) EXPECT_NEAR(bench.angles()[i], parked[i], 0.005);
+  for (std::size_t i = 0; i < arm5e_joint::of_arm; ++i) EXPECT_NEAR(bench.angles()[i], parked[i], 0.005);
   EXPECT_FALSE(bench.any_powered());
 }
 
@@ -237,15 +239,15 @@ TEST(CommissioningInAJig, MovesNothing) {
   Commissioning commissioning(setup);
   bench.run(commissioning);
   ASSERT_EQ(commissioning.state(), Commissioning::State::done) << commissioning.failure();
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    const auto joint = static_cast<Joint>(i);
+  for (std::size_t i = 0; i < arm5e_joint::count; ++i) {
+    const auto joint = i;
     EXPECT_TRUE(commissioning.found()[i]);
-    EXPECT_NEAR(bench.angles()[i], parked[i], 0.003) << config::joint_name(i);
+    EXPECT_NEAR(bench.angles()[i], parked[i], 0.003) << arm5e_joint::name(i);
     const double counts =
         commissioning.zero_counts()[i] - somewhere[i] - arm::exact_counts_from_rad(test::arm5e.joint(joint), bench.angles()[i]);
     EXPECT_LT(std::abs(counts) * arm::rad_per_count(test::arm5e.joint(joint), bench.angles()[i]),
               bench.tolerance_rad(i) + bench.backlash_rad()[i])
-        << config::joint_name(i);
+        << arm5e_joint::name(i);
   }
 }
 
@@ -256,7 +258,7 @@ TEST(CommissioningInAJig, FailsWhereAZeroIsFoundElsewhere) {
   setup.here = true;
   setup.network.drives[4].zero_known = false;
   setup.network.drives[3].zero_known = true;
-  setup.network.drives[3].encoder_zero_counts = somewhere[3] + arm::counts_from_rad(test::arm5e.joint(Joint::roll), 0.1);
+  setup.network.drives[3].encoder_zero_counts = somewhere[3] + arm::counts_from_rad(test::arm5e.joint(arm5e_joint::roll), 0.1);
   Commissioning commissioning(setup);
   bench.run(commissioning);
   EXPECT_EQ(commissioning.state(), Commissioning::State::failed);

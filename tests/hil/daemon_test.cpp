@@ -13,6 +13,7 @@
 #include "firmware/arm/actuator.hpp"
 #include "hal/config/homing_file.hpp"
 #include "tests/arm5e.hpp"
+#include "tests/arm5e_joints.hpp"
 #include "tests/hil/assembled_daemon.hpp"
 
 namespace lf::test {
@@ -187,8 +188,8 @@ TEST_F(AssembledDaemon, TakesTheZeroOfADriveThatLostItsPosition) {
   EXPECT_FALSE(sea->any_powered());
   // Nor does a daemon that is started anew.
   wait_until(
-      "the file", [&] { return !config::read_homing_file(folder / "homing.yaml").known[4]; }, 5);
-  EXPECT_TRUE(config::read_homing_file(folder / "homing.yaml").known[3]);
+      "the file", [&] { return !config::read_homing_file(folder / "homing.yaml", {}).known[4]; }, 5);
+  EXPECT_TRUE(config::read_homing_file(folder / "homing.yaml", {}).known[3]);
   wait_until(
       "the log", [&] { return events().find("\"kind\":\"zeros_lost\"") != std::string::npos; }, 5);
 }
@@ -222,7 +223,7 @@ TEST_F(AssembledDaemon, CommissionsAJointAndUsesItsZero) {
       EXPECT_FALSE(sea->any_powered());
       put_to_sea();
     }
-    offsets = config::read_homing_file(folder / "homing.yaml");
+    offsets = config::read_homing_file(folder / "homing.yaml", {});
     offsets.known[4] = false;
     config::write_homing_file(folder / "homing.yaml", offsets);
     begin();
@@ -240,9 +241,9 @@ TEST_F(AssembledDaemon, CommissionsAJointAndUsesItsZero) {
   EXPECT_GT(done["friction"]["jaw"].value("coulomb_mnm", 0.0), 0) << done.dump();
   EXPECT_TRUE(done["friction"]["jaw"].contains("rms_mnm")) << done.dump();
   EXPECT_FALSE(sea->any_powered());
-  offsets = config::read_homing_file(folder / "homing.yaml");
+  offsets = config::read_homing_file(folder / "homing.yaml", {});
   EXPECT_TRUE(offsets.known[4]);
-  const double off_rad = std::abs(offsets.zero_counts[4]) * arm::rad_per_count(test::arm5e.joint(Joint::jaw), sea->actual_rad(4));
+  const double off_rad = std::abs(offsets.zero_counts[4]) * arm::rad_per_count(test::arm5e.joint(arm5e_joint::jaw), sea->actual_rad(4));
   EXPECT_LT(off_rad, 0.003);  // the simulated encoder counts 0 at 0
   EXPECT_EQ(offsets.zero_counts[0], 0);
   order("home");

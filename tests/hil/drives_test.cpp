@@ -12,6 +12,7 @@
 #include "hal/vehicle/status_json.hpp"
 #include "host_sim/devices/drive/drive_dictionary.hpp"
 #include "tests/arm5e.hpp"
+#include "tests/arm5e_joints.hpp"
 #include "tests/hil/operator.hpp"
 #include "tests/hil/rig.hpp"
 
@@ -52,12 +53,12 @@ class ADriveThatHomesByItsOwnMethod : public testing::Test {
     const auto here_is_home = [this](ControllerConfig& core) {
       canopen::DriveSetup& elbow = core.network.drives[2];
       elbow.homing_method = 35;
-      elbow.home_offset_counts = arm::counts_from_rad(test::arm5e.joint(Joint::elbow), start_rad_[2]);
+      elbow.home_offset_counts = arm::counts_from_rad(test::arm5e.joint(arm5e_joint::elbow), start_rad_[2]);
     };
     const auto forgetful = [](hal::SimConfig& truth) { truth.devices.drives[2].absolute_encoder = false; };
     return Rig(overrides, 1, here_is_home, forgetful);
   }
-  const std::array<double, joint_count> start_rad_ = angles_rad(Rig());
+  const PerJoint<double> start_rad_ = angles_rad(Rig());
 };
 
 TEST_F(ADriveThatHomesByItsOwnMethod, MovesNoJointBeyondItsHoming) {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 
+#include "tests/arm5e_joints.hpp"
 #include "tests/hil/operator.hpp"
 
 namespace lf::test {
@@ -16,7 +17,7 @@ using safety::Fault;
 
 // ---- jog ----
 
-class Jog : public testing::TestWithParam<Joint> {};
+class Jog : public testing::TestWithParam<std::size_t> {};
 
 TEST_P(Jog, MovesItsJointThereAndBackAndNoOther) {
   Rig rig;
@@ -25,7 +26,7 @@ TEST_P(Jog, MovesItsJointThereAndBackAndNoOther) {
   const auto moved = static_cast<std::size_t>(GetParam());
   // A quarter of the joint's own speed, or the joint's stiction speed; the jaw opens and closes as fast as ever.
   const ArmJoint& joint = rig.arm().joints[moved];
-  const double part = GetParam() == Joint::jaw ? 1 : mission::jog_speed_fraction;
+  const double part = GetParam() == arm5e_joint::jaw ? 1 : mission::jog_speed_fraction;
   const double fast_rad_s = 1.4 * std::max(part * joint.velocity_rad_s, joint.stiction_rad_s);
   for (const double by_rad : {0.1, -0.2, 0.1}) {
     const auto from = angles_rad(rig);
@@ -51,24 +52,26 @@ TEST_P(Jog, MovesItsJointThereAndBackAndNoOther) {
   EXPECT_EQ(rig.step_now(), Step::ready) << rig.story();
 }
 
-std::string name_of(const testing::TestParamInfo<Joint>& test) {
+std::string name_of(const testing::TestParamInfo<std::size_t>& test) {
   constexpr std::array names{"Slew", "Shoulder", "Elbow", "Roll", "Jaw"};
   return names[static_cast<std::size_t>(test.param)];
 }
 
-INSTANTIATE_TEST_SUITE_P(OfEachJoint, Jog, testing::Values(Joint::slew, Joint::shoulder, Joint::elbow, Joint::roll, Joint::jaw), name_of);
+INSTANTIATE_TEST_SUITE_P(OfEachJoint, Jog,
+                         testing::Values(arm5e_joint::slew, arm5e_joint::shoulder, arm5e_joint::elbow, arm5e_joint::roll, arm5e_joint::jaw),
+                         name_of);
 
 TEST(JogInTheSameTick, AsAnotherIsRefusedAndTheFirstIsDoneOnce) {
   Rig rig;
   ASSERT_TRUE(home(rig)) << rig.story();
-  const double slew_rad = angle_rad(rig, Joint::slew), roll_rad = angle_rad(rig, Joint::roll);
-  ASSERT_TRUE(jog(rig, Joint::slew, 0.1));
-  EXPECT_FALSE(jog(rig, Joint::slew, 0.1));
-  EXPECT_FALSE(jog(rig, Joint::roll, 0.2));
+  const double slew_rad = angle_rad(rig, arm5e_joint::slew), roll_rad = angle_rad(rig, arm5e_joint::roll);
+  ASSERT_TRUE(jog(rig, arm5e_joint::slew, 0.1));
+  EXPECT_FALSE(jog(rig, arm5e_joint::slew, 0.1));
+  EXPECT_FALSE(jog(rig, arm5e_joint::roll, 0.2));
   ASSERT_TRUE(finish_jog(rig));
   rig.run_for(2);
-  EXPECT_NEAR(angle_rad(rig, Joint::slew), slew_rad + 0.1, 0.01);
-  EXPECT_NEAR(angle_rad(rig, Joint::roll), roll_rad, 0.005);
+  EXPECT_NEAR(angle_rad(rig, arm5e_joint::slew), slew_rad + 0.1, 0.01);
+  EXPECT_NEAR(angle_rad(rig, arm5e_joint::roll), roll_rad, 0.005);
   EXPECT_EQ(rig.controller().orders_refused(), 2u);
 }
 
@@ -76,13 +79,13 @@ TEST(JogInTheSameTick, AsTheStartIsRefused) {
   Rig rig(press_only());
   ASSERT_TRUE(home(rig)) << rig.story();
   ASSERT_TRUE(give(rig, Command::start));
-  EXPECT_FALSE(jog(rig, Joint::slew, 0.1));
+  EXPECT_FALSE(jog(rig, arm5e_joint::slew, 0.1));
   ASSERT_TRUE(rig.run_to_end()) << rig.story();
   EXPECT_EQ(rig.step_now(), Step::done) << rig.story();
 }
 
 TEST(JogUnderWay, IsNotReplaced) {
-  for (const Joint joint : {Joint::elbow, Joint::jaw}) {
+  for (const std::size_t joint : {arm5e_joint::elbow, arm5e_joint::jaw}) {
     Rig rig;
     ASSERT_TRUE(home(rig)) << rig.story();
     const double from_rad = angle_rad(rig, joint);
@@ -99,8 +102,8 @@ TEST(JogByTheWrongNumbers, IsRefused) {
   ASSERT_TRUE(home(rig)) << rig.story();
   const auto before = angles_rad(rig);
   for (const double by_rad : {0.36, -0.36, 1e9, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
-    EXPECT_FALSE(jog(rig, Joint::slew, by_rad)) << by_rad;
-  EXPECT_FALSE(jog(rig, static_cast<Joint>(joint_count), 0.1));
+    EXPECT_FALSE(jog(rig, arm5e_joint::slew, by_rad)) << by_rad;
+  EXPECT_FALSE(jog(rig, arm5e_joint::count, 0.1));
   rig.run_for(1);
   EXPECT_LT(farthest_apart(angles_rad(rig), before), 0.003);
 }
@@ -109,28 +112,28 @@ TEST(JogByTheWrongNumbers, IsRefused) {
 TEST(JogTowardThePanel, EndsBeforeItAndSaysWhy) {
   Rig rig;
   ASSERT_TRUE(home(rig)) << rig.story();
-  ASSERT_TRUE(jog(rig, Joint::shoulder, 0.35));
+  ASSERT_TRUE(jog(rig, arm5e_joint::shoulder, 0.35));
   ASSERT_TRUE(finish_jog(rig)) << rig.story();
-  ASSERT_TRUE(jog(rig, Joint::shoulder, 0.3));
+  ASSERT_TRUE(jog(rig, arm5e_joint::shoulder, 0.3));
   ASSERT_TRUE(finish_jog(rig)) << rig.story();
   EXPECT_EQ(rig.count(Fault::step_failed), 0u) << rig.story();
   double before_rad = 0;
   for (int jogs = 0; rig.count(Fault::step_failed) == 0; ++jogs) {
     ASSERT_LT(jogs, 20) << rig.story();
-    before_rad = angle_rad(rig, Joint::elbow);
-    ASSERT_TRUE(jog(rig, Joint::elbow, -0.1)) << rig.story();
+    before_rad = angle_rad(rig, arm5e_joint::elbow);
+    ASSERT_TRUE(jog(rig, arm5e_joint::elbow, -0.1)) << rig.story();
     ASSERT_TRUE(finish_jog(rig)) << rig.story();
   }
-  EXPECT_NEAR(angle_rad(rig, Joint::elbow), before_rad, 0.003) << "it moved before it was refused";
+  EXPECT_NEAR(angle_rad(rig, arm5e_joint::elbow), before_rad, 0.003) << "it moved before it was refused";
   EXPECT_EQ(rig.events().rbegin()[1].code, static_cast<std::int32_t>(StepFailure::panel_in_the_way)) << rig.story();
   EXPECT_TRUE(rig.world().contacts().unintended.empty());
-  ASSERT_TRUE(jog(rig, Joint::elbow, 0.2)) << "back again";
+  ASSERT_TRUE(jog(rig, arm5e_joint::elbow, 0.2)) << "back again";
   ASSERT_TRUE(finish_jog(rig)) << rig.story();
-  EXPECT_NEAR(angle_rad(rig, Joint::elbow), before_rad + 0.2, 0.012);
+  EXPECT_NEAR(angle_rad(rig, arm5e_joint::elbow), before_rad + 0.2, 0.012);
   EXPECT_EQ(rig.count(Fault::step_failed), 1u);
 }
 
-class JogToTheEnd : public testing::TestWithParam<Joint> {};
+class JogToTheEnd : public testing::TestWithParam<std::size_t> {};
 
 // As far as it is let, either way: never out of the limits, nor against a stop.
 TEST_P(JogToTheEnd, StopsBeforeIt) {
@@ -154,10 +157,10 @@ TEST_P(JogToTheEnd, StopsBeforeIt) {
   EXPECT_EQ(rig.mission().standing(), Standing::ready) << rig.story();
 }
 
-INSTANTIATE_TEST_SUITE_P(OfTheWristAndTheJaw, JogToTheEnd, testing::Values(Joint::roll, Joint::jaw), name_of);
+INSTANTIATE_TEST_SUITE_P(OfTheWristAndTheJaw, JogToTheEnd, testing::Values(arm5e_joint::roll, arm5e_joint::jaw), name_of);
 
 TEST(JogOnHold, GoesOnToItsEnd) {
-  for (const Joint joint : {Joint::slew, Joint::jaw}) {
+  for (const std::size_t joint : {arm5e_joint::slew, arm5e_joint::jaw}) {
     Rig rig;
     ASSERT_TRUE(home(rig)) << rig.story();
     const double from_rad = angle_rad(rig, joint);
@@ -178,7 +181,7 @@ TEST(JogOnHold, GoesOnToItsEnd) {
 TEST(AbortOfAJog, Stows) {
   Rig rig;
   ASSERT_TRUE(home(rig)) << rig.story();
-  ASSERT_TRUE(jog(rig, Joint::slew, 0.3));
+  ASSERT_TRUE(jog(rig, arm5e_joint::slew, 0.3));
   rig.run_for(0.5);
   ASSERT_EQ(rig.mission().standing(), Standing::jogging);
   ASSERT_TRUE(give(rig, Command::abort));
@@ -190,7 +193,7 @@ TEST(AbortOfAJog, Stows) {
 TEST(AJobAfterJogs, IsDone) {
   Rig rig(turn_only());
   ASSERT_TRUE(home(rig)) << rig.story();
-  for (const Joint joint : {Joint::slew, Joint::roll, Joint::jaw}) {
+  for (const std::size_t joint : {arm5e_joint::slew, arm5e_joint::roll, arm5e_joint::jaw}) {
     ASSERT_TRUE(jog(rig, joint, 0.15));
     ASSERT_TRUE(finish_jog(rig)) << rig.story();
   }
@@ -216,7 +219,7 @@ TEST(AJogOutOfTheWorkspace, IsRefusedAndMovesNothing) {
   Rig rig(press_only(), 1, narrow, stretched_at(-0.5));
   ASSERT_TRUE(home(rig)) << rig.story();
   std::uint32_t jogs = 0;
-  while (jog(rig, Joint::slew, -0.05)) {
+  while (jog(rig, arm5e_joint::slew, -0.05)) {
     ASSERT_TRUE(finish_jog(rig)) << rig.story();
     ASSERT_LT(++jogs, 30u) << "it was never refused";
   }
@@ -224,7 +227,7 @@ TEST(AJogOutOfTheWorkspace, IsRefusedAndMovesNothing) {
   const double left_m = out_to_the_left_m(rig);
   EXPECT_LT(left_m, 0.002) << "it is outside";
   EXPECT_GT(left_m, -0.06) << "the next jog would have kept inside";
-  EXPECT_GT(angle_rad(rig, Joint::slew) - 0.05, -1.5508) << "the joint's own limit refused it";
+  EXPECT_GT(angle_rad(rig, arm5e_joint::slew) - 0.05, -1.5508) << "the joint's own limit refused it";
   const auto stood = angles_rad(rig);
   rig.run_for(1);
   EXPECT_LT(farthest_apart(angles_rad(rig), stood), 0.002);
@@ -243,12 +246,12 @@ TEST(AnArmOutsideItsWorkspace, IsStoppedAndJoggedBack) {
   ASSERT_TRUE(home(rig)) << rig.story();
   rig.run_for(0.1);
   EXPECT_FALSE(give(rig, Command::start)) << "a job out of there";
-  ASSERT_TRUE(jog(rig, Joint::jaw, 0.3)) << "the stop came while the jaw closed";
+  ASSERT_TRUE(jog(rig, arm5e_joint::jaw, 0.3)) << "the stop came while the jaw closed";
   ASSERT_TRUE(finish_jog(rig)) << rig.story();
-  EXPECT_FALSE(jog(rig, Joint::slew, -0.05)) << "farther out";
+  EXPECT_FALSE(jog(rig, arm5e_joint::slew, -0.05)) << "farther out";
   for (int i = 0; i < 4 && out_to_the_left_m(rig) > 0; ++i) {
     const double before_m = out_to_the_left_m(rig);
-    ASSERT_TRUE(jog(rig, Joint::slew, 0.3)) << i;
+    ASSERT_TRUE(jog(rig, arm5e_joint::slew, 0.3)) << i;
     ASSERT_TRUE(finish_jog(rig)) << rig.story();
     EXPECT_LT(out_to_the_left_m(rig), before_m);
   }
@@ -274,20 +277,20 @@ TEST(AnArmOutsideItsLimits, IsJoggedBackAndThenWorks) {
   EXPECT_EQ(rig.count(Fault::joint_limit), 1u) << rig.story();
   EXPECT_FALSE(rig.outcome().ended);
   rig.run_for(5);
-  EXPECT_NEAR(angle_rad(rig, Joint::slew), found_rad, 0.002) << "power alone moved it";
+  EXPECT_NEAR(angle_rad(rig, arm5e_joint::slew), found_rad, 0.002) << "power alone moved it";
   EXPECT_FALSE(give(rig, Command::start)) << "a job out of there";
-  EXPECT_FALSE(jog(rig, Joint::slew, -0.003)) << "away from the limits";
+  EXPECT_FALSE(jog(rig, arm5e_joint::slew, -0.003)) << "away from the limits";
 
-  ASSERT_TRUE(jog(rig, Joint::shoulder, 0.05)) << "others are not in its way";
+  ASSERT_TRUE(jog(rig, arm5e_joint::shoulder, 0.05)) << "others are not in its way";
   ASSERT_TRUE(finish_jog(rig)) << rig.story();
-  ASSERT_TRUE(jog(rig, Joint::slew, 0.004)) << "closer, and still outside";
+  ASSERT_TRUE(jog(rig, arm5e_joint::slew, 0.004)) << "closer, and still outside";
   ASSERT_TRUE(finish_jog(rig)) << rig.story();
-  EXPECT_NEAR(angle_rad(rig, Joint::slew), found_rad + 0.004, 0.002);
+  EXPECT_NEAR(angle_rad(rig, arm5e_joint::slew), found_rad + 0.004, 0.002);
   EXPECT_FALSE(give(rig, Command::start));
-  ASSERT_TRUE(jog(rig, Joint::slew, 0.1));
+  ASSERT_TRUE(jog(rig, arm5e_joint::slew, 0.1));
   ASSERT_TRUE(finish_jog(rig)) << rig.story();
-  EXPECT_NEAR(angle_rad(rig, Joint::slew), found_rad + 0.104, 0.005);
-  EXPECT_FALSE(jog(rig, Joint::slew, -0.1)) << "and out again";
+  EXPECT_NEAR(angle_rad(rig, arm5e_joint::slew), found_rad + 0.104, 0.005);
+  EXPECT_FALSE(jog(rig, arm5e_joint::slew, -0.1)) << "and out again";
 
   ASSERT_TRUE(give(rig, Command::start));
   ASSERT_TRUE(rig.run_to_end()) << rig.story();
@@ -303,11 +306,11 @@ TEST(AnArmOutsideItsLimits, DoesNotSetOutOnAJob) {
   EXPECT_EQ(rig.step_now(), Step::stopped) << rig.story();
   EXPECT_EQ(rig.outcome().fault, Fault::joint_limit);
   rig.run_for(1);
-  EXPECT_NEAR(angle_rad(rig, Joint::slew), found_rad, 0.002);
+  EXPECT_NEAR(angle_rad(rig, arm5e_joint::slew), found_rad, 0.002);
   ASSERT_TRUE(give(rig, Command::reset));
   ASSERT_TRUE(run_until(rig, Standing::idle, 1));
   ASSERT_TRUE(home(rig)) << rig.story();
-  EXPECT_TRUE(jog(rig, Joint::slew, 0.1));
+  EXPECT_TRUE(jog(rig, arm5e_joint::slew, 0.1));
 }
 
 TEST(AnArmOutsideItsLimits, CanBeStowedByAnAbort) {
@@ -316,7 +319,7 @@ TEST(AnArmOutsideItsLimits, CanBeStowedByAnAbort) {
   ASSERT_TRUE(give(rig, Command::abort));
   ASSERT_TRUE(rig.run_to_end(60)) << rig.story();
   EXPECT_EQ(rig.step_now(), Step::failed) << rig.story();
-  EXPECT_GT(angle_rad(rig, Joint::slew), slew_soft_limit_rad);
+  EXPECT_GT(angle_rad(rig, arm5e_joint::slew), slew_soft_limit_rad);
 }
 
 }  // namespace

@@ -16,10 +16,11 @@
 #include "hal/sim/sim_platform.hpp"
 #include "host_sim/scenario/instance.hpp"
 #include "tests/arm5e.hpp"
+#include "tests/arm5e_joints.hpp"
 
 namespace lf::test {
 
-using Angles = std::array<double, joint_count>;
+using Angles = PerJoint<double>;
 
 inline constexpr Angles parked{0, 0.60, 1.90, 0, 0.3};
 
@@ -40,7 +41,7 @@ class JointBench {
   }
 
   // False when the joint does not come into power.
-  bool enable(Joint joint) {
+  bool enable(std::size_t joint) {
     network->start_boot(now);
     for (int i = 0; i < 2000 && network->boot().state == canopen::BootState::running; ++i) tick();
     for (int i = 0; i < 500 && !network->axis(joint).enabled(); ++i) {
@@ -51,7 +52,7 @@ class JointBench {
     return network->axis(joint).enabled();
   }
 
-  void move(Joint joint, double speed_rad_s) {
+  void move(std::size_t joint, double speed_rad_s) {
     const double per_count = arm::rad_per_count(test::arm5e.joint(joint), watch->joints().position_rad[std::size_t(joint)]);
     target_ += speed_rad_s * 0.004 / per_count;
     const double lead = 0.05 / per_count, actual = network->axis(joint).actual_counts();
@@ -64,12 +65,12 @@ class JointBench {
     (void)platform->wait_for_tick(now);
     for (hal::ReceivedFrame received; platform->receive_can(0, received) == hal::port_ok;) network->on_frame(received.frame, received.t);
     Angles rad{};
-    for (std::size_t i = 0; i < joint_count; ++i)
-      rad[i] = arm::rad_from_counts(test::arm5e.joint(static_cast<Joint>(i)), network->axis(static_cast<Joint>(i)).actual_counts());
+    for (std::size_t i = 0; i < arm5e_joint::count; ++i)
+      rad[i] = arm::rad_from_counts(test::arm5e.joint(i), network->axis(i).actual_counts());
     watch->observe(*network, rad, now);
     safety::FaultArbiter began;
     const Vec3 tool_m =
-        watches_tool ? test::arm5e.base_from_tool(arm::JointVector(rad[0], rad[1], rad[2], rad[3])).translation() : Vec3(0.2, 0, 0.5);
+        watches_tool ? test::arm5e.base_from_tool(arm::planar_joints(rad[0], rad[1], rad[2], rad[3])).translation() : Vec3(0.2, 0, 0.5);
     watch->check(*network, tool_m, safety::Vigilance::joints, now, began);
     for (const safety::FaultReport& report : began.reports()) {
       if (report.fault == safety::Fault::overload) overloaded = static_cast<std::size_t>(report.code);
@@ -86,7 +87,7 @@ class JointBench {
   std::unique_ptr<safety::Watch> watch;
   Time now;
   bool watches_tool = false;  // else the tool is taken for inside its workspace
-  std::size_t overloaded = joint_count;
+  std::size_t overloaded = arm5e_joint::count;
   std::vector<std::pair<safety::Fault, std::int32_t>> found;  // every fault that began, with its code
 
  private:

@@ -10,6 +10,7 @@
 #include "firmware/arm/kinematics.hpp"
 #include "firmware/mission/workbench.hpp"
 #include "tests/arm5e.hpp"
+#include "tests/arm5e_joints.hpp"
 #include "tests/hil/joint_bench.hpp"
 
 namespace lf::test {
@@ -38,7 +39,7 @@ TEST_P(ALimitOfJoint, OfAngleActsAtEitherEnd) {
       truth.world.start_rad[joint] = inside_rad;
       truth.devices.drives[joint].encoder_offset_rad = (upper ? limit.max_rad + beyond_rad : limit.min_rad - beyond_rad) - inside_rad;
     });
-    ASSERT_TRUE(bench.enable(static_cast<Joint>(joint)));
+    ASSERT_TRUE(bench.enable(joint));
     for (int i = 0; i < 50; ++i) bench.tick();
     EXPECT_TRUE(was_found(bench, Fault::joint_limit, joint)) << (upper ? "upper" : "lower");
   }
@@ -49,13 +50,13 @@ TEST_P(ALimitOfJoint, OfSpeedActsOnAReadingThatJumps) {
   JointBench bench(1, [&](hal::SimConfig& truth) {
     truth.devices.faults.push_back({8.0, devices::DeviceFaultKind::encoder_jump, static_cast<std::uint8_t>(joint + 1), 0, 0});
   });
-  ASSERT_TRUE(bench.enable(static_cast<Joint>(joint)));
+  ASSERT_TRUE(bench.enable(joint));
   while (bench.now.s() < 9) bench.tick();
   EXPECT_TRUE(was_found(bench, Fault::overspeed, joint));
 }
 
 TEST(ALimit, OfSpeedActsOnASlewAndAnElbowThatRunOff) {
-  for (const Joint joint : {Joint::slew, Joint::elbow}) {
+  for (const std::size_t joint : {arm5e_joint::slew, arm5e_joint::elbow}) {
     JointBench bench(1, [&](hal::SimConfig& truth) {
       const auto node = static_cast<std::uint8_t>(static_cast<std::size_t>(joint) + 1);
       truth.devices.faults.push_back({8.0, devices::DeviceFaultKind::runaway, node, 0, 0});
@@ -71,7 +72,7 @@ TEST_P(ALimitOfJoint, OfAgeActsOnADriveThatIsSilent) {
   JointBench bench(1, [&](hal::SimConfig& truth) {
     truth.devices.faults.push_back({8.0, devices::DeviceFaultKind::silent, static_cast<std::uint8_t>(joint + 1), 0, 0});
   });
-  ASSERT_TRUE(bench.enable(static_cast<Joint>(joint)));
+  ASSERT_TRUE(bench.enable(joint));
   const double limit_s = bench.nominal.controller.limits.stale_position_s;
   while (bench.now.s() < 8.0) bench.tick();
   EXPECT_FALSE(was_found(bench, Fault::stale_position, joint));
@@ -79,7 +80,7 @@ TEST_P(ALimitOfJoint, OfAgeActsOnADriveThatIsSilent) {
   EXPECT_TRUE(was_found(bench, Fault::stale_position, joint));
 }
 
-INSTANTIATE_TEST_SUITE_P(Each, ALimitOfJoint, testing::Range(std::size_t{0}, joint_count));
+INSTANTIATE_TEST_SUITE_P(Each, ALimitOfJoint, testing::Range(std::size_t{0}, arm5e_joint::count));
 
 // The arm stands where the tool is beyond a face of its workspace, and its drives' readings say so.
 TEST(ALimit, OfTheWorkspaceActsBeyondEveryFace) {
@@ -89,17 +90,17 @@ TEST(ALimit, OfTheWorkspaceActsBeyondEveryFace) {
   std::mt19937 random(1);
   const auto draw = [&] {
     arm::JointVector q;
-    for (std::size_t j = 0; j < arm_joint_count; ++j) {
+    for (std::size_t j = 0; j < arm5e_joint::of_arm; ++j) {
       q[static_cast<Eigen::Index>(j)] = std::uniform_real_distribution(limits.joints[j].min_rad, limits.joints[j].max_rad)(random);
     }
     return q;
   };
   const auto acts = [&](const arm::JointVector& q) {
     JointBench bench(1, [&](hal::SimConfig& truth) {
-      for (std::size_t j = 0; j < arm_joint_count; ++j) truth.world.start_rad[j] = q[static_cast<Eigen::Index>(j)];
+      for (std::size_t j = 0; j < arm5e_joint::of_arm; ++j) truth.world.start_rad[j] = q[static_cast<Eigen::Index>(j)];
     });
     bench.watches_tool = true;
-    EXPECT_TRUE(bench.enable(Joint::slew));
+    EXPECT_TRUE(bench.enable(arm5e_joint::slew));
     for (int i = 0; i < 50; ++i) bench.tick();
     return was_found(bench, Fault::workspace, 0);
   };

@@ -21,7 +21,7 @@ TEST(ALostZero, LeavesTheFileAsSoonAsThatCanBeWritten) {
   report.zeros_lost = only_jaw;
   const auto gone = [&] {
     work.commissioner->hear(report);
-    return !config::read_homing_file(work.folder / "homing.yaml").known[4];
+    return !config::read_homing_file(work.folder / "homing.yaml", {}).known[4];
   };
   for (int i = 0; i < 300; ++i) {
     EXPECT_FALSE(gone());

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "tests/arm5e_joints.hpp"
 #include "tests/hil/operator.hpp"
 
 namespace lf::test {
@@ -19,7 +20,7 @@ struct Misled {
   Step step;
   double into;        // of the step
   const char* fault;  // as a scenario has it, without its time
-  Joint joint;
+  std::size_t joint;
 };
 void PrintTo(const Misled& misled, std::ostream* out) { *out << misled.name; }
 
@@ -50,7 +51,7 @@ TEST_P(MisledDriveUnderALoad, IsNamedAndEndsWithoutPower) {
     gone_rad = std::max(gone_rad, std::abs(angle_rad() - from_rad));
   }
   // A roll may turn in its place up to its stop (docs/safety.md): 1.5 rad were seen.
-  const double farthest_rad = misled.joint == Joint::roll ? 2 : 0.5;
+  const double farthest_rad = misled.joint == arm5e_joint::roll ? 2 : 0.5;
   EXPECT_LT(gone_rad, farthest_rad) << "it went on unseen";
   EXPECT_EQ(rig.step_now(), Step::stopped) << rig.story();
   EXPECT_FALSE(rig.outcome().success);
@@ -60,14 +61,16 @@ TEST_P(MisledDriveUnderALoad, IsNamedAndEndsWithoutPower) {
   EXPECT_FALSE(rig.any_power()) << rig.story();
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    All, MisledDriveUnderALoad,
-    testing::Values(
-        Misled{"SlewEncoderStuckAfterTheAdvance", turn_only, Step::advance, 0.97, "kind: stuck_encoder, node: slew", Joint::slew},
-        Misled{"RollEncoderStuckInTheTurn", turn_only, Step::turn, 0.8, "kind: stuck_encoder, node: roll", Joint::roll},
-        Misled{"ShoulderSeizesAfterTheTurn", turn_only, Step::turn, 0.9, "kind: following, node: shoulder", Joint::shoulder},
-        Misled{"ShoulderEncoderStuckAfterThePress", press_only, Step::press, 0.9, "kind: stuck_encoder, node: shoulder", Joint::shoulder}),
-    [](const testing::TestParamInfo<Misled>& test) { return std::string(test.param.name); });
+INSTANTIATE_TEST_SUITE_P(All, MisledDriveUnderALoad,
+                         testing::Values(Misled{"SlewEncoderStuckAfterTheAdvance", turn_only, Step::advance, 0.97,
+                                                "kind: stuck_encoder, node: slew", arm5e_joint::slew},
+                                         Misled{"RollEncoderStuckInTheTurn", turn_only, Step::turn, 0.8, "kind: stuck_encoder, node: roll",
+                                                arm5e_joint::roll},
+                                         Misled{"ShoulderSeizesAfterTheTurn", turn_only, Step::turn, 0.9, "kind: following, node: shoulder",
+                                                arm5e_joint::shoulder},
+                                         Misled{"ShoulderEncoderStuckAfterThePress", press_only, Step::press, 0.9,
+                                                "kind: stuck_encoder, node: shoulder", arm5e_joint::shoulder}),
+                         [](const testing::TestParamInfo<Misled>& test) { return std::string(test.param.name); });
 
 // The shoulder has been blind for 0.2 s when the elbow's torque rises, as if the shoulder had driven the arm into something.
 TEST(MisledDrive, OfAnotherJointThanTheOneThatFeelsIsNamed) {
@@ -79,7 +82,7 @@ TEST(MisledDrive, OfAnotherJointThanTheOneThatFeelsIsNamed) {
   rig.start();
   (void)rig.run_to_end();
   EXPECT_EQ(rig.outcome().fault, safety::Fault::following_error) << rig.story();
-  EXPECT_EQ(rig.outcome().code, static_cast<std::int32_t>(Joint::shoulder)) << rig.story();
+  EXPECT_EQ(rig.outcome().code, static_cast<std::int32_t>(arm5e_joint::shoulder)) << rig.story();
   rig.run_for(1.5);
   EXPECT_FALSE(rig.any_power()) << rig.story();
 }
@@ -98,7 +101,7 @@ TEST(MisledDrive, OnTheWayToTheParkingPoseExplainsWhatWasFelt) {
   rig.start();
   (void)rig.run_to_end();
   EXPECT_EQ(rig.outcome().fault, safety::Fault::following_error) << rig.story();
-  EXPECT_EQ(rig.outcome().code, static_cast<std::int32_t>(Joint::elbow)) << rig.story();
+  EXPECT_EQ(rig.outcome().code, static_cast<std::int32_t>(arm5e_joint::elbow)) << rig.story();
   EXPECT_EQ(rig.outcome().step, Step::stow) << rig.story();
 }
 

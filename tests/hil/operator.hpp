@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/arm5e_joints.hpp"
 #include "tests/hil/rig.hpp"
 
 namespace lf::test {
@@ -23,7 +24,7 @@ inline std::vector<std::string> press_only() { return {"tasks=[{press_buttons: {
 
 inline bool give(Rig& rig, Command command) { return rig.controller().on_command(command, rig.now()); }
 
-inline bool jog(Rig& rig, Joint joint, double by_rad) {
+inline bool jog(Rig& rig, std::size_t joint, double by_rad) {
   mission::Order order;
   order.command = Command::jog;
   order.joint = joint;
@@ -46,17 +47,17 @@ inline bool run_until(Rig& rig, mission::Standing wanted, double limit_s) {
 
 inline bool home(Rig& rig) { return give(rig, Command::home) && run_until(rig, mission::Standing::ready, 30); }
 
-inline double angle_rad(const Rig& rig, Joint joint) { return rig.world().readings()[static_cast<std::size_t>(joint)].position_rad; }
+inline double angle_rad(const Rig& rig, std::size_t joint) { return rig.world().readings()[static_cast<std::size_t>(joint)].position_rad; }
 
-inline std::array<double, joint_count> angles_rad(const Rig& rig) {
-  std::array<double, joint_count> all{};
-  for (std::size_t i = 0; i < joint_count; ++i) all[i] = angle_rad(rig, static_cast<Joint>(i));
+inline PerJoint<double> angles_rad(const Rig& rig) {
+  PerJoint<double> all{};
+  for (std::size_t i = 0; i < rig.arm().joints.size(); ++i) all[i] = angle_rad(rig, i);
   return all;
 }
 
-inline double farthest_apart(const std::array<double, joint_count>& a, const std::array<double, joint_count>& b) {
+inline double farthest_apart(const PerJoint<double>& a, const PerJoint<double>& b) {
   double most = 0;
-  for (std::size_t i = 0; i < joint_count; ++i) most = std::max(most, std::abs(a[i] - b[i]));
+  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::abs(a[i] - b[i]));
   return most;
 }
 

@@ -8,6 +8,7 @@
 #include <limits>
 #include <string>
 
+#include "tests/arm5e_joints.hpp"
 #include "tests/hil/operator.hpp"
 
 namespace lf::test {
@@ -243,8 +244,7 @@ TEST(Reset, OfAHeldArmTakesThePowerOffAndTheNextJobIsDone) {
   ASSERT_TRUE(run_until(rig, Standing::idle, 1));
   EXPECT_FALSE(rig.outcome().ended);
   rig.run_for(1);
-  for (std::size_t i = 0; i < joint_count; ++i)
-    EXPECT_EQ(rig.controller().network().axis(static_cast<Joint>(i)).state(), canopen::AxisState::disabled);
+  for (std::size_t i = 0; i < arm5e_joint::count; ++i) EXPECT_EQ(rig.controller().network().axis(i).state(), canopen::AxisState::disabled);
   rig.start();
   ASSERT_TRUE(rig.run_to_end()) << rig.story();
   EXPECT_EQ(rig.step_now(), Step::done) << rig.story();
@@ -299,20 +299,20 @@ TEST(Reset, AfterAStopInTheTurnNoArmJointIsJoggedBeforeTheJawIsOpen) {
     }
   };
   for (const double by_rad : {0.3, -0.3, 0.01}) {
-    for (const Joint joint : {Joint::slew, Joint::shoulder, Joint::elbow, Joint::roll}) {
+    for (const std::size_t joint : {arm5e_joint::slew, arm5e_joint::shoulder, arm5e_joint::elbow, arm5e_joint::roll}) {
       EXPECT_FALSE(jog(rig, joint, by_rad)) << static_cast<int>(joint);
       finish();
     }
   }
   EXPECT_LT(pulled_n, 60) << rig.story();
   EXPECT_NEAR(rig.world().valve_angle_rad(0), valve_rad, 0.02);
-  ASSERT_TRUE(jog(rig, Joint::jaw, 0.1));
+  ASSERT_TRUE(jog(rig, arm5e_joint::jaw, 0.1));
   finish();
-  EXPECT_FALSE(jog(rig, Joint::slew, -0.1)) << "the bar is still between the fingers";
-  ASSERT_TRUE(jog(rig, Joint::jaw, 0.2));
+  EXPECT_FALSE(jog(rig, arm5e_joint::slew, -0.1)) << "the bar is still between the fingers";
+  ASSERT_TRUE(jog(rig, arm5e_joint::jaw, 0.2));
   finish();
   EXPECT_LT(rig.world().contacts().grip_force_n, 1) << "it is let go";
-  EXPECT_TRUE(jog(rig, Joint::slew, -0.05)) << rig.story();
+  EXPECT_TRUE(jog(rig, arm5e_joint::slew, -0.05)) << rig.story();
   finish();
   EXPECT_LT(pulled_n, 60) << rig.story();
 }
@@ -328,7 +328,8 @@ TEST(Reset, OfAJawWhoseEncoderStoodStillLetsNoArmJointBeJogged) {
   ASSERT_TRUE(give(rig, Command::reset));
   rig.run_for(0.5);
   ASSERT_TRUE(home(rig)) << rig.story();
-  for (const Joint joint : {Joint::slew, Joint::shoulder, Joint::elbow, Joint::roll}) EXPECT_FALSE(jog(rig, joint, 0.05));
+  for (const std::size_t joint : {arm5e_joint::slew, arm5e_joint::shoulder, arm5e_joint::elbow, arm5e_joint::roll})
+    EXPECT_FALSE(jog(rig, joint, 0.05));
 }
 
 TEST(Reset, AfterAnEndIsAsNew) {
@@ -355,7 +356,7 @@ bool bring_to(Rig& rig, Standing standing) {
       break;
     case Standing::ready: return home(rig);
     case Standing::jogging:
-      if (!home(rig) || !jog(rig, Joint::elbow, -0.3)) return false;
+      if (!home(rig) || !jog(rig, arm5e_joint::elbow, -0.3)) return false;
       rig.run_for(0.5);
       break;
     case Standing::working:
@@ -393,7 +394,7 @@ TEST_P(Standings, AreLeftByAShutDownWithoutPowerAndWithTheNodesStopped) {
   rig.run_for(3);
   EXPECT_TRUE(rig.mission().over()) << rig.story();
   EXPECT_FALSE(rig.any_power()) << "from the drives' side";
-  for (std::size_t i = 0; i < joint_count; ++i) EXPECT_EQ(rig.devices().power(i), devices::DrivePower::off) << "joint " << i;
+  for (std::size_t i = 0; i < arm5e_joint::count; ++i) EXPECT_EQ(rig.devices().power(i), devices::DrivePower::off) << "joint " << i;
   EXPECT_LT(rig.fastest_joint_rad_s(), standing_rad_s);
   const std::uint64_t heard = rig.controller().network().stats().frames_in;
   const auto stood = angles_rad(rig);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 
+#include "tests/arm5e_joints.hpp"
 #include "tests/hil/rig.hpp"
 
 namespace lf::test {
@@ -243,13 +244,13 @@ TEST(EveryPose, HasTheSpeedAndTheFollowingWindowOfItsJoints) {
   constexpr double between_syncs = 1.03;  // a joint in motion is read a SYNC ago, and a target sent after the limits were set
   Rig rig(press_only());
   rig.start();
-  std::array<double, joint_count> least_rad{};
+  PerJoint<double> least_rad{};
   least_rad.fill(window_rad);
   while (!rig.mission().outcome().ended && rig.now() < Time::from_s(300)) {
     rig.step();
     if (!rig.any_power()) continue;
-    for (std::size_t i = 0; i < joint_count; ++i) {
-      const auto joint = static_cast<Joint>(i);
+    for (std::size_t i = 0; i < arm5e_joint::count; ++i) {
+      const auto joint = i;
       const canopen::AxisLimits& here = rig.controller().network().axis(joint).limits_here();
       const double rad = rad_per_count(rig.arm().joints[i].actuator, rig.world().readings()[i].motor_position_rad);
       ASSERT_LE(here.following_window_counts * rad, between_syncs * window_rad) << rig.arm().joints[i].name << rig.story();
@@ -259,7 +260,7 @@ TEST(EveryPose, HasTheSpeedAndTheFollowingWindowOfItsJoints) {
     }
   }
   ASSERT_EQ(rig.step_now(), Step::done) << rig.story();
-  for (std::size_t i = 0; i < joint_count; ++i)
+  for (std::size_t i = 0; i < arm5e_joint::count; ++i)
     EXPECT_GT(least_rad[i], 0.8 * window_rad) << rig.arm().joints[i].name << ": needlessly narrow";
 }
 
@@ -421,7 +422,7 @@ TEST(AfterTheEnd, AFaultIsCountedAndTheOutcomeStays) {
   EXPECT_EQ(later(Fault::estop), 1u);
   rig.ports().fail(hal::Call::receive_can, rig.ports().calls(hal::Call::receive_can), 5, std::numeric_limits<std::uint64_t>::max());
   rig.run_for(1);
-  EXPECT_EQ(later(Fault::node_lost), joint_count);
+  EXPECT_EQ(later(Fault::node_lost), arm5e_joint::count);
   EXPECT_GE(later(Fault::port_error), 100u);
   EXPECT_EQ(rig.count(Fault::estop), 1u) << "told, as an event";
   EXPECT_EQ(rig.step_now(), Step::done);
@@ -465,7 +466,7 @@ TEST(Limits, WithAWrongChecksumMoveNothing) {
   rig.run_for(1);
   EXPECT_EQ(rig.step_now(), Step::off) << rig.story();
   EXPECT_EQ(rig.outcome().fault, Fault::limits_refused);
-  for (std::size_t i = 0; i < joint_count; ++i)
+  for (std::size_t i = 0; i < arm5e_joint::count; ++i)
     EXPECT_NEAR(rig.world().readings()[i].position_rad, before[i].position_rad, 2e-3);  // the jaw's play
 }
 

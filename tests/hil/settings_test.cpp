@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "tests/arm5e_joints.hpp"
 #include "tests/hil/rig.hpp"
 
 namespace lf::test {
@@ -39,7 +40,8 @@ TEST(AVehicleInTheWay, IsNamedBeforeAnythingMoves) {
   EXPECT_FALSE(rig.outcome().success);
   EXPECT_EQ(rig.outcome().step, Step::deploy) << rig.story();
   EXPECT_EQ(rig.outcome().code, static_cast<std::int32_t>(StepFailure::vehicle_in_the_way)) << rig.story();
-  for (std::size_t i = 0; i < arm_joint_count; ++i) EXPECT_NEAR(rig.world().readings()[i].position_rad, before[i].position_rad, 0.002) << i;
+  for (std::size_t i = 0; i < arm5e_joint::of_arm; ++i)
+    EXPECT_NEAR(rig.world().readings()[i].position_rad, before[i].position_rad, 0.002) << i;
 }
 
 // The same where the panel may stand anywhere within a decimetre.

@@ -5,13 +5,14 @@
 #include <cmath>
 #include <functional>
 
+#include "tests/arm5e_joints.hpp"
 #include "tests/hil/joint_bench.hpp"
 
 namespace lf::test {
 namespace {
 
 struct Way {
-  Joint joint;
+  std::size_t joint;
   double speed_rad_s;
   double blocked_at_rad;  // where the screw has the most lever
 };
@@ -46,25 +47,25 @@ TEST_P(TorqueOf, AMovingJointIsWithinItsBounds) {
 TEST_P(TorqueOf, ABlockedJointIsOverloaded) {
   const Way& way = GetParam();
   const auto index = std::size_t(way.joint);
-  if (way.joint == Joint::roll) return;
+  if (way.joint == arm5e_joint::roll) return;
   for (const std::uint64_t seed : {1u, 2u, 3u, 4u}) {
     JointBench bench(seed, [&](hal::SimConfig& truth) {
       ArmJoint& joint = truth.world.arm.joints[index];
       (way.speed_rad_s > 0 ? joint.upper_rad : joint.lower_rad) = way.blocked_at_rad;
     });
     ASSERT_TRUE(bench.enable(way.joint));
-    for (int i = 0; i < 6000 && bench.overloaded == joint_count; ++i) bench.move(way.joint, way.speed_rad_s);
+    for (int i = 0; i < 6000 && bench.overloaded == arm5e_joint::count; ++i) bench.move(way.joint, way.speed_rad_s);
     EXPECT_EQ(bench.overloaded, index) << "seed " << seed << ": " << bench.watch->joints().torque_low_nm[index] << " to "
                                        << bench.watch->joints().torque_high_nm[index] << " N m";
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Each, TorqueOf,
-                         testing::Values(Way{Joint::slew, -0.1, -0.57}, Way{Joint::shoulder, 0.08, 1.0}, Way{Joint::elbow, -0.1, 1.12},
-                                         Way{Joint::roll, 0.3, 1.0}),
-                         [](const testing::TestParamInfo<Way>& test) { return "Joint" + std::to_string(std::size_t(test.param.joint)); });
+                         testing::Values(Way{arm5e_joint::slew, -0.1, -0.57}, Way{arm5e_joint::shoulder, 0.08, 1.0},
+                                         Way{arm5e_joint::elbow, -0.1, 1.12}, Way{arm5e_joint::roll, 0.3, 1.0}),
+                         [](const testing::TestParamInfo<Way>& test) { return "Joint" + std::to_string(test.param.joint); });
 
-class CappedTorqueOf : public testing::TestWithParam<Joint> {};
+class CappedTorqueOf : public testing::TestWithParam<std::size_t> {};
 
 // The limits of roll and jaw lie above what their drives may give: only a reading beyond that, of a drive that does not keep its limit, is an overload.
 TEST_P(CappedTorqueOf, IsAnOverloadWhenItsDriveDoesNotKeepItsLimit) {
@@ -75,12 +76,12 @@ TEST_P(CappedTorqueOf, IsAnOverloadWhenItsDriveDoesNotKeepItsLimit) {
     });
     ASSERT_TRUE(bench.enable(GetParam()));
     for (int i = 0; i < 2500; ++i) bench.move(GetParam(), 0.2);
-    EXPECT_EQ(bench.overloaded, broken ? index : joint_count);
+    EXPECT_EQ(bench.overloaded, broken ? index : arm5e_joint::count);
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(OfRollAndJaw, CappedTorqueOf, testing::Values(Joint::roll, Joint::jaw),
-                         [](const auto& test) { return test.param == Joint::roll ? "Roll" : "Jaw"; });
+INSTANTIATE_TEST_SUITE_P(OfRollAndJaw, CappedTorqueOf, testing::Values(arm5e_joint::roll, arm5e_joint::jaw),
+                         [](const auto& test) { return test.param == arm5e_joint::roll ? "Roll" : "Jaw"; });
 
 }  // namespace
 }  // namespace lf::test

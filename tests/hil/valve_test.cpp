@@ -9,6 +9,7 @@
 
 #include "firmware/arm/gripper.hpp"
 #include "tests/arm5e.hpp"
+#include "tests/arm5e_joints.hpp"
 #include "tests/hil/rig.hpp"
 
 namespace lf::test {
@@ -57,7 +58,7 @@ TEST(Turn, WhoseRollHasSeizedNamesItAndLosesItsPower) {
     ASSERT_TRUE(rig.run_to_end()) << rig.story();
     rig.run_for(2);
     EXPECT_EQ(rig.outcome().fault, Fault::following_error) << rig.story();
-    EXPECT_EQ(rig.outcome().code, static_cast<std::int32_t>(Joint::roll)) << rig.story();
+    EXPECT_EQ(rig.outcome().code, static_cast<std::int32_t>(arm5e_joint::roll)) << rig.story();
     EXPECT_FALSE(rig.any_power()) << rig.story();
   }
 }

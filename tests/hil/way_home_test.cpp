@@ -5,6 +5,7 @@
 #include <string>
 
 #include "tests/arm5e.hpp"
+#include "tests/arm5e_joints.hpp"
 #include "tests/hil/operator.hpp"
 
 namespace lf::test {
@@ -21,7 +22,7 @@ bool failed_by(const Rig& rig, StepFailure failure) {
 
 // The fingers stay where they are, but for what their pads give way by.
 void jam(Rig& rig) {
-  const double jaw_rad = angle_rad(rig, Joint::jaw);
+  const double jaw_rad = angle_rad(rig, arm5e_joint::jaw);
   rig.block_jaw(jaw_rad - 0.001, jaw_rad + 0.001);
 }
 
@@ -67,7 +68,7 @@ TEST_P(AJawThatDoesNotOpen, EndsTheWayHomeWithAStopAndNoPullOnTheHandle) {
   EXPECT_LT(moved_m, 0.005) << "it went back with the handle in the jaw";
   EXPECT_LT(pulled_n, pulled_before_n + 20) << rig.story();
   EXPECT_LT(rig.fastest_joint_rad_s(), standing_rad_s);
-  EXPECT_LT(arm::gap_from_jaw(test::jaw5e, angle_rad(rig, Joint::jaw)), PanelLayout{}.valves[0].handle_thickness_m + 0.002)
+  EXPECT_LT(arm::gap_from_jaw(test::jaw5e, angle_rad(rig, arm5e_joint::jaw)), PanelLayout{}.valves[0].handle_thickness_m + 0.002)
       << "it is not jammed on the handle";
 }
 
@@ -75,7 +76,7 @@ INSTANTIATE_TEST_SUITE_P(WhereItJams, AJawThatDoesNotOpen, testing::Values(When:
 
 double fastest_arm_joint_rad_s(const Rig& rig) {
   double fastest = 0;
-  for (std::size_t i = 0; i < arm_joint_count; ++i) fastest = std::max(fastest, std::abs(rig.world().readings()[i].velocity_rad_s));
+  for (std::size_t i = 0; i < arm5e_joint::of_arm; ++i) fastest = std::max(fastest, std::abs(rig.world().readings()[i].velocity_rad_s));
   return fastest;
 }
 
@@ -96,7 +97,7 @@ TEST(WhatTheJawClosesOnOnTheWayHome, IsLetGoOfByAnArmAtRest) {
     double narrowest_m = 1, moved_before_rad_s = 0, opening_rad_s = 0;
     for (int i = 0; i < 250 * 90 && rig.step_now() == Step::stow; ++i) {
       rig.step();
-      const double gap_m = arm::gap_from_jaw(test::jaw5e, angle_rad(rig, Joint::jaw));
+      const double gap_m = arm::gap_from_jaw(test::jaw5e, angle_rad(rig, arm5e_joint::jaw));
       narrowest_m = std::min(narrowest_m, gap_m);
       const double speed_rad_s = fastest_arm_joint_rad_s(rig);
       if (narrowest_m > thick_m + pads_m) moved_before_rad_s = std::max(moved_before_rad_s, speed_rad_s);
@@ -109,8 +110,8 @@ TEST(WhatTheJawClosesOnOnTheWayHome, IsLetGoOfByAnArmAtRest) {
     EXPECT_LT(opening_rad_s, standing_rad_s) << "the arm moves while the jaw opens";
     EXPECT_FALSE(rig.outcome().success) << rig.story();
     EXPECT_TRUE(failed_by(rig, StepFailure::jaw_not_closed)) << rig.story();
-    EXPECT_GT(arm::gap_from_jaw(test::jaw5e, angle_rad(rig, Joint::jaw)), open_m) << "it still holds it";
-    for (std::size_t i = 0; i < arm_joint_count; ++i) {
+    EXPECT_GT(arm::gap_from_jaw(test::jaw5e, angle_rad(rig, arm5e_joint::jaw)), open_m) << "it still holds it";
+    for (std::size_t i = 0; i < arm5e_joint::of_arm; ++i) {
       EXPECT_NEAR(rig.world().readings()[i].position_rad, mission::MissionConfig{}.park_rad[static_cast<Eigen::Index>(i)], 0.02)
           << "it is not at home: " << rig.story();
     }

@@ -8,13 +8,14 @@
 #include "host_sim/serve/socket_can_link.hpp"
 #include "shared/arm/arm_description.hpp"
 #include "shared/arm/make_model.hpp"
+#include "tests/arm5e_joints.hpp"
 
 namespace {
 
 volatile std::sig_atomic_t stopped = 0;
 
 // Parked, as the simulated arm starts.
-constexpr std::array<double, lf::joint_count> start_rad{0, 0.60, 1.90, 0, 0.3};
+constexpr lf::PerJoint<double> start_rad{0, 0.60, 1.90, 0, 0.3};
 
 void follow(lf::JointReading& joint, const lf::JointDrive& drive) {
   joint.velocity_rad_s = drive.released ? 0 : drive.velocity_rad_s;
@@ -29,7 +30,7 @@ int serve(const char* interface) {
   devices::NodeRack rack(devices::devices_config(arm, {}, 1), Time{});
   serve::ServedBus bus(rack, link, serve::NodeSet::all(), make_model(arm));
   JointReadings readings{};
-  for (std::size_t i = 0; i < joint_count; ++i) readings[i].position_rad = readings[i].motor_position_rad = start_rad[i];
+  for (std::size_t i = 0; i < arm5e_joint::count; ++i) readings[i].position_rad = readings[i].motor_position_rad = start_rad[i];
   serve::Pace pace(link.now());
   std::puts("serving nodes");
   std::fflush(stdout);
@@ -39,7 +40,7 @@ int serve(const char* interface) {
     }
     const Time t = pace.begin(link.now());
     const JointDrives drives = bus.drives(readings);
-    for (std::size_t i = 0; i < joint_count; ++i) follow(readings[i], drives[i]);
+    for (std::size_t i = 0; i < arm5e_joint::count; ++i) follow(readings[i], drives[i]);
     bus.step(t, readings);
   }
   std::printf("%llu frames received, %llu sent, %llu calls failed; %llu of %llu steps over 1 ms late\n",

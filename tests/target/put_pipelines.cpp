@@ -16,7 +16,7 @@
 namespace lf::test {
 namespace {
 
-using Joints = std::array<double, arm_joint_count>;
+using Joints = PerArmJoint<double>;
 constexpr Duration exposure = Duration::from_ms(2);
 constexpr int frames = 12;
 constexpr int syncs_a_frame = 300;  // a dozen stripes over the whole sweep
@@ -53,7 +53,7 @@ void paint(B& bench, const CameraCalibration& camera, const LaserCalibration& la
   for (std::uint8_t& grey : bench.pixels) grey = static_cast<std::uint8_t>(40 + random.below(3));
   if (!laser_on) return;
   const Pose panel = PanelLayout{}.nominal_base_from_panel();
-  const Pose sheet = test::arm5e.base_from_laser(arm::JointVector(q[0], q[1], q[2], q[3]), laser);
+  const Pose sheet = test::arm5e.base_from_laser(arm::planar_joints(q[0], q[1], q[2], q[3]), laser);
   const Vec3 panel_normal = panel.linear().col(2), sheet_normal = sheet.linear().col(0);
   const Vec3 along = panel_normal.cross(sheet_normal).normalized();
   // A point of both planes: from the panel's origin within the panel to the sheet.

@@ -104,7 +104,7 @@ void put_points(Ledger& ledger) {
   const scan::Triangulator triangulator(camera, laser, {});
   ledger.operation("triangulation of a point", 1e-12);  // the sheet is met at some tenths of a radian, which multiplies the pose's 1e-14
   for (int step = 0; step < 8; ++step) {
-    const Pose base_from_laser = test::arm5e.base_from_laser(arm::JointVector(0, 0.9, 1.2 + 0.08 * step, 0), laser);
+    const Pose base_from_laser = test::arm5e.base_from_laser(arm::planar_joints(0, 0.9, 1.2 + 0.08 * step, 0), laser);
     for (int v = 8; v < height; v += 24) {
       const std::optional<Vec3> point = ledger.turn([&] { return triangulator.point(Vec2(200.25 + v, v), base_from_laser); });
       ledger.integer(point.has_value());

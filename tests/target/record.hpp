@@ -14,6 +14,7 @@
 #include "shared/messages/panel_vision.hpp"
 #include "shared/messages/scan_messages.hpp"
 #include "shared/messages/static_vector.hpp"
+#include "tests/arm5e_joints.hpp"
 
 namespace lf::test {
 
@@ -45,6 +46,16 @@ void pass(S& s, Duration& d) {
 template <class S, class Derived>
 void pass(S& s, Eigen::PlainObjectBase<Derived>& m) {
   for (auto& coefficient : m.reshaped()) pass(s, coefficient);
+}
+// Builds differ in how many joints they have room for: those of the recorded arm are passed.
+template <class S>
+void pass(S& s, arm::JointVector& of_joints) {
+  for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(arm5e_joint::of_arm); ++i) pass(s, of_joints[i]);
+}
+template <class S, class T, std::size_t N>
+void pass_first(S& s, std::array<T, N>& items, std::size_t count) {
+  if (count > N) return s.broken();
+  for (std::size_t i = 0; i < count; ++i) pass(s, items[i]);
 }
 template <class S>
 void pass(S& s, Pose& pose) {
@@ -244,15 +255,21 @@ void pass(S& s, ArmModel::Jaw& v) {
 }
 template <class S>
 void pass(S& s, ArmModel::Capsule& v) {
-  auto& [link, a_m, b_m, radius_m] = v;
-  auto number = static_cast<std::uint32_t>(link);  // a size is of another width on the two
-  pass_all(s, number, a_m, b_m, radius_m);
-  link = number;
+  auto link = static_cast<std::uint32_t>(v.link());  // a size is of another width on the two
+  Vec3 a_m = v.a_m(), b_m = v.b_m();
+  double radius_m = v.radius_m() - ArmModel::Capsule::rounding_m;
+  pass_all(s, link, a_m, b_m, radius_m);
+  v = ArmModel::Capsule(link, a_m, b_m, radius_m);
 }
 template <class S>
 void pass(S& s, ArmModel& v) {
-  auto& [planar, joints, origins, jaw, capsules] = v;
-  pass_all(s, planar, joints, origins, jaw, capsules);
+  auto& [arm_joints, form, planar, tool_z_m, joints, origins, jaw, capsules] = v;
+  auto number = static_cast<std::uint32_t>(arm_joints);
+  pass_all(s, number, form, planar, tool_z_m);
+  arm_joints = number;
+  pass_first(s, joints, v.joint_count());
+  pass_first(s, origins, v.joint_count() + 1);
+  pass_all(s, jaw, capsules);
 }
 template <class S>
 void pass(S& s, arm::Arm& v) {
@@ -263,7 +280,9 @@ void pass(S& s, arm::Arm& v) {
 template <class S>
 void pass(S& s, MissionSetup& v) {
   auto& [arm, transmissions, camera, laser, markers, mission, limits, mission_limits] = v;
-  pass_all(s, arm, transmissions, camera, laser, markers, mission, limits, mission_limits);
+  pass(s, arm);
+  pass_first(s, transmissions, arm5e_joint::count);
+  pass_all(s, camera, laser, markers, mission, limits, mission_limits);
 }
 template <class S>
 void pass(S& s, ControllerConfig& v) {
@@ -313,7 +332,9 @@ void pass(S& s, PanelResult& v) {
 template <class S>
 void pass(S& s, ScanCommand& v) {
   auto& [kind, joints, exposure_start, exposure_kind, trigger, sweep] = v;
-  pass_all(s, kind, joints.t, joints.q_rad, exposure_start, exposure_kind, trigger, sweep);
+  pass_all(s, kind, joints.t);
+  pass_first(s, joints.q_rad, arm5e_joint::of_arm);
+  pass_all(s, exposure_start, exposure_kind, trigger, sweep);
 }
 
 // One control period.

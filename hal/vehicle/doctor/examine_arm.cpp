@@ -31,9 +31,8 @@ void examine_estop(const VehicleConfig& config, Examinations& found) {
 
 void examine_zeros(const VehicleConfig& config, Examinations& found) {
   std::string unknown;
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    if (!config.core.controller.network.drives[i].may_have_power())
-      unknown += (unknown.empty() ? "" : ", ") + std::string(config::joint_name(i));
+  for (std::size_t i = 0; i < config.core.controller.network.drives.size(); ++i) {
+    if (!config.core.controller.network.drives[i].may_have_power()) unknown += (unknown.empty() ? "" : ", ") + config.machine.joints[i];
   }
   if (unknown.empty()) return found.push_back({"zeros", "homing.file", Grade::good, "known of all joints", ""});
   const bool no_file = config.machine.homing_file.empty();

@@ -18,8 +18,8 @@ inline constexpr std::uint32_t ticks_a_sample = 10;
 
 class CurveObserver : public hal::SimObserver {
  public:
-  // Both outlive the observer.
-  CurveObserver(RunFiles& files, const BusObserver& bus);
+  // Files and bus outlive the observer.
+  CurveObserver(RunFiles& files, const BusObserver& bus, const JointNames& joints);
 
   void on_telemetry(const Telemetry& telemetry) override;
   void finish();
@@ -32,11 +32,12 @@ class CurveObserver : public hal::SimObserver {
  private:
   RunFiles& files_;
   const BusObserver& bus_;
+  JointNames joints_;
   std::optional<record::JointLog> joint_log_;
   std::uint64_t bits_before_ = 0;
   std::uint32_t ticks_ = 0;
   std::vector<double> t_s_;
-  std::array<std::vector<double>, joint_count> target_rad_, actual_rad_, torque_nm_;
+  PerJoint<std::vector<double>> target_rad_, actual_rad_, torque_nm_;
   std::vector<double> bus_load_percent_;
 };
 

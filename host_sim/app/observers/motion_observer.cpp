@@ -7,22 +7,21 @@
 #include "firmware/arm/kinematics.hpp"
 #include "host_sim/app/observers/curve_observer.hpp"
 #include "host_sim/app/report_parts_of.hpp"
-#include "shared/messages/joint_names.hpp"
 
 namespace lf::app {
 
 void MotionObserver::on_telemetry(const Telemetry& telemetry) {
   if (ticks_++ % ticks_a_sample != 0 || world_ == nullptr) return;
   t_s_.push_back(telemetry.t.s());
-  const JointReadings joints = world_->readings();
-  for (std::size_t i = 0; i < joint_count; ++i) {
-    position_rad_[i].push_back(joints[i].position_rad);
-    speed_rad_s_[i].push_back(joints[i].velocity_rad_s);
+  const JointReadings readings = world_->readings();
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    position_rad_[i].push_back(readings[i].position_rad);
+    speed_rad_s_[i].push_back(readings[i].velocity_rad_s);
   }
   // Before the drives have answered nothing is asked of them: the targets are zeros.
   const bool asked = telemetry.step != mission::Step::idle && telemetry.step != mission::Step::boot;
-  arm::JointVector asked_rad;
-  for (std::size_t i = 0; i < arm_joint_count; ++i) asked_rad[static_cast<Eigen::Index>(i)] = telemetry.target_rad[i];
+  arm::JointVector asked_rad = arm::JointVector::Zero();
+  for (std::size_t i = 0; i < arm_.arm_joints(); ++i) asked_rad[static_cast<Eigen::Index>(i)] = telemetry.target_rad[i];
   const Vec3 tool_m = world_->base_from_tool().translation(), asked_m = arm_.base_from_tool(asked_rad).translation();
   for (std::size_t axis = 0; axis < 3; ++axis) {
     tool_mm_[axis].push_back(1000 * tool_m[static_cast<Eigen::Index>(axis)]);
@@ -40,7 +39,7 @@ void MotionObserver::on_telemetry(const Telemetry& telemetry) {
 
 std::vector<record::ReportChart> MotionObserver::charts() const {
   record::ReportChart speeds{"Joint speeds, truth", "rad/s", {}}, tool{"Tool's place in the base frame, truth, and asked", "mm", {}};
-  for (std::size_t i = 0; i < joint_count; ++i) speeds.series.push_back({joint_names[i], t_s_, speed_rad_s_[i], false});
+  for (std::size_t i = 0; i < joints_.size(); ++i) speeds.series.push_back({joints_[i], t_s_, speed_rad_s_[i], false});
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::string name(1, "xyz"[axis]);
     tool.series.push_back({name, t_s_, tool_mm_[axis], false});
@@ -63,11 +62,11 @@ record::ReportMotion MotionObserver::motion(const world::WorldConfig& config) co
   record::ReportMotion motion;
   motion.parts = report_parts_of(config);
   motion.t_s = t_s_;
-  for (std::size_t i = 0; i < joint_count; ++i) motion.coordinates.push_back({joint_names[i], position_rad_[i]});
+  for (std::size_t i = 0; i < joints_.size(); ++i) motion.coordinates.push_back({joints_[i], position_rad_[i]});
   for (std::size_t i = 0; i < valves_rad_.size(); ++i) motion.coordinates.push_back({names_.valves.at(i), valves_rad_[i]});
   for (std::size_t i = 0; i < button_depth_m_.size(); ++i)
     motion.coordinates.push_back({names_.buttons.at(i) + " button", button_depth_m_[i]});
-  motion.tool_part = static_cast<std::size_t>(scene::BodyId::wrist);
+  motion.tool_part = scene::OwnBodies(config.arm.arm_joints()).hand;
   motion.tool_m = config.arm.wrist_from_tool.translation();
   motion.base_from_panel = config.base_from_panel;
   return motion;

@@ -7,13 +7,15 @@
 #include "firmware/arm/kinematics.hpp"
 #include "hal/sim/sim_platform.hpp"
 #include "host_sim/record/report.hpp"
+#include "shared/arm/joint_names.hpp"
 
 namespace lf::app {
 
 class MotionObserver : public hal::SimObserver {
  public:
   // `arm`: as the core knows it.
-  explicit MotionObserver(const arm::Arm& arm, const PanelNames& names = {}) : arm_(arm), names_(names) {}
+  explicit MotionObserver(const arm::Arm& arm, const JointNames& joints = {}, const PanelNames& names = {})
+      : arm_(arm), joints_(joints), names_(names) {}
 
   void on_step(Time, const world::World& world) override { world_ = &world; }
   void on_telemetry(const Telemetry& telemetry) override;
@@ -26,10 +28,11 @@ class MotionObserver : public hal::SimObserver {
  private:
   const world::World* world_ = nullptr;
   arm::Arm arm_;
+  JointNames joints_;
   PanelNames names_;
   std::uint32_t ticks_ = 0;
   std::vector<double> t_s_;
-  std::array<std::vector<double>, joint_count> position_rad_, speed_rad_s_;
+  PerJoint<std::vector<double>> position_rad_, speed_rad_s_;
   std::array<std::vector<double>, 3> tool_mm_, asked_tool_mm_;
   std::vector<double> tool_error_mm_;
   std::vector<double> contact_n_, grip_n_;

@@ -30,7 +30,7 @@ void PanelObserver::on_panel_request(const PanelRequest&, ImageView, std::span<c
 void PanelObserver::judge_doubt(const mission::PanelMap& map) {
   if (world_ == nullptr || !map.known() || map.base_from_panel().isApprox(newest_map_, 0)) return;
   newest_map_ = map.base_from_panel();
-  const Pose& truth = world_->base_from_body()[static_cast<std::size_t>(scene::BodyId::panel)];
+  const Pose& truth = world_->base_from_panel();
   worst_over_doubt_ = std::fmax(worst_over_doubt_, panel_over_doubt(newest_map_, truth, map.doubt()));
 }
 

@@ -1,12 +1,7 @@
 #include "host_sim/app/observers/peak_observer.hpp"
 
-#include "shared/scene/scene.hpp"
-
 namespace lf::app {
 namespace {
-
-// Frame::object is 1 + the body. The robot's bodies come first.
-bool of_the_panel(std::uint16_t object) { return object > static_cast<std::uint16_t>(scene::BodyId::panel); }
 
 constexpr double pause_s = 1;  // longer than any interval of the camera's, twice 80 ms: charts show no line over it
 
@@ -18,6 +13,7 @@ void PeakObserver::on_image(const hal::ExposureRecord& exposure) {
   frame_middle_ = exposure.exposure.start + exposure.exposure.duration / 2;
   has_laser_ = exposure.exposure.laser;
   if (frame_ == nullptr || !has_laser_) return;
+  const auto of_the_panel = [this](std::uint16_t object) { return object > panel_; };  // Frame::object is 1 + the body
   waiting_.push_back({frame_start_, frame_middle_, stripe_truth(*frame_, of_the_panel)});
   if (waiting_.size() > most_waiting) waiting_.pop_front();
 }

@@ -8,12 +8,14 @@
 #include "hal/sim/sim_platform.hpp"
 #include "host_sim/app/peak_score.hpp"
 #include "host_sim/record/report.hpp"
+#include "shared/scene/scene.hpp"
 
 namespace lf::app {
 
 class PeakObserver : public hal::SimObserver {
  public:
-  explicit PeakObserver(const PictureNoise& noise) : score_(noise) {}
+  // `panel`: the panel's body. The robot's bodies come before it.
+  explicit PeakObserver(const PictureNoise& noise, scene::BodyId panel) : panel_(panel), score_(noise) {}
 
   void on_image(const hal::ExposureRecord& exposure) override;
   // After each turn of the vision thread. True when it has looked for peaks in the newest image.
@@ -37,6 +39,7 @@ class PeakObserver : public hal::SimObserver {
   };
   static constexpr std::size_t most_waiting = 32;
 
+  scene::BodyId panel_;
   PeakScore score_;
   const optics::Frame* frame_ = nullptr;
   Time frame_start_, frame_middle_;

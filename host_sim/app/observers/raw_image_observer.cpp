@@ -8,7 +8,6 @@
 #include "firmware/canopen/cob_id.hpp"
 #include "hal/config/event_json.hpp"
 #include "host_sim/record/png.hpp"
-#include "shared/messages/joint_names.hpp"
 
 namespace lf::app {
 
@@ -51,10 +50,11 @@ std::string file_name(const hal::ExposureRecord& exposure) {
 
 }  // namespace
 
-RawImageObserver::RawImageObserver(RunFiles& files, const arm::Arm& arm, const CameraCalibration& camera, const LaserCalibration& laser,
-                                   const optics::OpticsConfig& optics)
+RawImageObserver::RawImageObserver(RunFiles& files, const arm::Arm& arm, const JointNames& names, const CameraCalibration& camera,
+                                   const LaserCalibration& laser, const optics::OpticsConfig& optics)
     : files_(files),
       arm_(arm),
+      names_(names),
       laser_(laser),
       told_camera_(camera.base_from_camera),
       true_camera_(optics.cameras.at(0).base_from_camera),
@@ -74,15 +74,15 @@ void RawImageObserver::on_telemetry(const Telemetry& telemetry) {
   if (joints_.size() > most_joints) joints_.pop_front();
 }
 
-std::array<double, joint_count> RawImageObserver::joints_at(Time t) const {
+PerJoint<double> RawImageObserver::joints_at(Time t) const {
   if (joints_.empty()) return {};
   const auto after = std::find_if(joints_.begin(), joints_.end(), [t](const Joints& sample) { return sample.t >= t; });
   if (after == joints_.end()) return joints_.back().rad;
   if (after == joints_.begin() || after->t == (after - 1)->t) return after->rad;
   const Joints& before = *(after - 1);
   const double share = (t - before.t).s() / (after->t - before.t).s();
-  std::array<double, joint_count> rad{};
-  for (std::size_t i = 0; i < joint_count; ++i) rad[i] = before.rad[i] + share * (after->rad[i] - before.rad[i]);
+  PerJoint<double> rad{};
+  for (std::size_t i = 0; i < rad.size(); ++i) rad[i] = before.rad[i] + share * (after->rad[i] - before.rad[i]);
   return rad;
 }
 
@@ -93,8 +93,9 @@ void RawImageObserver::on_image(const hal::ExposureRecord& record) {
   const std::string name = file_name(record);
   files_.write(name, record::encode_png(ImageView{frame.pixels.data(), frame.width, frame.height, frame.width}));
 
-  const std::array<double, joint_count> rad = joints_at(exposure.start + exposure.duration / 2);
-  const arm::JointVector q(rad[0], rad[1], rad[2], rad[3]);
+  const PerJoint<double> rad = joints_at(exposure.start + exposure.duration / 2);
+  arm::JointVector q = arm::JointVector::Zero();
+  for (std::size_t i = 0; i < arm_.arm_joints(); ++i) q[static_cast<Eigen::Index>(i)] = rad[i];
   Json line{{"kind", "image"},
             {"file", name},
             {"t_s", config::json_seconds(exposure.start)},
@@ -108,9 +109,9 @@ void RawImageObserver::on_image(const hal::ExposureRecord& record) {
   } else {
     dark = name;
   }
-  for (std::size_t i = 0; i < joint_count; ++i) line["joints_rad"][joint_names[i]] = rad[i];
+  for (std::size_t i = 0; i < names_.size(); ++i) line["joints_rad"][names_[i]] = rad[i];
   line["told"] = {{"base_from_camera", matrix(told_camera_)}, {"base_from_laser", matrix(arm_.base_from_laser(q, laser_))}};
-  const Pose& body = record.poses[static_cast<std::size_t>(true_laser_.body)];
+  const Pose& body = record.poses[true_laser_.body];
   line["true"] = {{"base_from_camera", matrix(true_camera_)}, {"base_from_laser", matrix(body * true_laser_.body_from_laser)}};
   say(line.dump());
 }

@@ -14,6 +14,7 @@
 #include "hal/sim/sim_platform.hpp"
 #include "host_sim/app/observers/run_files.hpp"
 #include "host_sim/record/file_sink.hpp"
+#include "shared/arm/joint_names.hpp"
 #include "shared/calibration/calibration.hpp"
 
 namespace lf::app {
@@ -22,8 +23,8 @@ class RawImageObserver : public hal::SimObserver {
  public:
   // `files` outlives the observer; where they are not wanted nothing is kept. `camera` and `laser` as the core is told, `optics` as it is.
   // `arm` and calibrations: as the core knows them.
-  RawImageObserver(RunFiles& files, const arm::Arm& arm, const CameraCalibration& camera, const LaserCalibration& laser,
-                   const optics::OpticsConfig& optics);
+  RawImageObserver(RunFiles& files, const arm::Arm& arm, const JointNames& names, const CameraCalibration& camera,
+                   const LaserCalibration& laser, const optics::OpticsConfig& optics);
 
   void on_bus_frame(const devices::BusRecord& record) override;
   void on_telemetry(const Telemetry& telemetry) override;
@@ -33,14 +34,15 @@ class RawImageObserver : public hal::SimObserver {
  private:
   struct Joints {
     Time t;
-    std::array<double, joint_count> rad{};
+    PerJoint<double> rad{};
   };
   // At `t`, between the samples around it; the newest where none is later.
-  std::array<double, joint_count> joints_at(Time t) const;
+  PerJoint<double> joints_at(Time t) const;
   void say(const std::string& line);
 
   RunFiles& files_;
   arm::Arm arm_;
+  JointNames names_;
   LaserCalibration laser_;
   Pose told_camera_, true_camera_;
   optics::LaserConfig true_laser_;

@@ -24,18 +24,18 @@ NodeRack::NodeRack(const DevicesConfig& config, Time start) : config_(config), i
 }
 
 std::size_t NodeRack::slot_of(std::uint8_t id) {
-  for (std::size_t slot = 0; slot < slots; ++slot) {
+  for (std::size_t slot = 0; slot < slots(); ++slot) {
     if (node(slot).id() == id) return slot;
   }
-  return slots;
+  return slots();
 }
 
 void NodeRack::power_on(Time t, const JointReadings& readings) {
   readings_ = readings;
-  for (std::size_t slot = 0; slot < slots; ++slot) power_on(slot, t);
+  for (std::size_t slot = 0; slot < slots(); ++slot) power_on(slot, t);
 }
 
-void NodeRack::power_on(std::size_t slot, Time t) { slot == io_slot ? io_.power_on(t) : drives_[slot]->power_on(t, readings_[slot]); }
+void NodeRack::power_on(std::size_t slot, Time t) { slot == io_slot() ? io_.power_on(t) : drives_[slot]->power_on(t, readings_[slot]); }
 
 void NodeRack::receive(std::size_t slot, const CanFrame& frame, Time t) {
   if (silent_[slot] == 0) node(slot).receive(frame, t);
@@ -50,7 +50,7 @@ std::vector<CanFrame> NodeRack::take_outbox(std::size_t slot) {
 void NodeRack::tick(Time t, const JointReadings& readings, const BusFault& bus_fault) {
   readings_ = readings;
   run_faults(t, bus_fault);
-  for (std::size_t i = 0; i < joint_count; ++i) tick_drive(i, t, readings[i]);
+  for (std::size_t i = 0; i < drives_.size(); ++i) tick_drive(i, t, readings[i]);
   io_.set_estop_closed(estop_closed_ && estop_faults_ == 0);
   io_.set_interlock_closed(interlock_closed_ && interlock_faults_ == 0);
   io_.tick(t);
@@ -118,8 +118,8 @@ bool NodeRack::set_fault(const DeviceFault& fault, bool on, Time t) {
   const std::size_t slot = slot_of(fault.node);
   DriveFaults none;
   Tampering untouched;
-  Tampering& tampering = slot < joint_count ? tampering_[slot] : untouched;
-  DriveFaults& drive = slot < joint_count ? drives_[slot]->faults() : none;
+  Tampering& tampering = slot < drives_.size() ? tampering_[slot] : untouched;
+  DriveFaults& drive = slot < drives_.size() ? drives_[slot]->faults() : none;
   switch (fault.kind) {
     case DeviceFaultKind::overcurrent: drive.overcurrent = on; return true;
     case DeviceFaultKind::hot: drive.hot = on; return true;
@@ -134,13 +134,13 @@ bool NodeRack::set_fault(const DeviceFault& fault, bool on, Time t) {
     case DeviceFaultKind::encoder_jump: tampering.encoder_jump = on; return true;
     case DeviceFaultKind::torque_high: drive.high_torque = on; return true;
     case DeviceFaultKind::torque_frozen: {
-      const Object* torque = slot < joint_count ? drives_[slot]->node().objects().find(torque_actual, 0) : nullptr;
+      const Object* torque = slot < drives_.size() ? drives_[slot]->node().objects().find(torque_actual, 0) : nullptr;
       tampering.torque_object = torque != nullptr ? torque->value : 0;
       tampering.torque_frozen = on;
       return true;
     }
     case DeviceFaultKind::runaway: {
-      Object* window = slot < joint_count ? drives_[slot]->node().objects().find(following_window, 0) : nullptr;
+      Object* window = slot < drives_.size() ? drives_[slot]->node().objects().find(following_window, 0) : nullptr;
       if (window != nullptr) {
         if (on) tampering.window = window->value;
         window->value = on ? no_window : tampering.window;

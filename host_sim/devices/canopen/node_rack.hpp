@@ -1,4 +1,4 @@
-// The five drives and the output node side by side, with what goes wrong in them, and no bus between them: who owns the rack carries their frames,
+// The drives and the output node side by side, with what goes wrong in them, and no bus between them: who owns the rack carries their frames,
 // over a simulated bus (devices.hpp) or a real one (host_sim/serve).
 #pragma once
 
@@ -22,15 +22,15 @@ namespace lf::devices {
 
 class NodeRack {
  public:
-  static constexpr std::size_t io_slot = joint_count;  // drives come first, in the order of `Joint`
-  static constexpr std::size_t slots = joint_count + 1;
-
   // Faults count from `start`. Throws InputError as Devices does.
   NodeRack(const DevicesConfig& config, Time start);
 
   const DevicesConfig& config() const { return config_; }
-  Node& node(std::size_t slot) { return slot == io_slot ? io_.node() : drives_[slot]->node(); }
-  std::size_t slot_of(std::uint8_t node);  // `slots` when there is none
+  // Drives come first, in the order of the joints.
+  std::size_t io_slot() const { return drives_.size(); }
+  std::size_t slots() const { return drives_.size() + 1; }
+  Node& node(std::size_t slot) { return slot == io_slot() ? io_.node() : drives_[slot]->node(); }
+  std::size_t slot_of(std::uint8_t node);  // slots() when there is none
 
   // Power comes on at every node, or dips at one.
   void power_on(Time t, const JointReadings& readings);
@@ -83,8 +83,8 @@ class NodeRack {
     std::int64_t torque_object = 0;  // 6077 as it froze
     std::int64_t window = 0;         // 6065 before the runaway
   };
-  std::array<Tampering, joint_count> tampering_;
-  std::array<int, slots> silent_{};
+  PerJoint<Tampering> tampering_;
+  std::array<int, capacity::nodes> silent_{};
   std::vector<Fault> faults_;
   JointDrives out_;
   JointReadings readings_{};

@@ -10,6 +10,8 @@
 #include "host_sim/optics/optics.hpp"
 #include "shared/arm/arm_description.hpp"
 #include "shared/scene/panel_scene.hpp"
+#include "tests/arm5e_bodies.hpp"
+#include "tests/arm5e_joints.hpp"
 
 namespace lf::bench {
 namespace {
@@ -33,12 +35,12 @@ constexpr double particles_per_l = 3;
 // Mid-sweep: the stripe crosses the panel and the handle.
 scene::BodyPoses sweep_poses(const ArmDescription& arm, const PanelLayout& layout, double swept_rad = 0) {
   scene::BodyPoses poses = scene::poses_at_origin(scene::bare_scene());
-  const std::array<double, joint_count> q{0, 0.945 + swept_rad, 1.40, 0, 0.3};
-  for (std::size_t i = 0; i < joint_count; ++i) poses[i + 1] = poses[i] * turned(arm.joints[i], q[i]);
-  poses[std::size_t(BodyId::finger_b)] = poses[std::size_t(BodyId::wrist)] * turned(arm.finger_b, q[4]);
+  const PerJoint<double> q{0, 0.945 + swept_rad, 1.40, 0, 0.3};
+  for (std::size_t i = 0; i < arm5e_joint::count; ++i) poses[i + 1] = poses[i] * turned(arm.joints[i], q[i]);
+  poses[arm5e_body::finger_b] = poses[arm5e_body::wrist] * turned(arm.finger_b, q[4]);
   const Pose panel = layout.nominal_base_from_panel();
-  poses[std::size_t(BodyId::panel)] = panel;
-  std::size_t body = scene::first_feature;
+  poses[arm5e_body::panel] = panel;
+  std::size_t body = arm5e_body::first_feature;
   poses[body++] = panel * Eigen::AngleAxisd(0.3, Vec3::UnitZ());
   for (const PanelLayout::Button& button : layout.buttons)
     poses[body++] = panel * Eigen::Translation3d(button.at_m.x(), button.at_m.y(), 0);

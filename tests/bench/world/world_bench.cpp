@@ -9,6 +9,7 @@
 #include "host_sim/world/world.hpp"
 #include "shared/arm/arm_description.hpp"
 #include "shared/scene/panel_scene.hpp"
+#include "tests/arm5e_joints.hpp"
 
 namespace lf::bench {
 namespace {
@@ -22,7 +23,7 @@ double thread_cpu_s() {
   return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
 }
 
-WorldConfig config_of(const ArmDescription& arm, const std::array<double, joint_count>& start_rad) {
+WorldConfig config_of(const ArmDescription& arm, const PerJoint<double>& start_rad) {
   WorldConfig config;
   config.arm = arm;
   config.scene = scene::make_scene(config.arm, config.layout);
@@ -54,16 +55,16 @@ JointDrives holding(double arm_nm) {
 double free_speed(const ArmDescription& arm) {
   World of(config_of(arm, {0, 0.945, 2.095, 0, 0.3}));
   JointDrives drives = holding(80);
-  drives[std::size_t(Joint::elbow)].velocity_rad_s = -0.065;
+  drives[arm5e_joint::elbow].velocity_rad_s = -0.065;
   return speed_of(of, drives, 6.0);
 }
 
 double turning_speed(const ArmDescription& arm) {
   World of(config_of(arm, {0, 1.307, 1.151, 0.5 * pi, 0.1}));
   JointDrives drives = holding(40);
-  drives[std::size_t(Joint::jaw)] = {-0.4, 12, false};
+  drives[arm5e_joint::jaw] = {-0.4, 12, false};
   speed_of(of, drives, 0.6);
-  drives[std::size_t(Joint::roll)] = {-0.3, 12, false};
+  drives[arm5e_joint::roll] = {-0.3, 12, false};
   return speed_of(of, drives, 3.0);
 }
 

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "tests/arm5e_bodies.hpp"
 #include "tests/unit/scan/docked_scene.hpp"
 
 namespace lf::app {
@@ -42,7 +43,7 @@ TEST(PeakObserver, ScoresEachStripeOfThoseThatAreTakenInOneTurn) {
   config.camera = test::nominal_camera();
   config.laser = test::nominal_laser();
   const auto pipeline = std::make_unique<ScanPipeline>(config);
-  PeakObserver observer({});
+  PeakObserver observer({}, arm5e_body::panel);
   ScanCommand command;
   command.kind = ScanCommand::Kind::begin_sweep;
   pipeline->on_command(command);

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "host_sim/app/report_parts_of.hpp"
+#include "tests/arm5e_bodies.hpp"
+#include "tests/arm5e_joints.hpp"
 #include "tests/unit/world/world_fixture.hpp"
 
 namespace lf::app {
@@ -41,7 +43,8 @@ world::WorldConfig with_a_post() {
 
 void expect_parts_where_the_bodies_are(const world::World& world, const std::vector<record::ReportPart>& parts) {
   std::vector<double> coordinates;
-  for (const JointReading& joint : world.readings()) coordinates.push_back(joint.position_rad);
+  const JointReadings readings = world.readings();
+  for (std::size_t i = 0; i < arm5e_joint::count; ++i) coordinates.push_back(readings[i].position_rad);
   for (std::size_t i = 0; i < world.valve_count(); ++i) coordinates.push_back(world.valve_angle_rad(i));
   for (std::size_t i = 0; i < world.button_count(); ++i) coordinates.push_back(world.button(i).depth_m);
   const std::vector<Pose> poses = poses_of(parts, coordinates);
@@ -50,7 +53,7 @@ void expect_parts_where_the_bodies_are(const world::World& world, const std::vec
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     EXPECT_LT((poses[i].translation() - bodies[i].translation()).norm(), 1e-6) << parts[i].name;
     // The jaw's angle is one for both fingers, which under way differ by some 0.05 mrad.
-    const bool finger = i == std::size_t(scene::BodyId::finger_a) || i == std::size_t(scene::BodyId::finger_b);
+    const bool finger = i == arm5e_body::finger_a || i == arm5e_body::finger_b;
     EXPECT_LT((poses[i].linear() - bodies[i].linear()).norm(), finger ? 2e-4 : 1e-6) << parts[i].name;
   }
 }

@@ -7,6 +7,8 @@
 #include <limits>
 #include <random>
 
+#include "tests/arm5e_bodies.hpp"
+
 namespace lf::app {
 
 TEST(Scoring, PlaneErrorsAreThoseOfTheClosedForm) {
@@ -115,7 +117,7 @@ TEST(Scoring, CloudErrorsAreDistancesToTheNearestSurfaceAndMeshesAreSurface) {
   scene::Shape plate;
   plate.kind = scene::ShapeKind::box;
   plate.size_m = Vec3(4, 4, 0.1);
-  scene[std::size_t(scene::BodyId::panel)].shapes = {plate};
+  scene[arm5e_body::panel].shapes = {plate};
   const std::vector<double> both = cloud_errors_mm(cloud, scene, poses);
   for (std::size_t i = 0; i < cloud.size(); ++i)
     EXPECT_NEAR(both[i], std::min(errors[i], 1e3 * distance_to_surface_m(cloud[i].p_m.cast<double>(), plate)), 1e-9);

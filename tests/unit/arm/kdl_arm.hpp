@@ -23,7 +23,7 @@ inline KDL::Chain kdl_arm() {
 
 inline KDL::JntArray kdl_joints(const JointVector& q_rad) {
   KDL::JntArray q(4);
-  q.data = q_rad;
+  q.data = q_rad.head<4>();
   return q;
 }
 

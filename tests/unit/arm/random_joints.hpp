@@ -14,7 +14,7 @@ class RandomJoints {
 
   double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
   JointVector next() {
-    JointVector q;
+    JointVector q = JointVector::Zero();
     for (int i = 0; i < 4; ++i) q[i] = uniform(limits_.lower_rad[i], limits_.upper_rad[i]);
     return q;
   }

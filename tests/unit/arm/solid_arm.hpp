@@ -8,13 +8,14 @@
 
 #include "firmware/arm/collision.hpp"
 #include "shared/arm/arm_description.hpp"
+#include "tests/arm5e_joints.hpp"
 
 namespace lf::arm {
 
 class SolidArm {
  public:
   explicit SolidArm(const ArmDescription& arm, double spacing_m) : arm_(arm) {
-    for (std::size_t link = 1; link < ArmDescription::link_count; ++link)
+    for (std::size_t link = 1; link < arm5e_joint::links; ++link)
       for (const scene::Shape& shape : arm.links[link].shapes)
         if (shape.collides) add(link, shape, spacing_m);
   }
@@ -25,12 +26,12 @@ class SolidArm {
   };
   const std::vector<Point>& points() const { return points_; }
 
-  std::array<Pose, ArmDescription::link_count> base_from_links(const JointVector& q_rad, double jaw_rad) const {
-    std::array<Pose, ArmDescription::link_count> links;
+  std::array<Pose, arm5e_joint::links> base_from_links(const JointVector& q_rad, double jaw_rad) const {
+    std::array<Pose, arm5e_joint::links> links;
     links[0] = Pose::Identity();
-    for (std::size_t i = 0; i < joint_count; ++i) {
+    for (std::size_t i = 0; i < arm5e_joint::count; ++i) {
       const ArmJoint& joint = arm_.joints[i];
-      const double angle = i < arm_joint_count ? q_rad[static_cast<Eigen::Index>(i)] : jaw_rad;
+      const double angle = i < arm5e_joint::of_arm ? q_rad[static_cast<Eigen::Index>(i)] : jaw_rad;
       links[i + 1] = links[i] * joint.parent_from_joint * Eigen::AngleAxisd(angle, joint.axis);
     }
     links[6] = links[4] * arm_.finger_b.parent_from_joint * Eigen::AngleAxisd(jaw_rad, arm_.finger_b.axis);

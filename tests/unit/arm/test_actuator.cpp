@@ -5,18 +5,19 @@
 
 #include "firmware/arm/actuator.hpp"
 #include "tests/arm5e.hpp"
+#include "tests/arm5e_joints.hpp"
 
 namespace lf::arm {
 namespace {
 
-constexpr std::array<Joint, joint_count> joints{Joint::slew, Joint::shoulder, Joint::elbow, Joint::roll, Joint::jaw};
+constexpr PerJoint<std::size_t> joints{arm5e_joint::slew, arm5e_joint::shoulder, arm5e_joint::elbow, arm5e_joint::roll, arm5e_joint::jaw};
 
-double at_fraction(Joint joint, int i, int n) {
+double at_fraction(std::size_t joint, int i, int n) {
   return test::arm5e.joint(joint).lower_rad + (test::arm5e.joint(joint).upper_rad - test::arm5e.joint(joint).lower_rad) * i / n;
 }
 
 TEST(Actuator, CountsRiseWithTheAngleOverTheWholeStroke) {
-  for (const Joint joint : joints)
+  for (const std::size_t joint : joints)
     for (int i = 1; i <= 10'000; ++i)
       ASSERT_GT(exact_counts_from_rad(test::arm5e.joint(joint), at_fraction(joint, i, 10'000)),
                 exact_counts_from_rad(test::arm5e.joint(joint), at_fraction(joint, i - 1, 10'000)))
@@ -25,9 +26,9 @@ TEST(Actuator, CountsRiseWithTheAngleOverTheWholeStroke) {
 
 // The published angle per encoder tick, smallest and largest over the stroke.
 TEST(Actuator, TicksAreAsCoarseAsPublished) {
-  const std::array<std::array<double, 2>, joint_count> published{
+  const PerJoint<std::array<double, 2>> published{
       {{1.3e-4, 3.6e-4}, {0.6e-4, 1.8e-4}, {1.0e-4, 3.7e-4}, {3.14e-3, 3.14e-3}, {5.37e-4, 5.37e-4}}};
-  for (std::size_t k = 0; k < joint_count; ++k) {
+  for (std::size_t k = 0; k < arm5e_joint::count; ++k) {
     double finest = 1, coarsest = 0;
     for (int i = 0; i <= 10'000; ++i) {
       const double tick = rad_per_count(test::arm5e.joint(joints[k]), at_fraction(joints[k], i, 10'000));
@@ -40,7 +41,7 @@ TEST(Actuator, TicksAreAsCoarseAsPublished) {
 }
 
 TEST(Actuator, TickIsTheInverseSlopeOfTheCounts) {
-  for (const Joint joint : joints)
+  for (const std::size_t joint : joints)
     for (int i = 1; i < 100; ++i) {
       const double q = at_fraction(joint, i, 100);
       const double slope =
@@ -50,7 +51,7 @@ TEST(Actuator, TickIsTheInverseSlopeOfTheCounts) {
 }
 
 TEST(Actuator, CountsAndAnglesAreInverse) {
-  for (const Joint joint : joints) {
+  for (const std::size_t joint : joints) {
     for (int i = 0; i <= 1000; ++i) {
       const double q = at_fraction(joint, i, 1000);
       const std::int32_t counts = counts_from_rad(test::arm5e.joint(joint), q);
@@ -64,11 +65,11 @@ TEST(Actuator, CountsAndAnglesAreInverse) {
 // The law of cosines written down once more: the elbow's screw between pivots 0.26 m and 0.06 m.
 TEST(Actuator, ScrewIsTheTrianglesThirdSide) {
   const auto length = [](double q) { return std::sqrt(0.26 * 0.26 + 0.06 * 0.06 - 2 * 0.26 * 0.06 * std::cos(q + 0.2115)); };
-  EXPECT_NEAR(exact_counts_from_rad(test::arm5e.joint(Joint::elbow), 1.151), 166667 * (length(1.151) - length(0)), 1e-8);
+  EXPECT_NEAR(exact_counts_from_rad(test::arm5e.joint(arm5e_joint::elbow), 1.151), 166667 * (length(1.151) - length(0)), 1e-8);
 }
 
 TEST(Actuator, WithstandsNonsense) {
-  for (const Joint joint : joints) {
+  for (const std::size_t joint : joints) {
     EXPECT_EQ(counts_from_rad(test::arm5e.joint(joint), std::numeric_limits<double>::quiet_NaN()), 0);
     EXPECT_EQ(counts_from_rad(test::arm5e.joint(joint), std::numeric_limits<double>::infinity()),
               counts_from_rad(test::arm5e.joint(joint), test::arm5e.joint(joint).upper_rad + 0.1));

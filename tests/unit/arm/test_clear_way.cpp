@@ -127,8 +127,8 @@ TEST(ClearWay, NeedsFewPosesWhereThereIsRoom) {
   const PanelLayout layout;
   const Surroundings surroundings = before(layout, room_at(layout.nominal_base_from_panel()));
   ClearWay way;
-  way.begin({0, 0.60, 1.90, 0}, surroundings, wanted);
-  way.add({0, 0.945, 2.095, 0});
+  way.begin(planar_joints(0, 0.60, 1.90, 0), surroundings, wanted);
+  way.add(planar_joints(0, 0.945, 2.095, 0));
   EXPECT_EQ(way.advance(surroundings, 1), ClearWay::State::looking);
   EXPECT_EQ(way.advance(surroundings, 30), ClearWay::State::clear);
   EXPECT_LT(way.poses(), 30);
@@ -139,7 +139,7 @@ TEST(ClearWay, NeedsFewPosesWhereThereIsRoom) {
 TEST(ClearWay, OfManyShortStretchesTakesNoMorePosesThanOneLongOne) {
   const PanelLayout layout;
   const Surroundings surroundings = before(layout, room_at(layout.nominal_base_from_panel()));
-  const JointVector from{0, 0.60, 1.90, 0}, to{0, 1.1, 1.5, 0};
+  const JointVector from = planar_joints(0, 0.60, 1.90, 0), to = planar_joints(0, 1.1, 1.5, 0);
   ClearWay whole, pieces;
   ASSERT_EQ(look_along(whole, from, to, surroundings), ClearWay::State::clear);
   pieces.begin(from, surroundings, wanted);
@@ -155,7 +155,7 @@ TEST(ClearWay, OfManyShortStretchesTakesNoMorePosesThanOneLongOne) {
 
 TEST(ClearWay, OfNoLengthIsItsOnePose) {
   const PanelLayout layout;
-  const JointVector park{0, 0.60, 1.90, 0};
+  const JointVector park = planar_joints(0, 0.60, 1.90, 0);
   Surroundings surroundings = before(layout, room_at(layout.nominal_base_from_panel()));
   ClearWay way;
   EXPECT_EQ(look_along(way, park, park, surroundings), ClearWay::State::clear);
@@ -170,7 +170,7 @@ TEST(ClearWay, OfNoLengthIsItsOnePose) {
 
 // A pin where a finger's pad passes: clear of it closed, and clear of it open.
 TEST(ClearWay, OfTheJawAloneIsSweptFromEndToEnd) {
-  const JointVector q{0, 1.1, 1.3, 0};
+  const JointVector q = planar_joints(0, 1.1, 1.3, 0);
   constexpr double open_rad = 1.2;
   VehicleShape vehicle;
   const LinkCapsules half = test::arm5e.link_capsules(q, open_rad / 2);
@@ -197,15 +197,15 @@ TEST(ClearWay, OfWhatIsNoNumberIsBlocked) {
   const PanelLayout layout;
   const Surroundings surroundings = before(layout, room_at(layout.nominal_base_from_panel()));
   ClearWay way;
-  way.begin({0, std::nan(""), 1.90, 0}, surroundings, wanted);
-  way.add({0, 0.6, 1.9, 0});
+  way.begin(planar_joints(0, std::nan(""), 1.90, 0), surroundings, wanted);
+  way.add(planar_joints(0, 0.6, 1.9, 0));
   EXPECT_EQ(way.advance(surroundings, 5), ClearWay::State::blocked);
   EXPECT_EQ(way.poses(), 0);
-  way.begin({0, 0.6, 1.9, 0}, surroundings, wanted);
-  way.add({0, 0.6, std::nan(""), 0});
+  way.begin(planar_joints(0, 0.6, 1.9, 0), surroundings, wanted);
+  way.add(planar_joints(0, 0.6, std::nan(""), 0));
   EXPECT_EQ(way.advance(surroundings, 5), ClearWay::State::blocked);
   const Surroundings no_jaw = before(layout, room_at(layout.nominal_base_from_panel(), 0, std::nan("")));
-  way.begin({0, 0.6, 1.9, 0}, no_jaw, wanted);
+  way.begin(planar_joints(0, 0.6, 1.9, 0), no_jaw, wanted);
   EXPECT_EQ(way.advance(no_jaw, 5), ClearWay::State::blocked);
 }
 

@@ -7,6 +7,7 @@
 #include "firmware/arm/inverse_kinematics.hpp"
 #include "shared/arm/arm_description.hpp"
 #include "tests/arm5e.hpp"
+#include "tests/arm5e_joints.hpp"
 #include "tests/unit/arm/random_joints.hpp"
 
 namespace lf::arm {
@@ -71,7 +72,7 @@ TEST(LinkCapsules, ContainTheUrdfsCollisionShapes) {
   const ArmDescription arm = load_arm_urdf(LANTERNFISH_SOURCE_DIR "/shared/arm/arm5e.urdf");
   const LinkPoses links = test::arm5e.base_from_links(JointVector::Zero(), 0);
   const LinkCapsules capsules = test::arm5e.link_capsules(JointVector::Zero(), 0);
-  for (std::size_t k = 1; k < ArmDescription::link_count; ++k) {
+  for (std::size_t k = 1; k < arm5e_joint::links; ++k) {
     for (const scene::Shape& shape : arm.links[k].shapes) {
       if (!shape.collides) continue;
       const bool box = shape.kind == scene::ShapeKind::box;
@@ -97,7 +98,7 @@ TEST(ClearanceToItself, IsWhatSamplingFindsBetweenLinksThatAreNotNeighbours) {
   int near = 0, overlapping = 0;
   for (int k = 0; k < 300; ++k) {
     // Also where the joints' limits do not let the arm go: within them it never comes as near to itself as 50 mm.
-    const JointVector q(random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(-3, 3));
+    const JointVector q = planar_joints(random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(-3, 3));
     const LinkCapsules capsules = test::arm5e.link_capsules(q, random.uniform(0, 1));
     double least = 1e9;
     for (const Capsule& a : capsules) {
@@ -120,9 +121,9 @@ TEST(ClearanceToItself, IsWhatSamplingFindsBetweenLinksThatAreNotNeighbours) {
 }
 
 TEST(ClearanceToItself, IsPositiveInEveryPoseOfTheMission) {
-  for (const JointVector& q :
-       {JointVector(0, 0.60, 1.90, 0), JointVector(0, 1.307, 1.151, 1.5), JointVector(0, 1.083, 1.355, 0), JointVector(0, 1.414, 1.425, 0),
-        JointVector(0.155, 1.423, 1.321, 0), JointVector(0, 0.945, 2.095, 0), JointVector(0, 0.945, 0.920, 0)})
+  for (const JointVector& q : {planar_joints(0, 0.60, 1.90, 0), planar_joints(0, 1.307, 1.151, 1.5), planar_joints(0, 1.083, 1.355, 0),
+                               planar_joints(0, 1.414, 1.425, 0), planar_joints(0.155, 1.423, 1.321, 0), planar_joints(0, 0.945, 2.095, 0),
+                               planar_joints(0, 0.945, 0.920, 0)})
     for (const double gap : {0.0, 0.09})
       EXPECT_GT(clearance_to_itself(test::arm5e.link_capsules(q, jaw_from_gap(test::jaw5e, gap))), 0.02) << q.transpose();
 }
@@ -130,9 +131,9 @@ TEST(ClearanceToItself, IsPositiveInEveryPoseOfTheMission) {
 TEST(PanelShape, NamesWhatIsNearest) {
   const PanelLayout layout;
   const Pose base_from_panel = layout.nominal_base_from_panel();
-  const Clearance parked = PanelShape(layout).clearance(test::arm5e.link_capsules({0, 0.60, 1.90, 0}, 0), base_from_panel);
+  const Clearance parked = PanelShape(layout).clearance(test::arm5e.link_capsules(planar_joints(0, 0.60, 1.90, 0), 0), base_from_panel);
   EXPECT_GT(parked.distance_m, 0.15);
-  const Clearance grasp = PanelShape(layout).clearance(test::arm5e.link_capsules({0, 1.307, 1.151, 0}, 0), base_from_panel);
+  const Clearance grasp = PanelShape(layout).clearance(test::arm5e.link_capsules(planar_joints(0, 1.307, 1.151, 0), 0), base_from_panel);
   EXPECT_LT(grasp.distance_m, 0);
   EXPECT_EQ(grasp.part, PanelPart::valve(0));
   EXPECT_GE(grasp.link, 5u) << "a finger";
@@ -199,8 +200,8 @@ TEST(PanelShapeGrown, ContainsItselfWhereverItMayBe) {
     nearest_to_border = std::min(nearest_to_border, std::abs(surveyed.clearance(all, believed).distance_m - 0.047));
   }
   EXPECT_LT(nearest_to_border, 0.005) << "no draw came near the worst: 20 mm, and 2 degrees over 0.78 m";
-  EXPECT_NEAR(surveyed.grown(believed, {}).clearance(test::arm5e.link_capsules({0, 1.0, 1.5, 0}, 0), believed).distance_m,
-              surveyed.clearance(test::arm5e.link_capsules({0, 1.0, 1.5, 0}, 0), believed).distance_m, 1e-12);
+  EXPECT_NEAR(surveyed.grown(believed, {}).clearance(test::arm5e.link_capsules(planar_joints(0, 1.0, 1.5, 0), 0), believed).distance_m,
+              surveyed.clearance(test::arm5e.link_capsules(planar_joints(0, 1.0, 1.5, 0), 0), believed).distance_m, 1e-12);
 }
 
 // A panel with two valves, four buttons and two markers, all apart.
@@ -312,7 +313,7 @@ TEST(PanelShapeGrown, ContainsItsOffsetCylindersWhereverItMayBe) {
 TEST(PanelShape, LeavesOutForTheFingersWhatOnlyTheyMayTouch) {
   const PanelLayout layout;
   const Pose base_from_panel = layout.nominal_base_from_panel();
-  const LinkCapsules grasp = test::arm5e.link_capsules({0, 1.307, 1.151, 0}, 0);
+  const LinkCapsules grasp = test::arm5e.link_capsules(planar_joints(0, 1.307, 1.151, 0), 0);
   const PanelParts handle = bit(PanelPart::valve(0));
   const PanelShape panel(layout);
   EXPECT_LT(panel.clearance(grasp, base_from_panel).distance_m, 0);
@@ -359,7 +360,7 @@ TEST(ClearanceToTheVehicle, IsThatOfTheNearestSolidToAnyLinkButTheSlew) {
     }
     ASSERT_NEAR(clearance_to_vehicle(capsules, vehicle), least, 1e-4) << "draw " << k;
   }
-  EXPECT_EQ(clearance_to_vehicle(test::arm5e.link_capsules({0, 1, 1, 0}, 0), {}), HUGE_VAL);
+  EXPECT_EQ(clearance_to_vehicle(test::arm5e.link_capsules(planar_joints(0, 1, 1, 0), 0), {}), HUGE_VAL);
 }
 
 // Its bounding boxes may only save work.

@@ -9,7 +9,7 @@ namespace lf::arm {
 namespace {
 
 constexpr double period_s = 0.004;
-const JointVector at_rest_nm{6, -8, 5, 0.5};
+const JointVector at_rest_nm = planar_joints(6, -8, 5, 0.5);
 
 class Feed {
  public:
@@ -28,7 +28,7 @@ TEST(Compliance, DoesNotMoveUnderTheTorqueThatItLearnedNorWithinItsDeadBand) {
   Compliance compliance;
   Feed feed(compliance);
   feed(1000, at_rest_nm);
-  feed(1000, at_rest_nm + JointVector(1.9, -1.9, 1.9, 5));
+  feed(1000, at_rest_nm + planar_joints(1.9, -1.9, 1.9, 5));
   EXPECT_TRUE(compliance.offset_rad().isZero());
 }
 
@@ -38,7 +38,7 @@ TEST(Compliance, GivesWayAgainstTheDrivesTorqueAtTheStatedSpeed) {
   Compliance compliance(config);
   Feed feed(compliance);
   feed(100, at_rest_nm);
-  const JointVector pushed = at_rest_nm + JointVector(8, -6, 4, 5);
+  const JointVector pushed = at_rest_nm + planar_joints(8, -6, 4, 5);
   feed(100, pushed);  // the filter has settled
   const JointVector before = compliance.offset_rad();
   feed(50, pushed);
@@ -54,7 +54,7 @@ TEST(Compliance, GoesNoFurtherAndNoFasterThanItMay) {
   Compliance compliance(config);
   Feed feed(compliance);
   feed(100, at_rest_nm);
-  const JointVector pushed = at_rest_nm + JointVector(500, 0, 0, 0);
+  const JointVector pushed = at_rest_nm + planar_joints(500, 0, 0, 0);
   for (int i = 0; i < 2000; ++i) {
     const double before = compliance.offset_rad()[0];
     feed(1, pushed);
@@ -78,7 +78,7 @@ TEST(Compliance, LetsTheLoadOfAStiffContactDecayWithoutHunting) {
     moved_rad += (compliance.offset_rad()[1] - moved_rad) * period_s / loop_s;
     load_nm = stiffness_nm_rad * (misplaced_rad + moved_rad);
     least_nm = std::min(least_nm, load_nm);
-    feed(1, JointVector(0, load_nm, 0, 0));
+    feed(1, planar_joints(0, load_nm, 0, 0));
   }
   EXPECT_LT(load_nm, 2.1) << "of 40, after 2 s";
   EXPECT_GT(least_nm, -2) << "it went past the rest and would come back";
@@ -88,7 +88,7 @@ TEST(Compliance, TakesAGapBetweenSamplesForAShortOne) {
   const ComplianceConfig config;
   Compliance compliance(config);
   Feed feed(compliance);
-  const JointVector pushed = at_rest_nm + JointVector(500, 0, 0, 0);
+  const JointVector pushed = at_rest_nm + planar_joints(500, 0, 0, 0);
   feed(100, at_rest_nm);
   feed(20, pushed);
   const double before = compliance.offset_rad()[0];
@@ -110,11 +110,11 @@ TEST(Compliance, ForgetsWhenItIsReset) {
   Compliance compliance;
   Feed feed(compliance);
   feed(100, at_rest_nm);
-  feed(100, at_rest_nm + JointVector(50, 0, 0, 0));
+  feed(100, at_rest_nm + planar_joints(50, 0, 0, 0));
   EXPECT_FALSE(compliance.offset_rad().isZero());
   compliance.reset();
   EXPECT_TRUE(compliance.offset_rad().isZero());
-  feed(1000, at_rest_nm + JointVector(50, 0, 0, 0));
+  feed(1000, at_rest_nm + planar_joints(50, 0, 0, 0));
   EXPECT_TRUE(compliance.offset_rad().isZero()) << "that is its rest now";
 }
 

@@ -8,6 +8,7 @@
 #include "firmware/arm/gripper.hpp"
 #include "firmware/arm/kinematics.hpp"
 #include "tests/arm5e.hpp"
+#include "tests/arm5e_joints.hpp"
 
 namespace lf::arm {
 namespace {
@@ -51,7 +52,7 @@ class GripperRun {
 
 // The numbers of a jaw are shares of what it can: those of the default machine are the defaults.
 TEST(GripperConfig, OfTheDefaultJawIsTheDefault) {
-  const GripperConfig ours = gripper_config(test::arm5e.joint(Joint::jaw)), usual;
+  const GripperConfig ours = gripper_config(test::arm5e.joint(arm5e_joint::jaw)), usual;
   EXPECT_NEAR(ours.grip_torque_nm, usual.grip_torque_nm, 1e-12);
   EXPECT_NEAR(ours.hold_torque_nm, usual.hold_torque_nm, 1e-12);
   EXPECT_NEAR(ours.closing_speed_rad_s, usual.closing_speed_rad_s, 1e-12);
@@ -63,7 +64,7 @@ TEST(GripperConfig, OfTheDefaultJawIsTheDefault) {
 }
 
 TEST(GripperConfig, OfAnotherJawFollowsIt) {
-  ArmModel::Joint slow = test::arm5e.joint(Joint::jaw);
+  ArmModel::Joint slow = test::arm5e.joint(arm5e_joint::jaw);
   slow.effort_nm = 5;
   slow.velocity_rad_s = 0.1;
   slow.actuator.counts_per_rad = 200;

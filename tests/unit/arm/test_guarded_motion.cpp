@@ -5,6 +5,7 @@
 #include <random>
 
 #include "firmware/arm/guarded_motion.hpp"
+#include "tests/arm5e_joints.hpp"
 
 namespace lf::arm {
 namespace {
@@ -32,7 +33,7 @@ class Motion {
   GuardState state_ = GuardState::learning;
 };
 
-const JointVector friction{6, -8, 5, 0.5};
+const JointVector friction = planar_joints(6, -8, 5, 0.5);
 
 TEST(GuardedMotion, IsFreeWithTheTorqueThatItLearned) {
   GuardedMotion guard;
@@ -63,7 +64,7 @@ TEST(GuardedMotion, TakesNoSingleOutlierForAContact) {
   Motion motion(guard);
   motion.feed(100, friction);
   for (int i = 0; i < 20; ++i) {
-    motion.feed(1, friction + JointVector(12, 0, 0, 0));
+    motion.feed(1, friction + planar_joints(12, 0, 0, 0));
     EXPECT_EQ(motion.feed(20, friction), GuardState::free);
   }
 }
@@ -95,8 +96,9 @@ TEST(GuardedMotion, NoiseOfAnEncodersAndACurrentSensorsSizeIsNoContact) {
   GuardedMotion guard;
   Motion motion(guard);
   for (int i = 0; i < 20'000; ++i) {
-    const JointVector torque = friction + JointVector(noise(engine), noise(engine), noise(engine), 0.3 * noise(engine));
-    motion.feed(1, torque, JointVector::Constant(0.01 * noise(engine)));
+    const JointVector torque = friction + planar_joints(noise(engine), noise(engine), noise(engine), 0.3 * noise(engine));
+    const double behind_rad = 0.01 * noise(engine);
+    motion.feed(1, torque, planar_joints(behind_rad, behind_rad, behind_rad, behind_rad));
   }
   EXPECT_EQ(guard.state(), GuardState::free);
 }
@@ -104,23 +106,23 @@ TEST(GuardedMotion, NoiseOfAnEncodersAndACurrentSensorsSizeIsNoContact) {
 TEST(GuardedMotion, FindsAJointThatStaysBehind) {
   GuardedMotion guard;
   Motion motion(guard);
-  motion.feed(50, friction, JointVector(0, 0.02, 0, 0));
+  motion.feed(50, friction, planar_joints(0, 0.02, 0, 0));
   EXPECT_EQ(guard.state(), GuardState::free);
-  EXPECT_EQ(motion.feed(3, friction, JointVector(0, 0.04, 0, 0)), GuardState::contact);
+  EXPECT_EQ(motion.feed(3, friction, planar_joints(0, 0.04, 0, 0)), GuardState::contact);
   EXPECT_EQ(guard.cause(), GuardCause::following_error);
-  EXPECT_EQ(guard.joint(), Joint::shoulder);
+  EXPECT_EQ(guard.joint(), arm5e_joint::shoulder);
 }
 
 TEST(GuardedMotion, ReportsAnOverloadEvenWhileLearningAndOverAContact) {
   GuardedMotion guard;
   Motion motion(guard);
-  EXPECT_EQ(motion.feed(4, {0, 0, 60, 0}), GuardState::overload);
-  EXPECT_EQ(guard.joint(), Joint::elbow);
+  EXPECT_EQ(motion.feed(4, planar_joints(0, 0, 60, 0)), GuardState::overload);
+  EXPECT_EQ(guard.joint(), arm5e_joint::elbow);
   GuardedMotion other;
   Motion second(other);
   second.feed(50, friction);
-  EXPECT_EQ(second.feed(10, friction + JointVector(8, 0, 0, 0)), GuardState::contact);
-  EXPECT_EQ(second.feed(30, {60, 0, 0, 0}), GuardState::overload);
+  EXPECT_EQ(second.feed(10, friction + planar_joints(8, 0, 0, 0)), GuardState::contact);
+  EXPECT_EQ(second.feed(30, planar_joints(60, 0, 0, 0)), GuardState::overload);
 }
 
 TEST(GuardedMotion, RefusesNonsenseAndStaleSamplesAndCountsThem) {
@@ -129,7 +131,7 @@ TEST(GuardedMotion, RefusesNonsenseAndStaleSamplesAndCountsThem) {
   motion.feed(50, friction);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const Time last = motion.now();
-  motion.feed(10, {nan, 0, 0, 0});
+  motion.feed(10, planar_joints(nan, 0, 0, 0));
   guard.update(last, JointVector::Zero(), JointVector::Zero(), JointVector::Zero(), JointVector(JointVector::Constant(100)));
   guard.update(Time(), JointVector::Zero(), JointVector::Zero(), JointVector::Zero(), JointVector(JointVector::Constant(100)));
   EXPECT_EQ(guard.state(), GuardState::free);

@@ -52,7 +52,7 @@ TEST(InverseKinematics, SaysWhichLimitStopsIt) {
   for (int joint = 0; joint < 4; ++joint) {
     for (const bool above : {false, true}) {
       if (joint == 2 && !above) continue;  // below 0 the elbow's triangle is flat: another answer exists
-      JointVector q{0.1, 0.8, 1.2, 0.4};
+      JointVector q = planar_joints(0.1, 0.8, 1.2, 0.4);
       q[joint] = above ? limits.upper_rad[joint] + 0.02 : limits.lower_rad[joint] - 0.02;
       const IkResult ik = inverse_kinematics(test::arm5e, test::arm5e.base_from_tool(q).translation(), q[3], 0);
       EXPECT_EQ(ik.outcome, reasons[joint]) << joint << above << ": " << name(ik.outcome);
@@ -60,17 +60,17 @@ TEST(InverseKinematics, SaysWhichLimitStopsIt) {
       EXPECT_LT((ik.q_rad - q).cwiseAbs().maxCoeff(), 1e-9) << "the angles that would be needed";
     }
   }
-  const JointVector flat{0.1, 0.8, -0.02, 0.4};
+  const JointVector flat = planar_joints(0.1, 0.8, -0.02, 0.4);
   EXPECT_EQ(inverse_kinematics(test::arm5e, test::arm5e.base_from_tool(flat).translation(), 0, 0).outcome, IkOutcome::elbow_limit);
 }
 
 TEST(InverseKinematics, DrawsTheLimitsInByTheMargin) {
-  JointVector q{0.1, 0.8, 1.2, 0.4};
+  JointVector q = planar_joints(0.1, 0.8, 1.2, 0.4);
   q[1] = test::arm5e.limits().upper_rad[1] - 0.03;
   const Vec3 target = test::arm5e.base_from_tool(q).translation();
   EXPECT_TRUE(inverse_kinematics(test::arm5e, target, q[3], 0.02).ok());
   EXPECT_EQ(inverse_kinematics(test::arm5e, target, q[3]).outcome, IkOutcome::shoulder_limit);
-  EXPECT_EQ(inverse_kinematics(test::arm5e, test::arm5e.base_from_tool({0.1, 0.8, 1.2, 0}).translation(), pi - 0.04).outcome,
+  EXPECT_EQ(inverse_kinematics(test::arm5e, test::arm5e.base_from_tool(planar_joints(0.1, 0.8, 1.2, 0)).translation(), pi - 0.04).outcome,
             IkOutcome::roll_limit);
 }
 
@@ -126,7 +126,7 @@ TEST(InverseKinematics, RefusesWhatIsNotANumber) {
 
 TEST(InverseKinematics, FoldsUnderTowardThePanelAndFacesWhatIsBehind) {
   EXPECT_EQ(inverse_kinematics(test::arm5e, {0.34, 0, 0.592}, 0).posture.branch, IkBranch::folded);
-  const JointVector front{0.2, 0.3, 0.5, 0};
+  const JointVector front = planar_joints(0.2, 0.3, 0.5, 0);
   ASSERT_LT(test::arm5e.base_from_tool(front).translation().x(), 0);
   EXPECT_EQ(inverse_kinematics(test::arm5e, test::arm5e.base_from_tool(front).translation(), 0).posture.branch, IkBranch::front);
 }
@@ -155,7 +155,7 @@ TEST(BarRolls, LayTheToolsYAlongTheBar) {
 }
 
 TEST(BarRolls, RefuseABarAlongTheToolAndNoBarAtAll) {
-  const JointVector q{0, 1.307, 1.151, 0};
+  const JointVector q = planar_joints(0, 1.307, 1.151, 0);
   EXPECT_FALSE(rolls_for_bar(test::arm5e, q, test::arm5e.approach_axis(q)));
   EXPECT_FALSE(rolls_for_bar(test::arm5e, q, Vec3::Zero()));
   EXPECT_FALSE(rolls_for_bar(test::arm5e, q, Vec3(std::nan(""), 0, 1)));

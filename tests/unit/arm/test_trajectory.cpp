@@ -54,37 +54,38 @@ TEST(JointTrajectory, KeepsLimitsMovesInStepAndArrivesExactly) {
 TEST(JointTrajectory, ReachesTheLimitOfTheJointThatHoldsItBack) {
   JointTrajectory motion;
   const JointLimits limits = test::arm5e.limits();
-  ASSERT_EQ(motion.plan({0, 0.1, 0.1, 0}, {0, 1.5, 0.2, 0}, limits), PlanOutcome::ok);
+  ASSERT_EQ(motion.plan(planar_joints(0, 0.1, 0.1, 0), planar_joints(0, 1.5, 0.2, 0), limits), PlanOutcome::ok);
   EXPECT_NEAR(motion.sample(motion.duration_s() / 2).qd_rad_s[1], limits.velocity_rad_s[1], 1e-9);
 }
 
 TEST(JointTrajectory, RefusesGoalsOutsideAndWhatIsNotANumber) {
   const JointLimits limits = test::arm5e.limits(0.05);
-  const JointVector park{0, 0.6, 1.9, 0};
+  const JointVector park = planar_joints(0, 0.6, 1.9, 0);
   JointTrajectory motion;
-  EXPECT_EQ(motion.plan(park, {0, 0.04, 1.9, 0}, limits), PlanOutcome::outside);
-  EXPECT_EQ(motion.plan(park, {0, std::nan(""), 1.9, 0}, limits), PlanOutcome::not_a_number);
+  EXPECT_EQ(motion.plan(park, planar_joints(0, 0.04, 1.9, 0), limits), PlanOutcome::outside);
+  EXPECT_EQ(motion.plan(park, planar_joints(0, std::nan(""), 1.9, 0), limits), PlanOutcome::not_a_number);
   EXPECT_EQ(motion.sample(1).q_rad, park) << "a refused motion stays where it is";
   JointLimits none = limits;
   none.velocity_rad_s[2] = 0;
   EXPECT_EQ(motion.plan(park, park, none), PlanOutcome::not_a_number);
-  EXPECT_EQ(motion.plan({0, 0.04, 1.9, 0}, park, limits), PlanOutcome::ok) << "back inside from a margin";
+  EXPECT_EQ(motion.plan(planar_joints(0, 0.04, 1.9, 0), park, limits), PlanOutcome::ok) << "back inside from a margin";
 }
 
 TEST(JointTrajectory, StaysForNoWayAndManagesTheTiniest) {
-  const JointVector park{0, 0.6, 1.9, 0};
+  const JointVector park = planar_joints(0, 0.6, 1.9, 0);
   JointTrajectory motion;
   ASSERT_EQ(motion.plan(park, park, test::arm5e.limits()), PlanOutcome::ok);
   EXPECT_EQ(motion.duration_s(), 0);
-  const JointVector near = park + JointVector(1e-12, 0, 1e-13, 0);
+  const JointVector near = park + planar_joints(1e-12, 0, 1e-13, 0);
   ASSERT_EQ(motion.plan(park, near, test::arm5e.limits()), PlanOutcome::ok);
   EXPECT_EQ(motion.sample(1).q_rad, near);
 }
 
 TEST(JointPath, StopsInEachViaPoint) {
   const JointLimits limits = test::arm5e.limits();
-  const JointVector start{0, 0.6, 1.9, 0};
-  const std::vector<JointVector> points{{0, 0.9, 1.6, 0}, {0.1, 1.083, 1.355, 1.0}, {0, 1.307, 1.151, 1.5}};
+  const JointVector start = planar_joints(0, 0.6, 1.9, 0);
+  const std::vector<JointVector> points{planar_joints(0, 0.9, 1.6, 0), planar_joints(0.1, 1.083, 1.355, 1.0),
+                                        planar_joints(0, 1.307, 1.151, 1.5)};
   JointPath path;
   ASSERT_EQ(path.plan(start, points, limits), PlanOutcome::ok);
   expect_within(path, limits);
@@ -103,12 +104,12 @@ TEST(JointPath, StopsInEachViaPoint) {
 }
 
 TEST(JointPath, RefusesTooManyPointsAndKeepsWhatItHad) {
-  const JointVector park{0, 0.6, 1.9, 0};
+  const JointVector park = planar_joints(0, 0.6, 1.9, 0);
   JointPath path;
   ASSERT_EQ(path.plan(park, {}, test::arm5e.limits()), PlanOutcome::ok);
   EXPECT_EQ(path.sample(3).q_rad, park);
   EXPECT_EQ(path.plan(park, std::vector<JointVector>(9, park), test::arm5e.limits()), PlanOutcome::too_many);
-  const std::vector<JointVector> bad{park, {0, 3, 1, 0}};
+  const std::vector<JointVector> bad{park, planar_joints(0, 3, 1, 0)};
   EXPECT_EQ(path.plan(park, bad, test::arm5e.limits()), PlanOutcome::outside);
   EXPECT_EQ(path.duration_s(), 0);
 }
@@ -153,7 +154,8 @@ TEST(CartesianLine, KeepsTheToolOnTheLineAndTheJointsWithinTheirLimits) {
 
 TEST(CartesianLine, RatesAreTheDerivativesOfTheJoints) {
   CartesianLine motion;
-  ASSERT_EQ(motion.plan(test::arm5e, {0, 1.083, 1.355, 0}, {0.34, 0.05, 0.592}, 1.2, {}, test::arm5e.limits()).outcome, PlanOutcome::ok);
+  ASSERT_EQ(motion.plan(test::arm5e, planar_joints(0, 1.083, 1.355, 0), {0.34, 0.05, 0.592}, 1.2, {}, test::arm5e.limits()).outcome,
+            PlanOutcome::ok);
   constexpr double h = 1e-4;
   for (double t = 0.1; t < motion.duration_s() - 0.1; t += 0.05) {
     const JointState below = motion.sample(t - h), here = motion.sample(t), above = motion.sample(t + h);
@@ -163,7 +165,7 @@ TEST(CartesianLine, RatesAreTheDerivativesOfTheJoints) {
 }
 
 TEST(CartesianLine, PlannedInSharesIsTheSame) {
-  const JointVector start{0, 1.083, 1.355, 0};
+  const JointVector start = planar_joints(0, 1.083, 1.355, 0);
   CartesianLine at_once, in_shares;
   const LinePlan plan = at_once.plan(test::arm5e, start, {0.34, 0.05, 0.592}, 1.2, {}, test::arm5e.limits());
   ASSERT_EQ(plan.outcome, PlanOutcome::ok);
@@ -182,7 +184,7 @@ TEST(CartesianLine, PlannedInSharesIsTheSame) {
 
 TEST(CartesianLine, SaysWhereAndWhyItCannotGo) {
   CartesianLine motion;
-  const JointVector start{0, 1.083, 1.355, 0};
+  const JointVector start = planar_joints(0, 1.083, 1.355, 0);
   const LinePlan far = motion.plan(test::arm5e, start, {1.5, 0, 0.6}, 0, {}, test::arm5e.limits());
   EXPECT_EQ(far.outcome, PlanOutcome::unreachable);
   EXPECT_NE(far.ik, IkOutcome::ok);
@@ -196,19 +198,19 @@ TEST(CartesianLine, SaysWhereAndWhyItCannotGo) {
 
 TEST(CartesianLine, TurnsTheWristInPlace) {
   CartesianLine motion;
-  const JointVector start{0, 1.307, 1.151, 0.2};
+  const JointVector start = planar_joints(0, 1.307, 1.151, 0.2);
   const JointLimits limits = test::arm5e.limits();
   const LinePlan plan = motion.plan(test::arm5e, start, test::arm5e.base_from_tool(start).translation(), 1.8, {}, limits);
   ASSERT_EQ(plan.outcome, PlanOutcome::ok);
   expect_within(motion, limits);
   EXPECT_EQ(motion.sample(1e9).q_rad[3], 1.8);
-  EXPECT_LT((motion.sample(motion.duration_s() / 2).q_rad - JointVector(0, 1.307, 1.151, 1.0)).norm(), 1e-9);
+  EXPECT_LT((motion.sample(motion.duration_s() / 2).q_rad - planar_joints(0, 1.307, 1.151, 1.0)).norm(), 1e-9);
 }
 
 // The layout's sweep: the elbow at 0.065 rad/s, above the stiction of 0.06 rad/s all along the panel, run-up and run-out outside of it.
 TEST(ConstantSpeedSweep, MovesAtConstantSpeedBetweenRunUpAndRunOut) {
   const JointLimits limits = test::arm5e.limits(0.008);
-  const JointVector from{0, 0.945, 2.095, 0}, to{0, 0.945, 0.920, 0};
+  const JointVector from = planar_joints(0, 0.945, 2.095, 0), to = planar_joints(0, 0.945, 0.920, 0);
   ConstantSpeedSweep sweep;
   const double cruise_s = (2.095 - 0.920) / 0.065;
   ASSERT_EQ(sweep.plan(from, to, cruise_s, limits), PlanOutcome::ok);
@@ -223,9 +225,9 @@ TEST(ConstantSpeedSweep, MovesAtConstantSpeedBetweenRunUpAndRunOut) {
 
 TEST(ConstantSpeedSweep, RefusesToStartOrEndOutsideAndToBeTooFast) {
   ConstantSpeedSweep sweep;
-  const JointVector from{0, 0.945, 2.15, 0}, to{0, 0.945, 0.920, 0};
+  const JointVector from = planar_joints(0, 0.945, 2.15, 0), to = planar_joints(0, 0.945, 0.920, 0);
   EXPECT_EQ(sweep.plan(from, to, 18, test::arm5e.limits()), PlanOutcome::outside) << "the run-up passes the elbow's limit";
-  EXPECT_EQ(sweep.plan({0, 0.945, 1.9, 0}, to, 1, test::arm5e.limits()), PlanOutcome::outside) << "1 rad/s";
+  EXPECT_EQ(sweep.plan(planar_joints(0, 0.945, 1.9, 0), to, 1, test::arm5e.limits()), PlanOutcome::outside) << "1 rad/s";
   EXPECT_EQ(sweep.plan(from, to, 0, test::arm5e.limits()), PlanOutcome::not_a_number);
   EXPECT_EQ(sweep.sample(1).q_rad, from);
 }
@@ -263,7 +265,7 @@ TEST(JointStop, BringsEveryJointToRestFromTheMiddleOfAMotion) {
 
 TEST(JointStop, TakesWhatIsNotANumberAsRest) {
   JointState at;
-  at.q_rad = {0.1, 0.2, 0.3, 0.4};
+  at.q_rad = planar_joints(0.1, 0.2, 0.3, 0.4);
   at.qd_rad_s[1] = std::numeric_limits<double>::quiet_NaN();
   const JointStop stop(at, test::arm5e.limits());
   EXPECT_EQ(stop.sample(5).q_rad, at.q_rad);

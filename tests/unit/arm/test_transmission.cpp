@@ -6,6 +6,7 @@
 
 #include "firmware/arm/transmission.hpp"
 #include "tests/arm5e.hpp"
+#include "tests/arm5e_joints.hpp"
 
 namespace lf::arm {
 namespace {
@@ -17,14 +18,14 @@ constexpr double counts_per_rev = 64;
 constexpr Friction sliding{0.004, 2e-5, 0.8, 0.75};
 constexpr Friction locking{0.004, 2e-5, 0.45, -0.2};
 
-Transmission transmission(Joint joint, const Friction& friction) {
+Transmission transmission(std::size_t joint, const Friction& friction) {
   return Transmission(test::arm5e.joint(joint), {counts_per_rev, friction});
 }
 
 class RandomPose {
  public:
-  Joint joint() { return static_cast<Joint>(std::uniform_int_distribution<std::size_t>(0, joint_count - 1)(engine_)); }
-  double angle(Joint joint) { return within(test::arm5e.joint(joint).lower_rad, test::arm5e.joint(joint).upper_rad); }
+  std::size_t joint() { return std::uniform_int_distribution<std::size_t>(0, arm5e_joint::count - 1)(engine_); }
+  double angle(std::size_t joint) { return within(test::arm5e.joint(joint).lower_rad, test::arm5e.joint(joint).upper_rad); }
   double within(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
   bool coin() { return within(0, 1) < 0.5; }
 
@@ -36,7 +37,7 @@ class RandomPose {
 TEST(Transmission, HasTheRatioOfVirtualWork) {
   RandomPose random;
   for (int i = 0; i < 2000; ++i) {
-    const Joint joint = random.joint();
+    const std::size_t joint = random.joint();
     const double q = random.angle(joint), step = 1e-5;
     const double turn =
         (exact_counts_from_rad(test::arm5e.joint(joint), q + step) - exact_counts_from_rad(test::arm5e.joint(joint), q - step)) /
@@ -59,7 +60,7 @@ TEST(Transmission, HasTheRatioOfVirtualWork) {
 TEST(Transmission, FindsTheLoadThatAMovingMotorWorksAgainst) {
   RandomPose random;
   for (int i = 0; i < 5000; ++i) {
-    const Joint joint = random.joint();
+    const std::size_t joint = random.joint();
     const double q = random.angle(joint), load = random.within(-60, 60);
     const double speed = random.within(0.01, 0.5) * (random.coin() ? 1 : -1);
     const Transmission t = transmission(joint, sliding);
@@ -71,7 +72,7 @@ TEST(Transmission, FindsTheLoadThatAMovingMotorWorksAgainst) {
 
 // Raising costs load / (ratio eta), lowering gives load eta_back / ratio back: worked out by hand for a load of 20 N m at 0.1 rad/s.
 TEST(Transmission, TakesMoreTorqueToRaiseALoadThanToLowerIt) {
-  const Transmission t = transmission(Joint::roll, sliding);
+  const Transmission t = transmission(arm5e_joint::roll, sliding);
   const double ratio = 2 * std::numbers::pi / (64 * 3.14e-3);
   EXPECT_NEAR(t.ratio(0), ratio, 1e-9);
   EXPECT_NEAR(t.motor_torque_nm(0, 0.1, 20), 20 / ratio / 0.8 + 0.004 + 2e-5 * ratio * 0.1, 1e-12);
@@ -86,7 +87,7 @@ TEST(Transmission, BoundsTheLoadAtStandstillByBothDirections) {
   };
   for (const Row& row :
        {Row{0.95, 0.95, 1.06}, Row{0.90, 0.90, 1.13}, Row{0.80, 0.80, 1.33}, Row{0.70, 0.70, 1.75}, Row{0.60, 0.60, 3.0}}) {
-    const Transmission t = transmission(Joint::elbow, {0, 0, row.efficiency, 2 - 1 / row.efficiency});
+    const Transmission t = transmission(arm5e_joint::elbow, {0, 0, row.efficiency, 2 - 1 / row.efficiency});
     const TorqueEstimate held = t.joint_torque(1, 0, 1, true, 0.01, 0);
     const double ideal = t.ratio(1) * 0.01;
     EXPECT_NEAR(held.low_nm / ideal, row.low, 0.006);
@@ -97,7 +98,7 @@ TEST(Transmission, BoundsTheLoadAtStandstillByBothDirections) {
 }
 
 TEST(Transmission, SaysNothingOfTheLoadThatASelfLockingScrewHolds) {
-  const Transmission t = transmission(Joint::slew, locking);
+  const Transmission t = transmission(arm5e_joint::slew, locking);
   for (const int last : {-1, 0, 1}) {
     const TorqueEstimate unknown = t.joint_torque(0, 0, last, true, 0, 0);
     EXPECT_EQ(unknown.low_nm, -Transmission::breaking_nm);
@@ -122,7 +123,7 @@ TEST(Transmission, BoundsHoldTheTrueLoad) {
   said.doubt = 0.2;
   said.efficiency_doubt = 0.05;
   for (int i = 0; i < 5000; ++i) {
-    const Joint joint = random.joint();
+    const std::size_t joint = random.joint();
     Friction true_one = said;
     true_one.coulomb_nm *= 1 + random.within(-0.2, 0.2);
     true_one.viscous_nm_s *= 1 + random.within(-0.2, 0.2);
@@ -144,8 +145,8 @@ TEST(Transmission, BoundsHoldTheTrueLoad) {
 }
 
 TEST(TorqueObserver, RemembersTheWayOfTheLastMotion) {
-  const Transmission t = transmission(Joint::elbow, sliding);
-  const double rad = rad_per_count(test::arm5e.joint(Joint::elbow), 1), held = t.motor_torque_nm(1, 1e-12, 10);
+  const Transmission t = transmission(arm5e_joint::elbow, sliding);
+  const double rad = rad_per_count(test::arm5e.joint(arm5e_joint::elbow), 1), held = t.motor_torque_nm(1, 1e-12, 10);
   TorqueObserver observer;
   EXPECT_NEAR(observer.update(t, rad, 1, 0, held, 0).nm, t.ratio(1) * held, 1e-9) << "it never moved: as if there were no friction";
   EXPECT_NEAR(observer.update(t, rad, 1, 0.1, t.motor_torque_nm(1, 0.1, 10), 0).nm, 10, 1e-9);

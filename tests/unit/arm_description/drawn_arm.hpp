@@ -10,6 +10,7 @@
 
 #include "firmware/arm/kinematics.hpp"
 #include "shared/arm/arm_description.hpp"
+#include "tests/arm5e_joints.hpp"
 #include "tests/unit/temporary_folder.hpp"
 
 namespace lf::test {
@@ -49,7 +50,7 @@ class DrawnArm {
   arm::JointVector posture(const ArmDescription& arm, std::mt19937_64& random) const {
     arm::JointVector q;
     do {
-      for (std::size_t i = 0; i < arm_joint_count; ++i)
+      for (std::size_t i = 0; i < arm5e_joint::of_arm; ++i)
         q[static_cast<Eigen::Index>(i)] = std::uniform_real_distribution<double>(arm.joints[i].lower_rad, arm.joints[i].upper_rad)(random);
     } while (!is_regular(arm, q));
     return q;
@@ -80,8 +81,8 @@ class DrawnArm {
   }
   static bool is_regular(const ArmDescription& arm, const arm::JointVector& q) {
     Pose body = Pose::Identity();
-    std::array<Vec3, arm_joint_count> at;
-    for (std::size_t i = 0; i < arm_joint_count; ++i) {
+    PerArmJoint<Vec3> at;
+    for (std::size_t i = 0; i < arm5e_joint::of_arm; ++i) {
       body = body * arm.joints[i].parent_from_joint * Eigen::AngleAxisd(q[static_cast<Eigen::Index>(i)], Vec3::UnitZ());
       at[i] = body.translation();
     }

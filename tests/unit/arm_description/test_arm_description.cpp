@@ -11,6 +11,7 @@
 #include "shared/arm/arm_geometry.hpp"
 #include "shared/arm/motor.hpp"
 #include "shared/input_error.hpp"
+#include "tests/arm5e_joints.hpp"
 
 namespace lf {
 namespace {
@@ -66,7 +67,7 @@ std::string error_of(const std::string& path) {
 TEST(ArmUrdf, HasThePublishedLimits) {
   const ArmDescription arm = load_arm_urdf(urdf_path);
   const double published[][2] = {{-1.5708, 0.5488}, {0, 1.58665}, {0, 2.15294}, {-pi, pi}, {-0.05816, 1.3377}};
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < arm5e_joint::count; ++i) {
     EXPECT_EQ(arm.joints[i].lower_rad, published[i][0]);
     EXPECT_EQ(arm.joints[i].upper_rad, published[i][1]);
   }
@@ -98,8 +99,8 @@ TEST(ArmUrdf, FingersMirrorEachOther) {
 // A motor pushes its joint with the rated torque through friction, and holds a load through what friction takes off it.
 TEST(ArmDescription, ADriveHoldsMoreThanItPushes) {
   const ArmDescription arm = load_arm_urdf(urdf_path);
-  const std::array<double, joint_count> held_nm{56.4, 56.4, 56.4, 9.7, 44.9};
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  const PerJoint<double> held_nm{56.4, 56.4, 56.4, 9.7, 44.9};
+  for (std::size_t i = 0; i < arm5e_joint::count; ++i) {
     EXPECT_NEAR(held_torque_nm(arm.joints[i]), held_nm[i], 0.05) << arm.joints[i].name;
     ArmJoint locked = arm.joints[i];
     locked.friction.back_efficiency = 0;
@@ -127,7 +128,7 @@ TEST(ArmDescription, EveryGearHoldsWithoutPowerWhatItsDriveHolds) {
 // What the build made of the URDF for the core is what the hosted side reads in it.
 TEST(ArmGeometry, IsWhatTheUrdfSays) {
   const ArmDescription arm = load_arm_urdf(urdf_path);
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < arm5e_joint::count; ++i) {
     const ArmJoint& joint = arm.joints[i];
     const arm_geometry::JointNumbers& n = arm_geometry::joints[i];
     EXPECT_EQ(n.lower_rad, joint.lower_rad);
@@ -145,8 +146,8 @@ TEST(ArmGeometry, IsWhatTheUrdfSays) {
     EXPECT_EQ(n.counts_per_m, joint.actuator.counts_per_m);
     EXPECT_EQ(n.counts_per_rad, joint.actuator.counts_per_rad);
   }
-  for (std::size_t i = 0; i < joint_count + 1; ++i) {
-    const Pose& pose = i < joint_count ? arm.joints[i].parent_from_joint : arm.finger_b.parent_from_joint;
+  for (std::size_t i = 0; i < arm5e_joint::count + 1; ++i) {
+    const Pose& pose = i < arm5e_joint::count ? arm.joints[i].parent_from_joint : arm.finger_b.parent_from_joint;
     for (int r = 0; r < 3; ++r) {
       EXPECT_EQ(arm_geometry::joint_origins[i].translation_m[static_cast<std::size_t>(r)], pose.translation()[r]);
       for (int c = 0; c < 3; ++c)
@@ -219,7 +220,7 @@ INSTANTIATE_TEST_SUITE_P(
                             "link 'camera': nobody keeps its collision shapes clear"},
                     BadUrdf{"<link name=\"tool\"/>", "<link name=\"tool\"/><link name=\"wrist\"/>", "link 'wrist' is there twice"},
                     BadUrdf{"<link name=\"tool\"/>", "<link name=\"tool\"/><joint name=\"pitch\" type=\"revolute\"/>",
-                            "joint 'pitch' can move: missions fly arms of slew, shoulder, elbow, roll and jaw only"},
+                            "joint 'pitch' can move, and is none of the arm's"},
                     BadUrdf{"lower=\"-0.05816\" upper=\"1.3377\" effort=\"20\" velocity=\"0.5\"/>\n    <lanternfish:drive",
                             "lower=\"-0.2\" upper=\"1.3377\" effort=\"20\" velocity=\"0.5\"/>\n    <lanternfish:drive",
                             "must not close so far that its pads overlap"},

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/arm5e_joints.hpp"
 #include "tests/unit/canopen/scripted_node.hpp"
 
 namespace lf::canopen::test {
@@ -23,9 +24,9 @@ class AxisTest : public ::testing::Test {
   }
   void SetUp() override { ASSERT_TRUE(bus.boot()); }
 
-  Axis& axis() { return bus.network.axis(Joint::slew); }
+  Axis& axis() { return bus.network.axis(arm5e_joint::slew); }
   ScriptedNode& drive() { return bus.nodes[0]; }
-  Axis& elbow() { return bus.network.axis(Joint::elbow); }
+  Axis& elbow() { return bus.network.axis(arm5e_joint::elbow); }
   ScriptedNode& elbow_drive() { return bus.nodes[2]; }
   bool enable(Axis& a) {
     a.request(AxisRequest::hold_enabled);

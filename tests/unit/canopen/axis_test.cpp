@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "firmware/canopen/codec.hpp"
+#include "tests/arm5e_joints.hpp"
 #include "tests/unit/canopen/axis_bench.hpp"
 
 namespace lf::canopen {
@@ -90,7 +91,7 @@ TEST_F(AxisTest, ACoarseEncodersTargetKeepsTheMaximumSpeedOnAverage) {
   coarse.drives[0].max_speed_counts_s = 60;  // a count in four cycles
   Bus slow(coarse);
   ASSERT_TRUE(slow.boot());
-  Axis& a = slow.network.axis(Joint::slew);
+  Axis& a = slow.network.axis(arm5e_joint::slew);
   a.request(AxisRequest::hold_enabled);
   ASSERT_TRUE(slow.run_until([&a] { return a.enabled(); }, Duration::from_ms(500)));
   const std::int32_t start = a.target_counts();
@@ -206,7 +207,7 @@ TEST_F(AxisTest, AQuickStopActsAtOnceHoldsAndIsLeftUnderPower) {
 }
 
 TEST_F(AxisTest, AQuickStopThatLosesPowerIsLeftThroughSwitchOnDisabled) {
-  Axis& shoulder = bus.network.axis(Joint::shoulder);
+  Axis& shoulder = bus.network.axis(arm5e_joint::shoulder);
   ASSERT_TRUE(enable(shoulder));
   shoulder.request(AxisRequest::quick_stop);
   ASSERT_TRUE(bus.run_until([&] { return shoulder.state() == AxisState::stopped; }, Duration::from_ms(100)));
@@ -372,10 +373,10 @@ TEST_F(AxisTest, AStatuswordTheStandardDoesNotHaveIsCountedAndStopsTheAxis) {
 
 TEST_F(AxisTest, RequestsBeforeTheBootAreForgotten) {
   Bus fresh(config());
-  fresh.network.axis(Joint::slew).request(AxisRequest::hold_enabled);
+  fresh.network.axis(arm5e_joint::slew).request(AxisRequest::hold_enabled);
   ASSERT_TRUE(fresh.boot());
   fresh.step(100);
-  EXPECT_EQ(fresh.network.axis(Joint::slew).state(), AxisState::disabled);
+  EXPECT_EQ(fresh.network.axis(arm5e_joint::slew).state(), AxisState::disabled);
 }
 
 // A drive with a brake leaves Operation enabled only when the brake is closed. 0.4 s are a transition's own time here.
@@ -386,7 +387,7 @@ TEST_F(AxisTest, TheTimeThatTheBrakeTakesToCloseIsWaitedFor) {
     with_brake.drives[0].profile.brake_closes = Duration::from_ms(closes_ms);
     Bus braked(with_brake);
     ASSERT_TRUE(braked.boot());
-    Axis& one = braked.network.axis(Joint::slew);
+    Axis& one = braked.network.axis(arm5e_joint::slew);
     one.request(AxisRequest::hold_enabled);
     ASSERT_TRUE(braked.run_until([&] { return one.enabled(); }, Duration::from_ms(500)));
     braked.nodes[0].ignores_controlword = true;
@@ -403,7 +404,7 @@ TEST_F(AxisTest, TargetsStandStillUntilTheBrakeIsOpen) {
   braked.drives[0].profile.brake_opens = Duration::from_ms(200);
   Bus slow(braked);
   ASSERT_TRUE(slow.boot());
-  Axis& slew = slow.network.axis(Joint::slew);
+  Axis& slew = slow.network.axis(arm5e_joint::slew);
   slew.request(AxisRequest::hold_enabled);
   ASSERT_TRUE(slow.run_until([&] { return slew.drive_state() == DriveState::operation_enabled; }, Duration::from_ms(400)));
   const Time powered = slow.now;
@@ -425,7 +426,7 @@ TEST_F(AxisTest, PositionsAndTorquesAreInTheDrivesUnitsOnTheBusAndInTheArmsInsid
   changed.nodes[0].actual_counts = -56'250;
   changed.nodes[0].torque_permille = -546;
   changed.step(3);
-  Axis& slew = changed.network.axis(Joint::slew);
+  Axis& slew = changed.network.axis(arm5e_joint::slew);
   EXPECT_EQ(slew.actual_counts(), 900);
   EXPECT_EQ(slew.torque_permille(), 500);
   slew.request(AxisRequest::hold_enabled);
@@ -442,7 +443,7 @@ TEST_F(AxisTest, TheMasterTimesTheFollowingErrorOfADriveThatDoesNotAndTwiceAsLon
     other.drives[0].profile.master_times_following = times;
     Bus changed(other);
     ASSERT_TRUE(changed.boot());
-    Axis& slew = changed.network.axis(Joint::slew);
+    Axis& slew = changed.network.axis(arm5e_joint::slew);
     slew.request(AxisRequest::hold_enabled);
     ASSERT_TRUE(changed.run_until([&] { return slew.enabled(); }, Duration::from_ms(500)));
     changed.nodes[0].jammed = true;

@@ -1,12 +1,13 @@
 // What the boot's tests share: a configuration in which every object is written.
 #pragma once
 
+#include "tests/arm5e_joints.hpp"
 #include "tests/unit/canopen/scripted_node.hpp"
 
 namespace lf::canopen::test {
 
-inline constexpr std::size_t elbow = static_cast<std::size_t>(Joint::elbow);
-inline constexpr std::size_t io = Network::io_index;
+inline constexpr std::size_t elbow = arm5e_joint::elbow;
+inline constexpr std::size_t io = arm5e_joint::count;
 
 inline NetworkConfig full_config() {
   NetworkConfig config = plain_config();

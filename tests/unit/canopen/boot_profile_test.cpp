@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "firmware/canopen/sdo_abort.hpp"
+#include "tests/arm5e_joints.hpp"
 #include "tests/unit/canopen/boot_bench.hpp"
 
 namespace lf::canopen {
@@ -100,7 +101,7 @@ TEST(LostPosition, TakesThePowerUntilTheJointIsCommissionedAgain) {
     ASSERT_TRUE(config.drives[0].profile.position_lost.push_back(0x7320));
     Bus bus(config);
     ASSERT_TRUE(bus.boot());
-    Axis& slew = bus.network.axis(Joint::slew);
+    Axis& slew = bus.network.axis(arm5e_joint::slew);
     slew.request(AxisRequest::hold_enabled);
     ASSERT_TRUE(bus.run_until([&] { return slew.enabled(); }, Duration::from_ms(500)));
     bus.nodes[0].send_emcy(code, 0x20);
@@ -159,12 +160,12 @@ TEST(Boot, AJointWithoutAZeroTakesNoPower) {
   Bus bus(config);
   ASSERT_TRUE(bus.boot());
   EXPECT_FALSE(bus.network.may_have_power());
-  bus.network.axis(Joint::slew).request(AxisRequest::hold_enabled);
-  bus.network.axis(Joint::slew).request(AxisRequest::home);
+  bus.network.axis(arm5e_joint::slew).request(AxisRequest::hold_enabled);
+  bus.network.axis(arm5e_joint::slew).request(AxisRequest::home);
   bus.step(50);
-  EXPECT_EQ(bus.network.axis(Joint::slew).requested(), AxisRequest::disable);
-  EXPECT_EQ(bus.network.axis(Joint::slew).stats().power_refused, 2U);
-  EXPECT_FALSE(bus.network.axis(Joint::slew).powered());
+  EXPECT_EQ(bus.network.axis(arm5e_joint::slew).requested(), AxisRequest::disable);
+  EXPECT_EQ(bus.network.axis(arm5e_joint::slew).stats().power_refused, 2U);
+  EXPECT_FALSE(bus.network.axis(arm5e_joint::slew).powered());
   Bus known(full_config());
   EXPECT_TRUE(known.network.may_have_power());
 }

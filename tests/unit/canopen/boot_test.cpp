@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "firmware/canopen/sdo_abort.hpp"
+#include "tests/arm5e_joints.hpp"
 #include "tests/unit/canopen/boot_bench.hpp"
 
 namespace lf::canopen {
@@ -32,7 +33,7 @@ TEST(Boot, AHealthyBusIsBootedWithinASecondAndOperational) {
     EXPECT_STREQ(node.device_name.data(), "A scripted node with a long name");
   }
   EXPECT_EQ(report.nodes[0].device_type, 0x00020192u);
-  EXPECT_EQ(bus.network.axis(Joint::slew).rated_torque_unm(), 12'000'000u);
+  EXPECT_EQ(bus.network.axis(arm5e_joint::slew).rated_torque_unm(), 12'000'000u);
   EXPECT_EQ(bus.network.stats().refused_total(), 0u);
   for (const ScriptedNode& node : bus.nodes) EXPECT_EQ(node.nmt(), 5);
 }
@@ -171,7 +172,7 @@ TEST(Boot, ANodeThatRestartsBetweenItsStartAndItsFirstDataIsStartedAgain) {
   bus.nodes[elbow].mute_tpdo = false;
   EXPECT_TRUE(bus.run_until([&] { return bus.network.operational(); }, Duration::from_ms(5000)));
   EXPECT_EQ(bus.nodes[elbow].nmt(), 5);
-  EXPECT_EQ(bus.network.axis(Joint::elbow).state(), AxisState::disabled);
+  EXPECT_EQ(bus.network.axis(arm5e_joint::elbow).state(), AxisState::disabled);
 }
 
 TEST(Boot, AGuardedDriveGetsGuardRequestsAndNoHeartbeat) {
@@ -346,7 +347,7 @@ TEST(Boot, ADeadNodeIsGivenUpAfterTheAllowedTriesAndTheOthersAreNotStarted) {
   EXPECT_EQ(
       std::count_if(bus.log.begin(), bus.log.end(), [](const CanFrame& f) { return f.id == 0 && f.data[0] == 130 && f.data[1] == 3; }), 3);
   for (const ScriptedNode& node : bus.nodes) EXPECT_NE(node.nmt(), 5);
-  EXPECT_EQ(bus.network.axis(Joint::slew).state(), AxisState::offline);
+  EXPECT_EQ(bus.network.axis(arm5e_joint::slew).state(), AxisState::offline);
 }
 
 TEST(Boot, ALostBootUpMessageIsAskedForAgain) {
@@ -413,11 +414,11 @@ TEST(Boot, ABootCanBeRepeatedAfterAFailureAndInOperation) {
   ASSERT_FALSE(bus.boot());
   bus.nodes[elbow].dead = false;
   ASSERT_TRUE(bus.boot());
-  bus.network.axis(Joint::slew).request(AxisRequest::hold_enabled);
+  bus.network.axis(arm5e_joint::slew).request(AxisRequest::hold_enabled);
   bus.step(40);
-  ASSERT_TRUE(bus.network.axis(Joint::slew).enabled());
+  ASSERT_TRUE(bus.network.axis(arm5e_joint::slew).enabled());
   ASSERT_TRUE(bus.boot());
-  EXPECT_EQ(bus.network.axis(Joint::slew).requested(), AxisRequest::disable);
+  EXPECT_EQ(bus.network.axis(arm5e_joint::slew).requested(), AxisRequest::disable);
   EXPECT_TRUE(bus.network.operational());
 }
 

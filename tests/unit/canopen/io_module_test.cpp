@@ -1,6 +1,7 @@
 // The output node: switching, triggering, the laser's interlock, and which outputs a frame was exposed under.
 #include <gtest/gtest.h>
 
+#include "tests/arm5e_joints.hpp"
 #include "tests/unit/canopen/scripted_node.hpp"
 
 namespace lf::canopen {
@@ -18,7 +19,7 @@ class Io : public ::testing::Test {
     ASSERT_TRUE(bus.boot());
   }
   IoModule& io() { return bus.network.io(); }
-  ScriptedNode& node() { return bus.nodes[Network::io_index]; }
+  ScriptedNode& node() { return bus.nodes[arm5e_joint::count]; }
 
   Bus bus{test::plain_config()};
 };

@@ -7,6 +7,7 @@
 
 #include "firmware/canopen/bus_load.hpp"
 #include "firmware/canopen/codec.hpp"
+#include "tests/arm5e_joints.hpp"
 #include "tests/unit/canopen/scripted_node.hpp"
 
 namespace lf::canopen {
@@ -82,7 +83,7 @@ TEST_F(NetworkTest, ALostHeartbeatIsAFaultAfterItsTimeOut) {
   bus.step(55);
   EXPECT_FALSE(bus.network.operational());
   EXPECT_TRUE(bus.network.fault(2).heartbeat_lost);
-  EXPECT_EQ(bus.network.axis(Joint::elbow).fault(), AxisFault::node_lost);
+  EXPECT_EQ(bus.network.axis(arm5e_joint::elbow).fault(), AxisFault::node_lost);
   bus.nodes[2].mute_heartbeat = false;
   bus.step(50);
   EXPECT_TRUE(bus.network.fault(2).heartbeat_lost) << "latched";
@@ -91,13 +92,13 @@ TEST_F(NetworkTest, ALostHeartbeatIsAFaultAfterItsTimeOut) {
 }
 
 TEST_F(NetworkTest, ABootUpMessageInOperationIsAReboot) {
-  bus.network.axis(Joint::jaw).request(AxisRequest::hold_enabled);
-  ASSERT_TRUE(bus.run_until([&] { return bus.network.axis(Joint::jaw).enabled(); }, Duration::from_ms(500)));
+  bus.network.axis(arm5e_joint::jaw).request(AxisRequest::hold_enabled);
+  ASSERT_TRUE(bus.run_until([&] { return bus.network.axis(arm5e_joint::jaw).enabled(); }, Duration::from_ms(500)));
   bus.nodes[4].reboot();
   bus.step(2);
   EXPECT_TRUE(bus.network.fault(4).rebooted);
   EXPECT_FALSE(bus.network.operational());
-  EXPECT_EQ(bus.network.axis(Joint::jaw).fault(), AxisFault::node_lost);
+  EXPECT_EQ(bus.network.axis(arm5e_joint::jaw).fault(), AxisFault::node_lost);
   bus.network.acknowledge(4);
   bus.step(60);
   EXPECT_FALSE(bus.network.operational()) << "acknowledging does not configure it";
@@ -181,7 +182,7 @@ TEST_F(NetworkTest, EachRefusedFrameIsCountedByItsCause) {
       {Refusal::bad_length, frame_of(0x701, {5, 0})},
       {Refusal::heartbeat_state, frame_of(0x701, {6})},
   };
-  const std::int32_t position = bus.network.axis(Joint::slew).actual_counts();
+  const std::int32_t position = bus.network.axis(arm5e_joint::slew).actual_counts();
   std::uint32_t total = bus.network.stats().refused_total();
   for (const auto& [cause, frame] : cases) {
     const std::uint32_t before = refused(cause);
@@ -193,7 +194,7 @@ TEST_F(NetworkTest, EachRefusedFrameIsCountedByItsCause) {
   too_long.length = 9;
   receive(too_long);
   EXPECT_EQ(refused(Refusal::bad_length), 4u);
-  EXPECT_EQ(bus.network.axis(Joint::slew).actual_counts(), position);
+  EXPECT_EQ(bus.network.axis(arm5e_joint::slew).actual_counts(), position);
   EXPECT_TRUE(bus.network.operational());
 }
 
@@ -203,7 +204,7 @@ TEST_F(NetworkTest, ProcessDataOfANodeThatWasNotStartedIsRefused) {
   fresh.step(5);
   fresh.network.on_frame(frame_of(0x181, {0x27, 0, 0, 0, 0, 0, 0, 0}), fresh.now);
   EXPECT_EQ(fresh.network.stats().refused[static_cast<std::size_t>(Refusal::pdo_before_start)], 1u);
-  EXPECT_FALSE(fresh.network.axis(Joint::slew).seen());
+  EXPECT_FALSE(fresh.network.axis(arm5e_joint::slew).seen());
 }
 
 TEST_F(NetworkTest, NothingIsSentBeforeTheBootIsAskedFor) {
@@ -235,7 +236,7 @@ TEST_F(NetworkTest, ASecondTpdoInACycleIsTakenAndCounted) {
   bus.step();
   receive(frame_of(0x181, {0x40, 0, 9, 0, 0, 0, 0, 0}));
   EXPECT_EQ(bus.network.stats().pdo_repeated, 1u);
-  EXPECT_EQ(bus.network.axis(Joint::slew).actual_counts(), 9);
+  EXPECT_EQ(bus.network.axis(arm5e_joint::slew).actual_counts(), 9);
 }
 
 // The answer to one SYNC arrives after the next SYNC: what it says is newer than what is known, and what follows is newer still.
@@ -244,11 +245,11 @@ TEST_F(NetworkTest, ALateReportIsTakenUntilTheNextOneIsThere) {
   Outbox outbox;
   bus.network.tick(sync, outbox);
   bus.network.on_frame(frame_of(0x181, {0x40, 0, 9, 0, 0, 0, 0, 0}), sync + Duration::from_us(200));
-  EXPECT_EQ(bus.network.axis(Joint::slew).actual_counts(), 9);
-  EXPECT_EQ(bus.network.axis(Joint::slew).actual_time(), sync);
+  EXPECT_EQ(bus.network.axis(arm5e_joint::slew).actual_counts(), 9);
+  EXPECT_EQ(bus.network.axis(arm5e_joint::slew).actual_time(), sync);
   EXPECT_EQ(bus.network.stats().pdo_repeated, 0u) << "the SYNC before was not answered";
   bus.network.on_frame(frame_of(0x181, {0x40, 0, 10, 0, 0, 0, 0, 0}), sync + Duration::from_us(600));
-  EXPECT_EQ(bus.network.axis(Joint::slew).actual_counts(), 10);
+  EXPECT_EQ(bus.network.axis(arm5e_joint::slew).actual_counts(), 10);
   EXPECT_EQ(bus.network.stats().pdo_repeated, 1u);
 }
 
@@ -262,18 +263,18 @@ TEST_F(NetworkTest, TheLoadInOperationStaysUnderTheWorstCaseOfTheBus) {
 }
 
 TEST_F(NetworkTest, StoppingAllAndDisablingAllReachEveryAxis) {
-  for (std::size_t i = 0; i < joint_count; ++i) bus.network.axis(static_cast<Joint>(i)).request(AxisRequest::hold_enabled);
+  for (std::size_t i = 0; i < arm5e_joint::count; ++i) bus.network.axis(i).request(AxisRequest::hold_enabled);
   bus.step(40);
   bus.network.quick_stop_all();
   bus.step(4);
-  for (std::size_t i = 0; i < joint_count; ++i) EXPECT_EQ(bus.network.axis(static_cast<Joint>(i)).state(), AxisState::stopped);
+  for (std::size_t i = 0; i < arm5e_joint::count; ++i) EXPECT_EQ(bus.network.axis(i).state(), AxisState::stopped);
   bus.network.disable_all();
   bus.step(20);
-  for (std::size_t i = 0; i < joint_count; ++i) EXPECT_EQ(bus.network.axis(static_cast<Joint>(i)).state(), AxisState::disabled);
+  for (std::size_t i = 0; i < arm5e_joint::count; ++i) EXPECT_EQ(bus.network.axis(i).state(), AxisState::disabled);
 }
 
 TEST_F(NetworkTest, ShutDownStopsTheAxesAndTheOutputsBeforeTheNodes) {
-  bus.network.axis(Joint::slew).request(AxisRequest::hold_enabled);
+  bus.network.axis(arm5e_joint::slew).request(AxisRequest::hold_enabled);
   bus.network.io().set_outputs(3);
   bus.step(40);
   ASSERT_EQ(bus.nodes[5].outputs, 3);
@@ -283,7 +284,7 @@ TEST_F(NetworkTest, ShutDownStopsTheAxesAndTheOutputsBeforeTheNodes) {
   EXPECT_EQ(bus.nodes[5].outputs, 0);
   for (const ScriptedNode& node : bus.nodes) EXPECT_EQ(node.nmt(), 4);
   EXPECT_FALSE(bus.network.operational());
-  EXPECT_EQ(bus.network.axis(Joint::slew).state(), AxisState::offline);
+  EXPECT_EQ(bus.network.axis(arm5e_joint::slew).state(), AxisState::offline);
   EXPECT_TRUE(bus.boot());
 }
 
@@ -319,8 +320,8 @@ TEST(RandomFrames, AHundredThousandNeverBreakAnInvariant) {
     const NetworkConfig config = test::plain_config();
     Bus bus(config);
     bus.network.start_boot(bus.now);
-    std::array<std::int64_t, joint_count> last_target{};
-    std::array<bool, joint_count> was_enabled{};
+    PerJoint<std::int64_t> last_target{};
+    PerJoint<bool> was_enabled{};
     std::uint64_t frames = 0;
     while (frames < 50'000) {
       const bool storm = (frames / 5'000) % 2 == 1;  // quiet stretches let the bus boot and the axes be enabled
@@ -328,8 +329,8 @@ TEST(RandomFrames, AHundredThousandNeverBreakAnInvariant) {
       for (int i = 0; i < burst; ++i) bus.network.on_frame(random_frame(random), bus.now);
       frames += storm ? static_cast<std::uint64_t>(burst) : 10;
       if (random() % 200 == 0) bus.network.start_boot(bus.now);
-      for (std::size_t i = 0; i < joint_count; ++i) {
-        Axis& axis = bus.network.axis(static_cast<Joint>(i));
+      for (std::size_t i = 0; i < arm5e_joint::count; ++i) {
+        Axis& axis = bus.network.axis(i);
         if (random() % 20 == 0) axis.request(static_cast<AxisRequest>(random() % 5));
         axis.set_target_counts(static_cast<std::int32_t>(random()));
       }
@@ -341,8 +342,8 @@ TEST(RandomFrames, AHundredThousandNeverBreakAnInvariant) {
       expect_wellformed(sent);
       if (HasFatalFailure()) return;
       ASSERT_LE(sent.size(), 26u);
-      for (std::size_t i = 0; i < joint_count; ++i) {
-        const Axis& axis = bus.network.axis(static_cast<Joint>(i));
+      for (std::size_t i = 0; i < arm5e_joint::count; ++i) {
+        const Axis& axis = bus.network.axis(i);
         const std::int64_t target = axis.target_counts();
         if (was_enabled[i] && axis.enabled()) {
           ASSERT_LE(std::abs(target - last_target[i]), 41) << "a jump of the target while enabled";

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "firmware/canopen/codec.hpp"
+#include "tests/arm5e_joints.hpp"
 #include "tests/unit/canopen/scripted_node.hpp"
 
 namespace lf::canopen {
@@ -17,7 +18,7 @@ constexpr std::uint8_t switch_on_disabled = 0x40, operation_enabled = 0x27, quic
 class PowerOff : public ::testing::Test {
  protected:
   void SetUp() override { ASSERT_TRUE(bus.boot()); }
-  Axis& axis() { return bus.network.axis(Joint::slew); }
+  Axis& axis() { return bus.network.axis(arm5e_joint::slew); }
   ScriptedNode& drive() { return bus.nodes[0]; }
   bool enable() {
     axis().request(AxisRequest::hold_enabled);

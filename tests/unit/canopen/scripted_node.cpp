@@ -2,6 +2,8 @@
 
 #include <cstdio>
 
+#include "tests/arm5e_joints.hpp"
+
 namespace lf::canopen::test {
 
 Bytes little_endian(std::uint32_t value, std::size_t width) {
@@ -416,7 +418,8 @@ bool Bus::boot(Duration limit) {
 
 NetworkConfig plain_config() {
   NetworkConfig config;
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  arm5e_joint::fill(config.drives, DriveSetup{});
+  for (std::size_t i = 0; i < arm5e_joint::count; ++i) {
     DriveSetup& drive = config.drives[i];
     drive.node = can_map::drive_nodes[i];
     drive.min_counts = -50'000;

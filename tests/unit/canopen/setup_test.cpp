@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 
+#include "tests/arm5e_joints.hpp"
 #include "tests/unit/canopen/scripted_node.hpp"
 
 namespace lf::canopen {
@@ -25,7 +26,7 @@ TEST(Setup, EachImpossibleNumberIsNamedWithItsNode) {
   const Case cases[] = {
       {[](NetworkConfig& c) { c.drives[2].node = 0; }, ConfigError::node_id, 2},
       {[](NetworkConfig& c) { c.drives[2].node = 127; }, ConfigError::node_id, 2},
-      {[](NetworkConfig& c) { c.io.node = 200; }, ConfigError::node_id, joint_count},
+      {[](NetworkConfig& c) { c.io.node = 200; }, ConfigError::node_id, arm5e_joint::count},
       {[](NetworkConfig& c) { c.drives[3].node = 1; }, ConfigError::node_twice, 3},
       {[](NetworkConfig& c) { c.drives[1].min_counts = c.drives[1].max_counts; }, ConfigError::position_limits, 1},
       {[](NetworkConfig& c) { c.drives[0].max_speed_counts_s = 0; }, ConfigError::speed, 0},
@@ -37,10 +38,10 @@ TEST(Setup, EachImpossibleNumberIsNamedWithItsNode) {
       {[](NetworkConfig& c) { c.drives[1].profile.scale.speed.num = 1'000'000'000; }, ConfigError::profile, 1},
       {[](NetworkConfig& c) { c.drives[1].profile.scale.position.num = 1'000'000; }, ConfigError::positions, 1},
       {[](NetworkConfig& c) { c.drives[1].encoder_zero_counts = INT32_MAX; }, ConfigError::positions, 1},
-      {[](NetworkConfig& c) { c.sync_period = Duration::from_ns(4'000'001); }, ConfigError::sync_period, joint_count},
-      {[](NetworkConfig& c) { c.sync_period = Duration::from_ms(200); }, ConfigError::sync_period, joint_count},
-      {[](NetworkConfig& c) { c.sync_period = Duration{}; }, ConfigError::sync_period, joint_count},
-      {[](NetworkConfig& c) { c.sdo_timeout = Duration{}; }, ConfigError::timeout, joint_count},
+      {[](NetworkConfig& c) { c.sync_period = Duration::from_ns(4'000'001); }, ConfigError::sync_period, arm5e_joint::count},
+      {[](NetworkConfig& c) { c.sync_period = Duration::from_ms(200); }, ConfigError::sync_period, arm5e_joint::count},
+      {[](NetworkConfig& c) { c.sync_period = Duration{}; }, ConfigError::sync_period, arm5e_joint::count},
+      {[](NetworkConfig& c) { c.sdo_timeout = Duration{}; }, ConfigError::timeout, arm5e_joint::count},
   };
   for (const Case& c : cases) {
     NetworkConfig config = test::plain_config();

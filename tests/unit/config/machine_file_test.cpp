@@ -95,7 +95,7 @@ TEST(MachineFile, NamesAShippedFileByItsWholePathWhereTheNameMeansAnotherOne) {
 
 TEST(MachineFile, OfAnArmOfOnesOwnNamesItsLimits) {
   const test::TemporaryFolder folder;
-  folder.write("my.urdf", "");
+  folder.write("my.urdf", read_text_file(share_folder() / "arm" / "arm5e.urdf"));
   EXPECT_THAT(read(folder.write("machine.yaml", "version: 1\narm: {urdf: my.urdf}\n")).problems,
               ElementsAre(HasSubstr("'safety.limits' has to name its limits")));
 }

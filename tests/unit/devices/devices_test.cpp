@@ -8,6 +8,7 @@
 #include <random>
 
 #include "shared/input_error.hpp"
+#include "tests/arm5e_joints.hpp"
 #include "tests/unit/devices/drive/drive_rig.hpp"
 
 namespace lf::devices::test {
@@ -20,7 +21,7 @@ DevicesConfig bench_config() {
 class Bench {
  public:
   explicit Bench(const DevicesConfig& config = bench_config()) : devices(config) {
-    for (std::size_t i = 0; i < joint_count; ++i) {
+    for (std::size_t i = 0; i < arm5e_joint::count; ++i) {
       joints[i].lower_rad = config.drives[i].lower_rad;
       joints[i].upper_rad = config.drives[i].upper_rad;
       joints[i].q_rad = 0.5 * (config.drives[i].lower_rad + config.drives[i].upper_rad);
@@ -86,7 +87,7 @@ class Bench {
   void step() {
     if (ms % 4 == 0 && cyclic) {
       send(0x80, {});
-      for (std::size_t i = 0; i < joint_count; ++i) {
+      for (std::size_t i = 0; i < arm5e_joint::count; ++i) {
         const auto t = static_cast<std::uint32_t>(targets[i]);
         send(0x201u + static_cast<std::uint32_t>(i),
              {static_cast<std::uint8_t>(controlword), static_cast<std::uint8_t>(controlword >> 8), static_cast<std::uint8_t>(t),
@@ -98,9 +99,9 @@ class Bench {
     ++ms;
     now = Time::from_ns(ms * 1'000'000);
     JointReadings readings;
-    for (std::size_t i = 0; i < joint_count; ++i) readings[i] = joints[i].reading();
+    for (std::size_t i = 0; i < arm5e_joint::count; ++i) readings[i] = joints[i].reading();
     devices.step(now, readings);
-    for (std::size_t i = 0; i < joint_count; ++i) joints[i].step(devices.drives()[i]);
+    for (std::size_t i = 0; i < arm5e_joint::count; ++i) joints[i].step(devices.drives()[i]);
     CanFrame f;
     Time at;
     while (devices.next_to_master(f, at)) {
@@ -133,14 +134,14 @@ class Bench {
   }
 
   Devices devices;
-  std::array<ScriptedJoint, joint_count> joints;
+  PerJoint<ScriptedJoint> joints;
   Time now;
   std::int64_t ms = 0;
   bool cyclic = false, outputs = true, beats = true;
   std::uint16_t controlword = 0;
   std::uint8_t output = 0, trigger = 0;
-  std::array<std::int32_t, joint_count> targets{}, actual{};
-  std::array<std::uint16_t, joint_count> status{};
+  PerJoint<std::int32_t> targets{}, actual{};
+  PerJoint<std::uint16_t> status{};
   std::vector<BusRecord> log, received;
   std::map<std::uint32_t, int> ids;
 };
@@ -185,15 +186,15 @@ TEST(Devices, every_answer_comes_before_the_next_tick) {
 TEST(Devices, five_axes_run_to_their_targets_over_the_bus_alone) {
   Bench bench;
   bench.enable();
-  for (std::size_t i = 0; i < joint_count; ++i) ASSERT_EQ(bench.status[i] & 0x6F, 0x27) << i;
-  const std::array<std::int32_t, joint_count> goal{bench.targets[0] + 200, bench.targets[1] - 300, bench.targets[2] + 150,
-                                                   bench.targets[3] + 40, bench.targets[4] - 120};
+  for (std::size_t i = 0; i < arm5e_joint::count; ++i) ASSERT_EQ(bench.status[i] & 0x6F, 0x27) << i;
+  const PerJoint<std::int32_t> goal{bench.targets[0] + 200, bench.targets[1] - 300, bench.targets[2] + 150, bench.targets[3] + 40,
+                                    bench.targets[4] - 120};
   for (int k = 0; k < 400; ++k) {
-    for (std::size_t i = 0; i < joint_count; ++i) bench.targets[i] += std::clamp(goal[i] - bench.targets[i], -1, 1);
+    for (std::size_t i = 0; i < arm5e_joint::count; ++i) bench.targets[i] += std::clamp(goal[i] - bench.targets[i], -1, 1);
     bench.run_ms(4);
   }
   bench.run_ms(800);
-  for (std::size_t i = 0; i < joint_count; ++i) EXPECT_LE(std::abs(bench.actual[i] - goal[i]), 2) << i;
+  for (std::size_t i = 0; i < arm5e_joint::count; ++i) EXPECT_LE(std::abs(bench.actual[i] - goal[i]), 2) << i;
 }
 
 TEST(Devices, the_camera_is_exposed_at_the_syncs_last_bit) {

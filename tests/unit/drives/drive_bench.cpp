@@ -10,11 +10,12 @@
 #include "host_sim/devices/drive/drive_dictionary.hpp"
 #include "shared/arm/arm_description.hpp"
 #include "tests/arm5e.hpp"
+#include "tests/arm5e_joints.hpp"
 
 namespace lf::test {
 namespace {
 
-constexpr std::size_t elbow_index = static_cast<std::size_t>(Joint::elbow);
+constexpr std::size_t elbow_index = arm5e_joint::elbow;
 
 ArmDescription arm() { return load_arm_urdf((config::share_folder() / "arm" / "arm5e.urdf").string()); }
 
@@ -51,7 +52,7 @@ DriveBench::DriveBench(const Make& make, const std::function<void(canopen::Netwo
       }()),
       network(config),
       devices(devices_config) {
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < arm5e_joint::count; ++i) {
     const double middle = 0.5 * (devices_config.drives[i].lower_rad + devices_config.drives[i].upper_rad);
     joints[i].position_rad = joints[i].motor_position_rad = middle;
   }
@@ -60,7 +61,7 @@ DriveBench::DriveBench(const Make& make, const std::function<void(canopen::Netwo
 void DriveBench::step() {
   ++ms_;
   now = Time::from_ns(std::int64_t{ms_} * 1'000'000);
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < arm5e_joint::count; ++i) {
     const JointDrive drive = devices.drives()[i];
     JointReading& joint = joints[i];
     const double lower = devices_config.drives[i].lower_rad, upper = devices_config.drives[i].upper_rad;
@@ -110,7 +111,7 @@ bool DriveBench::boot() {
 std::string DriveBench::sentence() const { return config::boot_sentence(network.boot().nodes[elbow_index], "elbow"); }
 
 double DriveBench::joint_counts() const {
-  return arm::exact_counts_from_rad(test::arm5e.joint(Joint::elbow), joints[elbow_index].motor_position_rad);
+  return arm::exact_counts_from_rad(test::arm5e.joint(arm5e_joint::elbow), joints[elbow_index].motor_position_rad);
 }
 
 }  // namespace lf::test

@@ -7,6 +7,7 @@
 #include "firmware/canopen/network.hpp"
 #include "hal/config/machine.hpp"
 #include "host_sim/devices/devices.hpp"
+#include "tests/arm5e_joints.hpp"
 
 namespace lf::test {
 
@@ -26,7 +27,7 @@ class DriveBench {
   void run(Duration time);
   bool run_until(const std::function<bool()>& done, Duration limit);
 
-  canopen::Axis& elbow() { return network.axis(Joint::elbow); }
+  canopen::Axis& elbow() { return network.axis(arm5e_joint::elbow); }
   std::string sentence() const;  // why the elbow did not boot
   double joint_counts() const;   // the elbow's motor, in the arm's counts
 

@@ -22,7 +22,7 @@ TEST(FaultKinds, EachIsMadeByTheSimulatorAndHasARule) {
     if (kind.place == config::FaultPlace::told) continue;
     config::Fault fault;
     fault.kind = kind.name;
-    EXPECT_NO_THROW(scenario::sim_fault(fault, config::Drives{}));
+    EXPECT_NO_THROW(scenario::sim_fault(fault, config::Drives{}, {}));
   }
 }
 

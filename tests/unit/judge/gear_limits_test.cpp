@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "host_sim/world/world.hpp"
+#include "tests/arm5e_joints.hpp"
 
 namespace lf::judge {
 namespace {
@@ -14,8 +15,8 @@ TEST(GearLimits, OfTheDefaultArmAreThoseOfItsDrivesTorques) {
   const ArmDescription arm = load_arm_urdf(urdf_path);
   const world::WorldConfig world;
   // 56.4 N m by 1500 and by 4000, 9.7 and 44.9 by 1000 N m/rad, and half of the play: 0.35 mrad of a screw, 2 of a gear.
-  const std::array<double, joint_count> gives_rad{0.0378, 0.0143, 0.0143, 0.0107, 0.0459};
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  const PerJoint<double> gives_rad{0.0378, 0.0143, 0.0143, 0.0107, 0.0459};
+  for (std::size_t i = 0; i < arm5e_joint::count; ++i) {
     const GearLimits limits = gear_limits(arm.joints[i], world.drive_stiffness_nm_rad[i]);
     EXPECT_NEAR(limits.gives_rad, gives_rad[i], 2e-4) << arm.joints[i].name;
     EXPECT_EQ(limits.slips_rad, 0.5 * arm.joints[i].backlash_rad) << arm.joints[i].name << ": its gear holds what its drive does";

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/arm5e_bodies.hpp"
+
 namespace lf::judge {
 namespace {
 
@@ -70,7 +72,7 @@ TEST(Truth, AButtonThatDidNotClickIsAFailureAndSoIsOneTooMany) {
 
 TEST(Truth, ATouchOfWhatMustNotMeetIsAFailureFromAForceOn) {
   Judged run = good_run();
-  run.contacts.unintended = {{scene::BodyId::wrist, scene::BodyId::panel, 12.3, 4.0, "wrist", "panel"}};
+  run.contacts.unintended = {{arm5e_body::wrist, arm5e_body::panel, 12.3, 4.0, "wrist", "panel"}};
   EXPECT_EQ(run.contradicted(), "");
   run.contacts.unintended[0].peak_force_n = 40;
   EXPECT_EQ(run.contradicted(), "contact: unintended contact of wrist and panel at 12.30 s, up to 40 N");

@@ -195,7 +195,7 @@ TEST(VerdictOfSeveral, ADriveThatIsRestartedLosesItsPowerALittleLater) {
   const auto wrong = [](int off_ms, const std::string& lost) {
     Seen seen = Stopping().seen();
     for (int t = 0; t < 3000; ++t) {
-      std::uint8_t& power = seen.moments[static_cast<std::size_t>(t)].power;
+      JointBits& power = seen.moments[static_cast<std::size_t>(t)].power;
       power = static_cast<std::uint8_t>((power & ~0x04) | (t < 108 + 140 + off_ms ? 0x04 : 0));
       if (lost == "drop_frames tpdo elbow" && t >= 200) power &= 0x04;  // the others are heard, and stand
     }

@@ -219,7 +219,8 @@ TEST(Verdict, APushIsFeltByAJointThatWorksAgainstItForAsLongAsAForceIsJudged) {
     seen.moments.resize(1000);
     for (std::size_t t = 0; t < 1000; ++t) seen.moments[t].works_nm[1] = t >= 300 && t < 300 + for_ms ? nm : 2;
     SafetyFigures figures;
-    figures.felt_nm = {13, 13, 13, 5};
+    figures.felt_nm = 13;
+    figures.felt_by_roll_nm = 5;
     return felt_a_push(seen, figures);
   };
   EXPECT_FALSE(felt(14, 500)) << "12 more than before";

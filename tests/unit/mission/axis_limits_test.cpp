@@ -10,6 +10,7 @@
 
 #include "shared/arm/arm_description.hpp"
 #include "tests/arm5e.hpp"
+#include "tests/arm5e_joints.hpp"
 #include "tests/unit/canopen/scripted_node.hpp"
 
 namespace lf::mission {
@@ -45,7 +46,7 @@ class Screw {
 };
 
 struct End {
-  Joint joint;
+  std::size_t joint;
   bool upper;
 };
 
@@ -144,8 +145,8 @@ std::string name_of(const testing::TestParamInfo<End>& test) {
 }
 
 INSTANTIATE_TEST_SUITE_P(OfEachScrew, StrokesEnd,
-                         testing::Values(End{Joint::slew, false}, End{Joint::slew, true}, End{Joint::shoulder, false},
-                                         End{Joint::shoulder, true}, End{Joint::elbow, false}, End{Joint::elbow, true}),
+                         testing::Values(End{arm5e_joint::slew, false}, End{arm5e_joint::slew, true}, End{arm5e_joint::shoulder, false},
+                                         End{arm5e_joint::shoulder, true}, End{arm5e_joint::elbow, false}, End{arm5e_joint::elbow, true}),
                          name_of);
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "firmware/mission/workbench.hpp"
 #include "tests/arm5e.hpp"
+#include "tests/arm5e_joints.hpp"
 
 namespace lf::mission {
 namespace {
@@ -12,7 +13,7 @@ namespace {
 safety::Limits limits_of(double torque_nm) {
   safety::Limits limits;
   limits.max_contact_torque_nm = 25;
-  for (auto& joint : limits.joints) joint.max_torque_nm = torque_nm;
+  arm5e_joint::fill(limits.joints, safety::JointLimit{0, 0, 0, torque_nm});
   return limits;
 }
 
@@ -149,7 +150,7 @@ TEST(HasSeized, IsAMotorThatStandsWhileItsTorqueRises) {
     if (rad_s == 0.3) {
       const arm::GuardedMotion slow = met(rad_s, 0, 50);
       ASSERT_EQ(slow.cause(), arm::GuardCause::following_error);
-      ASSERT_FALSE(lags_without_load(slow));
+      ASSERT_FALSE(lags_without_load(test::arm5e, slow));
       EXPECT_TRUE(does_not_follow(test::arm5e, slow));
     }
     for (const double stiffness_nm_rad : {1500.0, 4000.0})

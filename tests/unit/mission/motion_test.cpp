@@ -7,6 +7,7 @@
 
 #include "firmware/arm/inverse_kinematics.hpp"
 #include "tests/arm5e.hpp"
+#include "tests/arm5e_joints.hpp"
 
 namespace lf::mission {
 namespace {
@@ -16,7 +17,8 @@ constexpr double period_s = 0.004;
 safety::Limits limits() {
   safety::Limits limits;
   const arm::JointLimits urdf = test::arm5e.limits();
-  for (std::size_t i = 0; i < arm_joint_count; ++i) {
+  arm5e_joint::fill(limits.joints, safety::JointLimit{});
+  for (std::size_t i = 0; i < arm5e_joint::of_arm; ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     limits.joints[i] = {urdf.lower_rad[k] + 0.02, urdf.upper_rad[k] - 0.02, 0.8 * urdf.velocity_rad_s[k], 50};
   }
@@ -24,7 +26,7 @@ safety::Limits limits() {
   return limits;
 }
 
-const arm::JointVector park{0, 0.6, 1.9, 0};
+const arm::JointVector park = arm::planar_joints(0, 0.6, 1.9, 0);
 
 const PanelLayout docked;
 const arm::VehicleShape no_vehicle;
@@ -104,7 +106,7 @@ TEST(Motion, RandomWaysArriveExactlyAndKeepTheSpeedLimits) {
 
 TEST(Motion, RefusesGoalsOutsideTheSafetyLimitsAndStaysWhereItIs) {
   Motion motion = at_park();
-  motion.go(std::array{arm::JointVector(0, 0.005, 1.9, 0)}, 0.6);  // inside the URDF's, outside the mission's
+  motion.go(std::array{arm::planar_joints(0, 0.005, 1.9, 0)}, 0.6);  // inside the URDF's, outside the mission's
   EXPECT_EQ(motion.failure(), StepFailure::unreachable);
   EXPECT_TRUE(motion.done());
   EXPECT_EQ(motion.target(), park);
@@ -137,12 +139,12 @@ TEST(Motion, ALineStaysOnTheLine) {
 
 TEST(Motion, AStopEndsAtRestWithoutAJump) {
   Motion motion = at_park();
-  motion.go(std::array{arm::JointVector(0.3, 1.2, 1.0, 1.0)}, 1.0);
+  motion.go(std::array{arm::planar_joints(0.3, 1.2, 1.0, 1.0)}, 1.0);
   for (int i = 0; i < 300; ++i) motion.step(period_s);
   ASSERT_FALSE(motion.done());
   motion.stop();
   EXPECT_LE(run(motion), 1.001);
-  EXPECT_GT((motion.target() - arm::JointVector(0.3, 1.2, 1.0, 1.0)).norm(), 0.1);  // it did stop on the way
+  EXPECT_GT((motion.target() - arm::planar_joints(0.3, 1.2, 1.0, 1.0)).norm(), 0.1);  // it did stop on the way
 }
 
 TEST(Motion, TheSweepIsStrictlyAtConstantSpeedBetweenRunUpAndRunOut) {
@@ -161,7 +163,7 @@ TEST(Motion, TheSweepIsStrictlyAtConstantSpeedBetweenRunUpAndRunOut) {
     motion.step(period_s);
     if (!before || !motion.cruising()) continue;
     ++cruising;
-    for (std::size_t i = 0; i < arm_joint_count; ++i) {
+    for (std::size_t i = 0; i < arm5e_joint::of_arm; ++i) {
       EXPECT_NEAR((motion.target() - q)[static_cast<Eigen::Index>(i)] / period_s, plan.speed_rad_s[i], 1e-6);
     }
   }
@@ -222,7 +224,7 @@ double nearest_m(Motion& motion, const Room& room) {
   return nearest;
 }
 
-const arm::JointVector behind_board{-0.3, 0.2, 1.1, 0}, past_board{0.1, 1.5, 1.9, 0};
+const arm::JointVector behind_board = arm::planar_joints(-0.3, 0.2, 1.1, 0), past_board = arm::planar_joints(0.1, 1.5, 1.9, 0);
 
 double straight_s() {
   Motion motion = at_park(board());
@@ -264,7 +266,7 @@ TEST(MotionPastThePanel, LeadsByTheParkPositionWhereTheStraightWayIsBarred) {
 
 // From the park position all would be clear, but the way there is barred.
 TEST(MotionPastThePanel, LooksAtTheWayToTheParkPositionToo) {
-  const arm::JointVector from{-0.5, 0.9, 2.0, 0}, to{0.3, 1.2, 0.5, 0};
+  const arm::JointVector from = arm::planar_joints(-0.5, 0.9, 2.0, 0), to = arm::planar_joints(0.3, 1.2, 0.5, 0);
   const Room room = board_at(0.15, 0.05, 0.40);
   Motion from_park = at_park(board());
   from_park.go_clear(to, room, 0, 0.6);
@@ -281,7 +283,7 @@ TEST(MotionPastThePanel, LooksAtTheWayToTheParkPositionToo) {
 
 TEST(MotionPastThePanel, MayLeaveFromNearerThanItWouldGo) {
   Motion motion = at_park(board());
-  const arm::JointVector near{0, 1.2, 1.2, 0};
+  const arm::JointVector near = arm::planar_joints(0, 1.2, 1.2, 0);
   motion.start_at(near);
   Room room = board_at(0.5, 0, 0.55);
   const arm::PanelShape panel(board());
@@ -291,13 +293,13 @@ TEST(MotionPastThePanel, MayLeaveFromNearerThanItWouldGo) {
   motion.go_clear(park, room, 0, 0.6);
   EXPECT_TRUE(planned(motion));
   motion.stop();
-  motion.go_clear({0, 1.25, 1.1, 0}, room, 0, 0.6);
+  motion.go_clear(arm::planar_joints(0, 1.25, 1.1, 0), room, 0, 0.6);
   EXPECT_FALSE(planned(motion)) << "on into the board";
 }
 
 TEST(Motion, HeldOnItsWayComesToRestThereAndGoesOnToTheSameEnd) {
   Motion motion = at_park();
-  const arm::JointVector goal = park + arm::JointVector(0.3, 0.2, -0.2, 0.1);
+  const arm::JointVector goal = park + arm::planar_joints(0.3, 0.2, -0.2, 0.1);
   motion.go(std::array{goal}, 0.5);
   while (motion.elapsed_s() < 0.3 * motion.duration_s()) motion.step(period_s);
   motion.hold();
@@ -313,7 +315,7 @@ TEST(Motion, HeldOnItsWayComesToRestThereAndGoesOnToTheSameEnd) {
 
 TEST(Motion, HeldWhileItIsPlannedDoesNotSetOut) {
   Motion motion = at_park();
-  const arm::JointVector goal = park + arm::JointVector(0.1, 0.1, -0.1, 0);
+  const arm::JointVector goal = park + arm::planar_joints(0.1, 0.1, -0.1, 0);
   motion.go_clear(goal, far_away(), 0, 0.5);
   ASSERT_TRUE(motion.planning());
   motion.hold();

@@ -23,12 +23,11 @@ class TwoValves : public testing::Test {
     right.at_m = Vec2(0.25, -0.15);
     right.handle_length_m = 0.14;
     layout_.valves = decltype(layout_.valves)(left, right);
+    const PanelLayout::Marker& marker = layout_.markers[0];
+    markers_ = MarkerCalibrations(MarkerCalibration{marker.id, marker.size_m, marker.panel_from_tag()});
   }
 
-  PanelMap map() const {
-    const PanelLayout::Marker& marker = layout_.markers[0];
-    return {layout_, MarkerCalibrations(MarkerCalibration{marker.id, marker.size_m, marker.panel_from_tag()}), camera_};
-  }
+  PanelMap map() const { return {layout_, markers_, camera_}; }
 
   // A look without error at handles that stand so; none: that handle's points are missing.
   PanelResult seen(std::optional<double> first_deg, std::optional<double> second_deg) const {
@@ -76,6 +75,7 @@ class TwoValves : public testing::Test {
   }
 
   PanelLayout layout_;
+  MarkerCalibrations markers_;
   CameraCalibration camera_ = test::nominal_camera();
 };
 

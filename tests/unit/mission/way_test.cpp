@@ -8,6 +8,8 @@
 #include "hal/config/machine.hpp"
 #include "shared/scene/panel_scene.hpp"
 #include "tests/arm5e.hpp"
+#include "tests/arm5e_bodies.hpp"
+#include "tests/arm5e_joints.hpp"
 #include "tests/unit/arm/solid_arm.hpp"
 
 namespace lf::mission {
@@ -15,7 +17,7 @@ namespace {
 
 constexpr double period_s = 0.004;
 constexpr unsigned seed = 20261122;
-const arm::JointVector park{0, 0.6, 1.9, 0};
+const arm::JointVector park = arm::planar_joints(0, 0.6, 1.9, 0);
 
 const ArmDescription& described_arm() {
   static const ArmDescription arm = load_arm_urdf(LANTERNFISH_SOURCE_DIR "/shared/arm/arm5e.urdf");
@@ -31,7 +33,8 @@ arm::VehicleShape default_vehicle() {
 safety::Limits limits() {
   safety::Limits limits;
   const arm::JointLimits urdf = test::arm5e.limits();
-  for (std::size_t i = 0; i < arm_joint_count; ++i) {
+  arm5e_joint::fill(limits.joints, safety::JointLimit{});
+  for (std::size_t i = 0; i < arm5e_joint::of_arm; ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     limits.joints[i] = {urdf.lower_rad[k], urdf.upper_rad[k], urdf.velocity_rad_s[k], 50};
   }
@@ -44,8 +47,9 @@ class Draws {
   double either(double most) { return uniform(0, 1) < 0.7 ? (uniform(0, 1) < 0.5 ? most : -most) : uniform(-most, most); }
   arm::JointVector joints() {
     const arm::JointLimits l = test::arm5e.limits(0.01);
-    return {uniform(l.lower_rad[0], l.upper_rad[0]), uniform(l.lower_rad[1], l.upper_rad[1]), uniform(l.lower_rad[2], l.upper_rad[2]),
-            uniform(l.lower_rad[3], l.upper_rad[3])};
+    arm::JointVector q = arm::JointVector::Zero();
+    for (Eigen::Index i = 0; i < 4; ++i) q[i] = uniform(l.lower_rad[i], l.upper_rad[i]);
+    return q;
   }
   Pose off(const Pose& believed, const arm::PanelDoubt& doubt) {
     Pose real = believed;
@@ -185,7 +189,7 @@ TEST(RandomLines, ToTheHandleAndTheButtonsKeepAllButTheFingersClear) {
 TEST(AWay, IsThatOfTheJawAtItsWidest) {
   const PanelLayout layout;
   arm::VehicleShape post;
-  const arm::JointVector from{-0.25, 1.0, 1.2, 0}, to{0.25, 1.0, 1.2, 0};
+  const arm::JointVector from = arm::planar_joints(-0.25, 1.0, 1.2, 0), to = arm::planar_joints(0.25, 1.0, 1.2, 0);
   const double open_rad = arm::jaw_from_gap(test::jaw5e, 0.0606);
   // Beside the fingers where the way begins, 20 mm off the closed ones: nearer than their opening.
   const arm::LinkCapsules closed = test::arm5e.link_capsules(from, 0);
@@ -245,17 +249,17 @@ TEST(AJog, ThatIsBarredMovesNothingAndSaysByWhat) {
   const PanelLayout layout;
   const arm::VehicleShape vehicle = default_vehicle();
   Motion motion(test::arm5e, limits(), layout, vehicle, park);
-  const arm::JointVector near_panel{0, 1.307, 1.0, 0};
+  const arm::JointVector near_panel = arm::planar_joints(0, 1.307, 1.0, 0);
   Room room;
   room.base_from_panel = layout.nominal_base_from_panel();
   room.doubt = {0.020, 0.0349};
   motion.start_at(near_panel);
-  motion.jog(near_panel + arm::JointVector(0, 0, 0.3, 0), room, 0, 0.25);
+  motion.jog(near_panel + arm::planar_joints(0, 0, 0.3, 0), room, 0, 0.25);
   ASSERT_TRUE(motion.planning());
   while (motion.planning()) motion.step(period_s);
   EXPECT_EQ(motion.failure(), StepFailure::panel_in_the_way);
   EXPECT_EQ(motion.target(), near_panel);
-  motion.jog(near_panel + arm::JointVector(0, -0.3, 0, 0), room, 0, 0.25);
+  motion.jog(near_panel + arm::planar_joints(0, -0.3, 0, 0), room, 0, 0.25);
   while (motion.planning()) motion.step(period_s);
   EXPECT_EQ(motion.failure(), StepFailure::none) << "away from it";
 }
@@ -266,7 +270,7 @@ TEST(TheDefaultVehicle, CoversTheSimulatorsWhereTheArmCouldBe) {
   const arm::VehicleShape vehicle = default_vehicle();
   const scene::Scene scene = scene::make_scene(described_arm(), PanelLayout{});
   int points = 0;
-  for (const scene::Shape& shape : scene[static_cast<std::size_t>(scene::BodyId::vehicle)].shapes) {
+  for (const scene::Shape& shape : scene[arm5e_body::vehicle].shapes) {
     ASSERT_NE(shape.kind, scene::ShapeKind::mesh);
     const bool box = shape.kind == scene::ShapeKind::box;
     const double radius = shape.size_m.x(), caps = shape.kind == scene::ShapeKind::capsule ? radius : 0;

@@ -6,6 +6,8 @@
 #include "host_sim/optics/optics.hpp"
 #include "shared/arm/arm_description.hpp"
 #include "shared/scene/panel_scene.hpp"
+#include "tests/arm5e_bodies.hpp"
+#include "tests/arm5e_joints.hpp"
 #include "tests/unit/optics/optics_scenes.hpp"
 
 namespace lf::optics::test {
@@ -14,20 +16,20 @@ struct MissionScene {
   MissionScene() : arm(load_arm_urdf(LANTERNFISH_SOURCE_DIR "/shared/arm/arm5e.urdf")), scene(scene::make_scene(arm, layout)) {}
 
   // Joint angles (slew, shoulder, elbow, roll, jaw), the handle's angle, how far the left button is pressed.
-  scene::BodyPoses poses(const std::array<double, joint_count>& q, double handle_rad, double pressed_m) const {
+  scene::BodyPoses poses(const PerJoint<double>& q, double handle_rad, double pressed_m) const {
     const auto turned = [](const ArmJoint& joint, double angle_rad) -> Pose {
       return joint.parent_from_joint * Eigen::AngleAxisd(angle_rad, joint.axis);
     };
     scene::BodyPoses poses = resting();
-    for (std::size_t i = 0; i < joint_count; ++i) poses[i + 1] = poses[i] * turned(arm.joints[i], q[i]);
-    poses[std::size_t(scene::BodyId::finger_b)] = poses[std::size_t(scene::BodyId::wrist)] * turned(arm.finger_b, q[4]);
+    for (std::size_t i = 0; i < arm5e_joint::count; ++i) poses[i + 1] = poses[i] * turned(arm.joints[i], q[i]);
+    poses[arm5e_body::finger_b] = poses[arm5e_body::wrist] * turned(arm.finger_b, q[4]);
     const Pose panel = layout.nominal_base_from_panel();
-    poses[std::size_t(scene::BodyId::panel)] = panel;
-    poses[scene::first_feature] = panel * Eigen::AngleAxisd(handle_rad, Vec3::UnitZ());
+    poses[arm5e_body::panel] = panel;
+    poses[arm5e_body::first_feature] = panel * Eigen::AngleAxisd(handle_rad, Vec3::UnitZ());
     for (std::size_t i = 0; i < layout.buttons.size(); ++i) {
       const double z = i == 0 ? -pressed_m : 0.0;
       const Vec2& at_m = layout.buttons[i].at_m;
-      poses[scene::first_feature + 1 + i] = panel * Eigen::Translation3d(at_m.x(), at_m.y(), z);
+      poses[arm5e_body::first_feature + 1 + i] = panel * Eigen::Translation3d(at_m.x(), at_m.y(), z);
     }
     return poses;
   }

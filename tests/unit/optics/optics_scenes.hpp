@@ -6,6 +6,7 @@
 
 #include "host_sim/optics/optics.hpp"
 #include "host_sim/optics/shader.hpp"
+#include "tests/arm5e_bodies.hpp"
 
 namespace lf::optics::test {
 
@@ -46,7 +47,7 @@ inline scene::Body& body(scene::Scene& scene, scene::BodyId id) { return scene[s
 // A plate facing the camera: its near face at x = distance.
 inline scene::Scene plate_scene(double distance_m, float albedo = 0.5f) {
   scene::Scene scene = scene::bare_scene();
-  body(scene, scene::BodyId::panel).shapes.push_back(make_shape(scene::ShapeKind::box, {0.02, 2, 2}, {distance_m + 0.01, 0, 0}, albedo));
+  body(scene, arm5e_body::panel).shapes.push_back(make_shape(scene::ShapeKind::box, {0.02, 2, 2}, {distance_m + 0.01, 0, 0}, albedo));
   return scene;
 }
 
@@ -70,7 +71,7 @@ inline CameraConfig quiet_camera() {
 
 inline LaserConfig vehicle_laser(const Pose& base_from_laser) {
   LaserConfig laser;
-  laser.body = scene::BodyId::vehicle;
+  laser.body = arm5e_body::vehicle;
   laser.body_from_laser = base_from_laser;
   laser.speckle = 0;
   return laser;

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "shared/input_error.hpp"
+#include "tests/arm5e_bodies.hpp"
 #include "tests/unit/optics/optics_scenes.hpp"
 
 namespace lf::optics::test {
@@ -33,7 +34,7 @@ TEST(OpticsConfig, EveryNonsenseIsRefused) {
       [nan](OpticsConfig& c) { c.cameras[0].port = FlatPort{.distance_m = nan}; },
       [](OpticsConfig& c) { c.lasers[0].fan_half_angle_rad = 2; },
       [nan](OpticsConfig& c) { c.lasers[0].power_w = nan; },
-      [](OpticsConfig& c) { c.lasers[0].body = static_cast<scene::BodyId>(99); },
+      [](OpticsConfig& c) { c.lasers[0].body = 99; },
       [](OpticsConfig& c) {
         c.lasers[0].pattern = Pattern{.width = 4, .height = 4, .fx = 1, .fy = 1, .lit = {1, 2}};
       },
@@ -41,8 +42,8 @@ TEST(OpticsConfig, EveryNonsenseIsRefused) {
       [](OpticsConfig& c) { c.water.attenuation_per_m = -0.1; },
       [](OpticsConfig& c) { c.water.asymmetry = 1; },
       [](OpticsConfig& c) { c.threads = 0; },
-      [](OpticsConfig& c) { body(c.scene, scene::BodyId::panel).shapes[0].albedo[1] = 1.5f; },
-      [](OpticsConfig& c) { body(c.scene, scene::BodyId::panel).shapes[0].marker_id = 5; },
+      [](OpticsConfig& c) { body(c.scene, arm5e_body::panel).shapes[0].albedo[1] = 1.5f; },
+      [](OpticsConfig& c) { body(c.scene, arm5e_body::panel).shapes[0].marker_id = 5; },
   };
   EXPECT_NO_THROW(Optics{good()});
   for (std::size_t i = 0; i < nonsense.size(); ++i) {

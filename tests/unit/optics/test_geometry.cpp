@@ -4,6 +4,7 @@
 
 #include "host_sim/optics/tessellation.hpp"
 #include "shared/input_error.hpp"
+#include "tests/arm5e_bodies.hpp"
 #include "tests/unit/optics/optics_scenes.hpp"
 
 namespace lf::optics::test {
@@ -30,7 +31,7 @@ Vec3 direction(int u, int v) {
 
 TEST(Geometry, DepthOfATiltedPlateIsThatOfItsPlane) {
   scene::BodyPoses poses = resting();
-  Pose& panel = poses[static_cast<std::size_t>(scene::BodyId::panel)];
+  Pose& panel = poses[arm5e_body::panel];
   panel.linear() = (Eigen::AngleAxisd(0.4, Vec3::UnitZ()) * Eigen::AngleAxisd(-0.2, Vec3::UnitY())).toRotationMatrix();
   panel.translation() = Vec3(0.05, -0.02, 0.03);
   const Frame frame = truth_of(plate_scene(0.8), poses);
@@ -39,14 +40,14 @@ TEST(Geometry, DepthOfATiltedPlateIsThatOfItsPlane) {
     for (int u = 240; u < 400; u += 11) {
       const double expected = normal.dot(on_plane) / normal.dot(direction(u, v));
       EXPECT_NEAR(frame.depth_m[static_cast<std::size_t>(v * 640 + u)], expected, 1e-6) << u << " " << v;
-      EXPECT_EQ(frame.object[static_cast<std::size_t>(v * 640 + u)], 1 + static_cast<int>(scene::BodyId::panel));
+      EXPECT_EQ(frame.object[static_cast<std::size_t>(v * 640 + u)], 1 + int(arm5e_body::panel));
     }
   }
 }
 
 TEST(Geometry, DepthOfACylinderIsThatOfItsQuadricWithin60Micrometres) {
   scene::Scene scene = scene::bare_scene();
-  scene[scene::first_feature].shapes.push_back(make_shape(scene::ShapeKind::cylinder, {0.03, 0, 0.4}, {0.6, 0, 0}));
+  scene[arm5e_body::first_feature].shapes.push_back(make_shape(scene::ShapeKind::cylinder, {0.03, 0, 0.4}, {0.6, 0, 0}));
   const Frame frame = truth_of(scene, resting());
   int hits = 0;
   for (int v = 150; v < 330; v += 10) {
@@ -86,7 +87,7 @@ TEST(Geometry, AMeshIsDrawnWhereItsTrianglesAre) {
   scene::Shape mesh = make_shape(scene::ShapeKind::mesh, Vec3::Zero(), {0.5, 0, 0});
   mesh.vertices_m = {{0, -0.1, -0.1}, {0, 0.1, -0.1}, {0, 0, 0.1}};
   mesh.triangles = {{0, 1, 2}};
-  scene[scene::first_feature].shapes.push_back(mesh);
+  scene[arm5e_body::first_feature].shapes.push_back(mesh);
   const Frame frame = truth_of(scene, resting());
   EXPECT_NEAR(frame.depth_m[240 * 640 + 320], 0.5, 1e-6);
   EXPECT_EQ(frame.depth_m[400 * 640 + 100], std::numeric_limits<float>::infinity());

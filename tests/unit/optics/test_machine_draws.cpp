@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "tests/arm5e_bodies.hpp"
 #include "tests/unit/optics/optics_scenes.hpp"
 
 namespace lf::optics::test {
@@ -31,8 +32,8 @@ TEST(ForwardScatter, ThePictureHasTheMixtureOfItsWater) {
     config.water.ambient_w_m2 = {0, 16, 0};
     config.water.attenuation_per_m = 1.2;
     config.water.forward = config.water.forward.varied(ratio);
-    body(config.scene, scene::BodyId::panel).shapes.push_back(make_shape(scene::ShapeKind::box, {0.02, 4, 8}, {0.71, 2, 0}, 0.8f));
-    body(config.scene, scene::BodyId::panel).shapes.push_back(make_shape(scene::ShapeKind::box, {0.02, 4, 8}, {0.71, -2, 0}, 0.0f));
+    body(config.scene, arm5e_body::panel).shapes.push_back(make_shape(scene::ShapeKind::box, {0.02, 4, 8}, {0.71, 2, 0}, 0.8f));
+    body(config.scene, arm5e_body::panel).shapes.push_back(make_shape(scene::ShapeKind::box, {0.02, 4, 8}, {0.71, -2, 0}, 0.0f));
     Optics optics(config);
     Shot shot;
     shot.poses = resting();

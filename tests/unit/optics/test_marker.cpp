@@ -4,6 +4,7 @@
 
 #include "shared/input_error.hpp"
 #include "shared/panel/panel_layout.hpp"
+#include "tests/arm5e_bodies.hpp"
 #include "tests/unit/optics/optics_scenes.hpp"
 
 namespace lf::optics::test {
@@ -47,7 +48,7 @@ struct Layout {
     scene::Shape marker = make_shape(scene::ShapeKind::box, {0.1, 0.1, 0.002}, {tag().centre_m.x(), tag().centre_m.y(), 0.001}, 0.85f);
     marker.marker_id = tag().id;
     marker.marker_size_m = tag().size_m;
-    body(config.scene, scene::BodyId::panel).shapes = {plate, marker};
+    body(config.scene, arm5e_body::panel).shapes = {plate, marker};
     LampConfig lamp;
     lamp.body_from_lamp = looking({0.0, 0.30, 0.03}, {0.70, -0.25, 0.66});
     config.lamps.push_back(lamp);
@@ -57,7 +58,7 @@ struct Layout {
     Optics optics(config);
     Shot shot;
     shot.poses = resting();
-    shot.poses[static_cast<std::size_t>(scene::BodyId::panel)] = panel.nominal_base_from_panel();
+    shot.poses[arm5e_body::panel] = panel.nominal_base_from_panel();
     shot.laser = false;
     shot.lamps = lamps;
     Frame frame;

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "tests/arm5e_bodies.hpp"
 #include "tests/unit/optics/optics_scenes.hpp"
 
 namespace lf::optics::test {
@@ -22,7 +23,7 @@ struct MarkedPlate {
     plate.body_from_shape.translation() = Vec3(0.71, 0, 0);
     plate.marker_id = 5;
     plate.marker_size_m = 0.075;
-    body(config.scene, scene::BodyId::panel).shapes.push_back(plate);
+    body(config.scene, arm5e_body::panel).shapes.push_back(plate);
     config.water = dark_clear_water();
     config.water.ambient_w_m2 = {9, 9, 9};
   }

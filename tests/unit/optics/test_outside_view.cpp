@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "host_sim/optics/outside_view.hpp"
+#include "tests/arm5e_bodies.hpp"
 #include "tests/unit/optics/mission_scene.hpp"
 
 namespace lf::optics::test {
@@ -33,7 +34,7 @@ TEST(OutsideView, ShowsEachLampThatItsCameraCanSee) {
     const std::size_t at = static_cast<std::size_t>(v) * static_cast<std::size_t>(k.width) + static_cast<std::size_t>(u);
     if (frame.depth_m[at] < window.z() - 0.06) continue;  // something is before it
     ++shown;
-    EXPECT_EQ(frame.object[at], 1 + static_cast<int>(scene::BodyId::vehicle)) << u << ", " << v;
+    EXPECT_EQ(frame.object[at], 1 + int(arm5e_body::vehicle)) << u << ", " << v;
     EXPECT_NEAR(frame.depth_m[at], window.z(), 0.06);
   }
   EXPECT_GE(shown, 1);

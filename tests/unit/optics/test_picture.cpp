@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "tests/arm5e_bodies.hpp"
 #include "tests/unit/optics/optics_scenes.hpp"
 
 namespace lf::optics::test {
@@ -45,7 +46,7 @@ struct FieldScene {
   FieldScene() {
     config.cameras.push_back(noisy_camera());
     config.scene = plate_scene(0.7);
-    body(config.scene, scene::BodyId::panel).shapes[0].size_m = {0.02, 8, 8};
+    body(config.scene, arm5e_body::panel).shapes[0].size_m = {0.02, 8, 8};
     config.water = dark_clear_water();
     config.water.ambient_w_m2 = {0, 16, 0};  // the other bands fade faster
   }
@@ -153,8 +154,8 @@ TEST(Picture, DarkPaintNearBrightTakesItsLight) {
     config.water = dark_clear_water();
     config.water.ambient_w_m2 = {0, 16, 0};  // the other bands fade faster
     config.water.attenuation_per_m = attenuation;
-    body(config.scene, scene::BodyId::panel).shapes.push_back(make_shape(scene::ShapeKind::box, {0.02, 4, 8}, {0.71, 2, 0}, 0.8f));
-    body(config.scene, scene::BodyId::panel).shapes.push_back(make_shape(scene::ShapeKind::box, {0.02, 4, 8}, {0.71, -2, 0}, 0.0f));
+    body(config.scene, arm5e_body::panel).shapes.push_back(make_shape(scene::ShapeKind::box, {0.02, 4, 8}, {0.71, 2, 0}, 0.8f));
+    body(config.scene, arm5e_body::panel).shapes.push_back(make_shape(scene::ShapeKind::box, {0.02, 4, 8}, {0.71, -2, 0}, 0.0f));
     Optics optics(config);
     const std::vector<double> mean = mean_of(optics, still_shot());
     return std::pair(column_mean(mean, 310), column_mean(mean, 500));
@@ -178,7 +179,7 @@ TEST(Picture, StrayLightIsItsShareBesideABrightField) {
   config.cameras[0].stray_px = 6;
   config.water = dark_clear_water();
   config.water.ambient_w_m2 = {0, 16, 0};  // the other bands fade faster
-  body(config.scene, scene::BodyId::panel).shapes.push_back(make_shape(scene::ShapeKind::box, {0.02, 4, 8}, {0.71, 2, 0}, 0.8f));
+  body(config.scene, arm5e_body::panel).shapes.push_back(make_shape(scene::ShapeKind::box, {0.02, 4, 8}, {0.71, 2, 0}, 0.8f));
   Optics optics(config);
   const std::vector<double> mean = mean_of(optics, still_shot());
   const double bright = column_mean(mean, 500);
@@ -219,7 +220,7 @@ TEST(Picture, GlowEndsWhereTheSheetMeetsSomething) {
   // A wall that stops the sheet halfway: beyond it no water is lit.
   const auto lit_water = [](bool wall) {
     scene::Scene bodies = scene::bare_scene();
-    if (wall) body(bodies, scene::BodyId::panel).shapes.push_back(make_shape(scene::ShapeKind::box, {0.3, 0.3, 0.01}, {0.6, 0, 0.2}));
+    if (wall) body(bodies, arm5e_body::panel).shapes.push_back(make_shape(scene::ShapeKind::box, {0.3, 0.3, 0.01}, {0.6, 0, 0.2}));
     WaterConfig water;
     water.attenuation_per_m = 1;
     water.ambient_w_m2 = water.water_w_m2_sr = {0, 0, 0};

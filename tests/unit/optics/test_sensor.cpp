@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "host_sim/optics/sensor.hpp"
+#include "tests/arm5e_bodies.hpp"
 #include "tests/unit/optics/optics_scenes.hpp"
 
 namespace lf::optics::test {
@@ -175,7 +176,7 @@ OpticsConfig busy_config(int threads) {
   config.cameras.push_back(CameraConfig{});
   config.cameras[0].base_from_camera = looking(Vec3::Zero(), Vec3::UnitX());
   config.scene = plate_scene(0.7);
-  config.scene[scene::first_feature].shapes.push_back(make_shape(scene::ShapeKind::cylinder, {0.03, 0, 0.3}, {0.55, 0.05, 0}));
+  config.scene[arm5e_body::first_feature].shapes.push_back(make_shape(scene::ShapeKind::cylinder, {0.03, 0, 0.3}, {0.55, 0.05, 0}));
   config.lasers.push_back(vehicle_laser(sheet({0, 0.2, 0.4}, Vec3(0.7, -0.2, -0.4), Vec3::UnitY())));
   config.lamps.push_back(LampConfig{});
   config.lamps[0].body_from_lamp = looking({0, 0.3, 0}, {1, -0.4, 0});

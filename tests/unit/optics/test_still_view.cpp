@@ -6,6 +6,7 @@
 
 #include "host_sim/optics/still_view.hpp"
 #include "shared/input_error.hpp"
+#include "tests/arm5e_bodies.hpp"
 #include "tests/unit/optics/mission_scene.hpp"
 
 namespace lf::optics::test {
@@ -53,8 +54,8 @@ void compare_with_fresh(OpticsConfig config, std::uint32_t seed, int frames) {
       if (i == 0 || touched || !yields(config.scene[body])) undrifted[body] = now[body];
     }
     shot.poses = undrifted;
-    if (i % 7 == 5) drift[std::size_t(scene::BodyId::panel)] = Eigen::Translation3d(1e-9 * i, 0, 0) * Pose::Identity();
-    if (i % 11 == 9) drift[std::size_t(scene::BodyId::vehicle)] = Eigen::Translation3d(0, 1e-3 * i, 0) * Pose::Identity();
+    if (i % 7 == 5) drift[arm5e_body::panel] = Eigen::Translation3d(1e-9 * i, 0, 0) * Pose::Identity();
+    if (i % 11 == 9) drift[arm5e_body::vehicle] = Eigen::Translation3d(0, 1e-3 * i, 0) * Pose::Identity();
     for (std::size_t body = 0; body < config.scene.size(); ++body) shot.poses[body] = drift[body] * shot.poses[body];
     shot.laser = random() % 3 != 0 ? 1.f : 0.f;
     shot.lamps = random() % 3 == 0 ? (random() % 2 == 0 ? 1.f : 0.4f) : 0.f;
@@ -75,7 +76,7 @@ TEST(StillView, KeptOrMadeAnewGivesTheSameBytesInColourThroughAPort) {
   config.cameras[0].colour = true;
   config.cameras[0].port.emplace();
   config.cameras[0].intrinsics.width = 313;  // not a whole number of packets
-  config.lamps[0].body = scene::BodyId::wrist;
+  config.lamps[0].body = arm5e_body::wrist;
   compare_with_fresh(config, 12, 12);
 }
 

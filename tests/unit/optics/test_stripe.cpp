@@ -2,6 +2,7 @@
 
 #include <random>
 
+#include "tests/arm5e_bodies.hpp"
 #include "tests/unit/optics/optics_scenes.hpp"
 
 namespace lf::optics::test {
@@ -42,7 +43,7 @@ TEST(Stripe, CentroidOnAFlatSurfaceIsTheProjectedLineWithin1e4OfAPixel) {
   int count = 0;
   for (int trial = 0; trial < 12; ++trial) {
     scene::BodyPoses poses = resting();
-    Pose& panel = poses[static_cast<std::size_t>(scene::BodyId::panel)];
+    Pose& panel = poses[arm5e_body::panel];
     panel.linear() =
         (Eigen::AngleAxisd(0.4 * unit(random), Vec3::UnitZ()) * Eigen::AngleAxisd(0.4 * unit(random), Vec3::UnitY())).toRotationMatrix();
     const Vec3 toward(0.7, 0.05 * unit(random), 0.1 * unit(random)), from(0.05, 0, 0.40);
@@ -68,7 +69,7 @@ struct StripeScene {
     config.scene = plate_scene(0.7);
     config.water = dark_clear_water();
     // A post before the plate: the stripe climbs it and its shadow cuts the stripe.
-    config.scene[scene::first_feature].shapes.push_back(make_shape(scene::ShapeKind::box, {0.04, 0.04, 0.6}, {0.58, 0.0, 0.0}));
+    config.scene[arm5e_body::first_feature].shapes.push_back(make_shape(scene::ShapeKind::box, {0.04, 0.04, 0.6}, {0.58, 0.0, 0.0}));
     base_from_laser = sheet({0.0, 0.0, 0.40}, Vec3(0.7, 0, -0.35), Vec3::UnitY());
     config.lasers.push_back(vehicle_laser(base_from_laser));
   }

@@ -8,6 +8,7 @@
 #include <set>
 #include <vector>
 
+#include "tests/arm5e_bodies.hpp"
 #include "tests/unit/optics/optics_scenes.hpp"
 
 namespace lf::optics::test {
@@ -19,7 +20,7 @@ constexpr double distance_m = 0.7;
 struct Labelled {
   Labelled(double end_m, const Vec3& toward) {
     config.cameras.push_back(quiet_camera());
-    body(config.scene, scene::BodyId::panel)
+    body(config.scene, arm5e_body::panel)
         .shapes.push_back(make_shape(scene::ShapeKind::box, {0.02, 2, 2}, {distance_m + 0.01, 0, end_m - 1}, 0.5f));
     config.water = dark_clear_water();
     laser = sheet(from, toward - from, Vec3::UnitY());
@@ -177,7 +178,7 @@ TEST(StripeLabels, AFlankBesideAStripeOnAGrazedFaceIsAPart) {
   box.body_from_shape.linear().col(0) = along;
   box.body_from_shape.linear().col(1) = Vec3::UnitY();
   box.body_from_shape.linear().col(2) = outward;
-  body(s.config.scene, scene::BodyId::panel).shapes.push_back(box);
+  body(s.config.scene, arm5e_body::panel).shapes.push_back(box);
   s.config.lasers[0].power_w = 0.3;
   const CameraIntrinsics k;
   const double on_box_px = k.cy + k.fy * middle.z() / middle.x();
@@ -210,7 +211,7 @@ TEST(StripeLabels, APieceWithOtherPaintInReachIsNearAMark) {
   Labelled s(1.0, Vec3(distance_m, 0, 0.05));
   constexpr double thin_m = 1e-4, right_m = 0.30;
   const double row_m = distance_m / CameraIntrinsics().fy;
-  auto& shapes = body(s.config.scene, scene::BodyId::panel).shapes;
+  auto& shapes = body(s.config.scene, arm5e_body::panel).shapes;
   const auto paint = [&](double y_m, double z_m, double width_m, double height_m, float albedo) {
     shapes.push_back(make_shape(scene::ShapeKind::box, {thin_m, width_m, height_m}, {distance_m, y_m, z_m}, albedo));
   };
@@ -244,7 +245,7 @@ TEST(StripeLabels, WhereSomethingIsInTheSheetOnlyScatteredLightHasAPart) {
     Labelled s(1.0, Vec3(distance_m, 0, 0.05));
     s.config.water.attenuation_per_m = attenuation;
     const Vec3 way = Vec3(distance_m, 0, s.centre_m()) - s.from;
-    body(s.config.scene, scene::BodyId::forearm)
+    body(s.config.scene, arm5e_body::forearm)
         .shapes.push_back(make_shape(scene::ShapeKind::box, {0.01, 0.03, 0.01}, s.from + 0.85 * way, 0.0f));
     const Frame on = s.render(true), off = s.render(false);
     const CameraIntrinsics k;

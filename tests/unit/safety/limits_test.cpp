@@ -4,12 +4,14 @@
 
 #include <limits>
 
+#include "tests/arm5e_joints.hpp"
+
 namespace lf::safety {
 namespace {
 
 Limits good_limits() {
   Limits limits;
-  for (std::size_t i = 0; i < joint_count; ++i) limits.joints[i] = {-1.0 - static_cast<double>(i), 1.5, 0.5, 20};
+  for (std::size_t i = 0; i < arm5e_joint::count; ++i) EXPECT_TRUE(limits.joints.push_back({-1.0 - static_cast<double>(i), 1.5, 0.5, 20}));
   limits.workspace_min_m = {-0.5, -0.5, -0.5};
   limits.workspace_max_m = {0.5, 0.5, 1.0};
   limits.stale_position_s = 0.012;

@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
 
 #include "firmware/arm/actuator.hpp"
 #include "tests/arm5e.hpp"
+#include "tests/arm5e_joints.hpp"
 #include "tests/unit/canopen/scripted_node.hpp"
 
 namespace lf::safety {
@@ -25,20 +27,20 @@ class PowerTest : public testing::Test {
   }
   void enable_all() {
     power.switch_on();
-    for (std::size_t i = 0; i < joint_count; ++i) bus.network.axis(static_cast<Joint>(i)).request(canopen::AxisRequest::hold_enabled);
+    for (std::size_t i = 0; i < arm5e_joint::count; ++i) bus.network.axis(i).request(canopen::AxisRequest::hold_enabled);
     ASSERT_TRUE(bus.run_until([this] { return all_in(enabled); }, Duration::from_ms(500)));
   }
 
   bool all_in(std::uint8_t state) const {
-    for (std::size_t i = 0; i < joint_count; ++i) {
+    for (std::size_t i = 0; i < arm5e_joint::count; ++i) {
       if (bus.nodes[i].drive_state_bits() != state) return false;
     }
     return true;
   }
 
   void step() {
-    for (std::size_t i = 0; i < joint_count; ++i) {
-      joints.fresh[i] = bus.network.axis(static_cast<Joint>(i)).fresh(bus.now) && !taken_for_stale[i];
+    for (std::size_t i = 0; i < arm5e_joint::count; ++i) {
+      joints.fresh[i] = bus.network.axis(i).fresh(bus.now) && !taken_for_stale[i];
       joints.position_rad[i] += speed_rad_s[i] * 0.004;
       if (joints.fresh[i]) joints.velocity_rad_s[i] = speed_rad_s[i];
       joints.speed_known[i] = speeds_known;
@@ -67,15 +69,16 @@ class PowerTest : public testing::Test {
 
   static Limits limits() {
     Limits limits;
+    arm5e_joint::fill(limits.joints, JointLimit{});
     limits.stale_position_s = 0.012;
     return limits;
   }
 
   static canopen::NetworkConfig config() {
     canopen::NetworkConfig config = canopen::test::plain_config();
-    for (std::size_t i = 0; i < joint_count; ++i) {
+    for (std::size_t i = 0; i < arm5e_joint::count; ++i) {
       config.drives[i].quick_stop_counts_s2 =
-          static_cast<std::uint32_t>(deceleration_rad_s2 / std::abs(arm::rad_per_count(test::arm5e.joint(static_cast<Joint>(i)), 0)));
+          static_cast<std::uint32_t>(deceleration_rad_s2 / std::abs(arm::rad_per_count(test::arm5e.joint(i), 0)));
     }
     return config;
   }
@@ -85,8 +88,8 @@ class PowerTest : public testing::Test {
   Power power{test::arm5e};
   JointStates joints;
   bool speeds_known = true;
-  std::array<bool, joint_count> taken_for_stale{};  // by limits that are tighter than an axis'
-  std::array<double, joint_count> speed_rad_s{};
+  PerJoint<bool> taken_for_stale{};  // by limits that are tighter than an axis'
+  PerJoint<double> speed_rad_s{};
 };
 
 TEST_F(PowerTest, AStopTakesThePowerOfAnArmThatStands) {
@@ -201,7 +204,7 @@ TEST_F(PowerTest, ADriveThatLeavesOperationByItsDeadlineIsNotRestartedOnItsRamp)
 
 // The laser's order to go off is lost: stopped by NMT, the node switches its outputs off by itself (6206, 6207).
 TEST_F(PowerTest, OutputsThatStayOnAreStoppedByNmt) {
-  ScriptedNode& outputs = bus.nodes[canopen::Network::io_index];
+  ScriptedNode& outputs = bus.nodes[arm5e_joint::count];
   bus.network.io().set_outputs(can_map::output_laser);
   for (int i = 0; i < 6; ++i) step();
   ASSERT_EQ(outputs.outputs, can_map::output_laser);
@@ -212,7 +215,7 @@ TEST_F(PowerTest, OutputsThatStayOnAreStoppedByNmt) {
 }
 
 TEST_F(PowerTest, OutputsThatGoOffAreLeftInOperation) {
-  ScriptedNode& outputs = bus.nodes[canopen::Network::io_index];
+  ScriptedNode& outputs = bus.nodes[arm5e_joint::count];
   bus.network.io().set_outputs(can_map::output_laser);
   for (int i = 0; i < 6; ++i) step();
   bus.network.io().set_outputs(0);
@@ -237,7 +240,7 @@ TEST_F(PowerTest, WhatIsHeardAndMovesKeepsThePowerOfTheOthers) {
   for (int i = 0; i < 6; ++i) step();
   power.stop(bus.now, bus.network);
   for (int i = 0; i < 100; ++i) step();
-  for (std::size_t i = 0; i < joint_count; ++i) EXPECT_EQ(bus.nodes[i].drive_state_bits(), holding) << i;
+  for (std::size_t i = 0; i < arm5e_joint::count; ++i) EXPECT_EQ(bus.nodes[i].drive_state_bits(), holding) << i;
 }
 
 // As in a commissioning: where no speed is observed, nor where the drive homes by itself, it may be braking for as long as any.
@@ -308,7 +311,7 @@ TEST_F(PowerTest, AnotherMastersNmtOfLongAgoChangesNoStop) {
   for (int i = 0; i < 100; ++i) step();
   power.stop(bus.now, bus.network);
   EXPECT_LT(until([this] { return power.off(); }), 0.3);
-  for (std::size_t i = 0; i < joint_count; ++i) EXPECT_EQ(bus.nodes[i].nmt(), 5) << "no node was stopped";
+  for (std::size_t i = 0; i < arm5e_joint::count; ++i) EXPECT_EQ(bus.nodes[i].nmt(), 5) << "no node was stopped";
 }
 
 TEST_F(PowerTest, AMilderStopNeverTakesBackASeverer) {
@@ -344,7 +347,7 @@ TEST(PowerWithBrakes, TheOrderlyWayDownWaitsForTheSlowestBrake) {
     config.drives[2].profile.brake_closes = Duration::from_ms(c.closes_ms);
     canopen::test::Bus bus(config);
     ASSERT_TRUE(bus.boot());
-    canopen::Axis& elbow = bus.network.axis(Joint::elbow);
+    canopen::Axis& elbow = bus.network.axis(arm5e_joint::elbow);
     elbow.request(canopen::AxisRequest::hold_enabled);
     ASSERT_TRUE(bus.run_until([&] { return elbow.enabled(); }, Duration::from_ms(500)));
     Power power{test::arm5e};
@@ -373,7 +376,7 @@ TEST_F(PowerTest, AStopOnTheOrderlyWayDownIsObeyed) {
 TEST_F(PowerTest, OffIsSaidAgainToADriveThatComesOnByItself) {
   power.remove(bus.now, bus.network);
   until([this] { return power.off(); });
-  bus.network.axis(Joint::elbow).request(canopen::AxisRequest::hold_enabled);
+  bus.network.axis(arm5e_joint::elbow).request(canopen::AxisRequest::hold_enabled);
   EXPECT_LT(until([this] { return !power.off(); }), 0.2);
   EXPECT_LT(until([this] { return power.off(); }), 0.1);
   EXPECT_TRUE(all_in(unpowered));
@@ -384,12 +387,13 @@ class PowerFromBefore : public PowerTest {
  protected:
   void SetUp() override {
     PowerTest::SetUp();
-    for (std::size_t i = 0; i < joint_count; ++i) {
+    for (std::size_t i = 0; i < arm5e_joint::count; ++i) {
       bus.nodes[i].set_object(0x605A, 0, 6, 2);
-      bus.network.axis(static_cast<Joint>(i)).request(canopen::AxisRequest::quick_stop);
+      bus.network.axis(i).request(canopen::AxisRequest::quick_stop);
     }
     ASSERT_TRUE(bus.run_until([this] { return all_in(holding); }, Duration::from_ms(100)));
-    bus.network = canopen::Network(canopen::test::plain_config());
+    std::destroy_at(&bus.network);
+    std::construct_at(&bus.network, canopen::test::plain_config());
     power = Power(test::arm5e);
     bus.log.clear();
     step();
@@ -412,7 +416,7 @@ TEST_F(PowerFromBefore, IsTakenByARestartWhenItIsOrderedOffBeforeAnyBoot) {
   power.remove(bus.now, bus.network);
   EXPECT_LT(until([this] { return power.off(); }), 0.1);
   EXPECT_TRUE(all_in(unpowered));
-  for (std::size_t i = 0; i < joint_count; ++i) EXPECT_GE(resets(i), 1) << i;
+  for (std::size_t i = 0; i < arm5e_joint::count; ++i) EXPECT_GE(resets(i), 1) << i;
   EXPECT_TRUE(only_resets()) << "the bus is not run: no SYNC, no heartbeat";
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tests/arm5e.hpp"
+#include "tests/arm5e_joints.hpp"
 #include "tests/unit/canopen/scripted_node.hpp"
 
 namespace lf::safety {
@@ -18,7 +19,7 @@ class WatchTest : public testing::Test {
 
   static Limits limits() {
     Limits limits;
-    for (JointLimit& joint : limits.joints) joint = {-1, 1, 100, 100};
+    arm5e_joint::fill(limits.joints, JointLimit{-1, 1, 100, 100});
     limits.workspace_min_m = {-9, -9, -9};
     limits.workspace_max_m = {9, 9, 9};
     limits.stale_position_s = 0.012;
@@ -83,7 +84,7 @@ class EachLimit : public testing::Test {
 
   static Limits loose() {
     Limits limits;
-    for (JointLimit& joint : limits.joints) joint = {-1, 1, 100, 1e5};
+    arm5e_joint::fill(limits.joints, JointLimit{-1, 1, 100, 1e5});
     limits.workspace_min_m = {-1, -1, -1};
     limits.workspace_max_m = {1, 1, 1};
     limits.stale_position_s = 0.012;
@@ -124,16 +125,16 @@ TEST_F(EachLimit, OfSpeedHoldsWhileOtherDrivesAreStillBeingEnabled) {
   Limits limits = loose();
   limits.joints[2].max_speed_rad_s = 0.35;
   EXPECT_EQ(begins(limits, Fault::overspeed, 0.5), 0) << "it has no power: somebody moves it";
-  bus.network.axis(Joint::elbow).request(canopen::AxisRequest::hold_enabled);
+  bus.network.axis(arm5e_joint::elbow).request(canopen::AxisRequest::hold_enabled);
   for (int i = 0; i < 50; ++i) bus.step();
-  ASSERT_TRUE(bus.network.axis(Joint::elbow).enabled());
+  ASSERT_TRUE(bus.network.axis(arm5e_joint::elbow).enabled());
   EXPECT_EQ(begins(limits, Fault::overspeed, 0.5), 1);
   EXPECT_EQ(begins(limits, Fault::following_error), 0);
 }
 
 TEST_F(EachLimit, OfTheFollowingWindowHoldsWhileOtherDrivesAreStillBeingEnabled) {
   watched = Vigilance::nodes;
-  bus.network.axis(Joint::elbow).request(canopen::AxisRequest::hold_enabled);
+  bus.network.axis(arm5e_joint::elbow).request(canopen::AxisRequest::hold_enabled);
   for (int i = 0; i < 50; ++i) bus.step();
   bus.nodes[2].jammed = true;
   bus.nodes[2].actual_counts += 100'000;
@@ -146,7 +147,7 @@ TEST_F(EachLimit, OfTorque) {
   EXPECT_EQ(begins(limits, Fault::overload), 0);
   // The motor's torque, through the screw at angle 0: half of the rated one.
   const double joint_nm =
-      0.5e-6 * bus.network.axis(Joint::elbow).rated_torque_unm() * arm::Transmission(test::arm5e.joint(Joint::elbow)).ratio(0);
+      0.5e-6 * bus.network.axis(arm5e_joint::elbow).rated_torque_unm() * arm::Transmission(test::arm5e.joint(arm5e_joint::elbow)).ratio(0);
   limits.joints[2].max_torque_nm = 0.95 * joint_nm;
   EXPECT_EQ(begins(limits, Fault::overload), 1);
   // A reading may be wrong by a hundredth of the rated torque: what may be within the limit is no overload.

@@ -10,7 +10,7 @@ namespace lf::scan {
 namespace {
 
 using Outcome = JointHistory::Outcome;
-using Angles = std::array<double, arm_joint_count>;
+using Angles = PerArmJoint<double>;
 
 constexpr Duration period = can_map::sync_period;
 Time sync(int i) { return Time::from_ns(1'000'000'000) + period * i; }

@@ -18,7 +18,7 @@
 
 namespace lf::test {
 
-using Angles = std::array<double, arm_joint_count>;
+using Angles = PerArmJoint<double>;
 
 inline constexpr int width = ScanPipeline::image_width, height = ScanPipeline::image_height;
 inline constexpr Duration sync_period = can_map::sync_period;
@@ -82,7 +82,7 @@ class ScanBench {
     std::vector<std::uint8_t> pixels(static_cast<std::size_t>(width) * height);
     for (auto& grey : pixels) grey = static_cast<std::uint8_t>(40 + random_() % 3);
     if (!laser_on) return pixels;
-    const Pose laser = test::arm5e.base_from_laser(arm::JointVector(q[0], q[1], q[2], q[3]), config_.laser);
+    const Pose laser = test::arm5e.base_from_laser(arm::planar_joints(q[0], q[1], q[2], q[3]), config_.laser);
     for (int u = 0; u < width; ++u) {
       const double centre = stripe_row(u, laser);
       for (int v = std::max(0, static_cast<int>(centre) - 8); v < std::min(height, static_cast<int>(centre) + 9); ++v)
@@ -94,7 +94,7 @@ class ScanBench {
 
   // By how much a stripe's point moves when it is seen a pixel lower, the mean over the picture.
   double m_per_px(const Angles& q) const {
-    const Pose laser = test::arm5e.base_from_laser(arm::JointVector(q[0], q[1], q[2], q[3]), config_.laser);
+    const Pose laser = test::arm5e.base_from_laser(arm::planar_joints(q[0], q[1], q[2], q[3]), config_.laser);
     const scan::Triangulator triangulator(config_.camera, config_.laser, {});
     double sum = 0;
     int points = 0;

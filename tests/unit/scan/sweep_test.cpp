@@ -8,12 +8,13 @@
 #include "firmware/arm/kinematics.hpp"
 #include "firmware/arm/trajectory.hpp"
 #include "tests/arm5e.hpp"
+#include "tests/arm5e_joints.hpp"
 #include "tests/unit/scan/docked_scene.hpp"
 
 namespace lf::scan {
 namespace {
 
-arm::JointVector joints(const std::array<double, arm_joint_count>& q) { return {q[0], q[1], q[2], q[3]}; }
+arm::JointVector joints(const PerArmJoint<double>& q) { return arm::planar_joints(q[0], q[1], q[2], q[3]); }
 
 arm::JointVector along(const SweepPlan& plan, double f) {
   return joints(plan.start_rad) + f * (joints(plan.end_rad) - joints(plan.start_rad));
@@ -115,7 +116,7 @@ TEST(Sweep, IsWithinTheSoftLimitsWithRunUpAndAboveTheStiction) {
     ASSERT_EQ(plan.outcome, SweepOutcome::ok);
     arm::ConstantSpeedSweep motion;
     EXPECT_EQ(motion.plan(joints(plan.start_rad), joints(plan.end_rad), plan.duration.s(), limits), arm::PlanOutcome::ok);
-    for (std::size_t i = 0; i < arm_joint_count; ++i) {
+    for (std::size_t i = 0; i < arm5e_joint::of_arm; ++i) {
       EXPECT_TRUE(plan.speed_rad_s[i] == 0 || std::abs(plan.speed_rad_s[i]) >= 0.0649) << "joint " << i;
       EXPECT_NEAR(plan.start_rad[i] + plan.speed_rad_s[i] * plan.duration.s(), plan.end_rad[i], 1e-6);
     }

@@ -6,6 +6,8 @@
 #include "firmware/mission/look.hpp"
 #include "hal/config/text_file.hpp"
 #include "tests/arm5e.hpp"
+#include "tests/arm5e_bodies.hpp"
+#include "tests/arm5e_joints.hpp"
 #include "tests/unit/scenario/scenario_file.hpp"
 #include "tests/unit/temporary_folder.hpp"
 
@@ -65,7 +67,7 @@ TEST(Faults, ANodeThatIsNoneIsNamedWithTheNearest) {
   const auto said = [&](const std::string& node) -> std::string {
     fault.node = node;
     try {
-      (void)device_fault(fault, drives);
+      (void)device_fault(fault, drives, {});
       return "";
     } catch (const InputError& error) {
       return error.what();
@@ -78,8 +80,8 @@ TEST(Faults, ANodeThatIsNoneIsNamedWithTheNearest) {
 
 TEST(Overheard, ADriveOfAnotherMakeIsRefusedWithWhatToDo) {
   const Scenario scenario = load_scenario("default", {"drives.elbow.profile=c5e"});
-  EXPECT_NO_THROW(check_overheard(scenario.drives, 1));
-  const std::string said = test::message_of<InputError>([&] { check_overheard(scenario.drives, 2); });
+  EXPECT_NO_THROW(check_overheard(scenario.drives, {}, 1));
+  const std::string said = test::message_of<InputError>([&] { check_overheard(scenario.drives, {}, 2); });
   EXPECT_THAT(said, testing::HasSubstr("'drives.elbow.profile' cia402"));
   EXPECT_THAT(said, testing::HasSubstr("serve the node (`--nodes`)"));
 }
@@ -213,7 +215,7 @@ TEST(Truth, LightAndPanelAreThoseThatWereDrawn) {
   EXPECT_NEAR(built.buttons[0].width_m, scenario.panel.buttons[0].width_m + 0.0003, 1e-12);
   EXPECT_NEAR(built.buttons[0].height_m, scenario.panel.buttons[0].height_m + 0.0003, 1e-12);
   EXPECT_EQ(truth.vision.panel.valves[0].handle_length_m, scenario.panel.valves[0].handle_length_m);
-  const std::vector<scene::Shape>& shapes = truth.optics.scene[std::size_t(scene::BodyId::panel)].shapes;
+  const std::vector<scene::Shape>& shapes = truth.optics.scene[arm5e_body::panel].shapes;
   const auto marker = std::find_if(shapes.begin(), shapes.end(), [](const scene::Shape& shape) { return shape.marker_id >= 0; });
   ASSERT_NE(marker, shapes.end());
   EXPECT_NEAR(marker->marker_size_m, scenario.panel.markers[0].size_m + 0.0002, 1e-12);
@@ -322,7 +324,7 @@ TEST(Nominal, WhatStandsInTheWayOfTheFirstSweepIsNamed) {
               ::testing::HasSubstr("folded up the arm comes as near as 0 mm to capsule 2 of 'vehicle.capsules_m'"));
   const scan::SweepPlan plan = scan::plan_sweep(test::arm5e, mission::sweep_over_panel(mission), nominal.controller.laser);
   const auto& start = plan.start_rad;
-  EXPECT_THAT(refusal(with_ball_at({start[0], start[1], start[2], start[3]})),
+  EXPECT_THAT(refusal(with_ball_at(arm::planar_joints(start[0], start[1], start[2], start[3]))),
               ::testing::HasSubstr("sweeping the laser over the panel the arm comes as near as 0 mm to capsule 2 of 'vehicle.capsules_m'"));
   EXPECT_THAT(refusal(load_scenario("default", {"vehicle.boxes_m=[[-2, 0, 0, 0.1, 0.1, 0.1], [0, 0, 0.3, 0.2, 0.2, 0.2]]"})),
               ::testing::HasSubstr("to box 2 of 'vehicle.boxes_m', at [0, 0, 0.3]"));
@@ -399,7 +401,7 @@ TEST(Truth, OfAFilesPanelHasItsFeaturesUnderTheirNames) {
   ASSERT_EQ(nominal.controller.markers.size(), 2u);
   EXPECT_EQ(nominal.controller.markers[1].id, 12);
   EXPECT_EQ(nominal.controller.mission.tasks[1].valve, 1);
-  const std::vector<scene::Shape>& panel = scene[std::size_t(scene::BodyId::panel)].shapes;
+  const std::vector<scene::Shape>& panel = scene[arm5e_body::panel].shapes;
   EXPECT_EQ(std::count_if(panel.begin(), panel.end(), [](const scene::Shape& shape) { return shape.marker_id >= 0; }), 2);
 }
 
@@ -414,7 +416,7 @@ TEST(Truth, HasGearsOfWhichTheCoreKnowsLess) {
   Nominal told, plainly_told;
   const auto drives = drives_of({"friction.breakaway=1.5", "friction.one_way=0.2", "friction.pivot_m=0.0003"}, told);
   const auto plain = drives_of({"friction.breakaway=1", "friction.one_way=0", "friction.pivot_m=0"}, plainly_told);
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < arm5e_joint::count; ++i) {
     EXPECT_EQ(drives[i].friction.breakaway, 1.5);
     EXPECT_EQ(drives[i].friction.one_way, 0.2);
     const bool has_screw = plain[i].actuator.pivot_a_m > 0;
@@ -441,7 +443,7 @@ TEST(Truth, TheLaserOnTheForearmIsWhereTheCoreThinksItIs) {
   const Scenario scenario = load_scenario("default", {"mounting.laser_m=0", "mounting.laser_deg=0", "calibration.laser_cone_mrad=0"});
   const Nominal nominal = make_nominal(scenario, false);
   const hal::SimConfig truth = make_truth(scenario, draw(scenario, 1), nominal, 1);
-  for (const arm::JointVector& q_rad : {arm::JointVector(0, 0.945, 2.095, 0), arm::JointVector(-0.3, 0.6, 1.2, 1.0)}) {
+  for (const arm::JointVector& q_rad : {arm::planar_joints(0, 0.945, 2.095, 0), arm::planar_joints(-0.3, 0.6, 1.2, 1.0)}) {
     const Pose base_from_forearm = test::arm5e.base_from_links(q_rad, 0)[2];
     const Pose base_from_laser = test::arm5e.base_from_laser(q_rad, nominal.controller.laser);
     EXPECT_LT(((base_from_forearm * truth.optics.lasers[0].body_from_laser).matrix() - base_from_laser.matrix()).norm(), 1e-6);
@@ -452,7 +454,7 @@ TEST(Truth, FaultsReachTheirNodes) {
   const Scenario scenario = load_scenario("drive_fault");
   const hal::SimConfig truth = make_truth(scenario, draw(scenario, 1), make_nominal(scenario, false), 1);
   ASSERT_EQ(truth.devices.faults.size(), 1u);
-  EXPECT_EQ(truth.devices.faults[0].node, can_map::drive_nodes[std::size_t(Joint::elbow)]);
+  EXPECT_EQ(truth.devices.faults[0].node, can_map::drive_nodes[arm5e_joint::elbow]);
   EXPECT_EQ(truth.devices.faults[0].kind, devices::DeviceFaultKind::overcurrent);
 }
 

@@ -22,7 +22,7 @@ std::string changed(const std::string& from, const std::string& to) {
 std::string said_of(const std::string& text) {
   const scenario::ScenarioFile file(text);
   try {
-    (void)read_limits(file.path());
+    (void)read_limits(file.path(), {});
     return "";
   } catch (const InputError& error) {
     return error.what();
@@ -74,7 +74,7 @@ TEST(Limits, ATimeThatIsOverBeforeAnImageOrAnAnswerCanBeThereIsRefused) {
 }
 
 TEST(Limits, TheShippedFileIsGoodAndTheCoreAgrees) {
-  const safety::Limits limits = read_limits(share_folder() / "safety" / "limits.yaml");
+  const safety::Limits limits = read_limits(share_folder() / "safety" / "limits.yaml", {});
   EXPECT_EQ(safety::check(limits), safety::LimitsVerdict::good);
   EXPECT_EQ(limits.stale_position_s, 0.012) << "three SYNC cycles";
 }

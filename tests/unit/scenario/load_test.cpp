@@ -110,7 +110,6 @@ const BadText bad_texts[] = {
     {"UnknownButton", "tasks:\n  - press_buttons: {order: [center]}\n",
      ":2: 'tasks[0].press_buttons.order' has no 'center'; did you mean 'centre'?"},
     {"NoButton", "tasks:\n  - press_buttons: {order: []}\n", ":2: 'tasks[0].press_buttons.order' names no button"},
-    {"NothingToDo", "tasks: []\n", ": 'tasks' is empty"},
     {"TooMuchToDo",
      "tasks: [press_buttons: {order: [left, left, left, left, left, left, left, left, left, left, left, left, left, left, left, left, "
      "left]}]\n",
@@ -137,15 +136,13 @@ TEST(Load, ListsAllProblemsOfAFileAndItsOverridesAtOnceEachWithItsLine) {
   fricton_nm: 2
   start_deg: left
 water: {attenuation_per_m: 9}
-tasks: []
 )",
                                      {"camera.noise_grey=-1"});
   EXPECT_THAT(told, HasSubstr(":2: unknown key 'valve.fricton_nm'"));
   EXPECT_THAT(told, HasSubstr(":3: 'valve.start_deg' takes a number"));
   EXPECT_THAT(told, HasSubstr(":4: 'water.attenuation_per_m' is 9, out of its range"));
   EXPECT_THAT(told, HasSubstr("--set camera.noise_grey=-1: "));
-  EXPECT_THAT(told, HasSubstr("'tasks' is empty"));
-  EXPECT_EQ(std::count(told.begin(), told.end(), '\n'), 4) << told;
+  EXPECT_EQ(std::count(told.begin(), told.end(), '\n'), 3) << told;
 }
 
 TEST(Load, AProblemOfAKeyDoesNotHideThatTheJobCannotBeDone) {

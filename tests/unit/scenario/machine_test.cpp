@@ -26,6 +26,11 @@ std::string refusal(const std::string& scenario, const std::vector<std::string>&
   return "";
 }
 
+TEST(Tasks, ThatAreNoneAreForAnOperatorAndNotForARun) {
+  EXPECT_NO_THROW((void)load_scenario("default", {"tasks=[]"}));
+  EXPECT_THAT(refusal("default", {"tasks=[]"}), HasSubstr("'tasks' is empty: there is nothing to do"));
+}
+
 // A robot of its own beside a scenario: an arm with a longer forearm, in a folder of its own.
 class MachineKey : public testing::Test {
  protected:

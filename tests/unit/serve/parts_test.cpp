@@ -18,6 +18,7 @@
 #include "shared/can/can_map.hpp"
 #include "shared/input_error.hpp"
 #include "tests/arm5e.hpp"
+#include "tests/arm5e_joints.hpp"
 
 namespace lf::serve {
 namespace {
@@ -93,13 +94,13 @@ TEST(OverheardDrives, the_world_follows_a_real_drive_and_holds_before_it_spoke) 
   OverheardDrives drives(test::arm5e.model());
   EXPECT_EQ(drives.follow(2, 0.5).velocity_rad_s, 0);
   CanFrame tpdo = frame(0x183, {0x37, 0x02, 0, 0, 0, 0, 0, 0});
-  canopen::put(tpdo, can_map::drive_tpdo1::position, arm::counts_from_rad(test::arm5e.joint(Joint::elbow), 1.2));
+  canopen::put(tpdo, can_map::drive_tpdo1::position, arm::counts_from_rad(test::arm5e.joint(arm5e_joint::elbow), 1.2));
   drives.hear(tpdo, ms(4));
   ASSERT_TRUE(drives.position_rad(2));
   EXPECT_NEAR(*drives.position_rad(2), 1.2, 4e-4);  // half a count at the screw's ends
   EXPECT_GT(drives.follow(2, 1.19).velocity_rad_s, 0);
   EXPECT_LT(drives.follow(2, 1.21).velocity_rad_s, 0);
-  EXPECT_LE(std::abs(drives.follow(2, 0.0).velocity_rad_s), test::arm5e.joint(Joint::elbow).velocity_rad_s)
+  EXPECT_LE(std::abs(drives.follow(2, 0.0).velocity_rad_s), test::arm5e.joint(arm5e_joint::elbow).velocity_rad_s)
       << "no faster than the joint can";
   tpdo.length = 7;
   canopen::put(tpdo, can_map::drive_tpdo1::position, 0);
@@ -110,7 +111,7 @@ TEST(OverheardDrives, the_world_follows_a_real_drive_and_holds_before_it_spoke) 
 TEST(OverheardDrives, a_real_drive_counts_from_where_its_homing_file_says) {
   OverheardDrives drives(test::arm5e.model(), {0, 0, -70'000, 0, 0});
   CanFrame tpdo = frame(0x183, {0x37, 0x02, 0, 0, 0, 0, 0, 0});
-  canopen::put(tpdo, can_map::drive_tpdo1::position, arm::counts_from_rad(test::arm5e.joint(Joint::elbow), 1.2) - 70'000);
+  canopen::put(tpdo, can_map::drive_tpdo1::position, arm::counts_from_rad(test::arm5e.joint(arm5e_joint::elbow), 1.2) - 70'000);
   drives.hear(tpdo, ms(4));
   ASSERT_TRUE(drives.position_rad(2));
   EXPECT_NEAR(*drives.position_rad(2), 1.2, 4e-4);

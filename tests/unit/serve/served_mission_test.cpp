@@ -9,6 +9,7 @@
 #include "host_sim/scenario/instance.hpp"
 #include "host_sim/serve/serve_loop.hpp"
 #include "host_sim/serve/serve_result.hpp"
+#include "tests/arm5e_joints.hpp"
 #include "tests/unit/serve/virtual_wire.hpp"
 
 namespace lf::serve {
@@ -156,7 +157,7 @@ TEST(ServedMission, a_world_whose_drives_are_real_follows_them) {
   const double start_rad = real.world().readings()[1].position_rad;
   while (clock.now.s() < 6) {  // the jaw is looked at for 1.4 s first
     core.step();
-    for (std::size_t i = 0; i < arm_joint_count; ++i) {
+    for (std::size_t i = 0; i < arm5e_joint::of_arm; ++i) {
       // Encoder offsets are part of what a drive reports: the follower stands where the drive says, which is that far off.
       const double offset = job.sample.joint_offset_rad[i];
       worst_rad =

@@ -6,6 +6,7 @@
 
 #include "hal/sim/sim_platform.hpp"
 #include "host_sim/scenario/instance.hpp"
+#include "tests/arm5e_bodies.hpp"
 
 namespace lf::hal {
 namespace {
@@ -22,7 +23,7 @@ SimConfig config_of(const std::vector<std::string>& set = {}) {
   config.optics.lasers[0].speckle = 0;
   config.optics.water.particles_per_l = 0;
   // The laser stands with the vehicle here, before the panel, wherever the arm is stowed.
-  config.optics.lasers[0].body = scene::BodyId::vehicle;
+  config.optics.lasers[0].body = arm5e_body::vehicle;
   config.optics.lasers[0].body_from_laser.linear() << 0, 0, 1, 0, 1, 0, -1, 0, 0;  // a level sheet
   config.optics.lasers[0].body_from_laser.translation() = Vec3(0.05, 0, 0.5);
   config.exposure_delay = Duration();

@@ -9,6 +9,7 @@
 #include "firmware/canopen/sdo_abort.hpp"
 #include "hal/vehicle/operator_client.hpp"
 #include "tests/arm5e.hpp"
+#include "tests/arm5e_joints.hpp"
 #include "tests/unit/temporary_folder.hpp"
 
 namespace lf::hal {
@@ -55,6 +56,7 @@ TEST(StatusText, SaysHowTheEmergencyStopChainStands) {
 // `why` was in the document alone.
 TEST(StatusText, SaysWhatToDoWhenABootFailed) {
   ControlReport control;
+  arm5e_joint::fill(control.boot.nodes, canopen::NodeBoot{});
   canopen::NodeBoot& elbow = control.boot.nodes[2];
   elbow.node = 3;
   elbow.failure = canopen::BootFailure::sdo_aborted;
@@ -117,7 +119,7 @@ TEST(StatusText, SaysThatTheCalibrationIsDoubtful) {
 }
 
 TEST(Commissioned, AJointThatSomethingRubsAgainstIsLeftOutAndTheOthersAreTakenOver) {
-  std::array<Motor, joint_count> motors;
+  PerJoint<Motor> motors;
   for (Motor& motor : motors) motor.coulomb_nm = 1e-3, motor.viscous_nm_s = 1e-6;
   config::HomingOffsets offsets;
   offsets.known[1] = true;
@@ -131,21 +133,21 @@ TEST(Commissioned, AJointThatSomethingRubsAgainstIsLeftOutAndTheOthersAreTakenOv
   const std::vector<std::string> left_out = take_over(test::arm5e, commissioned, motors, offsets).left_out;
   ASSERT_EQ(left_out.size(), 1U);
   EXPECT_NE(left_out[0].find("'shoulder.coulomb_mnm' is 100"), std::string::npos) << left_out[0];
-  EXPECT_EQ(offsets.known, (std::array<bool, joint_count>{true, false, false, true, false})) << "the old zero may be as wrong";
+  EXPECT_EQ(offsets.known, (PerJoint<bool>{true, false, false, true, false})) << "the old zero may be as wrong";
   EXPECT_EQ(offsets.zero_counts[0], 5);
   EXPECT_EQ(offsets.zero_counts[3], 8);
-  EXPECT_EQ(offsets.friction_known, (std::array<bool, joint_count>{true, false, false, false, false}));
+  EXPECT_EQ(offsets.friction_known, (PerJoint<bool>{true, false, false, false, false}));
   EXPECT_EQ(offsets.friction[0].coulomb_mnm, 1);
 }
 
 // A zero alone, of a jig or of a joint that had too little way, does not show that what rubbed is gone. Such a joint moved with the description's friction.
 TEST(Commissioned, AJointLeftOutForItsFrictionStaysOutUntilAFrictionWasMeasured) {
-  std::array<Motor, joint_count> motors;
+  PerJoint<Motor> motors;
   for (Motor& motor : motors) motor.coulomb_nm = 1e-3, motor.viscous_nm_s = 1e-6;
   const test::TemporaryFolder folder;
   const std::string file = folder.write("homing.yaml", "slew: {zero_counts: 3, coulomb_mnm: 1, viscous_mnm_s: 0.001}\n");
   const auto commission = [&](bool friction_found, double coulomb_mnm) {
-    config::HomingOffsets offsets = config::read_homing_file(file);
+    config::HomingOffsets offsets = config::read_homing_file(file, {});
     Commissioned commissioned;
     commissioned.found[0] = true;
     commissioned.zero_counts[0] = 5;
@@ -156,7 +158,7 @@ TEST(Commissioned, AJointLeftOutForItsFrictionStaysOutUntilAFrictionWasMeasured)
     config::write_homing_file(file, offsets);
     return left_out;
   };
-  const auto known = [&] { return config::read_homing_file(file).known[0]; };
+  const auto known = [&] { return config::read_homing_file(file, {}).known[0]; };
   EXPECT_TRUE(commission(false, 0).empty());
   EXPECT_TRUE(known()) << "nothing was doubtful";
   EXPECT_EQ(commission(true, 100).size(), 1u);
@@ -170,7 +172,7 @@ TEST(Commissioned, AJointLeftOutForItsFrictionStaysOutUntilAFrictionWasMeasured)
   EXPECT_FALSE(known());
   EXPECT_TRUE(commission(true, 1).empty());
   EXPECT_TRUE(known());
-  EXPECT_EQ(config::read_homing_file(file).zero_counts[0], 5);
+  EXPECT_EQ(config::read_homing_file(file, {}).zero_counts[0], 5);
   // A figure in the file that cannot be counts as doubtful, too.
   folder.write("homing.yaml", "slew: {zero_counts: 3, coulomb_mnm: 100, viscous_mnm_s: 0.001}\n");
   EXPECT_EQ(commission(false, 0).size(), 1u);
@@ -198,13 +200,13 @@ TEST(Commissioned, AJointThatTheFileDoubtsIsNamed) {
   offsets.known.fill(true);
   offsets.doubt_friction(1);
   ControllerConfig core;
-  for (canopen::DriveSetup& drive : core.network.drives) drive.zero_known = true;
+  arm5e_joint::fill(core.network.drives, canopen::DriveSetup{});
   EXPECT_EQ(cut_off(offsets, {}, core), (std::vector<std::string>{"the homing file has the shoulder's friction as doubtful"}));
   EXPECT_TRUE(cut_off(offsets, {false, true}, core).empty()) << "it was commissioned";
 }
 
 TEST(Commissioned, AZeroThatHasMovedIsTold) {
-  std::array<Motor, joint_count> motors;
+  PerJoint<Motor> motors;
   for (const double off_rad : {0.02, 0.04, -0.04, 0.5}) {
     SCOPED_TRACE(off_rad);
     config::HomingOffsets offsets;
@@ -217,14 +219,14 @@ TEST(Commissioned, AZeroThatHasMovedIsTold) {
     const double roll_counts_rad = test::arm5e.model().joints[3].actuator.counts_per_rad;
     const double stop_rad = test::arm5e.model().joints[0].lower_rad;
     commissioned.place_rad[0] = stop_rad;
-    const std::int32_t short_of_it = arm::counts_from_rad(test::arm5e.joint(Joint::slew), stop_rad + std::abs(off_rad)) -
-                                     arm::counts_from_rad(test::arm5e.joint(Joint::slew), stop_rad);
+    const std::int32_t short_of_it = arm::counts_from_rad(test::arm5e.joint(arm5e_joint::slew), stop_rad + std::abs(off_rad)) -
+                                     arm::counts_from_rad(test::arm5e.joint(arm5e_joint::slew), stop_rad);
     commissioned.zero_counts[0] = off_rad > 0 ? short_of_it : -short_of_it;
     commissioned.zero_counts[3] += static_cast<std::int32_t>(std::lround(off_rad * roll_counts_rad));
     const TakenOver taken = take_over(test::arm5e, commissioned, motors, offsets);
     EXPECT_TRUE(taken.left_out.empty());
     if (std::abs(off_rad) < 0.03) {
-      EXPECT_EQ(taken.moved_rad, (std::array<double, joint_count>{}));
+      EXPECT_EQ(taken.moved_rad, (PerJoint<double>{}));
       continue;
     }
     EXPECT_NEAR(taken.moved_rad[0], std::abs(off_rad), 0.1 * std::abs(off_rad));
@@ -245,7 +247,7 @@ TEST(Commissioned, AZeroThatHasMovedIsTold) {
 
 // The file was taken back to an older one, or the joint's line was deleted, while the core knows its zero. And a doubtful zero is compared with like any other.
 TEST(Commissioned, AZeroHasMovedWhereTheCommissioningOrTheFileSaysSo) {
-  const std::array<Motor, joint_count> motors;
+  const PerJoint<Motor> motors;
   config::HomingOffsets offsets;
   offsets.known = {false, true, true, false, false};
   offsets.zero_doubtful[3] = true;
@@ -260,12 +262,12 @@ TEST(Commissioned, AZeroHasMovedWhereTheCommissioningOrTheFileSaysSo) {
   EXPECT_EQ(taken.moved_rad[2], 0);
   EXPECT_GT(taken.moved_rad[3], 0.5);
   EXPECT_EQ(taken.moved_rad[4], 0) << "no earlier zero";
-  EXPECT_EQ(offsets.known, (std::array<bool, joint_count>{true, true, true, true, true})) << "found as ordered: no longer doubtful";
-  EXPECT_EQ(offsets.zero_doubtful, (std::array<bool, joint_count>{}));
+  EXPECT_EQ(offsets.known, (PerJoint<bool>{true, true, true, true, true})) << "found as ordered: no longer doubtful";
+  EXPECT_EQ(offsets.zero_doubtful, (PerJoint<bool>{}));
 }
 
 TEST(Commissioned, AJointLeftOutForItsFrictionKeepsItsEarlierZeroAsADoubtfulOne) {
-  std::array<Motor, joint_count> motors;
+  PerJoint<Motor> motors;
   for (Motor& motor : motors) motor.coulomb_nm = 1e-3, motor.viscous_nm_s = 1e-6;
   config::HomingOffsets offsets;
   offsets.known[0] = true;
@@ -283,7 +285,7 @@ TEST(Commissioned, AJointLeftOutForItsFrictionKeepsItsEarlierZeroAsADoubtfulOne)
 }
 
 TEST(HomingFile, JointsWhoseFrictionCannotBeTakeNoPower) {
-  std::array<Motor, joint_count> motors;
+  PerJoint<Motor> motors;
   for (Motor& motor : motors) motor.coulomb_nm = 1e-3, motor.viscous_nm_s = 1e-6;
   config::HomingOffsets offsets;
   offsets.known.fill(true);
@@ -292,7 +294,10 @@ TEST(HomingFile, JointsWhoseFrictionCannotBeTakeNoPower) {
   const std::vector<std::string> left_out = config::leave_out_doubtful(offsets, motors);
   ASSERT_EQ(left_out.size(), 1U);
   EXPECT_NE(left_out[0].find("'shoulder.viscous_mnm_s' is 1"), std::string::npos) << left_out[0];
-  EXPECT_EQ(offsets.known, (std::array<bool, joint_count>{true, false, true, true, true})) << "what was not measured is not judged";
+  PerJoint<bool> known;
+  known.fill(true);
+  known[1] = false;
+  EXPECT_EQ(offsets.known, known) << "what was not measured is not judged";
 }
 
 }  // namespace

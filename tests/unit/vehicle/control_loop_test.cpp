@@ -9,6 +9,7 @@
 #include "hal/mock/failing_platform.hpp"
 #include "hal/mock/scripted_platform.hpp"
 #include "hal/vehicle/status_json.hpp"
+#include "tests/arm5e_joints.hpp"
 
 namespace lf::hal {
 namespace {
@@ -16,7 +17,8 @@ namespace {
 class Loop : public testing::Test {
  protected:
   Loop() {
-    for (std::size_t i = 0; i < joint_count; ++i) {
+    arm5e_joint::fill(config.network.drives, canopen::DriveSetup{});
+    for (std::size_t i = 0; i < arm5e_joint::count; ++i) {
       canopen::DriveSetup& drive = config.network.drives[i];
       drive.node = can_map::drive_nodes[i];
       drive.min_counts = -1000;
@@ -24,7 +26,7 @@ class Loop : public testing::Test {
       drive.max_speed_counts_s = 500;
       drive.following_window_counts = 50;
     }
-    config.limits = config.mission_limits = config::read_limits(LANTERNFISH_SOURCE_DIR "/shared/safety/limits.yaml");
+    config.limits = config.mission_limits = config::read_limits(LANTERNFISH_SOURCE_DIR "/shared/safety/limits.yaml", {});
     config.mission.tasks.clear();
     EXPECT_TRUE(config.mission.tasks.push_back({}));
     loop = std::make_unique<ControlLoop<FailingPlatform<ScriptedPlatform>>>(failing, config, *rings);
@@ -302,8 +304,7 @@ TEST_F(Loop, ANewCoreKnowsWhichZerosWereLostMeanwhile) {
   Controller* old = nullptr;
   ASSERT_TRUE(rings->old_cores.pop(old));
   delete old;
-  for (std::size_t i = 0; i < joint_count; ++i)
-    EXPECT_EQ(loop->controller().network().axis(static_cast<Joint>(i)).zero_lost(), i == jaw) << i;
+  for (std::size_t i = 0; i < arm5e_joint::count; ++i) EXPECT_EQ(loop->controller().network().axis(i).zero_lost(), i == jaw) << i;
 }
 
 TEST_F(Loop, AReportSaysHowOftenTheCoreWasExchangedBeforeIt) {
@@ -338,8 +339,8 @@ TEST_F(Loop, TheCoreIsToldWhichZerosWereLostWhileAJointWasCommissioned) {
   CommissioningResult result;
   for (int i = 0; i < 2000 && !rings->commissioned.pop(result); ++i) turn();
   ASSERT_EQ(result.commissioning, &commissioning);
-  EXPECT_TRUE(loop->controller().network().axis(Joint::elbow).zero_lost());
-  EXPECT_FALSE(loop->controller().network().axis(Joint::slew).zero_lost());
+  EXPECT_TRUE(loop->controller().network().axis(arm5e_joint::elbow).zero_lost());
+  EXPECT_FALSE(loop->controller().network().axis(arm5e_joint::slew).zero_lost());
 }
 
 // An abort came before it began, or the control thread took it after its client had given up.
@@ -375,7 +376,7 @@ TEST_F(Loop, ACommissioningKnowsWhichZerosWereLostBeforeIt) {
   Commissioning commissioning(setup);
   ASSERT_TRUE(rings->commissionings.push({&commissioning}));
   turn();
-  for (std::size_t i = 0; i < joint_count; ++i) EXPECT_EQ(commissioning.zeros_lost()[i], i == jaw) << i;
+  for (std::size_t i = 0; i < arm5e_joint::count; ++i) EXPECT_EQ(commissioning.zeros_lost()[i], i == jaw) << i;
 }
 
 }  // namespace

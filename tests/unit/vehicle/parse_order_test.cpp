@@ -11,6 +11,8 @@
 #include <random>
 #include <string>
 
+#include "tests/arm5e_joints.hpp"
+
 namespace lf::hal {
 namespace {
 
@@ -38,7 +40,7 @@ TEST(ParseOrder, TakesEveryRequestOfTheTable) {
 TEST(ParseOrder, TakesAJog) {
   const OperatorRequest jog = taken(R"({"do":"jog","joint":"elbow","by_deg":-5})");
   EXPECT_TRUE(jog.for_the_core);
-  EXPECT_EQ(jog.order.joint, Joint::elbow);
+  EXPECT_EQ(jog.order.joint, arm5e_joint::elbow);
   EXPECT_NEAR(jog.order.by_rad, -5 * 3.14159265358979 / 180, 1e-12);
 }
 
@@ -93,9 +95,9 @@ TEST(ParseOrder, AButtonIsOneOfThePanels) {
 TEST(ParseOrder, TakesACommissioning) {
   const OperatorRequest all = taken(R"({"do":"commission","clear":true})");
   EXPECT_FALSE(all.for_the_core);
-  EXPECT_EQ(all.commission.joints, (std::array<bool, joint_count>{true, true, true, true, true}));
+  EXPECT_EQ(all.commission.joints, all_joints());
   EXPECT_EQ(taken(R"({"do":"commission","joints":["elbow"],"clear":true})").commission.joints,
-            (std::array<bool, joint_count>{false, false, true, false, false}));
+            (PerJoint<bool>{false, false, true, false, false}));
   EXPECT_TRUE(taken(R"({"do":"commission","here":true})").commission.here);
   const OperatorRequest moved = taken(R"({"do":"commission","joints":["roll"],"clear":true,"moved":true})");
   EXPECT_TRUE(moved.commission.moved && moved.commission.joints[3]);
@@ -230,7 +232,7 @@ TEST(ParseOrder, NoLineDoesMoreThanItSays) {
     ASSERT_NE(request.right, nullptr) << line;
     ASSERT_EQ(nlohmann::json::parse(line)["do"], request.right->request) << line;
     ASSERT_LE(std::abs(request.order.by_rad), mission::largest_jog_rad) << line;
-    const std::array<bool, joint_count>& joints = request.commission.joints;
+    const PerJoint<bool>& joints = request.commission.joints;
     ASSERT_TRUE(!request.commission.moved || std::count(joints.begin(), joints.end(), true) == 1) << line;
     for (const mission::Task& task : request.order.tasks) ASSERT_LE(std::abs(task.to_rad), 3.1415926536) << line;
   }

@@ -12,6 +12,7 @@
 #include "shared/arm/arm_description.hpp"
 #include "shared/arm/motor.hpp"
 #include "shared/input_error.hpp"
+#include "tests/arm5e_joints.hpp"
 #include "tests/unit/temporary_folder.hpp"
 
 namespace lf::hal {
@@ -185,14 +186,14 @@ TEST(VehicleConfig, TheCoreIsToldTheFilesArm) {
     std::vector<std::string> problems;
     const VehicleConfig config = load_vehicle_config(folder.write("v.yaml", told), problems);
     EXPECT_THAT(problems, IsEmpty()) << told;
-    EXPECT_EQ(config.core.controller.arm.joint(Joint::elbow).actuator.counts_per_m, 250000);
-    EXPECT_EQ(config.core.scan.arm.joint(Joint::elbow).actuator.counts_per_m, 250000);
+    EXPECT_EQ(config.core.controller.arm.joint(arm5e_joint::elbow).actuator.counts_per_m, 250000);
+    EXPECT_EQ(config.core.scan.arm.joint(arm5e_joint::elbow).actuator.counts_per_m, 250000);
     EXPECT_EQ(config.core.controller.mission.park_rad[1], 0.55);
     EXPECT_EQ(config.machine.camera.down_deg, 43);
     // And the drive's own limits are that arm's counts.
     const double upper_rad = config.core.controller.limits.joints[2].max_rad;
     EXPECT_EQ(config.core.controller.network.drives[2].max_counts,
-              arm::counts_from_rad(config.core.controller.arm.joint(Joint::elbow), upper_rad));
+              arm::counts_from_rad(config.core.controller.arm.joint(arm5e_joint::elbow), upper_rad));
   }
 }
 
@@ -419,7 +420,7 @@ TEST(VehicleConfig, TheHomingFileReachesTheDrives) {
   offsets.known = {true, true, true, true, true};
   config::write_homing_file(folder / "homing.yaml", offsets);
   const VehicleConfig config = load_vehicle_config(folder.write("v.yaml", "homing: {file: homing.yaml}\n"));
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < arm5e_joint::count; ++i) {
     EXPECT_EQ(config.core.controller.network.drives[i].encoder_zero_counts, offsets.zero_counts[i]);
     EXPECT_TRUE(config.core.controller.network.drives[i].zero_known);
   }
@@ -459,14 +460,14 @@ TEST(VehicleConfig, AFileWithSomeJointsGivesPowerToThose) {
   const TemporaryFolder folder;
   folder.write("h.yaml", "elbow: {zero_counts: 7}\n");
   const VehicleConfig config = load_vehicle_config(folder.write("v.yaml", "homing: {file: h.yaml}\n"));
-  for (std::size_t i = 0; i < joint_count; ++i) EXPECT_EQ(config.core.controller.network.drives[i].may_have_power(), i == 2) << i;
+  for (std::size_t i = 0; i < arm5e_joint::count; ++i) EXPECT_EQ(config.core.controller.network.drives[i].may_have_power(), i == 2) << i;
 }
 
 TEST(VehicleConfig, AJointWhoseZeroIsDoubtfulTakesNoPowerAndIsNamed) {
   const TemporaryFolder folder;
   folder.write("h.yaml", "elbow: {zero_counts: 7, zero_doubtful: true}\nroll: {zero_counts: 7}\n");
   const VehicleConfig config = load_vehicle_config(folder.write("v.yaml", "homing: {file: h.yaml}\n"));
-  for (std::size_t i = 0; i < joint_count; ++i) EXPECT_EQ(config.core.controller.network.drives[i].may_have_power(), i == 3) << i;
+  for (std::size_t i = 0; i < arm5e_joint::count; ++i) EXPECT_EQ(config.core.controller.network.drives[i].may_have_power(), i == 3) << i;
   EXPECT_THAT(config.core.notes, testing::Contains(HasSubstr("the elbow's zero is doubtful")));
 }
 

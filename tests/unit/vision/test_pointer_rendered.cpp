@@ -5,6 +5,7 @@
 #include <random>
 
 #include "hal/vision/pointer.hpp"
+#include "tests/arm5e_bodies.hpp"
 #include "tests/unit/optics/mission_scene.hpp"
 #include "tests/unit/scan/docked_scene.hpp"
 
@@ -47,9 +48,9 @@ TEST_P(RenderedPointer, IsReadOverTheWholeCircle) {
     shot.lamps = GetParam().lamps;
     shot.laser = false;
     shot.poses = mission.poses({0, 0.945, 0.92, 0, 0}, 0, 0);  // the sweep's end, where stills are taken
-    for (std::size_t i = std::size_t(scene::BodyId::panel); i < mission.scene.size(); ++i)
+    for (std::size_t i = arm5e_body::panel; i < mission.scene.size(); ++i)
       shot.poses[i] = panel * mission.layout.nominal_base_from_panel().inverse() * shot.poses[i];
-    shot.poses[scene::first_feature] = panel * Eigen::AngleAxisd(angle_rad, Vec3::UnitZ());
+    shot.poses[arm5e_body::first_feature] = panel * Eigen::AngleAxisd(angle_rad, Vec3::UnitZ());
     optics::Frame frame;
     optics.render(shot, frame);
 

@@ -11,6 +11,7 @@
 #include "host_sim/world/bullet_world.hpp"
 #include "host_sim/world/contact_sensor.hpp"
 #include "host_sim/world/multibody_part.hpp"
+#include "tests/arm5e_bodies.hpp"
 
 namespace lf::world {
 
@@ -26,7 +27,7 @@ inline scene::Body box_body(const Vec3& size_m, const Pose& body_from_shape = Po
 // A fixed structure: infinite mass.
 class Wall {
  public:
-  Wall(BulletWorld& world, const scene::Body& body, const Pose& pose, scene::BodyId id = scene::BodyId::panel)
+  Wall(BulletWorld& world, const scene::Body& body, const Pose& pose, scene::BodyId id = arm5e_body::panel)
       : world_(world), shape_(make_collision_shape(body, Pose::Identity())), body_(0, nullptr, shape_.compound.get()) {
     body_.setWorldTransform(to_bullet(pose));
     body_.setUserIndex(int(id));
@@ -43,7 +44,7 @@ class Wall {
 // A mass that slides along x, y and z of `pose`, without turning. The colliding box is the last link's.
 class Sled {
  public:
-  Sled(BulletWorld& world, double mass_kg, const scene::Body& body, const Pose& pose, scene::BodyId id = scene::BodyId::finger_a)
+  Sled(BulletWorld& world, double mass_kg, const scene::Body& body, const Pose& pose, scene::BodyId id = arm5e_body::finger_a)
       : world_(world), part_(3, pose) {
     const btVector3 inertia(1e-3, 1e-3, 1e-3);
     constexpr double rail_mass_kg = 1e-9;  // the rails weigh nothing beside the sled

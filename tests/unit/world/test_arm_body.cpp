@@ -4,6 +4,7 @@
 
 #include "host_sim/world/arm_body.hpp"
 #include "host_sim/world/bullet_world.hpp"
+#include "tests/arm5e_joints.hpp"
 #include "tests/unit/world/world_fixture.hpp"
 
 namespace lf::world {
@@ -61,7 +62,7 @@ WorldConfig frictionless(const Targets& start_rad) {
 
 double potential_energy_j(const Bench& bench) {
   double energy = 0;
-  for (std::size_t i = 1; i < ArmDescription::link_count; ++i) {
+  for (std::size_t i = 1; i < arm5e_joint::links; ++i) {
     const ArmLink& link = bench.config.arm.links[i];
     energy -= link.wet_weight_n * (bench.arm.base_from_link(i) * link.link_from_com.translation()).z();
   }
@@ -69,10 +70,10 @@ double potential_energy_j(const Bench& bench) {
 }
 
 // Forward kinematics written out from the description.
-std::array<Pose, ArmDescription::link_count> poses_of(const ArmDescription& arm, const Targets& q) {
-  std::array<Pose, ArmDescription::link_count> poses;
+std::array<Pose, arm5e_joint::links> poses_of(const ArmDescription& arm, const Targets& q) {
+  std::array<Pose, arm5e_joint::links> poses;
   poses[0] = Pose::Identity();
-  for (std::size_t i = 0; i < joint_count; ++i) {
+  for (std::size_t i = 0; i < arm5e_joint::count; ++i) {
     poses[i + 1] = poses[i] * arm.joints[i].parent_from_joint * Eigen::AngleAxisd(q[i], arm.joints[i].axis);
   }
   poses[6] = poses[4] * arm.finger_b.parent_from_joint * Eigen::AngleAxisd(q[jaw], arm.finger_b.axis);
@@ -85,7 +86,7 @@ TEST(ArmBody, linksStandWhereTheDescriptionPutsThem) {
     config.start_rad = q;
     const Bench bench(config);
     const auto expected = poses_of(config.arm, q);
-    for (std::size_t i = 0; i < ArmDescription::link_count; ++i) {
+    for (std::size_t i = 0; i < arm5e_joint::links; ++i) {
       EXPECT_TRUE(bench.arm.base_from_link(i).isApprox(expected[i], 1e-9)) << "link " << i;
     }
     EXPECT_TRUE(bench.arm.base_from_tool().isApprox(expected[4] * config.arm.wrist_from_tool, 1e-9));
@@ -115,7 +116,7 @@ TEST(ArmBody, acceleratesFromRestAsLagrangesEquationsSay) {
   Eigen::Matrix<double, 5, 5> mass = Eigen::Matrix<double, 5, 5>::Zero();
   Eigen::Matrix<double, 5, 1> force = Eigen::Matrix<double, 5, 1>::Zero();
   const auto at = poses_of(config.arm, q);
-  for (std::size_t link = 1; link < ArmDescription::link_count; ++link) {
+  for (std::size_t link = 1; link < arm5e_joint::links; ++link) {
     const ArmLink& body = config.arm.links[link];
     Eigen::Matrix<double, 6, 5> jacobian;
     for (int j = 0; j < 5; ++j) {
@@ -171,7 +172,8 @@ TEST(ArmBody, drivesGiveTheDragOfAnyCoefficientAndStandAfterIt) {
     EXPECT_NEAR(bench.reading(jaw).torque_nm, 0.2 * 0.1 * drag_nm_s, 0.002 * drag_nm_s) << "of each finger, at " << drag_nm_s;
     for (JointDrive& drive : drives) drive.released = true;
     bench.run(0.5, drives);
-    for (std::size_t joint = 0; joint < joint_count; ++joint) EXPECT_LT(std::abs(bench.reading(joint).velocity_rad_s), 1e-3) << joint;
+    for (std::size_t joint = 0; joint < arm5e_joint::count; ++joint)
+      EXPECT_LT(std::abs(bench.reading(joint).velocity_rad_s), 1e-3) << joint;
   }
 }
 
@@ -188,7 +190,7 @@ TEST(ArmBody, aSteadySlewTakesTheTorqueOfTheWatersDrag) {
     double expected_nm = 0;
     const Pose slew = bench.arm.base_from_link(1);
     const Vec3 axis = slew.linear() * config.arm.joints[0].axis;
-    for (std::size_t link = 1; link < ArmDescription::link_count; ++link) {
+    for (std::size_t link = 1; link < arm5e_joint::links; ++link) {
       for (const scene::Shape& shape : config.arm.links[link].shapes) {
         if (!shape.collides || shape.kind == scene::ShapeKind::mesh || shape.kind == scene::ShapeKind::sphere) continue;
         const bool box = shape.kind == scene::ShapeKind::box;
@@ -239,7 +241,7 @@ TEST(ArmBody, torqueReadingIsTheWeightThatTheDriveHolds) {
     double expected_nm = 0;  // about the joint's axis, from what hangs on it
     const Pose origin = bench.arm.base_from_link(joint + 1);
     const Vec3 axis = origin.linear() * config.arm.joints[joint].axis;
-    for (std::size_t link = joint + 1; link < ArmDescription::link_count; ++link) {
+    for (std::size_t link = joint + 1; link < arm5e_joint::links; ++link) {
       const Vec3 com = bench.arm.base_from_link(link) * config.arm.links[link].link_from_com.translation();
       expected_nm -= axis.dot((com - origin.translation()).cross(Vec3(0, 0, config.arm.links[link].wet_weight_n)));
     }

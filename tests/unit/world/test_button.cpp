@@ -4,6 +4,7 @@
 
 #include "host_sim/world/bullet_world.hpp"
 #include "host_sim/world/button_body.hpp"
+#include "tests/arm5e_bodies.hpp"
 
 namespace lf::world {
 namespace {
@@ -14,7 +15,7 @@ constexpr double step_s = 0.001;
 struct Bench {
   BulletWorld world{30, 0, scene::bare_scene()};
   ButtonConfig config;
-  ButtonBody button{config, Pose::Identity(), {}, int(scene::first_feature + 2), step_s};
+  ButtonBody button{config, Pose::Identity(), {}, int(arm5e_body::first_feature + 2), step_s};
 
   Bench() { button.part().enter(world.get()); }
   ~Bench() { button.part().leave(world.get()); }

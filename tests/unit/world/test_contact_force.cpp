@@ -9,6 +9,7 @@
 #include "host_sim/world/contact_sensor.hpp"
 #include "host_sim/world/fixed_base_solver.hpp"
 #include "shared/input_error.hpp"
+#include "tests/arm5e_bodies.hpp"
 #include "tests/unit/world/sliding_rig.hpp"
 
 namespace lf::world {
@@ -18,7 +19,7 @@ using scene::BodyId;
 
 constexpr int iterations = 200;
 constexpr double gravity_m_s2 = 9.81;
-constexpr auto handle = BodyId(scene::first_feature);
+constexpr auto handle = arm5e_body::first_feature;
 
 struct Collision {
   double restitution, window_s, step_s;
@@ -65,7 +66,7 @@ TEST_P(StepRates, collisionWithAFixedStructureGivesMassTimesSpeedChangeOverTheWi
       Sled sled(world, mass_kg, box_body(Vec3(0.4, 0.4, 0.4)), Pose::Identity());
       Wall wall(world, box_body(Vec3(1, 1, 0.2)), Pose(Eigen::Translation3d(0, 0, -0.3 - 0.0113)));
       sled.set_speed(Vec3(0, 0, -speed_m_s));
-      const Measured measured = measure(world, {restitution, window_s, step_s}, 0.2, BodyId::finger_a, [] {});
+      const Measured measured = measure(world, {restitution, window_s, step_s}, 0.2, arm5e_body::finger_a, [] {});
       const double impulse_n_s = (1 + restitution) * mass_kg * speed_m_s;
       const double slack = slack_m_s(restitution);
       EXPECT_NEAR(measured.impulse_n_s, impulse_n_s, mass_kg * slack);
@@ -81,11 +82,11 @@ TEST_P(StepRates, collisionOfTwoBodiesGivesTheReducedMassTimesSpeedChangeOverThe
     SCOPED_TRACE(testing::Message() << GetParam() << " Hz, e " << restitution);
     const double m1 = 3, m2 = 5, v1 = 0.3, v2 = -0.1;
     BulletWorld world(iterations, restitution, scene::bare_scene());
-    Sled first(world, m1, box_body(Vec3(0.1, 0.1, 0.1)), Pose::Identity(), BodyId::finger_a);
+    Sled first(world, m1, box_body(Vec3(0.1, 0.1, 0.1)), Pose::Identity(), arm5e_body::finger_a);
     Sled second(world, m2, box_body(Vec3(0.1, 0.1, 0.1)), Pose(Eigen::Translation3d(0.1153, 0, 0)), handle);
     first.set_speed(Vec3(v1, 0, 0));
     second.set_speed(Vec3(v2, 0, 0));
-    const Measured measured = measure(world, {restitution, 0.020, step_s}, 0.2, BodyId::finger_a, [] {});
+    const Measured measured = measure(world, {restitution, 0.020, step_s}, 0.2, arm5e_body::finger_a, [] {});
     const double impulse_n_s = (1 + restitution) * (v1 - v2) / (1 / m1 + 1 / m2);
     const double slack = slack_m_s(restitution);
     EXPECT_NEAR(measured.peak_n, impulse_n_s / 0.020, m1 * slack / 0.020);
@@ -112,12 +113,12 @@ TEST_P(StepRates, collisionOfALeverUsesItsInertia) {
     tip.shapes[0].size_m = Vec3(0.02, 0, 0);
     tip.shapes[0].friction = 0;
     tip.shapes[0].body_from_shape.translation() = Vec3(arm_m, 0, 0);
-    lever.add_collider(0, make_collision_shape(tip, Pose::Identity()), int(BodyId::finger_a), Friction::anchored);
+    lever.add_collider(0, make_collision_shape(tip, Pose::Identity()), int(arm5e_body::finger_a), Friction::anchored);
     lever.update_poses();
     lever.enter(world.get());
     Wall wall(world, box_body(Vec3(1, 0.1, 1), Pose::Identity(), 0), Pose(Eigen::Translation3d(arm_m, 0.07 + 0.002, 0)));
     lever.body().setJointVel(0, speed_rad_s);
-    const Measured measured = measure(world, {restitution, 0.020, step_s}, 0.1, BodyId::finger_a, [] {});
+    const Measured measured = measure(world, {restitution, 0.020, step_s}, 0.1, arm5e_body::finger_a, [] {});
     const double force_n = (1 + restitution) * inertia * speed_rad_s / arm_m / 0.020;
     EXPECT_NEAR(measured.peak_n, force_n, 3e-3 * force_n);  // push-out, and the tip meets the wall 2 mm round the circle: r cos(0.0044 rad)
     EXPECT_NEAR(lever.body().getJointVel(0), -restitution * speed_rad_s, 2e-3 * speed_rad_s + slack_m_s(restitution) / arm_m);
@@ -133,8 +134,8 @@ TEST_P(StepRates, weightAtRestReadsAsWeight) {
     Sled sled(world, 20, box_body(Vec3(0.4, 0.4, 0.4)), Pose::Identity());
     Wall wall(world, box_body(Vec3(1, 1, 0.2)), Pose(Eigen::Translation3d(0, 0, -0.3)));
     const auto weigh = [&] { sled.push(Vec3(0, 0, -20 * gravity_m_s2)); };
-    measure(world, {restitution, 0.020, step_s}, 0.3, BodyId::finger_a, weigh);
-    const Measured measured = measure(world, {restitution, 0.020, step_s}, 0.1, BodyId::finger_a, weigh);
+    measure(world, {restitution, 0.020, step_s}, 0.3, arm5e_body::finger_a, weigh);
+    const Measured measured = measure(world, {restitution, 0.020, step_s}, 0.1, arm5e_body::finger_a, weigh);
     EXPECT_NEAR(measured.peak_n, 20 * gravity_m_s2, 0.002);
   }
 }
@@ -202,7 +203,7 @@ TEST(FrictionCone, holdsBelowItsAngleAndSlidesWithTheRestAboveIt) {
       const Vec3 downhill(std::cos(rad_from_deg(heading_deg)), std::sin(rad_from_deg(heading_deg)), 0);
       const Vec3 weight = mass_kg * gravity * (std::sin(slope) * downhill - std::cos(slope) * Vec3::UnitZ());
       const double seconds = 0.5;
-      measure(world, {0, 0.020, step_s}, seconds, BodyId::finger_a, [&] { sled.push(weight); });
+      measure(world, {0, 0.020, step_s}, seconds, arm5e_body::finger_a, [&] { sled.push(weight); });
       const double expected = std::max(0.0, gravity * (std::sin(slope) - mu * std::cos(slope))) * seconds;
       EXPECT_NEAR(sled.speed_m_s().dot(downhill), expected, 0.01 * expected + 1e-4);
       EXPECT_NEAR(sled.speed_m_s().cross(downhill).head<2>().norm(), 0, 1e-3);
@@ -227,7 +228,7 @@ TEST(FrictionOfAShape, isThatOfTheTwoShapesThatTouch) {
       Sled sled(world, mass_kg, body, Pose::Identity());
       Wall wall(world, floor, at(0, -0.15));
       const Vec3 weight = mass_kg * gravity_m_s2 * Vec3(std::sin(slope), 0, -std::cos(slope));
-      measure(world, {0, 0.020, step_s}, seconds, BodyId::finger_a, [&] { sled.push(weight); });
+      measure(world, {0, 0.020, step_s}, seconds, arm5e_body::finger_a, [&] { sled.push(weight); });
       const double expected = gravity_m_s2 * (std::sin(slope) - feet[down] * plates[over] * std::cos(slope)) * seconds;
       EXPECT_NEAR(sled.speed_m_s().x(), expected, 0.01 * expected);
     }
@@ -238,7 +239,8 @@ TEST(FrictionOfAShape, isThatOfTheTwoShapesThatTouch) {
 TEST(ContactSensor, averagesWrenchesAndJudgedForcesOverTheirOwnWindows) {
   using scene::BodyId;
   ContactSensor sensor(0.02, 0.05, 0.001, Vec3::Zero(), scene::bare_scene());
-  for (int i = 0; i < 20; ++i) sensor.take({{BodyId::wrist, BodyId::panel, Vec3::Zero(), Vec3(0.25, 0, 0)}}, Pose::Identity(), i * 0.001);
+  for (int i = 0; i < 20; ++i)
+    sensor.take({{arm5e_body::wrist, arm5e_body::panel, Vec3::Zero(), Vec3(0.25, 0, 0)}}, Pose::Identity(), i * 0.001);
   EXPECT_NEAR(sensor.report().base_wrench.force_n.norm(), 250, 1e-9);
   EXPECT_NEAR(sensor.report().largest_force_n, 100, 1e-9);
   EXPECT_NEAR(sensor.report().peak_force_n, 100, 1e-9);
@@ -258,17 +260,17 @@ TEST(ContactSensor, opposedForcesDoNotCancelAndASqueezeDoes) {
   };
   const Vec3 impulse(0.1, 0, 0);  // 100 N for a millisecond
   const ContactReport between =
-      seen({{BodyId::forearm, BodyId::panel, Vec3::Zero(), impulse}, {BodyId::finger_a, handle, Vec3::Zero(), -impulse}});
+      seen({{arm5e_body::forearm, arm5e_body::panel, Vec3::Zero(), impulse}, {arm5e_body::finger_a, handle, Vec3::Zero(), -impulse}});
   EXPECT_NEAR(between.base_wrench.force_n.norm(), 0, 1e-9);
   EXPECT_NEAR(between.largest_force_n, 100, 1e-9);
   EXPECT_NEAR(between.peak_force_n, 100, 1e-9);
-  const ContactReport own = seen({{BodyId::forearm, BodyId::vehicle, Vec3::Zero(), impulse}});
+  const ContactReport own = seen({{arm5e_body::forearm, arm5e_body::vehicle, Vec3::Zero(), impulse}});
   EXPECT_NEAR(own.base_wrench.force_n.norm(), 0, 1e-9);
   EXPECT_NEAR(own.largest_force_n, 100, 1e-9);
   const ContactReport squeeze =
-      seen({{BodyId::finger_a, handle, Vec3::Zero(), 2 * impulse}, {handle, BodyId::finger_b, Vec3::Zero(), 1.8 * impulse}});
+      seen({{arm5e_body::finger_a, handle, Vec3::Zero(), 2 * impulse}, {handle, arm5e_body::finger_b, Vec3::Zero(), 1.8 * impulse}});
   EXPECT_NEAR(squeeze.largest_force_n, 20, 1e-9);
-  EXPECT_EQ(seen({{BodyId::finger_a, BodyId::finger_b, Vec3::Zero(), 3 * impulse}}).largest_force_n, 0) << "a jaw that is closed";
+  EXPECT_EQ(seen({{arm5e_body::finger_a, arm5e_body::finger_b, Vec3::Zero(), 3 * impulse}}).largest_force_n, 0) << "a jaw that is closed";
 }
 
 TEST(ForceWindow, averagesTheLastStepsAndReturnsToExactlyZero) {

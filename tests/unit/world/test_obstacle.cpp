@@ -2,6 +2,7 @@
 
 #include <random>
 
+#include "tests/arm5e_bodies.hpp"
 #include "tests/unit/world/world_fixture.hpp"
 
 namespace lf::world {
@@ -34,7 +35,7 @@ TEST(Obstacle, PressesWithItsPushAndGivesWayToAnArmThatMoves) {
     script.run(2);
     EXPECT_LT(world.contacts().peak_force_n, push_n + momentum_n_s / window_s + 40) << "draw " << k;
     // The panel is out of the way: what is touched is the obstacle, and nobody means to touch that.
-    for (const UnintendedContact& touch : world.contacts().unintended) EXPECT_EQ(touch.b, scene::BodyId::obstacle) << "draw " << k;
+    for (const UnintendedContact& touch : world.contacts().unintended) EXPECT_EQ(touch.b, arm5e_body::obstacle) << "draw " << k;
     EXPECT_EQ(world.contacts().unintended.empty(), world.contacts().peak_force_n == 0) << "draw " << k;
     EXPECT_NEAR(world.contacts().obstacle_force_n, world.contacts().largest_force_n, 1e-9) << "draw " << k;
   }

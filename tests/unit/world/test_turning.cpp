@@ -14,8 +14,7 @@ struct Grasp {
 
 class Turning : public testing::TestWithParam<Grasp> {};
 
-constexpr std::array<double, joint_count> start_rad{0, 1.307, 1.151, pi / 2,
-                                                    0.3};  // at the reference layout's grasp, the tool tilted 8.2 deg
+constexpr PerJoint<double> start_rad{0, 1.307, 1.151, pi / 2, 0.3};  // at the reference layout's grasp, the tool tilted 8.2 deg
 
 WorldConfig gripping(const Grasp& grasp) {
   WorldConfig config = nominal_config();

@@ -5,6 +5,7 @@
 #include "host_sim/world/bullet_world.hpp"
 #include "host_sim/world/valve_body.hpp"
 #include "shared/panel/panel_layout.hpp"
+#include "tests/arm5e_bodies.hpp"
 
 namespace lf::world {
 namespace {
@@ -17,7 +18,7 @@ struct Bench {
   ValveBody valve;
 
   explicit Bench(const ValveConfig& config)
-      : valve(config, PanelLayout().nominal_base_from_panel(), {}, int(scene::first_feature), step_s) {
+      : valve(config, PanelLayout().nominal_base_from_panel(), {}, int(arm5e_body::first_feature), step_s) {
     valve.part().enter(world.get());
   }
   ~Bench() { valve.part().leave(world.get()); }

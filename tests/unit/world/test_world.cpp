@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "shared/input_error.hpp"
+#include "tests/arm5e_bodies.hpp"
 #include "tests/unit/world/world_fixture.hpp"
 
 namespace lf::world {
@@ -47,11 +48,12 @@ TEST(World, placesThePanelsBodiesAsTheLayoutSays) {
   config.base_from_panel.translation() += Vec3(0.01, -0.02, 0.015);
   const World world(config);
   const scene::BodyPoses poses = world.base_from_body();
-  EXPECT_TRUE(poses[std::size_t(BodyId::panel)].isApprox(config.base_from_panel));
-  EXPECT_TRUE(poses[scene::first_feature].isApprox(config.base_from_panel * Eigen::AngleAxisd(0.4, Vec3::UnitZ()), 1e-9));
+  EXPECT_TRUE(poses[arm5e_body::panel].isApprox(config.base_from_panel));
+  EXPECT_TRUE(poses[arm5e_body::first_feature].isApprox(config.base_from_panel * Eigen::AngleAxisd(0.4, Vec3::UnitZ()), 1e-9));
   for (std::size_t i = 0; i < config.layout.buttons.size(); ++i) {
     const Vec2& centre = config.layout.buttons[i].at_m;
-    EXPECT_TRUE(poses[scene::first_feature + 1 + i].translation().isApprox(config.base_from_panel * Vec3(centre.x(), centre.y(), 0), 1e-9));
+    EXPECT_TRUE(
+        poses[arm5e_body::first_feature + 1 + i].translation().isApprox(config.base_from_panel * Vec3(centre.x(), centre.y(), 0), 1e-9));
   }
 }
 
@@ -93,7 +95,7 @@ TEST(World, listsAnArmThatHitsThePanel) {
   script.run(4.0);
   const ContactReport contacts = world.contacts();
   ASSERT_FALSE(contacts.unintended.empty());
-  EXPECT_EQ(contacts.unintended.front().b, BodyId::panel);
+  EXPECT_EQ(contacts.unintended.front().b, arm5e_body::panel);
   EXPECT_GT(contacts.unintended.front().first_s, 0.1);
   EXPECT_GT(contacts.unintended.front().peak_force_n, 5);
   EXPECT_GE(contacts.peak_force_n, 5);

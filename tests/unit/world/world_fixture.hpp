@@ -9,6 +9,7 @@
 #include "host_sim/world/world.hpp"
 #include "shared/arm/arm_description.hpp"
 #include "shared/scene/panel_scene.hpp"
+#include "tests/arm5e_joints.hpp"
 
 namespace lf::world {
 
@@ -20,21 +21,21 @@ inline WorldConfig nominal_config() {
   return config;
 }
 
-using Targets = std::array<double, joint_count>;
+using Targets = PerJoint<double>;
 
 // Drives that move to their targets at up to `speed_rad_s`, proportionally within 10 ms of them.
 struct Script {
   World& world;
-  std::array<double, joint_count> torque_limit_nm{80, 100, 80, 12, 10};
+  PerJoint<double> torque_limit_nm{80, 100, 80, 12, 10};
   Targets targets_rad;
-  std::array<double, joint_count> speed_rad_s{0.2, 0.15, 0.2, 0.4, 0.4};
+  PerJoint<double> speed_rad_s{0.2, 0.15, 0.2, 0.4, 0.4};
 
   Script(World& of, const Targets& start_rad) : world(of), targets_rad(start_rad) {}
 
   void step() {
     const JointReadings readings = world.readings();
     JointDrives drives;
-    for (std::size_t i = 0; i < joint_count; ++i) {
+    for (std::size_t i = 0; i < arm5e_joint::count; ++i) {
       const double wanted = (targets_rad[i] - readings[i].motor_position_rad) / 0.010;
       drives[i] = {std::clamp(wanted, -speed_rad_s[i], speed_rad_s[i]), torque_limit_nm[i], false};
     }

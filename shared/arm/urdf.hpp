@@ -1,0 +1,127 @@
+// The elements and attributes of one URDF: each number checked, each complaint with its file and line.
+#pragma once
+
+#include <tinyxml2.h>
+
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <string>
+
+#include "shared/geometry/pose.hpp"
+#include "shared/input_error.hpp"
+
+namespace lf {
+
+using tinyxml2::XMLElement;
+
+class Urdf {
+ public:
+  explicit Urdf(const std::string& file) : file_(file) {
+    if (document_.LoadFile(file.c_str()) != tinyxml2::XML_SUCCESS) throw InputError(file, document_.ErrorLineNum(), load_error());
+    robot_ = document_.RootElement();
+    if (robot_ == nullptr) throw InputError(file, 0, "has no element");
+    if (std::strcmp(robot_->Name(), "robot") != 0) fail(robot_, "expected <robot>, found <" + std::string(robot_->Name()) + ">");
+  }
+
+  [[noreturn]] void fail(const XMLElement* at, const std::string& message) const {
+    throw InputError(file_, at != nullptr ? at->GetLineNum() : 0, message);
+  }
+
+  const XMLElement* named(const char* tag, const std::string& name) const {
+    for (const XMLElement* e = robot_->FirstChildElement(tag); e != nullptr; e = e->NextSiblingElement(tag))
+      if (name == text(e, "name")) return e;
+    fail(robot_, "no <" + std::string(tag) + "> named '" + name + "'");
+  }
+
+  template <class Look>
+  void each(const char* tag, const Look& look) const {
+    for (const XMLElement* e = robot_->FirstChildElement(tag); e != nullptr; e = e->NextSiblingElement(tag)) look(e);
+  }
+
+  const XMLElement* child(const XMLElement* parent, const char* tag) const {
+    const XMLElement* e = parent->FirstChildElement(tag);
+    if (e == nullptr) fail(parent, label(parent) + " has no <" + tag + ">");
+    return e;
+  }
+
+  std::string text(const XMLElement* e, const char* attribute) const {
+    const char* value = e->Attribute(attribute);
+    if (value == nullptr) fail(e, label(e) + " has no " + attribute);
+    return value;
+  }
+
+  template <int N>
+  Eigen::Matrix<double, N, 1> numbers(const XMLElement* e, const char* attribute) const {
+    const std::string value = text(e, attribute);
+    const auto bad = [&] {
+      fail(e, label(e) + ": " + attribute + "=\"" + value + "\" is not " + (N == 1 ? "a number" : std::to_string(N) + " numbers"));
+    };
+    Eigen::Matrix<double, N, 1> result;
+    const char* at = value.data();
+    const char* const end = at + value.size();
+    const auto skip_spaces = [&] {
+      while (at != end && std::isspace(static_cast<unsigned char>(*at)) != 0) ++at;
+    };
+    for (int i = 0; i < N; ++i) {
+      skip_spaces();
+      const auto [next, error] = std::from_chars(at, end, result[i]);
+      if (error != std::errc() || !std::isfinite(result[i])) bad();
+      at = next;
+    }
+    skip_spaces();
+    if (at != end) bad();
+    return result;
+  }
+
+  double number(const XMLElement* e, const char* attribute) const { return numbers<1>(e, attribute)[0]; }
+  double positive(const XMLElement* e, const char* attribute) const {
+    const double value = number(e, attribute);
+    if (value <= 0) fail(e, label(e) + ": " + attribute + " must be positive");
+    return value;
+  }
+  double not_negative(const XMLElement* e, const char* attribute) const {
+    const double value = number(e, attribute);
+    if (value < 0) fail(e, label(e) + ": " + attribute + " must not be negative");
+    return value;
+  }
+
+  // The <origin> of `e`; identity when it has none, as URDF has it.
+  Pose origin(const XMLElement* e) const {
+    Pose pose = Pose::Identity();
+    const XMLElement* const origin = e->FirstChildElement("origin");
+    if (origin == nullptr) return pose;
+    if (origin->Attribute("xyz") != nullptr) pose.translation() = numbers<3>(origin, "xyz");
+    if (origin->Attribute("rpy") == nullptr) return pose;
+    const Vec3 rpy = numbers<3>(origin, "rpy");
+    using Eigen::AngleAxisd;
+    pose.linear() =
+        (AngleAxisd(rpy.z(), Vec3::UnitZ()) * AngleAxisd(rpy.y(), Vec3::UnitY()) * AngleAxisd(rpy.x(), Vec3::UnitX())).toRotationMatrix();
+    return pose;
+  }
+
+  // "joint 'elbow'", or "<limit>" for what has no name.
+  static std::string label(const XMLElement* e) {
+    std::string label = e->Name();
+    if (const char* const name = e->Attribute("name")) return label.append(" '").append(name).append("'");
+    return label.insert(0, 1, '<').append(1, '>');
+  }
+
+ private:
+  std::string load_error() const {
+    switch (document_.ErrorID()) {
+      case tinyxml2::XML_ERROR_FILE_NOT_FOUND: return "no such file";
+      case tinyxml2::XML_ERROR_FILE_COULD_NOT_BE_OPENED:
+      case tinyxml2::XML_ERROR_FILE_READ_ERROR: return "cannot be read";
+      case tinyxml2::XML_ERROR_EMPTY_DOCUMENT: return "is empty";
+      default: return std::string("is not well-formed XML (") + document_.ErrorName() + ")";
+    }
+  }
+
+  std::string file_;
+  tinyxml2::XMLDocument document_;
+  const XMLElement* robot_ = nullptr;
+};
+
+}  // namespace lf
