@@ -12,7 +12,7 @@
 // rebounds at the restitution times the speed at which it closed before the step, from `bounce_m_s` on, or at the speed that takes it out of its overlap,
 // whichever is more. Friction is that of the two shapes that touch; Bullet has one value a body.
 //
-// Only for worlds whose multibodies have fixed bases and at most 6 joints, and whose rigid bodies do not move.
+// Only for worlds whose multibodies have fixed bases and at most `max_joints` joints, and whose rigid bodies do not move.
 #pragma once
 
 #include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
@@ -21,12 +21,14 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "shared/messages/capacity.hpp"
+
 namespace lf::world {
 
 class FixedBaseSolver : public btMultiBodyConstraintSolver {
  public:
-  static constexpr int max_joints = 6;
-  static constexpr double push_out_m_s = 0.0005;  // out of 0.2 mm, a step's depth of a blow at 0.2 m/s, in 0.4 s
+  static constexpr int max_joints = capacity::arm_joints + 2;  // the arm's, and a finger each
+  static constexpr double push_out_m_s = 0.0005;               // out of 0.2 mm, a step's depth of a blow at 0.2 m/s, in 0.4 s
   static constexpr double blow_m_s = 0.5;
   static constexpr double recovery_s = 0.05;
   static constexpr double bounce_m_s = 0.01;

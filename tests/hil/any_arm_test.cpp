@@ -1,0 +1,155 @@
+// An arm of six joints before its jaw, of no form that jobs are planned for: an operator homes and jogs it, and whatever stops the default arm stops it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "host_sim/scenario/instance.hpp"
+#include "host_sim/scenario/scenario.hpp"
+#include "shared/arm/make_model.hpp"
+#include "shared/input_error.hpp"
+#include "tests/hil/operator.hpp"
+
+namespace lf::test {
+namespace {
+
+using mission::Standing;
+using mission::Step;
+using safety::Fault;
+
+std::vector<std::string> six_joints(std::vector<std::string> more = {}) {
+  std::vector<std::string> overrides{"machine=" LANTERNFISH_TEST_DATA "/arms/six_joints/six_joints.yaml", "tasks=[]"};
+  overrides.insert(overrides.end(), more.begin(), more.end());
+  return overrides;
+}
+
+bool any_power(Rig& rig) {
+  for (std::size_t i = 0; i < rig.arm().joints.size(); ++i) {
+    if (rig.devices().power(i) != devices::DrivePower::off) return true;
+  }
+  return false;
+}
+
+class AnyArm : public testing::Test {
+ protected:
+  Rig rig{six_joints()};
+  std::size_t joints() const { return rig.arm().joints.size(); }
+};
+
+TEST_F(AnyArm, IsHomedAndStandsWhereItIsFolded) {
+  ASSERT_EQ(joints(), 7u);
+  ASSERT_TRUE(home(rig)) << rig.story();
+  const std::vector<double> park{0, 0.6, -1.3, 0, 0.4, 0};
+  for (std::size_t i = 0; i < park.size(); ++i) EXPECT_NEAR(angle_rad(rig, i), park[i], 0.01) << i;
+  arm::JointVector q = arm::JointVector::Zero();
+  for (std::size_t i = 0; i < park.size(); ++i) q[static_cast<Eigen::Index>(i)] = angle_rad(rig, i);
+  const Pose told = arm::Arm(make_model(rig.arm())).base_from_tool(q);
+  EXPECT_LT((told.translation() - rig.world().base_from_tool().translation()).norm(), 1e-6) << "where the core takes its tool to be";
+  EXPECT_TRUE(rig.world().contacts().unintended.empty());
+}
+
+TEST_F(AnyArm, EachJointIsJoggedAndNoOtherMoves) {
+  ASSERT_TRUE(home(rig)) << rig.story();
+  for (std::size_t joint = 0; joint < joints(); ++joint) {
+    SCOPED_TRACE(rig.arm().joints[joint].name);
+    for (const double by_rad : {0.15, -0.15}) {
+      const auto from = angles_rad(rig);
+      ASSERT_TRUE(jog(rig, joint, by_rad)) << rig.story();
+      ASSERT_TRUE(finish_jog(rig)) << rig.story();
+      EXPECT_NEAR(angle_rad(rig, joint), from[joint] + by_rad, 0.012);
+      auto others = angles_rad(rig);
+      others[joint] = from[joint];
+      EXPECT_LT(farthest_apart(others, from), 0.006);
+    }
+  }
+  EXPECT_EQ(rig.step_now(), Step::ready) << rig.story();
+  EXPECT_TRUE(rig.world().contacts().unintended.empty());
+}
+
+// Its base is where the default arm's is: its boom comes down on the vehicle's frame when it is lifted back.
+TEST_F(AnyArm, IsNotJoggedBeyondItsLimitsNorIntoItsVehicle) {
+  ASSERT_TRUE(home(rig)) << rig.story();
+  EXPECT_FALSE(jog(rig, 7, 0.1)) << "there is no such joint";
+  for (int jogs = 0; jogs < 40 && rig.count(Fault::step_failed) == 0; ++jogs) {
+    if (!jog(rig, 1, -0.2)) break;  // at the end of its limits
+    ASSERT_TRUE(finish_jog(rig)) << rig.story();
+  }
+  EXPECT_GE(angle_rad(rig, 1), -0.28 - 0.01);
+  EXPECT_TRUE(rig.world().contacts().unintended.empty()) << rig.story();
+  EXPECT_EQ(rig.step_now(), Step::ready) << rig.story();
+}
+
+TEST_F(AnyArm, IsGivenNoJob) {
+  ASSERT_TRUE(home(rig)) << rig.story();
+  EXPECT_FALSE(give(rig, Command::start)) << "there is nothing to do";
+  EXPECT_FALSE(set_tasks(rig, {mission::Task{mission::Task::Kind::press_button, 0, 0, 0}}));
+  rig.run_for(1);
+  EXPECT_EQ(rig.step_now(), Step::ready) << rig.story();
+}
+
+TEST(AnyArmsJob, IsRefusedWithTheReasonBeforeItBegins) {
+  const std::vector<std::string> overrides{"machine=" LANTERNFISH_TEST_DATA "/arms/six_joints/six_joints.yaml"};
+  try {
+    scenario::check_runnable(scenario::load_scenario("default", overrides));
+    FAIL() << "it was accepted";
+  } catch (const InputError& refused) {
+    EXPECT_THAT(refused.what(), testing::HasSubstr("jobs are planned for arms of slew, shoulder, elbow and roll only"));
+  }
+}
+
+// From any joint's drive, those that the default arm has not among them.
+class AnyArmsFault : public testing::TestWithParam<std::size_t> {};
+
+TEST_P(AnyArmsFault, StopsItAndTakesThePower) {
+  Rig rig(six_joints());
+  ASSERT_TRUE(home(rig)) << rig.story();
+  ASSERT_TRUE(jog(rig, 0, 0.3));
+  rig.run_for(0.4);
+  ASSERT_EQ(rig.mission().standing(), Standing::jogging);
+  devices::DeviceFault fault;
+  fault.kind = devices::DeviceFaultKind::overcurrent;
+  fault.node = rig.controller().network().config().drives[GetParam()].node;
+  rig.devices().add_fault(fault, rig.now());
+  rig.run_for(1.5);
+  EXPECT_GE(rig.count(Fault::drive_fault), 1u) << rig.story();
+  EXPECT_FALSE(any_power(rig)) << rig.story();
+  EXPECT_LT(rig.fastest_joint_rad_s(), standing_rad_s);
+  bool named = false;
+  for (const Event& event : rig.events())
+    named = named || (event.kind == Event::Kind::fault && event.code == static_cast<std::int32_t>(GetParam()));
+  EXPECT_TRUE(named) << rig.story();
+}
+
+INSTANTIATE_TEST_SUITE_P(OfEachDrive, AnyArmsFault, testing::Range(std::size_t{0}, std::size_t{7}));
+
+TEST_F(AnyArm, AnEmergencyStopTakesItsPowerOnItsWay) {
+  for (const std::size_t joint : {0u, 3u, 5u}) {
+    Rig stopped(six_joints());
+    ASSERT_TRUE(home(stopped)) << stopped.story();
+    ASSERT_TRUE(jog(stopped, joint, 0.3));
+    stopped.run_for(0.3);
+    stopped.devices().set_estop_closed(false);
+    stopped.run_for(1.3);
+    EXPECT_FALSE(any_power(stopped)) << stopped.story();
+    EXPECT_LT(stopped.fastest_joint_rad_s(), standing_rad_s);
+  }
+}
+
+// What is told of fewer joints than the arm has would leave one unwatched.
+TEST(AnyArmsLimits, OfFewerJointsThanItsOwnMoveNothing) {
+  Rig rig(six_joints(), 1, [](ControllerConfig& told) {
+    for (safety::Limits* limits : {&told.limits, &told.mission_limits}) {
+      limits->joints.pop_back();
+      limits->checksum = safety::limits_checksum(*limits);
+    }
+  });
+  ASSERT_TRUE(rig.controller().on_command(Command::home, rig.now()));
+  rig.run_for(2);
+  EXPECT_EQ(rig.step_now(), Step::off) << rig.story();
+  EXPECT_GE(rig.count(Fault::limits_refused), 1u) << rig.story();
+  EXPECT_FALSE(any_power(rig));
+}
+
+}  // namespace
+}  // namespace lf::test
