@@ -11,6 +11,9 @@ using Json = nlohmann::ordered_json;
 
 Json nested_schema(const std::vector<Key>& table);
 
+// Of an arm whose joints no schema knows.
+constexpr const char* joint_name = "^[A-Za-z][A-Za-z0-9_-]*$";
+
 Json number_schema(const Key& key, const char* type) { return {{"type", type}, {"minimum", key.min}, {"maximum", key.max}}; }
 
 Json words_schema(const Key& key) {
@@ -63,6 +66,9 @@ struct TypeSchema {
   Json operator()(std::vector<Fault>*) const {
     Fault fault;
     Json item = nested_schema(keys(fault));
+    Json& node = item["properties"]["node"];
+    node["anyOf"] = Json::array({{{"enum", node["enum"]}}, {{"pattern", joint_name}}});
+    node.erase("enum");
     item["required"] = {"kind"};
     return list_schema(item, 0);
   }
@@ -88,11 +94,25 @@ Json nested_schema(const std::vector<Key>& table) {
   return root;
 }
 
+// Another arm's drives stand there by the names of its own joints, with the keys of any drive.
+void take_any_joint(Json& root) {
+  Json& groups = root["properties"];
+  if (!groups.contains("drives")) return;
+  Json& drives = groups["drives"];
+  for (const auto& [name, drive] : drives["properties"].items()) {
+    if (drive.contains("properties")) {
+      drives["additionalProperties"] = drive;
+      return;
+    }
+  }
+}
+
 }  // namespace
 
 std::string key_schema(const Keys& table, const std::string& title) {
   Json schema{{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", title}};
   schema.update(nested_schema(table));
+  take_any_joint(schema);
   return schema.dump(2) + "\n";
 }
 
