@@ -5,11 +5,13 @@
 #include <string>
 #include <vector>
 
+#include "hal/config/text_file.hpp"
 #include "host_sim/scenario/instance.hpp"
 #include "host_sim/scenario/scenario.hpp"
 #include "shared/arm/make_model.hpp"
 #include "shared/input_error.hpp"
 #include "tests/hil/operator.hpp"
+#include "tests/unit/temporary_folder.hpp"
 
 namespace lf::test {
 namespace {
@@ -134,6 +136,81 @@ TEST_F(AnyArm, AnEmergencyStopTakesItsPowerOnItsWay) {
     EXPECT_FALSE(any_power(stopped)) << stopped.story();
     EXPECT_LT(stopped.fastest_joint_rad_s(), standing_rad_s);
   }
+}
+
+std::string between(const std::string& text, const std::string& from, const std::string& to) {
+  const std::size_t begin = text.find(from);
+  return text.substr(begin, text.find(to, begin) + to.size() - begin);
+}
+
+void replace(std::string& text, const std::string& what, const std::string& by) {
+  const std::size_t at = text.find(what);
+  ASSERT_NE(at, std::string::npos) << what;
+  text.replace(at, what.size(), by);
+}
+
+// The same arm with two more joints in its wrist: as many as the core holds.
+class ArmOfEightJoints : public testing::Test {
+ protected:
+  void SetUp() override {
+    const std::string arms = LANTERNFISH_TEST_DATA "/arms/six_joints/";
+    std::string urdf = config::read_text_file(arms + "six_joints.urdf"), limits = config::read_text_file(arms + "limits.yaml");
+    const std::string link = between(urdf, "  <link name=\"pitch_block\">", "</link>\n"),
+                      pitch = between(urdf, "  <joint name=\"pitch\"", "</joint>\n");
+    std::string parent = "pitch_block";
+    for (const std::string name : {"first", "second"}) {
+      std::string block = link, joint = pitch;
+      replace(block, "\"pitch_block\"", "\"" + name + "_block\"");
+      replace(joint, "\"pitch\"", "\"" + name + "\"");
+      replace(joint, "<parent link=\"stick\"/>", "<parent link=\"" + parent + "\"/>");
+      replace(joint, "<child link=\"pitch_block\"/>", "<child link=\"" + name + "_block\"/>");
+      replace(joint, between(joint, "<origin", "/>"), "<origin xyz=\"0.07 0 0\" rpy=\"0.4 0 0\"/>");
+      replace(urdf, "  <link name=\"hand\">", block + "  <link name=\"hand\">");
+      replace(urdf, "  <joint name=\"spin\"", joint + "  <joint name=\"spin\"");
+      replace(limits, "  spin:", "  " + name + ": {min_rad: -1.48, max_rad: 1.48, max_speed_rad_s: 0.6, max_torque_nm: 13}\n  spin:");
+      parent = name + "_block";
+    }
+    const std::size_t spin = urdf.find("  <joint name=\"spin\"");
+    urdf.replace(urdf.find("<parent link=\"pitch_block\"/>", spin), 30, "<parent link=\"" + parent + "\"/>");
+    replace(limits, between(limits, "  min_m:", "]"), "  min_m: [-0.8, -1.2, -1.2]");
+    replace(limits, between(limits, "  max_m:", "]"), "  max_m: [1.2, 1.2, 1.2]");
+    folder.write("arm.urdf", urdf);
+    folder.write("limits.yaml", limits);
+    machine = folder.write("machine.yaml",
+                           "version: 1\narm: {urdf: arm.urdf, park_rad: [0, 0.6, -1.3, 0, 0.4, 0, 0, 0]}\nsafety: {limits: limits.yaml}\n");
+    // The refusal names the right checksum.
+    try {
+      (void)scenario::make_nominal(scenario::load_scenario("default", set()), true);
+    } catch (const InputError& refused) {
+      const std::string told = refused.what();
+      replace(limits, between(limits, "checksum: ", "\n"), "checksum: " + told.substr(told.rfind("0x"), 10) + "\n");
+      folder.write("limits.yaml", limits);
+    }
+  }
+
+  std::vector<std::string> set() const { return {"machine=" + machine, "tasks=[]"}; }
+
+  TemporaryFolder folder;
+  std::string machine;
+};
+
+TEST_F(ArmOfEightJoints, IsHomedAndEachOfThemIsJogged) {
+  Rig rig(set());
+  ASSERT_EQ(rig.arm().joints.size(), 9u);
+  ASSERT_TRUE(home(rig)) << rig.story();
+  for (std::size_t joint = 0; joint < rig.arm().joints.size(); ++joint) {
+    SCOPED_TRACE(rig.arm().joints[joint].name);
+    const double from = angle_rad(rig, joint);
+    ASSERT_TRUE(jog(rig, joint, 0.1)) << rig.story();
+    ASSERT_TRUE(finish_jog(rig)) << rig.story();
+    EXPECT_NEAR(angle_rad(rig, joint), from + 0.1, 0.012);
+    ASSERT_TRUE(jog(rig, joint, -0.1)) << rig.story();
+    ASSERT_TRUE(finish_jog(rig)) << rig.story();
+  }
+  EXPECT_TRUE(rig.world().contacts().unintended.empty());
+  rig.devices().set_estop_closed(false);
+  rig.run_for(1.3);
+  EXPECT_FALSE(any_power(rig)) << rig.story();
 }
 
 // What is told of fewer joints than the arm has would leave one unwatched.
