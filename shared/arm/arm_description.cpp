@@ -215,9 +215,13 @@ ArmParts parts_of(const Urdf& urdf) {
   std::vector<const XMLElement*> joints;
   urdf.each("joint", [&](const XMLElement* e) {
     joints.push_back(e);
-    arm.planar = arm.planar || urdf.text(e, "name") == planar_joints.front();
+    arm.planar = arm.planar || (urdf.text(e, "name") == planar_joints.front() && link_of(urdf, e, "parent") == planar_links.front());
   });
   if (arm.planar) {
+    for (const char* joint : planar_joints)
+      (void)urdf.named(
+          "joint", joint,
+          ": after a first joint of the name 'slew' come shoulder, elbow and roll. Call it otherwise where the arm has another form");
     arm.links.assign(planar_links.begin(), planar_links.end());
     arm.joints.assign(planar_joints.begin(), planar_joints.end());
     return arm;

@@ -29,10 +29,11 @@ class Urdf {
     throw InputError(file_, at != nullptr ? at->GetLineNum() : 0, message);
   }
 
-  const XMLElement* named(const char* tag, const std::string& name) const {
+  // `otherwise`: what to do where there is none.
+  const XMLElement* named(const char* tag, const std::string& name, const std::string& otherwise = "") const {
     for (const XMLElement* e = robot_->FirstChildElement(tag); e != nullptr; e = e->NextSiblingElement(tag))
       if (name == text(e, "name")) return e;
-    fail(robot_, "no <" + std::string(tag) + "> named '" + name + "'");
+    fail(robot_, "no <" + std::string(tag) + "> named '" + name + "'" + otherwise);
   }
 
   template <class Look>

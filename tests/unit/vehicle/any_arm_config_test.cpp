@@ -143,6 +143,24 @@ TEST_F(AnyArmsVehicle, OfAFormThatTheCoreCannotKeepClearIsRefused) {
   }
 }
 
+// Its first joint's name says of which form an arm is, and no other joint's does.
+TEST_F(AnyArmsVehicle, MayCallAJointSlewButForTheFirst) {
+  const auto renamed = [&](const std::string& joint) {
+    SetUp();
+    for (const char* file : {"six_joints.urdf", "limits.yaml"}) {
+      std::string text = config::read_text_file(folder / file);
+      for (const std::string& quoted : {"\"" + joint + "\"", joint + ":"}) {
+        for (std::size_t at = text.find(quoted); at != std::string::npos; at = text.find(quoted))
+          text.replace(at, quoted.size(), quoted.front() == '"' ? "\"slew\"" : "slew:");
+      }
+      folder.write(file, text);
+    }
+    return problems();
+  };
+  EXPECT_THAT(renamed("twist"), IsEmpty());
+  EXPECT_THAT(renamed("azimuth"), Contains(HasSubstr("no <joint> named 'shoulder': after a first joint of the name 'slew' come")));
+}
+
 // Names that stand beside a joint's in limits, drives or faults, or that no key could be.
 TEST_F(AnyArmsVehicle, WithJointsThatCannotBeKeysIsRefused) {
   for (const std::string name : {"io", "all", "profile", "1st", "a b", "x.y", ""}) {
