@@ -21,7 +21,7 @@ struct FaultReport {
 };
 
 // A tick's worst case: of the watch two for the links, nine for another master, two for each node, six for each joint, the workspace and the output node; of the
-// mission's own sources 12; and some more.
+// mission's own sources 12. Room for five more: a report that does not fit would be lost.
 using FaultReports = StaticVector<FaultReport, 30 + 2 * capacity::nodes + 6 * capacity::joints>;
 
 // What a reaction depends on besides fault and phase.

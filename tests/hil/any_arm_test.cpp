@@ -11,6 +11,7 @@
 #include "shared/arm/make_model.hpp"
 #include "shared/input_error.hpp"
 #include "tests/hil/operator.hpp"
+#include "tests/unit/changed_text.hpp"
 #include "tests/unit/temporary_folder.hpp"
 
 namespace lf::test {
@@ -143,12 +144,6 @@ std::string between(const std::string& text, const std::string& from, const std:
   return text.substr(begin, text.find(to, begin) + to.size() - begin);
 }
 
-void replace(std::string& text, const std::string& what, const std::string& by) {
-  const std::size_t at = text.find(what);
-  ASSERT_NE(at, std::string::npos) << what;
-  text.replace(at, what.size(), by);
-}
-
 // The same arm with two more joints in its wrist: as many as the core holds.
 class ArmOfEightJoints : public testing::Test {
  protected:
@@ -160,20 +155,20 @@ class ArmOfEightJoints : public testing::Test {
     std::string parent = "pitch_block";
     for (const std::string name : {"first", "second"}) {
       std::string block = link, joint = pitch;
-      replace(block, "\"pitch_block\"", "\"" + name + "_block\"");
-      replace(joint, "\"pitch\"", "\"" + name + "\"");
-      replace(joint, "<parent link=\"stick\"/>", "<parent link=\"" + parent + "\"/>");
-      replace(joint, "<child link=\"pitch_block\"/>", "<child link=\"" + name + "_block\"/>");
-      replace(joint, between(joint, "<origin", "/>"), "<origin xyz=\"0.07 0 0\" rpy=\"0.4 0 0\"/>");
-      replace(urdf, "  <link name=\"hand\">", block + "  <link name=\"hand\">");
-      replace(urdf, "  <joint name=\"spin\"", joint + "  <joint name=\"spin\"");
-      replace(limits, "  spin:", "  " + name + ": {min_rad: -1.48, max_rad: 1.48, max_speed_rad_s: 0.6, max_torque_nm: 13}\n  spin:");
+      change(block, "\"pitch_block\"", "\"" + name + "_block\"");
+      change(joint, "\"pitch\"", "\"" + name + "\"");
+      change(joint, "<parent link=\"stick\"/>", "<parent link=\"" + parent + "\"/>");
+      change(joint, "<child link=\"pitch_block\"/>", "<child link=\"" + name + "_block\"/>");
+      change(joint, between(joint, "<origin", "/>"), "<origin xyz=\"0.07 0 0\" rpy=\"0.4 0 0\"/>");
+      change(urdf, "  <link name=\"hand\">", block + "  <link name=\"hand\">");
+      change(urdf, "  <joint name=\"spin\"", joint + "  <joint name=\"spin\"");
+      change(limits, "  spin:", "  " + name + ": {min_rad: -1.48, max_rad: 1.48, max_speed_rad_s: 0.6, max_torque_nm: 13}\n  spin:");
       parent = name + "_block";
     }
     const std::size_t spin = urdf.find("  <joint name=\"spin\"");
     urdf.replace(urdf.find("<parent link=\"pitch_block\"/>", spin), 30, "<parent link=\"" + parent + "\"/>");
-    replace(limits, between(limits, "  min_m:", "]"), "  min_m: [-0.8, -1.2, -1.2]");
-    replace(limits, between(limits, "  max_m:", "]"), "  max_m: [1.2, 1.2, 1.2]");
+    change(limits, between(limits, "  min_m:", "]"), "  min_m: [-0.8, -1.2, -1.2]");
+    change(limits, between(limits, "  max_m:", "]"), "  max_m: [1.2, 1.2, 1.2]");
     folder.write("arm.urdf", urdf);
     folder.write("limits.yaml", limits);
     machine = folder.write("machine.yaml",
@@ -183,7 +178,7 @@ class ArmOfEightJoints : public testing::Test {
       (void)scenario::make_nominal(scenario::load_scenario("default", set()), true);
     } catch (const InputError& refused) {
       const std::string told = refused.what();
-      replace(limits, between(limits, "checksum: ", "\n"), "checksum: " + told.substr(told.rfind("0x"), 10) + "\n");
+      change(limits, between(limits, "checksum: ", "\n"), "checksum: " + told.substr(told.rfind("0x"), 10) + "\n");
       folder.write("limits.yaml", limits);
     }
   }

@@ -2,16 +2,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <sstream>
-
 #include "hal/config/key_listing.hpp"
 #include "hal/config/key_text.hpp"
 #include "hal/config/machine_file.hpp"
 #include "hal/config/text_file.hpp"
 #include "hal/vehicle/vehicle_config.hpp"
 #include "shared/arm/arm_description.hpp"
-#include "shared/input_error.hpp"
+#include "tests/unit/changed_text.hpp"
 #include "tests/unit/temporary_folder.hpp"
+#include "tests/unit/vehicle/config_problems.hpp"
 
 namespace lf::hal {
 namespace {
@@ -26,30 +25,17 @@ using testing::Not;
 
 const std::string arms = LANTERNFISH_TEST_DATA "/arms/six_joints/";
 
-void replace(std::string& text, const std::string& what, const std::string& by) {
-  const std::size_t at = text.find(what);
-  ASSERT_NE(at, std::string::npos) << what;
-  text.replace(at, what.size(), by);
-}
-
 // A robot's folder: the arm, its limits, its machine file and a vehicle's file that names it.
 class AnyArmsVehicle : public testing::Test {
  protected:
   void change(const std::string& file, const std::string& what, const std::string& by) {
     std::string text = config::read_text_file(folder / file);
-    replace(text, what, by);
+    test::change(text, what, by);
     folder.write(file, text);
   }
 
   std::vector<std::string> problems(const std::string& more = "") {
-    std::vector<std::string> lines;
-    try {
-      (void)load_vehicle_config(folder.write("vehicle.yaml", "machine: ./six_joints.yaml\ntasks: []\n" + more));
-    } catch (const InputError& error) {
-      std::istringstream text(error.what());
-      for (std::string line; std::getline(text, line);) lines.push_back(line);
-    }
-    return lines;
+    return problems_of(folder.write("vehicle.yaml", "machine: ./six_joints.yaml\ntasks: []\n" + more));
   }
 
   TemporaryFolder folder;
@@ -98,14 +84,9 @@ TEST_F(AnyArmsVehicle, FoldedWhereSomethingIsIsRefused) {
 TEST_F(AnyArmsVehicle, GivenAJobIsRefused) {
   EXPECT_THAT(problems(), IsEmpty());
   std::string text = config::read_text_file(folder / "vehicle.yaml");
-  replace(text, "tasks: []\n", "");
-  std::string refused;
-  try {
-    (void)load_vehicle_config(folder.write("jobs.yaml", text));
-  } catch (const InputError& error) {
-    refused = error.what();
-  }
-  EXPECT_THAT(refused, HasSubstr("jobs are planned for arms of slew, shoulder, elbow and roll only"));
+  test::change(text, "tasks: []\n", "");
+  EXPECT_THAT(problems_of(folder.write("jobs.yaml", text)),
+              Contains(HasSubstr("jobs are planned for arms of slew, shoulder, elbow and roll only")));
 }
 
 TEST_F(AnyArmsVehicle, WithLimitsOfAnotherArmIsToldSo) {

@@ -14,6 +14,7 @@
 #include "shared/input_error.hpp"
 #include "tests/arm5e_joints.hpp"
 #include "tests/unit/temporary_folder.hpp"
+#include "tests/unit/vehicle/config_problems.hpp"
 
 namespace lf::hal {
 namespace {
@@ -23,17 +24,6 @@ using testing::ElementsAre;
 using testing::EndsWith;
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-std::vector<std::string> problems_of(const std::string& file) {
-  std::vector<std::string> lines;
-  try {
-    (void)load_vehicle_config(file);
-  } catch (const InputError& error) {
-    std::istringstream text(error.what());
-    for (std::string line; std::getline(text, line);) lines.push_back(line);
-  }
-  return lines;
-}
 
 TEST(VehicleConfig, TheShippedOnesAreValid) {
   const std::string folder = LANTERNFISH_SOURCE_DIR "/shared/vehicle/";
@@ -469,32 +459,6 @@ TEST(VehicleConfig, AJointWhoseZeroIsDoubtfulTakesNoPowerAndIsNamed) {
   const VehicleConfig config = load_vehicle_config(folder.write("v.yaml", "homing: {file: h.yaml}\n"));
   for (std::size_t i = 0; i < arm5e_joint::count; ++i) EXPECT_EQ(config.core.controller.network.drives[i].may_have_power(), i == 3) << i;
   EXPECT_THAT(config.core.notes, testing::Contains(HasSubstr("the elbow's zero is doubtful")));
-}
-
-// A file of the machine's limits with the elbow's top speed changed, and its right checksum, which the reader names.
-std::string limits_with_elbow_speed(const TemporaryFolder& folder, const std::string& rad_s) {
-  std::ifstream shipped(LANTERNFISH_SOURCE_DIR "/shared/safety/limits.yaml");
-  std::string text((std::istreambuf_iterator<char>(shipped)), {});
-  const std::size_t at = text.find("0.36");
-  text.replace(at, 4, rad_s);
-  const std::string file = folder.write("mission.yaml", text);
-  const std::string named = problems_of(folder.write("probe.yaml", "safety: {limits: mission.yaml}\n")).front();
-  const std::string right = named.substr(named.rfind("0x"), 10);
-  text.replace(text.find("checksum: 0x") + 10, 10, right);
-  return folder.write("mission.yaml", text);
-}
-
-TEST(VehicleConfig, AMissionsOwnLimitsTightenAndNeverWiden) {
-  const TemporaryFolder folder;
-  const std::string vehicle = folder.write("v.yaml", "safety: {mission_limits: mission.yaml}\n");
-  limits_with_elbow_speed(folder, "0.30");
-  const VehicleConfig config = load_vehicle_config(vehicle);
-  EXPECT_EQ(config.core.controller.mission_limits.joints[2].max_speed_rad_s, 0.30);
-  EXPECT_EQ(config.core.controller.limits.joints[2].max_speed_rad_s, 0.36);
-  EXPECT_EQ(config.core.controller.mission_limits.joints[1], config.core.controller.limits.joints[1]);
-  limits_with_elbow_speed(folder, "0.37");
-  EXPECT_THAT(problems_of(vehicle), testing::Contains(HasSubstr("one of these is wider than in 'safety.limits'")));
-  EXPECT_THAT(problems_of(folder.write("w.yaml", "safety: {mission_limits: none.yaml}\n")), testing::Contains(HasSubstr("none.yaml")));
 }
 
 }  // namespace
