@@ -40,7 +40,7 @@ HomingOffsets read_homing_file(const std::string& path, const JointNames& names)
   for (const auto& joint : root) {
     if (joint.first.IsScalar() && !names.find(joint.first.Scalar()) && names != JointNames())
       source.refuse(joint.first.Mark(),
-                    "'" + joint.first.Scalar() + "': these zeros are of another arm; this one's joints are " + names.listed());
+                    "'" + joint.first.Scalar() + "': these zeros are of another arm; this one's joints are " + names.listed(names.size()));
   }
   read_map(root, "", "", table, source);
   for (std::size_t i = 0; i < names.size(); ++i) {

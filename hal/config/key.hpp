@@ -48,8 +48,8 @@ struct Key {
   double max = 0;
   KeyValue value;                    // where it is kept
   std::vector<std::string> words{};  // what a text, or each text of a list, may be; empty: anything
-  std::vector<std::string>
-      names{};  // of the panel's buttons, where the value is tasks; empty: any name is taken. Of the joints, where it is faults
+  // Of the panel's buttons, where the value is tasks; empty: any name is taken. Of the joints, where it is faults.
+  std::vector<std::string> names{};
 };
 
 using Keys = std::vector<Key>;

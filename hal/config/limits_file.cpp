@@ -56,8 +56,8 @@ safety::Limits read_limits(const std::string& path, const JointNames& names) {
   if (const YAML::Node joints = root["joints"]; joints && joints.IsMap()) {
     for (const auto& joint : joints) {
       if (joint.first.IsScalar() && !names.find(joint.first.Scalar()) && names != JointNames())
-        source.refuse(joint.first.Mark(),
-                      "'joints." + joint.first.Scalar() + "': these limits are of another arm; this one's joints are " + names.listed());
+        source.refuse(joint.first.Mark(), "'joints." + joint.first.Scalar() + "': these limits are of another arm; this one's joints are " +
+                                              names.listed(names.size()));
     }
   }
   read_map(root, "", "", table, source);

@@ -8,10 +8,8 @@ namespace lf::config {
 
 std::string park_problem(const Machine& machine) {
   if (machine.park_rad.size() == machine.joints.arm_joints()) return "";
-  std::string names;
-  for (std::size_t i = 0; i < machine.joints.arm_joints(); ++i)
-    names += (i == 0 ? "" : i + 1 == machine.joints.arm_joints() ? " and " : ", ") + machine.joints[i];
-  return "'arm.park_rad' takes " + std::to_string(machine.joints.arm_joints()) + " numbers: " + names;
+  const std::size_t count = machine.joints.arm_joints();
+  return "'arm.park_rad' takes " + std::to_string(count) + " numbers: " + machine.joints.listed(count);
 }
 
 arm::JointVector park_pose(const Machine& machine) {

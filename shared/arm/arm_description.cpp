@@ -328,7 +328,7 @@ void check_any_chain(const Urdf& urdf, const ArmDescription& arm) {
   if ((roll.axis - Vec3::UnitZ()).norm() > tolerance)
     urdf.fail(urdf.named("joint", roll.name),
               "joint '" + roll.name + "' must turn about its own z: the last of the arm's joints rolls the tool");
-  // It is not held against the vehicle that it stands on.
+  // The core does not hold it against the vehicle that it stands on. A turret's housing turns in its place; a boom would sweep over what stands beside the base.
   constexpr double turns_in_place_m = 0.15;
   const ArmJoint& first = arm.joints.front();
   for (const scene::Shape& shape : arm.links[1].shapes) {
@@ -338,11 +338,12 @@ void check_any_chain(const Urdf& urdf, const ArmDescription& arm) {
         shape.kind == scene::ShapeKind::box ? shape.size_m.norm() / 2 : std::hypot(shape.size_m.x(), shape.size_m.z() / 2);
     const double out_m = centre.cross(first.axis).norm() + beyond_m;
     if (out_m > turns_in_place_m)
-      urdf.fail(urdf.named("link", arm.links[1].name), "link '" + arm.links[1].name + "' comes " +
-                                                           std::to_string(std::lround(1e3 * out_m)) + " mm from the axis of '" +
-                                                           first.name +
-                                                           "': the first link is not kept clear of the vehicle that it stands on, and may "
-                                                           "reach 150 mm. Give what is longer a link of its own");
+      urdf.fail(urdf.named("link", arm.links[1].name),
+                "link '" + arm.links[1].name + "' comes " + std::to_string(std::lround(1e3 * out_m)) + " mm from the axis of '" +
+                    first.name +
+                    "': the first link is not kept clear of the vehicle that it stands on, and may "
+                    "reach " +
+                    std::to_string(std::lround(1e3 * turns_in_place_m)) + " mm. Give what is longer a link of its own");
   }
   const Pose& tool = arm.wrist_from_tool;
   if (!tool.linear().isIdentity(tolerance) || tool.translation().head<2>().norm() > tolerance)

@@ -79,8 +79,8 @@ struct ArmModel {
     std::uint8_t link_ = 0;
   };
 
-  std::size_t arm_joints =
-      4;  // that place the tool, base to tip; the last of them turns about the tool's own axis, the roll. The jaw comes after them
+  // Those that place the tool, base to tip; the last of them turns about the tool's own axis, the roll. The jaw comes after them.
+  std::size_t arm_joints = 4;
   std::size_t joint_count() const { return arm_joints + 1; }
 
   Form form = Form::planar;

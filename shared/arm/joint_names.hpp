@@ -27,10 +27,10 @@ class JointNames {
     const auto found = std::find(names_.begin(), names_.end(), name);
     return found == names_.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - names_.begin()));
   }
-  // "slew, shoulder and jaw".
-  std::string listed() const {
+  // The first `count` of them: "slew, shoulder and elbow".
+  std::string listed(std::size_t count) const {
     std::string all;
-    for (std::size_t i = 0; i < names_.size(); ++i) all += (i == 0 ? "" : i + 1 == names_.size() ? " and " : ", ") + names_[i];
+    for (std::size_t i = 0; i < count; ++i) all += (i == 0 ? "" : i + 1 == count ? " and " : ", ") + names_[i];
     return all;
   }
 
