@@ -149,6 +149,7 @@ void read_drive(const Urdf& urdf, ArmJoint& joint) {
   joint.stiction_rad_s = urdf.not_negative(drive, "stiction_rad_s");
   joint.backlash_rad = urdf.not_negative(drive, "backlash_rad");
   joint.holding_torque_nm = urdf.not_negative(drive, "holding_torque_nm");
+  if (drive->Attribute("stiffness_nm_rad") != nullptr) joint.stiffness_nm_rad = urdf.positive(drive, "stiffness_nm_rad");
   if (const XMLElement* const friction = e->FirstChildElement("lanternfish:friction")) read_friction(urdf, friction, joint.friction);
   if (joint.rated_torque_nm > joint.effort_nm) urdf.fail(drive, urdf.label(e) + ": rated torque exceeds the peak effort");
   if (joint.effort_nm > most_peak_of_rating * joint.rated_torque_nm)
@@ -321,6 +322,17 @@ void check_jaw(const Urdf& urdf, const ArmDescription& arm) {
     urdf.fail(urdf.named("link", "finger_b"), "link 'finger_b': its pad must be the mirror image of finger_a's");
 }
 
+// How far a shape reaches from an axis through its link's origin, at most.
+double out_from(const Vec3& axis, const scene::Shape& shape) {
+  const Vec3 centre_m = shape.body_from_shape.translation(), along = shape.body_from_shape.linear().col(2);
+  const double off_m = centre_m.cross(axis).norm();
+  switch (shape.kind) {
+    case scene::ShapeKind::box: return off_m + shape.size_m.norm() / 2;
+    case scene::ShapeKind::cylinder: return off_m + shape.size_m.x() + shape.size_m.z() / 2 * along.cross(axis).norm();
+    default: return off_m + shape.size_m.x();
+  }
+}
+
 // What the core asks of an arm whose form has no closed forms of its own.
 void check_any_chain(const Urdf& urdf, const ArmDescription& arm) {
   constexpr double tolerance = 1e-9;
@@ -333,10 +345,7 @@ void check_any_chain(const Urdf& urdf, const ArmDescription& arm) {
   const ArmJoint& first = arm.joints.front();
   for (const scene::Shape& shape : arm.links[1].shapes) {
     if (!shape.collides) continue;
-    const Vec3 centre = shape.body_from_shape.translation();
-    const double beyond_m =
-        shape.kind == scene::ShapeKind::box ? shape.size_m.norm() / 2 : std::hypot(shape.size_m.x(), shape.size_m.z() / 2);
-    const double out_m = centre.cross(first.axis).norm() + beyond_m;
+    const double out_m = out_from(first.axis, shape);
     if (out_m > turns_in_place_m)
       urdf.fail(urdf.named("link", arm.links[1].name),
                 "link '" + arm.links[1].name + "' comes " + std::to_string(std::lround(1e3 * out_m)) + " mm from the axis of '" +

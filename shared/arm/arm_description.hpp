@@ -45,6 +45,7 @@ struct ArmJoint {
   double stiction_rad_s = 0;     // asked of a joint that stands, it soon breaks the gear's friction; slower speeds take longer
   double backlash_rad = 0;       // total play
   double holding_torque_nm = 0;  // of the self-locking gear without power
+  double stiffness_nm_rad = 0;   // by which links and gear give way under load; 0: the file does not say
   ArmActuator actuator;
   ArmFriction friction;
 };
