@@ -2,6 +2,8 @@
 #include <cmath>
 
 #include "firmware/arm/planar_chain.hpp"
+#include "firmware/arm/pointing.hpp"
+#include "firmware/arm/tool_place.hpp"
 #include "firmware/arm/trajectory.hpp"
 
 namespace lf::arm {
@@ -19,12 +21,10 @@ struct Rates {
   JointVector second = JointVector::Zero();
 };
 
-// The tool's place in the arm's plane is r e(psi) + z k. A straight way gives r', psi' and z' by its parts along e, across it and along k; that it is
+// Of the planar form. The tool's place in the arm's plane is r e(psi) + z k. A straight way gives r', psi' and z' by its parts along e, across it and along k; that it is
 // straight, so that nothing of it changes, gives the second derivatives.
-Rates rates(const Arm& arm, const JointVector& q_rad, const Vec3& way_m, double turn_rad) {
+Rates planar_rates(const Arm& arm, const JointVector& q_rad, const Vec3& way_m) {
   Rates rates;
-  rates.first[3] = turn_rad;
-  if (way_m.squaredNorm() == 0) return rates;
   const PlanarChain chain(arm.planar(), q_rad);
   const double r1 = chain.elbow_r_m - arm.planar().a0_m, z1 = chain.elbow_z_m;                // shoulder to elbow
   const double r2 = chain.tool_r_m - chain.elbow_r_m, z2 = chain.tool_z_m - chain.elbow_z_m;  // elbow to tool
@@ -47,10 +47,29 @@ Rates rates(const Arm& arm, const JointVector& q_rad, const Vec3& way_m, double 
   return rates;
 }
 
-IkOutcome limit_passed(const JointVector& q_rad, const JointLimits& limits) {
-  constexpr std::array reasons{IkOutcome::slew_limit, IkOutcome::shoulder_limit, IkOutcome::elbow_limit, IkOutcome::roll_limit};
-  for (std::size_t i = 0; i < reasons.size(); ++i)
-    if (q_rad[i] < limits.lower_rad[i] - 1e-9 || q_rad[i] > limits.upper_rad[i] + 1e-9) return reasons[i];
+// The rates' own change, over a thousandth of the way.
+Rates pointing_rates(const Arm& arm, const JointVector& q_rad, const Vec3& way_m) {
+  constexpr double share = 1e-3;
+  Rates rates;
+  rates.first = tool_rates(arm, q_rad, way_m);
+  rates.second = (tool_rates(arm, q_rad + share * rates.first, way_m) - rates.first) / share;
+  return rates;
+}
+
+Rates rates(const Arm& arm, const JointVector& q_rad, const Vec3& way_m, double turn_rad) {
+  Rates rates;
+  if (way_m.squaredNorm() > 0) rates = arm.is_planar() ? planar_rates(arm, q_rad, way_m) : pointing_rates(arm, q_rad, way_m);
+  rates.first[static_cast<Eigen::Index>(arm.roll_joint())] = turn_rad;
+  return rates;
+}
+
+IkOutcome limit_passed(const Arm& arm, const JointVector& q_rad, const JointLimits& limits) {
+  constexpr std::array of_planar_form{IkOutcome::slew_limit, IkOutcome::shoulder_limit, IkOutcome::elbow_limit, IkOutcome::roll_limit};
+  for (std::size_t i = 0; i < limits.joints; ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    if (q_rad[k] < limits.lower_rad[k] - 1e-9 || q_rad[k] > limits.upper_rad[k] + 1e-9)
+      return arm.is_planar() ? of_planar_form[i] : IkOutcome::joint_limit;
+  }
   return IkOutcome::ok;
 }
 
@@ -85,8 +104,8 @@ void CartesianLine::begin(const Arm& arm, const JointVector& start_rad, const Ve
   start_rad_ = start_rad;
   const std::size_t roll = arm.roll_joint();
   goal_roll_rad_ = start_rad[roll];
-  if (!arm.is_planar()) result_.ik = IkOutcome::other_form;
-  if (!arm.is_planar() || !start_rad.allFinite()) return;
+  if (!can_work(arm)) result_.ik = IkOutcome::other_form;
+  if (!can_work(arm) || !start_rad.allFinite()) return;
   start_m_ = goal_m_ = arm.base_from_tool(start_rad).translation();
   way_m_ = goal_m - start_m_;
   if (!way_m_.allFinite() || !std::isfinite(goal_roll_rad - start_rad[roll])) return;
@@ -112,19 +131,31 @@ bool CartesianLine::finish(PlanOutcome outcome, IkOutcome ik) {
   return true;
 }
 
+// At a fraction of the way, in the posture of the start: in closed form, or led there from the last point.
+IkResult CartesianLine::at(double fraction, double roll_rad) const {
+  const Vec3 tool_m = start_m_ + fraction * way_m_;
+  if (arm_->is_planar()) return inverse_kinematics(*arm_, posture_, tool_m, roll_rad, no_limit_margin_rad);
+  IkResult led;
+  led.q_rad = fraction * checks < 1 ? start_rad_ : last_rad_;  // the last check was at the goal
+  led.outcome = move_tool(*arm_, tool_m, arm_->approach_axis(start_rad_), led.q_rad) ? IkOutcome::ok : IkOutcome::too_far;
+  led.q_rad[static_cast<Eigen::Index>(arm_->roll_joint())] = roll_rad;
+  return led;
+}
+
 // Looks at one point of the way. True when the plan has ended with it.
 bool CartesianLine::check() {
   const int i = next_check_++;
   const double fraction = static_cast<double>(i) / checks;
-  const double turn = goal_roll_rad_ - start_rad_[3];
+  const auto roll = static_cast<Eigen::Index>(arm_->roll_joint());
+  const double turn = goal_roll_rad_ - start_rad_[roll];
   result_.fraction = fraction;
-  const IkResult ik =
-      inverse_kinematics(*arm_, posture_, start_m_ + fraction * way_m_, start_rad_[3] + fraction * turn, no_limit_margin_rad);
-  const IkOutcome reached = ik.ok() ? limit_passed(ik.q_rad, limits_) : ik.outcome;
+  const IkResult ik = at(fraction, start_rad_[roll] + fraction * turn);
+  const IkOutcome reached = ik.ok() ? limit_passed(*arm_, ik.q_rad, limits_) : ik.outcome;
   // The start is where the arm is: a motion may lead back inside from there.
   if (reached != IkOutcome::ok && (i > 0 || !ik.ok())) return finish(PlanOutcome::unreachable, reached);
-  // Past the slew axis the arm would have to turn about between two checks.
-  if ((ik.q_rad - last_rad_).head<3>().cwiseAbs().maxCoeff() > max_step_rad) return finish(PlanOutcome::unreachable, IkOutcome::slew_limit);
+  // Past the slew axis the arm would have to turn about between two checks; so would one that points past a singular posture.
+  if ((ik.q_rad - last_rad_).head(roll).cwiseAbs().maxCoeff() > max_step_rad)
+    return finish(PlanOutcome::unreachable, arm_->is_planar() ? IkOutcome::slew_limit : IkOutcome::turned_away);
   last_rad_ = ik.q_rad;
   const Rates here = rates(*arm_, ik.q_rad, way_m_, turn);
   // The stretched arm is singular.
@@ -136,6 +167,7 @@ bool CartesianLine::check() {
   if ((length > 0 || turn != 0) && !curve_.plan(1, velocity_, acceleration_, jerk_))
     return finish(PlanOutcome::not_a_number, IkOutcome::ok);
   goal_m_ = start_m_ + way_m_;
+  way_m_ = goal_m_ - start_m_;  // as rounding leaves it: the line ends at its goal
   result_.speed_m_s = curve_.peak_velocity() * length;
   return finish(PlanOutcome::ok, IkOutcome::ok);
 }
@@ -143,26 +175,25 @@ bool CartesianLine::check() {
 Vec3 CartesianLine::tool_m(double t_s) const { return start_m_ + curve_.sample(t_s).position * (goal_m_ - start_m_); }
 
 // A way that grazes a place which no posture reaches, between two of its checks, waits before it.
-JointVector CartesianLine::solved(double fraction, double roll_rad) const {
+JointVector CartesianLine::solved(double fraction, double roll_rad) {
   constexpr int steps = 8;
-  const Vec3 way = goal_m_ - start_m_;
   for (int back = 0; back < steps; ++back) {
-    const double at = std::max(0.0, fraction - static_cast<double>(back) / (steps * checks));
-    const IkResult ik = inverse_kinematics(*arm_, posture_, start_m_ + at * way, roll_rad, no_limit_margin_rad);
-    if (ik.outcome != IkOutcome::too_far && ik.outcome != IkOutcome::too_near && ik.outcome != IkOutcome::not_a_number) return ik.q_rad;
+    const IkResult ik = at(std::max(0.0, fraction - static_cast<double>(back) / (steps * checks)), roll_rad);
+    if (ik.outcome == IkOutcome::too_far || ik.outcome == IkOutcome::too_near || ik.outcome == IkOutcome::not_a_number) continue;
+    last_rad_ = ik.q_rad;
+    return ik.q_rad;
   }
-  return start_rad_;
+  return arm_->is_planar() ? start_rad_ : last_rad_;
 }
 
-JointState CartesianLine::sample(double t_s) const {
+JointState CartesianLine::sample(double t_s) {
   JointState state{start_rad_, JointVector::Zero(), JointVector::Zero()};
   const PathState s = curve_.sample(t_s);
   if (curve_.duration_s() == 0 || s.position == 0) return state;
-  const Vec3 way = goal_m_ - start_m_;
-  const double turn = goal_roll_rad_ - start_rad_[3];
-  const double roll = s.position < 1 ? start_rad_[3] + s.position * turn : goal_roll_rad_;
+  const double from = start_rad_[static_cast<Eigen::Index>(arm_->roll_joint())], turn = goal_roll_rad_ - from;
+  const double roll = s.position < 1 ? from + s.position * turn : goal_roll_rad_;
   state.q_rad = solved(s.position, roll);
-  const Rates r = rates(*arm_, state.q_rad, way, turn);
+  const Rates r = rates(*arm_, state.q_rad, way_m_, turn);
   state.qd_rad_s = s.velocity * r.first;
   state.qdd_rad_s2 = s.acceleration * r.first + s.velocity * s.velocity * r.second;
   return state;

@@ -13,7 +13,7 @@
 namespace lf::arm {
 
 struct ComplianceConfig {
-  explicit ComplianceConfig(std::size_t arm_joints = 4) : give_rad_s_nm(each_joint(arm_joints, 0.0015, 0)) {}
+  explicit ComplianceConfig(std::size_t arm_joints) : give_rad_s_nm(each_joint(arm_joints, 0.0015, 0)) {}
 
   // With 4000 N m/rad of drives and contact a load decays within 1 / (0.0015 * 4000) s = 0.17 s; loop and filter lag by 0.07 s.
   JointVector give_rad_s_nm;
@@ -27,7 +27,7 @@ struct ComplianceConfig {
 
 class Compliance {
  public:
-  explicit Compliance(const ComplianceConfig& config = ComplianceConfig()) : config_(config) {}
+  explicit Compliance(const ComplianceConfig& config) : config_(config) {}
 
   // No offset, nothing learned.
   void reset() { *this = Compliance(config_); }

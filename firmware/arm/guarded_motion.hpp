@@ -15,7 +15,7 @@
 namespace lf::arm {
 
 struct GuardConfig {
-  explicit GuardConfig(std::size_t arm_joints = 4)
+  explicit GuardConfig(std::size_t arm_joints)
       : contact_torque_nm(each_joint(arm_joints, 4, 2)),
         overload_torque_nm(each_joint(arm_joints, 45, 9)),
         following_rad(each_joint(arm_joints, 0.03, 0.12)) {}
@@ -40,7 +40,7 @@ enum class GuardCause : std::uint8_t { none, torque, following_error };
 
 class GuardedMotion {
  public:
-  explicit GuardedMotion(const GuardConfig& config = GuardConfig()) : config_(config) {}
+  explicit GuardedMotion(const GuardConfig& config) : config_(config) {}
 
   // Starts anew: forgets the baseline.
   void reset();

@@ -118,6 +118,9 @@ const char* name(IkOutcome outcome) {
     case IkOutcome::shoulder_limit: return "shoulder limit";
     case IkOutcome::elbow_limit: return "elbow limit";
     case IkOutcome::roll_limit: return "roll limit";
+    case IkOutcome::joint_limit: return "joint limit";
+    case IkOutcome::turned_away: return "turned away";
+    case IkOutcome::not_found: return "no posture found";
     case IkOutcome::other_form: return "arm of another form";
   }
   return "unknown";

@@ -22,7 +22,11 @@ enum class IkOutcome : std::uint8_t {
   shoulder_limit,
   elbow_limit,
   roll_limit,
-  other_form,  // the arm is not of the form that has these closed forms (ArmModel::Form)
+  // Of arms of the chain form:
+  joint_limit,  // of IkResult::joint
+  turned_away,  // the place is within reach, but not with the approach axis so
+  not_found,    // no posture was found, and no reason was sought
+  other_form,   // the arm is not of a form that has an answer (ArmModel::Form)
 };
 const char* name(IkOutcome outcome);
 
@@ -40,7 +44,8 @@ struct IkResult {
   IkOutcome outcome = IkOutcome::not_a_number;
   IkPosture posture;
   JointVector q_rad = JointVector::Zero();  // when ok; else the angles that would be needed, where there are any
-  double excess = 0;                        // by how much: rad past the limit, or m too far or too near
+  double excess = 0;                        // by how much: rad past the limit or turned away, or m too far or too near
+  std::size_t joint = 0;                    // joint_limit: which
 
   bool ok() const { return outcome == IkOutcome::ok; }
 };

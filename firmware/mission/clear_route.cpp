@@ -1,6 +1,9 @@
 #include "firmware/mission/clear_route.hpp"
 
 #include <algorithm>
+#include <cmath>
+
+#include "shared/random.hpp"
 
 namespace lf::mission {
 
@@ -8,6 +11,9 @@ namespace {
 
 // Of where the arm stands: its drives' last counts, and what the arm gives way by.
 constexpr double leeway_m = 0.001;
+
+// Postures drawn at random: every other one from the room between start, goal and park, the rest from all that the joints can.
+constexpr std::uint32_t most_drawn = 64;
 
 }  // namespace
 
@@ -32,9 +38,7 @@ void ClearRoute::begin(const arm::JointVector& from_rad, const arm::JointVector&
   from_rad_ = from_rad;
   points_ = {};
   barrier_ = arm::Barrier::none;
-  via_[0] = park_rad_;
-  const std::size_t roll = surroundings.arm().roll_joint();
-  via_[0][roll] = to_rad[roll];
+  vias_ = 0;
   via_[1] = to_rad;
   leaving_ = wanted_from(from_rad, jaw_rad, surroundings);
   look_at(Leg::straight, surroundings);
@@ -42,33 +46,61 @@ void ClearRoute::begin(const arm::JointVector& from_rad, const arm::JointVector&
 
 void ClearRoute::look_at(Leg leg, const arm::Surroundings& surroundings) {
   leg_ = leg;
-  way_.begin(leg == Leg::from_park ? via_[0] : from_rad_, surroundings, leg == Leg::from_park ? wanted_everywhere : leaving_,
+  way_.begin(leg == Leg::from_via ? via_[0] : from_rad_, surroundings, leg == Leg::from_via ? wanted_everywhere : leaving_,
              wanted_everywhere);
-  way_.add(leg == Leg::to_park ? via_[0] : via_[1]);
+  way_.add(leg == Leg::to_via ? via_[0] : via_[1]);
 }
 
-ClearRoute::State ClearRoute::advance(const arm::Surroundings& surroundings) {
+bool ClearRoute::next_via(const arm::Arm& arm, const arm::JointLimits& limits) {
+  const auto joints = static_cast<Eigen::Index>(arm.arm_joints());
+  const auto tried = static_cast<Eigen::Index>(vias_++);
+  if (tried == 0) {
+    via_[0] = park_rad_;
+    via_[0][joints - 1] = via_[1][joints - 1];
+    return true;
+  }
+  if (arm.is_planar() || tried > 2 * (joints - 1) + most_drawn) return false;
+  if (tried > 2 * (joints - 1)) {
+    draw_via(limits);
+    return true;
+  }
+  // The joints from `split` on go first, and at the next try those before it.
+  const Eigen::Index split = joints - (tried + 1) / 2;
+  const bool hand_first = tried % 2 == 1;
+  for (Eigen::Index i = 0; i < joints; ++i) via_[0][i] = (i >= split) == hand_first ? via_[1][i] : from_rad_[i];
+  return true;
+}
+
+void ClearRoute::draw_via(const arm::JointLimits& limits) {
+  const bool between = vias_ % 2 == 0;
+  arm::JointVector low_rad = limits.lower_rad, high_rad = limits.upper_rad;
+  if (between) {
+    low_rad = from_rad_.cwiseMin(via_[1]).cwiseMin(park_rad_).cwiseMax(limits.lower_rad);
+    high_rad = from_rad_.cwiseMax(via_[1]).cwiseMax(park_rad_).cwiseMin(limits.upper_rad);
+  }
+  for (std::size_t i = 0; i < limits.joints; ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const std::uint64_t draw = splitmix64((std::uint64_t{vias_} << 8) + i);
+    via_[0][k] = std::lerp(low_rad[k], high_rad[k], static_cast<double>(draw >> 11) * 0x1p-53);
+  }
+}
+
+ClearRoute::State ClearRoute::advance(const arm::Surroundings& surroundings, const arm::JointLimits& limits) {
   const arm::ClearWay::State way = way_.advance(surroundings, poses_a_share);
   if (way == arm::ClearWay::State::looking) return State::looking;
   const bool clear = way == arm::ClearWay::State::clear;
-  switch (leg_) {
-    case Leg::straight:
-      if (clear) {
-        points_ = std::span(via_).subspan(1);
-        return State::found;
-      }
-      barrier_ = way_.barrier();
-      look_at(Leg::to_park, surroundings);
-      return State::looking;
-    case Leg::to_park:
-      if (!clear) return State::none;
-      look_at(Leg::from_park, surroundings);
-      return State::looking;
-    case Leg::from_park:
-      if (clear) points_ = via_;
-      return clear ? State::found : State::none;
+  if (leg_ == Leg::straight) barrier_ = clear ? arm::Barrier::none : way_.barrier();
+  if (clear && leg_ != Leg::to_via) {
+    points_ = leg_ == Leg::straight ? std::span(via_).subspan(1) : std::span(via_);
+    return State::found;
   }
-  return State::none;
+  if (clear) {
+    look_at(Leg::from_via, surroundings);
+    return State::looking;
+  }
+  if (!next_via(surroundings.arm(), limits)) return State::none;
+  look_at(Leg::to_via, surroundings);
+  return State::looking;
 }
 
 }  // namespace lf::mission

@@ -1,4 +1,6 @@
-// A way for the arm through free space, found a few poses a tick: straight where that keeps clear of everything, else by the park position.
+// A way for the arm through free space, found a few poses a tick: straight where that keeps clear of everything, else by the park position. An arm of another form
+// than the planar one has more ways to fold: of it the joints of the hand's side go first, or those of the base's side, from each joint on, and where that
+// does not do, a posture in between is drawn at random, with a fixed seed.
 //
 // Clear is 10 mm between links, known to their capsules, and the panel, grown by what is not known of its place, the vehicle, and the arm itself, with the
 // jaw at every opening it has on the way. Where the arm stands nearer than that to one of them it may leave, but come no nearer to that one. A route that
@@ -37,23 +39,28 @@ class ClearRoute {
 
   // `jaw_rad`: where it is now.
   void begin(const arm::JointVector& from_rad, const arm::JointVector& to_rad, double jaw_rad, const arm::Surroundings& surroundings);
-  State advance(const arm::Surroundings& surroundings);
+  // `limits`: of the joints' positions, which a posture in between keeps.
+  State advance(const arm::Surroundings& surroundings, const arm::JointLimits& limits);
   // Once found: where to go, after the start.
   std::span<const arm::JointVector> points_rad() const { return points_; }
   // What bars the straight way, when there is none.
   arm::Barrier barrier() const { return barrier_; }
 
  private:
-  enum class Leg : std::uint8_t { straight, to_park, from_park };
+  enum class Leg : std::uint8_t { straight, to_via, from_via };
   void look_at(Leg leg, const arm::Surroundings& surroundings);
+  // Puts the next place to go by into via_[0]; false when there is no other.
+  bool next_via(const arm::Arm& arm, const arm::JointLimits& limits);
+  void draw_via(const arm::JointLimits& limits);
 
   arm::JointVector park_rad_;
   arm::ClearWay way_;
   Leg leg_ = Leg::straight;
+  std::uint32_t vias_ = 0;  // tried
   arm::JointVector from_rad_ = arm::JointVector::Zero();
   arm::Distances leaving_;  // the clearance wanted of what begins at the start
   arm::Barrier barrier_ = arm::Barrier::none;
-  std::array<arm::JointVector, 2> via_{arm::JointVector::Zero(), arm::JointVector::Zero()};  // park and goal
+  std::array<arm::JointVector, 2> via_{arm::JointVector::Zero(), arm::JointVector::Zero()};  // place to go by, and goal
   std::span<const arm::JointVector> points_;
 };
 

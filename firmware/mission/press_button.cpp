@@ -16,29 +16,30 @@ constexpr double stuck_share = 0.1;
 constexpr double to_speed_m = 0.012;
 // A press that works shows nearly its whole stroke, a stuck cap a tenth of a default one: what is felt late, and what the arm gives way by.
 constexpr double least_travel = 0.5;
-// By which a joint in free motion may take more than at rest: its friction. 2.5 N m were seen in a press, and 12 to 14 where something pushed with 80 N.
+// By which a joint of the default arm in free motion may take more than at rest: its friction. 2.5 N m were seen in a press, and 12 to 14 where something pushed with 80 N.
 constexpr double friction_nm = 8;
 // A press lasts as long as a person's.
 constexpr Duration press_time = Duration::from_ms(250);
 
 // The tool point when the closed fingers' tip is at `tip_m`: behind it by the fingers' length along an approach axis that depends on the place itself.
-// Two rounds settle it to 0.1 mm for the ARM 5E, whose axis turns by 2 degrees over the fingers' length. In the posture asked for, or else the one that is nearest to
-// `q_rad` as it comes in.
-bool tool_for_tip(const arm::Arm& arm, const Vec3& tip_m, double tip_beyond_m, double roll_rad, std::optional<arm::IkPosture> posture,
+// Two rounds settle it to 0.1 mm for the ARM 5E, whose axis turns by 2 degrees over the fingers' length. An arm that can point its tool points it `inward`. In the posture
+// of `q_rad` as it comes in, or else in the one that is nearest to it.
+bool tool_for_tip(const arm::Arm& arm, const Vec3& tip_m, const Vec3& inward, double tip_beyond_m, double roll_rad, bool keep_posture,
                   arm::JointVector& q_rad) {
   constexpr int least_rounds = 4, most_rounds = 12;
   constexpr double settled_m = 1e-4;
-  Vec3 tool_m = tip_m;
+  Vec3 tool_m = arm.is_planar() ? tip_m : Vec3(tip_m - tip_beyond_m * inward);
   for (int round = 1; round <= most_rounds; ++round) {
-    const arm::IkResult result = posture ? arm::inverse_kinematics(arm, *posture, tool_m, roll_rad, limit_margin_rad)
-                                         : arm::inverse_kinematics(arm, tool_m, roll_rad, limit_margin_rad, q_rad);
+    const bool beside = keep_posture || round > 1;
+    const arm::IkResult result = beside ? arm::place_tool_beside(arm, q_rad, tool_m, inward, roll_rad, limit_margin_rad)
+                                        : arm::place_tool(arm, tool_m, inward, roll_rad, limit_margin_rad, q_rad);
     switch (result.outcome) {
       case arm::IkOutcome::not_a_number:
       case arm::IkOutcome::too_far:
       case arm::IkOutcome::too_near: return false;
       default: break;
     }
-    posture = result.posture;
+    if (!arm.is_planar() && !result.ok()) return false;
     q_rad = result.q_rad;
     const Vec3 reached_m = tool_m + tip_beyond_m * arm.approach_axis(q_rad);
     if (round >= least_rounds && (reached_m - tip_m).norm() <= settled_m) return result.ok();
@@ -52,6 +53,14 @@ double corner_ahead_m(const arm::Arm& arm, const arm::JointVector& q_rad, const 
   const double half_m = 0.5 * std::min(arm.jaw().pad_width_m, button_width_m);
   const Eigen::Matrix3d base_from_tool = arm.base_from_tool(q_rad).linear();
   return half_m * (std::abs(normal.dot(base_from_tool.col(0))) + std::abs(normal.dot(base_from_tool.col(1))));
+}
+
+// Where touching is meant: of the arm's rules for its torques only what says that the button has bottomed. An overload is the watch's.
+arm::GuardConfig press_guard(const Workbench& bench) {
+  arm::GuardConfig config(bench.config.arm.arm_joints());
+  config.contact_torque_nm.setConstant(bench.mission().press_torque_nm);
+  config.overload_torque_nm.setConstant(HUGE_VAL);
+  return config;
 }
 
 const PanelLayout::Button& the_button(const Workbench& bench) { return bench.mission().layout.buttons[bench.job.task().button]; }
@@ -98,7 +107,8 @@ std::optional<arm::JointVector> PressButton::choose_roll(Workbench& bench) {
   const arm::JointLimits limits = bench.motion.limits(1);
   for (std::size_t k = 0; k < rolls_rad.size(); ++k) {
     arm::JointVector q = bench.measured_rad();
-    if (barred_[k] || !tool_for_tip(bench.config.arm, tip, closed_tip_beyond_tool_m(bench.jaw()), rolls_rad[k], std::nullopt, q)) continue;
+    if (barred_[k]) continue;
+    if (!tool_for_tip(bench.config.arm, tip, -bench.map.normal(), closed_tip_beyond_tool_m(bench.jaw()), rolls_rad[k], false, q)) continue;
     const std::size_t roll = bench.roll();
     if (q[roll] < limits.lower_rad[roll] || q[roll] > limits.upper_rad[roll]) continue;
     roll_ = k;
@@ -136,7 +146,7 @@ Progress PressButton::run_reach(const StepTick& tick) {
 
 Progress PressButton::begin_press(Workbench& bench) {
   // Until the press has come to its speed: a gear's break-away may pass the press's torque for some milliseconds (8 N m were seen).
-  arm::GuardConfig config;
+  arm::GuardConfig config = press_guard(bench);
   config.contact_torque_nm = free_motion_guard(bench.config.mission_limits).contact_torque_nm.cwiseMax(bench.mission().press_torque_nm);
   guard_ = arm::GuardedMotion(config);
   feel_ = ButtonFeel();
@@ -148,8 +158,7 @@ Progress PressButton::begin_press(Workbench& bench) {
   const double depth = the_button(bench).stroke_m + bench.mission().press_overtravel_m;
   const Vec3 tip = bench.map.button_m(bench.job.task().button) - bench.map.normal() * depth;
   arm::JointVector q = bench.motion.target();
-  if (!tool_for_tip(bench.config.arm, tip, closed_tip_beyond_tool_m(bench.jaw()), bench.tool_roll_rad,
-                    arm::posture_of(bench.config.arm, bench.motion.target()), q))
+  if (!tool_for_tip(bench.config.arm, tip, -bench.map.normal(), closed_tip_beyond_tool_m(bench.jaw()), bench.tool_roll_rad, true, q))
     return Progress::failed(StepFailure::unreachable);
   bench.go_straight(bench.config.arm.base_from_tool(q).translation(), bench.tool_roll_rad, bench.mission().press_speed_m_s,
                     bench.meant_parts());
@@ -190,7 +199,7 @@ void PressButton::sense(const StepTick& tick) {
   const Workbench& bench = tick.bench;
   learn_under_way(bench);
   bench.feel(guard_, tick.now);
-  compare_with_rest();
+  compare_with_rest(bench);
   // An arm that stands says nothing of a button's way.
   if (!bench.motion.paused()) feel(tick);
 }
@@ -214,17 +223,16 @@ void PressButton::learn_under_way(const Workbench& bench) {
   const double gone_m = (bench.config.arm.base_from_tool(bench.motion.target()).translation() - bench.standoff_m).norm();
   if (learned_under_way_ || gone_m < to_speed_m) return;
   rest_nm_ = guard_.baseline_nm();
-  arm::GuardConfig config;
-  config.contact_torque_nm.setConstant(bench.mission().press_torque_nm);
-  guard_ = arm::GuardedMotion(config);
+  guard_ = arm::GuardedMotion(press_guard(bench));
   learned_under_way_ = true;
 }
 
 // What presses on the arm by now would be learned for free motion, and pressed against.
-void PressButton::compare_with_rest() {
+void PressButton::compare_with_rest(const Workbench& bench) {
   if (!rest_nm_ || guard_.state() != arm::GuardState::free) return;
   Eigen::Index joint = 0;
-  if ((guard_.baseline_nm() - *rest_nm_).cwiseAbs().maxCoeff(&joint) > friction_nm) pushed_joint_ = static_cast<std::size_t>(joint);
+  if ((guard_.baseline_nm() - *rest_nm_).cwiseAbs().maxCoeff(&joint) > friction_nm * strength(bench.config.mission_limits))
+    pushed_joint_ = static_cast<std::size_t>(joint);
   rest_nm_.reset();
 }
 

@@ -34,7 +34,7 @@ class PressButton {
   Progress run_back(const StepTick& tick);
   void sense(const StepTick& tick);
   void learn_under_way(const Workbench& bench);
-  void compare_with_rest();
+  void compare_with_rest(const Workbench& bench);
   bool met_something() const { return guard_.touched() || pushed_joint_; }
   // The joint by whose own doing it is no button and no contact.
   std::optional<std::size_t> misled_joint(const Workbench& bench) const;
@@ -42,7 +42,7 @@ class PressButton {
   // What stopped the finger, or what it is that nothing did.
   StepFailure judge(const Workbench& bench) const;
 
-  arm::GuardedMotion guard_;  // of the press, where touching is meant to happen
+  arm::GuardedMotion guard_{arm::GuardConfig(0)};  // of the press, where touching is meant to happen
   ButtonFeel feel_;
   // The hand's turns about its approach axis in the order of the tries. A hand that is tilted to the panel comes nearest to it with its broad side: from 45
   // degrees on it was clear wherever it was tried. 80 leave room within a wrist of a quarter turn.

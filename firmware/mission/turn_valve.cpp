@@ -85,13 +85,14 @@ Progress TurnValve::begin_reach(Workbench& bench) {
   if (!map.handle_seen(valve)) return Progress::failed(StepFailure::no_handle);
   const Vec3 centre = map.handle_centre_m(valve);
   bench.standoff_m = centre + map.normal() * bench.mission().approach_distance_m;
-  const arm::IkResult at_bar = arm::inverse_kinematics(bench.config.arm, centre, 0, limit_margin_rad, bench.measured_rad());
+  const Vec3 inward = -map.normal();
+  const arm::IkResult at_bar = arm::place_tool(bench.config.arm, centre, inward, 0, limit_margin_rad, bench.measured_rad());
   if (!at_bar.ok()) return unreachable;
   const std::optional<double> roll = choose_roll(bench, at_bar.q_rad);
   if (!roll) return unreachable;
   bench.tool_roll_rad = *roll;
   const arm::IkResult start =
-      arm::inverse_kinematics(bench.config.arm, at_bar.posture, bench.standoff_m, bench.tool_roll_rad, limit_margin_rad);
+      arm::place_tool_beside(bench.config.arm, at_bar.q_rad, bench.standoff_m, inward, bench.tool_roll_rad, limit_margin_rad);
   if (!start.ok()) return unreachable;
   bench.go_clear(start.q_rad, bench.jaw_open_m());
   return Progress::running();
@@ -106,10 +107,7 @@ Progress TurnValve::run_reach(const StepTick& tick) {
 }
 
 void TurnValve::begin_advance(Workbench& bench) {
-  const std::size_t joints = bench.config.arm.arm_joints();
-  arm::GuardConfig config(joints);
-  config.contact_torque_nm = arm::each_joint(joints, 8, 3);  // 20 N at the tool; the pads may brush the bar
-  guard_ = arm::GuardedMotion(config);
+  guard_ = arm::GuardedMotion(approach_guard(bench.config.mission_limits));
   bench.go_straight(bench.map.handle_centre_m(bench.job.task().valve), bench.tool_roll_rad, bench.mission().approach_speed_m_s,
                     bench.meant_parts());
 }

@@ -25,8 +25,8 @@ class TurnValve {
   void begin_let_go(Workbench& bench);
   Progress run_let_go(const StepTick& tick);
 
-  arm::GuardedMotion guard_;  // of the approach: what touches before the pads stand about the bar is in the way
-  Time following_since_;      // the roll was last seen to follow the turn
+  arm::GuardedMotion guard_{arm::GuardConfig(0)};  // of the approach: what touches before the pads stand about the bar is in the way
+  Time following_since_;                           // the roll was last seen to follow the turn
 };
 
 }  // namespace lf::mission

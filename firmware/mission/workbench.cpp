@@ -68,6 +68,28 @@ arm::GuardConfig free_motion_guard(const safety::Limits& limits) {
   return guard;
 }
 
+arm::GuardConfig approach_guard(const safety::Limits& limits) {
+  constexpr double share = 8.0 / 13.0, roll_share = 12.0 / 13.0;  // 20 N at the default arm's tool
+  arm::GuardConfig guard = free_motion_guard(limits);
+  const auto roll = static_cast<Eigen::Index>(limits.joints.empty() ? 0 : limits.joints.size() - 2);
+  guard.contact_torque_nm.head(roll) *= share;
+  guard.contact_torque_nm[roll] *= roll_share;
+  guard.overload_torque_nm.setConstant(HUGE_VAL);  // the watch's
+  return guard;
+}
+
+double strength(const safety::Limits& limits) {
+  constexpr double of_the_default_nm = 13;
+  return limits.max_contact_torque_nm / of_the_default_nm;
+}
+
+arm::ComplianceConfig gripping_compliance(const safety::Limits& limits) {
+  arm::ComplianceConfig config(limits.joints.empty() ? 0 : limits.joints.size() - 1);
+  config.give_rad_s_nm /= strength(limits);
+  config.dead_nm *= strength(limits);
+  return config;
+}
+
 bool lags_without_load(const arm::Arm& arm, const arm::GuardedMotion& guard) {
   // Over free motion's estimated torque: 10 N at the tool. The friction's doubt is within.
   const arm::JointVector load_nm = arm::each_joint(arm.arm_joints(), 4, 2);
@@ -134,7 +156,7 @@ Workbench::Workbench(const ControllerConfig& told)
       map(config.mission.layout, config.markers, config.camera),
       job(told.mission.tasks, told.mission.tries),
       gripper(new_gripper()),
-      compliance(arm::ComplianceConfig(config.arm.arm_joints())),
+      compliance(gripping_compliance(told.mission_limits)),
       grip_guard(gripping_guard(config.arm)),
       back_guard(free_motion_guard(told.mission_limits)),
       power(config.arm) {}
@@ -215,7 +237,8 @@ void Workbench::go_clear(const arm::JointVector& goal_rad, double jaw_opening_m)
   motion.go_clear(goal_rad, room_on_the_way(jaw_opening_m), jaw_rad(), course == Course::giving_up ? std::min(usual, calm) : usual);
 }
 
-void Workbench::go_to_sweep(const scan::SweepRequest& request) {
+void Workbench::go_to_sweep(scan::SweepRequest request) {
+  request.camera_m = config.camera.base_from_camera.translation();
   motion.go_to_sweep(request, config.laser, room_on_the_way(0), jaw_rad(), config.mission.move_speed_fraction);
 }
 

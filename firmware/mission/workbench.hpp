@@ -6,6 +6,7 @@
 #include "firmware/arm/compliance.hpp"
 #include "firmware/arm/gripper.hpp"
 #include "firmware/arm/guarded_motion.hpp"
+#include "firmware/arm/tool_place.hpp"
 #include "firmware/canopen/network.hpp"
 #include "firmware/config.hpp"
 #include "firmware/mission/camera_work.hpp"
@@ -31,6 +32,12 @@ enum class Course : std::uint8_t {
 // A contact in motion that may touch nothing: what free motion takes of torque is learned on the way; how much more is a contact, the limits say, and for
 // a joint half of its own limit if that is less; so is seven tenths of that limit, however slowly it came. The overload is the watch's.
 arm::GuardConfig free_motion_guard(const safety::Limits& limits);
+// Of a way on which touching what is meant begins: a smaller rise, since the pads may brush the bar.
+arm::GuardConfig approach_guard(const safety::Limits& limits);
+// How an arm that grips gives way: the stronger the arm, the less for a newton metre.
+arm::ComplianceConfig gripping_compliance(const safety::Limits& limits);
+// Torques in the mission's rules are the default arm's. Another's are greater by what its limits take for a contact.
+double strength(const safety::Limits& limits);
 
 // A joint stays behind its target, and nothing holds it back: its encoder or its drive is not to be trusted.
 bool lags_without_load(const arm::Arm& arm, const arm::GuardedMotion& guard);
@@ -79,8 +86,8 @@ struct Workbench {
   // The bar of the task under way, or, where that is none, the panel's thickest; and how far the jaw opens to reach for it.
   double bar_m() const;
   double jaw_open_m() const { return arm::jaw_opening_m(jaw(), bar_m()); }
-  // Tasks are planned for arms of the planar form: of any other an operator homes and jogs the joints.
-  bool may_work() const { return config.arm.is_planar(); }
+  // Tasks are not planned for every arm: of any other an operator homes and jogs the joints.
+  bool may_work() const { return arm::can_work(config.arm); }
   // Something may be between the pads, the panel's thickest bar as well as the task's.
   bool jaw_may_hold() const;
   const MissionConfig& mission() const { return config.mission; }
@@ -96,7 +103,7 @@ struct Workbench {
   arm::PanelParts meant_parts() const;
   // Ways through free space: the jaw opens to this, or closes (0), on the way. It does not move before the way is found to be clear with it.
   void go_clear(const arm::JointVector& goal_rad, double jaw_opening_m);
-  void go_to_sweep(const scan::SweepRequest& request);  // with the jaw closing
+  void go_to_sweep(scan::SweepRequest request);  // with the jaw closing, seen by the camera
   Progress follow_way();
   // A straight motion of the tool with the jaw as it is.
   void go_straight(const Vec3& goal_m, double roll_rad, double speed_m_s, arm::PanelParts meant);

@@ -8,7 +8,7 @@
 #include <tuple>
 
 #include "firmware/arm/gripper.hpp"
-#include "firmware/arm/reach.hpp"
+#include "firmware/arm/tool_place.hpp"
 #include "hal/config/core_drives.hpp"
 #include "hal/config/drive_kind.hpp"
 #include "hal/config/homing_file.hpp"
@@ -148,10 +148,10 @@ mission::MissionConfig mission_config(const Machine& machine) {
 }
 
 bool check_reach_of_tasks(const Machine& machine, const Steps& steps) {
-  if (!machine.arm.is_planar()) return false;
+  if (!arm::can_work(machine.arm)) return false;
   bool all = true;
   for (const Place& place : places_of_tasks(machine)) {
-    const arm::IkResult ik = pose_at(machine.arm, machine.panel, place);
+    const arm::IkResult ik = pose_at(machine, place);
     const bool reached = steps.take([&] {
       if (!ik.ok())
         refuse(machine, place.what + " is out of the arm's reach at its nominal place: " + excess_text(ik) + place_text(machine.panel) +
@@ -167,7 +167,7 @@ bool check_limits(const Machine& machine, const std::string& file, const safety:
                   const Steps& steps) {
   std::vector<std::string> problems = limits_problems(limits, controller, machine.joints);
   for (const Place& place : places_of_tasks(machine)) {
-    const arm::IkResult ik = pose_at(machine.arm, machine.panel, place);
+    const arm::IkResult ik = pose_at(machine, place);
     if (!ik.ok()) continue;
     for (const std::string& problem : pose_problems(controller.arm, machine.joints, limits, ik.q_rad, place.what))
       problems.push_back(problem);
@@ -198,7 +198,7 @@ void check_exposure(const Machine& machine) {
 
 // The wrist turns about the tool axis, the bar about the panel's normal: so far apart the wrist is faster than the bar by 1 / cos.
 void check_turn_speed(const Machine& machine, std::size_t valve, const ArmDescription& description, const safety::Limits& limits) {
-  const double tilt_rad = steepest_rad(machine.arm, machine.panel, place_of_valve(machine, valve), machine.mission.docking);
+  const double tilt_rad = steepest_rad(machine, place_of_valve(machine, valve));
   const double fastest =
       std::cos(tilt_rad) * std::min(description.roll().velocity_rad_s, limits.joints[machine.arm.roll_joint()].max_speed_rad_s);
   if (machine.mission.turn_speed_rad_s <= fastest) return;
@@ -225,6 +225,15 @@ void set_region(const PanelLayout& panel, scan::Triangulator::Config& triangulat
   const Vec3 high = base_from_panel * Vec3(panel.plate_max_m.x(), panel.plate_max_m.y(), proud_m);
   triangulation.region_min_m = low.cwiseMin(high).array() - docking_m;
   triangulation.region_max_m = low.cwiseMax(high).array() + docking_m;
+}
+
+// The narrowest bar is so many pixels wide as it is far off: farther than the default panel from the default camera it fills fewer columns.
+void set_chain(const PanelLayout& panel, const CameraCalibration& camera, scan::ChainConfig& chain) {
+  const auto distance_m = [](const PanelLayout& to, const Pose& base_from_camera) {
+    return (to.nominal_base_from_panel().translation() - base_from_camera.translation()).norm();
+  };
+  const double usual_m = distance_m(PanelLayout(), base_from_camera(Camera()));
+  chain.part_rad *= std::min(1.0, usual_m / distance_m(panel, camera.base_from_camera));
 }
 
 }  // namespace
@@ -357,17 +366,19 @@ Core assemble(Machine machine, const Steps& steps) {
   core.scan.camera = controller.camera;
   core.scan.laser = controller.laser;
   set_region(machine.panel, core.scan.triangulation);
+  set_chain(machine.panel, controller.camera, core.scan.chain);
   set_frame_rate(machine.mission, core.scan);
   steps.take([&] { check_exposure(machine); });
-  // What follows is about jobs at a panel, for which arms of one form are planned.
-  if (arm && !machine.arm.is_planar() && !machine.tasks.empty()) steps.take([&] { refuse(machine, no_jobs); });
-  if (arm && mission && !machine.arm.is_planar()) {
+  // What follows is about jobs at a panel. An arm of another form than the planar one that is given none need not be able to do any.
+  const bool works = arm && arm::can_work(machine.arm) && (machine.arm.is_planar() || !machine.tasks.empty());
+  if (arm && !arm::can_work(machine.arm) && !machine.tasks.empty()) steps.take([&] { refuse(machine, no_jobs); });
+  if (arm && mission && !works) {
     steps.take([&] {
       if (const std::optional<std::string> problem = fold_problem(controller, machine.survey)) refuse(machine, *problem);
     });
   }
   const bool reach = check_reach_of_tasks(machine, steps);
-  if (arm && limits && machine.arm.is_planar()) {
+  if (works && limits) {
     for (std::size_t i = 0; i < machine.panel.valves.size(); ++i) {
       if (machine.survey.file.empty() || turns(machine, i))
         steps.take([&] { check_turn_speed(machine, i, description, controller.mission_limits); });
@@ -377,7 +388,7 @@ Core assemble(Machine machine, const Steps& steps) {
     core.hand_torque_nm = hand_torque_nm(description, controller.arm.jaw());
     for (const std::string& problem : torque_problems(machine, core.hand_torque_nm)) steps.take([&] { refuse(machine, problem); });
   }
-  if (arm && limits && machine.arm.is_planar()) {
+  if (works && limits) {
     for (const std::string& problem : roll_problems(machine, controller.mission_limits)) steps.take([&] { refuse(machine, problem); });
   }
   bool workable = true;
@@ -388,10 +399,10 @@ Core assemble(Machine machine, const Steps& steps) {
       workable = check_limits(machine, named_file(machine.file, "safety.mission_limits", machine.mission_limits), controller.mission_limits,
                               controller, steps);
   }
-  if (camera && machine.arm.is_planar()) {
+  if (camera && works) {
     for (const std::string& problem : view_problems(machine, controller.camera)) steps.take([&] { refuse(machine, problem); });
   }
-  if (limits && mission && reach && workable && machine.arm.is_planar()) {
+  if (limits && mission && reach && workable && works) {
     steps.take([&] {
       if (const std::optional<std::string> problem = sweep_problem(controller, machine.joints, machine.survey)) refuse(machine, *problem);
     });

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "firmware/arm/gripper.hpp"
+#include "firmware/arm/tool_place.hpp"
 #include "hal/config/joined.hpp"
 #include "hal/config/nearest.hpp"
 #include "hal/config/task_reach.hpp"
@@ -70,9 +71,7 @@ void check_tasks(const Machine& machine, std::vector<std::string>& problems) {
   }
 }
 
-double tilt_at_bar_rad(const Machine& machine, std::size_t valve) {
-  return steepest_rad(machine.arm, machine.panel, place_of_valve(machine, valve), machine.mission.docking);
-}
+double tilt_at_bar_rad(const Machine& machine, std::size_t valve) { return steepest_rad(machine, place_of_valve(machine, valve)); }
 
 // The tips of an open jaw reach beyond the bar, and more so on the side to which the tool is tilted. Below them the panel keeps a centimetre.
 double lowest_bar_m(const ArmModel::Jaw& jaw, const PanelLayout::Valve& valve, double tilt_rad) {
@@ -135,7 +134,7 @@ double longest_mark_m(const PanelLayout::Valve& valve) { return valve.handle_len
 
 std::vector<std::string> handle_problems(const Machine& machine) {
   std::vector<std::string> problems;
-  if (!machine.arm.is_planar()) return problems;  // nothing is turned or pressed
+  if (!arm::can_work(machine.arm)) return problems;  // nothing is turned or pressed
   for (std::size_t i = 0; i < machine.panel.valves.size(); ++i) check_stops(machine.survey, i, machine.panel.valves[i], problems);
   check_tasks(machine, problems);
   // What nobody turns may be what it is, but for the docked mission's: its keys say what a hand can work.

@@ -12,10 +12,10 @@ void add_panel(Keys& all, std::string& file, DockedPanel& p) {
   all.push_back(key("panel.file", "", 0, 0, &file,
                     "a shipped panel's name, or a file: it says what is on the panel, where it stands is said here; empty: "
                     "the docked mission's"));
-  all.push_back(key("panel.ahead_m", "m", 0.25, 0.7, &p.nominal_x_m, "nominal distance of the panel's plane from the arm's base"));
+  all.push_back(key("panel.ahead_m", "m", 0.25, 3, &p.nominal_x_m, "nominal distance of the panel's plane from the arm's base"));
   all.push_back(
-      key("panel.right_m", "m", -0.4, 0.4, &p.nominal_y_m, "nominal place of the panel's origin, the valve's base, to the right"));
-  all.push_back(key("panel.down_m", "m", 0.3, 0.9, &p.nominal_z_m, "nominal place of the panel's origin, downward"));
+      key("panel.right_m", "m", -1.5, 1.5, &p.nominal_y_m, "nominal place of the panel's origin, the valve's base, to the right"));
+  all.push_back(key("panel.down_m", "m", -1.5, 1.5, &p.nominal_z_m, "nominal place of the panel's origin, downward"));
   all.push_back(
       key("panel.plate_min_m", "m", -1, 0, &p.plate_min_m, "lower left corner of the plate as the robot sees it, from the valve"));
   all.push_back(key("panel.plate_max_m", "m", 0, 1, &p.plate_max_m, "upper right corner"));

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "firmware/arm/tool_place.hpp"
 #include "firmware/mission/press_button.hpp"
 #include "hal/config/task_reach.hpp"
 
@@ -45,8 +46,7 @@ double steepest_button_rad(const Machine& machine, const PanelLayout::Button& li
   for (std::size_t i = 0; i < machine.panel.buttons.size(); ++i) {
     const PanelLayout::Button& button = machine.panel.buttons[i];
     const bool alike = button.width_m == like.width_m && button.height_m == like.height_m && button.stroke_m == like.stroke_m;
-    if (alike)
-      tilt_rad = std::max(tilt_rad, steepest_rad(machine.arm, machine.panel, place_of_button(machine, i), machine.mission.docking));
+    if (alike) tilt_rad = std::max(tilt_rad, steepest_rad(machine, place_of_button(machine, i)));
   }
   return tilt_rad;
 }
@@ -87,7 +87,7 @@ bool presses(const std::vector<Task>& tasks, const std::string& button) {
 // Of buttons that are alike one problem is told: on the docked mission's panel all are.
 std::vector<std::string> low_button_problems(const Machine& machine) {
   std::vector<std::string> problems;
-  if (!presses(machine.tasks) || !machine.arm.is_planar()) return problems;
+  if (!presses(machine.tasks) || !arm::can_work(machine.arm)) return problems;
   const PanelSurvey& survey = machine.survey;
   for (std::size_t i = 0; i < machine.panel.buttons.size(); ++i) {
     const PanelLayout::Button& button = machine.panel.buttons[i];

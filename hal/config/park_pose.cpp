@@ -1,5 +1,6 @@
 #include "hal/config/park_pose.hpp"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "shared/input_error.hpp"
@@ -10,6 +11,12 @@ std::string park_problem(const Machine& machine) {
   if (machine.park_rad.size() == machine.joints.arm_joints()) return "";
   const std::size_t count = machine.joints.arm_joints();
   return "'arm.park_rad' takes " + std::to_string(count) + " numbers: " + machine.joints.listed(count);
+}
+
+arm::JointVector as_folded(const arm::Arm& arm, const std::vector<double>& park_rad) {
+  arm::JointVector q_rad = arm::JointVector::Zero();
+  for (std::size_t i = 0; i < std::min(park_rad.size(), arm.arm_joints()); ++i) q_rad[static_cast<Eigen::Index>(i)] = park_rad[i];
+  return q_rad;
 }
 
 arm::JointVector park_pose(const Machine& machine) {

@@ -41,7 +41,7 @@ std::vector<std::string> roll_problems(const Machine& machine, const safety::Lim
     if (task.kind != Task::Kind::turn_valve) continue;
     const std::optional<std::size_t> valve = find_valve(machine.survey.names, task.valve);
     if (!valve) continue;
-    const arm::IkResult at_bar = pose_at(machine.arm, machine.panel, place_of_valve(machine, *valve));
+    const arm::IkResult at_bar = pose_at(machine, place_of_valve(machine, *valve));
     if (!at_bar.ok()) continue;
     const PanelLayout::Valve& handle = machine.panel.valves[*valve];
     const double to_rad = rad_from_deg(task.to_deg);

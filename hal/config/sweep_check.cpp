@@ -35,7 +35,7 @@ std::string docking_text(const mission::MissionConfig& mission) {
   return formatted("with 'mission.docking_m' at %.3g and 'mission.docking_rad' at %.3g", mission.docking.shift_m, mission.docking.turn_rad);
 }
 
-std::string words(scan::SweepOutcome outcome, const PanelSurvey& survey) {
+std::string words(scan::SweepOutcome outcome, const PanelSurvey& survey, bool planar) {
   const std::string min = plate_key(survey, "min_m"), max = plate_key(survey, "max_m");
   switch (outcome) {
     case scan::SweepOutcome::top_unreachable:
@@ -45,7 +45,10 @@ std::string words(scan::SweepOutcome outcome, const PanelSurvey& survey) {
     case scan::SweepOutcome::fan_too_narrow:
       return "the laser's line is shorter than the panel is wide: see 'laser.fan_half_angle_deg', 'laser.position_m', " + min + " and " +
              max;
-    case scan::SweepOutcome::no_way: return "the tool would come too near to the panel: see 'laser.position_m'";
+    case scan::SweepOutcome::no_way:
+      return planar ? "the tool would come too near to the panel: see 'laser.position_m'"
+                    : "the arm would come too near to something, or hide the line from the camera: see 'laser.position_m' and "
+                      "'camera.position_m'";
     case scan::SweepOutcome::bad_request:
     case scan::SweepOutcome::ok: break;
   }
@@ -135,6 +138,14 @@ std::string too_near(const char* when, const Nearest& nearest) {
 
 JointVector vector_of(const PerArmJoint<double>& q) { return JointVector(q.data()); }
 
+// An arm of many joints gets there if it is folded in much the same posture.
+std::string begin_text(const arm::Arm& arm, const scan::SweepPlan& plan) {
+  if (arm.is_planar()) return "";
+  std::string text = "; the sweep begins at [";
+  for (std::size_t i = 0; i < arm.arm_joints(); ++i) text += formatted(i == 0 ? "%.2f" : ", %.2f", plan.start_rad[i]);
+  return text + "] rad: 'arm.park_rad' may be too far from there";
+}
+
 // With what of the limits keeps the arm from it, where that is seen at the sweep's ends.
 std::string unreachable_text(const arm::Arm& arm, const JointNames& names, const safety::Limits& limits, const PanelLayout& panel,
                              const scan::SweepPlan& plan) {
@@ -170,11 +181,15 @@ std::optional<std::string> sweep_problem(const ControllerConfig& controller, con
   if (const Nearest parked = neighbours.of(mission.park_rad, jaw_rad); parked.distance_m < mission::clearance_m)
     return too_near("folded up", parked);
 
-  const scan::SweepRequest request = mission::sweep_over_panel(mission);
-  const scan::SweepPlan plan = scan::plan_sweep(controller.arm, request, controller.laser);
+  scan::SweepRequest request = mission::sweep_over_panel(mission);
+  request.camera_m = controller.camera.base_from_camera.translation();
+  const arm::Room room{request.base_from_panel, mission.docking, {jaw_rad, jaw_rad}, 0};
+  arm::Surroundings surroundings(controller.arm, mission.layout, mission.vehicle);
+  surroundings.enter(room);
+  const scan::SweepPlan plan = scan::plan_sweep(controller.arm, request, controller.laser, mission.park_rad, &surroundings);
   if (plan.outcome != scan::SweepOutcome::ok) {
     return "the laser cannot be swept over the whole panel wherever it may stand " + docking_text(mission) + ": " +
-           words(plan.outcome, survey) + place_text(mission.layout);
+           words(plan.outcome, survey, controller.arm.is_planar()) + place_text(mission.layout);
   }
   const double frame_share = mission.camera_syncs * can_map::sync_period.s() / request.stripe_period.s();
   const double spacing_m = plan.widest_spacing_m * frame_share;
@@ -192,7 +207,6 @@ std::optional<std::string> sweep_problem(const ControllerConfig& controller, con
   }
   mission::Motion motion(controller.arm, controller.mission_limits, mission.layout, mission.vehicle, mission.park_rad);
   motion.start_at(mission.park_rad);
-  const arm::Room room{request.base_from_panel, mission.docking, {jaw_rad, jaw_rad}, 0};
   motion.go_to_sweep(request, controller.laser, room, jaw_rad, mission.move_speed_fraction);
   while (motion.planning()) motion.step(can_map::sync_period.s());
   if (motion.failure() == StepFailure::none) return std::nullopt;
@@ -210,7 +224,7 @@ std::optional<std::string> sweep_problem(const ControllerConfig& controller, con
   };
   look_along(mission.park_rad, vector_of(plan.start_rad));
   look_along(vector_of(plan.start_rad), vector_of(plan.end_rad));
-  return too_near("sweeping the laser over the panel", nearest);
+  return too_near("sweeping the laser over the panel", nearest) + begin_text(controller.arm, plan);
 }
 
 }  // namespace lf::config

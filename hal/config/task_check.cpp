@@ -3,10 +3,12 @@
 #include <array>
 #include <cstdio>
 
+#include "firmware/arm/tool_place.hpp"
 #include "hal/config/handle_check.hpp"
 #include "hal/config/limits_check.hpp"
 #include "hal/config/panel_check.hpp"
 #include "hal/config/roll_check.hpp"
+#include "hal/config/sweep_check.hpp"
 #include "hal/config/task_reach.hpp"
 #include "hal/config/view_check.hpp"
 
@@ -64,17 +66,19 @@ std::string tasks_problem(const Machine& machine, const Core& core, const missio
   const safety::Limits& limits = core.controller.mission_limits;
   Machine with_tasks = machine;
   with_tasks.tasks = as_in_a_file(tasks, machine.survey.names);
-  if (!machine.arm.is_planar()) return no_jobs;
+  if (!arm::can_work(machine.arm)) return no_jobs;
   for (const std::string& problem : handle_problems(with_tasks)) return problem;
   for (const std::string& problem : low_button_problems(with_tasks)) return problem;
   for (const std::string& problem : torque_problems(with_tasks, core.hand_torque_nm)) return problem;
   for (const std::string& problem : roll_problems(with_tasks, limits)) return problem;
   for (const std::string& problem : view_problems(with_tasks, core.controller.camera)) return problem;
   for (const Place& place : places_of_tasks(with_tasks)) {
-    const arm::IkResult ik = pose_at(machine.arm, machine.panel, place);
+    const arm::IkResult ik = pose_at(machine, place);
     if (!ik.ok()) return place.what + " is out of the arm's reach at its nominal place: " + excess_text(ik);
     for (const std::string& problem : pose_problems(machine.arm, machine.joints, limits, ik.q_rad, place.what)) return problem;
   }
+  // Where the file has no task, nobody has asked for it yet.
+  if (machine.tasks.empty() && !machine.arm.is_planar()) return sweep_problem(core.controller, machine.joints, machine.survey).value_or("");
   return "";
 }
 

@@ -8,7 +8,8 @@
 #include <optional>
 
 #include "firmware/arm/gripper.hpp"
-#include "firmware/arm/reach.hpp"
+#include "firmware/arm/pointing.hpp"
+#include "hal/config/park_pose.hpp"
 
 namespace lf::config {
 
@@ -53,8 +54,14 @@ std::vector<Place> places_of_tasks(const Machine& machine) {
   return places;
 }
 
-arm::IkResult pose_at(const arm::Arm& arm, const PanelLayout& panel, const Place& place) {
-  const Vec3 tip_m = panel.nominal_base_from_panel() * place.in_panel_m;
+arm::IkResult pose_at(const Machine& machine, const Place& place) {
+  const arm::Arm& arm = machine.arm;
+  const Pose base_from_panel = machine.panel.nominal_base_from_panel();
+  const Vec3 tip_m = base_from_panel * place.in_panel_m, inward = -base_from_panel.linear().col(2);
+  if (!arm.is_planar())
+    return arm::point_tool_or_why(arm, tip_m - place.tip_m * inward, inward, 0, arm::default_limit_margin_rad,
+                                  as_folded(arm, machine.park_rad));
+  // The approach axis depends on the place itself.
   arm::IkResult ik = arm::inverse_kinematics(arm, tip_m, 0);
   for (int round = 0; round < 3 && place.tip_m > 0; ++round) {
     if (ik.outcome == arm::IkOutcome::not_a_number || ik.outcome == arm::IkOutcome::too_far) break;
@@ -63,14 +70,18 @@ arm::IkResult pose_at(const arm::Arm& arm, const PanelLayout& panel, const Place
   return ik;
 }
 
-double steepest_rad(const arm::Arm& arm, const PanelLayout& panel, const Place& place, const arm::PanelDoubt& docking) {
+double steepest_rad(const Machine& machine, const Place& place) {
   // A place beside its own turns the arm the more the nearer it is.
   constexpr double farthest_m = 0.5, nearest_m = 0.1;
-  const arm::IkResult ik = pose_at(arm, panel, place);
+  // What a look leaves in doubt of the panel's normal, and what the arm gives way by.
+  constexpr double of_pointing_rad = 0.02;
+  const arm::IkResult ik = pose_at(machine, place);
   if (!ik.ok()) return 0;
-  const double away_m = std::clamp(arm.base_from_tool(ik.q_rad).translation().head<2>().norm(), nearest_m, farthest_m);
-  const Vec3 inward = -panel.nominal_base_from_panel().linear().col(2);
-  const Vec3 axis = arm.approach_axis(ik.q_rad);
+  if (!machine.arm.is_planar()) return of_pointing_rad;
+  const arm::PanelDoubt& docking = machine.mission.docking;
+  const double away_m = std::clamp(machine.arm.base_from_tool(ik.q_rad).translation().head<2>().norm(), nearest_m, farthest_m);
+  const Vec3 inward = -machine.panel.nominal_base_from_panel().linear().col(2);
+  const Vec3 axis = machine.arm.approach_axis(ik.q_rad);
   const double doubt_rad = std::numbers::sqrt3 * docking.turn_rad + std::numbers::sqrt2 * docking.shift_m / away_m;
   return std::atan2(axis.cross(inward).norm(), axis.dot(inward)) + doubt_rad;
 }

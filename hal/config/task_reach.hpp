@@ -32,11 +32,12 @@ Place place_of_valve(const Machine& machine, std::size_t valve);
 Place place_of_button(const Machine& machine, std::size_t button);
 
 // How aslant the tool may stand to the panel there, rad: nominally, and by what the panel may be turned about all three axes and shifted along two, from half a
-// metre away. In the reach survey 2 degrees and 20 mm about each axis add up to 6.9 degrees; 6.7 by this. Where the arm does not reach, it does not work: 0.
-double steepest_rad(const arm::Arm& arm, const PanelLayout& panel, const Place& place, const arm::PanelDoubt& docking);
+// metre away. In the reach survey 2 degrees and 20 mm about each axis add up to 6.9 degrees; 6.7 by this. An arm that can point its tool points it at the panel as it was
+// seen. Where the arm does not reach, it does not work: 0.
+double steepest_rad(const Machine& machine, const Place& place);
 
-// The pose there, found as a press finds it (firmware/mission/press_button.cpp): the approach axis depends on the place itself.
-arm::IkResult pose_at(const arm::Arm& arm, const PanelLayout& panel, const Place& place);
+// The pose there, found as a press finds it (firmware/mission/press_button.cpp), from the folded pose.
+arm::IkResult pose_at(const Machine& machine, const Place& place);
 
 // How aslant the tool comes to a place, and by which keys: a clause for the end of a message.
 std::string aslant_text(const PanelLayout& panel, const arm::PanelDoubt& docking, double tilt_rad);

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "firmware/arm/gripper.hpp"
+#include "firmware/arm/pointing.hpp"
 #include "hal/config/arm_notes.hpp"
 #include "hal/config/drive_kind.hpp"
 #include "hal/config/homing_file.hpp"
@@ -112,7 +113,7 @@ Json json_of(const Told& told) {
                               {"profile", drive.profile},
                               {"polarity", drive.polarity}});
   }
-  json["ik"] = told.arm.is_planar() ? "planar" : "none";
+  json["ik"] = told.arm.is_planar() ? "planar" : arm::can_point(told.arm) ? arm::family_of(told.arm) : "none";
   json["reach_m"] = told.reach_m();
   json["jaw_opens_m"] = told.jaw_opens_m();
   json["thickest_bar_m"] = arm::thickest_bar_m(told.arm.jaw());
@@ -135,10 +136,13 @@ void tell(const Told& told) {
   }
   if (told.arm.is_planar())
     print("  inverse kinematics: planar, in closed form; the tool comes %.0f mm from the slew's axis at most\n", 1e3 * told.reach_m());
+  else if (arm::can_point(told.arm))
+    print("  inverse kinematics: %s; it points its tool straight at the panel, which comes %.0f mm from the first joint at most\n",
+          arm::family_of(told.arm), 1e3 * told.reach_m());
   else
     print(
-        "  of another form than slew, shoulder, elbow and roll, for which jobs are planned: it can be commissioned, homed and jogged. The "
-        "tool comes %.0f mm from the first joint at most\n",
+        "  neither slew, shoulder, elbow and roll nor five joints before its roll, for which jobs are planned: it can be commissioned, "
+        "homed and jogged. The tool comes %.0f mm from the first joint at most\n",
         1e3 * told.reach_m());
   print("  the jaw opens to %.0f mm, and takes bars up to %.1f mm\n", 1e3 * told.jaw_opens_m(), 1e3 * arm::thickest_bar_m(told.arm.jaw()));
   const std::array<double, 3>& camera = told.machine.camera.position_m;

@@ -47,7 +47,7 @@ std::vector<std::string> problems_of(const std::string& file, const Json& task) 
 }
 
 double tilt_deg(const arm::Arm& arm, const Pose& base_from_panel, const Vec3& place_m, double tip_m) {
-  const arm::Reach reach = reach_of_tip(arm, base_from_panel, place_m, tip_m);
+  const arm::Reach reach = reach_of_tip(arm, base_from_panel, place_m, tip_m, arm::JointVector::Zero());
   return reach.outcome == arm::IkOutcome::ok ? deg_from_rad(reach.tilt_rad) : NAN;
 }
 

@@ -2,7 +2,8 @@
 #include <cstdio>
 #include <memory>
 
-#include "firmware/arm/inverse_kinematics.hpp"
+#include "firmware/arm/pointing.hpp"
+#include "firmware/arm/tool_place.hpp"
 #include "hal/config/read_arm.hpp"
 #include "hal/config/share.hpp"
 #include "host_sim/app/checks.hpp"
@@ -16,6 +17,7 @@ namespace {
 struct Options {
   double x_m = 0, y_m = 0, z_m = 0, roll_rad = 0;
   double margin_rad = arm::default_limit_margin_rad;
+  std::vector<double> approach{1, 0, 0};
   std::string arm = "arm/arm5e.urdf";
   bool json = false;
 };
@@ -32,9 +34,10 @@ Json answer(const config::NamedArm& named, const arm::IkResult& ik) {
     const Vec3 approach = arm.approach_axis(ik.q_rad);
     for (std::size_t i = 0; i < arm.arm_joints(); ++i) json["joints_rad"][named.joints[i]] = ik.q_rad[Eigen::Index(i)];
     json["approach"] = {approach.x(), approach.y(), approach.z()};
-    json["branch"] = ik.posture.branch == arm::IkBranch::front ? "front" : "folded";
+    if (arm.is_planar()) json["branch"] = ik.posture.branch == arm::IkBranch::front ? "front" : "folded";
   } else {
     json["reason"] = arm::name(ik.outcome);
+    if (ik.outcome == arm::IkOutcome::joint_limit) json["joint"] = named.joints[ik.joint];
     json[is_length(ik.outcome) ? "excess_m" : "excess_rad"] = ik.excess;
   }
   return json;
@@ -43,6 +46,7 @@ Json answer(const config::NamedArm& named, const arm::IkResult& ik) {
 void tell(const config::NamedArm& named, const arm::IkResult& ik) {
   const arm::Arm& arm = named.arm;
   if (!ik.ok()) {
+    if (ik.outcome == arm::IkOutcome::joint_limit) print("not reachable: %s is beyond its limit\n", named.joints[ik.joint].c_str());
     if (is_length(ik.outcome)) {
       print("not reachable: %s by %.1f mm\n", arm::name(ik.outcome), 1e3 * ik.excess);
     } else {
@@ -70,12 +74,15 @@ int ik(const Options& options) {
     throw InputError(text);
   }
   const config::NamedArm arm = config::read_arm(config::find_file(options.arm, ""));
-  if (!arm.arm.is_planar())
-    throw InputError(
-        "ik: " + options.arm +
-        " is of another form than slew, shoulder, elbow and roll, which ik solves in closed form: `lanternfish check arm` tries any");
-  const arm::IkResult result =
-      arm::inverse_kinematics(arm.arm, Vec3(options.x_m, options.y_m, options.z_m), options.roll_rad, options.margin_rad);
+  if (!arm::can_work(arm.arm))
+    throw InputError("ik: " + options.arm +
+                     " is neither an arm of slew, shoulder, elbow and roll nor one with five joints or more before its roll: `lanternfish "
+                     "check arm` tries any");
+  const Vec3 tool_m(options.x_m, options.y_m, options.z_m), approach = Eigen::Map<const Vec3>(options.approach.data());
+  if (!approach.allFinite() || !(approach.norm() > 1e-3)) throw InputError("ik: --approach takes three numbers that are not all 0");
+  const arm::IkResult result = arm.arm.is_planar() ? arm::inverse_kinematics(arm.arm, tool_m, options.roll_rad, options.margin_rad)
+                                                   : arm::point_tool_or_why(arm.arm, tool_m, approach, options.roll_rad, options.margin_rad,
+                                                                            arm::JointVector::Zero());
   if (options.json) {
     print_json(answer(arm, result));
   } else {
@@ -93,6 +100,7 @@ void add_ik(CLI::App& app, Action& action) {
   command->add_option("--y", options->y_m, "To the right, m")->required();
   command->add_option("--z", options->z_m, "Down, m")->required();
   command->add_option("--roll", options->roll_rad, "Roll of the jaw, rad");
+  command->add_option("--approach", options->approach, "Direction in which the tool points, of an arm that can choose it")->expected(3);
   command->add_option("--margin", options->margin_rad, "Distance to keep from the joints' limits, rad")->check(within(0, 0.5));
   command->add_option("--arm", options->arm, "The arm's URDF, a file or a shipped one")->capture_default_str();
   command->add_flag("--json", options->json, "Print JSON");

@@ -78,9 +78,8 @@ int reach(const Options& options) {
   // At the height of the first of each kind: on most panels all of a kind are alike.
   std::vector<ReachGrid> grids;
   if (!scenario.panel.buttons.empty())
-    grids.push_back(survey_grid(scenario.told_arm, scenario.panel, scenario.panel.buttons[0].height_m, closed_tip_m(scenario.told_arm)));
-  if (!scenario.panel.valves.empty())
-    grids.push_back(survey_grid(scenario.told_arm, scenario.panel, scenario.panel.valves[0].handle_height_m, 0));
+    grids.push_back(survey_grid(scenario, scenario.panel.buttons[0].height_m, closed_tip_m(scenario.told_arm)));
+  if (!scenario.panel.valves.empty()) grids.push_back(survey_grid(scenario, scenario.panel.valves[0].handle_height_m, 0));
   const std::vector<ReachTarget> targets = survey_targets(scenario, options.draws);
   const std::vector<std::uint8_t> picture = draw_reach(scenario, grids, targets, format);
   record::write_file_atomically(options.out, {reinterpret_cast<const char*>(picture.data()), picture.size()});

@@ -6,6 +6,7 @@
 
 #include "firmware/arm/collision.hpp"
 #include "firmware/arm/gripper.hpp"
+#include "hal/config/park_pose.hpp"
 #include "host_sim/scenario/instance.hpp"
 
 namespace lf::app {
@@ -23,15 +24,16 @@ arm::PanelParts all_but_handles(const PanelLayout& layout) {
 
 ReachTarget survey_target(const scenario::Scenario& scenario, const std::string& name, const Vec3& point_m, double tip_m, bool is_button,
                           int draws) {
+  const arm::JointVector near_rad = config::as_folded(scenario.told_arm, scenario.arm.park_rad);
   ReachTarget target;
   target.name = name;
-  target.nominal = reach_of_tip(scenario.told_arm, scenario.panel.nominal_base_from_panel(), point_m, tip_m);
+  target.nominal = reach_of_tip(scenario.told_arm, scenario.panel.nominal_base_from_panel(), point_m, tip_m, near_rad);
   target.handle_clearance_m = std::numeric_limits<double>::infinity();
   target.draws = draws;
   const arm::PanelShape shape(scenario.panel);
   for (int seed = 1; seed <= draws; ++seed) {
     const Pose base_from_panel = scenario::true_base_from_panel(scenario.panel, scenario::draw(scenario, static_cast<std::uint64_t>(seed)));
-    const arm::Reach reach = reach_of_tip(scenario.told_arm, base_from_panel, point_m, tip_m);
+    const arm::Reach reach = reach_of_tip(scenario.told_arm, base_from_panel, point_m, tip_m, near_rad);
     if (reach.outcome != arm::IkOutcome::ok) continue;
     ++target.reached;
     target.worst_tilt_rad = std::max(target.worst_tilt_rad, reach.tilt_rad);
@@ -48,7 +50,9 @@ ReachTarget survey_target(const scenario::Scenario& scenario, const std::string&
 
 double closed_tip_m(const arm::Arm& arm) { return arm::tip_beyond_tool_m(arm.jaw(), arm::jaw_from_gap(arm.jaw(), 0)); }
 
-arm::Reach reach_of_tip(const arm::Arm& arm, const Pose& base_from_panel, const Vec3& panel_point_m, double tip_m) {
+arm::Reach reach_of_tip(const arm::Arm& arm, const Pose& base_from_panel, const Vec3& panel_point_m, double tip_m,
+                        const arm::JointVector& near_rad) {
+  if (!arm.is_planar()) return arm::reach(arm, base_from_panel, panel_point_m + Vec3(0, 0, tip_m), arm::default_limit_margin_rad, near_rad);
   arm::Reach reach = arm::reach(arm, base_from_panel, panel_point_m);
   // The approach turns by a few degrees as the point draws back by the tip's length: each round leaves a twentieth of the error.
   for (int round = 0; round < 6 && tip_m > 0 && reach.outcome == arm::IkOutcome::ok; ++round) {
@@ -63,7 +67,9 @@ double ReachGrid::area_m2(double limit_rad) const {
   return static_cast<double>(within) * step_m * step_m;
 }
 
-ReachGrid survey_grid(const arm::Arm& arm, const PanelLayout& layout, double height_m, double tip_m) {
+ReachGrid survey_grid(const scenario::Scenario& scenario, double height_m, double tip_m) {
+  const PanelLayout& layout = scenario.panel;
+  const arm::JointVector near_rad = config::as_folded(scenario.told_arm, scenario.arm.park_rad);
   ReachGrid grid;
   grid.height_m = height_m;
   const Vec2 size = layout.plate_max_m - layout.plate_min_m;
@@ -74,7 +80,7 @@ ReachGrid survey_grid(const arm::Arm& arm, const PanelLayout& layout, double hei
     for (int column = 0; column < grid.columns; ++column) {
       const Vec3 point(layout.plate_min_m.x() + (column + 0.5) * ReachGrid::step_m,
                        layout.plate_max_m.y() - (row + 0.5) * ReachGrid::step_m, height_m);
-      const arm::Reach reach = reach_of_tip(arm, base_from_panel, point, tip_m);
+      const arm::Reach reach = reach_of_tip(scenario.told_arm, base_from_panel, point, tip_m, near_rad);
       grid.tilt_rad.push_back(reach.outcome == arm::IkOutcome::ok ? static_cast<float>(reach.tilt_rad)
                                                                   : std::numeric_limits<float>::quiet_NaN());
     }

@@ -13,7 +13,8 @@ namespace lf::app {
 double closed_tip_m(const arm::Arm& arm);
 
 // The tool at a place in the panel frame: its point, or with `tip_m` the fingers' tips so far beyond it along the tool axis.
-arm::Reach reach_of_tip(const arm::Arm& arm, const Pose& base_from_panel, const Vec3& panel_point_m, double tip_m);
+arm::Reach reach_of_tip(const arm::Arm& arm, const Pose& base_from_panel, const Vec3& panel_point_m, double tip_m,
+                        const arm::JointVector& near_rad);
 
 struct ReachGrid {
   static constexpr double step_m = 0.002;
@@ -25,7 +26,7 @@ struct ReachGrid {
   double area_m2(double limit_rad) const;
 };
 
-ReachGrid survey_grid(const arm::Arm& arm, const PanelLayout& layout, double height_m, double tip_m);
+ReachGrid survey_grid(const scenario::Scenario& scenario, double height_m, double tip_m);
 
 // A place that a task goes to.
 struct ReachTarget {

@@ -113,10 +113,13 @@ world::WorldConfig world_config(const Scenario& scenario, const Sample& sample) 
   const std::size_t arm_joints = world.arm.arm_joints();
   world.start_rad = {};
   world.drive_stiffness_nm_rad = {};
-  for (std::size_t i = 0; i <= arm_joints; ++i)
-    world.drive_stiffness_nm_rad[i] = i + 1 >= arm_joints ? world::end_stiffness_nm_rad
-                                      : i == 0            ? world::first_stiffness_nm_rad
-                                                          : world::stiffness_nm_rad;
+  for (std::size_t i = 0; i <= arm_joints; ++i) {
+    const double usual_nm_rad = i + 1 >= arm_joints ? world::end_stiffness_nm_rad
+                                : i == 0            ? world::first_stiffness_nm_rad
+                                                    : world::stiffness_nm_rad;
+    const double told_nm_rad = world.arm.joints[i].stiffness_nm_rad;
+    world.drive_stiffness_nm_rad[i] = told_nm_rad > 0 ? told_nm_rad : usual_nm_rad;
+  }
   world.start_rad[arm_joints] = std::clamp(world::half_open_rad, jaw.lower_rad, jaw.upper_rad);
   std::copy_n(scenario.arm.park_rad.begin(), std::min(scenario.arm.park_rad.size(), arm_joints), world.start_rad.begin());
   world.layout = true_layout(scenario.panel, sample);

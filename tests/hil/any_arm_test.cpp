@@ -1,4 +1,4 @@
-// An arm of six joints before its jaw, of no form that jobs are planned for: an operator homes and jogs it, and whatever stops the default arm stops it.
+// Arms of other joints than the default's: an operator homes and jogs them, and whatever stops the default arm stops them. One of five joints is given no job.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -101,21 +101,24 @@ TEST_F(AnyArm, IsNotJoggedIntoItsVehicle) {
   EXPECT_EQ(rig.step_now(), Step::ready) << rig.story();
 }
 
-TEST_F(AnyArm, IsGivenNoJob) {
+// The panel stands where the default arm reaches it, and this one does not.
+TEST_F(AnyArm, ThatDoesNotReachThePanelGoesHomeFromAJob) {
   ASSERT_TRUE(home(rig)) << rig.story();
   EXPECT_FALSE(give(rig, Command::start)) << "there is nothing to do";
-  EXPECT_FALSE(set_tasks(rig, {mission::Task{mission::Task::Kind::press_button, 0, 0, 0}}));
-  rig.run_for(1);
-  EXPECT_EQ(rig.step_now(), Step::ready) << rig.story();
+  ASSERT_TRUE(set_tasks(rig, {mission::Task{mission::Task::Kind::press_button, 0, 0, 0}}));
+  ASSERT_TRUE(give(rig, Command::start));
+  rig.run_for(30);
+  EXPECT_FALSE(any_power(rig)) << rig.story();
+  EXPECT_TRUE(rig.world().contacts().unintended.empty());
 }
 
-TEST(AnyArmsJob, IsRefusedWithTheReasonBeforeItBegins) {
+TEST(AnyArmsJob, OutOfItsReachIsRefusedBeforeItBegins) {
   const std::vector<std::string> overrides{"machine=" LANTERNFISH_TEST_DATA "/arms/six_joints/six_joints.yaml"};
   try {
     scenario::check_runnable(scenario::load_scenario("default", overrides));
     FAIL() << "it was accepted";
   } catch (const InputError& refused) {
-    EXPECT_THAT(refused.what(), testing::HasSubstr("jobs are planned for arms of slew, shoulder, elbow and roll only"));
+    EXPECT_THAT(refused.what(), testing::HasSubstr("the valve is out of the arm's reach at its nominal place"));
   }
 }
 
@@ -160,6 +163,56 @@ TEST_F(AnyArm, AnEmergencyStopTakesItsPowerOnItsWay) {
 std::string between(const std::string& text, const std::string& from, const std::string& to) {
   const std::size_t begin = text.find(from);
   return text.substr(begin, text.find(to, begin) + to.size() - begin);
+}
+
+// The same arm without its twist: four joints place the tool and cannot choose how it points.
+class ArmOfFiveJoints : public testing::Test {
+ protected:
+  void SetUp() override {
+    const std::string arms = LANTERNFISH_TEST_DATA "/arms/six_joints/";
+    std::string urdf = config::read_text_file(arms + "six_joints.urdf"), limits = config::read_text_file(arms + "limits.yaml");
+    change(urdf, between(urdf, "  <link name=\"stick\">", "</link>\n"), "");
+    change(urdf, between(urdf, "  <joint name=\"twist\"", "</joint>\n"), "");
+    change(urdf, "<parent link=\"stick\"/>", "<parent link=\"elbow_block\"/>");
+    change(limits, between(limits, "  twist:", "\n"), "");
+    folder.write("arm.urdf", urdf);
+    folder.write("limits.yaml", limits);
+    machine = folder.write("machine.yaml",
+                           "version: 1\narm: {urdf: arm.urdf, park_rad: [0, 0.6, -1.3, 0.4, 0]}\nsafety: {limits: limits.yaml}\n");
+    correct_checksum();
+  }
+
+  // The refusal names the right one.
+  void correct_checksum() {
+    std::string limits = config::read_text_file(folder / "limits.yaml");
+    try {
+      (void)scenario::make_nominal(scenario::load_scenario("default", {"machine=" + machine, "tasks=[]"}), true);
+    } catch (const InputError& refused) {
+      const std::string told = refused.what();
+      change(limits, between(limits, "checksum: ", "\n"), "checksum: " + told.substr(told.rfind("0x"), 10) + "\n");
+      folder.write("limits.yaml", limits);
+    }
+  }
+
+  TemporaryFolder folder;
+  std::string machine;
+};
+
+TEST_F(ArmOfFiveJoints, IsHomedAndGivenNoJob) {
+  Rig rig({"machine=" + machine, "tasks=[]"});
+  ASSERT_TRUE(home(rig)) << rig.story();
+  EXPECT_FALSE(set_tasks(rig, {mission::Task{mission::Task::Kind::press_button, 0, 0, 0}}));
+  rig.run_for(1);
+  EXPECT_EQ(rig.step_now(), Step::ready) << rig.story();
+}
+
+TEST_F(ArmOfFiveJoints, IsRefusedAJobWithTheReasonBeforeItBegins) {
+  try {
+    scenario::check_runnable(scenario::load_scenario("default", {"machine=" + machine}));
+    FAIL() << "it was accepted";
+  } catch (const InputError& refused) {
+    EXPECT_THAT(refused.what(), testing::HasSubstr("five joints or more before their roll"));
+  }
 }
 
 // The same arm with two more joints in its wrist: as many as the core holds.

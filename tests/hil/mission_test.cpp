@@ -32,6 +32,7 @@ TEST_P(WholeMission, TurnsTheValvePressesEachButtonOnceAndTouchesNothingElse) {
   EXPECT_NEAR(run.valve_rad, target_rad, rad_from_deg(3));
   for (const std::uint32_t presses : run.presses) EXPECT_EQ(presses, 1u);
   EXPECT_TRUE(run.contacts.unintended.empty());
+  EXPECT_LE(run.contacts.peak_force_n, 150);
   EXPECT_FALSE(run.laser_on_at_end);
   EXPECT_FALSE(run.lamps_on_at_end);
   EXPECT_EQ(run.refused_frames, 0u);
@@ -41,7 +42,9 @@ TEST_P(WholeMission, TurnsTheValvePressesEachButtonOnceAndTouchesNothingElse) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, WholeMission,
-                         testing::Values(Seeded{"default", 1, "either", "Default1"}, Seeded{"turbid", 7, "false", "TurbidInTheDark7"}),
+                         testing::Values(Seeded{"default", 1, "either", "Default1"}, Seeded{"turbid", 7, "false", "TurbidInTheDark7"},
+                                         // Six joints with a spherical wrist, and with three parallel axes.
+                                         Seeded{"oberon7", 1, "true", "Oberon1"}, Seeded{"ur5", 2, "true", "Ur2"}),
                          [](const testing::TestParamInfo<Seeded>& test) { return std::string(test.param.name); });
 
 struct Rate {

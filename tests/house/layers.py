@@ -13,7 +13,7 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 SHARED_FOR_CORE = ["shared/messages/", "shared/geometry/", "shared/lanes/", "shared/can/", "shared/calibration/", "shared/panel/panel_layout.hpp",
                    "shared/arm/arm_geometry.hpp", "shared/arm/arm_model.hpp", "shared/random.hpp"]
 CORE_HEADERS = {"algorithm", "array", "atomic", "bit", "cmath", "compare", "concepts", "cstddef", "cstdint", "cstring", "limits", "numbers",
-                "numeric", "optional", "span", "tuple", "type_traits", "utility", "Eigen/Core", "Eigen/Geometry", "Eigen/Dense", "Eigen/LU",
+                "numeric", "optional", "span", "tuple", "type_traits", "utility", "variant", "Eigen/Core", "Eigen/Geometry", "Eigen/Dense", "Eigen/LU",
                 "Eigen/Cholesky", "Eigen/Eigenvalues", "Eigen/QR", "Eigen/SVD"}
 
 # layer (longest prefix wins): project paths it may include, and patterns of system headers only it may include

@@ -126,10 +126,11 @@ _lanternfish() {
         --y) :; return ;;
         --z) :; return ;;
         --roll) :; return ;;
+        --approach) :; return ;;
         --margin) :; return ;;
         --arm) compopt -o filenames; COMPREPLY=($(compgen -f -- "$word")); return ;;
       esac
-      options='--help --x --y --z --roll --margin --arm --json'
+      options='--help --x --y --z --roll --approach --margin --arm --json'
       ;;
     'check')
       case $before in

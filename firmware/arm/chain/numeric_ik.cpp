@@ -65,7 +65,10 @@ void NumericIk::begin(const Chain& chain, const IkTask& task, const JointValues&
     return;
   }
   far_found_ = false;
-  enter(chain, first_stage(chain));
+  const Stage first = first_stage(chain);
+  if (first == Stage::search || config_.explain) return enter(chain, first);
+  start(chain, seed_);
+  finish(chain, IkOutcome::gave_up, 0);
 }
 
 // A target beyond the chain's whole length needs no search, only the distance.
@@ -302,7 +305,10 @@ void NumericIk::exhausted(const Chain& chain) {
         return;
       }
       searched_ = nearest_;
-      enter(chain, Stage::beyond_limits);
+      if (config_.explain)
+        enter(chain, Stage::beyond_limits);
+      else
+        finish(chain, IkOutcome::gave_up, 0);
       return;
     case Stage::beyond_limits:
       if (beyond_found_)

@@ -21,7 +21,8 @@ struct NumericIkConfig {
   // branch all the same: that is what `stay` is for.
   std::uint32_t max_restarts = 500;
   std::uint64_t random_seed = 1;
-  bool search = true;  // false: it is known that there is no solution, only the reason is wanted
+  bool search = true;   // false: it is known that there is no solution, only the reason is wanted
+  bool explain = true;  // false: where the search finds nothing it has given up; the reason would take ten times as long
   // For following a path: only an answer within jump_rad of the seed, in Chain::travel_rad(), will do, else the outcome is jump_needed, or why there is none. So
   // near, postures of two branches are both continuous with the seed: they part only at a singular posture, and there either is a short motion.
   // Starts are made around the seed alone, 20 restarts at most. Where there are several closed forms the nearest is taken, as always.

@@ -151,13 +151,21 @@ TEST_F(AnyArm, HoldsTheLinksAgainstEachOtherThatCanMeet) {
   }
 }
 
-// Jobs are planned in closed forms, which it has not: nothing of it is answered as if it had.
-TEST_F(AnyArm, HasNoClosedFormsAndSaysSo) {
+// The planar form's closed forms do not answer for it.
+TEST_F(AnyArm, HasNotThePlanarFormsPostures) {
   const JointVector q = draw();
   EXPECT_EQ(inverse_kinematics(arm, Vec3(0.4, 0, 0.4), 0).outcome, IkOutcome::other_form);
   EXPECT_EQ(inverse_kinematics(arm, posture_of(arm, q), Vec3(0.4, 0, 0.4), 0).outcome, IkOutcome::other_form);
+}
+
+// Four joints before the roll place a tool and do not point it: no straight way is planned for such an arm.
+TEST_F(AnyArm, WithFewerJointsThanPointingTakesItGoesNoStraightWay) {
+  ArmModel few = make_model(description);
+  few.arm_joints = 5;
+  const Arm of_few(few);
+  const JointVector q = draw();
   CartesianLine line;
-  const LinePlan plan = line.plan(arm, q, Vec3(0.4, 0, 0.4), 0, {}, arm.limits());
+  const LinePlan plan = line.plan(of_few, q, Vec3(0.4, 0, 0.4), 0, {}, of_few.limits());
   EXPECT_NE(plan.outcome, PlanOutcome::ok);
   EXPECT_EQ(plan.ik, IkOutcome::other_form);
   EXPECT_EQ(line.sample(0.1).q_rad, q) << "stands where it is";

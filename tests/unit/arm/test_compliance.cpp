@@ -25,7 +25,7 @@ class Feed {
 };
 
 TEST(Compliance, DoesNotMoveUnderTheTorqueThatItLearnedNorWithinItsDeadBand) {
-  Compliance compliance;
+  Compliance compliance(ComplianceConfig(4));
   Feed feed(compliance);
   feed(1000, at_rest_nm);
   feed(1000, at_rest_nm + planar_joints(1.9, -1.9, 1.9, 5));
@@ -34,7 +34,7 @@ TEST(Compliance, DoesNotMoveUnderTheTorqueThatItLearnedNorWithinItsDeadBand) {
 
 // A steady torque T over the dead band D moves a joint at g (T - D).
 TEST(Compliance, GivesWayAgainstTheDrivesTorqueAtTheStatedSpeed) {
-  const ComplianceConfig config;
+  const ComplianceConfig config(4);
   Compliance compliance(config);
   Feed feed(compliance);
   feed(100, at_rest_nm);
@@ -50,7 +50,7 @@ TEST(Compliance, GivesWayAgainstTheDrivesTorqueAtTheStatedSpeed) {
 }
 
 TEST(Compliance, GoesNoFurtherAndNoFasterThanItMay) {
-  const ComplianceConfig config;
+  const ComplianceConfig config(4);
   Compliance compliance(config);
   Feed feed(compliance);
   feed(100, at_rest_nm);
@@ -68,7 +68,7 @@ TEST(Compliance, LetsTheLoadOfAStiffContactDecayWithoutHunting) {
   constexpr double stiffness_nm_rad = 4000;
   constexpr double loop_s = 0.05;
   constexpr double misplaced_rad = 0.01;
-  Compliance compliance;
+  Compliance compliance(ComplianceConfig(4));
   Feed feed(compliance);
   feed(30, JointVector::Zero());
   double moved_rad = 0;
@@ -85,7 +85,7 @@ TEST(Compliance, LetsTheLoadOfAStiffContactDecayWithoutHunting) {
 }
 
 TEST(Compliance, TakesAGapBetweenSamplesForAShortOne) {
-  const ComplianceConfig config;
+  const ComplianceConfig config(4);
   Compliance compliance(config);
   Feed feed(compliance);
   const JointVector pushed = at_rest_nm + planar_joints(500, 0, 0, 0);
@@ -97,7 +97,7 @@ TEST(Compliance, TakesAGapBetweenSamplesForAShortOne) {
 }
 
 TEST(Compliance, RefusesWhatIsNoNumberAndWhatIsNotLater) {
-  Compliance compliance;
+  Compliance compliance(ComplianceConfig(4));
   Feed feed(compliance);
   feed(100, at_rest_nm);
   compliance.update(feed.now(), JointVector(at_rest_nm * 100));
@@ -107,7 +107,7 @@ TEST(Compliance, RefusesWhatIsNoNumberAndWhatIsNotLater) {
 }
 
 TEST(Compliance, ForgetsWhenItIsReset) {
-  Compliance compliance;
+  Compliance compliance(ComplianceConfig(4));
   Feed feed(compliance);
   feed(100, at_rest_nm);
   feed(100, at_rest_nm + planar_joints(50, 0, 0, 0));
@@ -119,7 +119,7 @@ TEST(Compliance, ForgetsWhenItIsReset) {
 }
 
 TEST(Compliance, GivesWayToWhatATorqueHasSurelyRisenBy) {
-  const ComplianceConfig config;
+  const ComplianceConfig config(4);
   const auto offset_after = [&](double rise_nm, double doubt_nm) {
     Compliance compliance(config);
     Time t;

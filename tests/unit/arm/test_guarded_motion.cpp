@@ -36,7 +36,7 @@ class Motion {
 const JointVector friction = planar_joints(6, -8, 5, 0.5);
 
 TEST(GuardedMotion, IsFreeWithTheTorqueThatItLearned) {
-  GuardedMotion guard;
+  GuardedMotion guard(GuardConfig(4));
   Motion motion(guard);
   EXPECT_EQ(motion.feed(25, friction), GuardState::learning);
   EXPECT_EQ(motion.feed(1000, friction), GuardState::free);
@@ -45,7 +45,7 @@ TEST(GuardedMotion, IsFreeWithTheTorqueThatItLearned) {
 
 TEST(GuardedMotion, FindsAContactWithinTwentyMilliseconds) {
   for (int joint = 0; joint < 4; ++joint) {
-    GuardedMotion guard;
+    GuardedMotion guard(GuardConfig(4));
     Motion motion(guard);
     motion.feed(100, friction);
     JointVector pushed = friction;
@@ -60,7 +60,7 @@ TEST(GuardedMotion, FindsAContactWithinTwentyMilliseconds) {
 }
 
 TEST(GuardedMotion, TakesNoSingleOutlierForAContact) {
-  GuardedMotion guard;
+  GuardedMotion guard(GuardConfig(4));
   Motion motion(guard);
   motion.feed(100, friction);
   for (int i = 0; i < 20; ++i) {
@@ -70,7 +70,7 @@ TEST(GuardedMotion, TakesNoSingleOutlierForAContact) {
 }
 
 TEST(GuardedMotion, FollowsASlowlyChangingWeightButNotAPush) {
-  GuardedMotion guard;
+  GuardedMotion guard(GuardConfig(4));
   Motion motion(guard);
   motion.feed(30, friction);
   // 1 N m a second, as the arm's wet weight changes with its pose: 8 N m in all.
@@ -93,7 +93,7 @@ TEST(GuardedMotion, NoiseOfAnEncodersAndACurrentSensorsSizeIsNoContact) {
   SCOPED_TRACE(testing::Message() << "seed " << seed);
   std::mt19937_64 engine(seed);
   std::normal_distribution<double> noise(0, 0.5);
-  GuardedMotion guard;
+  GuardedMotion guard(GuardConfig(4));
   Motion motion(guard);
   for (int i = 0; i < 20'000; ++i) {
     const JointVector torque = friction + planar_joints(noise(engine), noise(engine), noise(engine), 0.3 * noise(engine));
@@ -104,7 +104,7 @@ TEST(GuardedMotion, NoiseOfAnEncodersAndACurrentSensorsSizeIsNoContact) {
 }
 
 TEST(GuardedMotion, FindsAJointThatStaysBehind) {
-  GuardedMotion guard;
+  GuardedMotion guard(GuardConfig(4));
   Motion motion(guard);
   motion.feed(50, friction, planar_joints(0, 0.02, 0, 0));
   EXPECT_EQ(guard.state(), GuardState::free);
@@ -114,11 +114,11 @@ TEST(GuardedMotion, FindsAJointThatStaysBehind) {
 }
 
 TEST(GuardedMotion, ReportsAnOverloadEvenWhileLearningAndOverAContact) {
-  GuardedMotion guard;
+  GuardedMotion guard(GuardConfig(4));
   Motion motion(guard);
   EXPECT_EQ(motion.feed(4, planar_joints(0, 0, 60, 0)), GuardState::overload);
   EXPECT_EQ(guard.joint(), arm5e_joint::elbow);
-  GuardedMotion other;
+  GuardedMotion other(GuardConfig(4));
   Motion second(other);
   second.feed(50, friction);
   EXPECT_EQ(second.feed(10, friction + planar_joints(8, 0, 0, 0)), GuardState::contact);
@@ -126,7 +126,7 @@ TEST(GuardedMotion, ReportsAnOverloadEvenWhileLearningAndOverAContact) {
 }
 
 TEST(GuardedMotion, RefusesNonsenseAndStaleSamplesAndCountsThem) {
-  GuardedMotion guard;
+  GuardedMotion guard(GuardConfig(4));
   Motion motion(guard);
   motion.feed(50, friction);
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -144,7 +144,7 @@ TEST(GuardedMotion, RefusesNonsenseAndStaleSamplesAndCountsThem) {
 TEST(GuardedMotion, BelievesOnlyWhatTheTorqueSurelyIs) {
   for (const double doubt_nm : {0.0, 3.0, 10.0}) {
     const auto state_at = [&](double rise_nm, double sign) {
-      GuardedMotion guard;
+      GuardedMotion guard(GuardConfig(4));
       Time t;
       for (int i = 0; i < 150; ++i) {
         JointTorques torque(friction);
@@ -161,7 +161,7 @@ TEST(GuardedMotion, BelievesOnlyWhatTheTorqueSurelyIs) {
     }
   }
   // A screw that locks itself stands still: any load is possible, none is sure.
-  GuardedMotion guard;
+  GuardedMotion guard(GuardConfig(4));
   JointTorques unknown(friction);
   unknown.low_nm.setConstant(-1000);
   unknown.high_nm.setConstant(1000);

@@ -16,7 +16,7 @@ constexpr double tick_s = 0.004;
 
 // Samples a motion at every control period and checks it against the joints' limits; a sampled derivative may exceed a bound by rounding only.
 template <class Motion>
-void expect_within(const Motion& motion, const JointLimits& limits, double jerk_factor = 1) {
+void expect_within(Motion& motion, const JointLimits& limits, double jerk_factor = 1) {
   JointState last = motion.sample(0);
   for (double t = tick_s; t < motion.duration_s() + 2 * tick_s; t += tick_s) {
     const JointState s = motion.sample(t);

@@ -56,7 +56,7 @@ TEST(FreeMotionGuard, ARiseByHalfOfTheLimitIsAContact) {
 
 // A press: the elbow's set-point stands still, the joint is `error_rad` behind it, and the motor pushes with `nm`.
 arm::GuardedMotion pressed(double error_rad, double nm) {
-  arm::GuardConfig config;
+  arm::GuardConfig config(4);
   config.contact_torque_nm.setConstant(7);
   arm::GuardedMotion guard(config);
   double t_s = 0, free_nm = 0;
@@ -81,7 +81,7 @@ TEST(RunsOff, IsADriveThatPushesItsJointAwayFromTheSetPoint) {
 
 // The elbow on its way at `asked_rad_s`, going `rad_s` itself, its motor pushing with `nm`: what the guard shows once it has taken that for a touch.
 arm::GuardedMotion moving(double asked_rad_s, double rad_s, double nm) {
-  arm::GuardConfig config;
+  arm::GuardConfig config(4);
   config.contact_torque_nm.setConstant(7);
   arm::GuardedMotion guard(config);
   arm::JointVector command_rad = arm::JointVector::Zero(), position_rad = command_rad, velocity_rad_s = command_rad,

@@ -81,12 +81,12 @@ TEST_F(AnyArmsVehicle, FoldedWhereSomethingIsIsRefused) {
   EXPECT_THAT(folded("[0, 1.0, -0.2, 0, 0.8, 0]"), Contains(AllOf(HasSubstr("'arm.park_rad': folded up"), HasSubstr("the panel's"))));
 }
 
-TEST_F(AnyArmsVehicle, GivenAJobIsRefused) {
+TEST_F(AnyArmsVehicle, GivenAJobOutOfItsReachIsRefused) {
   EXPECT_THAT(problems(), IsEmpty());
   std::string text = config::read_text_file(folder / "vehicle.yaml");
   test::change(text, "tasks: []\n", "");
   EXPECT_THAT(problems_of(folder.write("jobs.yaml", text)),
-              Contains(HasSubstr("jobs are planned for arms of slew, shoulder, elbow and roll only")));
+              Contains(HasSubstr("the valve is out of the arm's reach at its nominal place")));
 }
 
 TEST_F(AnyArmsVehicle, WithLimitsOfAnotherArmIsToldSo) {
