@@ -114,6 +114,7 @@ void CartesianLine::begin(const Arm& arm, const JointVector& start_rad, const Ve
   velocity_ = length > 0 ? line.speed_m_s / length : HUGE_VAL;
   acceleration_ = length > 0 ? line.acceleration_m_s2 / length : HUGE_VAL;
   jerk_ = length > 0 ? line.jerk_m_s3 / length : HUGE_VAL;
+  result_.speed_m_s = line.speed_m_s;
   posture_ = posture_of(arm, start_rad);
   limits_ = limits;
   last_rad_ = start_rad;
@@ -157,6 +158,7 @@ bool CartesianLine::check() {
   if ((ik.q_rad - last_rad_).head(roll).cwiseAbs().maxCoeff() > max_step_rad)
     return finish(PlanOutcome::unreachable, arm_->is_planar() ? IkOutcome::slew_limit : IkOutcome::turned_away);
   last_rad_ = ik.q_rad;
+  if (!arm_->is_planar() && is_singular(*arm_, ik.q_rad)) return finish(PlanOutcome::unreachable, IkOutcome::turned_away);
   const Rates here = rates(*arm_, ik.q_rad, way_m_, turn);
   // The stretched arm is singular.
   if (!here.first.allFinite() || !here.second.allFinite()) return finish(PlanOutcome::unreachable, IkOutcome::too_far);
@@ -166,6 +168,10 @@ bool CartesianLine::check() {
   const double length = way_m_.norm();
   if ((length > 0 || turn != 0) && !curve_.plan(1, velocity_, acceleration_, jerk_))
     return finish(PlanOutcome::not_a_number, IkOutcome::ok);
+  // Beside a singular posture the tool creeps while the joints turn: no step waits for that.
+  constexpr double slowest = 0.25;  // of the speed that was asked for
+  if (!arm_->is_planar() && length > 0 && velocity_ * length < slowest * result_.speed_m_s)
+    return finish(PlanOutcome::unreachable, IkOutcome::turned_away);
   goal_m_ = start_m_ + way_m_;
   way_m_ = goal_m_ - start_m_;  // as rounding leaves it: the line ends at its goal
   result_.speed_m_s = curve_.peak_velocity() * length;
@@ -180,6 +186,8 @@ JointVector CartesianLine::solved(double fraction, double roll_rad) {
   for (int back = 0; back < steps; ++back) {
     const IkResult ik = at(std::max(0.0, fraction - static_cast<double>(back) / (steps * checks)), roll_rad);
     if (ik.outcome == IkOutcome::too_far || ik.outcome == IkOutcome::too_near || ik.outcome == IkOutcome::not_a_number) continue;
+    // An arm that is led never jumps: it stands, and what follows it says so.
+    if (!arm_->is_planar() && fraction * checks >= 1 && (ik.q_rad - last_rad_).cwiseAbs().maxCoeff() > max_step_rad) continue;
     last_rad_ = ik.q_rad;
     return ik.q_rad;
   }

@@ -160,6 +160,17 @@ bool move_tool(const Arm& arm, const Vec3& tool_m, const Vec3& approach, JointVe
   return false;
 }
 
+bool is_singular(const Arm& arm, const JointVector& q_rad) {
+  // The square of the sine of a degree: of a wrist whose outer axes are so far from one line, or an elbow that is so far from stretched.
+  constexpr double least_square = 3e-4;
+  const PointedTool tool(arm, q_rad);
+  PointedTool::Rows rows = tool.rows;
+  const double length_m = std::max(rows.topRows<3>().colwise().norm().maxCoeff(), 1e-3);
+  rows.topRows<3>() /= length_m;
+  const Eigen::Matrix<double, 5, 5> square = rows * rows.transpose();
+  return !(square.ldlt().vectorD().minCoeff() > least_square);
+}
+
 JointVector tool_rates(const Arm& arm, const JointVector& q_rad, const Vec3& way_m) {
   const PointedTool tool(arm, q_rad);
   return tool.joints_for(tool.change(way_m, Vec3::Zero()));

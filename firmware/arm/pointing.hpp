@@ -30,6 +30,9 @@ IkResult point_tool_or_why(const Arm& arm, const Vec3& tool_m, const Vec3& appro
 // singular there: `q_rad` is then of no use. Limits play no part.
 bool move_tool(const Arm& arm, const Vec3& tool_m, const Vec3& approach, JointVector& q_rad);
 
+// Whether the arm is at a posture, or within a degree of one, where the tool cannot be moved or turned some way: a straight line past it would swing joints about.
+bool is_singular(const Arm& arm, const JointVector& q_rad);
+
 // The least rates of the joints before the roll that move the tool point by `way_m` a unit, its approach axis held. Not finite where the arm is singular.
 JointVector tool_rates(const Arm& arm, const JointVector& q_rad, const Vec3& way_m);
 

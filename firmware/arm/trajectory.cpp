@@ -154,6 +154,8 @@ JointStop::JointStop(const JointState& from, const JointLimits& limits) {
     PathState state{from.q_rad[i], from.qd_rad_s[i], from.qdd_rad_s2[i]};
     if (!std::isfinite(state.position)) state = {};
     if (!std::isfinite(state.velocity) || !std::isfinite(state.acceleration)) state = {state.position, 0, 0};
+    // No motion is planned so fast: what says so is no speed of the arm.
+    if (std::abs(state.velocity) > 2 * limits.velocity_rad_s[i]) state = {state.position, 0, 0};
     joints_[i] = StopCurve(state, limits.acceleration_rad_s2[i], limits.jerk_rad_s3[i]);
   }
 }

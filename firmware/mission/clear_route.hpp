@@ -3,7 +3,7 @@
 // does not do, a posture in between is drawn at random, with a fixed seed.
 //
 // Clear is 10 mm between links, known to their capsules, and the panel, grown by what is not known of its place, the vehicle, and the arm itself, with the
-// jaw at every opening it has on the way. Where the arm stands nearer than that to one of them it may leave, but come no nearer to that one. A route that
+// jaw at every opening it has on the way, and the tool keeps to its workspace. Where the arm stands nearer than that to one of them it may leave, but come no nearer to that one. A route that
 // is not clear all along is none: nothing is risked for it.
 #pragma once
 
@@ -13,6 +13,7 @@
 
 #include "firmware/arm/clear_way.hpp"
 #include "firmware/mission/step_failure.hpp"
+#include "firmware/safety/limits.hpp"
 
 namespace lf::mission {
 
@@ -39,8 +40,8 @@ class ClearRoute {
 
   // `jaw_rad`: where it is now.
   void begin(const arm::JointVector& from_rad, const arm::JointVector& to_rad, double jaw_rad, const arm::Surroundings& surroundings);
-  // `limits`: of the joints' positions, which a posture in between keeps.
-  State advance(const arm::Surroundings& surroundings, const arm::JointLimits& limits);
+  // `limits` of the mission: of the joints' positions, which a posture in between keeps, and of the tool's workspace.
+  State advance(const arm::Surroundings& surroundings, const safety::Limits& limits);
   // Once found: where to go, after the start.
   std::span<const arm::JointVector> points_rad() const { return points_; }
   // What bars the straight way, when there is none.
@@ -49,14 +50,16 @@ class ClearRoute {
  private:
   enum class Leg : std::uint8_t { straight, to_via, from_via };
   void look_at(Leg leg, const arm::Surroundings& surroundings);
+  bool keeps_to_workspace(const arm::Arm& arm, const safety::Limits& limits) const;  // on this leg
   // Puts the next place to go by into via_[0]; false when there is no other.
-  bool next_via(const arm::Arm& arm, const arm::JointLimits& limits);
-  void draw_via(const arm::JointLimits& limits);
+  bool next_via(const arm::Arm& arm, const safety::Limits& limits);
+  void draw_via(const arm::Arm& arm, const safety::Limits& limits);
 
   arm::JointVector park_rad_;
   arm::ClearWay way_;
   Leg leg_ = Leg::straight;
   std::uint32_t vias_ = 0;  // tried
+  int looked_at_ = 0;       // poses, of all legs before this one
   arm::JointVector from_rad_ = arm::JointVector::Zero();
   arm::Distances leaving_;  // the clearance wanted of what begins at the start
   arm::Barrier barrier_ = arm::Barrier::none;

@@ -3,34 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "firmware/arm/actuator.hpp"
+#include "firmware/mission/workspace_way.hpp"
 
 namespace lf::mission {
-
-namespace {
-
-// The tool's way is checked every 0.02 rad: 20 mm at a metre, against a box that is coarse by more.
-constexpr int checks = 18;
-// What the tool may be farther out at one check than at the one before, for the count of a joint.
-constexpr double noise_m = 0.0005;
-
-// Whether the tool stays inside its workspace when one joint turns to `to_rad`; from outside, whether it only comes closer.
-bool keeps_to_workspace(const Workbench& bench, std::size_t joint, double to_rad) {
-  arm::JointVector q = bench.motion.target();
-  const auto k = static_cast<Eigen::Index>(joint);
-  const double from_rad = q[k];
-  const safety::Limits& limits = bench.config.mission_limits;
-  double before_m = safety::workspace_excursion_m(limits, bench.config.arm.base_from_tool(q).translation());
-  for (int i = 1; i <= checks; ++i) {
-    q[k] = from_rad + (to_rad - from_rad) * i / checks;
-    const double excursion_m = safety::workspace_excursion_m(limits, bench.config.arm.base_from_tool(q).translation());
-    if (excursion_m > before_m + noise_m) return false;
-    before_m = std::min(before_m, excursion_m);
-  }
-  return true;
-}
-
-}  // namespace
 
 std::optional<double> jog_goal_rad(const Order& order, const Workbench& bench) {
   const std::size_t joint = order.joint;
@@ -47,7 +22,9 @@ std::optional<double> jog_goal_rad(const Order& order, const Workbench& bench) {
   const bool inside = to >= low && to <= high;
   const bool toward_it = (from < low && to > from && to <= high) || (from > high && to < from && to >= low);
   if (!inside && !toward_it) return std::nullopt;
-  if (arm && !keeps_to_workspace(bench, joint, to)) return std::nullopt;
+  arm::JointVector goal = bench.motion.target();
+  if (arm) goal[static_cast<Eigen::Index>(joint)] = to;
+  if (!keeps_to_workspace(bench.config.arm, bench.config.mission_limits, bench.motion.target(), goal)) return std::nullopt;
   return to;
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "firmware/mission/workspace_way.hpp"
+
 namespace lf::mission {
 
 namespace {
@@ -85,7 +87,7 @@ void Motion::plan_route(const arm::JointVector& goal_rad) {
 }
 
 void Motion::advance_route() {
-  switch (route_.advance(surroundings_, limits(1))) {
+  switch (route_.advance(surroundings_, limits_)) {
     case ClearRoute::State::looking: return;
     case ClearRoute::State::found: return go(route_.points_rad(), speed_fraction_);
     case ClearRoute::State::none: return refuse(failure_of(route_.barrier()));
@@ -130,7 +132,8 @@ void Motion::advance_sweep() {
   if (plan.outcome != scan::SweepOutcome::ok) return refuse(StepFailure::unreachable);
   const auto joints = [](const PerArmJoint<double>& q) { return arm::JointVector(q.data()); };
   const arm::PlanOutcome outcome = sweep_.plan(joints(plan.start_rad), joints(plan.end_rad), plan.duration.s(), limits(1));
-  if (outcome != arm::PlanOutcome::ok) return refuse(StepFailure::unreachable);
+  if (outcome != arm::PlanOutcome::ok || !keeps_to_workspace(arm_, limits_, joints(plan.start_rad), joints(plan.end_rad)))
+    return refuse(StepFailure::unreachable);
   way_.begin(sweep_.start_rad(), surroundings_, wanted_everywhere);
   way_.add(sweep_.sample(sweep_.duration_s()).q_rad);
   begin(Kind::look_at_sweep, 0);
@@ -151,7 +154,7 @@ void Motion::turn(double from_rad, double to_rad, const Room& room, double jaw_r
   const arm::JointLimits limits = this->limits(1);
   const std::size_t roll = arm_.roll_joint();
   BarTurn::Limits bar;
-  bar.speed_rad_s = speed_rad_s;
+  bar.speed_rad_s = std::min(speed_rad_s, limits.velocity_rad_s[static_cast<Eigen::Index>(roll)]);
   if (!turn_.plan(arm_, target_.q_rad, room.base_from_panel.linear(), from_rad, to_rad, bar, limits.lower_rad[roll],
                   limits.upper_rad[roll])) {
     return refuse(StepFailure::unreachable);

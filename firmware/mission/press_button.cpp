@@ -107,10 +107,12 @@ std::optional<arm::JointVector> PressButton::choose_roll(Workbench& bench) {
   const arm::JointLimits limits = bench.motion.limits(1);
   for (std::size_t k = 0; k < rolls_rad.size(); ++k) {
     arm::JointVector q = bench.measured_rad();
-    if (barred_[k]) continue;
-    if (!tool_for_tip(bench.config.arm, tip, -bench.map.normal(), closed_tip_beyond_tool_m(bench.jaw()), rolls_rad[k], false, q)) continue;
     const std::size_t roll = bench.roll();
-    if (q[roll] < limits.lower_rad[roll] || q[roll] > limits.upper_rad[roll]) continue;
+    if (barred_[k] || rolls_rad[k] < limits.lower_rad[roll] || rolls_rad[k] > limits.upper_rad[roll]) continue;
+    if (!tool_for_tip(bench.config.arm, tip, -bench.map.normal(), closed_tip_beyond_tool_m(bench.jaw()), rolls_rad[k], false, q)) {
+      if (bench.config.arm.is_planar()) continue;
+      return std::nullopt;  // where a pointed tool has no place at one roll it has none at another
+    }
     roll_ = k;
     bench.tool_roll_rad = rolls_rad[k];
     return q;

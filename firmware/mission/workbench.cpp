@@ -80,13 +80,17 @@ arm::GuardConfig approach_guard(const safety::Limits& limits) {
 
 double strength(const safety::Limits& limits) {
   constexpr double of_the_default_nm = 13;
-  return limits.max_contact_torque_nm / of_the_default_nm;
+  const auto before_roll = static_cast<Eigen::Index>(limits.joints.size() > 2 ? limits.joints.size() - 2 : 0);
+  return before_roll > 0 ? free_motion_guard(limits).contact_torque_nm.head(before_roll).minCoeff() / of_the_default_nm : 1;
 }
 
-arm::ComplianceConfig gripping_compliance(const safety::Limits& limits) {
-  arm::ComplianceConfig config(limits.joints.empty() ? 0 : limits.joints.size() - 1);
-  config.give_rad_s_nm /= strength(limits);
+arm::ComplianceConfig gripping_compliance(const arm::Arm& arm, const safety::Limits& limits) {
+  arm::ComplianceConfig config(arm.arm_joints());
+  const double stronger = std::max(1.0, strength(limits));  // a weaker arm gives way no faster than the default: its loops are no faster
+  config.give_rad_s_nm /= stronger;
   config.dead_nm *= strength(limits);
+  constexpr double at_the_tool_m = 0.02;
+  if (!arm.is_planar()) config.largest_rad = std::min(config.largest_rad, at_the_tool_m / arm.reach_m(0).maxCoeff());
   return config;
 }
 
@@ -104,11 +108,12 @@ bool runs_off(const arm::GuardedMotion& guard) {
   return guard.touched() && guard.cause() == arm::GuardCause::torque && away && std::abs(error_rad) > slow_lag_rad;
 }
 
-bool drives_itself_off(const arm::GuardedMotion& guard) {
+bool drives_itself_off(const arm::Arm& arm, const arm::GuardedMotion& guard) {
   constexpr double least_rad_s = 0.02;  // above the observer's noise of a joint that stands; a runaway passes it within two ticks
   constexpr double least_nm = 1;        // an overload that a new guard meets is its baseline: its excess has no direction
-  constexpr double pushed_rad_s = 0.1;  // over half of the slowest joint's top speed: a screw does not give way to a push so fast
+  constexpr double fastest_push_rad_s = 0.1, push_share = 0.56;  // of the joint's top speed: a screw does not give way to a push so fast
   if (!guard.touched()) return false;
+  const double pushed_rad_s = std::min(fastest_push_rad_s, push_share * arm.joint(guard.joint()).velocity_rad_s);
   const auto joint = static_cast<Eigen::Index>(guard.joint());
   const double speed_rad_s = guard.velocity_rad_s()[joint], off_rad_s = speed_rad_s - guard.command_rad_s()[joint];
   const double excess_nm = guard.excess_torque_nm()[joint];
@@ -134,7 +139,7 @@ bool has_seized(const arm::Arm& arm, const arm::GuardedMotion& guard) {
 }
 
 bool does_not_follow(const arm::Arm& arm, const arm::GuardedMotion& guard) {
-  return lags_without_load(arm, guard) || runs_off(guard) || drives_itself_off(guard) || has_seized(arm, guard);
+  return lags_without_load(arm, guard) || runs_off(guard) || drives_itself_off(arm, guard) || has_seized(arm, guard);
 }
 
 bool was_behind_before(const arm::Arm& arm, const arm::GuardedMotion& guard) {
@@ -156,7 +161,7 @@ Workbench::Workbench(const ControllerConfig& told)
       map(config.mission.layout, config.markers, config.camera),
       job(told.mission.tasks, told.mission.tries),
       gripper(new_gripper()),
-      compliance(gripping_compliance(told.mission_limits)),
+      compliance(gripping_compliance(config.arm, told.mission_limits)),
       grip_guard(gripping_guard(config.arm)),
       back_guard(free_motion_guard(told.mission_limits)),
       power(config.arm) {}

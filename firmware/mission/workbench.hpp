@@ -35,8 +35,8 @@ arm::GuardConfig free_motion_guard(const safety::Limits& limits);
 // Of a way on which touching what is meant begins: a smaller rise, since the pads may brush the bar.
 arm::GuardConfig approach_guard(const safety::Limits& limits);
 // How an arm that grips gives way: the stronger the arm, the less for a newton metre.
-arm::ComplianceConfig gripping_compliance(const safety::Limits& limits);
-// Torques in the mission's rules are the default arm's. Another's are greater by what its limits take for a contact.
+arm::ComplianceConfig gripping_compliance(const arm::Arm& arm, const safety::Limits& limits);
+// Torques in the mission's rules are the default arm's. Another's are greater by what its limits take for a contact, of the joint before the roll where that is least.
 double strength(const safety::Limits& limits);
 
 // A joint stays behind its target, and nothing holds it back: its encoder or its drive is not to be trusted.
@@ -45,7 +45,7 @@ bool lags_without_load(const arm::Arm& arm, const arm::GuardedMotion& guard);
 bool runs_off(const arm::GuardedMotion& guard);
 // Its motor's torque is what moves it otherwise than its set-point: what is touched pushes against the motor. Or it leaves its set-point at a speed to which
 // no contact drives a joint: a contact stops it.
-bool drives_itself_off(const arm::GuardedMotion& guard);
+bool drives_itself_off(const arm::Arm& arm, const arm::GuardedMotion& guard);
 // Its torque rises while it stands where it should go: the motor or its gear has seized, or something leans on it and keeps it from beginning. A joint that
 // meets something on its way winds up its gear.
 bool has_seized(const arm::Arm& arm, const arm::GuardedMotion& guard);

@@ -128,7 +128,7 @@ void PointedSweepPlanner::descend() {
   if (missing.cwiseAbs().maxCoeff() < placed && -laser.ahead.z() > least_cosine) {
     solved_rad_ = q_rad_;
     solved_any_ = true;
-    work_ = Work::find_ends;
+    work_ = Work::find_start;
     joint_ = 0;
     return;
   }
@@ -259,21 +259,25 @@ SweepPlan PointedSweepPlanner::result() const {
 
 void PointedSweepPlanner::next_joint() {
   ++joint_;
-  work_ = joint_ < static_cast<Eigen::Index>(arm_->roll_joint()) ? Work::find_ends : Work::start;
+  work_ = joint_ < static_cast<Eigen::Index>(arm_->roll_joint()) ? Work::find_start : Work::start;
 }
 
 // Of the sweep by one joint of the posture that was found.
-void PointedSweepPlanner::find_ends() {
+void PointedSweepPlanner::find_start() {
   constexpr double probe_rad = 0.01, least_m_rad = 0.05;
   arm::JointVector probe = q_rad_;
   probe[joint_] += probe_rad;
   const double lift_m_rad = (region_.height_m(plane_of(probe)) - region_.height_m(plane_of(q_rad_))) / probe_rad;
   if (!(std::abs(lift_m_rad) > least_m_rad)) return next_joint();
-  const double up = lift_m_rad > 0 ? 1 : -1;
+  up_ = lift_m_rad > 0 ? 1 : -1;
   ends_ = {q_rad_, q_rad_};
-  if (!find_end(joint_, up, -1, ends_.from)) return next_joint();
+  if (!find_end(joint_, up_, -1, ends_.from)) return next_joint();
   if (best_.outcome == SweepOutcome::top_unreachable) best_.outcome = SweepOutcome::bottom_unreachable;
-  if (!find_end(joint_, -up, 1, ends_.to)) return next_joint();
+  work_ = Work::find_finish;
+}
+
+void PointedSweepPlanner::find_finish() {
+  if (!find_end(joint_, -up_, 1, ends_.to)) return next_joint();
   if (best_.outcome == SweepOutcome::bottom_unreachable) best_.outcome = SweepOutcome::no_way;
   work_ = Work::judge;
   trial_ = Trial();
@@ -304,7 +308,8 @@ bool PointedSweepPlanner::advance(const arm::Surroundings* surroundings) {
     switch (work_) {
       case Work::start: next_start(); break;
       case Work::descend: descend(); break;
-      case Work::find_ends: find_ends(); break;
+      case Work::find_start: find_start(); break;
+      case Work::find_finish: find_finish(); break;
       case Work::judge: judge(surroundings); break;
     }
   }

@@ -38,11 +38,12 @@ class PointedSweepPlanner {
     double hidden = 0, least_sine = 1;
     int seen = 0;  // samples with the stripe on the region
   };
-  enum class Work : std::uint8_t { start, descend, find_ends, judge };
+  enum class Work : std::uint8_t { start, descend, find_start, find_finish, judge };
 
   void next_start();
   void descend();
-  void find_ends();
+  void find_start();
+  void find_finish();
   void judge(const arm::Surroundings* surroundings);
   bool next_cell();
   void next_joint();
@@ -68,6 +69,7 @@ class PointedSweepPlanner {
   int cell_ = 0, start_ = 0, steps_ = 0;
   Eigen::Index joint_ = 0;  // that is tried, and its sweep
   Ends ends_;
+  double up_ = 1;  // the way in which the joint lifts the stripe
   Trial trial_;
   Work work_ = Work::start;
   std::uint64_t random_ = 0;

@@ -196,18 +196,6 @@ void check_exposure(const Machine& machine) {
                       std::to_string(static_cast<int>(longest_us)) + " us");
 }
 
-// The wrist turns about the tool axis, the bar about the panel's normal: so far apart the wrist is faster than the bar by 1 / cos.
-void check_turn_speed(const Machine& machine, std::size_t valve, const ArmDescription& description, const safety::Limits& limits) {
-  const double tilt_rad = steepest_rad(machine, place_of_valve(machine, valve));
-  const double fastest =
-      std::cos(tilt_rad) * std::min(description.roll().velocity_rad_s, limits.joints[machine.arm.roll_joint()].max_speed_rad_s);
-  if (machine.mission.turn_speed_rad_s <= fastest) return;
-  char text[128];
-  std::snprintf(text, sizeof text, "'mission.turn_speed_rad_s' is %.3g: with this wrist a handle turns at most at %.3g rad/s",
-                machine.mission.turn_speed_rad_s, fastest);
-  refuse(machine, text + aslant_text(machine.panel, machine.mission.docking, tilt_rad));
-}
-
 // The wrist's peak, or the couple of two pads that press on the bar's ends.
 double hand_torque_nm(const ArmDescription& description, const ArmModel::Jaw& jaw) {
   return std::min(arm::pad_force_n(jaw, description.jaw().effort_nm) * jaw.pad_width_m, description.roll().effort_nm);
@@ -379,10 +367,8 @@ Core assemble(Machine machine, const Steps& steps) {
   }
   const bool reach = check_reach_of_tasks(machine, steps);
   if (works && limits) {
-    for (std::size_t i = 0; i < machine.panel.valves.size(); ++i) {
-      if (machine.survey.file.empty() || turns(machine, i))
-        steps.take([&] { check_turn_speed(machine, i, description, controller.mission_limits); });
-    }
+    for (const std::string& problem : turn_speed_problems(machine, controller.mission_limits))
+      steps.take([&] { refuse(machine, problem); });
   }
   if (arm) {
     core.hand_torque_nm = hand_torque_nm(description, controller.arm.jaw());

@@ -191,6 +191,12 @@ std::optional<std::string> sweep_problem(const ControllerConfig& controller, con
     return "the laser cannot be swept over the whole panel wherever it may stand " + docking_text(mission) + ": " +
            words(plan.outcome, survey, controller.arm.is_planar()) + place_text(mission.layout);
   }
+  if (!controller.arm.is_planar()) {
+    for (const auto& [q_rad, where] : {std::pair{plan.start_rad, "the sweep's start"}, {plan.end_rad, "the sweep's end"}}) {
+      for (const std::string& problem : pose_problems(controller.arm, names, controller.mission_limits, vector_of(q_rad), where))
+        return "in the safety limits " + problem;
+    }
+  }
   const double frame_share = mission.camera_syncs * can_map::sync_period.s() / request.stripe_period.s();
   const double spacing_m = plan.widest_spacing_m * frame_share;
   for (std::size_t i = 0; i < mission.layout.valves.size(); ++i) {

@@ -1,6 +1,8 @@
 #include "hal/config/task_check.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 
 #include "firmware/arm/tool_place.hpp"
@@ -77,9 +79,29 @@ std::string tasks_problem(const Machine& machine, const Core& core, const missio
     if (!ik.ok()) return place.what + " is out of the arm's reach at its nominal place: " + excess_text(ik);
     for (const std::string& problem : pose_problems(machine.arm, machine.joints, limits, ik.q_rad, place.what)) return problem;
   }
+  for (const std::string& problem : turn_speed_problems(with_tasks, limits)) return problem;
   // Where the file has no task, nobody has asked for it yet.
-  if (machine.tasks.empty() && !machine.arm.is_planar()) return sweep_problem(core.controller, machine.joints, machine.survey).value_or("");
-  return "";
+  if (!machine.tasks.empty() || machine.arm.is_planar()) return "";
+  ControllerConfig with = core.controller;
+  with.mission.tasks = tasks;
+  return sweep_problem(with, machine.joints, machine.survey).value_or("");
+}
+
+std::vector<std::string> turn_speed_problems(const Machine& machine, const safety::Limits& limits) {
+  std::vector<std::string> problems;
+  const std::size_t roll = machine.arm.roll_joint();
+  for (std::size_t i = 0; i < machine.panel.valves.size(); ++i) {
+    if (!machine.survey.file.empty() && !turns(machine, i)) continue;
+    const double tilt_rad = steepest_rad(machine, place_of_valve(machine, i));
+    const double fastest = std::cos(tilt_rad) * std::min(machine.arm.joint(roll).velocity_rad_s, limits.joints[roll].max_speed_rad_s);
+    if (machine.mission.turn_speed_rad_s <= fastest) continue;
+    std::array<char, 128> text;
+    (void)std::snprintf(text.data(), text.size(),
+                        "'mission.turn_speed_rad_s' is %.3g: with this wrist a handle turns at most at %.3g rad/s",
+                        machine.mission.turn_speed_rad_s, fastest);
+    problems.push_back(text.data() + aslant_text(machine.panel, machine.mission.docking, tilt_rad));
+  }
+  return problems;
 }
 
 }  // namespace lf::config

@@ -20,6 +20,10 @@ std::string turn_problem(const mission::Tasks& tasks, const PanelLayout& panel, 
 // the limits. `machine.tasks` do not count.
 std::string tasks_problem(const Machine& machine, const Core& core, const mission::Tasks& tasks);
 
+// Of the valves that a task turns, and in the docked mission's own panel of each: the wrist turns about the tool axis, the bar about the panel's normal, so that the wrist is faster than the
+// bar by 1 / cos of the angle between the two.
+std::vector<std::string> turn_speed_problems(const Machine& machine, const safety::Limits& limits);
+
 // Of the valves that a task turns, those of which a file says that they take more than the hand can give.
 std::vector<std::string> torque_problems(const Machine& machine, double hand_torque_nm);
 

@@ -41,7 +41,9 @@ const std::vector<OwnElement>& own_elements() {
   static const std::vector<OwnElement> table{
       {"link", "wet_weight", {"n"}},
       {"collision", "friction", {"coefficient"}},
-      {"joint", "drive", {"rated_torque_nm", "acceleration_rad_s2", "stiction_rad_s", "backlash_rad", "holding_torque_nm"}},
+      {"joint",
+       "drive",
+       {"rated_torque_nm", "acceleration_rad_s2", "stiction_rad_s", "backlash_rad", "holding_torque_nm", "stiffness_nm_rad"}},
       {"joint", "friction", {"coulomb_share", "viscous_share", "efficiency", "back_efficiency"}},
       {"joint", "screw", {"pivot_a_m", "pivot_b_m", "offset_rad", "counts_per_m"}},
       {"joint", "gear", {"rad_per_count"}},

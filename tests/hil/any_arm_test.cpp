@@ -109,6 +109,9 @@ TEST_F(AnyArm, ThatDoesNotReachThePanelGoesHomeFromAJob) {
   ASSERT_TRUE(give(rig, Command::start));
   rig.run_for(30);
   EXPECT_FALSE(any_power(rig)) << rig.story();
+  EXPECT_GE(rig.count(Fault::step_failed), 1u) << rig.story();
+  const std::vector<double> park{0, 0.6, -1.3, 0, 0.4, 0};
+  for (std::size_t i = 0; i < park.size(); ++i) EXPECT_NEAR(angle_rad(rig, i), park[i], 0.02) << "folded: " << rig.story();
   EXPECT_TRUE(rig.world().contacts().unintended.empty());
 }
 

@@ -89,7 +89,7 @@ TEST(ALimit, OfTheWorkspaceActsBeyondEveryFace) {
   constexpr double clearly_m = 0.0022;  // over the 2 mm that the watch tolerates
   std::mt19937 random(1);
   const auto draw = [&] {
-    arm::JointVector q;
+    arm::JointVector q = arm::JointVector::Zero();
     for (std::size_t j = 0; j < arm5e_joint::of_arm; ++j) {
       q[static_cast<Eigen::Index>(j)] = std::uniform_real_distribution(limits.joints[j].min_rad, limits.joints[j].max_rad)(random);
     }

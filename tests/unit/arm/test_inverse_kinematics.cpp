@@ -77,7 +77,7 @@ TEST(InverseKinematics, DrawsTheLimitsInByTheMargin) {
 TEST(InverseKinematics, AnswersExactlyAtTheLimits) {
   const JointLimits limits = test::arm5e.limits();
   for (int corner = 0; corner < 16; ++corner) {
-    JointVector q;
+    JointVector q = JointVector::Zero();
     for (int i = 0; i < 4; ++i) q[i] = (corner >> i) & 1 ? limits.upper_rad[i] : limits.lower_rad[i];
     const Vec3 target = test::arm5e.base_from_tool(q).translation();
     const IkResult ik = inverse_kinematics(test::arm5e, target, q[3], 0);

@@ -77,14 +77,22 @@ TEST_P(Pointing, PutsTheToolThereSoPointedAndSoRolled) {
 // Of the postures the one that is near: a target beside the arm's place does not swing it about.
 TEST_P(Pointing, StaysInThePostureWhereItIs) {
   SCOPED_TRACE(testing::Message() << "seed " << seed);
+  int looked_at = 0;
   for (int k = 0; k < 200; ++k) {
-    const JointVector here = draw();
-    const Pose target = tool_of(here);
-    const IkResult found =
-        point_tool(arm, target.translation(), target.linear().col(2), here[static_cast<Eigen::Index>(arm.roll_joint())], 0, here);
+    const JointVector here = draw(0.7);
+    if (is_singular(arm, here)) continue;
+    Pose target = tool_of(here);
+    target.translation() += 0.01 * Vec3(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)).normalized();
+    JointVector led = here;
+    if (!move_tool(arm, target.translation(), target.linear().col(2), led) || !within(led, 0)) continue;
+    if ((led - here).cwiseAbs().maxCoeff() > 0.2) continue;  // another posture may be nearer
+    const double roll_rad = here[static_cast<Eigen::Index>(arm.roll_joint())];
+    const IkResult found = point_tool(arm, target.translation(), target.linear().col(2), roll_rad, 0, here);
     ASSERT_TRUE(found.ok()) << k;
-    ASSERT_LT((found.q_rad - here).cwiseAbs().maxCoeff(), 1e-6) << k;
+    ASSERT_LT((found.q_rad - led).cwiseAbs().maxCoeff(), 1e-6) << k;
+    ++looked_at;
   }
+  EXPECT_GT(looked_at, 100);
 }
 
 TEST_P(Pointing, SaysWhyItCannot) {
@@ -170,6 +178,37 @@ TEST_P(Pointing, APlaceBesideIsAStraightWayOff) {
     ASSERT_LT((end - at).cwiseAbs().maxCoeff(), 1e-6) << k;
   }
   EXPECT_GT(found, 50);
+}
+
+// A wrist whose outer axes are on one line cannot turn the tool sideways: no straight way is planned past it.
+TEST(SingularWrist, IsNotPassedByALine) {
+  const Arm arm(make_model(load_arm_urdf(LANTERNFISH_SOURCE_DIR "/shared/arm/oberon7/oberon7.urdf")));
+  JointVector straight = JointVector::Zero();
+  straight.head<6>() << 0.1, 0.5, -0.4, 0.3, 0, 0;
+  EXPECT_TRUE(is_singular(arm, straight));
+  JointVector bent = straight;
+  bent[4] = 0.5;
+  EXPECT_FALSE(is_singular(arm, bent));
+  // To and past where the wrist is straight, through places a hair beside it.
+  for (const double beside_rad : {0.0, 1e-6, 1e-5, 1e-4, 1e-3}) {
+    JointVector start = straight;
+    start[3] = beside_rad;
+    start[4] = 0.08;
+    const Pose from = arm.base_from_tool(start);
+    JointVector at = straight;
+    at[3] = beside_rad;
+    const Vec3 way_m = (arm.base_from_tool(at).translation() - from.translation()).normalized() * 0.08;
+    CartesianLine line;
+    const LinePlan plan = line.plan(arm, start, from.translation() + way_m, 0, {}, arm.limits());
+    if (plan.outcome != PlanOutcome::ok) continue;
+    JointVector last = line.sample(0).q_rad;
+    for (double t = 0; t < line.duration_s(); t += 0.004) {
+      const JointVector q = line.sample(t).q_rad;
+      ASSERT_LT((q - last).cwiseAbs().maxCoeff(), 0.01) << beside_rad << " at " << t;
+      last = q;
+    }
+    EXPECT_LT(line.duration_s(), 20) << beside_rad;
+  }
 }
 
 // Half a turn of the approach axis is no small step.

@@ -48,7 +48,7 @@ class DrawnArm {
 
   // Within the joints' ranges; neither stretched, nor over the slew's axis, where other angles do as well.
   arm::JointVector posture(const ArmDescription& arm, std::mt19937_64& random) const {
-    arm::JointVector q;
+    arm::JointVector q = arm::JointVector::Zero();
     do {
       for (std::size_t i = 0; i < arm5e_joint::of_arm; ++i)
         q[static_cast<Eigen::Index>(i)] = std::uniform_real_distribution<double>(arm.joints[i].lower_rad, arm.joints[i].upper_rad)(random);

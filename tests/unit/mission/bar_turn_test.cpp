@@ -13,7 +13,7 @@ namespace lf::mission {
 namespace {
 
 struct Grasp {
-  arm::JointVector q;
+  arm::JointVector q = arm::JointVector::Zero();
   Mat3 base_from_panel;
 };
 

@@ -102,20 +102,20 @@ arm::GuardedMotion moving(double asked_rad_s, double rad_s, double nm) {
 
 TEST(DrivesItselfOff, IsAMotorThatMovesItsJointOtherwiseThanAsked) {
   for (const double way : {-1.0, 1.0}) {
-    EXPECT_TRUE(drives_itself_off(moving(0, way * 0.05, way * 10))) << "it stands by its set-point";
-    EXPECT_TRUE(drives_itself_off(moving(way * 0.05, way * 0.15, way * 10))) << "faster than asked, by its own torque";
-    EXPECT_TRUE(drives_itself_off(moving(way * 0.05, way * -0.05, way * -10))) << "back, by its own torque";
-    EXPECT_FALSE(drives_itself_off(moving(way * 0.05, 0, way * 10))) << "something holds it, and the motor pushes on";
-    EXPECT_FALSE(drives_itself_off(moving(way * 0.05, way * -0.05, way * 10))) << "something pushes it back";
-    EXPECT_FALSE(drives_itself_off(moving(way * 0.05, way * 0.09, way * -10))) << "something pushes it ahead";
-    EXPECT_FALSE(drives_itself_off(moving(0, way * 0.01, way * 10))) << "no more than the observer's noise";
+    EXPECT_TRUE(drives_itself_off(test::arm5e, moving(0, way * 0.05, way * 10))) << "it stands by its set-point";
+    EXPECT_TRUE(drives_itself_off(test::arm5e, moving(way * 0.05, way * 0.15, way * 10))) << "faster than asked, by its own torque";
+    EXPECT_TRUE(drives_itself_off(test::arm5e, moving(way * 0.05, way * -0.05, way * -10))) << "back, by its own torque";
+    EXPECT_FALSE(drives_itself_off(test::arm5e, moving(way * 0.05, 0, way * 10))) << "something holds it, and the motor pushes on";
+    EXPECT_FALSE(drives_itself_off(test::arm5e, moving(way * 0.05, way * -0.05, way * 10))) << "something pushes it back";
+    EXPECT_FALSE(drives_itself_off(test::arm5e, moving(way * 0.05, way * 0.09, way * -10))) << "something pushes it ahead";
+    EXPECT_FALSE(drives_itself_off(test::arm5e, moving(0, way * 0.01, way * 10))) << "no more than the observer's noise";
   }
 }
 
 TEST(DrivesItselfOff, IsAJointThatLeavesItsSetPointAtASpeedToWhichNothingPushesAScrew) {
   for (const double way : {-1.0, 1.0}) {
-    EXPECT_TRUE(drives_itself_off(moving(0, way * 0.3, way * -10)));
-    EXPECT_FALSE(drives_itself_off(moving(0, way * 0.08, way * -10)));
+    EXPECT_TRUE(drives_itself_off(test::arm5e, moving(0, way * 0.3, way * -10)));
+    EXPECT_FALSE(drives_itself_off(test::arm5e, moving(0, way * 0.08, way * -10)));
   }
 }
 

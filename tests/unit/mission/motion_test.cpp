@@ -16,6 +16,8 @@ constexpr double period_s = 0.004;
 
 safety::Limits limits() {
   safety::Limits limits;
+  limits.workspace_min_m.fill(-2);
+  limits.workspace_max_m.fill(2);
   const arm::JointLimits urdf = test::arm5e.limits();
   arm5e_joint::fill(limits.joints, safety::JointLimit{});
   for (std::size_t i = 0; i < arm5e_joint::of_arm; ++i) {
@@ -90,7 +92,7 @@ TEST(Motion, RandomWaysArriveExactlyAndKeepTheSpeedLimits) {
   Motion motion = at_park();
   const arm::JointLimits bounds = motion.limits(1);
   const auto draw = [&] {
-    arm::JointVector q;
+    arm::JointVector q = arm::JointVector::Zero();
     for (Eigen::Index i = 0; i < 4; ++i) q[i] = std::uniform_real_distribution<double>(bounds.lower_rad[i], bounds.upper_rad[i])(random);
     return q;
   };
@@ -262,6 +264,29 @@ TEST(MotionPastThePanel, LeadsByTheParkPositionWhereTheStraightWayIsBarred) {
   EXPECT_GT(motion.duration_s(), straight_s());
   EXPECT_GE(nearest_m(motion, room), clearance_m - arm::ClearWay::resolution_m);
   EXPECT_LT((motion.target() - past_board).norm(), 1e-9);
+}
+
+// Nothing stands in the way, and the tool would leave its workspace.
+TEST(MotionPastThePanel, KeepsToItsWorkspace) {
+  const Room room = board_at(2, -0.05, 0.55);
+  const arm::JointVector from = arm::planar_joints(-1.2, 0.9, 1.2, 0), to = arm::planar_joints(0.3, 0.9, 1.2, 0);
+  Motion free = at_park(board());
+  free.start_at(from);
+  free.go_clear(to, room, 0, 0.6);
+  EXPECT_TRUE(planned(free));
+
+  safety::Limits tight = limits();
+  const Vec3 from_m = test::arm5e.base_from_tool(from).translation();
+  for (std::size_t i = 0; i < 3; ++i) {
+    tight.workspace_min_m[i] = from_m[static_cast<Eigen::Index>(i)] - 0.02;
+    tight.workspace_max_m[i] = from_m[static_cast<Eigen::Index>(i)] + 0.02;
+  }
+  const PanelLayout far_board = board();
+  Motion boxed(test::arm5e, tight, far_board, no_vehicle, park);
+  boxed.start_at(from);
+  boxed.go_clear(to, room, 0, 0.6);
+  EXPECT_FALSE(planned(boxed));
+  EXPECT_EQ(boxed.target(), from);
 }
 
 // From the park position all would be clear, but the way there is barred.

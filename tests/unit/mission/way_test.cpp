@@ -32,6 +32,8 @@ arm::VehicleShape default_vehicle() {
 
 safety::Limits limits() {
   safety::Limits limits;
+  limits.workspace_min_m.fill(-2);
+  limits.workspace_max_m.fill(2);
   const arm::JointLimits urdf = test::arm5e.limits();
   arm5e_joint::fill(limits.joints, safety::JointLimit{});
   for (std::size_t i = 0; i < arm5e_joint::of_arm; ++i) {
