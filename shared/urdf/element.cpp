@@ -31,11 +31,12 @@ std::string with_brackets(std::string_view name) {
   return result;
 }
 
-// What this project's own elements hold: parent, element, keys. All keys are needed.
+// What this project's own elements hold: parent, element, keys that are needed, and keys that may be left out.
 struct OwnElement {
   std::string_view parent;
   std::string_view element;
   std::vector<std::string_view> keys;
+  std::vector<std::string_view> optional_keys{};
 };
 const std::vector<OwnElement>& own_elements() {
   static const std::vector<OwnElement> table{
@@ -43,7 +44,8 @@ const std::vector<OwnElement>& own_elements() {
       {"collision", "friction", {"coefficient"}},
       {"joint",
        "drive",
-       {"rated_torque_nm", "acceleration_rad_s2", "stiction_rad_s", "backlash_rad", "holding_torque_nm", "stiffness_nm_rad"}},
+       {"rated_torque_nm", "acceleration_rad_s2", "stiction_rad_s", "backlash_rad", "holding_torque_nm"},
+       {"stiffness_nm_rad"}},
       {"joint", "friction", {"coulomb_share", "viscous_share", "efficiency", "back_efficiency"}},
       {"joint", "screw", {"pivot_a_m", "pivot_b_m", "offset_rad", "counts_per_m"}},
       {"joint", "gear", {"rad_per_count"}},
@@ -333,10 +335,15 @@ std::vector<Extension> Element::extensions() const {
     if (row == own_elements().end()) continue;  // check() has refused it
     const bool again = std::any_of(result.begin(), result.end(), [&](const Extension& earlier) { return earlier.element == own; });
     if (again) e.problem("comes a second time: remove one");
-    e.check({.attributes = row->keys});
+    std::vector<std::string_view> known = row->keys;
+    known.insert(known.end(), row->optional_keys.begin(), row->optional_keys.end());
+    e.check({.attributes = known});
     Extension extension{std::string(own), e.line(), {}};
-    for (const std::string_view key : row->keys)
+    for (const std::string_view key : known) {
+      const bool needed = contains(row->keys, key) || e.has(std::string(key).c_str());
+      if (!needed) continue;
       if (const auto value = e.needed_number(std::string(key).c_str(), any_number)) extension.numbers.emplace_back(key, *value);
+    }
     result.push_back(std::move(extension));
   }
   return result;

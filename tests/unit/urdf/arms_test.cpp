@@ -177,5 +177,16 @@ TEST(UrdfArm, OfTheProjectIsReadWithItsOwnElements) {
   EXPECT_EQ(arm.driver(arm.joint("finger_b")).joint, arm.joint("jaw"));
 }
 
+// A stiffness may be left out, and is read where it stands.
+TEST(UrdfArm, ThatTellsItsStiffnessIsRead) {
+  for (const auto& [file, joint, stiffness] :
+       {std::tuple{"oberon7/oberon7.urdf", "shoulder", 9000.0}, {"ur5/ur5.urdf", "wrist_1", 3000.0}}) {
+    const Reading reading = read_urdf(std::string(LANTERNFISH_SOURCE_DIR "/shared/arm/") + file);
+    const Mechanism& arm = reading.mechanism;
+    EXPECT_EQ(fault_of(arm), "") << file;
+    EXPECT_EQ(arm.joints[arm.joint(joint)].extensions[0].number("stiffness_nm_rad"), stiffness) << file;
+  }
+}
+
 }  // namespace
 }  // namespace lf::urdf::test
