@@ -15,7 +15,7 @@ namespace {
 constexpr double leeway_m = 0.001;
 
 // Postures drawn at random: every other one from the room between start, goal and park, the rest from all that the joints can.
-constexpr std::uint32_t most_drawn = 64;
+constexpr Eigen::Index most_drawn = 64;
 // Of all ways that are looked at for one route: 8 s of ticks, within what a step waits for its plan.
 constexpr int most_poses = 16'000;
 
