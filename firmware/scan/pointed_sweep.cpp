@@ -116,7 +116,8 @@ void PointedSweepPlanner::descend() {
   using Rows = Eigen::Matrix<double, 5, capacity::arm_joints>;
   const SweepRequest& r = region_.request();
   const double middle_m = (r.top_m + r.bottom_m) / 2, height_m = r.top_m - r.bottom_m;
-  const double distance_m = nearest_m_ * (1 + distance_step * (cell_ / heights));
+  const int row = cell_ / heights;
+  const double distance_m = nearest_m_ * (1 + distance_step * row);
   const double off_m = std::max(least_height_m, height_share * height_m);
   const double y_m = middle_m + std::lerp(-off_m, off_m, static_cast<double>(cell_ % heights) / (heights - 1));
   const double sine = (middle_m - y_m) / std::hypot(middle_m - y_m, distance_m);
