@@ -22,7 +22,8 @@ constexpr int most_poses = 16'000;
 // `q_rad` drawn into what the mission allows this joint.
 double drawn_in(const arm::Arm& arm, const safety::Limits& limits, std::size_t joint, double q_rad) {
   const safety::JointLimit& limit = limits.joints[joint];
-  return std::clamp(q_rad, std::max(limit.min_rad, arm.joint(joint).lower_rad), std::min(limit.max_rad, arm.joint(joint).upper_rad));
+  const double at_most_rad = std::min({q_rad, limit.max_rad, arm.joint(joint).upper_rad});
+  return std::max({at_most_rad, limit.min_rad, arm.joint(joint).lower_rad});
 }
 
 }  // namespace

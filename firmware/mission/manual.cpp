@@ -22,10 +22,11 @@ std::optional<double> jog_goal_rad(const Order& order, const Workbench& bench) {
   const bool inside = to >= low && to <= high;
   const bool toward_it = (from < low && to > from && to <= high) || (from > high && to < from && to >= low);
   if (!inside && !toward_it) return std::nullopt;
+  if (!arm) return to;
   arm::JointVector goal = bench.motion.target();
-  if (arm) goal[static_cast<Eigen::Index>(joint)] = to;
-  if (!keeps_to_workspace(bench.config.arm, bench.config.mission_limits, bench.motion.target(), goal)) return std::nullopt;
-  return to;
+  goal[static_cast<Eigen::Index>(joint)] = to;
+  const bool keeps = keeps_to_workspace(bench.config.arm, bench.config.mission_limits, bench.motion.target(), goal);
+  return keeps ? std::optional(to) : std::nullopt;
 }
 
 void Manual::begin(const StepTick& tick) {

@@ -127,7 +127,7 @@ void Motion::go_to_sweep(const scan::SweepRequest& request, const LaserCalibrati
 }
 
 void Motion::advance_sweep() {
-  if (!sweep_planner_.advance(&surroundings_)) return;
+  if (!sweep_planner_.advance(surroundings_)) return;
   const scan::SweepPlan& plan = sweep_planner_.plan();
   if (plan.outcome != scan::SweepOutcome::ok) return refuse(StepFailure::unreachable);
   const auto joints = [](const PerArmJoint<double>& q) { return arm::JointVector(q.data()); };

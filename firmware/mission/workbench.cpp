@@ -68,10 +68,17 @@ arm::GuardConfig free_motion_guard(const safety::Limits& limits) {
   return guard;
 }
 
+namespace {
+
+// Of limits for an arm with a jaw.
+Eigen::Index joints_before_roll(const safety::Limits& limits) { return std::max<Eigen::Index>(0, std::ssize(limits.joints) - 2); }
+
+}  // namespace
+
 arm::GuardConfig approach_guard(const safety::Limits& limits) {
   constexpr double share = 8.0 / 13.0, roll_share = 12.0 / 13.0;  // 20 N at the default arm's tool
   arm::GuardConfig guard = free_motion_guard(limits);
-  const auto roll = static_cast<Eigen::Index>(limits.joints.empty() ? 0 : limits.joints.size() - 2);
+  const Eigen::Index roll = joints_before_roll(limits);
   guard.contact_torque_nm.head(roll) *= share;
   guard.contact_torque_nm[roll] *= roll_share;
   guard.overload_torque_nm.setConstant(HUGE_VAL);  // the watch's
@@ -80,7 +87,7 @@ arm::GuardConfig approach_guard(const safety::Limits& limits) {
 
 double strength(const safety::Limits& limits) {
   constexpr double of_the_default_nm = 13;
-  const auto before_roll = static_cast<Eigen::Index>(limits.joints.size() > 2 ? limits.joints.size() - 2 : 0);
+  const Eigen::Index before_roll = joints_before_roll(limits);
   return before_roll > 0 ? free_motion_guard(limits).contact_torque_nm.head(before_roll).minCoeff() / of_the_default_nm : 1;
 }
 
@@ -89,7 +96,7 @@ arm::ComplianceConfig gripping_compliance(const arm::Arm& arm, const safety::Lim
   const double stronger = std::max(1.0, strength(limits));  // a weaker arm gives way no faster than the default: its loops are no faster
   config.give_rad_s_nm /= stronger;
   config.dead_nm *= strength(limits);
-  constexpr double at_the_tool_m = 0.02;
+  constexpr double at_the_tool_m = 0.02;  // as 0.05 rad of the default arm's elbow
   if (!arm.is_planar()) config.largest_rad = std::min(config.largest_rad, at_the_tool_m / arm.reach_m(0).maxCoeff());
   return config;
 }

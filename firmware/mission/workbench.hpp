@@ -36,7 +36,8 @@ arm::GuardConfig free_motion_guard(const safety::Limits& limits);
 arm::GuardConfig approach_guard(const safety::Limits& limits);
 // How an arm that grips gives way: the stronger the arm, the less for a newton metre.
 arm::ComplianceConfig gripping_compliance(const arm::Arm& arm, const safety::Limits& limits);
-// Torques in the mission's rules are the default arm's. Another's are greater by what its limits take for a contact, of the joint before the roll where that is least.
+// How many times stronger than the default arm this one is. The mission's rules have the default arm's torques, and multiply them by this: what the limits take for
+// a contact, at the weakest joint before the roll, over the default's.
 double strength(const safety::Limits& limits);
 
 // A joint stays behind its target, and nothing holds it back: its encoder or its drive is not to be trusted.

@@ -1,11 +1,8 @@
 #include "firmware/scan/pointed_sweep.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numbers>
 
-#include "firmware/arm/gripper.hpp"
 #include "shared/random.hpp"
 
 namespace lf::scan {
@@ -14,12 +11,12 @@ namespace {
 // The grid of places: distances from the nearest from which the fan covers the width, heights from below the region to above it.
 constexpr int distances = 5, heights = 7;
 constexpr double distance_step = 0.2, height_share = 0.75, least_height_m = 0.4;  // of the nearest distance, of the region's height
-constexpr double nearest_of_any_m = 0.2;
+constexpr double nearest_of_any_m = 0.2;                                          // nearer the hand has no room
 // From the last place's posture and from where the arm is; at random only where these lead nowhere.
 constexpr int first_starts = 2, most_starts = 6;
-constexpr int most_steps = 30;
-constexpr double placed = 1e-3;  // m and rad: the laser need not stand more exactly
-constexpr double longest_step_rad = 0.3;
+constexpr int most_steps = 30;            // of a descent
+constexpr double placed = 1e-3;           // m and rad: the laser need not stand more exactly
+constexpr double longest_step_rad = 0.3;  // of a descent: farther the rates are others
 
 constexpr int poses_a_share = 16, poses_a_sample = 6;
 constexpr double least_cosine = 0.1;  // of the angle between the laser's axis and the panel's normal
@@ -30,16 +27,14 @@ constexpr int way_samples = 6;
 
 // The clearance that the arm keeps in motion, and what its way may bend nearer between two samples.
 constexpr double clear_m = 0.015;
-// Where there is nothing but the panel: as of the planar form.
-constexpr double tool_spare_m = 0.063;
 
 // What a sweep costs. A line too wide shows no handle; a stripe that is hidden is not seen; along the laser's plane the camera tells no depth. The rest decides between good ones.
 constexpr double of_wide_lines = 100, of_hidden_share = 100, of_flat_angle = 50, of_second = 0.05, of_travel_rad = 0.3;
 constexpr double steep_sine = 0.5;     // of the angle between a camera's ray and the laser plane: from here on it costs nothing
-constexpr double flattest_sine = 0.1;  // below it a sweep is none
+constexpr double flattest_sine = 0.1;  // below it a sweep is none: the triangulation takes no point at less than 0.1 rad
 constexpr double good_cost = 1.5;      // of a sweep for which no better one is sought
-constexpr double most_hidden = 0.25;
-constexpr double ray_radius_m = 0.01;
+constexpr double most_hidden = 0.25;   // of the stripe, over the whole way: the mark and the handles have to be among the rest
+constexpr double ray_radius_m = 0.01;  // so far off a link's capsule a line of sight passes it
 
 }  // namespace
 
@@ -70,7 +65,7 @@ PointedSweepPlanner::Seen PointedSweepPlanner::see(const arm::JointVector& q_rad
   ++poses_;
   const Pose panel_from_laser = region_.request().base_from_panel.inverse() * arm_->base_from_laser(q_rad, region_.laser());
   const auto axes = panel_from_laser.linear();
-  return {panel_from_laser.translation(), axes.col(0), axes.col(1), axes.col(2)};
+  return {panel_from_laser.translation(), axes.col(1), axes.col(2)};
 }
 
 LaserPlane PointedSweepPlanner::plane_of(const arm::JointVector& q_rad) {
@@ -138,10 +133,10 @@ void PointedSweepPlanner::descend() {
     return;
   }
   Rows rows = Rows::Zero();
-  const Mat3 panel_from_base = r.base_from_panel.linear().transpose();
+  const Pose panel_from_base = r.base_from_panel.inverse();
   for (std::size_t i = 0; i < arm_->roll_joint(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
-    const Vec3 axis = panel_from_base * links[i].linear().col(2), at_m = r.base_from_panel.inverse() * links[i].translation();
+    const Vec3 axis = panel_from_base.linear() * links[i].linear().col(2), at_m = panel_from_base * links[i].translation();
     const Vec3 motion = axis.cross(laser.origin_m - at_m), along = axis.cross(laser.along), ahead = axis.cross(laser.ahead);
     rows.col(k) << motion.y(), motion.z(), along.y(), along.z(), ahead.y();
   }
@@ -210,20 +205,15 @@ double PointedSweepPlanner::widest_spacing_m(double duration_s) {
 }
 
 // How near the arm comes to something on its way, how much of the stripe it hides, and whether the fan is wide enough. False where the sweep is none.
-bool PointedSweepPlanner::look_at_sample(const arm::Surroundings* surroundings) {
+bool PointedSweepPlanner::look_at_sample(const arm::Surroundings& surroundings) {
   const SweepRequest& r = region_.request();
   const arm::JointVector q = ends_.from + static_cast<double>(trial_.sample) / way_samples * (ends_.to - ends_.from);
-  const double jaw_rad = surroundings != nullptr ? surroundings->room().jaw.low_rad : arm::jaw_from_gap(arm_->jaw(), 0);
+  const double jaw_rad = surroundings.room().jaw.low_rad;
   const LaserPlane laser = plane_of(q);
   poses_ += poses_a_sample;
   if (!looks_at_panel(q)) return false;
-  const double out_m = r.base_from_panel.linear().col(2).dot(arm_->base_from_tool(q).translation() - r.base_from_panel.translation());
-  const double least_m = surroundings != nullptr ? 0 : r.proud_m + arm::tip_beyond_tool_m(arm_->jaw(), jaw_rad) + tool_spare_m;
-  if (out_m < least_m) return false;
-  if (surroundings != nullptr) {
-    const arm::Distances here = surroundings->distances(q, jaw_rad);
-    if (!(std::min({here.panel_m, here.vehicle_m, here.itself_m}) > clear_m)) return false;
-  }
+  const arm::Distances here = surroundings.distances(q, jaw_rad);
+  if (!(std::min({here.panel_m, here.vehicle_m, here.itself_m}) > clear_m)) return false;
   const double y_m = region_.height_m(laser);
   if (y_m > r.top_m + r.margin_m || y_m < r.bottom_m - r.margin_m) return true;
   const double aside_m = (r.base_from_panel.inverse() * laser.origin_m).x();
@@ -285,7 +275,7 @@ void PointedSweepPlanner::find_finish() {
 }
 
 // A part of it at a time: how long it takes and how far apart its lines lie, then one sample of the way after the other.
-void PointedSweepPlanner::judge(const arm::Surroundings* surroundings) {
+void PointedSweepPlanner::judge(const arm::Surroundings& surroundings) {
   if (trial_.sample < 0) {
     const double way_rad = std::abs(ends_.to[joint_] - ends_.from[joint_]);
     trial_.duration_s = way_rad / region_.request().slowest_rad_s;
@@ -304,7 +294,7 @@ void PointedSweepPlanner::judge(const arm::Surroundings* surroundings) {
   next_joint();
 }
 
-bool PointedSweepPlanner::advance(const arm::Surroundings* surroundings) {
+bool PointedSweepPlanner::advance(const arm::Surroundings& surroundings) {
   for (poses_ = 0; !planned_ && poses_ < poses_a_share;) {
     switch (work_) {
       case Work::start: next_start(); break;

@@ -17,16 +17,16 @@ namespace lf::scan {
 
 class PointedSweepPlanner {
  public:
-  // `near_rad`: where the arm is. As the other planner's.
+  // `near_rad`: where the arm is; the nearer a sweep begins the better.
   void begin(const arm::Arm& arm, const SweepRequest& request, const LaserCalibration& laser, const arm::JointVector& near_rad);
-  // 20 us more on a desktop, at most 60. Sweeps that come too near to the surroundings, where there are any, are none. True when plan() stands.
-  bool advance(const arm::Surroundings* surroundings);
+  // Works on for 20 us on a desktop, 60 at most. A sweep that comes too near to the surroundings is none. True when plan() stands.
+  bool advance(const arm::Surroundings& surroundings);
   const SweepPlan& plan() const { return best_; }
 
  private:
-  // The laser's frame in the panel's, with how it moves with the joints.
+  // The laser in the panel's frame: where it is, along which line its sheet is spread, and where it looks.
   struct Seen {
-    Vec3 origin_m, normal, along, ahead;
+    Vec3 origin_m, along, ahead;
   };
   struct Ends {
     arm::JointVector from = arm::JointVector::Zero(), to = arm::JointVector::Zero();
@@ -44,7 +44,7 @@ class PointedSweepPlanner {
   void descend();
   void find_start();
   void find_finish();
-  void judge(const arm::Surroundings* surroundings);
+  void judge(const arm::Surroundings& surroundings);
   bool next_cell();
   void next_joint();
 
@@ -53,7 +53,7 @@ class PointedSweepPlanner {
   bool looks_at_panel(const arm::JointVector& q_rad);
   bool find_end(Eigen::Index joint, double direction, double side, arm::JointVector& q_rad);
   double widest_spacing_m(double duration_s);
-  bool look_at_sample(const arm::Surroundings* surroundings);
+  bool look_at_sample(const arm::Surroundings& surroundings);
   double cost() const;
   SweepPlan result() const;
   double hidden_share(const arm::LinkCapsules& capsules, const LaserPlane& laser, double y_m, double& least_sine) const;

@@ -12,10 +12,9 @@ namespace lf::scan {
 class SweepPlanner {
  public:
   // `near_rad`: where the arm is; the planner of the planar form does not ask.
-  void begin(const arm::Arm& arm, const SweepRequest& request, const LaserCalibration& laser,
-             const arm::JointVector& near_rad = arm::JointVector::Zero());
-  // True when plan() stands. `surroundings`: what an arm that points keeps clear of on the sweep, where that is known.
-  bool advance(const arm::Surroundings* surroundings = nullptr);
+  void begin(const arm::Arm& arm, const SweepRequest& request, const LaserCalibration& laser, const arm::JointVector& near_rad);
+  // True when plan() stands. `surroundings`: what an arm that points keeps clear of on the sweep; the planar form keeps its tool off the panel's plane.
+  bool advance(const arm::Surroundings& surroundings);
   const SweepPlan& plan() const;
 
  private:
@@ -23,7 +22,9 @@ class SweepPlanner {
 };
 
 // All of it at once.
-SweepPlan plan_sweep(const arm::Arm& arm, const SweepRequest& request, const LaserCalibration& laser,
-                     const arm::JointVector& near_rad = arm::JointVector::Zero(), const arm::Surroundings* surroundings = nullptr);
+SweepPlan plan_sweep(const arm::Arm& arm, const SweepRequest& request, const LaserCalibration& laser, const arm::JointVector& near_rad,
+                     const arm::Surroundings& surroundings);
+// The same of an arm of the planar form, which asks for neither. A bad request of any other.
+SweepPlan plan_sweep(const arm::Arm& arm, const SweepRequest& request, const LaserCalibration& laser);
 
 }  // namespace lf::scan

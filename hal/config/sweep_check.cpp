@@ -186,7 +186,7 @@ std::optional<std::string> sweep_problem(const ControllerConfig& controller, con
   const arm::Room room{request.base_from_panel, mission.docking, {jaw_rad, jaw_rad}, 0};
   arm::Surroundings surroundings(controller.arm, mission.layout, mission.vehicle);
   surroundings.enter(room);
-  const scan::SweepPlan plan = scan::plan_sweep(controller.arm, request, controller.laser, mission.park_rad, &surroundings);
+  const scan::SweepPlan plan = scan::plan_sweep(controller.arm, request, controller.laser, mission.park_rad, surroundings);
   if (plan.outcome != scan::SweepOutcome::ok) {
     return "the laser cannot be swept over the whole panel wherever it may stand " + docking_text(mission) + ": " +
            words(plan.outcome, survey, controller.arm.is_planar()) + place_text(mission.layout);

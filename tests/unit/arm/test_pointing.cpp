@@ -180,7 +180,7 @@ TEST_P(Pointing, APlaceBesideIsAStraightWayOff) {
   EXPECT_GT(found, 50);
 }
 
-// A wrist whose outer axes are on one line cannot turn the tool sideways: no straight way is planned past it.
+// A wrist whose outer axes are on one line cannot turn the tool sideways: no straight way leads past it, or a hair beside it.
 TEST(SingularWrist, IsNotPassedByALine) {
   const Arm arm(make_model(load_arm_urdf(LANTERNFISH_SOURCE_DIR "/shared/arm/oberon7/oberon7.urdf")));
   JointVector straight = JointVector::Zero();
@@ -189,26 +189,29 @@ TEST(SingularWrist, IsNotPassedByALine) {
   JointVector bent = straight;
   bent[4] = 0.5;
   EXPECT_FALSE(is_singular(arm, bent));
-  // To and past where the wrist is straight, through places a hair beside it.
   for (const double beside_rad : {0.0, 1e-6, 1e-5, 1e-4, 1e-3}) {
     JointVector start = straight;
     start[3] = beside_rad;
     start[4] = 0.08;
-    const Pose from = arm.base_from_tool(start);
-    JointVector at = straight;
-    at[3] = beside_rad;
-    const Vec3 way_m = (arm.base_from_tool(at).translation() - from.translation()).normalized() * 0.08;
+    JointVector at = start;
+    at[4] = 0;
+    const Vec3 from_m = arm.base_from_tool(start).translation(), way_m = arm.base_from_tool(at).translation() - from_m;
+    // The arm's plane turns with the tool's axis held: so far on the wrist is straight, or has been.
     CartesianLine line;
-    const LinePlan plan = line.plan(arm, start, from.translation() + way_m, 0, {}, arm.limits());
-    if (plan.outcome != PlanOutcome::ok) continue;
+    const LinePlan past = line.plan(arm, start, from_m + 4 * way_m, 0, {}, arm.limits());
+    EXPECT_TRUE(past.outcome != PlanOutcome::ok || line.duration_s() < 20) << beside_rad;
     JointVector last = line.sample(0).q_rad;
     for (double t = 0; t < line.duration_s(); t += 0.004) {
       const JointVector q = line.sample(t).q_rad;
       ASSERT_LT((q - last).cwiseAbs().maxCoeff(), 0.01) << beside_rad << " at " << t;
       last = q;
     }
-    EXPECT_LT(line.duration_s(), 20) << beside_rad;
   }
+  // From a straight wrist no line begins.
+  CartesianLine line;
+  const LinePlan plan = line.plan(arm, straight, arm.base_from_tool(straight).translation() + Vec3(0, 0.05, 0), 0, {}, arm.limits());
+  EXPECT_EQ(plan.outcome, PlanOutcome::unreachable);
+  EXPECT_EQ(plan.ik, IkOutcome::turned_away);
 }
 
 // Half a turn of the approach axis is no small step.
@@ -225,11 +228,23 @@ INSTANTIATE_TEST_SUITE_P(Arms, Pointing,
                          testing::Values("tests/data/arms/six_joints/six_joints.urdf", "shared/arm/oberon7/oberon7.urdf",
                                          "shared/arm/ur5/ur5.urdf"));
 
-// Positions against the maker's description, as another program computed them.
-TEST(ShippedArms, OfTheOberonTheToolIsWhereItsMakersFileHasIt) {
-  const ArmDescription description = load_arm_urdf(LANTERNFISH_SOURCE_DIR "/shared/arm/oberon7/oberon7.urdf");
-  const Arm arm(make_model(description));
-  std::ifstream file(LANTERNFISH_TEST_DATA "/arms/oberon7/fk.csv");
+// Where the makers' files have the tool, as another program computed it. Theirs has z up and ours down; the UR5 hangs from its base, aside, and its hand is longer.
+struct Told {
+  const char* ours;
+  const char* fk;
+  Mat3 ours_from_theirs;
+  Vec3 aside_m;
+  double longer_m;
+};
+
+void PrintTo(const Told& told, std::ostream* out) { *out << told.ours; }
+
+class ShippedArms : public testing::TestWithParam<Told> {};
+
+TEST_P(ShippedArms, HaveTheirToolWhereTheirMakersFileHasIt) {
+  const Told& told = GetParam();
+  const Arm arm(make_model(load_arm_urdf(std::string(LANTERNFISH_SOURCE_DIR "/shared/arm/") + told.ours)));
+  std::ifstream file(std::string(LANTERNFISH_TEST_DATA "/arms/") + told.fk);
   ASSERT_TRUE(file);
   int rows = 0;
   for (std::string line; std::getline(file, line);) {
@@ -237,16 +252,24 @@ TEST(ShippedArms, OfTheOberonTheToolIsWhereItsMakersFileHasIt) {
     std::replace(line.begin(), line.end(), ',', ' ');
     std::istringstream numbers(line);
     JointVector q = JointVector::Zero();
-    Vec3 told_m;
+    Vec3 tool_m;
+    Eigen::Quaterniond turn;
     for (Eigen::Index i = 0; i < 6; ++i) numbers >> q[i];
-    numbers >> told_m.x() >> told_m.y() >> told_m.z();
+    numbers >> tool_m.x() >> tool_m.y() >> tool_m.z() >> turn.x() >> turn.y() >> turn.z() >> turn.w();
     ASSERT_TRUE(numbers) << line;
-    // The maker's z is up, and ours down: half a turn about x.
-    ASSERT_LT((arm.base_from_tool(q).translation() - Vec3(told_m.x(), -told_m.y(), -told_m.z())).norm(), 1e-6) << line;
+    const Vec3 approach = told.ours_from_theirs * (turn * Vec3::UnitZ());
+    const Vec3 expected_m = told.ours_from_theirs * tool_m + told.aside_m + told.longer_m * approach;
+    ASSERT_LT((arm.base_from_tool(q).translation() - expected_m).norm(), 1e-6) << line;
+    ASSERT_LT((arm.approach_axis(q) - approach).norm(), 1e-6) << line;
     ++rows;
   }
   EXPECT_EQ(rows, 5);
 }
+
+const Mat3 half_a_turn_about_x = Vec3(1, -1, -1).asDiagonal().toDenseMatrix();
+INSTANTIATE_TEST_SUITE_P(Makers, ShippedArms,
+                         testing::Values(Told{"oberon7/oberon7.urdf", "oberon7/fk.csv", half_a_turn_about_x, Vec3::Zero(), 0},
+                                         Told{"ur5/ur5.urdf", "ur5/fk.csv", Mat3::Identity(), Vec3(0, -0.109, 0), 0.1485}));
 
 // The planar form has an answer of its own; one of neither form has none.
 TEST(CanWork, ArmsOfThePlanarFormAndThoseThatPoint) {

@@ -8,6 +8,7 @@
 #include <random>
 #include <string>
 
+#include "firmware/arm/gripper.hpp"
 #include "firmware/scan/sweep.hpp"
 #include "shared/arm/arm_description.hpp"
 #include "shared/arm/make_model.hpp"
@@ -38,7 +39,13 @@ class PointedSweep : public testing::TestWithParam<Case> {
     for (std::size_t i = 0; i < GetParam().park_rad.size(); ++i) park_rad[static_cast<Eigen::Index>(i)] = GetParam().park_rad[i];
   }
 
-  SweepPlan planned() const { return plan_sweep(arm, request, laser, park_rad); }
+  SweepPlan planned() const { return planned(request, laser); }
+  SweepPlan planned(const SweepRequest& asked, const LaserCalibration& by) const {
+    arm::Surroundings surroundings(arm, layout, vehicle);
+    surroundings.enter({asked.base_from_panel, {asked.docking_shift_m, asked.docking_turn_rad, 0}, {jaw_rad(), jaw_rad()}, 0});
+    return plan_sweep(arm, asked, by, park_rad, surroundings);
+  }
+  double jaw_rad() const { return arm::jaw_from_gap(arm.jaw(), 0); }
 
   arm::JointVector along(const SweepPlan& plan, double share) const {
     const arm::JointVector from(plan.start_rad.data()), to(plan.end_rad.data());
@@ -73,6 +80,8 @@ class PointedSweep : public testing::TestWithParam<Case> {
     return of_docked_panel;
   }();
   LaserCalibration laser;
+  PanelLayout layout;
+  arm::VehicleShape vehicle;
   arm::JointVector park_rad = arm::JointVector::Zero();
 };
 
@@ -145,30 +154,68 @@ TEST_P(PointedSweep, ItsLinesLieNoFartherApartThanItSays) {
   EXPECT_GT(widest_m, 0.5 * plan.widest_spacing_m);
 }
 
-TEST_P(PointedSweep, InSharesIsTheSame) {
+// Between the places that were looked at, too, and by another way of telling whether a link stands in a line of sight: by points along it.
+TEST_P(PointedSweep, KeepsClearAndHidesLittleOfTheStripe) {
+  const SweepPlan plan = planned();
+  ASSERT_EQ(plan.outcome, SweepOutcome::ok);
+  arm::Surroundings surroundings(arm, layout, vehicle);
+  surroundings.enter({request.base_from_panel, {request.docking_shift_m, request.docking_turn_rad, 0}, {jaw_rad(), jaw_rad()}, 0});
+  int seen = 0, hidden = 0;
+  for (int i = 0; i <= 100; ++i) {
+    const arm::JointVector q = along(plan, i / 100.0);
+    const arm::Distances here = surroundings.distances(q, jaw_rad());
+    EXPECT_GT(std::min({here.panel_m, here.vehicle_m, here.itself_m}), 0.010) << i;
+    const Pose pose = laser_of(plan, i / 100.0);
+    for (const double x : {-0.4, -0.2, 0.0, 0.2, 0.4}) {
+      const Vec3 left = request.base_from_panel * Vec3(x, 0, 0), up = request.base_from_panel.linear().col(1),
+                 normal = pose.linear().col(0);
+      const double y = normal.dot(pose.translation() - left) / normal.dot(up);
+      if (y > request.top_m || y < request.bottom_m) continue;
+      const Vec3 point_m = left + y * up, sight_m = point_m - request.camera_m;
+      EXPECT_GT(std::abs(sight_m.normalized().dot(normal)), 0.1) << "the camera looks along the sheet at " << i;
+      bool barred = false;
+      for (const arm::Capsule& link : arm.link_capsules(q, jaw_rad())) {
+        for (double share = 0; share <= 1 && !barred; share += 0.005) {
+          const Vec3 at_m = request.camera_m + share * sight_m, axis_m = link.b_m - link.a_m;
+          const double along_axis = std::clamp((at_m - link.a_m).dot(axis_m) / std::max(axis_m.squaredNorm(), 1e-12), 0.0, 1.0);
+          barred = (at_m - link.a_m - along_axis * axis_m).norm() < link.radius_m;
+        }
+      }
+      ++seen;
+      hidden += barred ? 1 : 0;
+    }
+  }
+  EXPECT_GT(seen, 300);
+  EXPECT_LE(hidden, 0.25 * seen);
+}
+
+// No control tick bears it all, and none waits for long.
+TEST_P(PointedSweep, IsPlannedInSharesOfNoMoreThanTwelveSeconds) {
   PointedSweepPlanner planner;
+  arm::Surroundings surroundings(arm, layout, vehicle);
+  surroundings.enter({request.base_from_panel, {request.docking_shift_m, request.docking_turn_rad, 0}, {jaw_rad(), jaw_rad()}, 0});
   planner.begin(arm, request, laser, park_rad);
   int shares = 0;
-  while (!planner.advance(nullptr)) ++shares;
+  while (!planner.advance(surroundings)) ++shares;
   EXPECT_GT(shares, 10);
-  EXPECT_LT(shares, 3000) << "12 s of ticks";
-  EXPECT_EQ(planner.plan().start_rad, planned().start_rad);
-  EXPECT_EQ(planner.plan().end_rad, planned().end_rad);
+  EXPECT_LT(shares, 3000);
 }
 
 TEST_P(PointedSweep, IsRefusedWhereThereIsNone) {
   SweepRequest far = request;
   far.base_from_panel.translation().x() += 3;
-  EXPECT_NE(plan_sweep(arm, far, laser, park_rad).outcome, SweepOutcome::ok);
-  LaserCalibration narrow = laser;
-  narrow.fan_half_angle_rad = 0.1;
-  EXPECT_NE(plan_sweep(arm, request, narrow, park_rad).outcome, SweepOutcome::ok);
+  EXPECT_EQ(planned(far, laser).outcome, SweepOutcome::top_unreachable);
   SweepRequest bad = request;
   bad.camera_m.x() = NAN;
-  EXPECT_EQ(plan_sweep(arm, bad, laser, park_rad).outcome, SweepOutcome::bad_request);
+  EXPECT_EQ(planned(bad, laser).outcome, SweepOutcome::bad_request);
   SweepRequest fast = request;
   fast.slowest_rad_s = 2;
-  EXPECT_NE(plan_sweep(arm, fast, laser, park_rad).outcome, SweepOutcome::ok) << "faster than the joints go";
+  EXPECT_NE(planned(fast, laser).outcome, SweepOutcome::ok) << "faster than the joints go";
+  SweepRequest blind = request;
+  blind.camera_m = laser_of(planned(), 0.5).translation();
+  const SweepPlan other = planned(blind, laser);
+  EXPECT_TRUE(other.outcome != SweepOutcome::ok || other.start_rad != planned().start_rad) << "the camera would look along the sheet";
+  EXPECT_EQ(plan_sweep(arm, request, laser).outcome, SweepOutcome::bad_request) << "as if it were of the planar form";
 }
 
 INSTANTIATE_TEST_SUITE_P(Arms, PointedSweep,
