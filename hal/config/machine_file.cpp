@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "hal/config/joined.hpp"
 #include "hal/config/key_listing.hpp"
 #include "hal/config/key_schema.hpp"
 #include "hal/config/nearest.hpp"
@@ -131,6 +132,21 @@ void read_machine_file(const fs::path& file, Machine& machine, std::vector<std::
 }
 
 std::string machine_file_of(const std::string& name) { return is_a_file(name) || name.empty() ? name : "machines/" + name + ".yaml"; }
+
+std::string no_machine(const std::string& name) {
+  if (is_a_file(name)) return "there is no " + name + " here, nor beside the scenario, nor among the shipped files";
+  const std::vector<std::string> shipped = shipped_in("machines");
+  const std::string near = suggestion(name, shipped);
+  return "no shipped machine '" + name + "'" + (near.empty() ? "; there are " + joined(shipped, ", ") + ", or give a file" : near);
+}
+
+fs::path named_machine(const std::string& told_in, const std::string& name) {
+  const std::string file = machine_file_of(name);
+  std::error_code none;
+  const bool known = fs::exists(find_file(file, fs::path(told_in).parent_path()), none);
+  if (!known && !is_a_file(name)) throw InputError(told_in + ": 'machine': " + no_machine(name));
+  return named_file(told_in, "machine", file);
+}
 
 std::string machine_named_in(const YAML::Node& root) {
   if (!root.IsMap()) return "";

@@ -22,6 +22,10 @@ void read_machine_file(const std::filesystem::path& file, Machine& machine, std:
 
 // A shipped machine's name, "arm5e", as the file that it means; any other name stays.
 std::string machine_file_of(const std::string& name);
+// Why there is no such machine, and what may be meant.
+std::string no_machine(const std::string& name);
+// The file of such a name, beside `told_in` or shipped. Throws InputError where there is none.
+std::filesystem::path named_machine(const std::string& told_in, const std::string& name);
 
 // What 'machine' of a YAML document says; empty where it says nothing.
 std::string machine_named_in(const YAML::Node& root);

@@ -294,14 +294,7 @@ std::string panel_file_of(const std::string& name) {
   return file || name.empty() ? name : "panels/" + name + ".yaml";
 }
 
-std::vector<std::string> shipped_panels() {
-  std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(share_folder() / "panels")) {
-    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem());
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
+std::vector<std::string> shipped_panels() { return shipped_in("panels"); }
 
 std::string panel_schema() {
   using Json = nlohmann::ordered_json;

@@ -1,5 +1,6 @@
 #include "hal/config/share.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <system_error>
 
@@ -51,6 +52,15 @@ fs::path find_file(const std::string& name, const fs::path& folder) {
   if (fs::exists(folder / path, ignored)) return folder / path;
   const fs::path shipped = share_folder() / path;
   return fs::exists(shipped, ignored) ? shipped : folder / path;  // what is nowhere is missed where its user put it
+}
+
+std::vector<std::string> shipped_in(const std::string& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(share_folder() / folder)) {
+    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
 }
 
 bool is_shipped(const fs::path& file) {

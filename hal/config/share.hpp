@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace lf::config {
 
@@ -13,6 +14,9 @@ std::filesystem::path share_folder();
 // Of an installed `program` share/lanternfish beside its bin folder; of a built one shared/ in the nearest folder above it, so that a checkout that was
 // copied or moved uses its own files. Empty when neither holds arm/arm5e.urdf.
 std::filesystem::path share_beside(const std::filesystem::path& program);
+
+// The names of the .yaml files of one of its folders, without their ending, in order.
+std::vector<std::string> shipped_in(const std::string& folder);
 
 // Whether a file is one of those, whatever links lead to it: many configurations name it, and it is nobody's to write into.
 bool is_shipped(const std::filesystem::path& file);

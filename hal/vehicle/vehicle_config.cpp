@@ -205,7 +205,7 @@ YAML::Node read_keys(const std::string& path, VehicleConfig& config, std::vector
   const std::string name = follow ? config::machine_named_in(root) : "";
   if (!name.empty()) {
     try {
-      const std::filesystem::path found = config::named_file(path, "machine", config::machine_file_of(name));
+      const std::filesystem::path found = config::named_machine(path, name);
       config.machine.told_also = found.string();
       config::read_machine_file(found, config.machine, problems);
       config.machines_camera = config.machine.camera;

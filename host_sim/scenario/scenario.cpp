@@ -90,7 +90,7 @@ void read_named_machine(Scenario& s, const YAML::Node& root, std::vector<std::st
   const std::string name = config::machine_named_in(root);
   if (name.empty()) return;
   try {
-    read_machine(s, config::named_file(s.file, "machine", config::machine_file_of(name)), problems);
+    read_machine(s, config::named_machine(s.file, name), problems);
   } catch (const InputError& problem) {
     problems.emplace_back(problem.what());
   }
@@ -98,13 +98,11 @@ void read_named_machine(Scenario& s, const YAML::Node& root, std::vector<std::st
 
 // A machine of --set comes after the scenario's own keys, and before the overrides that follow it.
 void take_machine(Scenario& s, const config::Source& source, std::vector<std::string>& problems) {
-  const fs::path shipped = config::find_file(config::machine_file_of(s.machine), fs::path(s.file).parent_path());
+  const fs::path found = config::find_file(config::machine_file_of(s.machine), fs::path(s.file).parent_path());
   std::error_code none;
   if (fs::is_directory(s.machine, none)) source.refuse(YAML::Mark::null_mark(), "'machine': " + s.machine + " is a folder, not a file");
-  if (!fs::is_regular_file(shipped, none))
-    source.refuse(YAML::Mark::null_mark(),
-                  "'machine': there is no " + s.machine + " here, nor beside the scenario, nor among the shipped files");
-  read_machine(s, shipped, problems);
+  if (!fs::is_regular_file(found, none)) source.refuse(YAML::Mark::null_mark(), "'machine': " + config::no_machine(s.machine));
+  read_machine(s, found, problems);
 }
 
 void apply_override(Scenario& scenario, const std::string& text, std::vector<std::string>& problems) {
