@@ -133,6 +133,8 @@ arm::VehicleShape vehicle_shape(const Machine& machine) {
     if (!shape.rods.push_back({Vec3(ax, ay, az), Vec3(bx, by, bz), radius}))
       refuse(machine, "'vehicle.capsules_m' has more than " + most + " capsules");
   }
+  if (machine.vehicle.lamps_m.size() > Vehicle::most_lamps)
+    refuse(machine, "'vehicle.lamps_m' has more than " + std::to_string(Vehicle::most_lamps) + " lamps");
   return shape;
 }
 

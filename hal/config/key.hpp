@@ -35,10 +35,10 @@ struct Fault {
   std::int64_t can_id = 0;  // drop_frames only
 };
 
-using KeyValue =
-    std::variant<double*, std::int64_t*, std::int32_t*, std::uint32_t*, bool*, std::string*, Spread*, Chance*, PanelLayout::Pointer*,
-                 std::array<double, 3>*, Vec2*, std::array<Vec2, 3>*, std::vector<double>*, std::vector<std::array<double, 6>>*,
-                 std::vector<std::array<double, 7>>*, std::vector<std::string>*, std::vector<Task>*, std::vector<Fault>*>;
+using KeyValue = std::variant<double*, std::int64_t*, std::int32_t*, std::uint32_t*, bool*, std::string*, Spread*, Chance*,
+                              PanelLayout::Pointer*, std::array<double, 3>*, Vec2*, std::array<Vec2, 3>*, std::vector<double>*,
+                              std::vector<std::array<double, 3>>*, std::vector<std::array<double, 6>>*, std::vector<std::array<double, 7>>*,
+                              std::vector<std::string>*, std::vector<Task>*, std::vector<Fault>*>;
 
 struct Key {
   std::string path;  // "valve.start_deg"

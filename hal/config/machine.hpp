@@ -33,7 +33,8 @@ struct Laser {
   std::array<double, 3> position_m{-0.090, 0.0, -0.365};  // in the tool frame
 };
 
-// What of the vehicle the arm could reach, in the arm's base frame: skid, frame, hulls, the camera with its strut, and two lamps.
+// What of the vehicle the arm could reach, in the arm's base frame: skid, frame, hulls, the camera with its strut, and two lamps. The simulator makes its vehicle of it,
+// and lights it from `lamps_m`.
 struct Vehicle {
   // [x, y, z, dx, dy, dz]: centre and extents along the base's axes.
   std::vector<std::array<double, 6>> boxes_m{{-0.11, 0.0, -0.102, 0.50, 0.424, 0.060},  // the arm's mounting plate and its rails
@@ -49,6 +50,10 @@ struct Vehicle {
                                                 {-0.035, -0.205, -0.072, -0.035, -0.222, 0.010, 0.010},       // its strut
                                                 {0.02, -0.62, 0.02, 0.02, -0.62, 0.02, 0.06},                 // lamps
                                                 {0.02, 0.45, 0.02, 0.02, 0.45, 0.02, 0.06}};
+  static constexpr std::size_t most_lamps = 8;
+  std::vector<std::array<double, 3>> lamps_m{{0.02, -0.62, 0.02}, {0.02, 0.45, 0.02}};
+
+  friend bool operator==(const Vehicle&, const Vehicle&) = default;
 };
 
 // In simulation free motions were taken for contacts at 1.1, and at 3 they were not.

@@ -2,13 +2,11 @@
 
 #include <algorithm>
 
+#include "shared/scene/shapes.hpp"
+
 namespace lf::scene {
 namespace {
 
-using Albedo = std::array<float, 3>;
-
-constexpr Albedo vehicle_yellow{0.80f, 0.58f, 0.06f};
-constexpr Albedo skid_grey{0.18f, 0.19f, 0.20f};
 constexpr Albedo housing_black{0.06f, 0.06f, 0.07f};
 constexpr Albedo panel_grey{0.62f, 0.64f, 0.64f};
 constexpr Albedo frame_blue{0.10f, 0.22f, 0.38f};
@@ -22,48 +20,10 @@ constexpr std::array cap_colours{Albedo{0.72f, 0.09f, 0.08f}, Albedo{0.09f, 0.48
 
 // Friction of a pair is the product of both: the URDF's rubber pads bring 0.8, which is then 0.8 on the bar.
 constexpr double bar_friction = 1.0;
-constexpr double default_friction = 0.6;
-
-Pose at(double x, double y, double z) {
-  Pose pose = Pose::Identity();
-  pose.translation() = Vec3(x, y, z);
-  return pose;
-}
-
-// The shape's z turned into `z_direction`.
-Pose along(const Vec3& centre, const Vec3& z_direction) {
-  Pose pose = at(centre.x(), centre.y(), centre.z());
-  pose.linear() = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), z_direction).toRotationMatrix();
-  return pose;
-}
-
-Shape shape(ShapeKind kind, const Vec3& size_m, const Pose& body_from_shape, const Albedo& albedo) {
-  Shape made;
-  made.kind = kind;
-  made.size_m = size_m;
-  made.body_from_shape = body_from_shape;
-  made.albedo = albedo;
-  made.friction = default_friction;
-  return made;
-}
 
 Shape decoration(Shape of) {
   of.collides = false;
   return of;
-}
-
-// Three torpedo hulls over a skid, as on the GIRONA500, behind and above the arm's workspace.
-void add_vehicle(Body& vehicle) {
-  const Vec3 forward = Vec3::UnitX();
-  const Vec3 hull_size(0.16, 0, 0.95);
-  vehicle.shapes.push_back(shape(ShapeKind::capsule, hull_size, along(Vec3(-0.55, -0.35, -0.85), forward), vehicle_yellow));
-  vehicle.shapes.push_back(shape(ShapeKind::capsule, hull_size, along(Vec3(-0.55, 0.35, -0.85), forward), vehicle_yellow));
-  vehicle.shapes.push_back(shape(ShapeKind::capsule, Vec3(0.15, 0, 0.85), along(Vec3(-0.60, 0, -0.30), forward), vehicle_yellow));
-  vehicle.shapes.push_back(shape(ShapeKind::box, Vec3(0.70, 0.60, 0.02), at(-0.37, 0, -0.115), skid_grey));
-  for (const double y : {-0.30, 0.30}) {
-    vehicle.shapes.push_back(shape(ShapeKind::cylinder, Vec3(0.02, 0, 0.70), along(Vec3(-0.37, y, -0.115), forward), skid_grey));
-    vehicle.shapes.push_back(shape(ShapeKind::box, Vec3(0.03, 0.03, 0.75), at(-0.30, y, -0.46), skid_grey));
-  }
 }
 
 void add_panel(Body& panel, const PanelLayout& layout) {
@@ -123,7 +83,7 @@ void add_button(Body& body, const PanelLayout::Button& button, const Albedo& col
 
 }  // namespace
 
-Scene make_scene(const ArmDescription& arm, const PanelLayout& layout, const PanelNames& names) {
+Scene make_scene(const ArmDescription& arm, const PanelLayout& layout, const PanelNames& names, std::span<const Shape> vehicle) {
   std::vector<std::string> links;
   for (std::size_t i = 0; i < arm.arm_joints(); ++i) {
     links.push_back(arm.links[i + 1].name);
@@ -132,7 +92,8 @@ Scene make_scene(const ArmDescription& arm, const PanelLayout& layout, const Pan
   Scene scene = bare_scene(layout, names, links);
   const OwnBodies own(arm.arm_joints());
   for (std::size_t i = 0; i < arm.links.size(); ++i) scene[i].shapes = arm.links[i].shapes;
-  add_vehicle(scene[OwnBodies::vehicle]);
+  std::vector<Shape>& base = scene[OwnBodies::vehicle].shapes;
+  base.insert(base.end(), vehicle.begin(), vehicle.end());
   add_panel(scene[own.panel()], layout);
   std::size_t body = own.first_feature();
   for (const PanelLayout::Valve& valve : layout.valves) add_handle(scene[body++], valve);
