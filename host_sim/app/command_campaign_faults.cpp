@@ -7,6 +7,7 @@
 #include "hal/config/key_text.hpp"
 #include "hal/config/nearest.hpp"
 #include "host_sim/app/campaign_options.hpp"
+#include "host_sim/app/fault_matrix.hpp"
 #include "host_sim/app/fault_suite.hpp"
 #include "host_sim/app/fault_table.hpp"
 #include "host_sim/app/interrupt.hpp"
@@ -62,7 +63,7 @@ void check_pairs(const std::vector<std::string>& rows) {
 }
 
 // What is misspelt is told before a mission is flown for its steps' times. A step that no walk of this scenario comes to is told after.
-void check_names_early(const CampaignOptions& options) {
+void check_names_early(const CampaignOptions& options, const judge::BusNodes& bus) {
   std::vector<std::string> kinds, rows;
   const std::vector<std::string> steps = names_of_steps();
   for (const judge::FaultRule& rule : judge::fault_rules()) kinds.push_back(rule.kind);
@@ -70,7 +71,7 @@ void check_names_early(const CampaignOptions& options) {
   config::check_names(options.steps, steps, "--steps");
   if (options.pairs) return check_pairs(options.rows);
   for (const std::string& step : steps) {
-    for (const judge::Cause& cause : judge::all_causes()) {
+    for (const judge::Cause& cause : judge::all_causes(bus)) {
       if (happens_in(cause, step)) rows.push_back(step + ": " + cause.name());
     }
   }
@@ -100,8 +101,9 @@ void check_reached(const std::set<std::string>& steps, const std::vector<FaultMo
 
 int fault_campaign(const CampaignOptions& options) {
   const Shard shard = parse_shard(options.shard);
-  check_names_early(options);
   const scenario::Scenario base = scenario::load_scenario(options.scenario, options.set);
+  const judge::BusNodes bus = bus_of(base);
+  check_names_early(options, bus);
   scenario::check_runnable(base);
   std::string kind = options.pairs ? "fault-pairs" : "faults";
   if (options.rendered) kind += "-rendered";
@@ -119,7 +121,7 @@ int fault_campaign(const CampaignOptions& options) {
     return exit_interrupted;
   }
   check_reached(steps, moments);
-  const std::vector<MatrixRow> all = matrix_rows(moments, choice);
+  const std::vector<MatrixRow> all = matrix_rows(moments, choice, bus);
 
   if (all.empty() && shard.count == 1) throw InputError("no row of the matrix is of this choice");
 

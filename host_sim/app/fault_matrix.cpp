@@ -13,6 +13,16 @@
 
 namespace lf::app {
 
+judge::BusNodes bus_of(const scenario::Scenario& scenario) {
+  judge::BusNodes bus;
+  bus.names = scenario.joints;
+  bus.numbers.clear();
+  for (std::size_t i = 0; i < scenario.told_arm.joint_count(); ++i)
+    bus.numbers.push_back(static_cast<std::uint8_t>(config::drive_of(scenario.drives, i).node));
+  bus.numbers.push_back(static_cast<std::uint8_t>(scenario.drives.output_node));
+  return bus;
+}
+
 namespace {
 
 using mission::Step;
@@ -22,16 +32,8 @@ constexpr double longest_s = 300;    // of a mission, after its fault
 constexpr double by_hand_s = 6;      // of an arm that waits for orders
 constexpr double over_s = 3;         // of a mission that had ended before
 
-std::vector<std::uint8_t> nodes_of(const scenario::Scenario& scenario) {
-  std::vector<std::uint8_t> nodes;
-  for (std::size_t i = 0; i < scenario.told_arm.joint_count(); ++i)
-    nodes.push_back(static_cast<std::uint8_t>(config::drive_of(scenario.drives, i).node));
-  nodes.push_back(static_cast<std::uint8_t>(scenario.drives.output_node));
-  return nodes;
-}
-
 struct Watched {
-  explicit Watched(const scenario::Scenario& scenario) : safety(nodes_of(scenario)) {}
+  explicit Watched(const scenario::Scenario& scenario) : safety(bus_of(scenario).numbers) {}
 
   judge::SafetyObserver safety;
   judge::TruthObserver truth;

@@ -33,6 +33,9 @@ struct RowResult {
   bool safe() const { return wrong.empty() && !false_success; }
 };
 
+// The bus of a scenario's machine.
+judge::BusNodes bus_of(const scenario::Scenario& scenario);
+
 std::string row_json(const RowResult& row);                           // one line
 std::optional<RowResult> parse_row(const std::string& line);          // nothing for half a line
 std::vector<RowResult> read_rows(const std::filesystem::path& file);  // those that are whole; none without the file

@@ -70,7 +70,7 @@ scenario::Scenario FaultWalk::with_its_faults(const scenario::Scenario& base) co
   if (name_ == "aborted") walked.faults.push_back(at_step("abort_ordered", "", "turn", 1, 0));
   if (name_ == "stopped") walked.faults.push_back(at_step("estop_ordered", "", "deploy", 1, 0));
   if (stops_and_starts_anew()) walked.faults.push_back(at_step("estop_ordered", "", "turn", 1, 0));
-  if (name_ == "held") walked.faults.push_back(at_step("torque_high", "shoulder", "deploy", 1, 0.1));
+  if (name_ == "held") walked.faults.push_back(at_step("torque_high", base.joints[1].c_str(), "deploy", 1, 0.1));
   if (name_ == "shut down") walked.faults.push_back(at_step("shut_down_ordered", "", "deploy", 1, 0));
   return walked;
 }

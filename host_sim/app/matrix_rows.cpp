@@ -26,11 +26,11 @@ bool chosen(const std::vector<std::string>& names, const std::string& name) {
   return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
 }
 
-std::vector<MatrixRow> single_rows(const std::vector<FaultMoment>& moments, const MatrixChoice& choice) {
+std::vector<MatrixRow> single_rows(const std::vector<FaultMoment>& moments, const MatrixChoice& choice, const judge::BusNodes& bus) {
   std::vector<MatrixRow> rows;
   for (const FaultMoment& moment : moments) {
     if (!chosen(choice.steps, moment.name)) continue;
-    for (const judge::Cause& cause : judge::all_causes()) {
+    for (const judge::Cause& cause : judge::all_causes(bus)) {
       if (chosen(choice.kinds, cause.rule->kind) && happens_in(cause, moment.name)) rows.push_back({moment, {cause}, 0});
     }
   }
@@ -42,9 +42,9 @@ std::uint64_t sample_seed(const MatrixChoice& choice) {
 }
 
 // Every pair of rules in a step of every phase; which nodes, which is first, and how far apart, a hash of the pair says.
-std::vector<MatrixRow> pair_rows(const std::vector<FaultMoment>& moments, const MatrixChoice& choice) {
+std::vector<MatrixRow> pair_rows(const std::vector<FaultMoment>& moments, const MatrixChoice& choice, const judge::BusNodes& bus) {
   std::map<const judge::FaultRule*, std::vector<judge::Cause>> by_rule;
-  for (const judge::Cause& cause : judge::all_causes()) by_rule[cause.rule].push_back(cause);
+  for (const judge::Cause& cause : judge::all_causes(bus)) by_rule[cause.rule].push_back(cause);
   const std::span<const judge::FaultRule> rules = judge::fault_rules();
   std::vector<MatrixRow> rows;
   for (const FaultMoment& moment : moments) {
@@ -86,9 +86,9 @@ std::string MatrixRow::name() const {
   return text + ", then " + causes[1].name() + later;
 }
 
-std::vector<MatrixRow> matrix_rows(const std::vector<FaultMoment>& moments, const MatrixChoice& choice) {
+std::vector<MatrixRow> matrix_rows(const std::vector<FaultMoment>& moments, const MatrixChoice& choice, const judge::BusNodes& bus) {
   check_choice(moments, choice);
-  const std::vector<MatrixRow> all = choice.pairs ? pair_rows(moments, choice) : single_rows(moments, choice);
+  const std::vector<MatrixRow> all = choice.pairs ? pair_rows(moments, choice, bus) : single_rows(moments, choice, bus);
   std::vector<std::string> names;
   names.reserve(all.size());
   for (const MatrixRow& row : all) names.push_back(row.name());

@@ -31,6 +31,6 @@ struct MatrixChoice {
 bool happens_in(const judge::Cause& cause, const std::string& step);
 
 // Throws InputError for a kind, step or row that there is not.
-std::vector<MatrixRow> matrix_rows(const std::vector<FaultMoment>& moments, const MatrixChoice& choice);
+std::vector<MatrixRow> matrix_rows(const std::vector<FaultMoment>& moments, const MatrixChoice& choice, const judge::BusNodes& bus = {});
 
 }  // namespace lf::app

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <optional>
 
 #include "hal/config/fault_kinds.hpp"
-#include "shared/arm/joint_names.hpp"
 #include "shared/can/can_map.hpp"
 
 namespace lf::judge {
@@ -13,8 +13,12 @@ namespace lf::judge {
 namespace {
 
 constexpr std::uint32_t first_rpdo = 0x200, sdo_request = 0x600;
-constexpr std::array<std::pair<const char*, std::uint32_t>, 4> frame_sorts{
-    {{"tpdo ", 0x180}, {"rpdo ", first_rpdo}, {"heartbeat ", 0x700}, {"emcy ", 0x080}}};
+
+// A frame's function code, by its sort in a rule.
+std::uint32_t function_of(const std::string& sort) {
+  constexpr std::uint32_t first_tpdo = 0x180, heartbeat = 0x700, emcy = 0x080;
+  return sort == "tpdo" ? first_tpdo : sort == "rpdo" ? first_rpdo : sort == "heartbeat" ? heartbeat : emcy;
+}
 
 const std::vector<FaultRule>& rules() {
   using enum Demand;
@@ -101,26 +105,6 @@ const std::vector<FaultRule>& rules() {
   return all;
 }
 
-// The matrix is flown on the default machine.
-const JointNames& known() {
-  static const JointNames names;
-  return names;
-}
-
-std::uint32_t number_of(std::size_t index) { return index < can_map::drive_nodes.size() ? can_map::drive_nodes[index] : can_map::io_node; }
-
-// A lost frame's identifier from "tpdo slew".
-std::int64_t frame_of(const std::string& node) {
-  for (std::size_t i = 0; i < known().node_count(); ++i) {
-    if (!node.ends_with(" " + known().node(i))) continue;
-    const std::uint32_t id = number_of(i);
-    for (const auto& [sort, function] : frame_sorts) {
-      if (node.starts_with(sort)) return function + id;
-    }
-  }
-  return 0;
-}
-
 // "elbow" of "tpdo elbow"; nothing where a cause has no node.
 std::string node_name(const std::string& node) { return node.substr(node.find_last_of(' ') + 1); }
 
@@ -129,14 +113,13 @@ bool has_any(const std::string& reason, const std::vector<std::string>& words) {
 }
 
 // The node as a reason says it: ": elbow", "output node", or in the identifier of a frame for it.
-bool names_node(const std::string& reason, const std::string& node) {
-  const std::optional<std::size_t> index = known().find_node(node);
-  if (!index) return false;
-  if (*index == known().size() && reason.find("output node") != std::string::npos) return true;
-  const std::uint32_t id = number_of(*index);
+bool names_node(const std::string& reason, const Cause& cause) {
+  const std::string node = node_name(cause.node);
+  if (cause.number == 0) return false;
+  if (cause.output_node && reason.find("output node") != std::string::npos) return true;
   for (const std::uint32_t function : {first_rpdo, sdo_request}) {
     char identifier[8];
-    std::snprintf(identifier, sizeof identifier, "0x%04X", function + id);
+    std::snprintf(identifier, sizeof identifier, "0x%04X", function + cause.number);
     if (reason.find(identifier) != std::string::npos) return true;
   }
   if (node == "jaw" && reason.find("the jaw ") != std::string::npos) return true;
@@ -157,7 +140,7 @@ bool Cause::named_in(const std::string& told) const {
   if (node_name(node) == "io" && reason.find("output node lost") != std::string::npos) return true;
   if (node_name(node) == "io" && rule->kind == "drop_frames" && reason.find("camera silent") != std::string::npos) return true;
   const bool named = has_any(reason, rule->named_by);
-  return named && (node.empty() || names_node(reason, node_name(node)));
+  return named && (node.empty() || names_node(reason, *this));
 }
 
 std::span<const FaultRule> fault_rules() { return rules(); }
@@ -172,21 +155,38 @@ config::Fault Cause::fault() const {
   config::Fault fault;
   fault.kind = rule->kind;
   fault.duration_s = rule->duration_s;
-  fault.can_id = frame_of(node);
-  if (fault.can_id == 0) fault.node = node;
+  fault.can_id = lost_id;
+  if (lost_id == 0) fault.node = node;
   return fault;
 }
 
-std::vector<Cause> all_causes() {
+std::vector<std::uint8_t> BusNodes::default_numbers() {
+  std::vector<std::uint8_t> numbers(can_map::drive_nodes.begin(), can_map::drive_nodes.end());
+  numbers.push_back(can_map::io_node);
+  return numbers;
+}
+
+std::vector<Cause> all_causes(const BusNodes& bus) {
   std::vector<Cause> causes;
+  const auto at = [&](const FaultRule& rule, std::size_t node) {
+    return Cause{&rule, bus.names.node(node), bus.numbers.at(node), node == bus.names.size(), 0};
+  };
   for (const FaultRule& rule : fault_rules()) {
     const config::FaultPlace place = config::find_fault_kind(rule.kind)->place;
     if (place != config::FaultPlace::frames) {
-      for (const std::string& node : config::fault_nodes(place)) causes.push_back({&rule, node});
+      for (const std::string& node : config::fault_nodes(place, bus.names)) {
+        const std::optional<std::size_t> index = bus.names.find_node(node);
+        causes.push_back(index ? at(rule, *index) : Cause{&rule, node});
+      }
       continue;
     }
-    for (std::size_t i = 0; i < known().node_count(); ++i) {
-      for (const std::string& sort : rule.frames) causes.push_back({&rule, sort + " " + known().node(i)});
+    for (std::size_t i = 0; i < bus.names.node_count(); ++i) {
+      for (const std::string& sort : rule.frames) {
+        Cause cause = at(rule, i);
+        cause.node = sort + " " + cause.node;
+        cause.lost_id = function_of(sort) + cause.number;
+        causes.push_back(cause);
+      }
     }
   }
   return causes;

@@ -2,12 +2,14 @@
 // which words of its reason would name the cause.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "hal/config/key.hpp"
+#include "shared/arm/joint_names.hpp"
 
 namespace lf::judge {
 
@@ -46,7 +48,10 @@ std::span<const FaultRule> fault_rules();
 // One fault as a row of the matrix has it.
 struct Cause {
   const FaultRule* rule = nullptr;
-  std::string node;  // or "tpdo slew", "heartbeat io" for lost frames
+  std::string node;         // or "tpdo slew", "heartbeat io" for lost frames
+  std::uint8_t number = 0;  // of the node on the bus; 0: none, or the master
+  bool output_node = false;
+  std::int64_t lost_id = 0;  // of the frames that are lost; 0: none are
 
   std::string name() const;  // "overcurrent elbow"
   // Whether the reason says what happened, and at which node.
@@ -54,7 +59,15 @@ struct Cause {
   config::Fault fault() const;
 };
 
+// The machine whose bus it is: its joints, and the numbers of their drives and of the output node after them.
+struct BusNodes {
+  JointNames names;
+  std::vector<std::uint8_t> numbers = default_numbers();
+
+  static std::vector<std::uint8_t> default_numbers();
+};
+
 // Each rule at each node that it can happen to.
-std::vector<Cause> all_causes();
+std::vector<Cause> all_causes(const BusNodes& bus = {});
 
 }  // namespace lf::judge
