@@ -359,9 +359,11 @@ void BasicScanPipeline<capacity>::analyse(std::uint32_t sweep) {
   sweeping_ = false;
   request_.id = sweep;
   request_.fit = fitter_.fit(cloud_.points(), config_.plane);
-  if (!cloud_.points().empty())
-    request_.fit.shape_shift_m =
-        std::max(shape_shifts_m_, late_shape_doubt_px_.mean() * m_per_px_) / static_cast<double>(cloud_.points().size());
+  if (!cloud_.points().empty()) {
+    const auto points = static_cast<double>(cloud_.points().size());
+    request_.fit.shape_shift_m = std::max(shape_shifts_m_, late_shape_doubt_px_.mean() * m_per_px_) / points;
+    request_.fit.depth_m_per_rad = m_per_px_ * config_.camera.intrinsics.fy / points;
+  }
   request_.has_still = still_.present;
   request_.still_time = still_.mid_exposure;
   request_ready_ = true;

@@ -24,14 +24,15 @@ ArmModel::Planar planar() {
           .elbow_offset_rad = dh[2].theta_offset_rad};
 }
 
-ArmModel::Joint joint(const arm_geometry::JointNumbers& n) {
+ArmModel::Joint joint(const arm_geometry::JointNumbers& n, float stiffness_nm_rad) {
   return {.lower_rad = n.lower_rad,
           .upper_rad = n.upper_rad,
           .velocity_rad_s = n.velocity_rad_s,
           .acceleration_rad_s2 = n.acceleration_rad_s2,
           .effort_nm = n.effort_nm,
           .rated_torque_nm = n.rated_torque_nm,
-          .actuator = {n.pivot_a_m, n.pivot_b_m, n.offset_rad, n.counts_per_m, n.counts_per_rad}};
+          .actuator = {n.pivot_a_m, n.pivot_b_m, n.offset_rad, n.counts_per_m, n.counts_per_rad},
+          .stiffness_nm_rad = stiffness_nm_rad};
 }
 
 ArmModel::Jaw jaw() {
@@ -53,7 +54,8 @@ ArmModel arm5e_model() {
   static_assert(arm_geometry::capsules.size() <= capacity::arm_shapes);
   ArmModel model;
   model.planar = planar();
-  for (std::size_t i = 0; i < model.joint_count(); ++i) model.joints[i] = joint(arm_geometry::joints[i]);
+  for (std::size_t i = 0; i < model.joint_count(); ++i)
+    model.joints[i] = joint(arm_geometry::joints[i], ArmModel::usual_stiffness_nm_rad(i, model.arm_joints));
   for (std::size_t i = 0; i < arm_geometry::joint_origins.size(); ++i) model.origins[i] = pose_of(arm_geometry::joint_origins[i]);
   model.jaw = jaw();
   for (const arm_geometry::CapsuleNumbers& n : arm_geometry::capsules)

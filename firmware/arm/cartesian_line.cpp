@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware/arm/give.hpp"
 #include "firmware/arm/planar_chain.hpp"
 #include "firmware/arm/pointing.hpp"
 #include "firmware/arm/tool_place.hpp"
@@ -114,6 +115,8 @@ void CartesianLine::begin(const Arm& arm, const JointVector& start_rad, const Ve
   velocity_ = length > 0 ? line.speed_m_s / length : HUGE_VAL;
   acceleration_ = length > 0 ? line.acceleration_m_s2 / length : HUGE_VAL;
   jerk_ = length > 0 ? line.jerk_m_s3 / length : HUGE_VAL;
+  push_n_ = line.push_n;
+  gentle_velocity_ = HUGE_VAL;
   result_.speed_m_s = line.speed_m_s;
   posture_ = posture_of(arm, start_rad);
   limits_ = limits;
@@ -163,15 +166,20 @@ bool CartesianLine::check() {
   // The stretched arm is singular.
   if (!here.first.allFinite() || !here.second.allFinite()) return finish(PlanOutcome::unreachable, IkOutcome::too_far);
   respect(here, limits_, velocity_, acceleration_, jerk_);
+  const double length = way_m_.norm();
+  if (std::isfinite(push_n_) && length > 0) {
+    const double gentle_m_s = gentle_speed_m_s(*arm_, ik.q_rad, here.first / length, way_m_ / length, limits_, push_n_);
+    gentle_velocity_ = std::min(gentle_velocity_, gentle_m_s / length);
+  }
   if (i < checks) return false;
 
-  const double length = way_m_.norm();
-  if ((length > 0 || turn != 0) && !curve_.plan(1, velocity_, acceleration_, jerk_))
-    return finish(PlanOutcome::not_a_number, IkOutcome::ok);
   // Beside a singular posture the tool creeps while the joints turn: no step waits for that.
   constexpr double slowest = 0.25;  // of the speed that was asked for
   if (!arm_->is_planar() && length > 0 && velocity_ * length < slowest * result_.speed_m_s)
     return finish(PlanOutcome::unreachable, IkOutcome::turned_away);
+  velocity_ = std::min(velocity_, gentle_velocity_);
+  if ((length > 0 || turn != 0) && !curve_.plan(1, velocity_, acceleration_, jerk_))
+    return finish(PlanOutcome::not_a_number, IkOutcome::ok);
   goal_m_ = start_m_ + way_m_;
   way_m_ = goal_m_ - start_m_;  // as rounding leaves it: the line ends at its goal
   result_.speed_m_s = curve_.peak_velocity() * length;

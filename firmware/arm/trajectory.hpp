@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "firmware/arm/inverse_kinematics.hpp"
@@ -62,6 +63,8 @@ struct LineLimits {
   double speed_m_s = 0.04;
   double acceleration_m_s2 = 0.2;
   double jerk_m_s3 = 2.0;
+  // Something hard that is met on the line may be pressed so hard until the arm stands (give.hpp).
+  double push_n = std::numeric_limits<double>::infinity();
 };
 
 struct LinePlan {
@@ -114,6 +117,7 @@ class CartesianLine {
   // While it is planned:
   JointLimits limits_;
   double velocity_ = 0, acceleration_ = 0, jerk_ = 0;  // of the fraction, that all checks so far allow
+  double push_n_ = 0, gentle_velocity_ = 0;            // of the fraction, at which the arm presses no harder
   int next_check_ = 0;
   bool planned_ = true;
   LinePlan result_;

@@ -94,9 +94,10 @@ void Motion::advance_route() {
   }
 }
 
-void Motion::line(const Vec3& goal_m, double goal_roll_rad, const Room& room, double jaw_rad, double speed_m_s) {
+void Motion::line(const Vec3& goal_m, double goal_roll_rad, const Room& room, double jaw_rad, double speed_m_s, double push_n) {
   arm::LineLimits line;
   line.speed_m_s = speed_m_s;
+  line.push_n = push_n;
   line_.begin(arm_, target_.q_rad, goal_m, goal_roll_rad, line, limits(1));
   begin_way(room, jaw_rad);
   begin(Kind::plan_line, 0);

@@ -18,6 +18,10 @@
 
 namespace lf::mission {
 
+// What a straight line may press with when it meets something hard, where nothing is meant to be met, and in a press: the ARM 5E's lines at their usual speeds stay
+// below both. A stiffer arm, or one that brakes more slowly, goes more slowly.
+inline constexpr double approach_push_n = 170, press_push_n = 65;
+
 class Motion {
  public:
   // `limits` bound every motion's positions and speeds. Motions keep clear of a panel of this layout and of the vehicle. Ways through free space may lead
@@ -40,7 +44,7 @@ class Motion {
   // Through free space.
   void go_clear(const arm::JointVector& goal_rad, const Room& room, double jaw_rad, double speed_fraction);
   // Of the tool.
-  void line(const Vec3& goal_m, double goal_roll_rad, const Room& room, double jaw_rad, double speed_m_s);
+  void line(const Vec3& goal_m, double goal_roll_rad, const Room& room, double jaw_rad, double speed_m_s, double push_n = approach_push_n);
   // Of the held bar on the room's panel. `pushed_rad`: what the arm gives way by meanwhile; its way is looked at from there.
   void turn(double from_rad, double to_rad, const Room& room, double jaw_rad, double speed_rad_s,
             const arm::JointVector& pushed_rad = arm::JointVector::Zero());

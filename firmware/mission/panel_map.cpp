@@ -25,7 +25,7 @@ constexpr double way_margin_rad = 0.2;
 
 // Of the panel's frame as it is found, along or about any one axis. The worst of 64 looks were 1.9 mm, 0.14 degrees of tilt, and 0.4 degrees about the normal, of which
 // half as much again is taken: neither bend nor shape comes on top of that one.
-constexpr double calibration_shift_m = 0.0021;
+constexpr double calibration_shift_m = 0.0021, calibration_depth_m_per_rad = 1.25, calibration_parts = 5;
 constexpr double calibration_turn_rad = 0.0026;
 constexpr double marker_spin_rad = 0.0105;
 
@@ -37,11 +37,24 @@ constexpr double largest_shape_shift_m = 0.003;
 // The plane is the mean of thousands of points, and so far better known than one of them. An error that bends it shows in what neighbouring points have in common. The
 // line's shape may shift the points by different amounts over the sweep. The worst is no shift at one border of what was seen and the full shift at the other: that turns the
 // plane, and the more the less of the panel was seen.
-arm::PanelDoubt PanelMap::doubt() const {
+arm::PanelDoubt PanelMap::doubt_where_touched() const {
   constexpr double least_seen_m = 0.01;
   const double plate_m = (layout_->plate_max_m - layout_->plate_min_m).minCoeff(), shape_m = plane_.shape_shift_m;
   const double seen_m = std::clamp(plane_.seen_m, least_seen_m, plate_m), bent_m = 2 * plane_.bend_m + shape_m;
   return {calibration_shift_m + bent_m + marker_spin_rad * markers_beyond_m_, calibration_turn_rad + bent_m / seen_m, marker_spin_rad};
+}
+
+arm::PanelDoubt PanelMap::doubt() const {
+  arm::PanelDoubt doubt = doubt_where_touched();
+  doubt.shift_m += deeper_m();
+  return doubt;
+}
+
+double PanelMap::deeper_m() const { return (farther() - 1) * calibration_shift_m; }
+
+// What camera, laser and joints are turned by against their calibration moves the plane by the more, the farther it is and the flatter they see it.
+double PanelMap::farther() const {
+  return std::max(1.0, plane_.depth_m_per_rad * calibrated_parts_ / (calibration_depth_m_per_rad * calibration_parts));
 }
 
 // By the farthest, since it may be the only one that is seen. The docked mission's stands 185 mm from its valve.

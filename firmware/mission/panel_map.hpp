@@ -24,12 +24,16 @@ class PanelMap {
   static_assert(PanelLayout::max_valves <= 32);
   static constexpr Valves bit(std::size_t valve) { return Valves{1} << valve; }
 
-  // All three outlive the map.
-  PanelMap(const PanelLayout& layout, const MarkerCalibrations& markers, const CameraCalibration& camera)
-      : layout_(&layout), markers_(&markers), camera_(&camera), markers_beyond_m_(markers_beyond_m(markers)) {}
+  // `layout`, `markers` and `camera` outlive the map. So many joints carry the laser.
+  PanelMap(const PanelLayout& layout, const MarkerCalibrations& markers, const CameraCalibration& camera, std::size_t laser_joints)
+      : layout_(&layout),
+        markers_(&markers),
+        camera_(&camera),
+        markers_beyond_m_(markers_beyond_m(markers)),
+        calibrated_parts_(static_cast<double>(2 + laser_joints)) {}
 
-  PanelMap(const PanelLayout&, MarkerCalibrations&&, const CameraCalibration&) = delete;
-  PanelMap(const PanelLayout&, const MarkerCalibrations&, CameraCalibration&&) = delete;
+  PanelMap(const PanelLayout&, MarkerCalibrations&&, const CameraCalibration&, std::size_t) = delete;
+  PanelMap(const PanelLayout&, const MarkerCalibrations&, CameraCalibration&&, std::size_t) = delete;
 
   // Takes an answer of panel vision: the panel's place, and how the handles of these valves stand; what is known of the others stays. With none wanted, the handle of any
   // one has to be seen at its place. On a failure what was known before stays.
@@ -53,6 +57,10 @@ class PanelMap {
   // By how much that may be wrong, once it is known: what the calibration errs by, the scatter of the points about the plane, and what
   // the laser line's shape leaves in doubt.
   arm::PanelDoubt doubt() const;
+  // The same for what touches the panel before it comes near it otherwise: how far off the panel is no longer matters then.
+  arm::PanelDoubt doubt_where_touched() const;
+  // By how much more than of the default machine the panel may be off along its normal: that is for a press to find.
+  double deeper_m() const;
   double handle_rad(std::size_t valve) const { return handles_[valve].angle_rad; }
   bool handle_seen(std::size_t valve) const { return handles_[valve].seen.found; }
   // The jaw has the handle here, if it holds it: until the next look the handle is on the way from where it was seen to here.
@@ -86,6 +94,7 @@ class PanelMap {
   StepFailure look_at(std::size_t valve, const PanelResult& result, const scan::PanelFrame& frame, Handle& handle) const;
   StepFailure settle(std::size_t valve, const PanelResult& result, const scan::PanelFrame& frame, Handle& handle) const;
 
+  double farther() const;
   static double markers_beyond_m(const MarkerCalibrations& markers);
 
   const PanelLayout* layout_;
@@ -95,6 +104,7 @@ class PanelMap {
   std::size_t told_valve_ = 0;
   // How much farther a marker is from the panel's origin than where the doubt was measured: what turns about the marker moves the origin.
   double markers_beyond_m_;
+  double calibrated_parts_;      // whose calibration errs, each by itself: camera, laser and the joints that carry it
   Vec3 first_m_ = Vec3::Zero();  // the panel's origin as it was first found
   bool known_ = false;
   scan::PanelFrame frame_;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "firmware/arm/give.hpp"
+
 namespace lf::mission {
 
 namespace {
@@ -64,6 +66,16 @@ arm::GuardConfig press_guard(const Workbench& bench) {
 }
 
 const PanelLayout::Button& the_button(const Workbench& bench) { return bench.mission().layout.buttons[bench.job.task().button]; }
+
+// A panel that is seen from far may stand deeper than it looks. The hand stays clear of it.
+double deeper_m(const Workbench& bench) {
+  constexpr double hand_m = 0.013;
+  const PanelLayout::Button& button = the_button(bench);
+  const double room_m = button.height_m - button.stroke_m - bench.mission().press_overtravel_m - hand_m;
+  return std::clamp(bench.map.deeper_m(), 0.0, std::max(0.0, room_m));
+}
+
+double face_doubt_m(const Workbench& bench) { return press_face_m + bench.map.deeper_m(); }
 
 double closed_tip_beyond_tool_m(const ArmModel::Jaw& jaw) { return arm::tip_beyond_tool_m(jaw, arm::jaw_from_gap(jaw, 0)); }
 
@@ -151,19 +163,21 @@ Progress PressButton::begin_press(Workbench& bench) {
   arm::GuardConfig config = press_guard(bench);
   config.contact_torque_nm = free_motion_guard(bench.config.mission_limits).contact_torque_nm.cwiseMax(bench.mission().press_torque_nm);
   guard_ = arm::GuardedMotion(config);
-  feel_ = ButtonFeel();
+  ButtonFeel::Config feel;
+  feel.stiffness_n_m = std::max(feel.stiffness_n_m, arm::tool_stiffness_n_m(bench.config.arm, bench.motion.target(), bench.map.normal()));
+  feel_ = ButtonFeel(feel);
   learned_under_way_ = false;
   pushed_joint_.reset();
   rest_nm_.reset();
   bottom_m_ = 0;
   bench.job.result().failure = StepFailure::none;
-  const double depth = the_button(bench).stroke_m + bench.mission().press_overtravel_m;
+  const double depth = the_button(bench).stroke_m + bench.mission().press_overtravel_m + deeper_m(bench);
   const Vec3 tip = bench.map.button_m(bench.job.task().button) - bench.map.normal() * depth;
   arm::JointVector q = bench.motion.target();
   if (!tool_for_tip(bench.config.arm, tip, -bench.map.normal(), closed_tip_beyond_tool_m(bench.jaw()), bench.tool_roll_rad, true, q))
     return Progress::failed(StepFailure::unreachable);
-  bench.go_straight(bench.config.arm.base_from_tool(q).translation(), bench.tool_roll_rad, bench.mission().press_speed_m_s,
-                    bench.meant_parts());
+  bench.press_straight(bench.config.arm.base_from_tool(q).translation(), bench.tool_roll_rad, bench.mission().press_speed_m_s,
+                       bench.meant_parts());
   return Progress::running();
 }
 
@@ -256,7 +270,7 @@ void PressButton::feel(const StepTick& tick) {
   const double depth_m = (tip - bench.map.button_m(bench.job.task().button)).dot(inward);
   bottom_m_ = depth_m;
   // Far from the face a small force is the friction of the way, which the guard still learns; a large one is the guard's to notice.
-  if (depth_m < -press_face_m) return;
+  if (depth_m < -face_doubt_m(bench)) return;
   feel_.update(tick.network.config().sync_period.s(), force_n, depth_m);
 }
 
@@ -264,14 +278,14 @@ StepFailure PressButton::judge(const Workbench& bench) const {
   if (pushed_joint_) return StepFailure::early_contact;
   const double stroke_m = the_button(bench).stroke_m;
   if (!feel_.touched()) return guard_.touched() ? StepFailure::early_contact : StepFailure::button_missing;
-  if (feel_.touch_depth_m() < -press_face_m) return StepFailure::early_contact;
-  if (feel_.touch_depth_m() > stroke_m + press_face_m) return StepFailure::button_missing;
+  if (feel_.touch_depth_m() < -face_doubt_m(bench)) return StepFailure::early_contact;
+  if (feel_.touch_depth_m() > stroke_m + face_doubt_m(bench)) return StepFailure::button_missing;
   const bool moved = feel_.travel_m() >= least_travel * stroke_m;
   // Where the torque that says bottom is set high, a stuck cap holds the press up to the end of its way. The arm gives way by millimetres then: how deep its
   // joints say the tip is tells nothing, only the travel does.
   if (!guard_.touched()) return moved ? StepFailure::button_yields : StepFailure::button_stuck;
   // A strong spring, or a panel that is nearer than believed, hides the beginning of the way; the end of it is seen by the joints.
-  const bool deep = bottom_m_ > deepest_stuck_m + stuck_share * stroke_m;
+  const bool deep = bottom_m_ > deepest_stuck_m + bench.map.deeper_m() + stuck_share * stroke_m;
   return moved || deep ? StepFailure::none : StepFailure::button_stuck;
 }
 

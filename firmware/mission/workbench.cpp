@@ -165,7 +165,7 @@ Workbench::Workbench(const ControllerConfig& told)
       watch(config.arm, told.mission_limits, told.transmissions),
       camera(camera_config(told)),
       motion(config.arm, told.mission_limits, config.mission.layout, config.mission.vehicle, told.mission.park_rad),
-      map(config.mission.layout, config.markers, config.camera),
+      map(config.mission.layout, config.markers, config.camera, config.arm.roll_joint()),
       job(told.mission.tasks, told.mission.tries),
       gripper(new_gripper()),
       compliance(gripping_compliance(config.arm, told.mission_limits)),
@@ -264,6 +264,12 @@ Progress Workbench::follow_way() {
 
 void Workbench::go_straight(const Vec3& goal_m, double roll_rad, double speed_m_s, arm::PanelParts meant) {
   motion.line(goal_m, roll_rad, room(jaw_rad(), meant), jaw_rad(), speed_m_s);
+}
+
+void Workbench::press_straight(const Vec3& goal_m, double roll_rad, double speed_m_s, arm::PanelParts meant) {
+  Room pressed = room(jaw_rad(), meant);
+  if (map.known()) pressed.doubt = map.doubt_where_touched();
+  motion.line(goal_m, roll_rad, pressed, jaw_rad(), speed_m_s, press_push_n);
 }
 
 Progress Workbench::follow_motion() const {

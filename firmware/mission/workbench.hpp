@@ -108,6 +108,8 @@ struct Workbench {
   Progress follow_way();
   // A straight motion of the tool with the jaw as it is.
   void go_straight(const Vec3& goal_m, double roll_rad, double speed_m_s, arm::PanelParts meant);
+  // The same into what is meant to stop it.
+  void press_straight(const Vec3& goal_m, double roll_rad, double speed_m_s, arm::PanelParts meant);
   // Done when the motion is; failed when the motion could not be planned.
   Progress follow_motion() const;
   // The task under way is at its beginning again.

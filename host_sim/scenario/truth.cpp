@@ -16,6 +16,7 @@
 #include "host_sim/scenario/instance.hpp"
 #include "host_sim/scenario/scene_file.hpp"
 #include "shared/arm/arm_description.hpp"
+#include "shared/arm/make_model.hpp"
 #include "shared/input_error.hpp"
 #include "shared/random.hpp"
 #include "shared/scene/panel_scene.hpp"
@@ -106,6 +107,21 @@ world::ValveConfig valve_config(const config::ValveNature& nature, const PanelLa
   return valve;
 }
 
+std::vector<Vec3> lamp_places_m(const config::Vehicle& vehicle) {
+  std::vector<Vec3> places_m;
+  for (const std::array<double, 3>& lamp_m : vehicle.lamps_m) places_m.emplace_back(lamp_m[0], lamp_m[1], lamp_m[2]);
+  return places_m;
+}
+
+// The default vehicle has a look of its own, within the boxes and capsules that the default machine states.
+std::vector<scene::Shape> vehicle_shapes(const Scenario& scenario) {
+  if (scenario.vehicle == config::Vehicle()) return scene::default_vehicle();
+  std::vector<Vec3> eyes_m = lamp_places_m(scenario.vehicle);
+  const std::array<double, 3>& camera_m = scenario.camera.position_m;
+  eyes_m.emplace_back(camera_m[0], camera_m[1], camera_m[2]);
+  return scene::vehicle_of(scenario.vehicle.boxes_m, scenario.vehicle.capsules_m, eyes_m);
+}
+
 world::WorldConfig world_config(const Scenario& scenario, const Sample& sample) {
   world::WorldConfig world;
   world.arm = true_arm(scenario);
@@ -113,17 +129,11 @@ world::WorldConfig world_config(const Scenario& scenario, const Sample& sample) 
   const std::size_t arm_joints = world.arm.arm_joints();
   world.start_rad = {};
   world.drive_stiffness_nm_rad = {};
-  for (std::size_t i = 0; i <= arm_joints; ++i) {
-    const double usual_nm_rad = i + 1 >= arm_joints ? world::end_stiffness_nm_rad
-                                : i == 0            ? world::first_stiffness_nm_rad
-                                                    : world::stiffness_nm_rad;
-    const double told_nm_rad = world.arm.joints[i].stiffness_nm_rad;
-    world.drive_stiffness_nm_rad[i] = told_nm_rad > 0 ? told_nm_rad : usual_nm_rad;
-  }
+  for (std::size_t i = 0; i <= arm_joints; ++i) world.drive_stiffness_nm_rad[i] = stiffness_nm_rad(world.arm, i);
   world.start_rad[arm_joints] = std::clamp(world::half_open_rad, jaw.lower_rad, jaw.upper_rad);
   std::copy_n(scenario.arm.park_rad.begin(), std::min(scenario.arm.park_rad.size(), arm_joints), world.start_rad.begin());
   world.layout = true_layout(scenario.panel, sample);
-  world.scene = scene::make_scene(world.arm, world.layout, scenario.survey.names);
+  world.scene = scene::make_scene(world.arm, world.layout, scenario.survey.names, vehicle_shapes(scenario));
   move_markers(world.scene[scene::OwnBodies(arm_joints).panel()], sample);
   world.base_from_panel = true_base_from_panel(scenario.panel, sample);
   if (scenario.objects) {
@@ -150,16 +160,19 @@ world::WorldConfig world_config(const Scenario& scenario, const Sample& sample) 
   return world;
 }
 
-// A lamp on either side of the vehicle, wide of the camera so that little of the lit water is in its view, both at the panel's middle.
-std::vector<optics::LampConfig> lamps(double power) {
-  const Vec3 aim(0.44, 0.0, 0.60);
+// All at the middle of the panel where it is docked nominally. The default ones are wide of the camera, so that little of the lit water is in its view.
+std::vector<optics::LampConfig> lamps(const Scenario& scenario) {
+  const Vec3 default_aim(0.44, 0.0, 0.60);
+  const Vec3 aim =
+      default_aim + (scenario.panel.nominal_base_from_panel().translation() - PanelLayout{}.nominal_base_from_panel().translation());
   std::vector<optics::LampConfig> all;
-  for (const double side : {-0.62, 0.45}) {
+  for (const Vec3& place_m : lamp_places_m(scenario.vehicle)) {
     optics::LampConfig lamp;
-    lamp.body_from_lamp.translation() = Vec3(0.02, side, 0.02);
-    lamp.body_from_lamp.linear() =
-        Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), aim - lamp.body_from_lamp.translation()).toRotationMatrix();
-    for (float& band : lamp.intensity_w_sr) band *= static_cast<float>(power);
+    lamp.body_from_lamp.translation() = place_m;
+    const Vec3 way_m = aim - place_m;
+    const Vec3 ahead = way_m.norm() > 1e-3 ? way_m : Vec3::UnitX();
+    lamp.body_from_lamp.linear() = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), ahead).toRotationMatrix();
+    for (float& band : lamp.intensity_w_sr) band *= static_cast<float>(scenario.lamps.power);
     all.push_back(lamp);
   }
   return all;
@@ -224,7 +237,7 @@ optics::OpticsConfig optics_config(const Scenario& scenario, const Sample& sampl
   laser.fan_profile = fan_profile(sample);
   optics.lasers.push_back(laser);
 
-  optics.lamps = lamps(scenario.lamps.power);
+  optics.lamps = lamps(scenario);
   optics.water.attenuation_per_m = sample.attenuation_per_m;
   optics.water.scattering_share = scenario.water.scattering_share;
   optics.water.asymmetry = scenario.water.asymmetry;

@@ -46,9 +46,14 @@ struct ButtonConfig {
   double mass_kg = 0.25;  // cap, plunger and water; below 0.2 kg a bottomed cap overtravels (Bullet, 1 kHz, 30 iterations)
 };
 
-// What screws, links and pads give way by under load, lumped at the joints: of the first joint, of roll and jaw, and of those between. 4000 N m/rad is 30 kN/m at the
-// tool, and 0.2 mm of sag from the default arm's weight in water.
-inline constexpr double first_stiffness_nm_rad = 1500, stiffness_nm_rad = 4000, end_stiffness_nm_rad = 1000;
+// What screws, links and pads of the default arm give way by under load, lumped at the joints. 4000 N m/rad is 30 kN/m at the tool, and 0.2 mm of sag from its weight
+// in water.
+inline PerJoint<double> usual_stiffness_nm_rad() {
+  PerJoint<double> all{};
+  constexpr std::size_t arm_joints = 4;
+  for (std::size_t i = 0; i <= arm_joints; ++i) all[i] = static_cast<double>(ArmModel::usual_stiffness_nm_rad(i, arm_joints));
+  return all;
+}
 // At which a run finds the jaw.
 inline constexpr double half_open_rad = 0.3;
 
@@ -59,10 +64,9 @@ struct WorldConfig {
   Pose base_from_panel = Pose::Identity();  // true
   std::vector<ValveConfig> valves{{}};      // as the layout's
   std::vector<ButtonConfig> buttons{{}, {}, {}};
-  PerJoint<double> start_rad{0, 0.60, 1.90, 0, half_open_rad};  // parked
-  Vec3 vehicle_com_m = Vec3(-0.5, 0, -0.3);                     // where the base wrench is taken, in B
-  PerJoint<double> drive_stiffness_nm_rad{first_stiffness_nm_rad, stiffness_nm_rad, stiffness_nm_rad, end_stiffness_nm_rad,
-                                          end_stiffness_nm_rad};  // 0 rigid
+  PerJoint<double> start_rad{0, 0.60, 1.90, 0, half_open_rad};         // parked
+  Vec3 vehicle_com_m = Vec3(-0.5, 0, -0.3);                            // where the base wrench is taken, in B
+  PerJoint<double> drive_stiffness_nm_rad = usual_stiffness_nm_rad();  // 0 rigid
   double drag_coefficient =
       1.1;  // of the links across the flow: a cylinder's at Reynolds numbers of 1e3 to 1e5 (Hoerner, Fluid-Dynamic Drag, 1965)
   double joint_drag_nm_s = 0.5;  // viscous, each arm joint in water, per rad/s; the jaw's fingers a tenth of it

@@ -48,7 +48,13 @@ struct ArmModel {
     double effort_nm = 0;        // what the motor's peak torque gives the joint
     double rated_torque_nm = 0;  // the same of its rated torque
     ArmActuator actuator;
+    float stiffness_nm_rad = 0;  // by which links and gear give way under load
   };
+  // Of a joint whose description does not say: the ARM 5E's.
+  static constexpr float usual_stiffness_nm_rad(std::size_t joint, std::size_t arm_joints) {
+    constexpr float first = 1500, between = 4000, roll_and_jaw = 1000;
+    return joint + 1 >= arm_joints ? roll_and_jaw : joint == 0 ? first : between;
+  }
   // In the tool frame's x-z plane: finger_a turns about -y at (pivot_x_m, pivot_z_m), its pad's face lies (face_x_m, face_z_m) from there at jaw angle 0
   // and looks along +x. Pads are pad_width_m along y and pad_depth_m along z.
   struct Jaw {

@@ -73,6 +73,11 @@ Mat3 turn_to(const Vec3& axis) { return Eigen::Quaterniond::FromTwoVectors(Vec3:
 
 }  // namespace
 
+double stiffness_nm_rad(const ArmDescription& description, std::size_t joint) {
+  const double told_nm_rad = description.joints[joint].stiffness_nm_rad;
+  return told_nm_rad > 0 ? told_nm_rad : static_cast<double>(ArmModel::usual_stiffness_nm_rad(joint, description.arm_joints()));
+}
+
 ArmModel make_model(const ArmDescription& description) {
   ArmModel model;
   model.arm_joints = description.arm_joints();
@@ -89,7 +94,8 @@ ArmModel make_model(const ArmDescription& description) {
                        .acceleration_rad_s2 = joint.acceleration_rad_s2,
                        .effort_nm = joint.effort_nm,
                        .rated_torque_nm = joint.rated_torque_nm,
-                       .actuator = joint.actuator};
+                       .actuator = joint.actuator,
+                       .stiffness_nm_rad = static_cast<float>(stiffness_nm_rad(description, i))};
     const bool of_arm = i < description.arm_joints();
     if (of_arm && !joint.axis.isApprox(Vec3::UnitZ(), 1e-12)) link_from_turned[i + 1] = turn_to(joint.axis);
     model.origins[i] = Pose(link_from_turned[i].transpose()) * joint.parent_from_joint * Pose(link_from_turned[i + 1]);

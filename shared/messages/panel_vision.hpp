@@ -28,6 +28,8 @@ struct PlaneFit {
   double seen_m = 0;  // shorter side of the rectangle that they fill
   // By how much the stripe's shape may have shifted all points alike, along their rays: no scatter tells of it. 0 where no stripe was seen.
   double shape_shift_m = 0;
+  // By how much the points move along their rays for a radian that camera or laser are turned by, on average. 0 where no stripe was seen.
+  double depth_m_per_rad = 0;
 };
 
 // From the scan pipeline to the worker. The platform adds copies of the still image and of the cloud.

@@ -25,7 +25,7 @@ struct Panel {
     const PanelLayout::Marker& marker = layout.markers[0];
     (void)markers.push_back({marker.id, marker.size_m, marker.panel_from_tag()});
   }
-  PanelMap map() const { return {layout, markers, camera}; }
+  PanelMap map(std::size_t laser_joints = 3) const { return {layout, markers, camera, laser_joints}; }
   PanelResult seen(double handle_deg, const Vec3& shift_m = Vec3::Zero()) const {
     Pose pose = layout.nominal_base_from_panel();
     pose.translation() += shift_m;
@@ -155,6 +155,27 @@ TEST(PanelMap, DoubtsThePanelsPlaceByTheLinesShape) {
   ASSERT_EQ(skewed.update(result, first), StepFailure::none);
   EXPECT_NEAR(skewed.doubt().shift_m - plain.doubt().shift_m, 0.0024, 1e-9);
   EXPECT_GT(skewed.doubt().turn_rad, plain.doubt().turn_rad + 0.002);
+}
+
+// What calibration errs by weighs by the light's way and by the angle at which the camera looks at the laser's sheet, and with each joint that carries the laser.
+TEST(PanelMap, DoubtsAPanelThatIsSeenFromFarByMore) {
+  const Panel panel;
+  PanelMap near = panel.map(), far = panel.map(), longer = panel.map(5);
+  PanelResult result = panel.seen(10);
+  for (const double depth_m_per_rad : {0.0, 1.0, 1.25}) {
+    result.fit.depth_m_per_rad = depth_m_per_rad;
+    ASSERT_EQ(near.update(result, first), StepFailure::none);
+    EXPECT_EQ(near.deeper_m(), 0) << depth_m_per_rad;
+    EXPECT_EQ(near.doubt().shift_m, near.doubt_where_touched().shift_m);
+  }
+  result.fit.depth_m_per_rad = 2.5;
+  ASSERT_EQ(far.update(result, first), StepFailure::none);
+  ASSERT_EQ(longer.update(result, first), StepFailure::none);
+  EXPECT_NEAR(far.deeper_m(), 0.0021, 1e-12);
+  EXPECT_NEAR(longer.deeper_m(), 1.8 * 0.0021, 1e-12) << "7 parts in place of 5, twice as far";
+  EXPECT_NEAR(far.doubt().shift_m - near.doubt().shift_m, 0.0021, 1e-12);
+  EXPECT_EQ(far.doubt_where_touched().shift_m, near.doubt().shift_m);
+  EXPECT_EQ(far.doubt().turn_rad, near.doubt().turn_rad);
 }
 
 TEST(PanelMap, DoubtsThePanelsPlaceByThePlanesBendAndNotByItsPointsScatter) {

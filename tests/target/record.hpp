@@ -245,8 +245,8 @@ void pass(S& s, ArmModel::Planar& v) {
 }
 template <class S>
 void pass(S& s, ArmModel::Joint& v) {
-  auto& [lower, upper, velocity, acceleration, effort, rated_torque, actuator] = v;
-  pass_all(s, lower, upper, velocity, acceleration, effort, rated_torque, actuator);
+  auto& [lower, upper, velocity, acceleration, effort, rated_torque, actuator, stiffness] = v;
+  pass_all(s, lower, upper, velocity, acceleration, effort, rated_torque, actuator, stiffness);
 }
 template <class S>
 void pass(S& s, ArmModel::Jaw& v) {
@@ -304,8 +304,8 @@ void pass(S& s, ScanStats& v) {
 }
 template <class S>
 void pass(S& s, PlaneFit& v) {
-  auto& [valid, plane, points, inliers, rms_m, bend_m, seen_m, shape_shift_m] = v;
-  pass_all(s, valid, plane.normal, plane.offset_m, points, inliers, rms_m, bend_m, seen_m, shape_shift_m);
+  auto& [valid, plane, points, inliers, rms_m, bend_m, seen_m, shape_shift_m, depth_m_per_rad] = v;
+  pass_all(s, valid, plane.normal, plane.offset_m, points, inliers, rms_m, bend_m, seen_m, shape_shift_m, depth_m_per_rad);
 }
 template <class S>
 void pass(S& s, MarkerObservation& v) {

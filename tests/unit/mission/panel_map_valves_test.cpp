@@ -27,7 +27,7 @@ class TwoValves : public testing::Test {
     markers_ = MarkerCalibrations(MarkerCalibration{marker.id, marker.size_m, marker.panel_from_tag()});
   }
 
-  PanelMap map() const { return {layout_, markers_, camera_}; }
+  PanelMap map() const { return {layout_, markers_, camera_, 3}; }
 
   // A look without error at handles that stand so; none: that handle's points are missing.
   PanelResult seen(std::optional<double> first_deg, std::optional<double> second_deg) const {

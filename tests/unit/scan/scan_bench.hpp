@@ -93,6 +93,26 @@ class ScanBench {
   }
 
   // By how much a stripe's point moves when it is seen a pixel lower, the mean over the picture.
+  // The rays to the stripe turned by a thousandth of a radian to either side of the laser's sheet, and met with it again.
+  double m_per_rad(const Angles& q) const {
+    constexpr double turn_rad = 1e-3;
+    const Pose laser = test::arm5e.base_from_laser(arm::planar_joints(q[0], q[1], q[2], q[3]), config_.laser);
+    const scan::Triangulator triangulator(config_.camera, config_.laser, {});
+    const Vec3 eye_m = config_.camera.base_from_camera.translation(), normal = laser.linear().col(0);
+    double sum = 0;
+    int points = 0;
+    for (int u = 0; u < width; ++u) {
+      const auto point = triangulator.point(Vec2(u, stripe_row(u, laser)), laser);
+      if (!point) continue;
+      const Vec3 ray = *point - eye_m, axis = ray.cross(normal).normalized();
+      const auto met = [&](double rad) {
+        const Vec3 turned = Eigen::AngleAxisd(rad, axis) * ray;
+        return Vec3(eye_m + turned * ((laser.translation() - eye_m).dot(normal) / turned.dot(normal)));
+      };
+      sum += (met(turn_rad) - met(-turn_rad)).norm() / (2 * turn_rad), ++points;
+    }
+    return sum / points;
+  }
   double m_per_px(const Angles& q) const {
     const Pose laser = test::arm5e.base_from_laser(arm::planar_joints(q[0], q[1], q[2], q[3]), config_.laser);
     const scan::Triangulator triangulator(config_.camera, config_.laser, {});

@@ -117,6 +117,7 @@ TEST_F(ScanOrders, TheStripesFormIsOfItsSweep) {
     const double found_px = form.width_px * (3 * std::abs(form.skew) + 2.4 * (form.model_share - scan::least_model_share));
     EXPECT_GT(request.fit.shape_shift_m, 0.95 * found_px * bench_->m_per_px(q_));
     EXPECT_LT(request.fit.shape_shift_m, 1.05 * (found_px + 3 * 0.05 * form.width_px) * bench_->m_per_px(q_));
+    EXPECT_NEAR(request.fit.depth_m_per_rad, bench_->m_per_rad(q_), 0.01 * bench_->m_per_rad(q_));
     if (sweep == 0) first = stats().stripe;
     // The same picture, so the same is learned of it: by more than one picture of it, a little more would be.
     EXPECT_EQ(stats().stripe.width_px, first.width_px);

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <span>
+
 #include "hal/config/share.hpp"
 #include "hal/config/text_file.hpp"
 #include "host_sim/scenario/describe.hpp"
@@ -61,6 +63,47 @@ TEST_F(MachineKey, SaysWhatTheRobotIs) {
   EXPECT_NEAR(nominal.scan.arm.planar().d_m, test::arm5e.planar().d_m + 0.0115, 1e-12) << "the cloud is made with the same arm";
   EXPECT_EQ(nominal.controller.mission.park_rad[1], 0.5);
   EXPECT_EQ(make_truth(s, draw(s, 1), nominal, 1).world.start_rad[1], 0.5) << "and there the real arm stands";
+}
+
+TEST_F(MachineKey, OfAMisspeltNameIsAnsweredWithTheNearest) {
+  EXPECT_THAT(refusal("default", {"machine=ur6"}),
+              HasSubstr("--set machine=ur6: 'machine': no shipped machine 'ur6'; did you mean 'ur5'?"));
+  EXPECT_THAT(refusal(with("machine: oberon\n")),
+              AllOf(HasSubstr("mine.yaml"), HasSubstr("no shipped machine 'oberon'"), HasSubstr("oberon7")));
+  EXPECT_THAT(refusal("default", {"machine=nothing_like_it"}),
+              HasSubstr("no shipped machine 'nothing_like_it'; there are arm5e, oberon7, ur5, or give a file"));
+}
+
+// Two boxes and three rods, one of them around the camera and one around a lamp.
+TEST_F(MachineKey, SaysWhatVehicleThereIs) {
+  folder_.write("robot/other.yaml",
+                "version: 1\nvehicle:\n  boxes_m: [[-0.6, 0, -0.3, 0.8, 0.5, 0.2]]\n  capsules_m: [[-0.5, 0.6, 0, -0.2, 0.6, 0, 0.1], "
+                "[0.015, -0.245, 0.02, 0.015, -0.245, 0.08, 0.04], [0.1, 0.5, 0.1, 0.1, 0.5, 0.1, 0.05]]\n  lamps_m: [[0.1, 0.5, 0.1]]\n");
+  const Scenario s = load_scenario(with("machine: robot/other.yaml\n"));
+  const Nominal nominal = make_nominal(s, true);
+  const auto truth = make_truth(s, draw(s, 1), nominal, 1);
+  const std::vector<scene::Shape>& shapes = truth.world.scene[scene::OwnBodies::vehicle].shapes;
+  ASSERT_GE(shapes.size(), 4u) << "those of the arm's base come first";
+  const auto own = std::span(shapes).last(4);
+  EXPECT_EQ(own[0].kind, scene::ShapeKind::box);
+  EXPECT_EQ(own[0].size_m, Vec3(0.8, 0.5, 0.2));
+  EXPECT_EQ(own[0].body_from_shape.translation(), Vec3(-0.6, 0, -0.3));
+  EXPECT_EQ(own[1].kind, scene::ShapeKind::capsule);
+  EXPECT_NEAR(own[1].size_m.z(), 0.3, 1e-12);
+  EXPECT_NEAR((own[1].body_from_shape * Vec3(0, 0, 0.15) - Vec3(-0.2, 0.6, 0)).norm(), 0, 1e-12);
+  EXPECT_TRUE(own[0].visible && own[1].visible);
+  EXPECT_FALSE(own[2].visible) << "the camera looks out of it";
+  EXPECT_FALSE(own[3].visible) << "and the lamp shines out of it";
+  for (const scene::Shape& shape : own) EXPECT_TRUE(shape.collides);
+  ASSERT_EQ(truth.optics.lamps.size(), 1u);
+  EXPECT_EQ(truth.optics.lamps[0].body_from_lamp.translation(), Vec3(0.1, 0.5, 0.1));
+}
+
+TEST_F(MachineKey, WithoutAVehicleKeepsTheDefaultOne) {
+  const auto vehicle_of = [](const Scenario& s) {
+    return make_truth(s, draw(s, 1), make_nominal(s, true), 1).world.scene[scene::OwnBodies::vehicle].shapes.size();
+  };
+  EXPECT_EQ(vehicle_of(load_scenario(with("machine: robot/machine.yaml\n"))), vehicle_of(load_scenario("default")));
 }
 
 TEST_F(MachineKey, IsOverruledByTheScenariosOwnKeys) {

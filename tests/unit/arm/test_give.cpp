@@ -1,0 +1,129 @@
+// What arms give way by and how hard they press, against forward kinematics alone: levers by differences, a stop stepped through in time.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+
+#include "firmware/arm/give.hpp"
+#include "firmware/arm/pointing.hpp"
+#include "firmware/arm/trajectory.hpp"
+#include "shared/arm/arm_description.hpp"
+#include "shared/arm/make_model.hpp"
+
+namespace lf::arm {
+namespace {
+
+constexpr std::uint64_t seed = 20261128;
+
+class Give : public testing::TestWithParam<const char*> {
+ protected:
+  double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
+
+  JointVector draw() {
+    JointVector q = JointVector::Zero();
+    for (std::size_t i = 0; i < arm.arm_joints(); ++i)
+      q[static_cast<Eigen::Index>(i)] = uniform(0.8 * arm.joint(i).lower_rad, 0.8 * arm.joint(i).upper_rad);
+    return q;
+  }
+  Vec3 direction() { return Vec3(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)).normalized(); }
+
+  double along(const JointVector& q, const Vec3& way) const { return way.dot(arm.base_from_tool(q).translation()); }
+
+  // How far the tool goes along `way` for a radian of each joint.
+  JointVector levers(const JointVector& q, const Vec3& way) const {
+    constexpr double step_rad = 1e-5;
+    JointVector levers = JointVector::Zero();
+    for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(arm.arm_joints()); ++i) {
+      const JointVector step = step_rad * JointVector::Unit(i);
+      levers[i] = (along(q + step, way) - along(q - step, way)) / (2 * step_rad);
+    }
+    return levers;
+  }
+
+  ArmDescription description = load_arm_urdf(std::string(LANTERNFISH_SOURCE_DIR "/") + GetParam());
+  Arm arm{make_model(description)};
+  std::mt19937_64 random_{seed};
+};
+
+// A newton at the tool turns each joint by its lever over its stiffness.
+TEST_P(Give, IsWhatTheJointsGiveWayBy) {
+  SCOPED_TRACE(testing::Message() << "seed " << seed);
+  for (int k = 0; k < 200; ++k) {
+    const JointVector q = draw();
+    const Vec3 way = direction();
+    const JointVector lever_m = levers(q, way);
+    double gives_m_n = 0;
+    for (std::size_t i = 0; i < arm.arm_joints(); ++i) {
+      const double lever = lever_m[static_cast<Eigen::Index>(i)];
+      gives_m_n += lever * lever / stiffness_nm_rad(description, i);
+    }
+    ASSERT_NEAR(tool_stiffness_n_m(arm, q, way) * gives_m_n, 1, 1e-6);
+  }
+}
+
+// Something hard is met: 40 ms at full speed, then each joint brakes, all of it wound up into the arm.
+TEST_P(Give, AnArmAtTheGentleSpeedPressesThatHardAndNoHarder) {
+  SCOPED_TRACE(testing::Message() << "seed " << seed);
+  constexpr double step_s = 1e-4, push_n = 65;
+  const JointLimits limits = arm.limits();
+  for (int k = 0; k < 100; ++k) {
+    const JointVector q = draw();
+    const Vec3 way = direction();
+    JointVector rates = JointVector::Zero();
+    for (std::size_t i = 0; i < arm.arm_joints(); ++i) rates[static_cast<Eigen::Index>(i)] = uniform(-3, 3);
+    const JointVector lever_m = levers(q, way);
+    rates /= std::max(0.2, std::abs(lever_m.dot(rates)));
+    const double speed = gentle_speed_m_s(arm, q, rates, way, limits, push_n);
+    JointVector rad_s = speed * rates;
+    double way_m = 0.04 * speed;
+    while (rad_s.cwiseAbs().maxCoeff() > 0) {
+      for (Eigen::Index i = 0; i < rad_s.size(); ++i) {
+        const double slower = std::copysign(std::max(0.0, std::abs(rad_s[i]) - step_s * limits.acceleration_rad_s2[i]), rad_s[i]);
+        way_m += std::abs(lever_m[i] * (rad_s[i] + slower) / 2) * step_s;
+        rad_s[i] = slower == 0 ? 0 : slower;
+      }
+    }
+    ASSERT_NEAR(way_m * tool_stiffness_n_m(arm, q, way), push_n, 0.02 * push_n);
+  }
+}
+
+TEST_P(Give, ALineGoesNoFasterThanThatAndStillArrives) {
+  SCOPED_TRACE(testing::Message() << "seed " << seed);
+  const JointLimits limits = arm.limits();
+  int slowed = 0;
+  for (int k = 0; k < 300; ++k) {
+    const JointVector start = draw();
+    const Vec3 from = arm.base_from_tool(start).translation(), to = from + 0.06 * direction();
+    LineLimits hasty, gentle;
+    gentle.push_n = 65;
+    CartesianLine fast, slow;
+    const Eigen::Index roll = static_cast<Eigen::Index>(arm.roll_joint());
+    const LinePlan hasty_plan = fast.plan(arm, start, to, start[roll], hasty, limits);
+    const LinePlan gentle_plan = slow.plan(arm, start, to, start[roll], gentle, limits);
+    ASSERT_EQ(gentle_plan.outcome, hasty_plan.outcome) << "a line that is slow is not refused";
+    if (gentle_plan.outcome != PlanOutcome::ok) continue;
+    ASSERT_LE(gentle_plan.speed_m_s, hasty_plan.speed_m_s * (1 + 1e-9));
+    slowed += gentle_plan.speed_m_s < 0.99 * hasty_plan.speed_m_s ? 1 : 0;
+    const Vec3 way = (to - from).normalized();
+    for (int i = 0; i <= 20; ++i) {
+      const JointState s = slow.sample(slow.duration_s() * i / 20);
+      const double speed = (arm.jacobian(s.q_rad).topRows<3>() * s.qd_rad_s).norm();
+      if (speed < 1e-3) continue;
+      ASSERT_LE(speed, 1.05 * gentle_speed_m_s(arm, s.q_rad, s.qd_rad_s / speed, way, limits, gentle.push_n));
+    }
+    ASSERT_LT((arm.base_from_tool(slow.sample(1e9).q_rad).translation() - to).norm(), 1e-8);
+  }
+  EXPECT_GT(slowed, 20);
+}
+
+INSTANTIATE_TEST_SUITE_P(Arms, Give, testing::Values("shared/arm/arm5e.urdf", "shared/arm/oberon7/oberon7.urdf", "shared/arm/ur5/ur5.urdf"),
+                         [](const auto& file) {
+                           std::string name = file.param;
+                           name = name.substr(name.rfind('/') + 1);
+                           return name.substr(0, name.find('.'));
+                         });
+
+}  // namespace
+}  // namespace lf::arm
