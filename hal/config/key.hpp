@@ -50,6 +50,7 @@ struct Key {
   std::vector<std::string> words{};  // what a text, or each text of a list, may be; empty: anything
   // Of the panel's buttons, where the value is tasks; empty: any name is taken. Of the joints, where it is faults.
   std::vector<std::string> names{};
+  std::size_t above_zero_from = SIZE_MAX;  // in a list of lists: of each, the numbers from this one on have to be above 0
 };
 
 using Keys = std::vector<Key>;

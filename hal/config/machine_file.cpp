@@ -112,7 +112,7 @@ void read_machine_file(const fs::path& file, Machine& machine, std::vector<std::
     machine.arm_told = problems.size() > before;
     Keys table = machine_keys(machine);
     table.push_back(key("version", "", version, version, &given, ""));
-    if (!root["version"]) problems.push_back(file.string() + ": has no version: this program reads 'version: 1'");
+    if (!root["version"]) problems.push_back(file.string() + ":1: has no version: this program reads 'version: 1'");
     refuse_groups(root, source, problems);
     read_map(root, "", "", table, source);
     check_counts(file, machine, problems);

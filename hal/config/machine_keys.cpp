@@ -73,8 +73,10 @@ void add_vehicle(Keys& all, Vehicle& v) {
   constexpr double far_m = 5;
   all.push_back(key("vehicle.boxes_m", "m", -far_m, far_m, &v.boxes_m,
                     "what the arm must not touch, at most 16: [x, y, z, dx, dy, dz], centre and extents in the arm's base frame"));
+  all.back().above_zero_from = 3;
   all.push_back(key("vehicle.capsules_m", "m", -far_m, far_m, &v.capsules_m,
                     "the same, round: [x, y, z, x, y, z, radius], the ends of its axis; camera and lamps among them"));
+  all.back().above_zero_from = 6;
   all.push_back(key("vehicle.lamps_m", "m", -far_m, far_m, &v.lamps_m,
                     "where the lamps are, at most 8: [x, y, z] in the arm's base frame; simulated ones shine at the panel"));
 }

@@ -176,7 +176,23 @@ class Reader {
     if (layout.markers.empty()) attempt([&] { refuse(root, "has no markers: no look would find the panel"); });
     if ((layout.plate_min_m.array() >= layout.plate_max_m.array()).any())
       return attempt([&] { refuse(root["plate"] ? root["plate"] : root, "'plate.min_m' is not below 'plate.max_m'"); });
-    for (const std::string& problem : panel_problems(layout, panel_.survey)) problems_.push_back(panel_.survey.file + ": " + problem);
+    for (const std::string& problem : panel_problems(layout, panel_.survey))
+      attempt([&] { source_.refuse(place_of(root, problem), problem); });
+  }
+
+  // Where the key stands that a problem names first, "'valves.V3.at_m': ...": the key's own line, or that of its valve, button or marker.
+  static YAML::Mark place_of(const YAML::Node& root, const std::string& problem) {
+    const std::size_t end = problem.find('\'', 1), first = problem.find('.'), last = problem.rfind('.', end);
+    if (!problem.starts_with('\'') || end == std::string::npos || first >= last) return YAML::Mark::null_mark();
+    const std::string name = problem.substr(first + 1, last - first - 1), field = problem.substr(last + 1, end - last - 1);
+    const YAML::Node group = root[problem.substr(1, first - 1)];
+    if (!group.IsDefined() || !group.IsSequence()) return YAML::Mark::null_mark();
+    for (const YAML::Node& entry : group) {
+      const YAML::Node called = entry["name"] ? entry["name"] : entry["id"];
+      if (!called.IsDefined() || !called.IsScalar() || called.Scalar() != name) continue;
+      return (entry[field] ? entry[field] : entry).Mark();
+    }
+    return YAML::Mark::null_mark();
   }
 
   Source source_;

@@ -77,6 +77,11 @@ class ValueReader {
     value->clear();
     for (const YAML::Node& item : node_) {
       const std::vector<double> read = numbers(item, Count);
+      for (std::size_t i = key_.above_zero_from; i < Count; ++i) {
+        if (!(read[i] > 0))
+          source_.refuse(item.Mark(), "'" + path_ + "' has " + number_text(read[i]) + " for the " + std::to_string(i + 1) + "th of these " +
+                                          std::to_string(Count) + " numbers: it has to be above 0");
+      }
       std::copy(read.begin(), read.end(), value->emplace_back().begin());
     }
   }

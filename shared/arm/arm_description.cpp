@@ -10,6 +10,7 @@
 #include "shared/arm/motor.hpp"
 #include "shared/arm/urdf.hpp"
 #include "shared/input_error.hpp"
+#include "shared/urdf/read_urdf.hpp"
 
 namespace lf {
 namespace {
@@ -423,6 +424,7 @@ ArmDescription load_arm_urdf(const std::string& path) {
   parts.planar ? check_chain(urdf, arm) : check_any_chain(urdf, arm);
   arm.pad = read_pad(urdf, "finger_a");
   check_jaw(urdf, arm);
+  (void)urdf::read_urdf(path);  // what is wrong with the file beyond the arm, and what is there twice
   return arm;
 }
 

@@ -3,11 +3,15 @@
 
 #include <tinyxml2.h>
 
+#include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstring>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include "shared/geometry/pose.hpp"
 #include "shared/input_error.hpp"
@@ -73,6 +77,9 @@ class Urdf {
     }
     skip_spaces();
     if (at != end) bad();
+    const double most = most_of(attribute);
+    if (result.cwiseAbs().maxCoeff() > most)
+      fail(e, label(e) + ": " + attribute + "=\"" + value + "\" is more than any arm has: " + shortest(most) + " at most");
     return result;
   }
 
@@ -110,6 +117,35 @@ class Urdf {
   }
 
  private:
+  // What no arm exceeds, in SI units. A number beyond is a slip of the pen, and an arm of it would go nowhere or through everything.
+  static double most_of(std::string_view attribute) {
+    using Most = std::pair<std::string_view, double>;
+    constexpr double length_m = 10, torque_nm = 1e6;
+    constexpr std::array all{Most{"xyz", length_m},
+                             Most{"rpy", 7},
+                             Most{"size", length_m},
+                             Most{"radius", length_m},
+                             Most{"length", length_m},
+                             Most{"pivot_a_m", length_m},
+                             Most{"pivot_b_m", length_m},
+                             Most{"velocity", 100},
+                             Most{"acceleration_rad_s2", 1e4},
+                             Most{"effort", torque_nm},
+                             Most{"rated_torque_nm", torque_nm},
+                             Most{"holding_torque_nm", torque_nm},
+                             Most{"stiffness_nm_rad", 1e9},
+                             Most{"backlash_rad", 0.2},
+                             Most{"value", 1e4},
+                             Most{"n", 1e5},
+                             Most{"coefficient", 10}};
+    const auto found = std::find_if(all.begin(), all.end(), [&](const Most& most) { return most.first == attribute; });
+    return found == all.end() ? 1e9 : found->second;
+  }
+  static std::string shortest(double value) {
+    std::array<char, 32> text{};
+    return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+  }
+
   std::string load_error() const {
     switch (document_.ErrorID()) {
       case tinyxml2::XML_ERROR_FILE_NOT_FOUND: return "no such file";

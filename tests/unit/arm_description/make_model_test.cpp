@@ -43,6 +43,7 @@ TEST(MakeModel, GivesWhatTheBuildMakesOfTheShippedArm) {
   for (std::size_t i = 0; i < arm5e_joint::count; ++i) {
     EXPECT_EQ(ours.joints[i].lower_rad, built.joints[i].lower_rad);
     EXPECT_EQ(ours.joints[i].effort_nm, built.joints[i].effort_nm);
+    EXPECT_EQ(ours.joints[i].stiffness_nm_rad, built.joints[i].stiffness_nm_rad);
     EXPECT_EQ(ours.joints[i].actuator.counts_per_m, built.joints[i].actuator.counts_per_m);
     EXPECT_EQ(ours.joints[i].actuator.counts_per_rad, built.joints[i].actuator.counts_per_rad);
   }

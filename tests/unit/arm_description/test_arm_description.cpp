@@ -229,6 +229,12 @@ INSTANTIATE_TEST_SUITE_P(
                     BadUrdf{"<origin xyz=\"-0.04 0 0.045\"", "<origin xyz=\"-0.04 0.01 0.045\"", "must turn about the wrist's -y"},
                     BadUrdf{"<origin xyz=\"0.04 0 0.045\"", "<origin xyz=\"0.05 0 0.045\"", "must be the mirror image of 'jaw'"},
                     BadUrdf{"rgba=\"0.10", "rgba=\"1.10", "rgba must lie within 0 and 1"},
+                    BadUrdf{"velocity=\"0.36\"", "velocity=\"1e300\"", "velocity=\"1e300\" is more than any arm has: 100 at most"},
+                    BadUrdf{"acceleration_rad_s2=\"0.5\"", "acceleration_rad_s2=\"1e300\"", "is more than any arm has: 10000 at most"},
+                    BadUrdf{"xyz=\"0 0 0.1485\"", "xyz=\"0 0 148.5\"", "is more than any arm has: 10 at most"},
+                    BadUrdf{"rpy=\"1.5707963267948966 0 1.972222\"", "rpy=\"90 0 113\"", "is more than any arm has: 7 at most"},
+                    BadUrdf{"<child link=\"upper_arm\"/>", "<child link=\"upper_arm\"/><child link=\"upper_arm\"/>", "comes a second time"},
+                    BadUrdf{"<child link=\"upper_arm\"/>", "<child link=\"upper_arm\"/><chlid link=\"base\"/>", "is not known here"},
                     BadUrdf{"</robot>", "", "is not well-formed XML"}, BadUrdf{"<robot", "<robot2", "is not well-formed XML"}));
 
 TEST(ArmUrdf, ErrorsGiveTheLine) {

@@ -119,7 +119,7 @@ TEST(MachineFile, IsRefusedWithTheLineOfEachProblem) {
     const char *text, *line, *message;
   };
   for (const Case& bad :
-       {Case{"camera: {down_deg: 30}\n", ": ", "has no version"}, Case{"version: 2\n", ":1: ", "version"},
+       {Case{"camera: {down_deg: 30}\n", ":1: ", "has no version"}, Case{"version: 2\n", ":1: ", "version"},
         Case{"version: 1\ncamra: {down_deg: 30}\n", ":2: ", "did you mean"},
         Case{"version: 1\ncamera:\n  down_deg: steep\n", ":3: ", "camera.down_deg"},
         Case{"version: 1\ncamera:\n  down_deg: 95\n", ":3: ", "95"},

@@ -286,9 +286,17 @@ TEST(Nominal, AnExposureOverWhichTheLaserWouldSwitchIsRefused) {
 }
 
 TEST(Nominal, AVehicleOfNoExtentOrOfTooManyPartsIsRefused) {
-  EXPECT_THAT(refusal(load_scenario("default", {"vehicle.boxes_m=[[0, 0, 0, 1, 0, 1]]"})),
-              ::testing::HasSubstr("without an extent above 0"));
-  EXPECT_THAT(refusal(load_scenario("default", {"vehicle.capsules_m=[[0, 0, 0, 1, 0, 1, 0]]"})), ::testing::HasSubstr("without a radius"));
+  const auto refused = [](const std::string& set) {
+    try {
+      (void)load_scenario("default", {set});
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(refused("vehicle.boxes_m=[[0, 0, 0, 1, 0, 1]]"),
+              ::testing::HasSubstr("has 0 for the 5th of these 6 numbers: it has to be above 0"));
+  EXPECT_THAT(refused("vehicle.capsules_m=[[0, 0, 0, 1, 0, 1, 0]]"), ::testing::HasSubstr("has 0 for the 7th of these 7 numbers"));
   std::string many = "[[-4, 0, 0, 1, 1, 1]";
   for (std::size_t i = 0; i < arm::VehicleShape::capacity; ++i) many += ", [-4, 0, 0, 1, 1, 1]";
   EXPECT_THAT(refusal(load_scenario("default", {"vehicle.boxes_m=" + many + "]"})), ::testing::HasSubstr("more than 16 boxes"));
