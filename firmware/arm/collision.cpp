@@ -134,9 +134,10 @@ PanelShape::PanelShape(const PanelLayout& layout) {
   }
   for (std::size_t i = 0; i < layout.valves.size(); ++i) {
     const PanelLayout::Valve& valve = layout.valves[i];
-    add(cylinder(PanelPart::valve(i), valve.handle_centre_m(), valve.swept_radius_m(), valve.handle_thickness_m));
-    add(cylinder(PanelPart::valve(i), Vec3(valve.at_m.x(), valve.at_m.y(), valve.handle_height_m / 2), valve.stem_radius_m,
-                 valve.handle_height_m));
+    add(cylinder(PanelPart::valve(i), valve.handle_centre_m(), valve.swept_radius_m(), valve.depth_m()));
+    const bool posts = valve.carried == PanelLayout::Carried::by_posts;  // which sweep as much as the bar
+    add(cylinder(PanelPart::valve(i), Vec3(valve.at_m.x(), valve.at_m.y(), valve.handle_height_m / 2),
+                 posts ? valve.swept_radius_m() : valve.stem_radius_m, valve.handle_height_m));
   }
 }
 

@@ -8,17 +8,21 @@ namespace {
 // What guards filter (12 ms) and wait for (three SYNCs), the SYNC with the answer, and the drive's own lag.
 constexpr double notices_s = 0.04;
 
-}  // namespace
+constexpr double slowest_m_s = 0.002;  // below that a slow rise of the torque is taken for free motion's
 
-double tool_stiffness_n_m(const Arm& arm, const JointVector& q_rad, const Vec3& way) {
+double gives_m_n(const Arm& arm, const JointVector& q_rad, const Vec3& way) {
   const JointVector levers_m = (way.transpose() * arm.jacobian(q_rad).topRows<3>()).transpose();
   double gives_m_n = 0;
   for (std::size_t i = 0; i < arm.arm_joints(); ++i) {
     const double lever_m = levers_m[static_cast<Eigen::Index>(i)];
     gives_m_n += lever_m * lever_m / static_cast<double>(arm.joint(i).stiffness_nm_rad);
   }
-  return 1 / gives_m_n;
+  return gives_m_n;
 }
+
+}  // namespace
+
+double tool_stiffness_n_m(const Arm& arm, const JointVector& q_rad, const Vec3& way) { return 1 / gives_m_n(arm, q_rad, way); }
 
 double gentle_speed_m_s(const Arm& arm, const JointVector& q_rad, const JointVector& rates, const Vec3& way, const JointLimits& limits,
                         double push_n) {
@@ -26,9 +30,10 @@ double gentle_speed_m_s(const Arm& arm, const JointVector& q_rad, const JointVec
   double brakes_s2_m = 0;  // metres at 1 m/s, and by the speed's square at another
   for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(limits.joints); ++i)
     brakes_s2_m += rates[i] * rates[i] / (2 * limits.acceleration_rad_s2[i]) * std::abs(jacobian.col(i).head<3>().dot(way));
-  const double goes_on_m = push_n / tool_stiffness_n_m(arm, q_rad, way);
+  const double goes_on_m = push_n * gives_m_n(arm, q_rad, way);
   // The speed whose way until it is noticed, and then to a stop, is goes_on_m: a root in the form that no small brakes_s2_m spoils.
-  return 2 * goes_on_m / (notices_s + std::sqrt(notices_s * notices_s + 4 * brakes_s2_m * goes_on_m));
+  const double speed_m_s = 2 * goes_on_m / (notices_s + std::sqrt(notices_s * notices_s + 4 * brakes_s2_m * goes_on_m));
+  return speed_m_s > slowest_m_s ? speed_m_s : slowest_m_s;
 }
 
 }  // namespace lf::arm

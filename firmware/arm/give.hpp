@@ -8,8 +8,8 @@ namespace lf::arm {
 // N at the tool point, along the unit vector `way` (base frame), for a metre by which links and gears give way there.
 double tool_stiffness_n_m(const Arm& arm, const JointVector& q_rad, const Vec3& way);
 
-// The speed along `way` (m/s) at which the arm presses with no more than `push_n` when it meets something hard and is then stopped: it goes on at its speed until
-// that is noticed, and then brakes each joint as hard as `limits` allow. `rates` are the joints' (rad/s) at 1 m/s. Without end where it never presses so hard.
+// The speed along `way` (m/s) at which the arm, once it has met something hard and felt it, presses no more than `push_n` harder until it stands: it goes on at its
+// speed for 40 ms, and then brakes each joint as hard as `limits` allow. What it takes to be felt comes on top. `rates` are the joints' (rad/s) at 1 m/s. 2 mm/s at least.
 double gentle_speed_m_s(const Arm& arm, const JointVector& q_rad, const JointVector& rates, const Vec3& way, const JointLimits& limits,
                         double push_n);
 

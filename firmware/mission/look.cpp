@@ -16,7 +16,7 @@ constexpr double beyond_handle_m = 0.006;
 scan::SweepRequest::Handle handle_of(const PanelLayout::Valve& valve) {
   constexpr double least_radius_m = 0.055, least_height_m = 0.107, over_bar_m = 0.0007;
   return {valve.at_m, std::max(least_radius_m, valve.swept_radius_m() + beyond_handle_m),
-          std::max(least_height_m, valve.handle_height_m + valve.handle_thickness_m / 2 + over_bar_m)};
+          std::max(least_height_m, valve.front_m() + over_bar_m)};
 }
 
 // The tallest of what stands on the panel.

@@ -18,8 +18,8 @@
 
 namespace lf::mission {
 
-// What a straight line may press with when it meets something hard, where nothing is meant to be met, and in a press: the ARM 5E's lines at their usual speeds stay
-// below both. A stiffer arm, or one that brakes more slowly, goes more slowly.
+// By how much harder a straight line may press once what it meets is felt, until the arm stands: where nothing is meant to be met, and in a press. By their own estimate the
+// ARM 5E's lines at their usual speeds come to 168 and 62 N. A stiffer arm, or one that brakes more slowly, goes more slowly.
 inline constexpr double approach_push_n = 170, press_push_n = 65;
 
 class Motion {

@@ -57,7 +57,7 @@ class PanelMap {
   // By how much that may be wrong, once it is known: what the calibration errs by, the scatter of the points about the plane, and what
   // the laser line's shape leaves in doubt.
   arm::PanelDoubt doubt() const;
-  // The same for what touches the panel before it comes near it otherwise: how far off the panel is no longer matters then.
+  // The same once a finger touches what stands on the panel: how far off the panel is does not matter any more.
   arm::PanelDoubt doubt_where_touched() const;
   // By how much more than of the default machine the panel may be off along its normal: that is for a press to find.
   double deeper_m() const;

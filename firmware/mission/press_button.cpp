@@ -67,15 +67,23 @@ arm::GuardConfig press_guard(const Workbench& bench) {
 
 const PanelLayout::Button& the_button(const Workbench& bench) { return bench.mission().layout.buttons[bench.job.task().button]; }
 
-// A panel that is seen from far may stand deeper than it looks. The hand stays clear of it.
+// A panel that is seen from far may stand deeper than it looks. The hand stays clear of it, and no press seeks its button farther off than this.
 double deeper_m(const Workbench& bench) {
-  constexpr double hand_m = 0.013;
+  constexpr double hand_m = 0.013, most_m = 0.004;
   const PanelLayout::Button& button = the_button(bench);
   const double room_m = button.height_m - button.stroke_m - bench.mission().press_overtravel_m - hand_m;
-  return std::clamp(bench.map.deeper_m(), 0.0, std::max(0.0, room_m));
+  return std::clamp(bench.map.deeper_m(), 0.0, std::clamp(room_m, 0.0, most_m));
 }
 
-double face_doubt_m(const Workbench& bench) { return press_face_m + bench.map.deeper_m(); }
+double face_doubt_m(const Workbench& bench) { return press_face_m + deeper_m(bench); }
+
+// The ARM 5E's is measured: what it stands on gives way, too.
+ButtonFeel::Config feel_config(const Workbench& bench) {
+  ButtonFeel::Config config;
+  const arm::Arm& arm = bench.config.arm;
+  if (!arm.is_planar()) config.stiffness_n_m = arm::tool_stiffness_n_m(arm, bench.motion.target(), bench.map.normal());
+  return config;
+}
 
 double closed_tip_beyond_tool_m(const ArmModel::Jaw& jaw) { return arm::tip_beyond_tool_m(jaw, arm::jaw_from_gap(jaw, 0)); }
 
@@ -163,9 +171,7 @@ Progress PressButton::begin_press(Workbench& bench) {
   arm::GuardConfig config = press_guard(bench);
   config.contact_torque_nm = free_motion_guard(bench.config.mission_limits).contact_torque_nm.cwiseMax(bench.mission().press_torque_nm);
   guard_ = arm::GuardedMotion(config);
-  ButtonFeel::Config feel;
-  feel.stiffness_n_m = std::max(feel.stiffness_n_m, arm::tool_stiffness_n_m(bench.config.arm, bench.motion.target(), bench.map.normal()));
-  feel_ = ButtonFeel(feel);
+  feel_ = ButtonFeel(feel_config(bench));
   learned_under_way_ = false;
   pushed_joint_.reset();
   rest_nm_.reset();
@@ -285,7 +291,7 @@ StepFailure PressButton::judge(const Workbench& bench) const {
   // joints say the tip is tells nothing, only the travel does.
   if (!guard_.touched()) return moved ? StepFailure::button_yields : StepFailure::button_stuck;
   // A strong spring, or a panel that is nearer than believed, hides the beginning of the way; the end of it is seen by the joints.
-  const bool deep = bottom_m_ > deepest_stuck_m + bench.map.deeper_m() + stuck_share * stroke_m;
+  const bool deep = bottom_m_ > deepest_stuck_m + deeper_m(bench) + stuck_share * stroke_m;
   return moved || deep ? StepFailure::none : StepFailure::button_stuck;
 }
 

@@ -19,8 +19,8 @@ void hold_plane(const PlaneFit& fit, const Pose& base_from_panel, Sight& sight) 
 // As scan::find_handle takes one for a handle, wherever it stands.
 bool like_handle(const ProudCluster& cluster, const PanelLayout::Valve& valve) {
   constexpr double height_low = 0.70, height_high = 1.25, length_low = 0.5, length_high = 1.4;
-  return cluster.centroid_m.allFinite() && cluster.height_m >= height_low * valve.handle_height_m &&
-         cluster.height_m <= height_high * valve.handle_height_m && cluster.length_m >= length_low * valve.handle_length_m &&
+  return cluster.centroid_m.allFinite() && cluster.height_m >= height_low * valve.seen_height_m() &&
+         cluster.height_m <= height_high * valve.seen_height_m() && cluster.length_m >= length_low * valve.handle_length_m &&
          cluster.length_m <= length_high * valve.handle_length_m;
 }
 

@@ -240,7 +240,7 @@ HandleObservation find_handle(const PanelResult& result, const PanelFrame& frame
     const Vec3 axis = panel_from_base.linear() * cluster.axis;
     const bool finite_cluster = centre.allFinite() && axis.allFinite() && std::isfinite(cluster.width_m);
     const bool high =
-        cluster.height_m >= handle_height_low * valve.handle_height_m && cluster.height_m <= handle_height_high * valve.handle_height_m;
+        cluster.height_m >= handle_height_low * valve.seen_height_m() && cluster.height_m <= handle_height_high * valve.seen_height_m();
     const bool long_enough = cluster.length_m >= handle_length_low * valve.handle_length_m &&
                              cluster.length_m <= handle_length_high * valve.handle_length_m && cluster.length_m > cluster.width_m;
     const bool on_axis = (centre.head<2>() - valve.at_m).norm() <= config.max_handle_offset_m;

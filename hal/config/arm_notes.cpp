@@ -14,7 +14,7 @@ std::vector<std::string> arm_notes(const std::string& urdf_file) {
   }
   const urdf::Reading reading = urdf::read_urdf(urdf_file);
   for (const urdf::Note& note : reading.notes) {
-    if (note.text.find("'tool'") == std::string::npos) notes.push_back(reading.told(note));
+    if (note.text.find("link 'tool' has no inertial") == std::string::npos) notes.push_back(reading.told(note));
   }
   if (frictionless.empty()) return notes;
   notes.push_back(

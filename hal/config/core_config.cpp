@@ -209,7 +209,7 @@ void set_region(const PanelLayout& panel, scan::Triangulator::Config& triangulat
   constexpr double docking_m = 0.060;
   const Pose base_from_panel = panel.nominal_base_from_panel();
   double proud_m = 0;
-  for (const PanelLayout::Valve& valve : panel.valves) proud_m = std::max(proud_m, valve.handle_height_m + 0.5 * valve.handle_thickness_m);
+  for (const PanelLayout::Valve& valve : panel.valves) proud_m = std::max(proud_m, valve.front_m());
   for (const PanelLayout::Button& button : panel.buttons) proud_m = std::max(proud_m, button.height_m);
   const Vec3 low = base_from_panel * Vec3(panel.plate_min_m.x(), panel.plate_min_m.y(), 0);
   const Vec3 high = base_from_panel * Vec3(panel.plate_max_m.x(), panel.plate_max_m.y(), proud_m);

@@ -100,6 +100,11 @@ void check_bar(const Machine& machine, std::size_t i, std::vector<std::string>& 
   else if (valve.handle_thickness_m > thickest_m)
     problems.push_back(key("thickness_m") + " is " + number(valve.handle_thickness_m) + ": a bar of this " + key("length_m") + " can be " +
                        number(thickest_m) + " m thick, else its angle cannot be seen or the jaw does not open for it");
+  constexpr double beside_pads_m = 0.006;
+  const double between_m = valve.handle_length_m - 2 * valve.handle_thickness_m, wide_m = machine.arm.jaw().pad_width_m + 2 * beside_pads_m;
+  if (valve.carried == PanelLayout::Carried::by_posts && between_m < wide_m)
+    problems.push_back(key("length_m") + " is " + number(valve.handle_length_m) + ": between its posts there are " + number(between_m) +
+                       " m, and the jaw's pads need " + number(wide_m));
   if (valve.has_pointer() && valve.pointer_length_m > longest_mark_m(valve))
     problems.push_back(key("pointer_length_m") + " is " + number(valve.pointer_length_m) + ": more than " + number(longest_mark_m(valve)) +
                        " m of a bar of this " + key("length_m") + " would not tell its ends apart");

@@ -52,8 +52,6 @@ struct Vehicle {
                                                 {0.02, 0.45, 0.02, 0.02, 0.45, 0.02, 0.06}};
   static constexpr std::size_t most_lamps = 8;
   std::vector<std::array<double, 3>> lamps_m{{0.02, -0.62, 0.02}, {0.02, 0.45, 0.02}};
-
-  friend bool operator==(const Vehicle&, const Vehicle&) = default;
 };
 
 // In simulation free motions were taken for contacts at 1.1, and at 3 they were not.

@@ -136,8 +136,11 @@ class Reader {
 
   void add_valve(const YAML::Node& node, const std::string& shown) {
     ValveEntry valve;
+    set_usual_sizes(node["kind"] && node["kind"].IsScalar() ? node["kind"].Scalar() : valve.kind, valve);
     if (!read_entry(node, shown, keys(valve), {"name", "at_m"})) return;
     check_name(node, shown, valve.name, panel_.survey.names.valves);
+    valve.layout.handle_depth_m = static_cast<float>(valve.depth_m);
+    if (valve.kind == "d_handle") valve.layout.carried = PanelLayout::Carried::by_posts;
     ValveNature& nature = valve.nature;
     // What nobody has said is no more than what it takes.
     if (!node["friction_nm"])
@@ -153,6 +156,14 @@ class Reader {
     (void)panel_.layout.valves.push_back(valve.layout);
     panel_.survey.names.valves.push_back(valve.name);
     panel_.survey.valves.push_back(nature);
+  }
+
+  // After those that are sold: bars of 16 mm, a D-handle with room for a hand, a fishtail as thick as a bar, a flat lever.
+  static void set_usual_sizes(const std::string& kind, ValveEntry& valve) {
+    PanelLayout::Valve& v = valve.layout;
+    if (kind == "d_handle") v.handle_length_m = 0.120, v.handle_thickness_m = 0.016;
+    if (kind == "fishtail") v.handle_length_m = 0.100, v.handle_thickness_m = 0.016, valve.depth_m = 0.030;
+    if (kind == "paddle") v.handle_length_m = 0.100, v.handle_thickness_m = 0.010, valve.depth_m = 0.040;
   }
 
   void add_button(const YAML::Node& node, const std::string& shown) {
@@ -187,7 +198,8 @@ class Reader {
     const std::string name = problem.substr(first + 1, last - first - 1), field = problem.substr(last + 1, end - last - 1);
     const YAML::Node group = root[problem.substr(1, first - 1)];
     if (!group.IsDefined() || !group.IsSequence()) return YAML::Mark::null_mark();
-    for (const YAML::Node& entry : group) {
+    for (std::size_t i = group.size(); i-- > 0;) {  // of two markers of one id the second is told
+      const YAML::Node entry = group[i];
       const YAML::Node called = entry["name"] ? entry["name"] : entry["id"];
       if (!called.IsDefined() || !called.IsScalar() || called.Scalar() != name) continue;
       return (entry[field] ? entry[field] : entry).Mark();
@@ -215,8 +227,13 @@ Keys keys(ValveEntry& valve) {
   return {
       key("name", "", 0, 0, &valve.name, "what tasks and messages call it"),
       key("at_m", "m", -2, 2, &v.at_m, "its axis, [right, up] from the panel's origin"),
-      key("length_m", "m", 0.06, 0.16, &v.handle_length_m, "length of the T-bar: longer than the pads are wide"),
+      key("kind", "", 0, 0, &valve.kind,
+          "what its handle is: a bar on a stem, a flat bar on a stem, or a bar on two posts. It sets the usual sizes",
+          {"t_bar", "d_handle", "fishtail", "paddle"}),
+      key("length_m", "m", 0.06, 0.16, &v.handle_length_m,
+          "length of its bar: longer than the pads are wide, and of a D-handle by its two posts"),
       key("thickness_m", "m", 0.008, 0.05, &v.handle_thickness_m, "its thickness"),
+      key("depth_m", "m", 0, 0.05, &valve.depth_m, "how deep a flat bar is, along the valve's axis; 0: as its thickness"),
       key("height_m", "m", 0.05, 0.13, &v.handle_height_m, "its centre line's height over the panel"),
       key("pointer", "", 0, 0, &v.pointer,
           "the mark at that end of the bar which points up at 0 degrees; without one a bar looks the same after half a turn",

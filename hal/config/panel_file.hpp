@@ -21,6 +21,8 @@ struct PanelFile {
 // An entry of a list, as it is written down.
 struct ValveEntry {
   std::string name;
+  std::string kind = "t_bar";
+  double depth_m = 0;
   PanelLayout::Valve layout;
   ValveStops stops;
   ValveNature nature;

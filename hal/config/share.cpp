@@ -56,7 +56,8 @@ fs::path find_file(const std::string& name, const fs::path& folder) {
 
 std::vector<std::string> shipped_in(const std::string& folder) {
   std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(share_folder() / folder)) {
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(share_folder() / folder, none)) {
     if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem());
   }
   std::sort(names.begin(), names.end());

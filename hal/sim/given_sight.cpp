@@ -58,7 +58,7 @@ PanelResult panel_as_it_is(const Pose& base_from_panel, std::span<const double> 
     handle.axis = base_from_panel.linear() * Vec3(-std::sin(handles_rad[i]), std::cos(handles_rad[i]), 0);
     handle.length_m = valve.handle_length_m;
     handle.width_m = valve.handle_thickness_m;
-    handle.height_m = handle.height_max_m = valve.handle_height_m;
+    handle.height_m = handle.height_max_m = valve.seen_height_m();
     handle.points = handle_points;
     (void)result.clusters.push_back(handle);
     PointerObservation pointer;

@@ -39,7 +39,7 @@ PanelClustersConfig clusters_of(const PanelVisionConfig& config) {
   PanelClustersConfig clusters = config.clusters;
   double highest_m = 0, layer_m = std::numeric_limits<double>::infinity();
   for (const PanelLayout::Valve& valve : config.panel.valves) {
-    highest_m = std::max(highest_m, valve.handle_height_m + valve.handle_thickness_m / 2);
+    highest_m = std::max(highest_m, valve.front_m());
     layer_m = std::min(layer_m, valve.handle_thickness_m / 2);
   }
   for (const PanelLayout::Button& button : config.panel.buttons) highest_m = std::max(highest_m, button.height_m);

@@ -69,7 +69,7 @@ std::optional<double> grey_at(ImageView image, const Vec2& pixel) {
 // The bar in the base frame: its middle, and unit directions along, across and away from the panel.
 struct Bar {
   Vec3 middle = Vec3::Zero(), along = Vec3::Zero(), across = Vec3::Zero(), out = Vec3::Zero();
-  double half_length_m = 0, half_thickness_m = 0;
+  double half_length_m = 0, half_thickness_m = 0, half_depth_m = 0;
 };
 
 Bar bar_at(const BarPlace& place, const PanelLayout::Valve& valve) {
@@ -84,6 +84,7 @@ Bar bar_at(const BarPlace& place, const PanelLayout::Valve& valve) {
   bar.out = place.base_from_panel.linear().col(2);
   bar.half_length_m = valve.handle_length_m / 2;
   bar.half_thickness_m = valve.handle_thickness_m / 2;
+  bar.half_depth_m = valve.depth_m() / 2;
   return bar;
 }
 
@@ -98,7 +99,7 @@ class StillReader {
 
   // Grey levels along the long face whose outward normal is `normal`; `aside` lies in the face, square to the bar. Empty for a face that is not seen.
   std::vector<BarSample> face(const Vec3& normal, const Vec3& aside) const {
-    const Vec3 centre = bar_.middle + bar_.half_thickness_m * normal;
+    const Vec3 centre = bar_.middle + half_m(normal) * normal;
     if (normal.dot((eye_ - centre).normalized()) < grazing_cosine) return {};
     const double width_px = seen_width_px(centre, aside);
     if (!(width_px >= min_face_px)) return {};
@@ -111,11 +112,13 @@ class StillReader {
   }
 
  private:
+  // Of the bar, along a unit vector that is across it or out of the panel.
+  double half_m(const Vec3& direction) const { return std::abs(direction.dot(bar_.out)) > 0.5 ? bar_.half_depth_m : bar_.half_thickness_m; }
   std::optional<Vec2> pixel(const Vec3& point) const { return camera_.project(camera_from_base_ * point); }
 
   // The face's width in the picture, square to the bar.
   double seen_width_px(const Vec3& centre, const Vec3& aside) const {
-    const auto a = pixel(centre - bar_.half_thickness_m * aside), b = pixel(centre + bar_.half_thickness_m * aside);
+    const auto a = pixel(centre - half_m(aside) * aside), b = pixel(centre + half_m(aside) * aside);
     const auto c = pixel(centre - 0.01 * bar_.along), d = pixel(centre + 0.01 * bar_.along);
     if (!a || !b || !c || !d) return 0;
     const Vec2 wide = *b - *a, along = (*d - *c).normalized();
@@ -126,7 +129,7 @@ class StillReader {
   std::optional<double> mean_across(const Vec3& at, const Vec3& aside) const {
     double sum = 0;
     for (const double share : {-0.6, -0.3, 0.0, 0.3, 0.6}) {
-      const auto px = pixel(at + share * bar_.half_thickness_m * aside);
+      const auto px = pixel(at + share * half_m(aside) * aside);
       const auto grey = px ? grey_at(still_, *px) : std::nullopt;
       if (!grey) return std::nullopt;
       sum += *grey;
@@ -173,7 +176,7 @@ std::vector<BarSample> laser_profile(const Bar& bar, std::span<const CloudPoint>
     const Vec3 off = point.p_m.cast<double>() - bar.middle;
     const double s = bar.along.dot(off);
     const bool on_top =
-        std::abs(bar.across.dot(off)) <= bar.half_thickness_m && std::abs(bar.out.dot(off) - bar.half_thickness_m) <= top_window_m;
+        std::abs(bar.across.dot(off)) <= bar.half_thickness_m && std::abs(bar.out.dot(off) - bar.half_depth_m) <= top_window_m;
     if (on_top && std::abs(s) < reach_m) found[static_cast<std::size_t>((s + reach_m) / bin_m)].push_back(point.amplitude);
   }
   std::vector<BarSample> samples;

@@ -151,8 +151,8 @@ void tell(const Told& told) {
   const std::array<double, 3>& laser = told.machine.laser.position_m;
   print("  laser at %.3f %.3f %.3f m of the tool, a fan of %.0f deg\n", laser[0], laser[1], laser[2],
         2 * told.machine.laser.fan_half_angle_deg);
-  print("  of the vehicle, %zu boxes and %zu capsules are kept clear\n", told.machine.vehicle.boxes_m.size(),
-        told.machine.vehicle.capsules_m.size());
+  print("  of the vehicle, %zu boxes and %zu capsules are kept clear; it has %zu lamps\n", told.machine.vehicle.boxes_m.size(),
+        told.machine.vehicle.capsules_m.size(), told.machine.vehicle.lamps_m.size());
   if (!told.assumed.empty()) print("  not in the file, so as the default machine has it: %s\n", config::joined(told.assumed, ", ").c_str());
   for (const std::string& note : told.notes) print("  note: %s\n", note.c_str());
   if (told.problems.empty()) print("  it can do the default scenario's job\n");
@@ -163,6 +163,7 @@ void tell(const Told& told) {
 
 int check_machine(const std::string& name, const std::string& picture, bool json) {
   const std::string named = config::machine_file_of(name);
+  if (named != name && !std::filesystem::exists(config::share_folder() / named)) throw InputError(config::no_machine(name));
   const Told told(named == name ? name : (config::share_folder() / named).string());
   if (!picture.empty()) {
     const scenario::Scenario usual = scenario::load_scenario("default", {});

@@ -52,9 +52,11 @@ double tilt_deg(const arm::Arm& arm, const Pose& base_from_panel, const Vec3& pl
 }
 
 std::string range_text(const PanelLayout::Valve& valve, const config::ValveNature& nature) {
-  char text[160];
-  std::snprintf(text, sizeof text, "%.0f to %.0f deg, at most %.3g N m, bar %.0f x %.1f mm, %s", deg_from_rad(valve.handle_min_rad),
-                deg_from_rad(valve.handle_max_rad), nature.torque_nm, 1e3 * valve.handle_length_m, 1e3 * valve.handle_thickness_m,
+  char text[160], deep[32] = "";
+  if (valve.depth_m() != valve.handle_thickness_m) std::snprintf(deep, sizeof deep, ", %.1f mm deep", 1e3 * valve.depth_m());
+  std::snprintf(text, sizeof text, "%.0f to %.0f deg, at most %.3g N m, bar %.0f x %.1f mm%s%s, %s", deg_from_rad(valve.handle_min_rad),
+                deg_from_rad(valve.handle_max_rad), nature.torque_nm, 1e3 * valve.handle_length_m, 1e3 * valve.handle_thickness_m, deep,
+                valve.carried == PanelLayout::Carried::by_posts ? " on two posts" : "",
                 valve.has_pointer() ? "with a pointer" : "without a pointer");
   return text;
 }

@@ -77,7 +77,7 @@ std::string new_panel() {
          "  min_m: [-0.40, -0.378]   # lower left corner\n"
          "  max_m: [0.40, 0.222]     # upper right corner\n"
          "#  thickness_m: 0.02\n"
-         "valves:                    # T-bars, up to 16\n"
+         "valves:                    # T-bars, up to 16; kind: d_handle, fishtail or paddle changes the usual sizes (docs/your-panel.md)\n"
          "  - name: V1\n"
          "    at_m: [0, 0]           # its axis\n"
          "    torque_nm: 3           # the most that it takes to turn: more than the arm gives is refused\n"

@@ -123,10 +123,11 @@ bool names_node(const std::string& reason, const Cause& cause) {
     if (reason.find(identifier) != std::string::npos) return true;
   }
   if (node == "jaw" && reason.find("the jaw ") != std::string::npos) return true;
-  const std::size_t at = reason.find(": " + node);
-  if (at == std::string::npos) return false;
-  const std::size_t end = at + 2 + node.size();
-  return end == reason.size() || reason[end] == ',' || reason[end] == ' ';
+  for (std::size_t at = reason.find(": " + node); at != std::string::npos; at = reason.find(": " + node, at + 1)) {
+    const std::size_t end = at + 2 + node.size();
+    if (end == reason.size() || reason[end] == ',' || reason[end] == ' ') return true;
+  }
+  return false;
 }
 
 }  // namespace

@@ -115,7 +115,8 @@ std::vector<Vec3> lamp_places_m(const config::Vehicle& vehicle) {
 
 // The default vehicle has a look of its own, within the boxes and capsules that the default machine states.
 std::vector<scene::Shape> vehicle_shapes(const Scenario& scenario) {
-  if (scenario.vehicle == config::Vehicle()) return scene::default_vehicle();
+  const config::Vehicle usual;
+  if (scenario.vehicle.boxes_m == usual.boxes_m && scenario.vehicle.capsules_m == usual.capsules_m) return scene::default_vehicle();
   std::vector<Vec3> eyes_m = lamp_places_m(scenario.vehicle);
   const std::array<double, 3>& camera_m = scenario.camera.position_m;
   eyes_m.emplace_back(camera_m[0], camera_m[1], camera_m[2]);
@@ -160,7 +161,7 @@ world::WorldConfig world_config(const Scenario& scenario, const Sample& sample) 
   return world;
 }
 
-// All at the middle of the panel where it is docked nominally. The default ones are wide of the camera, so that little of the lit water is in its view.
+// All shine at the panel where it is docked nominally, as the default ones do at the default's middle. The default ones are wide of the camera, so that little of the lit water is in its view.
 std::vector<optics::LampConfig> lamps(const Scenario& scenario) {
   const Vec3 default_aim(0.44, 0.0, 0.60);
   const Vec3 aim =

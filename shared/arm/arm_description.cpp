@@ -150,7 +150,11 @@ void read_drive(const Urdf& urdf, ArmJoint& joint) {
   joint.stiction_rad_s = urdf.not_negative(drive, "stiction_rad_s");
   joint.backlash_rad = urdf.not_negative(drive, "backlash_rad");
   joint.holding_torque_nm = urdf.not_negative(drive, "holding_torque_nm");
-  if (drive->Attribute("stiffness_nm_rad") != nullptr) joint.stiffness_nm_rad = urdf.positive(drive, "stiffness_nm_rad");
+  if (drive->Attribute("stiffness_nm_rad") != nullptr) {
+    constexpr double least_nm_rad = 50;
+    joint.stiffness_nm_rad = urdf.positive(drive, "stiffness_nm_rad");
+    if (joint.stiffness_nm_rad < least_nm_rad) urdf.fail(drive, urdf.label(e) + ": stiffness_nm_rad is below 50: it is in N m/rad");
+  }
   if (const XMLElement* const friction = e->FirstChildElement("lanternfish:friction")) read_friction(urdf, friction, joint.friction);
   if (joint.rated_torque_nm > joint.effort_nm) urdf.fail(drive, urdf.label(e) + ": rated torque exceeds the peak effort");
   if (joint.effort_nm > most_peak_of_rating * joint.rated_torque_nm)

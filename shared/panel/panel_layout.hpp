@@ -26,19 +26,31 @@ struct PanelLayout {
     dark_end,   // black on a bar of a middle shade
   };
 
-  // A T-bar on a stem. The bar: length and thickness of UWSim's handle mesh; its centre line stands 100 mm proud.
+  // What carries a handle's bar.
+  enum class Carried : std::uint8_t {
+    by_stem,   // a T-bar, a fishtail or a paddle: in its middle
+    by_posts,  // a D-handle: at its ends
+  };
+
+  // A bar on a stem or on posts. Its length and thickness: UWSim's handle mesh; its centre line stands 100 mm proud.
   struct Valve {
     Vec2 at_m{0, 0};  // its axis
     double handle_length_m = 0.0966;
     double handle_thickness_m = 0.0126;
     double handle_height_m = 0.100;
     Pointer pointer = Pointer::light_end;
+    Carried carried = Carried::by_stem;
+    float handle_depth_m = 0;         // along the valve's axis, of a flat bar; 0: as thick as it is
     double pointer_length_m = 0.030;  // a third of the bar: 8 px where the camera sees the bar foreshortened most
     // Between its stops the handle turns from `handle_min_rad`, clockwise, to `handle_max_rad`: +/-105 degrees, so that +/-90 is clear of them.
     double handle_min_rad = -1.8325957145940461;
     double handle_max_rad = 1.8325957145940461;
     double stem_radius_m = 0.004;  // thinner than the bar: pads that grip it 10 mm deep stay clear of the stem at 14 degrees of tilt
 
+    double depth_m() const { return handle_depth_m > 0 ? static_cast<double>(handle_depth_m) : handle_thickness_m; }
+    // Of the bar's front, and of the middle of a square bar with such a front: what a look takes for its height.
+    double front_m() const { return handle_height_m + depth_m() / 2; }
+    double seen_height_m() const { return handle_height_m + (depth_m() - handle_thickness_m) / 2; }
     bool has_pointer() const { return pointer != Pointer::none; }
     // From the axis to the farthest corner of the bar.
     double swept_radius_m() const { return std::hypot(handle_length_m, handle_thickness_m) / 2; }

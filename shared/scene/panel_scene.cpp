@@ -52,7 +52,7 @@ void add_panel(Body& panel, const PanelLayout& layout) {
 
 // The part of the bar between two places along it.
 Shape bar_part(const PanelLayout::Valve& valve, double from_m, double to_m, const Albedo& albedo) {
-  return shape(ShapeKind::box, Vec3(valve.handle_thickness_m, to_m - from_m, valve.handle_thickness_m),
+  return shape(ShapeKind::box, Vec3(valve.handle_thickness_m, to_m - from_m, valve.depth_m()),
                at(0, 0.5 * (from_m + to_m), valve.handle_height_m), albedo);
 }
 
@@ -70,9 +70,21 @@ void add_bar(Body& handle, const PanelLayout::Valve& valve) {
   handle.shapes.push_back(decoration(bar_part(valve, edge_m, end_m, paint)));
 }
 
+// A D-handle's: at the bar's ends, on a hub.
+void add_posts(Body& handle, const PanelLayout::Valve& valve) {
+  constexpr double hub_m = 0.010;
+  const double thick_m = valve.handle_thickness_m, top_m = valve.handle_height_m - 0.5 * valve.depth_m();
+  handle.shapes.push_back(shape(ShapeKind::box, Vec3(thick_m, valve.handle_length_m, hub_m), at(0, 0, 0.5 * hub_m), stem_steel));
+  for (const double side : {-1.0, 1.0}) {
+    const double y_m = side * 0.5 * (valve.handle_length_m - thick_m);
+    handle.shapes.push_back(shape(ShapeKind::box, Vec3(thick_m, thick_m, top_m - hub_m), at(0, y_m, 0.5 * (top_m + hub_m)), stem_steel));
+  }
+}
+
 void add_handle(Body& handle, const PanelLayout::Valve& valve) {
-  const double stem_length = valve.handle_height_m - 0.5 * valve.handle_thickness_m;
   add_bar(handle, valve);
+  if (valve.carried == PanelLayout::Carried::by_posts) return add_posts(handle, valve);
+  const double stem_length = valve.handle_height_m - 0.5 * valve.depth_m();
   handle.shapes.push_back(shape(ShapeKind::cylinder, Vec3(valve.stem_radius_m, 0, stem_length), at(0, 0, 0.5 * stem_length), stem_steel));
 }
 

@@ -166,8 +166,8 @@ void pass(S& s, mission::Task& v) {
 }
 template <class S>
 void pass(S& s, PanelLayout::Valve& v) {
-  auto& [at_m, length, thickness, height, pointer, pointer_length, min_rad, max_rad, stem] = v;
-  pass_all(s, at_m, length, thickness, height, pointer, pointer_length, min_rad, max_rad, stem);
+  auto& [at_m, length, thickness, height, pointer, carried, depth, pointer_length, min_rad, max_rad, stem] = v;
+  pass_all(s, at_m, length, thickness, height, pointer, carried, depth, pointer_length, min_rad, max_rad, stem);
 }
 template <class S>
 void pass(S& s, PanelLayout::Button& v) {

@@ -230,6 +230,28 @@ PanelLayout two_valves() {
   return layout;
 }
 
+// The posts of a D-handle pass wherever its bar does, down to the plate. A flat bar comes nearer by half of what it is deeper.
+TEST(PanelShape, OfAHandleIsWhatItsKindSweeps) {
+  PanelLayout layout;
+  layout.buttons.clear();
+  layout.markers.clear();
+  const auto to_a_ball = [&](const Vec3& at_m) {
+    LinkCapsules ball;
+    ball.push_back({4, at_m, at_m, 0.001});
+    return PanelShape(layout).clearance(ball, Pose::Identity(), 0, 0).distance_m;
+  };
+  PanelLayout::Valve& valve = layout.valves[0];
+  const Vec3 under_the_bar(0.040, 0, 0.050), before_it(0, 0, 0.150);
+  const double beside_stem_m = to_a_ball(under_the_bar), before_bar_m = to_a_ball(before_it);
+  EXPECT_GT(beside_stem_m, 0.030);
+  valve.handle_depth_m = 0.030f;
+  EXPECT_NEAR(before_bar_m - to_a_ball(before_it), (0.030 - valve.handle_thickness_m) / 2, 1e-8);
+  valve.handle_depth_m = 0;
+  valve.carried = PanelLayout::Carried::by_posts;
+  EXPECT_LT(to_a_ball(under_the_bar), 0) << "a post comes by there";
+  EXPECT_EQ(to_a_ball(before_it), before_bar_m);
+}
+
 TEST(PanelShape, NamesEachPartByItsKindAndIndex) {
   const PanelLayout layout = two_valves();
   Pose base_from_panel = layout.nominal_base_from_panel();

@@ -143,6 +143,26 @@ TEST(PanelFile, WhatIsLeftOutIsAsOnTheDockedMissionsPanel) {
   EXPECT_EQ(read(with("  thickness_m: 0.012\n", "")).layout.plate_thickness_m, PanelLayout{}.plate_thickness_m);
 }
 
+TEST(PanelFile, AHandlesKindSaysWhatItsSizesAreWhereTheyAreLeftOut) {
+  const auto valve = [](const std::string& more) { return read(with("name: V2", more + ", name: V2")).layout.valves[1]; };
+  const PanelLayout::Valve bar = valve("kind: t_bar");
+  EXPECT_EQ(bar.depth_m(), bar.handle_thickness_m);
+  EXPECT_EQ(bar.seen_height_m(), bar.handle_height_m);
+  EXPECT_EQ(bar.carried, PanelLayout::Carried::by_stem);
+  const PanelLayout::Valve paddle = valve("kind: paddle");
+  EXPECT_NEAR(paddle.depth_m(), 0.040, 1e-9);
+  EXPECT_NEAR(paddle.front_m(), 0.120, 1e-9);
+  EXPECT_NEAR(paddle.seen_height_m(), 0.115, 1e-9) << "the middle of a bar of 10 mm with this front";
+  EXPECT_EQ(paddle.handle_thickness_m, 0.010);
+  EXPECT_NEAR(valve("kind: fishtail").depth_m(), 0.030, 1e-9);
+  EXPECT_NEAR(valve("kind: fishtail, depth_m: 0.02, thickness_m: 0.014").depth_m(), 0.020, 1e-9) << "what is said counts";
+  EXPECT_EQ(valve("kind: fishtail, thickness_m: 0.014").handle_thickness_m, 0.014);
+  const PanelLayout::Valve d = valve("kind: d_handle");
+  EXPECT_EQ(d.carried, PanelLayout::Carried::by_posts);
+  EXPECT_EQ(d.handle_length_m, 0.120);
+  EXPECT_EQ(d.depth_m(), d.handle_thickness_m);
+}
+
 TEST(PanelFile, WhatIsNotSaidOfAValvesFrictionIsNoMoreThanItsTorque) {
   EXPECT_EQ(read(with("name: V2", "torque_nm: 1, name: V2")).survey.valves[1].friction_nm, (Spread{0.5, 1}));
   EXPECT_EQ(read(with("name: V2", "torque_nm: 0, name: V2")).survey.valves[1].friction_nm, Spread::fixed(0));
@@ -201,7 +221,8 @@ const BadPanel bad_panels[] = {
     {"NameThatIsTooLong", with("name: V2", "name: " + std::string(41, 'V')),
      ":22: 'valves[1].name': a name is of 1 to 40 letters of ASCII"},
     {"NameThatIsAList", with("name: V2", "name: [V2]"), ":22: 'valves[1].name' takes"},
-    {"IdTwice", with("id: 12", "id: 11"), ":27: 'markers.11.id': 11 is marker 11's too: a look would not tell them apart"},
+    {"KindMisspelt", with("name: V2", "kind: padle, name: V2"), ":22: 'valves[1].kind' is 'padle'; did you mean 'paddle'?"},
+    {"IdTwice", with("id: 12", "id: 11"), ":28: 'markers.11.id': 11 is marker 11's too: a look would not tell them apart"},
     {"IdOfAnotherFamily", with("id: 12", "id: 587"), ":28: 'markers[1].id' is 587, out of its range 0 to 586"},
     {"IdInPart", with("id: 12", "id: 1.5"), ":28: 'markers[1].id' takes a whole number, not '1.5'"},
     {"FrictionAboveTorque", with("torque_nm: 8", "torque_nm: 2"), ":7: 'valves[0].friction_nm' is more than its 'torque_nm'"},
@@ -423,7 +444,7 @@ TEST(SettlePanel, OfAFileThatCannotBeReadIsToldAndIsTheDockedMissions) {
   EXPECT_EQ(bad.layout.valves.size(), 1u);
   EXPECT_THAT(settled("none.yaml").problems, ElementsAre(HasSubstr("mine.yaml: 'panel.file': there is no none.yaml")));
   EXPECT_THAT(settled("pandra").problems, ElementsAre(HasSubstr("no shipped panel 'pandra'; did you mean 'pandora'?")));
-  EXPECT_THAT(settled("zzz").problems, ElementsAre(HasSubstr("no shipped panel 'zzz'; there are docked, pandora")));
+  EXPECT_THAT(settled("zzz").problems, ElementsAre(HasSubstr("no shipped panel 'zzz'; there are after_17h, docked, pandora")));
 }
 
 TEST(ShippedPanels, AreReadAndTheDockedOneIsTheDefault) {

@@ -26,6 +26,27 @@ TEST(FaultRules, TheAdviceOfAReasonNamesNothing) {
   EXPECT_FALSE(cause_of("silent io").named_in("camera silent"));
 }
 
+// A bus whose joints and numbers are nobody's default, one name the beginning of another.
+TEST(FaultRules, OfAnotherMachineAreAtItsOwnNodes) {
+  const BusNodes bus{JointNames({"j1", "j10", "jaw"}), {5, 9, 12, 20}};
+  const auto cause = [&](const std::string& name) {
+    for (const Cause& one : all_causes(bus)) {
+      if (one.name() == name) return one;
+    }
+    ADD_FAILURE() << "no cause " << name;
+    return Cause{};
+  };
+  EXPECT_EQ(cause("overcurrent j10").fault().node, "j10");
+  EXPECT_EQ(cause("drop_frames tpdo j1").fault().can_id, 0x180 + 5);
+  EXPECT_EQ(cause("drop_frames heartbeat io").fault().can_id, 0x700 + 20);
+  EXPECT_TRUE(cause("overcurrent j1").named_in("drive fault: j1"));
+  EXPECT_FALSE(cause("overcurrent j1").named_in("drive fault: j10"));
+  EXPECT_TRUE(cause("overcurrent j1").named_in("drive fault: j10, drive fault: j1"));
+  EXPECT_TRUE(cause("silent io").named_in("output node lost"));
+  EXPECT_TRUE(cause("wrong_identity j10").named_in("boot failed: no answer on 0x0609"));
+  for (const Cause& one : all_causes(bus)) EXPECT_EQ(one.name().find("slew"), std::string::npos) << one.name();
+}
+
 TEST(FaultRules, AReasonNamesTheCauseAndItsNode) {
   const auto named = [](const char* cause, const char* reason) { return cause_of(cause).named_in(reason); };
   EXPECT_TRUE(named("overcurrent elbow", "drive fault: elbow, EMCY 0x2310 (continuous over-current)"));

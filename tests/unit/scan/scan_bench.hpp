@@ -92,7 +92,6 @@ class ScanBench {
     return pixels;
   }
 
-  // By how much a stripe's point moves when it is seen a pixel lower, the mean over the picture.
   // The rays to the stripe turned by a thousandth of a radian to either side of the laser's sheet, and met with it again.
   double m_per_rad(const Angles& q) const {
     constexpr double turn_rad = 1e-3;
@@ -113,6 +112,7 @@ class ScanBench {
     }
     return sum / points;
   }
+  // By how much a stripe's point moves when it is seen a pixel lower, the mean over the picture.
   double m_per_px(const Angles& q) const {
     const Pose laser = test::arm5e.base_from_laser(arm::planar_joints(q[0], q[1], q[2], q[3]), config_.laser);
     const scan::Triangulator triangulator(config_.camera, config_.laser, {});

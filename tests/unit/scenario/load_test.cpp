@@ -7,6 +7,7 @@
 
 namespace lf::scenario {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
@@ -308,6 +309,16 @@ TEST(Load, EveryButtonOutOfReachIsTold) {
   const std::string told = complaint_before_a_run("panel: {ahead_m: 0.7}");
   for (const char* what : {"the valve is out", "the left button is out", "the centre button is out", "the right button is out"})
     EXPECT_THAT(told, HasSubstr(what));
+}
+
+TEST(Load, AValveThatIsTooStiffOrOutOfReachIsRefusedByNameAndNumber) {
+  const auto told = [](const std::string& valve) {
+    return complaint_before_a_run("panel: {file: after_17h}\ntasks: [turn_valve: {valve: " + valve + ", to_deg: 30}]");
+  };
+  for (const char* turned : {"T16", "P10", "D16"}) EXPECT_EQ(told(turned), "") << turned;
+  EXPECT_THAT(told("T19"),
+              AllOf(HasSubstr("valve T19 needs 67 N m, the arm gives 4.06"), HasSubstr("valve T19 is out of the arm's reach")));
+  EXPECT_THAT(told("F16"), HasSubstr("valve F16 is out of the arm's reach"));
 }
 
 TEST(Load, APanelsFileIsWhatItsTasksName) {
