@@ -221,7 +221,7 @@ const BadPanel bad_panels[] = {
     {"NameThatIsTooLong", with("name: V2", "name: " + std::string(41, 'V')),
      ":22: 'valves[1].name': a name is of 1 to 40 letters of ASCII"},
     {"NameThatIsAList", with("name: V2", "name: [V2]"), ":22: 'valves[1].name' takes"},
-    {"KindMisspelt", with("name: V2", "kind: padle, name: V2"), ":22: 'valves[1].kind' is 'padle'; did you mean 'paddle'?"},
+    {"KindMisspelt", with("name: V2", "kind: padle, name: V2"), ":22: 'valves[1].kind' has no 'padle'; did you mean 'paddle'?"},
     {"IdTwice", with("id: 12", "id: 11"), ":28: 'markers.11.id': 11 is marker 11's too: a look would not tell them apart"},
     {"IdOfAnotherFamily", with("id: 12", "id: 587"), ":28: 'markers[1].id' is 587, out of its range 0 to 586"},
     {"IdInPart", with("id: 12", "id: 1.5"), ":28: 'markers[1].id' takes a whole number, not '1.5'"},
