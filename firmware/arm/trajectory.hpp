@@ -63,7 +63,7 @@ struct LineLimits {
   double speed_m_s = 0.04;
   double acceleration_m_s2 = 0.2;
   double jerk_m_s3 = 2.0;
-  // Something hard that is met on the line may be pressed so hard until the arm stands (give.hpp).
+  // By how much harder something may be pressed that is met on the line, once it is felt, until the arm stands (give.hpp).
   double push_n = std::numeric_limits<double>::infinity();
 };
 

@@ -59,7 +59,7 @@ class PanelMap {
   arm::PanelDoubt doubt() const;
   // The same once a finger touches what stands on the panel: how far off the panel is does not matter any more.
   arm::PanelDoubt doubt_where_touched() const;
-  // By how much more than of the default machine the panel may be off along its normal: that is for a press to find.
+  // By how much farther than the default machine's panel this one may stand than it looks. A press finds it.
   double deeper_m() const;
   double handle_rad(std::size_t valve) const { return handles_[valve].angle_rad; }
   bool handle_seen(std::size_t valve) const { return handles_[valve].seen.found; }
@@ -104,7 +104,7 @@ class PanelMap {
   std::size_t told_valve_ = 0;
   // How much farther a marker is from the panel's origin than where the doubt was measured: what turns about the marker moves the origin.
   double markers_beyond_m_;
-  double calibrated_parts_;      // whose calibration errs, each by itself: camera, laser and the joints that carry it
+  double calibrated_parts_;      // whose calibration errs: camera, laser and the joints that carry it
   Vec3 first_m_ = Vec3::Zero();  // the panel's origin as it was first found
   bool known_ = false;
   scan::PanelFrame frame_;

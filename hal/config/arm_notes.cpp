@@ -1,20 +1,15 @@
 #include "hal/config/arm_notes.hpp"
 
 #include "shared/arm/arm_description.hpp"
-#include "shared/urdf/read_urdf.hpp"
 
 namespace lf::config {
 
 std::vector<std::string> arm_notes(const std::string& urdf_file) {
   const ArmDescription arm = load_arm_urdf(urdf_file);
-  std::vector<std::string> notes;
+  std::vector<std::string> notes = arm.notes;
   std::string frictionless;
   for (std::size_t i = 0; i < arm.joints.size(); ++i) {
     if (!arm.joints[i].friction.stated) frictionless += (frictionless.empty() ? "" : ", ") + arm.joints[i].name;
-  }
-  const urdf::Reading reading = urdf::read_urdf(urdf_file);
-  for (const urdf::Note& note : reading.notes) {
-    if (note.text.find("link 'tool' has no inertial") == std::string::npos) notes.push_back(reading.told(note));
   }
   if (frictionless.empty()) return notes;
   notes.push_back(

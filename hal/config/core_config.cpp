@@ -125,11 +125,9 @@ arm::VehicleShape vehicle_shape(const Machine& machine) {
   arm::VehicleShape shape;
   const std::string most = std::to_string(arm::VehicleShape::capacity);
   for (const auto& [x, y, z, dx, dy, dz] : machine.vehicle.boxes_m) {
-    if (!(dx > 0 && dy > 0 && dz > 0)) refuse(machine, "'vehicle.boxes_m' has a box without an extent above 0 along each axis");
     if (!shape.boxes.push_back({Vec3(x, y, z), Vec3(dx, dy, dz)})) refuse(machine, "'vehicle.boxes_m' has more than " + most + " boxes");
   }
   for (const auto& [ax, ay, az, bx, by, bz, radius] : machine.vehicle.capsules_m) {
-    if (!(radius > 0)) refuse(machine, "'vehicle.capsules_m' has one without a radius above 0");
     if (!shape.rods.push_back({Vec3(ax, ay, az), Vec3(bx, by, bz), radius}))
       refuse(machine, "'vehicle.capsules_m' has more than " + most + " capsules");
   }

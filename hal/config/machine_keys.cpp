@@ -134,8 +134,9 @@ void add_mission(Keys& all, mission::MissionConfig& m) {
   all.push_back(key("mission.move_speed_fraction", "", 0.01, 1, &m.move_speed_fraction, "of the joints' speed limits, in free motion"));
   all.push_back(key("mission.approach_distance_m", "m", 0.04, 0.3, &m.approach_distance_m,
                     "where straight approaches start, along the panel's normal"));
-  all.push_back(key("mission.approach_speed_m_s", "m/s", 0.001, 0.5, &m.approach_speed_m_s, "of straight guarded motions"));
-  all.push_back(key("mission.press_speed_m_s", "m/s", 0.001, 0.2, &m.press_speed_m_s, "of a press"));
+  all.push_back(key("mission.approach_speed_m_s", "m/s", 0.001, 0.5, &m.approach_speed_m_s,
+                    "of straight guarded motions, at most: an arm that would press too hard goes more slowly"));
+  all.push_back(key("mission.press_speed_m_s", "m/s", 0.001, 0.2, &m.press_speed_m_s, "of a press, at most"));
   all.push_back(
       key("mission.press_overtravel_m", "m", 0, 0.05, &m.press_overtravel_m, "beyond a button's bottom before the press counts as missed"));
   all.push_back(key("mission.press_torque_nm", "N m", 2, 20, &m.press_torque_nm,

@@ -105,8 +105,10 @@ class StillReader {
     if (!(width_px >= min_face_px)) return {};
     std::vector<BarSample> samples;
     const double reach_m = bar_.half_length_m - end_margin_m;
-    for (double s = -reach_m; s <= reach_m; s += step_m) {
+    double s = -reach_m;
+    while (s <= reach_m) {
       if (const std::optional<double> grey = mean_across(centre + s * bar_.along, aside)) samples.push_back({s, *grey, width_px});
+      s += step_m;
     }
     return samples;
   }

@@ -428,7 +428,11 @@ ArmDescription load_arm_urdf(const std::string& path) {
   parts.planar ? check_chain(urdf, arm) : check_any_chain(urdf, arm);
   arm.pad = read_pad(urdf, "finger_a");
   check_jaw(urdf, arm);
-  (void)urdf::read_urdf(path);  // what is wrong with the file beyond the arm, and what is there twice
+  // What is wrong with the file beyond the arm, and what is there twice. That the tool has no mass is as it should be.
+  const urdf::Reading reading = urdf::read_urdf(path);
+  for (const urdf::Note& note : reading.notes) {
+    if (note.text.find("link 'tool' has no inertial") == std::string::npos) arm.notes.push_back(reading.told(note));
+  }
   return arm;
 }
 

@@ -60,6 +60,7 @@ struct ArmDescription {
   ArmJoint finger_b;                        // mimic of the jaw joint
   Pose wrist_from_tool = Pose::Identity();  // the tool frame on the wrist body
   scene::Shape pad;                         // of finger_a: the box whose +x face holds
+  std::vector<std::string> notes;           // of the file, with their lines: what is in it and is of no use
 
   std::size_t arm_joints() const { return joints.size() - 1; }
   const ArmJoint& roll() const { return joints[joints.size() - 2]; }

@@ -13,7 +13,7 @@ import tempfile
 
 NUMBER = re.compile(r"(?<![\w.#-])-?\d+\.?\d*(?:[eE][-+]?\d+)?(?![\w.])")
 KEY = re.compile(r"([A-Za-z_]{3,})(?=:| ?=)")
-# May stand twice, or is a comment.
+# May stand twice.
 REPEATED = re.compile(r"<visual|<collision|<origin|</|<joint |<link |<robot|<material")
 
 

@@ -3,32 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <string>
 
 #include "firmware/arm/give.hpp"
-#include "firmware/arm/pointing.hpp"
 #include "firmware/arm/trajectory.hpp"
-#include "shared/arm/arm_description.hpp"
-#include "shared/arm/make_model.hpp"
+#include "tests/unit/arm/arm_of_file.hpp"
 
 namespace lf::arm {
 namespace {
 
-constexpr std::uint64_t seed = 20261128;
-
-class Give : public testing::TestWithParam<const char*> {
+class Give : public ArmOfFile {
  protected:
-  double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
-
-  JointVector draw() {
-    JointVector q = JointVector::Zero();
-    for (std::size_t i = 0; i < arm.arm_joints(); ++i)
-      q[static_cast<Eigen::Index>(i)] = uniform(0.8 * arm.joint(i).lower_rad, 0.8 * arm.joint(i).upper_rad);
-    return q;
-  }
-  Vec3 direction() { return Vec3(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)).normalized(); }
-
   double along(const JointVector& q, const Vec3& way) const { return way.dot(arm.base_from_tool(q).translation()); }
 
   // How far the tool goes along `way` for a radian of each joint.
@@ -41,10 +26,6 @@ class Give : public testing::TestWithParam<const char*> {
     }
     return levers;
   }
-
-  ArmDescription description = load_arm_urdf(std::string(LANTERNFISH_SOURCE_DIR "/") + GetParam());
-  Arm arm{make_model(description)};
-  std::mt19937_64 random_{seed};
 };
 
 // A newton at the tool turns each joint by its lever over its stiffness.

@@ -14,27 +14,13 @@
 #include "shared/arm/arm_description.hpp"
 #include "shared/arm/make_model.hpp"
 #include "tests/arm5e.hpp"
+#include "tests/unit/arm/arm_of_file.hpp"
 
 namespace lf::arm {
 namespace {
 
-constexpr std::uint64_t seed = 20261128;
-
-class Pointing : public testing::TestWithParam<const char*> {
+class Pointing : public ArmOfFile {
  protected:
-  double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
-
-  // Well within the limits, as far as half of each stroke.
-  JointVector draw(double share = 0.9) {
-    JointVector q = JointVector::Zero();
-    for (std::size_t i = 0; i < arm.arm_joints(); ++i) {
-      const double middle = (arm.joint(i).lower_rad + arm.joint(i).upper_rad) / 2,
-                   half = (arm.joint(i).upper_rad - arm.joint(i).lower_rad) / 2;
-      q[static_cast<Eigen::Index>(i)] = middle + uniform(-share, share) * half;
-    }
-    return q;
-  }
-
   Pose tool_of(const JointVector& q) const {
     Pose pose = Pose::Identity();
     for (std::size_t i = 0; i < description.arm_joints(); ++i) {
@@ -51,10 +37,6 @@ class Pointing : public testing::TestWithParam<const char*> {
     }
     return true;
   }
-
-  ArmDescription description = load_arm_urdf(std::string(LANTERNFISH_SOURCE_DIR "/") + GetParam());
-  Arm arm{make_model(description)};
-  std::mt19937_64 random_{seed};
 };
 
 TEST_P(Pointing, PutsTheToolThereSoPointedAndSoRolled) {
