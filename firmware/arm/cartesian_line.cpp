@@ -60,7 +60,7 @@ Rates pointing_rates(const Arm& arm, const JointVector& q_rad, const Vec3& way_m
 Rates rates(const Arm& arm, const JointVector& q_rad, const Vec3& way_m, double turn_rad) {
   Rates rates;
   if (way_m.squaredNorm() > 0) rates = arm.is_planar() ? planar_rates(arm, q_rad, way_m) : pointing_rates(arm, q_rad, way_m);
-  rates.first[static_cast<Eigen::Index>(arm.roll_joint())] = turn_rad;
+  arm.set_roll(rates.first, turn_rad);
   return rates;
 }
 
@@ -103,14 +103,13 @@ void CartesianLine::begin(const Arm& arm, const JointVector& start_rad, const Ve
   *this = CartesianLine();
   arm_ = &arm;
   start_rad_ = start_rad;
-  const std::size_t roll = arm.roll_joint();
-  goal_roll_rad_ = start_rad[roll];
+  goal_roll_rad_ = arm.roll_rad(start_rad);
   if (!can_work(arm)) result_.ik = IkOutcome::other_form;
   if (!can_work(arm) || !start_rad.allFinite()) return;
   start_m_ = goal_m_ = arm.base_from_tool(start_rad).translation();
   way_m_ = goal_m - start_m_;
-  if (!way_m_.allFinite() || !std::isfinite(goal_roll_rad - start_rad[roll])) return;
-  goal_roll_rad_ = goal_roll_rad;
+  if (!way_m_.allFinite() || !std::isfinite(goal_roll_rad - goal_roll_rad_)) return;
+  if (arm.rolls()) goal_roll_rad_ = goal_roll_rad;
   const double length = way_m_.norm();
   velocity_ = length > 0 ? line.speed_m_s / length : HUGE_VAL;
   acceleration_ = length > 0 ? line.acceleration_m_s2 / length : HUGE_VAL;
@@ -142,7 +141,7 @@ IkResult CartesianLine::at(double fraction, double roll_rad) const {
   IkResult led;
   led.q_rad = fraction * checks < 1 ? start_rad_ : last_rad_;  // the last check was at the goal
   led.outcome = move_tool(*arm_, tool_m, arm_->approach_axis(start_rad_), led.q_rad) ? IkOutcome::ok : IkOutcome::too_far;
-  led.q_rad[static_cast<Eigen::Index>(arm_->roll_joint())] = roll_rad;
+  arm_->set_roll(led.q_rad, roll_rad);
   return led;
 }
 
@@ -150,15 +149,14 @@ IkResult CartesianLine::at(double fraction, double roll_rad) const {
 bool CartesianLine::check() {
   const int i = next_check_++;
   const double fraction = static_cast<double>(i) / checks;
-  const auto roll = static_cast<Eigen::Index>(arm_->roll_joint());
-  const double turn = goal_roll_rad_ - start_rad_[roll];
+  const double start_roll_rad = arm_->roll_rad(start_rad_), turn = goal_roll_rad_ - start_roll_rad;
   result_.fraction = fraction;
-  const IkResult ik = at(fraction, start_rad_[roll] + fraction * turn);
+  const IkResult ik = at(fraction, start_roll_rad + fraction * turn);
   const IkOutcome reached = ik.ok() ? limit_passed(*arm_, ik.q_rad, limits_) : ik.outcome;
   // The start is where the arm is: a motion may lead back inside from there.
   if (reached != IkOutcome::ok && (i > 0 || !ik.ok())) return finish(PlanOutcome::unreachable, reached);
   // Past the slew axis the arm would have to turn about between two checks; so would one that points past a singular posture.
-  if ((ik.q_rad - last_rad_).head(roll).cwiseAbs().maxCoeff() > max_step_rad)
+  if ((ik.q_rad - last_rad_).head(static_cast<Eigen::Index>(arm_->pointing_joints())).cwiseAbs().maxCoeff() > max_step_rad)
     return finish(PlanOutcome::unreachable, arm_->is_planar() ? IkOutcome::slew_limit : IkOutcome::turned_away);
   last_rad_ = ik.q_rad;
   if (!arm_->is_planar() && is_singular(*arm_, ik.q_rad)) return finish(PlanOutcome::unreachable, IkOutcome::turned_away);
@@ -206,7 +204,7 @@ JointState CartesianLine::sample(double t_s) {
   JointState state{start_rad_, JointVector::Zero(), JointVector::Zero()};
   const PathState s = curve_.sample(t_s);
   if (curve_.duration_s() == 0 || s.position == 0) return state;
-  const double from = start_rad_[static_cast<Eigen::Index>(arm_->roll_joint())], turn = goal_roll_rad_ - from;
+  const double from = arm_->roll_rad(start_rad_), turn = goal_roll_rad_ - from;
   const double roll = s.position < 1 ? from + s.position * turn : goal_roll_rad_;
   state.q_rad = solved(s.position, roll);
   const Rates r = rates(*arm_, state.q_rad, way_m_, turn);

@@ -72,10 +72,11 @@ double segment_to_cylinder(const Vec3& a, const Vec3& way, double radius_m, doub
   return distance(t);
 }
 
-// Pairs that can meet, links as scene::BodyId counts them: not the same link, not neighbours, and not the fingers with each other or with the two last links: they
-// are meant to, or open sideways, ahead of these.
-bool can_meet(std::size_t low, std::size_t high, std::size_t arm_joints) {
-  return low > 0 && high > low + 1 && (high <= arm_joints || low + 1 < arm_joints);
+// Pairs that can meet, links as scene::BodyId counts them: not the same link, not neighbours, and not the fingers with each other or with the link that carries them.
+// Nor with the one before that, where the hand rolls: they open sideways, ahead of it.
+bool can_meet(std::size_t low, std::size_t high, const LinkCapsules& of) {
+  const std::size_t hand = of.arm_joints();
+  return low > 0 && high > low + 1 && (high <= hand || low + (of.rolls() ? 1 : 0) < hand);
 }
 
 }  // namespace
@@ -221,7 +222,7 @@ double clearance_to_itself(const LinkCapsules& capsules) {
   double least = HUGE_VAL;
   for (const Capsule& a : capsules)
     for (const Capsule& b : capsules)
-      if (can_meet(a.link, b.link, capsules.arm_joints())) least = std::min(least, clearance_between(a, b));
+      if (can_meet(a.link, b.link, capsules)) least = std::min(least, clearance_between(a, b));
   return least;
 }
 

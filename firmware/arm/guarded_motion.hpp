@@ -15,10 +15,11 @@
 namespace lf::arm {
 
 struct GuardConfig {
-  explicit GuardConfig(std::size_t arm_joints)
-      : contact_torque_nm(each_joint(arm_joints, 4, 2)),
-        overload_torque_nm(each_joint(arm_joints, 45, 9)),
-        following_rad(each_joint(arm_joints, 0.03, 0.12)) {}
+  explicit GuardConfig(std::size_t arm_joints, bool rolls = true)
+      : contact_torque_nm(each_joint(arm_joints, 4, 2, rolls)),
+        overload_torque_nm(each_joint(arm_joints, 45, 9, rolls)),
+        following_rad(each_joint(arm_joints, 0.03, 0.12, rolls)) {}
+  explicit GuardConfig(const Arm& arm) : GuardConfig(arm.arm_joints(), arm.rolls()) {}
 
   JointVector contact_torque_nm;   // rise over the baseline. 10 N at the tool, 0.4 m from the shoulder, are 4 N m
   JointVector overload_torque_nm;  // without regard to the baseline; 1.5 x the rated torque

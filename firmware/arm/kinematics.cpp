@@ -41,7 +41,8 @@ Arm::Arm(const ArmModel& model) : model_(model) {
 Pose Arm::base_from_unrolled_tool(const JointVector& q_rad) const {
   if (is_planar()) return unrolled_tool(PlanarChain(model_.planar, q_rad));
   Pose pose = Pose::Identity();
-  for (std::size_t i = 0; i < roll_joint(); ++i) pose = turned(pose, model_.origins[i], q_rad[i], 0, 1);
+  for (std::size_t i = 0; i < pointing_joints(); ++i) pose = turned(pose, model_.origins[i], q_rad[i], 0, 1);
+  if (!rolls()) return pose * model_.last_from_tool();
   pose = pose * model_.origins[roll_joint()];
   pose.translation() += model_.tool_z_m * pose.linear().col(2);
   return pose;
@@ -49,6 +50,7 @@ Pose Arm::base_from_unrolled_tool(const JointVector& q_rad) const {
 
 Pose Arm::base_from_tool(const JointVector& q_rad) const {
   Pose pose = base_from_unrolled_tool(q_rad);
+  if (!rolls()) return pose;
   const double c = std::cos(q_rad[roll_joint()]);
   const double s = std::sin(q_rad[roll_joint()]);
   const Vec3 x = pose.linear().col(0);
@@ -74,7 +76,7 @@ Jacobian Arm::jacobian(const JointVector& q_rad) const {
   };
   if (!is_planar()) {
     const LinkPoses links = base_from_links(q_rad, 0);
-    const Vec3 tool_m = links[roll_joint()] * Vec3(0, 0, model_.tool_z_m);
+    const Vec3 tool_m = links[arm_joints() - 1] * tool_on_last_m();
     for (std::size_t i = 0; i < arm_joints(); ++i) {
       const Vec3 axis = links[i].linear().col(2);
       set(i, axis.cross(tool_m - links[i].translation()), axis);
@@ -104,7 +106,7 @@ LinkPoses Arm::base_from_links(const JointVector& q_rad, double jaw_rad) const {
 
 LinkCapsules Arm::link_capsules(const JointVector& q_rad, double jaw_rad) const {
   const LinkPoses links = base_from_links(q_rad, jaw_rad);
-  LinkCapsules capsules(arm_joints());
+  LinkCapsules capsules(arm_joints(), rolls());
   for (const ArmModel::Capsule& n : model_.capsules) {
     const Pose& base_from_link = links[n.link() - 1];
     capsules.push_back({n.link(), base_from_link * n.a_m(), base_from_link * n.b_m(), n.radius_m()});
@@ -140,10 +142,10 @@ JointVector Arm::reach_m(double jaw_rad) const {
   double beyond_m = 0;  // of what is carried farther out
   for (std::size_t i = arm_joints(); i-- > 0;) {
     const Pose& own = links[i];
-    const bool last = i == roll_joint();
+    const bool last = i + 1 == arm_joints();
     double from_origin_m = last ? 0 : beyond_m + model_.origins[i + 1].translation().norm(), from_axis_m = 0;
     for (const Capsule& capsule : capsules) {
-      // The fingers stand still on the last link, of which the roll turns all about one axis.
+      // The fingers stand still on the last link, all of which turns about one axis.
       if (last ? capsule.link < arm_joints() : capsule.link != i + 1) continue;
       for (const Vec3& end : {capsule.a_m, capsule.b_m}) {
         from_origin_m = std::max(from_origin_m, (end - own.translation()).norm() + capsule.radius_m);

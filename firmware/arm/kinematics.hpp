@@ -24,10 +24,10 @@ inline JointVector planar_joints(double slew_rad, double shoulder_rad, double el
   all.head<4>() << slew_rad, shoulder_rad, elbow_rad, roll_rad;
   return all;
 }
-// Of an arm of so many joints: `before` for those before the roll, `roll` for the last.
-inline JointVector each_joint(std::size_t arm_joints, double before, double roll) {
+// Of an arm of so many joints: `pointing` for those that point the tool, and `roll` for the last where that one rolls it.
+inline JointVector each_joint(std::size_t arm_joints, double pointing, double roll, bool rolls = true) {
   JointVector all = JointVector::Zero();
-  for (std::size_t i = 0; i < arm_joints; ++i) all[static_cast<Eigen::Index>(i)] = i + 1 < arm_joints ? before : roll;
+  for (std::size_t i = 0; i < arm_joints; ++i) all[static_cast<Eigen::Index>(i)] = rolls && i + 1 == arm_joints ? roll : pointing;
   return all;
 }
 // Linear velocity of the tool point (m/s) above angular velocity (rad/s), both in the base frame, per rad/s of each joint.
@@ -47,10 +47,11 @@ struct Capsule {
 class LinkCapsules {
  public:
   // Of an arm with so many joints that place the tool: links beyond are fingers.
-  explicit LinkCapsules(std::size_t arm_joints = 4)
-      : arm_joints_(arm_joints) {}  // items_ stays as it is: setting it to zero would take its time
+  explicit LinkCapsules(std::size_t arm_joints = 4, bool rolls = true)
+      : arm_joints_(arm_joints), rolls_(rolls) {}  // items_ stays as it is: setting it to zero would take its time
 
   std::size_t arm_joints() const { return arm_joints_; }
+  bool rolls() const { return rolls_; }
 
   std::size_t size() const { return size_; }
   const Capsule& operator[](std::size_t i) const { return items_[i]; }
@@ -64,6 +65,7 @@ class LinkCapsules {
   std::array<Capsule, capacity::arm_shapes> items_;
   std::size_t size_ = 0;
   std::size_t arm_joints_;
+  bool rolls_;
 };
 
 // What each joint may do; by default what the arm can.
@@ -85,7 +87,16 @@ class Arm {
   // Those that place the tool, and all, the jaw's too.
   std::size_t arm_joints() const { return model_.arm_joints; }
   std::size_t joint_count() const { return model_.joint_count(); }
-  std::size_t roll_joint() const { return model_.arm_joints - 1; }
+  bool rolls() const { return model_.rolls; }
+  std::size_t roll_joint() const { return model_.arm_joints - 1; }  // of an arm that rolls
+  // Those that place the tool point and turn the tool's axis: the first so many.
+  std::size_t pointing_joints() const { return model_.arm_joints - (model_.rolls ? 1 : 0); }
+  Vec3 tool_on_last_m() const { return rolls() ? Vec3(0, 0, model_.tool_z_m) : Vec3(model_.last_from_tool().translation()); }
+  // About the tool's own axis: 0 on an arm without a roll, whose tool stays as its joints turn it.
+  double roll_rad(const JointVector& q_rad) const { return rolls() ? q_rad[static_cast<Eigen::Index>(roll_joint())] : 0; }
+  void set_roll(JointVector& q_rad, double roll_rad) const {
+    if (rolls()) q_rad[static_cast<Eigen::Index>(roll_joint())] = roll_rad;
+  }
   std::size_t jaw_joint() const { return model_.arm_joints; }
   std::size_t link_count() const { return model_.joint_count() + 1; }  // that move
   const ArmModel::Jaw& jaw() const { return model_.jaw; }
@@ -98,11 +109,11 @@ class Arm {
 
   // The tool frame in the base frame.
   Pose base_from_tool(const JointVector& q_rad) const;
-  // The tool axis (tool z) in the base frame; it does not depend on the roll.
+  // The tool axis (tool z) in the base frame; it does not depend on a roll.
   Vec3 approach_axis(const JointVector& q_rad) const;
-  // The tool frame at roll 0: what the joints before the roll make of it.
+  // The tool frame at roll 0: what the pointing joints make of it.
   Pose base_from_unrolled_tool(const JointVector& q_rad) const;
-  // The laser, given in the tool frame at roll 0 and carried by the joints before the roll: the roll in `q_rad` is ignored.
+  // The laser, given in the tool frame at roll 0 and carried by the pointing joints: a roll in `q_rad` is ignored.
   Pose base_from_laser(const JointVector& q_rad, const LaserCalibration& laser) const;
   // Geometric Jacobian of the tool point.
   Jacobian jacobian(const JointVector& q_rad) const;

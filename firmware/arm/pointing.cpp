@@ -11,19 +11,20 @@ namespace {
 
 constexpr double exact = 1e-9;  // m and rad
 
-// Where the tool is and what it does at small turns of the joints before the roll.
+// Where the tool is and what it does at small turns of the pointing joints.
 struct PointedTool {
   using Rows = Eigen::Matrix<double, 5, capacity::arm_joints>;
   using Change = Eigen::Matrix<double, 5, 1>;
 
   PointedTool(const Arm& arm, const JointVector& q_rad) {
     const LinkPoses links = arm.base_from_links(q_rad, 0);
-    const Pose& last = links[arm.roll_joint()];
-    tool_m = last * Vec3(0, 0, arm.model().tool_z_m);
-    approach = last.linear().col(2);
-    across_x = last.linear().col(0);
-    across_y = last.linear().col(1);
-    for (std::size_t i = 0; i < arm.roll_joint(); ++i) {
+    const Pose& last = links[arm.arm_joints() - 1];
+    const Mat3 tool = arm.rolls() ? last.linear() : Mat3(last.linear() * arm.model().last_from_tool().linear());
+    tool_m = last * arm.tool_on_last_m();
+    approach = tool.col(2);
+    across_x = tool.col(0);
+    across_y = tool.col(1);
+    for (std::size_t i = 0; i < arm.pointing_joints(); ++i) {
       const Vec3 axis = links[i].linear().col(2);
       const auto joint = static_cast<Eigen::Index>(i);
       rows.block<3, 1>(0, joint) = axis.cross(tool_m - links[i].translation());
@@ -47,17 +48,17 @@ struct PointedTool {
   Rows rows = Rows::Zero();  // the tool point's motion, and its turns about the tool's x and y
 };
 
-// The arm, its roll without ends: what turns about the approach axis is chosen afterwards.
+// The arm, a roll without ends: what turns about the approach axis is chosen afterwards.
 chain::Chain chain_of(const Arm& arm, double limit_margin_rad) {
   std::array<chain::ChainJoint, capacity::arm_joints> joints;
   for (std::size_t i = 0; i < arm.arm_joints(); ++i) {
     joints[i].parent_from_joint = arm.model().origins[i];
     joints[i].lower = arm.joint(i).lower_rad + limit_margin_rad;
     joints[i].upper = arm.joint(i).upper_rad - limit_margin_rad;
-    joints[i].limited = i != arm.roll_joint();
+    joints[i].limited = !arm.rolls() || i != arm.roll_joint();
   }
-  Pose last_from_tool = Pose::Identity();
-  last_from_tool.translation().z() = arm.model().tool_z_m;
+  Pose last_from_tool = arm.rolls() ? Pose::Identity() : arm.model().last_from_tool();
+  last_from_tool.translation() = arm.tool_on_last_m();
   chain::Chain chain;
   (void)chain.set(std::span(joints).first(arm.arm_joints()), last_from_tool);
   return chain;
@@ -109,6 +110,7 @@ IkResult pointed(const Arm& arm, const Vec3& tool_m, const Vec3& approach, doubl
   const bool numbers = tool_m.allFinite() && approach.allFinite() && near_rad.allFinite() && std::isfinite(roll_rad + limit_margin_rad);
   if (!numbers || !(approach.norm() > 0)) return result;
   chain::IkTask task;
+  task.roll = arm.rolls();
   task.base_from_tool.translation() = tool_m;
   task.base_from_tool.linear() = turned_to(arm.base_from_tool(near_rad).linear(), approach);
   chain::JointValues seed = chain::JointValues::Zero();
@@ -119,6 +121,7 @@ IkResult pointed(const Arm& arm, const Vec3& tool_m, const Vec3& approach, doubl
   result.excess = found.excess;
   result.joint = found.joint < 0 ? 0 : static_cast<std::size_t>(found.joint);
   result.q_rad = joints_of(found.nearest, arm.arm_joints());
+  if (!arm.rolls()) return result;
   const std::size_t roll = arm.roll_joint();
   result.q_rad[static_cast<Eigen::Index>(roll)] = roll_rad;
   const double lower_rad = arm.joint(roll).lower_rad + limit_margin_rad, upper_rad = arm.joint(roll).upper_rad - limit_margin_rad;

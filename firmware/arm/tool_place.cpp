@@ -37,7 +37,7 @@ IkResult point_tool_beside(const Arm& arm, const JointVector& beside_rad, const 
     const Vec3 here_m = from.translation() + share * (tool_m - from.translation());
     if (!move_tool(arm, here_m, from_axis + share * (to_axis - from_axis), result.q_rad)) return result;
   }
-  result.q_rad[static_cast<Eigen::Index>(arm.roll_joint())] = roll_rad;
+  arm.set_roll(result.q_rad, roll_rad);
   check_limits(arm, limit_margin_rad, result);
   return result;
 }

@@ -11,7 +11,7 @@ constexpr std::uint32_t lost_ticks = 3;
 
 }  // namespace
 
-FaultSources::FaultSources(const safety::Limits& limits) : free_guard_(free_motion_guard(limits)) {}
+FaultSources::FaultSources(const arm::Arm& arm, const safety::Limits& limits) : free_guard_(free_motion_guard(arm, limits)) {}
 
 void FaultSources::on_port_error(Port port) { ports_failed_[static_cast<std::size_t>(port)] = true; }
 

@@ -12,7 +12,7 @@ namespace lf::mission {
 
 class FaultSources {
  public:
-  explicit FaultSources(const safety::Limits& limits);
+  FaultSources(const arm::Arm& arm, const safety::Limits& limits);
 
   // A call of the platform failed since the last tick.
   void on_port_error(Port port);

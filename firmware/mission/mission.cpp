@@ -8,7 +8,7 @@ namespace lf::mission {
 using safety::Fault;
 using safety::Reaction;
 
-Mission::Mission(const ControllerConfig& config) : bench_(config), sources_(config.mission_limits) {}
+Mission::Mission(const ControllerConfig& config) : bench_(config), sources_(config.arm, config.mission_limits) {}
 
 void Mission::tick(Time now, canopen::Network& network, ScanOrders& orders, Telemetry& telemetry) {
   const StepTick tick{now, step_, network, orders, telemetry, bench_, arbiter_, clock_};

@@ -76,7 +76,7 @@ void Mission::forget(const StepTick& tick) {
   bench_.gripper = bench_.new_gripper();
   if (doubtful_jaw) bench_.gripper.doubt();
   bench_.compliance.reset();
-  bench_.map = PanelMap(config.mission.layout, config.markers, config.camera, config.arm.roll_joint());
+  bench_.map = PanelMap(config.mission.layout, config.markers, config.camera, config.arm.pointing_joints());
   bench_.motion.freeze();
   bench_.job.begin_anew();
   empty_jaw_ = EmptyJaw();

@@ -152,6 +152,7 @@ void Motion::sweep() { begin(Kind::sweep, sweep_.duration_s()); }
 
 void Motion::turn(double from_rad, double to_rad, const Room& room, double jaw_rad, double speed_rad_s,
                   const arm::JointVector& pushed_rad) {
+  if (!arm_.rolls()) return refuse(StepFailure::unreachable);  // such a task is refused before
   const arm::JointLimits limits = this->limits(1);
   const std::size_t roll = arm_.roll_joint();
   BarTurn::Limits bar;

@@ -59,7 +59,7 @@ double corner_ahead_m(const arm::Arm& arm, const arm::JointVector& q_rad, const 
 
 // Where touching is meant: of the arm's rules for its torques only what says that the button has bottomed. An overload is the watch's.
 arm::GuardConfig press_guard(const Workbench& bench) {
-  arm::GuardConfig config(bench.config.arm.arm_joints());
+  arm::GuardConfig config(bench.config.arm);
   config.contact_torque_nm.setConstant(bench.mission().press_torque_nm);
   config.overload_torque_nm.setConstant(HUGE_VAL);
   return config;
@@ -126,12 +126,14 @@ std::optional<arm::JointVector> PressButton::choose_roll(Workbench& bench) {
   }
   const Vec3 tip = bench.map.button_m(bench.job.task().button) + bench.map.normal() * bench.mission().approach_distance_m;
   const arm::JointLimits limits = bench.motion.limits(1);
-  for (std::size_t k = 0; k < rolls_rad.size(); ++k) {
+  const arm::Arm& arm = bench.config.arm;
+  const std::size_t choices = arm.rolls() ? rolls_rad.size() : 1;
+  for (std::size_t k = 0; k < choices; ++k) {
     arm::JointVector q = bench.measured_rad();
-    const std::size_t roll = bench.roll();
-    if (barred_[k] || rolls_rad[k] < limits.lower_rad[roll] || rolls_rad[k] > limits.upper_rad[roll]) continue;
-    if (!tool_for_tip(bench.config.arm, tip, -bench.map.normal(), closed_tip_beyond_tool_m(bench.jaw()), rolls_rad[k], false, q)) {
-      if (bench.config.arm.is_planar()) continue;
+    const bool within = !arm.rolls() || (rolls_rad[k] >= arm.roll_rad(limits.lower_rad) && rolls_rad[k] <= arm.roll_rad(limits.upper_rad));
+    if (barred_[k] || !within) continue;
+    if (!tool_for_tip(arm, tip, -bench.map.normal(), closed_tip_beyond_tool_m(bench.jaw()), rolls_rad[k], false, q)) {
+      if (arm.is_planar()) continue;
       return std::nullopt;  // where a pointed tool has no place at one roll it has none at another
     }
     roll_ = k;
@@ -170,7 +172,8 @@ Progress PressButton::run_reach(const StepTick& tick) {
 Progress PressButton::begin_press(Workbench& bench) {
   // Until the press has come to its speed: a gear's break-away may pass the press's torque for some milliseconds (8 N m were seen).
   arm::GuardConfig config = press_guard(bench);
-  config.contact_torque_nm = free_motion_guard(bench.config.mission_limits).contact_torque_nm.cwiseMax(bench.mission().press_torque_nm);
+  config.contact_torque_nm =
+      free_motion_guard(bench.config.arm, bench.config.mission_limits).contact_torque_nm.cwiseMax(bench.mission().press_torque_nm);
   guard_ = arm::GuardedMotion(config);
   feel_ = ButtonFeel(feel_config(bench));
   learned_under_way_ = false;
@@ -254,7 +257,8 @@ void PressButton::learn_under_way(const Workbench& bench) {
 void PressButton::compare_with_rest(const Workbench& bench) {
   if (!rest_nm_ || guard_.state() != arm::GuardState::free) return;
   Eigen::Index joint = 0;
-  if ((guard_.baseline_nm() - *rest_nm_).cwiseAbs().maxCoeff(&joint) > friction_nm * strength(bench.config.mission_limits))
+  if ((guard_.baseline_nm() - *rest_nm_).cwiseAbs().maxCoeff(&joint) >
+      friction_nm * strength(bench.config.arm, bench.config.mission_limits))
     pushed_joint_ = static_cast<std::size_t>(joint);
   rest_nm_.reset();
 }
@@ -264,14 +268,14 @@ std::optional<std::size_t> PressButton::misled_joint(const Workbench& bench) con
   return unseen ? unseen : bench.misled_joint(guard_);
 }
 
-// The drives' force along the press is the least-squares one for the torques of the joints before the roll, which has no part in it.
+// The drives' force along the press is the least-squares one for the torques of the joints: a roll has no part in it.
 void PressButton::feel(const StepTick& tick) {
   const Workbench& bench = tick.bench;
   if (guard_.state() == arm::GuardState::learning || !bench.watch.joints().valid) return;
   const arm::JointVector q = bench.measured_rad();
   const Vec3 inward = -bench.map.normal();
   arm::JointVector along = (inward.transpose() * bench.config.arm.jacobian(q).topRows<3>()).transpose();
-  along[bench.roll()] = 0;
+  bench.config.arm.set_roll(along, 0);
   const double force_n = along.dot(guard_.excess_torque_nm()) / along.squaredNorm();
   const Vec3 tip = bench.config.arm.base_from_tool(q) * Vec3(0, 0, closed_tip_beyond_tool_m(bench.jaw()));
   const double depth_m = (tip - bench.map.button_m(bench.job.task().button)).dot(inward);

@@ -107,7 +107,7 @@ Progress TurnValve::run_reach(const StepTick& tick) {
 }
 
 void TurnValve::begin_advance(Workbench& bench) {
-  guard_ = arm::GuardedMotion(approach_guard(bench.config.mission_limits));
+  guard_ = arm::GuardedMotion(approach_guard(bench.config.arm, bench.config.mission_limits));
   bench.go_straight(bench.map.handle_centre_m(bench.job.task().valve), bench.tool_roll_rad, bench.mission().approach_speed_m_s,
                     bench.meant_parts());
 }

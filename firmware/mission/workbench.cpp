@@ -23,7 +23,7 @@ constexpr double gives_way_m = 0.006;
 
 // While the load of a press is let off its change is no contact. Nor is the load: a press may leave 28 N m in the shoulder's gear, which holds it by itself.
 arm::GuardConfig unwinding_guard(const arm::Arm& arm) {
-  arm::GuardConfig guard(arm.arm_joints());
+  arm::GuardConfig guard(arm);
   guard.contact_torque_nm.setConstant(HUGE_VAL);
   guard.overload_torque_nm.setConstant(HUGE_VAL);
   return guard;
@@ -57,10 +57,9 @@ CameraWork::Config camera_config(const ControllerConfig& config) {
 
 }  // namespace
 
-arm::GuardConfig free_motion_guard(const safety::Limits& limits) {
-  const std::size_t arm_joints = limits.joints.empty() ? 0 : limits.joints.size() - 1;  // the last is the jaw's
-  arm::GuardConfig guard(arm_joints);
-  for (std::size_t i = 0; i < arm_joints; ++i) {
+arm::GuardConfig free_motion_guard(const arm::Arm& arm, const safety::Limits& limits) {
+  arm::GuardConfig guard(arm);
+  for (std::size_t i = 0; i < arm.arm_joints(); ++i) {
     const auto joint = static_cast<Eigen::Index>(i);
     guard.contact_torque_nm[joint] = std::min(limits.max_contact_torque_nm, contact_share * limits.joints[i].max_torque_nm);
     guard.overload_torque_nm[joint] = load_share * limits.joints[i].max_torque_nm;
@@ -68,34 +67,27 @@ arm::GuardConfig free_motion_guard(const safety::Limits& limits) {
   return guard;
 }
 
-namespace {
-
-// Of limits for an arm with a jaw.
-Eigen::Index joints_before_roll(const safety::Limits& limits) { return std::max<Eigen::Index>(0, std::ssize(limits.joints) - 2); }
-
-}  // namespace
-
-arm::GuardConfig approach_guard(const safety::Limits& limits) {
+arm::GuardConfig approach_guard(const arm::Arm& arm, const safety::Limits& limits) {
   constexpr double share = 8.0 / 13.0, roll_share = 12.0 / 13.0;  // 20 N at the default arm's tool
-  arm::GuardConfig guard = free_motion_guard(limits);
-  const Eigen::Index roll = joints_before_roll(limits);
-  guard.contact_torque_nm.head(roll) *= share;
-  guard.contact_torque_nm[roll] *= roll_share;
+  arm::GuardConfig guard = free_motion_guard(arm, limits);
+  guard.contact_torque_nm.head(static_cast<Eigen::Index>(arm.pointing_joints())) *= share;
+  arm.set_roll(guard.contact_torque_nm, roll_share * arm.roll_rad(guard.contact_torque_nm));
   guard.overload_torque_nm.setConstant(HUGE_VAL);  // the watch's
   return guard;
 }
 
-double strength(const safety::Limits& limits) {
+double strength(const arm::Arm& arm, const safety::Limits& limits) {
   constexpr double of_the_default_nm = 13;
-  const Eigen::Index before_roll = joints_before_roll(limits);
-  return before_roll > 0 ? free_motion_guard(limits).contact_torque_nm.head(before_roll).minCoeff() / of_the_default_nm : 1;
+  return free_motion_guard(arm, limits).contact_torque_nm.head(static_cast<Eigen::Index>(arm.pointing_joints())).minCoeff() /
+         of_the_default_nm;
 }
 
 arm::ComplianceConfig gripping_compliance(const arm::Arm& arm, const safety::Limits& limits) {
   arm::ComplianceConfig config(arm.arm_joints());
-  const double stronger = std::max(1.0, strength(limits));  // a weaker arm gives way no faster than the default: its loops are no faster
+  const double stronger =
+      std::max(1.0, strength(arm, limits));  // a weaker arm gives way no faster than the default: its loops are no faster
   config.give_rad_s_nm /= stronger;
-  config.dead_nm *= strength(limits);
+  config.dead_nm *= strength(arm, limits);
   constexpr double at_the_tool_m = 0.02;  // as 0.05 rad of the default arm's elbow
   if (!arm.is_planar()) config.largest_rad = std::min(config.largest_rad, at_the_tool_m / arm.reach_m(0).maxCoeff());
   return config;
@@ -103,7 +95,7 @@ arm::ComplianceConfig gripping_compliance(const arm::Arm& arm, const safety::Lim
 
 bool lags_without_load(const arm::Arm& arm, const arm::GuardedMotion& guard) {
   // Over free motion's estimated torque: 10 N at the tool. The friction's doubt is within.
-  const arm::JointVector load_nm = arm::each_joint(arm.arm_joints(), 4, 2);
+  const arm::JointVector load_nm = arm::each_joint(arm.arm_joints(), 4, 2, arm.rolls());
   const auto joint = static_cast<Eigen::Index>(guard.joint());
   return guard.touched() && guard.cause() == arm::GuardCause::following_error && std::abs(guard.excess_torque_nm()[joint]) < load_nm[joint];
 }
@@ -165,12 +157,12 @@ Workbench::Workbench(const ControllerConfig& told)
       watch(config.arm, told.mission_limits, told.transmissions),
       camera(camera_config(told)),
       motion(config.arm, told.mission_limits, config.mission.layout, config.mission.vehicle, told.mission.park_rad),
-      map(config.mission.layout, config.markers, config.camera, config.arm.roll_joint()),
+      map(config.mission.layout, config.markers, config.camera, config.arm.pointing_joints()),
       job(told.mission.tasks, told.mission.tries),
       gripper(new_gripper()),
       compliance(gripping_compliance(config.arm, told.mission_limits)),
       grip_guard(gripping_guard(config.arm)),
-      back_guard(free_motion_guard(told.mission_limits)),
+      back_guard(free_motion_guard(config.arm, told.mission_limits)),
       power(config.arm) {}
 
 arm::Gripper Workbench::new_gripper() const {
@@ -305,7 +297,7 @@ void report_felt(std::optional<std::size_t> misled, std::size_t felt_by, safety:
 }
 
 std::optional<std::size_t> Workbench::unseen_joint() const {
-  for (std::size_t joint = 0; joint < config.arm.roll_joint(); ++joint) {
+  for (std::size_t joint = 0; joint < config.arm.pointing_joints(); ++joint) {
     if (watch.shows_nothing(joint)) return joint;
   }
   return std::nullopt;
@@ -324,21 +316,21 @@ void Workbench::report_touch(const arm::GuardedMotion& guard, safety::FaultArbit
 
 void Workbench::let_off_roll() {
   arm::JointVector rest_rad = motion.target();
-  rest_rad[roll()] = measured_rad()[roll()];
+  config.arm.set_roll(rest_rad, config.arm.roll_rad(measured_rad()));
   motion.start_at(rest_rad);
 }
 
 void Workbench::begin_back_off() {
-  back_guard = arm::GuardedMotion(wound_up ? unwinding_guard(config.arm) : free_motion_guard(config.mission_limits));
+  back_guard = arm::GuardedMotion(wound_up ? unwinding_guard(config.arm) : free_motion_guard(config.arm, config.mission_limits));
   back_from_m_ = config.arm.base_from_tool(motion.target()).translation();
-  go_straight(standoff_m, motion.target()[roll()], config.mission.approach_speed_m_s, meant_parts());
+  go_straight(standoff_m, config.arm.roll_rad(motion.target()), config.mission.approach_speed_m_s, meant_parts());
 }
 
 void Workbench::guard_back_off(Time now) {
   const double unwinding_m = gives_way_m + (wound_up ? config.mission.layout.buttons[job.task().button].stroke_m : 0);
   if (wound_up && (config.arm.base_from_tool(motion.target()).translation() - back_from_m_).norm() >= unwinding_m) {
     wound_up = false;
-    back_guard = arm::GuardedMotion(free_motion_guard(config.mission_limits));
+    back_guard = arm::GuardedMotion(free_motion_guard(config.arm, config.mission_limits));
   }
   if (!motion.planning() && watch.joints().valid) feel(back_guard, now);
 }
@@ -348,7 +340,8 @@ std::optional<std::size_t> Workbench::misled_on_the_way_back() const {
   if (gripper.state() != arm::GripperState::open) return std::nullopt;
   // The jaw is open and the roll was let off: what its motor still pushes with is no contact. Another joint that was overloaded and behind its target before the arm left has
   // seized or is pinned. It loses its power either way.
-  const bool roll_pushes = back_guard.state() == arm::GuardState::overload && back_guard.joint() == config.arm.roll_joint();
+  const bool roll_pushes =
+      config.arm.rolls() && back_guard.state() == arm::GuardState::overload && back_guard.joint() == config.arm.roll_joint();
   return roll_pushes || was_behind_before(config.arm, back_guard) ? std::optional(back_guard.joint()) : std::nullopt;
 }
 

@@ -31,14 +31,14 @@ enum class Course : std::uint8_t {
 
 // A contact in motion that may touch nothing: what free motion takes of torque is learned on the way; how much more is a contact, the limits say, and for
 // a joint half of its own limit if that is less; so is seven tenths of that limit, however slowly it came. The overload is the watch's.
-arm::GuardConfig free_motion_guard(const safety::Limits& limits);
+arm::GuardConfig free_motion_guard(const arm::Arm& arm, const safety::Limits& limits);
 // Of a way on which touching what is meant begins: a smaller rise, since the pads may brush the bar.
-arm::GuardConfig approach_guard(const safety::Limits& limits);
+arm::GuardConfig approach_guard(const arm::Arm& arm, const safety::Limits& limits);
 // How an arm that grips gives way: the stronger the arm, the less for a newton metre.
 arm::ComplianceConfig gripping_compliance(const arm::Arm& arm, const safety::Limits& limits);
 // How many times stronger than the default arm this one is. The mission's rules have the default arm's torques, and multiply them by this: what the limits take for
-// a contact, at the weakest joint before the roll, over the default's.
-double strength(const safety::Limits& limits);
+// a contact, at the weakest joint that points the tool, over the default's.
+double strength(const arm::Arm& arm, const safety::Limits& limits);
 
 // A joint stays behind its target, and nothing holds it back: its encoder or its drive is not to be trusted.
 bool lags_without_load(const arm::Arm& arm, const arm::GuardedMotion& guard);

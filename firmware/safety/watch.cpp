@@ -79,7 +79,7 @@ void Watch::observe_encoder(const canopen::Axis& axis, std::size_t joint, Time n
   sample.holds_much = at_least_nm(joint) >= much_share * limit_nm;
   sample.motor_at_limit = std::abs(axis.torque_permille()) >= motor_share * axis.setup().max_torque_of(axis.rated_torque_unm());
   const bool stuck = encoders_[joint].update(sample);
-  stuck_[joint] = stuck && joint < arm_->roll_joint();
+  stuck_[joint] = stuck && joint < arm_->pointing_joints();
 }
 
 double Watch::at_least_nm(std::size_t joint) const {

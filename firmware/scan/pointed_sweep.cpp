@@ -46,7 +46,7 @@ void PointedSweepPlanner::begin(const arm::Arm& arm, const SweepRequest& request
   arm_ = &arm;
   limits_ = arm.limits(soft_margin_rad + run_up_s * request.slowest_rad_s);
   near_rad_ = near_rad.cwiseMax(limits_.lower_rad).cwiseMin(limits_.upper_rad);
-  near_rad_[static_cast<Eigen::Index>(arm.roll_joint())] = 0;
+  arm.set_roll(near_rad_, 0);
   const double wide_m = (request.right_m - request.left_m) / 2 + request.margin_m;
   nearest_m_ = (wide_m + request.docking_shift_m) / std::tan(std::min(1.4, laser.fan_half_angle_rad - fan_spare_rad)) +
                request.docking_shift_m + 0.5 * request.docking_turn_rad * wide_m;
@@ -89,7 +89,7 @@ void PointedSweepPlanner::next_start() {
   q_rad_ = start_ == 0 ? solved_rad_ : near_rad_;
   const bool again = start_ == 0 && solved_rad_.isZero();
   if (!first) {
-    for (std::size_t i = 0; i < arm_->roll_joint(); ++i) {
+    for (std::size_t i = 0; i < arm_->pointing_joints(); ++i) {
       const auto k = static_cast<Eigen::Index>(i);
       q_rad_[k] = uniform(limits_.lower_rad[k], limits_.upper_rad[k]);
     }
@@ -134,7 +134,7 @@ void PointedSweepPlanner::descend() {
   }
   Rows rows = Rows::Zero();
   const Pose panel_from_base = r.base_from_panel.inverse();
-  for (std::size_t i = 0; i < arm_->roll_joint(); ++i) {
+  for (std::size_t i = 0; i < arm_->pointing_joints(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     const Vec3 axis = panel_from_base.linear() * links[i].linear().col(2), at_m = panel_from_base * links[i].translation();
     const Vec3 motion = axis.cross(laser.origin_m - at_m), along = axis.cross(laser.along), ahead = axis.cross(laser.ahead);
@@ -250,7 +250,7 @@ SweepPlan PointedSweepPlanner::result() const {
 
 void PointedSweepPlanner::next_joint() {
   ++joint_;
-  work_ = joint_ < static_cast<Eigen::Index>(arm_->roll_joint()) ? Work::find_start : Work::start;
+  work_ = joint_ < static_cast<Eigen::Index>(arm_->pointing_joints()) ? Work::find_start : Work::start;
 }
 
 // Of the sweep by one joint of the posture that was found.

@@ -115,6 +115,8 @@ void read_intrinsics(const std::string& path, CameraIntrinsics& intrinsics) {
 LaserCalibration laser_calibration(const Laser& laser) {
   LaserCalibration calibration;
   calibration.tool_from_laser.translation() = Vec3(laser.position_m[0], laser.position_m[1], laser.position_m[2]);
+  if (laser.turn_deg != 0)
+    calibration.tool_from_laser.linear() = Eigen::AngleAxisd(rad_from_deg(laser.turn_deg), Vec3::UnitZ()).toRotationMatrix();
   calibration.fan_half_angle_rad = rad_from_deg(laser.fan_half_angle_deg);
   return calibration;
 }
@@ -196,9 +198,16 @@ void check_exposure(const Machine& machine) {
                       std::to_string(static_cast<int>(longest_us)) + " us");
 }
 
-// The wrist's peak, or the couple of two pads that press on the bar's ends.
+// The sweep of slew, shoulder, elbow and roll lifts a level line.
+void check_laser(const Machine& machine) {
+  if (machine.arm.is_planar() && machine.laser.turn_deg != 0)
+    refuse(machine, "'laser.turn_deg' is not 0: on an arm of slew, shoulder, elbow and roll the plane's normal is the tool's x");
+}
+
+// The wrist's peak, or the couple of two pads that press on the bar's ends. 0 without a roll.
 double hand_torque_nm(const ArmDescription& description, const ArmModel::Jaw& jaw) {
-  return std::min(arm::pad_force_n(jaw, description.jaw().effort_nm) * jaw.pad_width_m, description.roll().effort_nm);
+  if (!description.rolls) return 0;
+  return std::min(arm::pad_force_n(jaw, description.jaw().effort_nm) * jaw.pad_width_m, description.last().effort_nm);
 }
 
 // Where the panel and what stands proud of it can be: the worst docking error moves a corner of the plate by 20 mm and, over half a metre, by
@@ -357,6 +366,7 @@ Core assemble(Machine machine, const Steps& steps) {
   set_chain(machine.panel, controller.camera, core.scan.chain);
   set_frame_rate(machine.mission, core.scan);
   steps.take([&] { check_exposure(machine); });
+  steps.take([&] { check_laser(machine); });
   // What follows is about jobs at a panel. An arm of another form than the planar one that is given none need not be able to do any.
   const bool works = arm && arm::can_work(machine.arm) && (machine.arm.is_planar() || !machine.tasks.empty());
   if (arm && !arm::can_work(machine.arm) && !machine.tasks.empty()) steps.take([&] { refuse(machine, no_jobs); });

@@ -22,7 +22,7 @@ std::string formatted(const char* form, Values... values) {
 }
 
 void check_torques(const arm::Arm& arm, const JointNames& names, const safety::Limits& limits, std::vector<std::string>& problems) {
-  const arm::JointVector contact_nm = mission::free_motion_guard(limits).contact_torque_nm;
+  const arm::JointVector contact_nm = mission::free_motion_guard(arm, limits).contact_torque_nm;
   for (std::size_t i = 0; i < arm.arm_joints(); ++i) {
     const double told_nm = contact_nm[static_cast<Eigen::Index>(i)], free_nm = free_motion_share * arm.joint(i).rated_torque_nm;
     if (told_nm > free_nm) continue;
@@ -59,7 +59,7 @@ void check_fit(const arm::Arm& arm, const JointNames& names, const safety::Limit
           names[i].c_str(), joint.velocity_rad_s / joint.acceleration_rad_s2));
   }
   for (std::size_t i = 0; i < arm.arm_joints(); ++i) {
-    const double contact_nm = mission::free_motion_guard(limits).contact_torque_nm[static_cast<Eigen::Index>(i)];
+    const double contact_nm = mission::free_motion_guard(arm, limits).contact_torque_nm[static_cast<Eigen::Index>(i)];
     const double peak_nm = arm.joint(i).effort_nm;
     if (contact_nm >= of_peak * peak_nm)
       problems.push_back(

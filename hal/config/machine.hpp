@@ -31,6 +31,7 @@ struct Camera {
 struct Laser {
   double fan_half_angle_deg = 40.0;                       // 38.5 is needed at the worst docking error
   std::array<double, 3> position_m{-0.090, 0.0, -0.365};  // in the tool frame
+  double turn_deg = 0;                                    // about the tool's axis; of an arm that can point
 };
 
 // What of the vehicle the arm could reach, in the arm's base frame: skid, frame, hulls, the camera with its strut, and two lamps. The simulator makes its vehicle of it,

@@ -66,7 +66,9 @@ void add_camera(Keys& all, Camera& camera) {
 
 void add_laser(Keys& all, Laser& laser) {
   all.push_back(key("laser.fan_half_angle_deg", "deg", 5, 80, &laser.fan_half_angle_deg, "half of the fan's angle in water"));
-  all.push_back(key("laser.position_m", "m", -1, 1, &laser.position_m, "[x, y, z] in the tool frame; the plane's normal is the tool's x"));
+  all.push_back(key("laser.position_m", "m", -1, 1, &laser.position_m, "[x, y, z] in the tool frame"));
+  all.push_back(key("laser.turn_deg", "deg", -180, 180, &laser.turn_deg,
+                    "about the tool's axis. At 0 the plane's normal is the tool's x; at 90 its y, for hands that open sideways"));
 }
 
 void add_vehicle(Keys& all, Vehicle& v) {

@@ -29,9 +29,23 @@ bool can_begin(const Machine& machine, const arm::JointVector& q_rad, double fro
   return rolls && arm::roll_for_turn(*rolls, shortest_share * (from_rad - to_rad), range.lower_rad, range.upper_rad);
 }
 
+std::vector<std::string> no_roll_problems(const Machine& machine) {
+  const std::size_t last = machine.arm.arm_joints() - 1;
+  std::vector<std::string> problems;
+  for (const Task& task : machine.tasks) {
+    const std::optional<std::size_t> valve =
+        task.kind == Task::Kind::turn_valve ? find_valve(machine.survey.names, task.valve) : std::nullopt;
+    if (!valve) continue;
+    problems.push_back(valve_text(machine.survey.names, *valve) + " cannot be turned: this arm has no roll, its last joint, '" +
+                       std::string(machine.joints[last]) + "', swings the hand. It presses buttons");
+  }
+  return problems;
+}
+
 }  // namespace
 
 std::vector<std::string> roll_problems(const Machine& machine, const safety::Limits& limits) {
+  if (!machine.arm.rolls()) return no_roll_problems(machine);
   const ArmModel::Joint& roll = machine.arm.joint(machine.arm.roll_joint());
   const safety::JointLimit& limit = limits.joints[machine.arm.roll_joint()];
   const double off_rad = margin_rad + machine.mission.docking.turn_rad;

@@ -54,7 +54,7 @@ std::vector<std::string> torque_problems(const Machine& machine, double hand_tor
   std::vector<std::string> problems;
   for (std::size_t i = 0; i < machine.survey.valves.size(); ++i) {
     const double needs_nm = machine.survey.valves[i].torque_nm;
-    if (!turns(machine, i) || needs_nm <= hand_torque_nm) continue;
+    if (!turns(machine, i) || needs_nm <= hand_torque_nm || !machine.arm.rolls()) continue;
     std::array<char, 200> text;
     (void)std::snprintf(text.data(), text.size(), "%s needs %.3g N m, the arm gives %.3g. See %s",
                         valve_text(machine.survey.names, i).c_str(), needs_nm, hand_torque_nm,
@@ -89,6 +89,7 @@ std::string tasks_problem(const Machine& machine, const Core& core, const missio
 
 std::vector<std::string> turn_speed_problems(const Machine& machine, const safety::Limits& limits) {
   std::vector<std::string> problems;
+  if (!machine.arm.rolls()) return problems;  // turns nothing
   const std::size_t roll = machine.arm.roll_joint();
   for (std::size_t i = 0; i < machine.panel.valves.size(); ++i) {
     if (!machine.survey.file.empty() && !turns(machine, i)) continue;

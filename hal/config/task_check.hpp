@@ -9,8 +9,8 @@ namespace lf::config {
 
 // Of an arm that jobs are not planned for.
 inline constexpr const char* no_jobs =
-    "'tasks' has some, and jobs are planned for arms of slew, shoulder, elbow and roll, and for arms with five joints or more before "
-    "their roll. With `tasks: []` this one can be commissioned, homed and jogged: by `lanternfish serve` on a desk";
+    "'tasks' has some, and jobs are planned for arms of slew, shoulder, elbow and roll, and for arms with five joints or more beside "
+    "a roll. With `tasks: []` this one can be commissioned, homed and jogged: by `lanternfish serve` on a desk";
 
 // Why a turn among them is refused: an angle beyond the handle's stops. Empty: none is.
 std::string turn_problem(const mission::Tasks& tasks, const PanelLayout& panel, const PanelNames& names);

@@ -141,7 +141,7 @@ void tell(const Told& told) {
           arm::family_of(told.arm), 1e3 * told.reach_m());
   else
     print(
-        "  neither slew, shoulder, elbow and roll nor five joints before its roll, for which jobs are planned: it can be commissioned, "
+        "  neither slew, shoulder, elbow and roll nor five joints beside a roll, for which jobs are planned: it can be commissioned, "
         "homed and jogged. The tool comes %.0f mm from the first joint at most\n",
         1e3 * told.reach_m());
   print("  the jaw opens to %.0f mm, and takes bars up to %.1f mm\n", 1e3 * told.jaw_opens_m(), 1e3 * arm::thickest_bar_m(told.arm.jaw()));

@@ -17,7 +17,7 @@ namespace {
 struct Options {
   double x_m = 0, y_m = 0, z_m = 0, roll_rad = 0;
   double margin_rad = arm::default_limit_margin_rad;
-  std::vector<double> approach{1, 0, 0};
+  std::vector<double> approach;  // empty: not told
   std::string arm = "arm/arm5e.urdf";
   bool json = false;
 };
@@ -76,9 +76,13 @@ int ik(const Options& options) {
   const config::NamedArm arm = config::read_arm(config::find_file(options.arm, ""));
   if (!arm::can_work(arm.arm))
     throw InputError("ik: " + options.arm +
-                     " is neither an arm of slew, shoulder, elbow and roll nor one with five joints or more before its roll: `lanternfish "
+                     " is neither an arm of slew, shoulder, elbow and roll nor one with five joints or more beside a roll: `lanternfish "
                      "check arm` tries any");
-  const Vec3 tool_m(options.x_m, options.y_m, options.z_m), approach = Eigen::Map<const Vec3>(options.approach.data());
+  if (arm.arm.is_planar() && !options.approach.empty())
+    throw InputError("ik: --approach is given, and an arm of slew, shoulder, elbow and roll cannot choose it: it follows from the place");
+  if (!arm.arm.rolls() && options.roll_rad != 0) throw InputError("ik: --roll is given, and this arm has no roll");
+  const Vec3 tool_m(options.x_m, options.y_m, options.z_m);
+  const Vec3 approach = options.approach.empty() ? Vec3::UnitX() : Vec3(Eigen::Map<const Vec3>(options.approach.data()));
   if (!approach.allFinite() || !(approach.norm() > 1e-3)) throw InputError("ik: --approach takes three numbers that are not all 0");
   const arm::IkResult result = arm.arm.is_planar() ? arm::inverse_kinematics(arm.arm, tool_m, options.roll_rad, options.margin_rad)
                                                    : arm::point_tool_or_why(arm.arm, tool_m, approach, options.roll_rad, options.margin_rad,
@@ -100,7 +104,10 @@ void add_ik(CLI::App& app, Action& action) {
   command->add_option("--y", options->y_m, "To the right, m")->required();
   command->add_option("--z", options->z_m, "Down, m")->required();
   command->add_option("--roll", options->roll_rad, "Roll of the jaw, rad");
-  command->add_option("--approach", options->approach, "Direction in which the tool points, of an arm that can choose it")->expected(3);
+  command
+      ->add_option("--approach", options->approach,
+                   "Direction in which the tool points, of an arm that can choose it; 1 0 0 if none is given")
+      ->expected(3);
   command->add_option("--margin", options->margin_rad, "Distance to keep from the joints' limits, rad")->check(within(0, 0.5));
   command->add_option("--arm", options->arm, "The arm's URDF, a file or a shipped one")->capture_default_str();
   command->add_flag("--json", options->json, "Print JSON");

@@ -186,10 +186,10 @@ optics::OpticsConfig optics_config(const Scenario& scenario, const Sample& sampl
   optics.cameras.push_back(camera);
 
   optics::LaserConfig laser;
-  laser.body = scene::OwnBodies(world.arm.arm_joints()).before_hand();
-  const Pose forearm_from_tool = world.arm.roll().parent_from_joint * world.arm.wrist_from_tool;
+  const scene::OwnBodies own(world.arm.arm_joints());
+  laser.body = world.arm.rolls ? own.before_hand() : own.hand;
   laser.body_from_laser =
-      forearm_from_tool * nominal.controller.laser.tool_from_laser * small_pose(sample.laser_shift_m, sample.laser_turn_rad);
+      world.arm.laser_link_from_tool() * nominal.controller.laser.tool_from_laser * small_pose(sample.laser_shift_m, sample.laser_turn_rad);
   // Bent to a cone, the sheet keeps its middle where the calibration found it.
   laser.cone_rad = sample.laser_cone_rad;
   laser.body_from_laser.linear() =

@@ -15,7 +15,7 @@ namespace lf::world {
 class BulletWorld {
  public:
   // `restitution` is that of every contact. Colliders name their body of `scene` by their user index: its role says what it can meet.
-  BulletWorld(int solver_iterations, double restitution, const scene::Scene& scene);
+  BulletWorld(int solver_iterations, double restitution, const scene::Scene& scene, bool hand_rolls = true);
   ~BulletWorld();
   BulletWorld(const BulletWorld&) = delete;
   BulletWorld& operator=(const BulletWorld&) = delete;

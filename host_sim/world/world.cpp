@@ -90,7 +90,7 @@ struct World::Impl {
   explicit Impl(const WorldConfig& from)
       : config(checked(from)),
         own(scene::own_bodies(config.scene)),
-        bullet(config.solver_iterations, config.restitution, config.scene),
+        bullet(config.solver_iterations, config.restitution, config.scene, config.arm.rolls),
         arm(config.arm, config.scene,
             {config.start_rad, config.joint_drag_nm_s, config.drive_stiffness_nm_rad, config.step_s, config.drag_coefficient}),
         panel_shape(make_collision_shape(config.scene[own.panel()], Pose::Identity())),

@@ -341,10 +341,20 @@ double out_from(const Vec3& axis, const scene::Shape& shape) {
 // What the core asks of an arm whose form has no closed forms of its own.
 void check_any_chain(const Urdf& urdf, const ArmDescription& arm) {
   constexpr double tolerance = 1e-9;
-  const ArmJoint& roll = arm.roll();
-  if ((roll.axis - Vec3::UnitZ()).norm() > tolerance)
-    urdf.fail(urdf.named("joint", roll.name),
-              "joint '" + roll.name + "' must turn about its own z: the last of the arm's joints rolls the tool");
+  const ArmJoint& last = arm.last();
+  if (!arm.rolls) {
+    // In between it would turn the tool about its axis and swing it at once.
+    constexpr double least_sine = 0.5;
+    if (last.axis.head<2>().norm() < least_sine)
+      urdf.fail(
+          urdf.named("joint", last.name),
+          "joint '" + last.name +
+              "' must turn about its own z, and so roll the tool about its approach, or about an axis at 30 degrees or more from that");
+    if (arm.arm_joints() > ArmModel::most_joints_without_roll)
+      urdf.fail(urdf.named("joint", last.name), "with joint '" + last.name + "' the arm has " + std::to_string(arm.arm_joints()) +
+                                                    " joints and none that rolls the tool: the core holds " +
+                                                    std::to_string(ArmModel::most_joints_without_roll) + " of such an arm");
+  }
   // The core does not hold it against the vehicle that it stands on. A turret's housing turns in its place; a boom would sweep over what stands beside the base.
   constexpr double turns_in_place_m = 0.15;
   const ArmJoint& first = arm.joints.front();
@@ -361,8 +371,8 @@ void check_any_chain(const Urdf& urdf, const ArmDescription& arm) {
   }
   const Pose& tool = arm.wrist_from_tool;
   if (!tool.linear().isIdentity(tolerance) || tool.translation().head<2>().norm() > tolerance)
-    urdf.fail(urdf.named("joint", "tool"),
-              "joint 'tool' must lie on the z axis of joint '" + roll.name + "', unturned: that joint rolls the tool about its approach");
+    urdf.fail(urdf.named("joint", "tool"), "joint 'tool' must lie on the z axis of link '" + arm.links[arm.arm_joints()].name +
+                                               "', unturned: along it the hand approaches");
 }
 
 // The closed forms of the core hold for one kind of chain only: slew axis through the base's origin, then shoulder and elbow parallel and square to it,
@@ -423,6 +433,7 @@ ArmDescription load_arm_urdf(const std::string& path) {
   read_drive(urdf, arm.joints.back());
   arm.finger_b = read_mimic(urdf, arm.jaw(), hand);
   arm.wrist_from_tool = urdf.origin(joint_between(urdf, "tool", "fixed", hand, "tool"));
+  arm.rolls = (arm.last().axis - Vec3::UnitZ()).norm() < 1e-9;
   check_parts(urdf, parts);
   check_shapes(urdf, arm);
   parts.planar ? check_chain(urdf, arm) : check_any_chain(urdf, arm);

@@ -55,7 +55,9 @@ struct ArmJoint {
 // The first joint's parent_from_joint carries the mount, base_from_arm: a body's pose is the product of parent_from_joint and the turn about `axis`, nothing else.
 struct ArmDescription {
   std::vector<ArmLink> links;
-  std::vector<ArmJoint> joints;  // the arm's, base to tip; the last of them turns about the tool's axis, the roll. After them the jaw's
+  std::vector<ArmJoint>
+      joints;  // the arm's, base to tip; where it rolls the last of them turns about the tool's axis. After them the jaw's
+  bool rolls = true;
   ArmModel::Form form = ArmModel::Form::planar;
   ArmJoint finger_b;                        // mimic of the jaw joint
   Pose wrist_from_tool = Pose::Identity();  // the tool frame on the wrist body
@@ -63,7 +65,9 @@ struct ArmDescription {
   std::vector<std::string> notes;           // of the file, with their lines: what is in it and is of no use
 
   std::size_t arm_joints() const { return joints.size() - 1; }
-  const ArmJoint& roll() const { return joints[joints.size() - 2]; }
+  const ArmJoint& last() const { return joints[joints.size() - 2]; }  // of the arm's
+  // The tool at roll 0 on the link that carries the laser: the one before the roll, or the last where there is none.
+  Pose laser_link_from_tool() const { return rolls ? last().parent_from_joint * wrist_from_tool : wrist_from_tool; }
   const ArmJoint& jaw() const { return joints.back(); }
   ArmJoint& jaw() { return joints.back(); }
   JointNames names() const;

@@ -1,7 +1,7 @@
 // An arm in the numbers that the core works with: made of a URDF when a program starts, or by the build for a core without files.
 //
-// An arm is a chain of joints that turn, the last of them, the roll, about the tool's own axis. Two fingers, each the other's mirror image, turn about axes square
-// to the tool's x-z plane. Arms of one form have closed forms of their own: the slew turns a vertical plane about base z; shoulder and elbow, parallel, move
+// An arm is a chain of joints that turn. The last of them, the roll, turns about the tool's own axis; an arm without a roll points its tool by the last joint, too.
+// Two fingers, each the other's mirror image, turn about axes square to the tool's x-z plane. Arms of one form have closed forms of their own: the slew turns a vertical plane about base z; shoulder and elbow, parallel, move
 // within that plane; the roll axis lies in it, and the tool point on the roll axis.
 #pragma once
 
@@ -85,16 +85,20 @@ struct ArmModel {
     std::uint8_t link_ = 0;
   };
 
-  // Those that place the tool, base to tip; the last of them turns about the tool's own axis, the roll. The jaw comes after them.
+  // Those that place the tool, base to tip. The jaw comes after them.
   std::size_t arm_joints = 4;
+  bool rolls = true;  // the last of them turns about the tool's own axis
   std::size_t joint_count() const { return arm_joints + 1; }
 
   Form form = Form::planar;
   Planar planar;        // of that form
-  double tool_z_m = 0;  // the tool point on the roll's axis, in the last link's frame
+  double tool_z_m = 0;  // with a roll: the tool point on its axis, in the last link's frame
   PerJoint<Joint> joints;
-  // parent_from_joint of the arm's joints, of the jaw (finger_a) and of finger_b. Links' frames are turned so that each of the arm's joints turns about its z.
+  // parent_from_joint of the arm's joints, of the jaw (finger_a) and of finger_b; without a roll the tool's pose on the last link comes after them. Links' frames
+  // are turned so that each of the arm's joints turns about its z.
   static constexpr std::size_t max_links = capacity::joints + 1;
+  static constexpr std::size_t most_joints_without_roll = capacity::joints - 2;
+  const Pose& last_from_tool() const { return origins[arm_joints + 2]; }  // without a roll
   std::array<Pose, max_links> origins = at_the_parent();
   Jaw jaw;
   // Contain the collision shapes of the moving links; each in its link's frame.

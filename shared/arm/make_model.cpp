@@ -81,6 +81,7 @@ double stiffness_nm_rad(const ArmDescription& description, std::size_t joint) {
 ArmModel make_model(const ArmDescription& description) {
   ArmModel model;
   model.arm_joints = description.arm_joints();
+  model.rolls = description.rolls;
   model.form = description.form;
   if (description.form == ArmModel::Form::planar) model.planar = planar(description);
   model.tool_z_m = description.wrist_from_tool.translation().z();
@@ -102,6 +103,7 @@ ArmModel make_model(const ArmDescription& description) {
   }
   const std::size_t fingers = description.joints.size();
   model.origins[fingers] = Pose(link_from_turned[fingers - 1].transpose()) * description.finger_b.parent_from_joint;
+  if (!model.rolls) model.origins[fingers + 1] = Pose(link_from_turned[fingers - 1].transpose()) * description.wrist_from_tool;
   model.jaw = jaw(description);
   for (std::size_t link = 1; link < description.links.size(); ++link) {  // no capsule resembles the base's plate
     for (scene::Shape shape : description.links[link].shapes) {

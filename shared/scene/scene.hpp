@@ -62,7 +62,7 @@ struct OwnBodies {
 
   static constexpr BodyId vehicle = 0;
   BodyId hand;                                                 // the last link, which carries the fingers
-  constexpr BodyId before_hand() const { return hand - 1; }    // with the laser
+  constexpr BodyId before_hand() const { return hand - 1; }    // which carries the laser of an arm that rolls
   constexpr BodyId finger_a() const { return hand + 1; }       // and finger_b
   constexpr BodyId finger_b() const { return hand + 2; }       //
   constexpr BodyId panel() const { return hand + 3; }          //

@@ -214,7 +214,7 @@ TEST_F(ArmOfFiveJoints, IsRefusedAJobWithTheReasonBeforeItBegins) {
     scenario::check_runnable(scenario::load_scenario("default", {"machine=" + machine}));
     FAIL() << "it was accepted";
   } catch (const InputError& refused) {
-    EXPECT_THAT(refused.what(), testing::HasSubstr("five joints or more before their roll"));
+    EXPECT_THAT(refused.what(), testing::HasSubstr("five joints or more beside a roll"));
   }
 }
 

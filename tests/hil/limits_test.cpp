@@ -141,13 +141,14 @@ TEST(ALimit, OfContactIsTheOneThatActs) {
   safety::Limits tighter = limits;
   tighter.max_contact_torque_nm *= 0.9;
   for (Eigen::Index joint = 0; joint < 3; ++joint) {
-    EXPECT_EQ(mission::free_motion_guard(limits).contact_torque_nm[joint], limits.max_contact_torque_nm);
-    EXPECT_EQ(mission::free_motion_guard(tighter).contact_torque_nm[joint], tighter.max_contact_torque_nm);
+    EXPECT_EQ(mission::free_motion_guard(test::arm5e, limits).contact_torque_nm[joint], limits.max_contact_torque_nm);
+    EXPECT_EQ(mission::free_motion_guard(test::arm5e, tighter).contact_torque_nm[joint], tighter.max_contact_torque_nm);
   }
   safety::Limits wider = limits;
   wider.max_contact_torque_nm *= 1.1;
   for (Eigen::Index joint = 0; joint < 3; ++joint) {
-    EXPECT_EQ(mission::free_motion_guard(wider).contact_torque_nm[joint], limits.max_contact_torque_nm) << "half of the joint's own";
+    EXPECT_EQ(mission::free_motion_guard(test::arm5e, wider).contact_torque_nm[joint], limits.max_contact_torque_nm)
+        << "half of the joint's own";
   }
 }
 

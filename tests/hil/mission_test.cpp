@@ -47,6 +47,20 @@ INSTANTIATE_TEST_SUITE_P(Seeds, WholeMission,
                                          Seeded{"oberon7", 1, "true", "Oberon1"}, Seeded{"ur5", 2, "true", "Ur2"}),
                          [](const testing::TestParamInfo<Seeded>& test) { return std::string(test.param.name); });
 
+// Five joints, the last of which swings the hand.
+TEST(WithoutARoll, AnArmPressesEachButtonOnceAndTouchesNothingElse) {
+  const MissionRun run = run_mission("predator", 1, {});
+  SCOPED_TRACE(describe(run));
+  EXPECT_TRUE(run.outcome.success);
+  for (const std::uint32_t presses : run.presses) EXPECT_EQ(presses, 1u);
+  EXPECT_TRUE(run.contacts.unintended.empty());
+  EXPECT_LE(run.contacts.peak_force_n, 150);
+  EXPECT_EQ(run.refused_frames, 0u);
+  if (hal::HeapGuard::available()) {
+    EXPECT_EQ(run.heap_calls, 0u);
+  }
+}
+
 struct Rate {
   const char* syncs;
   const char* name;

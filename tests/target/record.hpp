@@ -263,9 +263,9 @@ void pass(S& s, ArmModel::Capsule& v) {
 }
 template <class S>
 void pass(S& s, ArmModel& v) {
-  auto& [arm_joints, form, planar, tool_z_m, joints, origins, jaw, capsules] = v;
+  auto& [arm_joints, rolls, form, planar, tool_z_m, joints, origins, jaw, capsules] = v;
   auto number = static_cast<std::uint32_t>(arm_joints);
-  pass_all(s, number, form, planar, tool_z_m);
+  pass_all(s, number, rolls, form, planar, tool_z_m);
   arm_joints = number;
   pass_first(s, joints, v.joint_count());
   pass_first(s, origins, v.joint_count() + 1);

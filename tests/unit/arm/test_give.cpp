@@ -85,9 +85,9 @@ TEST_P(Give, ALineGoesNoFasterThanThatAndStillArrives) {
     LineLimits hasty, gentle;
     gentle.push_n = 65;
     CartesianLine fast, slow;
-    const Eigen::Index roll = static_cast<Eigen::Index>(arm.roll_joint());
-    const LinePlan hasty_plan = fast.plan(arm, start, to, start[roll], hasty, limits);
-    const LinePlan gentle_plan = slow.plan(arm, start, to, start[roll], gentle, limits);
+    const double roll_rad = arm.roll_rad(start);
+    const LinePlan hasty_plan = fast.plan(arm, start, to, roll_rad, hasty, limits);
+    const LinePlan gentle_plan = slow.plan(arm, start, to, roll_rad, gentle, limits);
     ASSERT_EQ(gentle_plan.outcome, hasty_plan.outcome) << "a line that is slow is not refused";
     if (gentle_plan.outcome != PlanOutcome::ok) continue;
     ASSERT_LE(gentle_plan.speed_m_s, hasty_plan.speed_m_s * (1 + 1e-9));
@@ -104,7 +104,9 @@ TEST_P(Give, ALineGoesNoFasterThanThatAndStillArrives) {
   EXPECT_GT(slowed, 20);
 }
 
-INSTANTIATE_TEST_SUITE_P(Arms, Give, testing::Values("shared/arm/arm5e.urdf", "shared/arm/oberon7/oberon7.urdf", "shared/arm/ur5/ur5.urdf"),
+INSTANTIATE_TEST_SUITE_P(Arms, Give,
+                         testing::Values("shared/arm/arm5e.urdf", "shared/arm/oberon7/oberon7.urdf", "shared/arm/predator/predator.urdf",
+                                         "shared/arm/ur5/ur5.urdf"),
                          [](const auto& file) {
                            std::string name = file.param;
                            name = name.substr(name.rfind('/') + 1);

@@ -19,7 +19,7 @@ class Waiting {
   // How often the step has timed out by `t_s`, when it is looked at once.
   std::size_t timeouts_at(double t_s) {
     faults_.clear();
-    FaultSources sources(config_.mission_limits);
+    FaultSources sources(config_.arm, config_.mission_limits);
     const StepTick tick{Time::from_s(t_s), step_, network_, orders_, telemetry_, bench_, faults_, clock_};
     sources.collect(tick, safety::Vigilance::bus);
     std::size_t count = 0;

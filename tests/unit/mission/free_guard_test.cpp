@@ -32,7 +32,7 @@ bool touches(arm::GuardedMotion& guard, double& t_s, double& nm, double nm_s, do
 
 // The baseline follows a load that rises slowly: an arm that something pushes and that wedges itself was never in contact.
 TEST(FreeMotionGuard, ALoadThatRisesSlowlyIsAContactInTheEnd) {
-  arm::GuardedMotion guard(free_motion_guard(limits_of(26)));
+  arm::GuardedMotion guard(free_motion_guard(test::arm5e, limits_of(26)));
   double t_s = 0, nm = -7;
   EXPECT_FALSE(touches(guard, t_s, nm, 0, 0.5));
   EXPECT_FALSE(touches(guard, t_s, nm, 5, 5)) << nm;
@@ -43,7 +43,7 @@ TEST(FreeMotionGuard, ALoadThatRisesSlowlyIsAContactInTheEnd) {
 
 TEST(FreeMotionGuard, ARiseByHalfOfTheLimitIsAContact) {
   for (const double limit_nm : {10.0, 26.0, 100.0}) {
-    arm::GuardedMotion guard(free_motion_guard(limits_of(limit_nm)));
+    arm::GuardedMotion guard(free_motion_guard(test::arm5e, limits_of(limit_nm)));
     double t_s = 0, nm = 0;
     EXPECT_FALSE(touches(guard, t_s, nm, 0, 0.5));
     const double rise_nm = std::min(25.0, 0.5 * limit_nm);
@@ -122,7 +122,7 @@ TEST(DrivesItselfOff, IsAJointThatLeavesItsSetPointAtASpeedToWhichNothingPushesA
 // A guard that has met a contact with the elbow at 1.2 rad, on its way at `rad_s`. The motor goes on against a spring of `stiffness_nm_rad`, or stands
 // where it was while its torque rises by `winds_nm_s`.
 arm::GuardedMotion met(double rad_s, double stiffness_nm_rad, double winds_nm_s) {
-  arm::GuardedMotion guard(free_motion_guard(limits_of(25)));
+  arm::GuardedMotion guard(free_motion_guard(test::arm5e, limits_of(25)));
   constexpr double period_s = 0.004, count_rad = 2.2e-4;
   arm::JointVector command_rad = arm::JointVector::Zero(), position_rad = command_rad, velocity_rad_s = command_rad,
                    torque_nm = command_rad;
@@ -162,7 +162,7 @@ TEST(HasSeized, IsAMotorThatStandsWhileItsTorqueRises) {
 TEST(HasSeized, IsARollThatShowsNotOneCountOfItsWay) {
   constexpr double count_rad = 3.14e-3;
   const auto met = [](int told_counts, int shown_counts, double nm) {
-    arm::GuardedMotion guard(free_motion_guard(limits_of(3)));
+    arm::GuardedMotion guard(free_motion_guard(test::arm5e, limits_of(3)));
     double t_s = 0;
     arm::JointVector command_rad = arm::JointVector::Zero(), position_rad = command_rad, torque_nm = command_rad;
     for (int i = 0; i < 100 && !guard.touched(); ++i) {
@@ -187,7 +187,7 @@ TEST(HasSeized, IsARollThatShowsNotOneCountOfItsWay) {
 // A guard begins while the shoulder's motor gives -28 N m. What comes later is a contact, and so is a load on a joint that stands where it is told to.
 TEST(WasBehindBefore, IsAJointThatWasOverloadedAndDidNotFollow) {
   const auto met = [](double behind_rad, double from_nm, double nm) {
-    arm::GuardedMotion guard(free_motion_guard(limits_of(25)));
+    arm::GuardedMotion guard(free_motion_guard(test::arm5e, limits_of(25)));
     double t_s = 0;
     arm::JointVector command_rad = arm::JointVector::Zero(), position_rad = command_rad, torque_nm = command_rad;
     command_rad[1] = position_rad[1] = 1.0;
@@ -208,7 +208,7 @@ TEST(WasBehindBefore, IsAJointThatWasOverloadedAndDidNotFollow) {
 
 // Somebody leans on an arm that stands.
 TEST(HasSeized, IsNoMotorThatHoldsWhatPushesAtIt) {
-  arm::GuardedMotion guard(free_motion_guard(limits_of(25)));
+  arm::GuardedMotion guard(free_motion_guard(test::arm5e, limits_of(25)));
   double t_s = 0, nm = 0;
   ASSERT_FALSE(touches(guard, t_s, nm, 0, 1));
   ASSERT_TRUE(touches(guard, t_s, nm, 40, 1));

@@ -22,7 +22,7 @@ struct Case {
   const char* urdf;
   std::vector<double> park_rad;
   Vec3 laser_m, camera_m, panel_m;
-  double fan_deg, slowest_rad_s;
+  double fan_deg, slowest_rad_s, laser_turn_deg = 0;
 };
 
 void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
@@ -35,6 +35,7 @@ class PointedSweep : public testing::TestWithParam<Case> {
     request.slowest_rad_s = GetParam().slowest_rad_s;
     (void)request.handles.push_back({});
     laser.tool_from_laser.translation() = GetParam().laser_m;
+    laser.tool_from_laser.linear() = Eigen::AngleAxisd(rad_from_deg(GetParam().laser_turn_deg), Vec3::UnitZ()).toRotationMatrix();
     laser.fan_half_angle_rad = rad_from_deg(GetParam().fan_deg);
     for (std::size_t i = 0; i < GetParam().park_rad.size(); ++i) park_rad[static_cast<Eigen::Index>(i)] = GetParam().park_rad[i];
   }
@@ -52,13 +53,14 @@ class PointedSweep : public testing::TestWithParam<Case> {
     return from + share * (to - from);
   }
 
-  // The laser, carried by the joints before the roll.
+  // The laser, carried by the joints that point the tool.
   Pose laser_of(const SweepPlan& plan, double share) const {
     const arm::JointVector q = along(plan, share);
     Pose pose = Pose::Identity();
     for (std::size_t i = 0; i < description.arm_joints(); ++i) {
       const ArmJoint& joint = description.joints[i];
-      const double angle_rad = i + 1 < description.arm_joints() ? q[static_cast<Eigen::Index>(i)] : 0;
+      const bool rolls = description.rolls && i + 1 == description.arm_joints();
+      const double angle_rad = rolls ? 0 : q[static_cast<Eigen::Index>(i)];
       pose = pose * joint.parent_from_joint * Eigen::AngleAxisd(angle_rad, joint.axis);
     }
     return pose * description.wrist_from_tool * laser.tool_from_laser;
@@ -227,6 +229,15 @@ INSTANTIATE_TEST_SUITE_P(Arms, PointedSweep,
                                               {1.3, 0, 0.2},
                                               40,
                                               0.045},
+                                         Case{"Predator",
+                                              "shared/arm/predator/predator.urdf",
+                                              {0, 1.2, -1.2, 0.3, 0},
+                                              {0, 0.12, -0.3},
+                                              {0.1, -0.5, 0.75},
+                                              {1.6, 0, 0},
+                                              40,
+                                              0.045,
+                                              -90},
                                          Case{"Ur",
                                               "shared/arm/ur5/ur5.urdf",
                                               {0, -1.934, 2.304, -0.37, 1.5708, 0},

@@ -321,6 +321,19 @@ TEST(Load, AValveThatIsTooStiffOrOutOfReachIsRefusedByNameAndNumber) {
   EXPECT_THAT(told("F16"), HasSubstr("valve F16 is out of the arm's reach"));
 }
 
+TEST(Load, AnArmWithoutARollIsGivenButtonsAndNoValve) {
+  const std::string there = "machine: predator\npanel: {ahead_m: 1.6, down_m: 0, pointer: none}\nmission: {press_torque_nm: 20}\n";
+  EXPECT_EQ(complaint_before_a_run(there + "tasks: [press_buttons: {order: [left, right]}]"), "");
+  EXPECT_THAT(complaint_before_a_run(there + "tasks: [turn_valve: {to_deg: 45}]"),
+              AllOf(HasSubstr("the valve cannot be turned: this arm has no roll, its last joint, 'wrist_yaw', swings the hand"),
+                    Not(HasSubstr("the arm gives"))));
+}
+
+TEST(Load, ALaserIsTurnedOnArmsThatPoint) {
+  EXPECT_THAT(complaint_before_a_run("laser: {turn_deg: 90}"), HasSubstr("'laser.turn_deg' is not 0"));
+  EXPECT_THAT(complaint("laser: {turn_deg: 181}"), HasSubstr("laser.turn_deg"));
+}
+
 TEST(Load, APanelsFileIsWhatItsTasksName) {
   const auto told = [](const std::string& tasks, const std::string& more = "") {
     return complaint("panel: {file: pandora}\ntasks: [" + tasks + "]\n" + more);

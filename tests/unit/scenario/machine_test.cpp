@@ -71,7 +71,7 @@ TEST_F(MachineKey, OfAMisspeltNameIsAnsweredWithTheNearest) {
   EXPECT_THAT(refusal(with("machine: oberon\n")),
               AllOf(HasSubstr("mine.yaml"), HasSubstr("no shipped machine 'oberon'"), HasSubstr("oberon7")));
   EXPECT_THAT(refusal("default", {"machine=nothing_like_it"}),
-              HasSubstr("no shipped machine 'nothing_like_it'; there are arm5e, oberon7, ur5, or give a file"));
+              HasSubstr("no shipped machine 'nothing_like_it'; there are arm5e, oberon7, predator, ur5, or give a file"));
 }
 
 // Two boxes and three rods, one of them around the camera and one around a lamp.
