@@ -14,9 +14,10 @@ void draw_outside(const scenario::Scenario& scenario, const scenario::Scenario& 
   const scenario::Nominal nominal = scenario::make_nominal(machine, sample.lamps_lit);
   const hal::SimConfig sim = scenario::make_truth(scenario, sample, nominal, 1);
   const world::World world(sim.world);
-  optics::Optics camera(optics::outside_view(sim.optics, optics::OutsideView{}));
   optics::Shot shot;
   shot.poses = world.base_from_body();
+  const Vec3 panel_m = sim.world.base_from_panel.translation();
+  optics::Optics camera(optics::outside_view(sim.optics, optics::OutsideView::of_panel(panel_m)));
   shot.lamps = 1;
   shot.laser = 0;
   optics::Frame frame;

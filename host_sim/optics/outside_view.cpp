@@ -1,5 +1,7 @@
 #include "host_sim/optics/outside_view.hpp"
 
+#include <algorithm>
+
 namespace lf::optics {
 namespace {
 
@@ -40,6 +42,16 @@ void add_housing(const LampConfig& lamp, scene::Scene& scene) {
 }
 
 }  // namespace
+
+OutsideView OutsideView::of_panel(const Vec3& panel_m) {
+  const Vec3 default_m(0.44, 0, 0.592);
+  const double farther = std::max(1.0, panel_m.norm() / default_m.norm());
+  OutsideView view;
+  const Vec3 back_m = view.eye_m - view.target_m;
+  view.target_m += (panel_m - default_m) / 2;
+  view.eye_m = view.target_m + farther * back_m;
+  return view;
+}
 
 OpticsConfig outside_view(const OpticsConfig& mission, const OutsideView& view) {
   OpticsConfig config = mission;

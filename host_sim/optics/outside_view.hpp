@@ -12,6 +12,9 @@ struct OutsideView {
   double focal_px = 820;
   double sheet_gain =
       60;  // how much brighter the laser is than in the mission: its sheet must show in a picture that the stripe may overexpose
+
+  // Of a panel whose origin is there (base frame): from farther off where that is farther than the default one.
+  static OutsideView of_panel(const Vec3& panel_m);
 };
 
 // The mission's optics with one camera, that of the view (camera 0), in water that shows the laser's sheet and keeps some red. A picture, not a measurement.

@@ -34,7 +34,8 @@ void OutsidePictures::on_step(Time now, const world::World& world) {
 std::vector<OutsidePictures::Picture> OutsidePictures::draw(const optics::OpticsConfig& mission, int threads) const {
   std::vector<Picture> pictures;
   if (kept_.empty()) return pictures;
-  optics::OpticsConfig config = optics::outside_view(mission, optics::OutsideView{});
+  const Vec3 panel_m = kept_.front().poses[scene::own_bodies(mission.scene).panel()].translation();
+  optics::OpticsConfig config = optics::outside_view(mission, optics::OutsideView::of_panel(panel_m));
   config.threads = threads;
   optics::Optics camera(config);
   optics::Frame frame;

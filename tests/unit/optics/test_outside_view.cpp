@@ -40,5 +40,21 @@ TEST(OutsideView, ShowsEachLampThatItsCameraCanSee) {
   EXPECT_GE(shown, 1);
 }
 
+// A long arm and its panel are in the picture as the default ones are.
+TEST(OutsideView, HasThePanelAndTheArmsBaseInIt) {
+  const MissionScene mission;
+  for (const Vec3& panel_m :
+       {Vec3(0.44, 0, 0.592), Vec3(0.75, 0, 0.35), Vec3(1.3, 0, 0.2), Vec3(1.6, 0, 0), Vec3(1.6, 0.3, -0.3), Vec3(0.3, 0, 0.3)}) {
+    const OpticsConfig config = outside_view(mission.config(), OutsideView::of_panel(panel_m));
+    const CameraIntrinsics& k = config.cameras[0].intrinsics;
+    for (const Vec3& seen_m : {panel_m, Vec3(0, 0, 0)}) {
+      const Vec3 at = config.cameras[0].base_from_camera.inverse() * seen_m;
+      ASSERT_GT(at.z(), 0);
+      EXPECT_LT(std::abs(k.fx * at.x() / at.z()), 0.5 * k.width) << panel_m.transpose();
+      EXPECT_LT(std::abs(k.fy * at.y() / at.z()), 0.5 * k.height) << panel_m.transpose();
+    }
+  }
+}
+
 }  // namespace
 }  // namespace lf::optics::test
