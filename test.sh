@@ -2,7 +2,7 @@
 # Installs what is missing, builds everything and runs the tests. At the end it lists the tests that were skipped, with their reasons,
 # and counts those that were left out, by label.
 # Usage: ./test.sh [PRESET [ctest arguments]]    PRESET: release, debug, asan, tsan; aarch64: the vehicle's side for 64-bit ARM, its unit tests under qemu-user
-# Without a preset: release, less the tests in real time, which take a machine to themselves for eleven minutes, those of the packages, and two more that are long.
+# Without a preset: release, less the tests in real time, which take a machine to themselves for eleven minutes, those of the packages, and some that are long.
 # `./test.sh release` has those, too.
 # Environment: LANTERNFISH_SKIPS_ALLOWED=N, more than N skipped tests are a failure (default: any number may be).
 set -euo pipefail
@@ -22,7 +22,7 @@ toolchain/configure.sh "$preset"
 cmake --build --preset "$preset" -- --quiet
 report=$PWD/build/$preset/tests.xml
 rm -f "$report"
-[[ "$*" != *"$others"* ]] || echo "test: without the tests in real time, of the packages, and two more long ones; ./test.sh release -L '$others' runs them"
+[[ "$*" != *"$others"* ]] || echo "test: without the tests in real time, of the packages, and those that are long; ./test.sh release -L '$others' runs them"
 status=0
 ctest --preset "$preset" --output-junit "$report" "$@" || status=$?
 all=$PWD/build/$preset/all_tests.json

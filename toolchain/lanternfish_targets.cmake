@@ -145,11 +145,12 @@ function(lanternfish_core_library name)
   lanternfish_precompile(${name} core ${precompiled_headers})
 endfunction()
 
-# lanternfish_test(NAME source... [LINK ...] [LABELS ...] [TIMEOUT s] [LIGHT]): a GoogleTest program, one ctest entry a test case. Its time limit ends what hangs,
+# lanternfish_test(NAME source... [LINK ...] [LABELS ...] [LONG filter] [TIMEOUT s] [LIGHT]): a GoogleTest program, one ctest entry a test case. LONG: the cases that
+# a filter of GoogleTest's names have the label `long`, too: `./test.sh` leaves them to `./test.sh release` and to tests/nightly.sh. The time limit ends what hangs,
 # not what is slow: the longest case takes a minute on two cores of 2026. LIGHT: its own files are optimised less, and so is what they include of ours. That
 # is for tests of text, files and protocols: arithmetic in headers has to be tested as it is shipped.
 function(lanternfish_test name)
-  cmake_parse_arguments(arg "LIGHT" "TIMEOUT" "LINK;LABELS" ${ARGN})
+  cmake_parse_arguments(arg "LIGHT" "TIMEOUT;LONG" "LINK;LABELS" ${ARGN})
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 1200)
   endif()
@@ -166,7 +167,17 @@ function(lanternfish_test name)
   target_compile_definitions(${name} PRIVATE
     LANTERNFISH_TEST_DATA="${CMAKE_SOURCE_DIR}/tests/data" LANTERNFISH_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
-  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 600 PROPERTIES TIMEOUT ${arg_TIMEOUT} LABELS "${arg_LABELS}")
+  set(discovery NO_PRETTY_VALUES DISCOVERY_TIMEOUT 600)  # what a value looks like may change from run to run, and with it the test's name
+  if(arg_LONG)
+    set(long_labels long)
+    if(arg_LABELS)
+      set(long_labels "${arg_LABELS}\\;long")
+    endif()
+    gtest_discover_tests(${name} ${discovery} TEST_FILTER "-${arg_LONG}" PROPERTIES TIMEOUT ${arg_TIMEOUT} LABELS "${arg_LABELS}")
+    gtest_discover_tests(${name} ${discovery} TEST_FILTER "${arg_LONG}" TEST_LIST ${name}_LONG PROPERTIES TIMEOUT ${arg_TIMEOUT} LABELS "${long_labels}")
+  else()
+    gtest_discover_tests(${name} ${discovery} PROPERTIES TIMEOUT ${arg_TIMEOUT} LABELS "${arg_LABELS}")
+  endif()
 endfunction()
 
 # lanternfish_check_cpu(PROGRAM): it says which instructions a processor lacks, and ends with 3, in place of an illegal instruction somewhere.
