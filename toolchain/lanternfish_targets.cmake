@@ -146,7 +146,7 @@ function(lanternfish_core_library name)
 endfunction()
 
 # lanternfish_test(NAME source... [LINK ...] [LABELS ...] [LONG filter] [TIMEOUT s] [LIGHT]): a GoogleTest program, one ctest entry a test case. LONG: the cases that
-# a filter of GoogleTest's names have the label `long`, too: `./test.sh` leaves them to `./test.sh release` and to tests/nightly.sh. The time limit ends what hangs,
+# a filter of GoogleTest's names have another label, `hil_long` for `hil`, which ctest's -L and -LE find by either part: `./test.sh` leaves them to `./test.sh release` and to tests/nightly.sh. The time limit ends what hangs,
 # not what is slow: the longest case takes a minute on two cores of 2026. LIGHT: its own files are optimised less, and so is what they include of ours. That
 # is for tests of text, files and protocols: arithmetic in headers has to be tested as it is shipped.
 function(lanternfish_test name)
@@ -169,12 +169,8 @@ function(lanternfish_test name)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
   set(discovery NO_PRETTY_VALUES DISCOVERY_TIMEOUT 600)  # what a value looks like may change from run to run, and with it the test's name
   if(arg_LONG)
-    set(long_labels long)
-    if(arg_LABELS)
-      set(long_labels "${arg_LABELS}\\;long")
-    endif()
     gtest_discover_tests(${name} ${discovery} TEST_FILTER "-${arg_LONG}" PROPERTIES TIMEOUT ${arg_TIMEOUT} LABELS "${arg_LABELS}")
-    gtest_discover_tests(${name} ${discovery} TEST_FILTER "${arg_LONG}" TEST_LIST ${name}_LONG PROPERTIES TIMEOUT ${arg_TIMEOUT} LABELS "${long_labels}")
+    gtest_discover_tests(${name} ${discovery} TEST_FILTER "${arg_LONG}" TEST_LIST ${name}_LONG PROPERTIES TIMEOUT ${arg_TIMEOUT} LABELS "${arg_LABELS}_long")
   else()
     gtest_discover_tests(${name} ${discovery} PROPERTIES TIMEOUT ${arg_TIMEOUT} LABELS "${arg_LABELS}")
   endif()
