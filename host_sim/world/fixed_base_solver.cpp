@@ -85,12 +85,25 @@ FixedBaseSolver::Side FixedBaseSolver::side(const btMultiBody* body, int speeds_
     mechanisms_.push_back(body);
     speeds_.push_back(Joints::Zero());
   }
-  const int joints = body->getNumDofs();
-  for (int i = 0; i < joints; ++i) {
+  made.joints = body->getNumDofs();
+  int moved = 0;
+  for (int i = 0; i < made.joints; ++i) {
     made.jacobian[i] = m_data.m_jacobians[jacobian_index + 6 + i];
     made.response[i] = m_data.m_deltaVelocitiesUnitImpulse[jacobian_index + 6 + i];
+    if (made.jacobian[i] != 0) made.only_joint = i, ++moved;
   }
+  if (moved != 1) made.only_joint = -1;
   return made;
+}
+
+// Of the sizes that mechanisms have: handles and buttons, an arm of four joints with its fingers, any.
+void FixedBaseSolver::Side::push(Joints& speeds, double impulse) const {
+  if (joints <= 2)
+    speeds.head<2>() += impulse * response.head<2>();
+  else if (joints <= 6)
+    speeds.head<6>() += impulse * response.head<6>();
+  else
+    speeds += impulse * response;
 }
 
 void FixedBaseSolver::take(const btMultiBodyConstraintArray& from, std::vector<Row>& to) {
@@ -121,8 +134,8 @@ void FixedBaseSolver::take_rows() {
 
 double FixedBaseSolver::wanted_impulse(const Row& row) const {
   double speed = 0;
-  if (row.a.mechanism >= 0) speed += row.a.jacobian.dot(speeds_[std::size_t(row.a.mechanism)]);
-  if (row.b.mechanism >= 0) speed += row.b.jacobian.dot(speeds_[std::size_t(row.b.mechanism)]);
+  if (row.a.mechanism >= 0) speed += row.a.speed(speeds_[std::size_t(row.a.mechanism)]);
+  if (row.b.mechanism >= 0) speed += row.b.speed(speeds_[std::size_t(row.b.mechanism)]);
   return row.applied + row.rhs - row.applied * row.cfm - speed * row.inverse_mass;
 }
 
@@ -130,8 +143,8 @@ double FixedBaseSolver::wanted_impulse(const Row& row) const {
 double FixedBaseSolver::apply(Row& row, double impulse) {
   const double change = impulse - row.applied;
   row.applied = impulse;
-  if (row.a.mechanism >= 0) speeds_[std::size_t(row.a.mechanism)] += change * row.a.response;
-  if (row.b.mechanism >= 0) speeds_[std::size_t(row.b.mechanism)] += change * row.b.response;
+  if (row.a.mechanism >= 0) row.a.push(speeds_[std::size_t(row.a.mechanism)], change);
+  if (row.b.mechanism >= 0) row.b.push(speeds_[std::size_t(row.b.mechanism)], change);
   return change / row.inverse_mass;
 }
 

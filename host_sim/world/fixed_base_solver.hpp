@@ -52,7 +52,12 @@ class FixedBaseSolver : public btMultiBodyConstraintSolver {
 
   // One mechanism's part in a row: its jacobian and what a unit impulse does to its joints' speeds.
   struct Side {
-    int mechanism = -1;  // index of its speeds; -1 none
+    double speed(const Joints& speeds) const { return only_joint >= 0 ? jacobian[only_joint] * speeds[only_joint] : jacobian.dot(speeds); }
+    void push(Joints& speeds, double impulse) const;
+
+    int mechanism = -1;   // index of its speeds; -1 none
+    int joints = 0;       // that it has
+    int only_joint = -1;  // the one that the row is about; -1 if more than one
     Joints jacobian = Joints::Zero();
     Joints response = Joints::Zero();
   };

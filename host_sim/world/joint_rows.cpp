@@ -4,6 +4,7 @@
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 
 #include <algorithm>
+#include <numeric>
 
 namespace lf::world {
 namespace {
@@ -75,15 +76,30 @@ void JointRows::apply_start(double step_s) {
 
 double JointRows::impulse(std::size_t slot) const { return slots_[slot].start + m_data[int(slot)]; }
 
+// Rows of the same coordinate differ in speed and bounds only: what a unit impulse does, which takes Bullet longest, is asked once for them.
 void JointRows::createConstraintRows(btMultiBodyConstraintArray& rows, btMultiBodyJacobianData& data, const btContactSolverInfo& info) {
   const btVector3 unused(0, 0, 0);
+  const Slot* filled = nullptr;
+  int filled_row = 0;
+  double rigid_inverse_mass = 0;
   for (int i = 0; i < int(slot_count); ++i) {
     const Slot& slot = slots_[std::size_t(i)];
     if (!slot.used) continue;
     btMultiBodySolverConstraint& row = rows.expandNonInitializing();
     const double speed = slot.row.speed - slot.row.softness * slot.start;
-    fillMultiBodyConstraint(row, data, jacobianA(i), jacobianB(i), unused, unused, unused, unused, 0, info,
-                            slot.row.impulse_min - slot.start, slot.row.impulse_max - slot.start, false, 1, false, speed);
+    const double lower = slot.row.impulse_min - slot.start, upper = slot.row.impulse_max - slot.start;
+    if (filled != nullptr && filled->row.first == slot.row.first && filled->row.second == slot.row.second) {
+      row = rows[filled_row];
+      repeat(row, data);
+      row.m_jacDiagABInv = rigid_inverse_mass;
+      row.m_rhs = (speed - speed_along(jacobianA(i))) * rigid_inverse_mass;
+      row.m_cfm = 0;
+      row.m_lowerLimit = lower, row.m_upperLimit = upper;
+    } else {
+      fillMultiBodyConstraint(row, data, jacobianA(i), jacobianB(i), unused, unused, unused, unused, 0, info, lower, upper, false, 1, false,
+                              speed);
+      filled = &slot, filled_row = rows.size() - 1, rigid_inverse_mass = row.m_jacDiagABInv;
+    }
     soften(row, slot.row.softness);
     row.m_orgConstraint = this;
     row.m_orgDofIndex = i;
@@ -92,6 +108,20 @@ void JointRows::createConstraintRows(btMultiBodyConstraintArray& rows, btMultiBo
     row.m_relpos1CrossNormal.setZero();
     row.m_relpos2CrossNormal.setZero();
   }
+}
+
+// Gives a copied row its own place among the jacobians and the responses.
+void JointRows::repeat(btMultiBodySolverConstraint& row, btMultiBodyJacobianData& data) const {
+  const int from = row.m_jacAindex, count = m_jacSizeA;
+  row.m_jacAindex = data.m_jacobians.size();
+  data.m_jacobians.resize(row.m_jacAindex + count);
+  data.m_deltaVelocitiesUnitImpulse.resize(row.m_jacAindex + count);
+  for (auto* values : {&data.m_jacobians, &data.m_deltaVelocitiesUnitImpulse})
+    std::copy_n(&(*values)[from], count, &(*values)[row.m_jacAindex]);
+}
+
+double JointRows::speed_along(const double* jacobian) const {
+  return std::inner_product(jacobian, jacobian + m_jacSizeA, m_bodyA->getVelocityVector(), 0.0);
 }
 
 }  // namespace lf::world

@@ -50,6 +50,9 @@ class JointRows : public btMultiBodyConstraint {
     bool used = false;
     double start = 0;
   };
+  void repeat(btMultiBodySolverConstraint& row, btMultiBodyJacobianData& data) const;
+  double speed_along(const double* jacobian) const;
+
   int second_link_;
   std::array<Slot, slot_count> slots_;
 };
