@@ -1,6 +1,8 @@
 #include "firmware/arm/give.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace lf::arm {
 namespace {
@@ -10,8 +12,13 @@ constexpr double notices_s = 0.04;
 
 constexpr double slowest_m_s = 0.002;  // below that a slow rise of the torque is taken for free motion's
 
+// How far the tool goes along `way` for a radian of each joint.
+JointVector levers(const Arm& arm, const JointVector& q_rad, const Vec3& way) {
+  return (way.transpose() * arm.jacobian(q_rad).topRows<3>()).transpose();
+}
+
 double gives_m_n(const Arm& arm, const JointVector& q_rad, const Vec3& way) {
-  const JointVector levers_m = (way.transpose() * arm.jacobian(q_rad).topRows<3>()).transpose();
+  const JointVector levers_m = levers(arm, q_rad, way);
   double gives_m_n = 0;
   for (std::size_t i = 0; i < arm.arm_joints(); ++i) {
     const double lever_m = levers_m[static_cast<Eigen::Index>(i)];
@@ -23,6 +30,14 @@ double gives_m_n(const Arm& arm, const JointVector& q_rad, const Vec3& way) {
 }  // namespace
 
 double tool_stiffness_n_m(const Arm& arm, const JointVector& q_rad, const Vec3& way) { return 1 / gives_m_n(arm, q_rad, way); }
+
+double least_felt_n(const Arm& arm, const JointVector& q_rad, const Vec3& way, const JointVector& torques_nm) {
+  const JointVector levers_m = levers(arm, q_rad, way);
+  double least_n = std::numeric_limits<double>::infinity();
+  for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(arm.arm_joints()); ++i)
+    if (levers_m[i] != 0) least_n = std::min(least_n, torques_nm[i] / std::abs(levers_m[i]));
+  return least_n;
+}
 
 double gentle_speed_m_s(const Arm& arm, const JointVector& q_rad, const JointVector& rates, const Vec3& way, const JointLimits& limits,
                         double push_n) {

@@ -76,10 +76,16 @@ arm::GuardConfig approach_guard(const arm::Arm& arm, const safety::Limits& limit
   return guard;
 }
 
-double strength(const arm::Arm& arm, const safety::Limits& limits) {
+arm::JointVector strengths(const arm::Arm& arm, const safety::Limits& limits) {
   constexpr double of_the_default_nm = 13;
-  return free_motion_guard(arm, limits).contact_torque_nm.head(static_cast<Eigen::Index>(arm.pointing_joints())).minCoeff() /
-         of_the_default_nm;
+  const auto pointing = static_cast<Eigen::Index>(arm.pointing_joints());
+  arm::JointVector strengths = arm::JointVector::Ones();
+  strengths.head(pointing) = free_motion_guard(arm, limits).contact_torque_nm.head(pointing) / of_the_default_nm;
+  return strengths;
+}
+
+double strength(const arm::Arm& arm, const safety::Limits& limits) {
+  return strengths(arm, limits).head(static_cast<Eigen::Index>(arm.pointing_joints())).minCoeff();
 }
 
 arm::ComplianceConfig gripping_compliance(const arm::Arm& arm, const safety::Limits& limits) {
@@ -258,10 +264,10 @@ void Workbench::go_straight(const Vec3& goal_m, double roll_rad, double speed_m_
   motion.line(goal_m, roll_rad, room(jaw_rad(), meant), jaw_rad(), speed_m_s);
 }
 
-void Workbench::press_straight(const Vec3& goal_m, double roll_rad, double speed_m_s, arm::PanelParts meant) {
+void Workbench::press_straight(const Vec3& goal_m, double roll_rad, double speed_m_s, double felt_n, arm::PanelParts meant) {
   Room pressed = room(jaw_rad(), meant);
   if (map.known()) pressed.doubt = map.doubt_where_touched();
-  motion.line(goal_m, roll_rad, pressed, jaw_rad(), speed_m_s, press_push_n);
+  motion.line(goal_m, roll_rad, pressed, jaw_rad(), speed_m_s, std::clamp(most_press_n - felt_n, least_push_n, press_push_n));
 }
 
 Progress Workbench::follow_motion() const {

@@ -46,12 +46,12 @@ void add_valve_stops(Keys& all, ValveStops& valve) {
 }
 
 void add_arm(Keys& all, std::string& urdf, std::vector<double>& park_rad) {
-  constexpr double half_a_turn = 3.1416;
+  constexpr double a_turn = 6.2832;
   all.push_back(
       key("arm.urdf", "", 0, 0, &urdf,
           "the arm: slew, shoulder, elbow, roll and a jaw of two fingers; relative to this file's folder, then to the shipped files"));
   all.push_back(
-      key("arm.park_rad", "rad", -half_a_turn, half_a_turn, &park_rad,
+      key("arm.park_rad", "rad", -a_turn, a_turn, &park_rad,
           "[slew, shoulder, elbow, roll] of the folded arm: where it starts and ends, clear of the panel wherever that may stand"));
 }
 
@@ -141,8 +141,10 @@ void add_mission(Keys& all, mission::MissionConfig& m) {
   all.push_back(key("mission.press_speed_m_s", "m/s", 0.001, 0.2, &m.press_speed_m_s, "of a press, at most"));
   all.push_back(
       key("mission.press_overtravel_m", "m", 0, 0.05, &m.press_overtravel_m, "beyond a button's bottom before the press counts as missed"));
-  all.push_back(key("mission.press_torque_nm", "N m", 2, 20, &m.press_torque_nm,
-                    "rise of a joint's torque that says the button has bottomed; the drives give 26 N m, and at 25 no press is told"));
+  all.push_back(
+      key("mission.press_torque_nm", "N m", 2, 20, &m.press_torque_nm,
+          "rise of a joint's torque that says the button has bottomed; an arm whose limits take 31 N m or more for a contact needs more. "
+          "The default arm's drives give 26 N m, and at 25 no press is told"));
   all.push_back(key("mission.turn_speed_rad_s", "rad/s", 0.01, 1, &m.turn_speed_rad_s, "of the handle; no faster than the wrist"));
   all.push_back(key("mission.valve_tolerance_rad", "rad", 0.015, 0.045, &m.valve_tolerance_rad,
                     "what the second look accepts without turning again. Its own error is 0.6 degrees as a rule and 1.15 at worst: below "

@@ -113,8 +113,7 @@ ArmJoint read_joint(const Urdf& urdf, const std::string& name, const std::string
   joint.lower_rad = urdf.number(limit, "lower");
   joint.upper_rad = urdf.number(limit, "upper");
   if (joint.lower_rad >= joint.upper_rad) urdf.fail(limit, urdf.label(e) + ": lower limit is not below the upper one");
-  if (joint.lower_rad < -pi || joint.upper_rad > pi) urdf.fail(limit, urdf.label(e) + ": limits reach beyond half a turn");
-  if (joint.lower_rad > 0 || joint.upper_rad < 0) urdf.fail(limit, urdf.label(e) + ": limits leave out angle 0, where counts start");
+  if (joint.lower_rad < -2 * pi || joint.upper_rad > 2 * pi) urdf.fail(limit, urdf.label(e) + ": limits reach beyond a whole turn");
   joint.effort_nm = urdf.positive(limit, "effort");
   joint.velocity_rad_s = urdf.positive(limit, "velocity");
   return joint;

@@ -16,7 +16,7 @@ constexpr double target_rad = pi / 2;
 struct Seeded {
   const char* scenario;
   std::uint64_t seed;
-  const char* lamps;
+  std::string set;
   const char* name;
 };
 
@@ -26,7 +26,7 @@ class WholeMission : public testing::TestWithParam<Seeded> {};
 
 TEST_P(WholeMission, TurnsTheValvePressesEachButtonOnceAndTouchesNothingElse) {
   const Seeded& c = GetParam();
-  const MissionRun run = run_mission(c.scenario, c.seed, {std::string("lamps.lit=") + c.lamps});
+  const MissionRun run = run_mission(c.scenario, c.seed, {c.set});
   SCOPED_TRACE(describe(run));
   EXPECT_TRUE(run.outcome.success);
   EXPECT_NEAR(run.valve_rad, target_rad, rad_from_deg(3));
@@ -41,11 +41,14 @@ TEST_P(WholeMission, TurnsTheValvePressesEachButtonOnceAndTouchesNothingElse) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, WholeMission,
-                         testing::Values(Seeded{"default", 1, "either", "Default1"}, Seeded{"turbid", 7, "false", "TurbidInTheDark7"},
-                                         // Six joints with a spherical wrist, and with three parallel axes.
-                                         Seeded{"oberon7", 1, "true", "Oberon1"}, Seeded{"ur5", 2, "true", "Ur2"}),
-                         [](const testing::TestParamInfo<Seeded>& test) { return std::string(test.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    Seeds, WholeMission,
+    testing::Values(Seeded{"default", 1, "lamps.lit=either", "Default1"}, Seeded{"turbid", 7, "lamps.lit=false", "TurbidInTheDark7"},
+                    // Six joints with a spherical wrist, and with three parallel axes.
+                    Seeded{"oberon7", 1, "lamps.lit=true", "Oberon1"}, Seeded{"ur5", 2, "lamps.lit=true", "Ur2"},
+                    // Seven joints: one turns by nearly two turns, one leaves out angle 0.
+                    Seeded{"ur5", 1, "machine=" LANTERNFISH_TEST_DATA "/arms/seven_joints/seven_joints.yaml", "SevenJoints1"}),
+    [](const testing::TestParamInfo<Seeded>& test) { return std::string(test.param.name); });
 
 // Five joints, the last of which swings the hand.
 TEST(WithoutARoll, AnArmPressesEachButtonOnceAndTouchesNothingElse) {

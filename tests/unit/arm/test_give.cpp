@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "firmware/arm/give.hpp"
@@ -42,6 +43,26 @@ TEST_P(Give, IsWhatTheJointsGiveWayBy) {
     }
     ASSERT_NEAR(tool_stiffness_n_m(arm, q, way) * gives_m_n, 1, 1e-6);
   }
+}
+
+// A force is felt by the joint whose torque it raises furthest: by the principle of virtual work that is its lever's.
+TEST_P(Give, IsFeltByTheFirstJointWhoseTorqueRisesAsFar) {
+  SCOPED_TRACE(testing::Message() << "seed " << seed);
+  for (int k = 0; k < 200; ++k) {
+    const JointVector q = draw();
+    const Vec3 way = direction();
+    const JointVector lever_m = levers(q, way);
+    JointVector torques_nm = JointVector::Zero();
+    for (std::size_t i = 0; i < arm.arm_joints(); ++i) torques_nm[static_cast<Eigen::Index>(i)] = uniform(5, 30);
+    const double felt_n = least_felt_n(arm, q, way, torques_nm);
+    double furthest = 0;
+    for (std::size_t i = 0; i < arm.arm_joints(); ++i) {
+      const auto joint = static_cast<Eigen::Index>(i);
+      furthest = std::max(furthest, felt_n * std::abs(lever_m[joint]) / torques_nm[joint]);
+    }
+    ASSERT_NEAR(furthest, 1, 1e-6) << k;
+  }
+  EXPECT_EQ(least_felt_n(arm, draw(), Vec3::Zero(), JointVector::Ones()), std::numeric_limits<double>::infinity());
 }
 
 // Something hard is met: 40 ms at full speed, then each joint brakes, all of it wound up into the arm.

@@ -30,6 +30,9 @@ class Pointing : public ArmOfFile {
     return pose * description.wrist_from_tool;
   }
 
+  // Six joints that point the tool can do it in many postures beside each other: which one it is depends on the way there.
+  bool spare() const { return arm.pointing_joints() > 5; }
+
   bool within(const JointVector& q, double margin_rad) const {
     for (std::size_t i = 0; i < arm.arm_joints(); ++i) {
       const double value = q[static_cast<Eigen::Index>(i)];
@@ -71,7 +74,7 @@ TEST_P(Pointing, StaysInThePostureWhereItIs) {
     const double roll_rad = arm.roll_rad(here);
     const IkResult found = point_tool(arm, target.translation(), target.linear().col(2), roll_rad, 0, here);
     ASSERT_TRUE(found.ok()) << k;
-    ASSERT_LT((found.q_rad - led).cwiseAbs().maxCoeff(), 1e-6) << k;
+    ASSERT_LT((found.q_rad - led).cwiseAbs().maxCoeff(), spare() ? 0.1 : 1e-6) << k;
     ++looked_at;
   }
   EXPECT_GT(looked_at, 100);
@@ -156,7 +159,10 @@ TEST_P(Pointing, APlaceBesideIsAStraightWayOff) {
     ++found;
     JointVector end = JointVector::Zero();
     for (double t = 0; t < line.duration_s() + 0.02; t += 0.01) end = line.sample(t).q_rad;
-    ASSERT_LT((end - at).cwiseAbs().maxCoeff(), 1e-6) << k;
+    if (!spare()) {
+      ASSERT_LT((end - at).cwiseAbs().maxCoeff(), 1e-6) << k;
+    }
+    ASSERT_LT((tool_of(end).translation() - tool.translation()).norm(), 1e-6) << k;
   }
   EXPECT_GT(found, 50);
 }
@@ -206,8 +212,9 @@ TEST_P(Pointing, DoesNotJumpToWhatIsFarOff) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Arms, Pointing,
-                         testing::Values("tests/data/arms/six_joints/six_joints.urdf", "shared/arm/oberon7/oberon7.urdf",
-                                         "shared/arm/ur5/ur5.urdf", "shared/arm/predator/predator.urdf"));
+                         testing::Values("tests/data/arms/six_joints/six_joints.urdf", "tests/data/arms/seven_joints/seven_joints.urdf",
+                                         "shared/arm/oberon7/oberon7.urdf", "shared/arm/ur5/ur5.urdf",
+                                         "shared/arm/predator/predator.urdf"));
 
 // Where the makers' files have the tool, as another program computed it. Theirs has z up and ours down; the UR5 hangs from its base, aside, and its hand is longer.
 struct Told {

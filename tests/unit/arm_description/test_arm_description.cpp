@@ -191,7 +191,7 @@ INSTANTIATE_TEST_SUITE_P(
                     BadUrdf{"<link name=\"wrist\"", "<link name=\"hand\"", "no <link> named 'wrist'"},
                     BadUrdf{"lower=\"0\" upper=\"1.58665\"", "lower=\"1.6\" upper=\"1.58665\"", "lower limit is not below the upper one"},
                     BadUrdf{"upper=\"1.58665\"", "upper=\"nan\"", "upper=\"nan\" is not a number"},
-                    BadUrdf{"upper=\"1.58665\"", "upper=\"15\"", "beyond half a turn"}, BadUrdf{"upper=\"1.58665\"", "", "has no upper"},
+                    BadUrdf{"upper=\"1.58665\"", "upper=\"15\"", "beyond a whole turn"}, BadUrdf{"upper=\"1.58665\"", "", "has no upper"},
                     BadUrdf{"effort=\"100\"", "effort=\"0\"", "effort must be positive"},
                     BadUrdf{"effort=\"100\"", "effort=\"901\"", "is more than 30 times rated_torque_nm"},
                     BadUrdf{"<mass value=\"3.4\"/>", "<mass value=\"-3.4\"/>", "value must be positive"},
