@@ -140,6 +140,9 @@ class TurnCounter {
 
 // The control side has to fit the memory beside the processor; what it shares with the vision side does not.
 alignas(Controller) unsigned char controller_place[sizeof(Controller)];
+// With what it is told: of 64 KiB of tightly coupled memory a stack and the loop about it have the rest.
+constexpr std::size_t budget = 40 * 1024;
+static_assert(sizeof(Controller) + sizeof(ControllerConfig) <= budget);
 TickOutput out;
 LANTERNFISH_EXTERNAL_MEMORY hal::CoreRings rings;
 LANTERNFISH_EXTERNAL_MEMORY TurnCounter turns;
@@ -186,6 +189,12 @@ int run() {
   print_number(static_cast<double>(m7::stack_used_bytes()));
   print(" of ");
   print_number(static_cast<double>(m7::stack_bytes()));
+  print(" bytes\nsizeof(Controller) = ");
+  print_number(sizeof(Controller));
+  print(", sizeof(ControllerConfig) = ");
+  print_number(sizeof(ControllerConfig));
+  print(" of ");
+  print_number(budget);
   print(" bytes\n");
   if (!controller.mission().outcome().success) m7::fail("the mission did not end in success");
   return platform.differences() > 0 ? 1 : 0;
