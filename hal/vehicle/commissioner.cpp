@@ -142,6 +142,11 @@ std::optional<std::string> Commissioner::begin(const CommissionOrder& order, Tim
   if (stage_ != Stage::idle || answer_) return "a commissioning is under way";
   if (file_.empty()) return "'homing.file' names no file to write the zeros to";
   if (file_is_shipped_) return "'homing.file' is the shipped " + file_ + ": copy it, and name the copy";
+  for (std::size_t i = 0; order.here && i < names_.size(); ++i) {
+    const ArmModel::Joint& joint = core_.arm.joint(i);
+    if (order.joints[i] && (joint.lower_rad > 0 || joint.upper_rad < 0))
+      return "the " + names_[i] + " cannot stand at its zero, which its range leaves out: commission it against its stop";
+  }
   order_ = order;
   ordered_ = ordered;
   called_off_.clear();

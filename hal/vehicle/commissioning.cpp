@@ -180,7 +180,15 @@ void Commissioning::watch(Time now) {
     std::snprintf(failure_.data(), failure_.size(), "%s: %s", config_.names[i].c_str(), canopen::name(one.fault()));
     return;
   }
-  if (now - joint_since_ > config_.longest) fail_joint("no stop was found in time", now);
+  if (joint_ < joint_count() && now - joint_since_ > longest(config_.arm.joint(joint_), config_))
+    fail_joint(found_[joint_] ? "it was not back in time" : "no stop was found in time", now);
+}
+
+Duration Commissioning::longest(const ArmModel::Joint& joint, const Config& config) {
+  constexpr double reserve = 1.2, besides_s = 60;  // for the stops, for friction
+  const double way_s =
+      static_cast<double>(joint.upper_rad - joint.lower_rad) / (config.speed_fraction * static_cast<double>(joint.velocity_rad_s));
+  return std::max(config.longest, Duration::from_s(2 * reserve * way_s + besides_s));
 }
 
 void Commissioning::step(Time now) {

@@ -48,7 +48,7 @@ class Commissioning {
     double slow_fraction = 0.2, fast_fraction = 0.4;  // of each drive's maximum speed, while its friction is found
     double ease_fraction = 0.02;                      // of each drive's maximum speed: 0.007 rad of winding take the slew a second
     Duration stall = Duration::from_ms(600);          // pressing without a count for so long is standing at the stop
-    Duration longest = Duration::from_ms(150'000);    // of one joint
+    Duration longest = Duration::from_ms(150'000);    // of one joint; more where its stroke takes more, there and back
   };
 
   enum class State : std::uint8_t {
@@ -87,6 +87,8 @@ class Commissioning {
   // No drive that this one powered has power: each has said so since. A drive that is no longer heard counts as powered.
   bool without_power() const;
   std::size_t joint() const { return joint_; }  // under work
+  // How long one joint may take.
+  static Duration longest(const ArmModel::Joint& joint, const Config& config);
   const PerJoint<std::int32_t>& zero_counts() const { return zero_counts_; }
   const PerJoint<bool>& found() const { return found_; }
   // By how much a zero is off the one known in `network`, or the file's, whichever is farther, where it is more than told_move_rad; 0 otherwise.

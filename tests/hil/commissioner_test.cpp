@@ -106,6 +106,35 @@ TEST(CommissioningThatFails, LeavesAJointThatItFoundElsewhereWithoutPowerUntilTh
   EXPECT_LT(std::abs(work.file().zero_counts[4] - somewhere[4]), 20);
 }
 
+// Its elbow turns from 1.8 to 4.7 rad: the zero that was taken there would have been 1.7 rad off.
+TEST(CommissioningInAJig, IsRefusedWhereAJointCannotStandAtItsZero) {
+  const TemporaryFolder folder;
+  folder.write("homing.yaml", "elbow: {zero_counts: 0}\n");
+  const hal::VehicleConfig vehicle = hal::load_vehicle_config(folder.write(
+      "vehicle.yaml", "machine: " LANTERNFISH_TEST_DATA "/arms/seven_joints/seven_joints.yaml\ncan: {interface: can0}\n"
+                      "camera: {source: none}\npanel: {ahead_m: 0.75, down_m: 0.35}\ntasks: []\nlock_folder: " +
+                          folder.path().string() + "\nlog: {folder: " + (folder / "log") + "}\nhoming: {file: homing.yaml}\n"));
+  const auto rings = std::make_unique<hal::LoopRings>();
+  hal::Commissioner commissioner(vehicle, *rings, [](const hal::Json&) {});
+  hal::CommissionOrder order;
+  order.here = true;
+  EXPECT_EQ(commissioner.begin(order, hal::monotonic_now()),
+            "the elbow cannot stand at its zero, which its range leaves out: commission it against its stop");
+  EXPECT_FALSE(commissioner.busy());
+  order.joints[2] = false;
+  EXPECT_EQ(commissioner.begin(order, hal::monotonic_now()), std::nullopt) << "the others can";
+}
+
+// There and back at 0.15 rad/s, with a reserve, where that is longer than what the default arm's joints have.
+TEST(CommissioningTime, GrowsWithTheStroke) {
+  Commissioning::Config config;
+  ArmModel::Joint joint;
+  joint.lower_rad = -1, joint.upper_rad = 1, joint.velocity_rad_s = 0.5;
+  EXPECT_EQ(Commissioning::longest(joint, config), config.longest);
+  joint.lower_rad = -6, joint.upper_rad = 6;
+  EXPECT_NEAR(Commissioning::longest(joint, config).s(), 2 * 1.2 * 12 / 0.15 + 60, 1e-6);
+}
+
 // Commissioned again where the old zero has it, such a joint is as before: the obstacle is gone.
 TEST(CommissioningThatFails, LeavesAZeroThatHoldsOnceTheJointIsFoundThereAgain) {
   AtWork work(0);
