@@ -40,7 +40,7 @@ void check_torques(const arm::Arm& arm, const JointNames& names, const safety::L
 void check_fit(const arm::Arm& arm, const JointNames& names, const safety::Limits& limits, std::vector<std::string>& problems) {
   constexpr double beyond_rad = 0.03;     // the shipped jaw's, whose zero may be 5 mrad off, lie 0.022 beyond its stops
   constexpr double faster = 1.35;         // the shipped ones are 1.17 to 1.3 times the joints' top speeds
-  constexpr double of_peak = 0.9;         // the rest is what a reading may lack
+  constexpr double of_most = 0.9;         // the rest is what a reading may lack
   constexpr double longest_stop_s = 1.0;  // at 1.1 s a stop takes the power, moving or not
   for (std::size_t i = 0; i < arm.joint_count(); ++i) {
     const ArmModel::Joint& joint = arm.joint(i);
@@ -60,12 +60,13 @@ void check_fit(const arm::Arm& arm, const JointNames& names, const safety::Limit
   }
   for (std::size_t i = 0; i < arm.arm_joints(); ++i) {
     const double contact_nm = mission::free_motion_guard(arm, limits).contact_torque_nm[static_cast<Eigen::Index>(i)];
-    const double peak_nm = arm.joint(i).effort_nm;
-    if (contact_nm >= of_peak * peak_nm)
+    // The drives are set to give no more than their rated torque.
+    const double most_nm = std::min<double>(arm.joint(i).effort_nm, arm.joint(i).rated_torque_nm);
+    if (contact_nm >= of_most * most_nm)
       problems.push_back(
           formatted("'max_contact_torque_nm' and 'joints.%s.max_torque_nm' make a rise of %.3g N m a contact of the %s: its drive "
                     "gives %.3g N m at most, and would never show one",
-                    names[i].c_str(), contact_nm, names[i].c_str(), peak_nm));
+                    names[i].c_str(), contact_nm, names[i].c_str(), most_nm));
   }
 }
 
