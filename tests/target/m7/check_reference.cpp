@@ -121,7 +121,6 @@ int run() {
   put_everything(comparison);
   const int failed = comparison.finish();
 
-  static_assert(sizeof(Controller) <= 40 * 1024, "64 KiB of tightly coupled memory, less 24 for stacks");
   print_size("Controller", sizeof(Controller));
   print_size("TickOutput", sizeof(TickOutput));
   print_size("CoreRings", sizeof(hal::CoreRings));

@@ -140,7 +140,7 @@ class TurnCounter {
 
 // The control side has to fit the memory beside the processor; what it shares with the vision side does not.
 alignas(Controller) unsigned char controller_place[sizeof(Controller)];
-// With what it is told: of 64 KiB of tightly coupled memory a stack and the loop about it have the rest.
+// Of 64 KiB of tightly coupled memory; 24 are left for stack and outputs.
 constexpr std::size_t budget = 40 * 1024;
 static_assert(sizeof(Controller) + sizeof(ControllerConfig) <= budget);
 TickOutput out;

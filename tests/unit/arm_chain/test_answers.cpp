@@ -1,4 +1,4 @@
-// The same answers on every platform: those of one, kept in a file, are asked of all.
+// The same answers on every platform: what one has answered is kept in a file and asked of all. Whether an answer is right, other tests say.
 //
 // The file is written anew with LANTERNFISH_RECORD_ANSWERS=1: when the solver is another, not when a platform is.
 #include <gtest/gtest.h>
@@ -35,7 +35,9 @@ std::vector<Answer> answers() {
     for (std::size_t mask = 0; mask < 4; ++mask) {
       for (int k = 0; k < poses_each; ++k) {
         Ik ik(chain);
-        const IkResult& result = ik.solve(task_of(masks[mask], chain.base_from_tool(random.next())), chain.middle());
+        IkTask task = task_of(masks[mask], chain.base_from_tool(random.next()));
+        if (k % 5 == 4) task.base_from_tool.translation() *= 3;  // beyond any arm's reach, for most
+        const IkResult& result = ik.solve(task, chain.middle());
         all.push_back({arm.name + " " + masks[mask].id + " " + std::to_string(k), result.ok(), result.q});
       }
     }
@@ -52,7 +54,10 @@ void record(const std::vector<Answer>& all) {
 
 TEST(Answers, AreTheSameToAMillionthOfARadianOnAnyPlatform) {
   const std::vector<Answer> all = answers();
-  if (std::getenv("LANTERNFISH_RECORD_ANSWERS") != nullptr) record(all);
+  if (std::getenv("LANTERNFISH_RECORD_ANSWERS") != nullptr) {
+    record(all);
+    GTEST_SKIP() << "recorded";
+  }
   std::ifstream in(file);
   ASSERT_TRUE(in) << file;
   std::size_t row = 0;
