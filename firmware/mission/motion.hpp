@@ -18,10 +18,12 @@
 
 namespace lf::mission {
 
-// By how much harder a straight line may press once what it meets is felt, until the arm stands: where nothing is meant to be met, and in a press. By their own estimate the
-// ARM 5E's lines at their usual speeds come to 168 and 62 N. A stiffer arm, or one that brakes more slowly, goes more slowly. An arm that feels little presses hard before it
-// feels anything: in a press both together are `most_press_n` at most, as far as that leaves `least_push_n`.
-inline constexpr double approach_push_n = 170, press_push_n = 65, most_press_n = 85, least_push_n = 15;
+// By how much harder a straight line may press once what it meets is felt, until the arm stands, N: where nothing is meant to be met, and in a press. By their own estimate the
+// ARM 5E's lines at their usual speeds come to 168 and 62 N. A stiffer arm, or one that brakes more slowly, goes more slowly.
+inline constexpr double approach_push_n = 170, usual_push_n = 65;
+// An arm of small levers pushes hard before it feels anything. In a press that and the rise after it are `most_press_n` at most, both by the arm's own estimate, but for a rise of
+// `least_push_n`. Simulated presses come to up to 146 N.
+inline constexpr double most_press_n = 85, least_push_n = 15;
 
 class Motion {
  public:

@@ -57,16 +57,14 @@ double corner_ahead_m(const arm::Arm& arm, const arm::JointVector& q_rad, const 
   return half_m * (std::abs(normal.dot(base_from_tool.col(0))) + std::abs(normal.dot(base_from_tool.col(1))));
 }
 
-// Rises that say a button has bottomed: none that an arm's friction and ringing make in free motion. 2.5 N m were seen of the default arm, 10 of one 3.8 times as strong.
-arm::JointVector bottom_torques_nm(const Workbench& bench) {
-  constexpr double least_nm = 3;
-  return (least_nm * strengths(bench.config.arm, bench.config.mission_limits)).cwiseMax(bench.mission().press_torque_nm);
+arm::JointVector bottom_nm(const Workbench& bench) {
+  return bottom_torques_nm(bench.config.arm, bench.config.mission_limits, bench.mission().press_torque_nm);
 }
 
 // Where touching is meant: of the arm's rules for its torques only what says that the button has bottomed. An overload is the watch's.
 arm::GuardConfig press_guard(const Workbench& bench) {
   arm::GuardConfig config(bench.config.arm);
-  config.contact_torque_nm = bottom_torques_nm(bench);
+  config.contact_torque_nm = bottom_nm(bench);
   config.overload_torque_nm.setConstant(HUGE_VAL);
   return config;
 }
@@ -178,8 +176,7 @@ Progress PressButton::run_reach(const StepTick& tick) {
 Progress PressButton::begin_press(Workbench& bench) {
   // Until the press has come to its speed: a gear's break-away may pass the press's torque for some milliseconds (8 N m were seen).
   arm::GuardConfig config = press_guard(bench);
-  config.contact_torque_nm =
-      free_motion_guard(bench.config.arm, bench.config.mission_limits).contact_torque_nm.cwiseMax(bottom_torques_nm(bench));
+  config.contact_torque_nm = free_motion_guard(bench.config.arm, bench.config.mission_limits).contact_torque_nm.cwiseMax(bottom_nm(bench));
   guard_ = arm::GuardedMotion(config);
   feel_ = ButtonFeel(feel_config(bench));
   learned_under_way_ = false;
@@ -192,7 +189,7 @@ Progress PressButton::begin_press(Workbench& bench) {
   arm::JointVector q = bench.motion.target();
   if (!tool_for_tip(bench.config.arm, tip, -bench.map.normal(), closed_tip_beyond_tool_m(bench.jaw()), bench.tool_roll_rad, true, q))
     return Progress::failed(StepFailure::unreachable);
-  const double felt_n = arm::least_felt_n(bench.config.arm, q, bench.map.normal(), bottom_torques_nm(bench));
+  const double felt_n = arm::least_felt_n(bench.config.arm, q, bench.map.normal(), bottom_nm(bench));
   bench.press_straight(bench.config.arm.base_from_tool(q).translation(), bench.tool_roll_rad, bench.mission().press_speed_m_s, felt_n,
                        bench.meant_parts());
   return Progress::running();

@@ -36,10 +36,14 @@ arm::GuardConfig free_motion_guard(const arm::Arm& arm, const safety::Limits& li
 arm::GuardConfig approach_guard(const arm::Arm& arm, const safety::Limits& limits);
 // How an arm that grips gives way: the stronger the arm, the less for a newton metre.
 arm::ComplianceConfig gripping_compliance(const arm::Arm& arm, const safety::Limits& limits);
-// How many times stronger than the default arm this one is, joint by joint (of the roll: 1) and at the weakest joint that points the tool. The mission's rules have the
-// default arm's torques, and multiply them by this: what the limits take for a contact over the default's.
+// How many times stronger than the default arm this one is: what the limits take for a contact over the default's. The mission's rules have the default arm's torques, and
+// multiply them by this. Joint by joint (of the roll: 1), and of the weakest joint that points the tool.
 arm::JointVector strengths(const arm::Arm& arm, const safety::Limits& limits);
 double strength(const arm::Arm& arm, const safety::Limits& limits);
+// The rise of each joint's torque that says a button has bottomed: `press_torque_nm`, or what lies above a strong arm's friction and ringing.
+arm::JointVector bottom_torques_nm(const arm::Arm& arm, const safety::Limits& limits, double press_torque_nm);
+// By how much harder a press may push once it is felt, N, if it takes `felt_n` to be felt.
+double press_push_n(double felt_n);
 
 // A joint stays behind its target, and nothing holds it back: its encoder or its drive is not to be trusted.
 bool lags_without_load(const arm::Arm& arm, const arm::GuardedMotion& guard);
@@ -109,7 +113,7 @@ struct Workbench {
   Progress follow_way();
   // A straight motion of the tool with the jaw as it is.
   void go_straight(const Vec3& goal_m, double roll_rad, double speed_m_s, arm::PanelParts meant);
-  // The same into what is meant to stop it, and is felt at `felt_n`.
+  // The same into what is meant to stop it. It is felt at `felt_n`.
   void press_straight(const Vec3& goal_m, double roll_rad, double speed_m_s, double felt_n, arm::PanelParts meant);
   // Done when the motion is; failed when the motion could not be planned.
   Progress follow_motion() const;

@@ -141,10 +141,10 @@ void add_mission(Keys& all, mission::MissionConfig& m) {
   all.push_back(key("mission.press_speed_m_s", "m/s", 0.001, 0.2, &m.press_speed_m_s, "of a press, at most"));
   all.push_back(
       key("mission.press_overtravel_m", "m", 0, 0.05, &m.press_overtravel_m, "beyond a button's bottom before the press counts as missed"));
-  all.push_back(
-      key("mission.press_torque_nm", "N m", 2, 20, &m.press_torque_nm,
-          "rise of a joint's torque that says the button has bottomed; an arm whose limits take 31 N m or more for a contact needs more. "
-          "The default arm's drives give 26 N m, and at 25 no press is told"));
+  all.push_back(key("mission.press_torque_nm", "N m", 2, 20, &m.press_torque_nm,
+                    "rise of a joint's torque that says the button has bottomed; of a stronger arm at least 3/13 of the joint's torque of "
+                    "contact is taken. "
+                    "The default arm's drives give 26 N m, and at 25 no press is told"));
   all.push_back(key("mission.turn_speed_rad_s", "rad/s", 0.01, 1, &m.turn_speed_rad_s, "of the handle; no faster than the wrist"));
   all.push_back(key("mission.valve_tolerance_rad", "rad", 0.015, 0.045, &m.valve_tolerance_rad,
                     "what the second look accepts without turning again. Its own error is 0.6 degrees as a rule and 1.15 at worst: below "

@@ -113,7 +113,8 @@ ArmJoint read_joint(const Urdf& urdf, const std::string& name, const std::string
   joint.lower_rad = urdf.number(limit, "lower");
   joint.upper_rad = urdf.number(limit, "upper");
   if (joint.lower_rad >= joint.upper_rad) urdf.fail(limit, urdf.label(e) + ": lower limit is not below the upper one");
-  if (joint.lower_rad < -2 * pi || joint.upper_rad > 2 * pi) urdf.fail(limit, urdf.label(e) + ": limits reach beyond a whole turn");
+  constexpr double turn_rad = 2 * pi + 1e-4;  // as many digits as files give it
+  if (joint.lower_rad < -turn_rad || joint.upper_rad > turn_rad) urdf.fail(limit, urdf.label(e) + ": limits reach beyond a whole turn");
   joint.effort_nm = urdf.positive(limit, "effort");
   joint.velocity_rad_s = urdf.positive(limit, "velocity");
   return joint;
@@ -304,6 +305,7 @@ void check_jaw(const Urdf& urdf, const ArmDescription& arm) {
     return joint.parent_from_joint.linear().isIdentity(tolerance) && std::abs(joint.parent_from_joint.translation().y()) < tolerance;
   };
   expect(square(a) && (a.axis + Vec3::UnitY()).norm() < tolerance, "jaw", "must turn about the wrist's -y, in its x-z plane");
+  expect(a.lower_rad >= -pi && a.upper_rad <= pi, "jaw", "must stay within half a turn to either side of angle 0");
   const Vec3 mirrored = a.parent_from_joint.translation().cwiseProduct(Vec3(-1, 1, 1));
   expect(square(arm.finger_b) && (arm.finger_b.axis - Vec3::UnitY()).norm() < tolerance &&
              (arm.finger_b.parent_from_joint.translation() - mirrored).norm() < tolerance,
@@ -382,8 +384,11 @@ void check_chain(const Urdf& urdf, const ArmDescription& arm) {
   };
   constexpr double tolerance = 1e-9;
   const auto same = [](const Vec3& a, const Vec3& b) { return (a - b).norm() < tolerance; };
-  for (std::size_t i = 0; i < arm.arm_joints(); ++i)
+  for (std::size_t i = 0; i < arm.arm_joints(); ++i) {
     expect(same(arm.joints[i].axis, Vec3::UnitZ()), planar_joints[i], "must turn about its own z");
+    expect(arm.joints[i].lower_rad >= -pi && arm.joints[i].upper_rad <= pi, planar_joints[i],
+           "must stay within half a turn to either side of angle 0: the closed form of this kind of arm knows no other turn");
+  }
   const Pose slew = arm.joints[0].parent_from_joint;
   const Pose shoulder = slew * arm.joints[1].parent_from_joint;
   const Pose elbow = shoulder * arm.joints[2].parent_from_joint;
@@ -436,6 +441,11 @@ ArmDescription load_arm_urdf(const std::string& path) {
   check_parts(urdf, parts);
   check_shapes(urdf, arm);
   parts.planar ? check_chain(urdf, arm) : check_any_chain(urdf, arm);
+  if (arm.rolls && (arm.last().lower_rad > 0 || arm.last().upper_rad < 0)) {
+    urdf.fail(urdf.named("joint", arm.last().name),
+              "joint '" + arm.last().name +
+                  "' rolls the tool, and its range leaves out angle 0: buttons are pressed there. Choose its zero in its range");
+  }
   arm.pad = read_pad(urdf, "finger_a");
   check_jaw(urdf, arm);
   // What is wrong with the file beyond the arm, and what is there twice. That the tool has no mass is as it should be.

@@ -101,16 +101,19 @@ TEST_F(AnyArm, IsNotJoggedIntoItsVehicle) {
   EXPECT_EQ(rig.step_now(), Step::ready) << rig.story();
 }
 
-// The elbow's range is 0.2 to 3.1 rad: angle 0, where a description counts from, is not in it.
+// The elbow's range is 1.8 to 4.7 rad, without angle 0; the swivel stands beyond half a turn.
 TEST(SevenJoints, AreHomedAndJoggedWhereARangeLeavesOutAngleZero) {
   Rig rig({"machine=" LANTERNFISH_TEST_DATA "/arms/seven_joints/seven_joints.yaml", "panel.ahead_m=0.75", "panel.down_m=0.35", "tasks=[]"});
   ASSERT_TRUE(home(rig)) << rig.story();
-  EXPECT_NEAR(angle_rad(rig, 2), 2.304, 0.01);
-  for (const double by_rad : {-0.2, -0.2, 0.2}) {
-    const double from_rad = angle_rad(rig, 2);
-    ASSERT_TRUE(jog(rig, 2, by_rad)) << rig.story();
-    ASSERT_TRUE(finish_jog(rig)) << rig.story();
-    EXPECT_NEAR(angle_rad(rig, 2), from_rad + by_rad, 0.012);
+  EXPECT_NEAR(angle_rad(rig, 2), 3.904, 0.01);
+  EXPECT_NEAR(angle_rad(rig, 3), 3.6, 0.01);
+  for (const std::size_t joint : {2u, 3u}) {
+    for (const double by_rad : {-0.2, -0.2, 0.2}) {
+      const double from_rad = angle_rad(rig, joint);
+      ASSERT_TRUE(jog(rig, joint, by_rad)) << rig.story();
+      ASSERT_TRUE(finish_jog(rig)) << rig.story();
+      EXPECT_NEAR(angle_rad(rig, joint), from_rad + by_rad, 0.012);
+    }
   }
   EXPECT_TRUE(rig.world().contacts().unintended.empty());
   EXPECT_EQ(rig.step_now(), Step::ready) << rig.story();

@@ -46,7 +46,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Seeded{"default", 1, "lamps.lit=either", "Default1"}, Seeded{"turbid", 7, "lamps.lit=false", "TurbidInTheDark7"},
                     // Six joints with a spherical wrist, and with three parallel axes.
                     Seeded{"oberon7", 1, "lamps.lit=true", "Oberon1"}, Seeded{"ur5", 2, "lamps.lit=true", "Ur2"},
-                    // Seven joints: one turns by nearly two turns, one leaves out angle 0.
+                    // Seven joints: one stands beyond half a turn, the range of another leaves out angle 0.
                     Seeded{"ur5", 1, "machine=" LANTERNFISH_TEST_DATA "/arms/seven_joints/seven_joints.yaml", "SevenJoints1"}),
     [](const testing::TestParamInfo<Seeded>& test) { return std::string(test.param.name); });
 

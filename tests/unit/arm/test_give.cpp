@@ -45,7 +45,7 @@ TEST_P(Give, IsWhatTheJointsGiveWayBy) {
   }
 }
 
-// A force is felt by the joint whose torque it raises furthest: by the principle of virtual work that is its lever's.
+// A joint's torque is force times lever: the first to reach its threshold feels it.
 TEST_P(Give, IsFeltByTheFirstJointWhoseTorqueRisesAsFar) {
   SCOPED_TRACE(testing::Message() << "seed " << seed);
   for (int k = 0; k < 200; ++k) {
