@@ -1,6 +1,5 @@
 #include "host_sim/app/check_machine.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <sstream>
@@ -8,16 +7,13 @@
 #include "firmware/arm/gripper.hpp"
 #include "firmware/arm/pointing.hpp"
 #include "hal/config/arm_notes.hpp"
-#include "hal/config/drive_kind.hpp"
-#include "hal/config/homing_file.hpp"
 #include "hal/config/joined.hpp"
-#include "hal/config/limits_file.hpp"
 #include "hal/config/machine_file.hpp"
-#include "hal/config/park_pose.hpp"
 #include "hal/config/read_arm.hpp"
 #include "hal/config/share.hpp"
 #include "host_sim/app/command.hpp"
 #include "host_sim/app/outside_picture.hpp"
+#include "host_sim/app/read_machine.hpp"
 #include "host_sim/scenario/instance.hpp"
 #include "host_sim/scenario/scenario.hpp"
 #include "shared/arm/arm_description.hpp"
@@ -25,35 +21,6 @@
 
 namespace lf::app {
 namespace {
-
-// The file, read; what it names is found beside it.
-config::Machine machine_of(const std::string& file) {
-  config::Machine machine;
-  machine.file = file;
-  std::vector<std::string> problems;
-  config::read_machine_file(file, machine, problems);
-  const auto take = [&problems](const auto& step) {
-    try {
-      step();
-    } catch (const InputError& problem) {
-      problems.emplace_back(problem.what());
-    }
-  };
-  if (problems.empty()) {
-    take([&] { (void)config::read_limits(config::named_file(file, "safety.limits", machine.safety_limits), machine.joints); });
-    take([&] {
-      const config::NamedArm arm = config::read_arm(config::named_file(file, "arm.urdf", machine.arm_urdf));
-      machine.arm = arm.arm;
-      machine.joints = arm.joints;
-    });
-    take([&] { (void)config::park_pose(machine); });
-    for (std::size_t i = 0; i < machine.joints.size(); ++i)
-      take([&] { (void)config::find_drive_kind(config::drive_of(machine.drives, i).profile, std::filesystem::path(file).parent_path()); });
-  }
-  problems.erase(std::unique(problems.begin(), problems.end()), problems.end());
-  if (!problems.empty()) throw InputError(config::joined(problems));
-  return machine;
-}
 
 // By the rules that a mission is held against before it begins, without the file that the user did not write.
 std::vector<std::string> problems_of_job(const std::string& file) {
@@ -79,7 +46,7 @@ struct Told {
 
   explicit Told(const std::string& name)
       : file(name),
-        machine(machine_of(name)),
+        machine(read_machine(name)),
         description(load_arm_urdf(urdf())),
         arm(machine.arm),
         assumed(config::keys_left_out(name)),
@@ -162,9 +129,7 @@ void tell(const Told& told) {
 }  // namespace
 
 int check_machine(const std::string& name, const std::string& picture, bool json) {
-  const std::string named = config::machine_file_of(name);
-  if (named != name && !std::filesystem::exists(config::share_folder() / named)) throw InputError(config::no_machine(name));
-  const Told told(named == name ? name : (config::share_folder() / named).string());
+  const Told told(machine_path(name));
   if (!picture.empty()) {
     const scenario::Scenario usual = scenario::load_scenario("default", {});
     scenario::Scenario shown = usual;

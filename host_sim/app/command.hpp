@@ -37,6 +37,7 @@ void add_markers(CLI::App& app, Action& action);
 void add_ik(CLI::App& app, Action& action);
 void add_check(CLI::App& app, Action& action);
 void add_new(CLI::App& app, Action& action);
+void add_export(CLI::App& app, Action& action);
 void add_bench(CLI::App& app, Action& action);
 void add_doctor(CLI::App& app, Action& action);
 void add_version(CLI::App& app, Action& action);

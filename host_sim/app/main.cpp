@@ -36,6 +36,7 @@ void add_commands(CLI::App& app, Action& action) {
   add_ik(app, action);
   add_check(app, action);
   add_new(app, action);
+  add_export(app, action);
   add_bench(app, action);
   add_doctor(app, action);
   add_version(app, action);

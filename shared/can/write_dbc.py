@@ -31,10 +31,10 @@ def add_process_data(message, signals, motor, receiver):
         factor, unit, comment = 1, s.unit, ""
         if s.scale == "position":
             factor, unit = motor.position_scale()
-            comment = "Growth of the joint's screw since joint angle 0." if motor.screw else "Joint angle."
+            comment = ("Growth of the joint's screw" if motor.screw else "Joint angle") + " since the drive's own zero."
         if s.scale == "torque":
             factor, unit = motor.torque_scale()
-            comment = "At the joint."
+            comment = "At the motor's shaft."
         message.add(s.name, 8 * s.byte, bits, signed, factor, unit, receiver, comment)
 
 

@@ -14,7 +14,6 @@ import xml.etree.ElementTree
 import can
 import canmatrix.formats
 
-JOINTS = ["slew", "shoulder", "elbow", "roll", "jaw"]
 LANTERNFISH = "{https://lanternfish.invalid/urdf}"
 
 
@@ -36,10 +35,16 @@ def angle(screw, growth_m):
     return math.acos((a * a + b * b - length * length) / (2 * a * b)) - offset
 
 
-def decode(matrix, run):
+def joints_of(run):
+    """The names in the header of joints.csv."""
+    with open(run / "joints.csv", encoding="ascii") as stream:
+        return [name.removesuffix("_target_rad") for name in stream.readline().strip().split(",") if name.endswith("_target_rad")]
+
+
+def decode(matrix, run, joints):
     """Per joint a list of (time, angle source value); checks frames on the way."""
     frames = {frame.arbitration_id.id: frame for frame in matrix.frames}
-    series = {name: [] for name in JOINTS}
+    series = {name: [] for name in joints}
     units, count, kinds = {}, 0, set()
     outputs_asked, outputs_seen = None, []
     for message in can.LogReader(str(run / "can0.log")):
@@ -51,7 +56,7 @@ def decode(matrix, run):
         if not message.data:
             continue
         signals = frame.decode(bytes(message.data))
-        node, _, what = frame.name.partition("_")
+        node, _, what = frame.name.rpartition("_")
         if what == "tpdo1" and node in series:
             position = signals["position"]
             units[node] = position.signal.unit
@@ -66,21 +71,21 @@ def decode(matrix, run):
 def main():
     dbc, urdf, run = sys.argv[1], sys.argv[2], pathlib.Path(sys.argv[3])
     matrix = canmatrix.formats.loadp_flat(dbc)
-    series, units, count, kinds, outputs_seen = decode(matrix, run)
+    joints = joints_of(run)
+    assert len(joints) >= 5, joints
+    series, units, count, kinds, outputs_seen = decode(matrix, run, joints)
     screw = screws(urdf)
-    assert set(screw) == {"slew", "shoulder", "elbow"}, screw
-    assert all(units[name] == ("m" if name in screw else "rad") for name in JOINTS), units
-    for name in JOINTS:
-        assert any(kind == name + suffix for kind in kinds for suffix in ("_tpdo1",)), kinds
+    assert all(units[name] == ("m" if name in screw else "rad") for name in joints), units
+    assert {name + "_tpdo1" for name in joints} <= kinds, sorted(kinds)
     assert {"nmt", "sync", "master_heartbeat", "elbow_emcy", "elbow_sdo_answer", "outputs_rpdo1"} <= kinds, sorted(kinds)
     assert outputs_seen
 
     with open(run / "joints.csv", encoding="ascii") as stream:
         rows = [{key: float(value) for key, value in row.items()} for row in csv.DictReader(stream) if all(row.values())]  # empty before the drives answer
     compared, worst, travelled = 0, 0.0, 0.0
-    at = {name: 0 for name in JOINTS}
+    at = {name: 0 for name in joints}
     for row in rows:
-        for name in JOINTS:
+        for name in joints:
             frames = series[name]
             # The newest frame that was there at this tick.
             while at[name] + 1 < len(frames) and frames[at[name] + 1][0] < row["t_s"] - 1e-6:
@@ -91,7 +96,7 @@ def main():
             decoded = angle(screw[name], value) if name in screw else value
             worst = max(worst, abs(decoded - row[name + "_rad"]))
             compared += 1
-    for name in JOINTS:
+    for name in joints:
         values = [row[name + "_rad"] for row in rows]
         travelled = max(travelled, max(values) - min(values))
     print(f"{count} frames of {len(kinds)} kinds; {compared} joint values compared, worst difference {worst:.2e} rad, longest way {travelled:.2f} rad")

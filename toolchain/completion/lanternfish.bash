@@ -4,7 +4,7 @@ _lanternfish() {
   COMPREPLY=()
   for ((i = 1; i < COMP_CWORD; i++)); do
     case ${COMP_WORDS[i]} in
-      run|campaign|compare|serve|render-frames|scenarios|reach|peaks|plane|markers|ik|check|new|bench|doctor|version|help|completion) command=${COMP_WORDS[i]}; break ;;
+      run|campaign|compare|serve|render-frames|scenarios|reach|peaks|plane|markers|ik|check|new|export|bench|doctor|version|help|completion) command=${COMP_WORDS[i]}; break ;;
     esac
   done
   case $command in
@@ -149,6 +149,13 @@ _lanternfish() {
       options='--help'
       [[ $word == -* ]] || { compopt -o filenames; COMPREPLY=($(compgen -f -- "$word")); return; }
       ;;
+    'export')
+      case $before in
+        --out) compopt -o filenames; COMPREPLY=($(compgen -f -- "$word")); return ;;
+      esac
+      options='--help --out'
+      [[ $word == -* ]] || { compopt -o filenames; COMPREPLY=($(compgen -f -- "$word")); return; }
+      ;;
     'bench')
       options='--help --json'
       [[ $word == -* ]] || { compopt -o filenames; COMPREPLY=($(compgen -f -- "$word")); return; }
@@ -161,14 +168,14 @@ _lanternfish() {
       ;;
     'help')
       options='--help'
-      [[ $word == -* ]] || { COMPREPLY=($(compgen -W "$(printf "%s\n" run campaign compare serve render-frames scenarios reach peaks plane markers ik check new bench doctor version help completion)" -- "$word")); return; }
+      [[ $word == -* ]] || { COMPREPLY=($(compgen -W "$(printf "%s\n" run campaign compare serve render-frames scenarios reach peaks plane markers ik check new export bench doctor version help completion)" -- "$word")); return; }
       ;;
     'completion')
       options='--help'
       [[ $word == -* ]] || { COMPREPLY=($(compgen -W "$(printf '%s\n' bash zsh)" -- "$word")); return; }
       ;;
   esac
-  [ -n "$command" ] || options+=' run campaign compare serve render-frames scenarios reach peaks plane markers ik check new bench doctor version help completion'
+  [ -n "$command" ] || options+=' run campaign compare serve render-frames scenarios reach peaks plane markers ik check new export bench doctor version help completion'
   COMPREPLY=($(compgen -W "$options" -- "$word"))
 }
 complete -F _lanternfish lanternfish

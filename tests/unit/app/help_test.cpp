@@ -14,9 +14,9 @@ namespace {
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
-const std::vector<std::string> commands{"run",     "campaign", "serve", "render-frames", "scenarios", "reach", "peaks",      "plane",
-                                        "markers", "ik",       "bench", "doctor",        "version",   "help",  "completion", "compare",
-                                        "check",   "new"};
+const std::vector<std::string> commands{"run",        "campaign", "serve",  "render-frames", "scenarios", "reach",   "peaks",
+                                        "plane",      "markers",  "ik",     "bench",         "doctor",    "version", "help",
+                                        "completion", "compare",  "export", "check",         "new"};
 
 class Help : public Program {
  protected:

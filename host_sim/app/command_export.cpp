@@ -1,0 +1,102 @@
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "hal/config/core_drives.hpp"
+#include "hal/config/drive_kind.hpp"
+#include "hal/config/limits_file.hpp"
+#include "hal/config/nearest.hpp"
+#include "hal/config/share.hpp"
+#include "host_sim/app/checks.hpp"
+#include "host_sim/app/command.hpp"
+#include "host_sim/app/dbc.hpp"
+#include "host_sim/app/read_machine.hpp"
+#include "host_sim/record/file_sink.hpp"
+#include "shared/arm/motor.hpp"
+#include "shared/input_error.hpp"
+
+namespace lf::app {
+
+namespace {
+
+struct Options {
+  std::string kind, machine, out;
+};
+
+// A DBC's names are those of C. Two joints whose names differ in other letters only, and one that is called as the master is, get a longer one.
+std::string dbc_name(const std::string& joint, const std::vector<DbcDrive>& taken) {
+  std::string name = joint;
+  for (char& c : name)
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
+  if (name.empty() || std::isdigit(static_cast<unsigned char>(name[0])) != 0) name.insert(0, "_");
+  const auto is_taken = [&] {
+    return name == "master" || std::any_of(taken.begin(), taken.end(), [&](const DbcDrive& other) { return other.name == name; });
+  };
+  while (is_taken()) name += "_";
+  return name;
+}
+
+// The drives as the master sets them up: their units, directions and numbers.
+canopen::NetworkConfig network_of(const config::Machine& machine, const ArmDescription& description) {
+  const safety::Limits limits =
+      config::read_limits(config::named_file(machine.file, "safety.limits", machine.safety_limits), machine.joints);
+  canopen::NetworkConfig network = config::network_config(machine.arm, limits);
+  for (std::size_t i = 0; i < machine.joints.size(); ++i) {
+    const config::DriveKind kind =
+        config::find_drive_kind(config::drive_of(machine.drives, i).profile, std::filesystem::path(machine.file).parent_path());
+    config::set_drive(machine, i, kind, description.joints[i], network.drives[i]);
+  }
+  network.io.node = static_cast<std::uint8_t>(machine.drives.output_node);
+  config::check_network(machine, network);
+  return network;
+}
+
+DbcDrive drive_of(const canopen::DriveSetup& setup, const ArmJoint& joint, const config::JointDriveChoice& choice) {
+  const canopen::DriveScale& scale = setup.profile.scale;
+  const double rated_nm = choice.rated_torque_nm > 0 ? choice.rated_torque_nm : motor_of(joint, choice.counts_per_rev).rated_torque_nm;
+  DbcDrive drive;
+  drive.node = setup.node;
+  drive.screw = joint.actuator.counts_per_rad == 0;
+  const double per_count = 1 / (drive.screw ? joint.actuator.counts_per_m : joint.actuator.counts_per_rad);
+  drive.position = scale.sign * per_count * scale.position.den / scale.position.num;
+  drive.torque_nm = scale.sign * rated_nm / 1000 * scale.torque.den / scale.torque.num;
+  drive.torque_offset = setup.profile.torque_offset;
+  return drive;
+}
+
+int do_export(const Options& options) {
+  config::check_names({options.kind}, {"dbc"}, "export");
+  const config::Machine machine = read_machine(machine_path(options.machine));
+  const ArmDescription description = load_arm_urdf(config::named_file(machine.file, "arm.urdf", machine.arm_urdf));
+  const canopen::NetworkConfig network = network_of(machine, description);
+  std::vector<DbcDrive> drives;
+  for (std::size_t i = 0; i < machine.joints.size(); ++i) {
+    DbcDrive drive = drive_of(network.drives[i], description.joints[i], config::drive_of(machine.drives, i));
+    drive.name = dbc_name(machine.joints[i], drives);
+    drives.push_back(std::move(drive));
+  }
+  const std::string text = dbc(drives, network.io.node);
+  if (options.out.empty()) {
+    print("%s", text.c_str());
+  } else {
+    record::write_file_atomically(options.out, text);
+    print("%s\n", options.out.c_str());
+  }
+  return done;
+}
+
+}  // namespace
+
+void add_export(CLI::App& app, Action& action) {
+  CLI::App* command =
+      app.add_subcommand("export", "Write what is on a machine's bus for other tools: a DBC, with which they decode its frames");
+  auto options = std::make_shared<Options>();
+  command->add_option("KIND", options->kind, "What to write: dbc")->required();
+  command->add_option("MACHINE", options->machine, "A machine's file, or a shipped machine's name")->required();
+  command->add_option("--out", options->out, "The file; stdout where it is not given")->check(check_printable);
+  command->callback([options, &action] { action = [options] { return do_export(*options); }; });
+}
+
+}  // namespace lf::app
