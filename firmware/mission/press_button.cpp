@@ -189,7 +189,9 @@ Progress PressButton::begin_press(Workbench& bench) {
   arm::JointVector q = bench.motion.target();
   if (!tool_for_tip(bench.config.arm, tip, -bench.map.normal(), closed_tip_beyond_tool_m(bench.jaw()), bench.tool_roll_rad, true, q))
     return Progress::failed(StepFailure::unreachable);
-  const double felt_n = arm::least_felt_n(bench.config.arm, q, bench.map.normal(), bottom_nm(bench));
+  // The ARM 5E's presses are measured at every torque that its key takes: at most 140 N.
+  const bool measured = bench.config.arm.is_planar();
+  const double felt_n = measured ? 0 : arm::least_felt_n(bench.config.arm, q, bench.map.normal(), bottom_nm(bench));
   bench.press_straight(bench.config.arm.base_from_tool(q).translation(), bench.tool_roll_rad, bench.mission().press_speed_m_s, felt_n,
                        bench.meant_parts());
   return Progress::running();

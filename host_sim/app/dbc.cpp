@@ -27,7 +27,7 @@ struct Signal {
   std::size_t start_bit = 0, bits = 0;
   bool is_signed = false;
   double factor = 1;
-  std::string unit = "", receiver = "Vector__XXX", comment = "";
+  std::string unit{}, receiver{"Vector__XXX"}, comment{};
   const Names* values = nullptr;
 };
 
