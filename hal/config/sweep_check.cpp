@@ -208,8 +208,8 @@ std::optional<std::string> sweep_problem(const ControllerConfig& controller, con
     return "the laser's lines would lie " + formatted("%.1f mm", 1e3 * spacing_m) + " apart on the panel " + docking_text(mission) +
            formatted(", 'mission.sweep_speed_rad_s' at %.3g and 'mission.camera_syncs' at %u: no more than %.1f mm show a handle of this ",
                      mission.sweep_speed_rad_s, static_cast<unsigned>(mission.camera_syncs), 1e3 * widest_m) +
-           valve_key(survey, i, "thickness_m") + "; see also 'laser.position_m', " + plate_key(survey, "min_m") + " and " +
-           plate_key(survey, "max_m") + place_text(mission.layout);
+           valve_key(survey, i, "thickness_m") + "; see also 'laser.fan_half_angle_deg', 'laser.position_m', " +
+           plate_key(survey, "min_m") + " and " + plate_key(survey, "max_m") + place_text(mission.layout);
   }
   mission::Motion motion(controller.arm, controller.mission_limits, mission.layout, mission.vehicle, mission.park_rad);
   motion.start_at(mission.park_rad);
