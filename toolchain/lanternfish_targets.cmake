@@ -146,8 +146,9 @@ function(lanternfish_core_library name)
 endfunction()
 
 # lanternfish_test(NAME source... [LINK ...] [LABELS ...] [LONG filter] [TIMEOUT s] [LIGHT]): a GoogleTest program, one ctest entry a test case. LONG: the cases that
-# a filter of GoogleTest's names have another label, `hil_long` for `hil`, which ctest's -L and -LE find by either part: `./test.sh` leaves them to `./test.sh release` and to tests/nightly.sh. The time limit ends what hangs,
-# not what is slow: the longest case takes a minute on two cores of 2026. LIGHT: its own files are optimised less, and so is what they include of ours. That
+# a filter of GoogleTest's names have the label `hil_long` in place of `hil`. ctest's -L and -LE find it by either part: `./test.sh` leaves these cases to
+# `./test.sh release` and to tests/nightly.sh. The time limit ends what hangs, not what is slow: the longest case takes a minute on two cores of 2026.
+# LIGHT: its own files are optimised less, and so is what they include of ours. That
 # is for tests of text, files and protocols: arithmetic in headers has to be tested as it is shipped.
 function(lanternfish_test name)
   cmake_parse_arguments(arg "LIGHT" "TIMEOUT;LONG" "LINK;LABELS" ${ARGN})

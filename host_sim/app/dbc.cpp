@@ -55,61 +55,50 @@ Message heartbeat(std::uint8_t node, const std::string& name, Duration every) {
   return {0x700u + node, name + "_heartbeat", 1, name, ms(every), {{.name = "state", .start_bit = 0, .bits = 8, .values = &nmt_states}}};
 }
 
+Signal position_of(const DbcDrive& drive, const char* name, std::size_t byte, const std::string& receiver) {
+  return {.name = name,
+          .start_bit = 8 * byte,
+          .bits = 32,
+          .is_signed = true,
+          .factor = drive.position,
+          .unit = drive.screw ? "m" : "rad",
+          .receiver = receiver,
+          .comment = std::string(drive.screw ? "Growth of the joint's screw" : "Joint angle") + " since the drive's own zero."};
+}
+
+Signal torque_of(const DbcDrive& drive, const char* name, std::size_t byte, const std::string& receiver) {
+  return {.name = name,
+          .start_bit = 8 * byte,
+          .bits = 16,
+          .is_signed = true,
+          .factor = drive.torque_nm,
+          .unit = "N m",
+          .receiver = receiver,
+          .comment = "At the motor's shaft."};
+}
+
 Message rpdo(const DbcDrive& drive) {
-  using namespace can_map;
-  const char* const comment =
-      drive.screw ? "Growth of the joint's screw since the drive's own zero." : "Joint angle since the drive's own zero.";
-  Message message{0x200u + drive.node, drive.name + "_rpdo1", drive_rpdo1::length, master, ms(sync_period), {}};
-  message.signals = {{.name = "controlword", .start_bit = 8 * drive_rpdo1::controlword, .bits = 16, .receiver = drive.name},
-                     {.name = "target_position",
-                      .start_bit = 8 * drive_rpdo1::target_position,
-                      .bits = 32,
-                      .is_signed = true,
-                      .factor = drive.position,
-                      .unit = drive.screw ? "m" : "rad",
-                      .receiver = drive.name,
-                      .comment = comment}};
-  if (!drive.torque_offset) {
-    message.length = drive_rpdo1::torque_offset;
-    return message;
-  }
-  message.signals.push_back({.name = "torque_offset",
-                             .start_bit = 8 * drive_rpdo1::torque_offset,
-                             .bits = 16,
-                             .is_signed = true,
-                             .factor = drive.torque_nm,
-                             .unit = "N m",
-                             .receiver = drive.name,
-                             .comment = "At the motor's shaft."});
+  using namespace can_map::drive_rpdo1;
+  Message message{0x200u + drive.node, drive.name + "_rpdo1", length, master, ms(can_map::sync_period), {}};
+  message.signals = {{.name = "controlword", .start_bit = 8 * controlword, .bits = 16, .receiver = drive.name},
+                     position_of(drive, "target_position", target_position, drive.name)};
+  if (drive.torque_offset)
+    message.signals.push_back(torque_of(drive, "torque_offset", torque_offset, drive.name));
+  else
+    message.length = torque_offset;
   return message;
 }
 
 Message tpdo(const DbcDrive& drive) {
-  using namespace can_map;
-  const char* const comment =
-      drive.screw ? "Growth of the joint's screw since the drive's own zero." : "Joint angle since the drive's own zero.";
+  using namespace can_map::drive_tpdo1;
   return {0x180u + drive.node,
           drive.name + "_tpdo1",
-          drive_tpdo1::length,
+          length,
           drive.name,
-          ms(sync_period),
-          {{.name = "statusword", .start_bit = 8 * drive_tpdo1::statusword, .bits = 16, .receiver = master},
-           {.name = "position",
-            .start_bit = 8 * drive_tpdo1::position,
-            .bits = 32,
-            .is_signed = true,
-            .factor = drive.position,
-            .unit = drive.screw ? "m" : "rad",
-            .receiver = master,
-            .comment = comment},
-           {.name = "torque",
-            .start_bit = 8 * drive_tpdo1::torque,
-            .bits = 16,
-            .is_signed = true,
-            .factor = drive.torque_nm,
-            .unit = "N m",
-            .receiver = master,
-            .comment = "At the motor's shaft."}}};
+          ms(can_map::sync_period),
+          {{.name = "statusword", .start_bit = 8 * statusword, .bits = 16, .receiver = master},
+           position_of(drive, "position", position, master),
+           torque_of(drive, "torque", torque, master)}};
 }
 
 // Which bit of a byte is set.

@@ -1,6 +1,6 @@
 // The objects of a servo drive's profile (CiA 402-2), with the defaults this motor has.
 //
-// Units: positions in counts, velocities in counts/s, accelerations in counts/s^2, torques in thousandths of the rated torque 6076 (mNm at the joint).
+// Units: positions in counts, velocities in counts/s, accelerations in counts/s^2, torques in thousandths of the rated torque 6076 (mNm at the motor).
 // Beyond the profile: 2080 torque at which a homing run takes a stop for hard (thousandths), 2081 winding temperature (0.1 degrees),
 // 2082 part of the over-current guard used up (percent). The list is that of shared/can/can_map.yaml.
 #pragma once
