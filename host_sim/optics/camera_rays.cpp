@@ -64,7 +64,13 @@ std::optional<CameraRay> camera_ray(const CameraIntrinsics& intrinsics, const st
 }
 
 CameraRays::CameraRays(const CameraIntrinsics& intrinsics, const std::optional<FlatPort>& port)
-    : width_(intrinsics.width), height_(intrinsics.height), port_(port.has_value()) {
+    : width_(intrinsics.width),
+      height_(intrinsics.height),
+      fx_(intrinsics.fx),
+      fy_(intrinsics.fy),
+      cx_(intrinsics.cx),
+      cy_(intrinsics.cy),
+      port_(port.has_value()) {
   const int padded_width = (intrinsics.width + lane_count - 1) / lane_count * lane_count;
   stride_ = static_cast<std::size_t>(padded_width) + 2;
   const std::size_t count = stride_ * static_cast<std::size_t>(intrinsics.height + 2);
@@ -168,7 +174,9 @@ RayPacket CameraRays::around(const CameraPlace& place, int u, int v, Lanes offse
 std::optional<Vec2> CameraRays::project(const Vec3& point_m) const {
   const double z = point_m.z() - static_cast<double>(origin_z_);
   if (z < 1e-3) return std::nullopt;
-  double u = 0.5 * (width_ - 1), v = 0.5 * (height_ - 1);
+  // From the pinhole's image on.
+  double u = std::clamp(fx_ * point_m.x() / point_m.z() + cx_, 0.0, width_ - 1.0),
+         v = std::clamp(fy_ * point_m.y() / point_m.z() + cy_, 0.0, height_ - 1.0);
   int column = -1, row = -1;
   for (int i = 0; i < 6; ++i) {
     const int last_column = std::exchange(column, std::clamp(static_cast<int>(std::lround(u)), 0, width_ - 1)),

@@ -76,6 +76,7 @@ class CameraRays {
 
   std::size_t stride_ = 0;
   int width_ = 0, height_ = 0;
+  double fx_ = 0, fy_ = 0, cx_ = 0, cy_ = 0;  // of the pinhole
   bool port_ = false;
   float origin_z_ = 0;
   Node node_;

@@ -11,6 +11,7 @@ struct Light {
   LaneMask beside{};     // lanes that a skirt of a stripe falls on
   RgbLanes radiance{};   // direct, with what the water scatters by less than a pixel
   RgbLanes scattered{};  // what it scatters on the way to the camera, and will lay elsewhere: formation/forward_scatter.hpp
+  RgbLanes albedo{};     // of the surfaces, by base() alone
   RgbLanes laser{};      // direct light of the lasers' lines alone, not in `radiance`: it has speckle
 };
 

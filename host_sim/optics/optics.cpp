@@ -25,13 +25,15 @@ struct Viewer {
   Viewer(const CameraConfig& config, const OpticsConfig& optics)
       : camera(config),
         tiles(camera),
-        still(camera, tiles, optics.scene, optics.edge_sampling),
+        dark(camera, tiles, optics.scene, optics.edge_sampling),
+        lit(camera, tiles, optics.scene, optics.edge_sampling),
         live(camera, tiles),
         formation(camera, optics.water.forward),
         particles(camera, optics.water, optics.seed) {}
   Camera camera;
   Tiles tiles;
-  StillView still;
+  StillView dark, lit;               // without and with lamps: a sweep's pictures take turns
+  const StillView* shown = nullptr;  // the one that `live` holds
   LiveView live;
   Formation formation;
   Particles particles;
@@ -200,9 +202,12 @@ struct Optics::Impl {
     light(shot, shader);
     for (SheetLight& sheet : shader.sheets) sheet.shade_by(viewer.particles.in_sheet(shot.time_s, sheet, pool));
     size(viewer.camera, shot, frame);
-    if (viewer.still.update(shader, shot.poses, lamp_bodies(shot), shot.lamps, pool)) viewer.live.forget();
+    StillView& still = shader.lamps.empty() ? viewer.dark : viewer.lit;
+    const bool made_anew = still.update(shader, shot.poses, lamp_bodies(shot), shot.lamps, pool);
+    if (made_anew || viewer.shown != &still) viewer.live.forget();
+    viewer.shown = &still;
 
-    const RenderPass pass(viewer.camera, viewer.formation.lens(), viewer.tiles, viewer.still, shader, arm, viewer.live);
+    const RenderPass pass(viewer.camera, viewer.formation.lens(), viewer.tiles, still, shader, arm, viewer.live);
     const Exposing exposing = exposing_of(viewer.camera.config, shot);
     const int tile_rows = viewer.tiles.rows();
     pool.run(tile_rows, [&](int row) { pass.sample(row); });

@@ -19,6 +19,13 @@ void Sample::set(const Light& light, const Camera& camera) {
   laser = camera.grey(light.laser);
 }
 
+bool Sample::is_even() const {
+  constexpr LaneMask lasers = LaneMask{} + 0xFFFF;
+  const Lanes cosine = hit.normal.x * hit.normal.x[0] + hit.normal.y * hit.normal.y[0] + hit.normal.z * hit.normal.z[0];
+  const LaneMask bend = (cosine < crease_cosine) | (abs(hit.parameter - hit.parameter[0]) > depth_step * hit.parameter[0]);
+  return !any((hit.shape != hit.shape[0]) | ((hit.shape >= 0) & bend) | (reached != reached[0]) | (lit != lit[0]) | (reached & lasers));
+}
+
 void PixelStore::resize(int image_width, int image_height, std::size_t channel_count) {
   width = image_width, height = image_height, channels = channel_count;
   stride = (static_cast<std::size_t>(width) + lane_count - 1) / lane_count * lane_count;

@@ -16,6 +16,8 @@ struct Sample {
   GreyLanes grey{}, scattered{}, laser{};  // Light's radiance, scattered and laser
 
   void set(const Light& light, const Camera& camera);  // all but `hit`
+  // Whether all lanes see one surface without a crease or a step, in the same light and in no stripe's.
+  bool is_even() const;
 };
 
 // Planes of values of a picture, one a channel.

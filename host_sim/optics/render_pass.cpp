@@ -30,13 +30,14 @@ Changes RenderPass::judge_tiles(int tile_row) const {
 
 void RenderPass::sample(int tile_row) const {
   const Changes possible = judge_tiles(tile_row);
+  const GlowRows glow(camera_, shader_, tiles_.first_row(tile_row), tiles_.end_row(tile_row));
   for (int v = tiles_.first_row(tile_row); v < tiles_.end_row(tile_row); ++v) {
     const std::vector<float> haze = possible != 0 ? still_.haze_row(v) : std::vector<float>{};
-    for (int u = 0; u < camera_.width(); u += lane_count) sample_packet(u, v, haze.empty() ? nullptr : &haze);
+    for (int u = 0; u < camera_.width(); u += lane_count) sample_packet(u, v, haze.empty() ? nullptr : &haze, glow);
   }
 }
 
-void RenderPass::sample_packet(int u, int v, const std::vector<float>* haze_row) const {
+void RenderPass::sample_packet(int u, int v, const std::vector<float>* haze_row, const GlowRows& glow) const {
   const std::size_t i = live_.pixels.index(u, v);
   const Changes possible = live_.tiles[tiles_.at(u, v)];
   Changes& changes = live_.packets[packet(u, v)];
@@ -46,14 +47,15 @@ void RenderPass::sample_packet(int u, int v, const std::vector<float>* haze_row)
   } else if (possible == 0 && still_.open_water(u, v)) {
     Sample water;
     water.grey = still_.pixels().at(still_.pixels().grey, i);
-    add_glow(camera_.lines(u, v), all_lanes(std::numeric_limits<float>::infinity()), water.grey);
+    add_glow(glow, u, v, all_lanes(std::numeric_limits<float>::infinity()), water.grey);
     live_.pixels.set_light(i, water);
   } else {
     const RayPacket rays = camera_.row(u, v);
     Sample sample = still_.pixels().sample(i);
     changes = put_in_moving(rays, possible, 1.f, {haze_row, static_cast<float>(u), 1.f}, sample);
-    changes |= add_stripes(rays, 1.f, sample);
-    add_glow(rays, sample.hit.parameter, sample.grey);
+    const RgbLanes albedo = still_.albedo(u, v);
+    changes |= add_stripes(rays, 1.f, (changes & hidden) != 0 ? nullptr : &albedo, sample);
+    add_glow(glow, u, v, sample.hit.parameter, sample.grey);
     if (changes != 0) return live_.pixels.set(i, sample);
     live_.pixels.set_light(i, sample);
   }
@@ -81,9 +83,9 @@ Changes RenderPass::put_in_moving(const RayPacket& rays, Changes possible, float
 }
 
 // Returns whether there were any, or their skirts.
-Changes RenderPass::add_stripes(const RayPacket& rays, float footprint, Sample& sample) const {
+Changes RenderPass::add_stripes(const RayPacket& rays, float footprint, const RgbLanes* albedo, Sample& sample) const {
   if (shader_.sheets.empty()) return 0;
-  const Light light = shader_.stripes(rays, sample.hit, footprint);
+  const Light light = shader_.stripes(rays, sample.hit, footprint, albedo);
   if (!any(light.reached | light.beside)) return 0;
   const GreyLanes grey = camera_.grey(light.radiance), scattered = camera_.grey(light.scattered), laser = camera_.grey(light.laser);
   for (std::size_t c = 0; c < camera_.channels(); ++c)
@@ -93,9 +95,9 @@ Changes RenderPass::add_stripes(const RayPacket& rays, float footprint, Sample& 
   return static_cast<Changes>((any(light.reached) ? striped : 0) | (any(light.beside) ? skirted : 0));
 }
 
-void RenderPass::add_glow(const RayLines& rays, Lanes surface_parameter, GreyLanes& grey) const {
-  for (const SheetLight& sheet : shader_.sheets) {
-    const Glow glow = sheet.glow(rays, shader_.water());
+void RenderPass::add_glow(const GlowRows& rows, int u, int v, Lanes surface_parameter, GreyLanes& grey) const {
+  for (std::size_t sheet = 0; sheet < shader_.sheets.size(); ++sheet) {
+    const Glow glow = rows.at(sheet, u, v);
     const GreyLanes values = camera_.grey(glow.radiance);
     for (std::size_t c = 0; c < camera_.channels(); ++c) grey[c] += glow.parameter < surface_parameter ? values[c] : Lanes{};
   }
@@ -195,7 +197,8 @@ void RenderPass::resample(int u, int v, Changes changes, const std::vector<Glow>
   put(u, v, pixel);
 }
 
-// Without the glow. Whether to look for the arm, its shadows and stripes the samples about the pixel have told.
+// Without the glow. Whether to look for the arm, its shadows and stripes the samples about the pixel have told. Where the first eight see one surface in one light,
+// the other eight are taken to see the same.
 SubPixels RenderPass::sample_sub_pixels(int u, int v, Changes changes, const std::vector<float>* haze_row) const {
   const HazePlace haze{haze_row, static_cast<float>(u), 0.f};
   const SubPixels* kept = still_.sub_pixels(u, v);
@@ -210,7 +213,11 @@ SubPixels RenderPass::sample_sub_pixels(int u, int v, Changes changes, const std
       sample.hit = shader_.scene().all(rays);
       sample.set(shader_.base(rays, sample.hit, 0.25f, haze, Casters::all), camera_);
     }
-    if ((changes & (striped | skirted)) != 0) add_stripes(rays, 0.25f, sample);
+    if ((changes & (striped | skirted)) != 0) add_stripes(rays, 0.25f, nullptr, sample);
+    if (half == 0 && kept == nullptr && sample.is_even()) {
+      pixel.half[1] = sample;
+      break;
+    }
   }
   pixel.average(camera_.channels());
   return pixel;
@@ -237,15 +244,21 @@ void RenderPass::write_geometry(int tile_row, const std::vector<std::uint16_t>& 
 // Of the lens's spot in the middle of a packet.
 float RenderPass::blur_px(int u, int v) const { return static_cast<float>(lens_.sigma_px(u + 0.5 * (lane_count - 1), v)); }
 
+RgbLanes RenderPass::albedo(int u, int v) const {
+  if ((live_.packets[packet(u, v)] & hidden) == 0) return still_.albedo(u, v);
+  const HitPacket hit = live_.pixels.sample(live_.pixels.index(u, v)).hit;
+  return shader_.look().albedo(make_surface(camera_.row(u, v), hit), hit.shape, 1.f);
+}
+
 // Whether paint as far up or down as a stripe of this width reaches, or its spot beside, reflects otherwise than that of pixel (u + lane, v). Grain does by a fifth at most.
 LaneMask RenderPass::near_marks(int u, int v, float sigma_px) const {
   constexpr int least_px = 5, most_px = 24, beside_px = 2;
   constexpr float reach_sigmas = 3.5f, most_change = 1.3f;
   const auto grey_of = [&](int at_u, int at_v) {
     if (at_u < 0 || at_u >= camera_.width() || at_v < 0 || at_v >= camera_.height()) return all_lanes(-1);
-    const HitPacket hit = live_.pixels.sample(live_.pixels.index(at_u, at_v)).hit;
-    const GreyLanes grey = camera_.grey(shader_.look().albedo(make_surface(camera_.row(at_u, at_v), hit), hit.shape, 1.f));
-    return select(hit.shape >= 0, max(grey[0], max(grey[1], grey[2])), all_lanes(-1));
+    const LaneMask shape = load_mask(&live_.pixels.shape[live_.pixels.index(at_u, at_v)]);
+    const GreyLanes grey = camera_.grey(albedo(at_u, at_v));
+    return select(shape >= 0, max(grey[0], max(grey[1], grey[2])), all_lanes(-1));
   };
   const Lanes here = grey_of(u, v);
   LaneMask near{};

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "host_sim/optics/formation/lens_spot.hpp"
+#include "host_sim/optics/glow_rows.hpp"
 #include "host_sim/optics/still_view.hpp"
 
 namespace lf::optics {
@@ -50,10 +51,10 @@ class RenderPass {
 
  private:
   Changes judge_tiles(int tile_row) const;
-  void sample_packet(int u, int v, const std::vector<float>* haze_row) const;
+  void sample_packet(int u, int v, const std::vector<float>* haze_row, const GlowRows& glow) const;
   Changes put_in_moving(const RayPacket& rays, Changes possible, float footprint, const HazePlace& haze, Sample& sample) const;
-  Changes add_stripes(const RayPacket& rays, float footprint, Sample& sample) const;
-  void add_glow(const RayLines& rays, Lanes surface_parameter, GreyLanes& grey) const;
+  Changes add_stripes(const RayPacket& rays, float footprint, const RgbLanes* albedo, Sample& sample) const;
+  void add_glow(const GlowRows& rows, int u, int v, Lanes surface_parameter, GreyLanes& grey) const;
   std::vector<Glow> glows(int u, int v) const;
   Changes changes_about(int u, int v) const;
   LaneMask marks_under_stripe(int u, int v) const;
@@ -62,6 +63,7 @@ class RenderPass {
   void add_even_light(int u, int v, const SubPixels& kept) const;
   SubPixels sample_sub_pixels(int u, int v, Changes changes, const std::vector<float>* haze_row) const;
   float blur_px(int u, int v) const;
+  RgbLanes albedo(int u, int v) const;  // of pixels (u .. u + 7, v)
   LaneMask near_marks(int u, int v, float sigma_px) const;
   void refine_stripe(std::size_t laser, int u, int v, Lanes offset_v, LaneMask wanted, std::vector<StripeCentre>& centres) const;
   std::size_t packet(int u, int v) const {

@@ -58,7 +58,8 @@ Light Shader::base(const RayPacket& rays, const HitPacket& hit, float footprint,
     add_lamps(surface, casters, irradiance, light);
     for (std::size_t band = 0; band < 3; ++band)
       irradiance[band] = surface.met ? irradiance[band] * water_.transmission(band, surface.range) : Lanes{};
-    reflect(look_.albedo(surface, hit.shape, footprint), irradiance, surface.range, light.radiance, light.scattered);
+    light.albedo = look_.albedo(surface, hit.shape, footprint);
+    reflect(light.albedo, irradiance, surface.range, light.radiance, light.scattered);
   }
   const Lanes range = surface.met ? surface.range : all_lanes(open_water_m);
   add_water(rays, range, light.radiance);
@@ -90,14 +91,14 @@ RgbLanes Shader::at(const Lanes3& point, float daylight_share) const {
   return irradiance;
 }
 
-Light Shader::stripes(const RayPacket& rays, const HitPacket& hit, float footprint, float blur_px) const {
+Light Shader::stripes(const RayPacket& rays, const HitPacket& hit, float footprint, const RgbLanes* known_albedo, float blur_px) const {
   Light light;
   if (!any(hit.shape >= 0)) return light;
   const SurfacePacket surface = make_surface(rays, hit);
   for (std::size_t i = 0; i < sheets.size(); ++i) {
     StripePacket stripe = sheets[i].on_surface(surface, water_, footprint, blur_px);
     if (!any(stripe.reached | stripe.beside)) continue;
-    const RgbLanes albedo = look_.albedo(surface, hit.shape, footprint);
+    const RgbLanes albedo = known_albedo != nullptr ? *known_albedo : look_.albedo(surface, hit.shape, footprint);
     if (any(stripe.beside)) reflect(albedo, stripe.skirt, surface.range, light.radiance, light.scattered);
     light.beside |= stripe.beside;
     if (!any(stripe.reached)) continue;

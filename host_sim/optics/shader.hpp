@@ -32,8 +32,8 @@ class Shader {
   // Of `lit`, bits of lamps that light resting surfaces, those that no moving body shades.
   LaneMask unshaded(const RayPacket& rays, const HitPacket& hit, LaneMask lit) const;
 
-  // `blur_px` as SheetLight::on_surface has it.
-  Light stripes(const RayPacket& rays, const HitPacket& hit, float footprint, float blur_px = 0) const;
+  // `albedo`: of what `hit` has at this footprint, where it is known. `blur_px` as SheetLight::on_surface has it.
+  Light stripes(const RayPacket& rays, const HitPacket& hit, float footprint, const RgbLanes* albedo = nullptr, float blur_px = 0) const;
 
   // Irradiance of something small in the water that faces the lights, W/m2: lasers' lines, lamps without shadows, and a share of the daylight.
   RgbLanes at(const Lanes3& point, float daylight_share) const;

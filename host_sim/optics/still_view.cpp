@@ -37,6 +37,7 @@ StillView::StillView(const Camera& camera, const Tiles& tiles, const scene::Scen
       kept_(tiles.count()),
       lamp_cones_(tiles.count()) {
   pixels_.resize(camera.width(), camera.height(), camera.channels());
+  for (std::vector<float>& band : albedo_) band.resize(pixels_.plane);
   for (std::size_t i = 0; i < scene.size(); ++i) {
     if (fixed(scene[i])) fixed_.push_back(i);
     if (!yields(scene[i])) continue;
@@ -118,7 +119,9 @@ void StillView::sample_packet(const Shader& shader, int u, int v, const std::vec
   sample.hit = shader.scene().resting(rays);
   const Light light = shader.base(rays, sample.hit, 1.f, {haze_row, static_cast<float>(u), 1.f}, Casters::resting);
   sample.set(light, camera_);
-  pixels_.set(pixels_.index(u, v), sample);
+  const std::size_t i = pixels_.index(u, v);
+  pixels_.set(i, sample);
+  for (std::size_t band = 0; band < albedo_.size(); ++band) store_lanes(&albedo_[band][i], light.albedo[band]);
   packets_[packet(u, v)] = {!any(sample.hit.shape >= 0), 0, 0};
 }
 
@@ -180,6 +183,11 @@ void StillView::bound_reached_points(const Shader& shader, int column, int tile_
     if (high.x() < low.x()) continue;
     cones.push_back(Cone::about_sphere(shader.lamps[lamp].place_m(), 0.5 * (low + high), 0.5 * (high - low).norm()));
   }
+}
+
+RgbLanes StillView::albedo(int u, int v) const {
+  const std::size_t i = pixels_.index(u, v);
+  return {load_lanes(&albedo_[0][i]), load_lanes(&albedo_[1][i]), load_lanes(&albedo_[2][i])};
 }
 
 LaneMask StillView::edges(int u, int v) const {

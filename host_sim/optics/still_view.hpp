@@ -39,6 +39,9 @@ class StillView {
   // Whether pixels (u .. u + 7, v) meet nothing.
   bool open_water(int u, int v) const { return packets_[packet(u, v)].open_water; }
 
+  // What the surfaces of pixels (u .. u + 7, v) reflect.
+  RgbLanes albedo(int u, int v) const;
+
   // Which of the pixels (u .. u + 7, v) lie at an edge; none without edge sampling.
   LaneMask edges(int u, int v) const;
 
@@ -86,6 +89,7 @@ class StillView {
 
   std::optional<LampHaze> haze_;
   PixelStore pixels_;
+  std::array<std::vector<float>, 3> albedo_;  // planes as those of pixels_
   std::vector<Packet> packets_;
   std::vector<std::vector<SubPixels>> kept_;   // a vector a tile
   std::vector<std::vector<Cone>> lamp_cones_;  // a vector a tile: from each lamp to what its light reaches there

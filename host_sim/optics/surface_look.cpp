@@ -62,10 +62,12 @@ SurfaceLook::SurfaceLook(const scene::Scene& scene, float grain) : grain_(grain)
 }
 
 void SurfaceLook::set_poses(const scene::BodyPoses& base_from_body) {
-  poses_ = base_from_body;
-  for (std::size_t body = 0; body < poses_.size(); ++body) {
-    rotations_[body] = Rotation(poses_[body].linear());
-    positions_[body] = Lanes3(poses_[body].translation());
+  for (std::size_t body = 0; body < base_from_body.size(); ++body) {
+    rotations_[body] = Rotation(base_from_body[body].linear());
+    positions_[body] = Lanes3(base_from_body[body].translation());
+  }
+  for (Look& look : looks_) {
+    if (look.marker) look.shape_from_base = (base_from_body[look.body] * look.body_from_shape).inverse();
   }
 }
 
@@ -85,7 +87,7 @@ Lanes SurfaceLook::grain(const SurfacePacket& surface, LaneMask shape, float foo
 
 std::optional<float> SurfaceLook::white_share(const SurfacePacket& surface, int lane, const Look& look, float footprint) const {
   const auto at = [lane](const Lanes3& v) { return Vec3(v.x[lane], v.y[lane], v.z[lane]); };
-  const Pose shape_from_base = (poses_[look.body] * look.body_from_shape).inverse();
+  const Pose& shape_from_base = look.shape_from_base;
   const Vec3 p = shape_from_base * at(surface.point);
   if (std::abs(p.z() - look.top_m) > 1e-4) return std::nullopt;
   const Vec3 du = shape_from_base.linear() * at(surface.point_du) * footprint,

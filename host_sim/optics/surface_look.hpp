@@ -30,7 +30,8 @@ class SurfaceLook {
     std::size_t body = 0;
     std::optional<Marker> marker;
     Pose body_from_shape;
-    double top_m = 0;  // of the marker's face
+    Pose shape_from_base;  // of a marker
+    double top_m = 0;      // of the marker's face
   };
   Lanes grain(const SurfacePacket& surface, LaneMask shape, float footprint) const;
   // White share of the lane's square; nothing beside the marker's face.
@@ -39,7 +40,6 @@ class SurfaceLook {
   std::vector<Look> looks_;
   std::vector<float> noise_;
   float grain_;
-  scene::BodyPoses poses_;
   std::vector<Rotation> rotations_;  // one a body
   std::vector<Lanes3> positions_;
 };

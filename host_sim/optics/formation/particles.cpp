@@ -11,9 +11,9 @@ namespace {
 constexpr double one_of_2_64 = 0x1p-64;
 constexpr int most_in_a_cell = 60;
 constexpr std::size_t cells_a_block = 256;
-constexpr double aperture_m = 0.00077, focus_m = 0.75;  // f 2.17 mm at F/2.8
-constexpr double disc_sigma = 1 / 2.4;                  // of a Gaussian as wide as a disc, over its diameter
-constexpr double least_sigma_px = 0.35;
+constexpr float aperture_m = 0.00077f, focus_m = 0.75f;  // f 2.17 mm at F/2.8
+constexpr float disc_sigma = 1 / 2.4f;                   // of a Gaussian as wide as a disc, over its diameter
+constexpr float least_sigma_px = 0.35f;
 constexpr double widest = 1.2;  // of a corner's ray, distorted or behind a port, over the pinhole's
 constexpr double image_margin_m = 0.03;
 constexpr float least_grey = 0.1f;
@@ -144,35 +144,35 @@ std::vector<Particles::Speck> Particles::in_view(std::span<const Cell> cells, do
   return specks;
 }
 
-int Particles::Spot::reach_px() const { return static_cast<int>(std::ceil(3.5 * sigma_px)); }
+int Particles::Spot::reach_px() const { return static_cast<int>(std::ceil(3.5f * sigma_px)); }
 int Particles::Spot::first_row() const { return static_cast<int>(std::lround(centre_px.y())) - reach_px(); }
 int Particles::Spot::last_row() const { return static_cast<int>(std::lround(centre_px.y())) + reach_px(); }
 
 // Radiance times pixels is irradiance * albedo / pi * area * (f / z)^2.
-std::optional<Particles::Spot> Particles::spot_of(const Speck& speck, const RgbLanes& irradiance, int lane, const Shader& shader,
-                                                  const PixelStore& pixels) const {
-  const Vec3& p = speck.place_m;
-  const double px_per_m = camera_.config.intrinsics.fy / p.z();
-  const double defocus_px = aperture_m * camera_.config.intrinsics.fy * std::abs(1 / p.z() - 1 / focus_m);
-  Spot spot;
-  spot.sigma_px = std::max(std::hypot(speck.diameter_m * px_per_m, defocus_px) * disc_sigma, least_sigma_px);
-  const auto size = static_cast<float>(speck.albedo * speck.diameter_m * speck.diameter_m / 4 * px_per_m * px_per_m);
+Particles::Looks Particles::looks(const PlacesInView& specks, const RgbLanes& irradiance, const Shader& shader) const {
+  const auto fy = static_cast<float>(camera_.config.intrinsics.fy);
+  const Lanes px_per_m = fy / specks.place_m.z;
+  const Lanes image_px = specks.diameter_m * px_per_m;
+  const Lanes defocus_px = aperture_m * fy * abs(1.f / specks.place_m.z - 1 / focus_m);
+  Looks looks;
+  looks.sigma_px = max(sqrt(image_px * image_px + defocus_px * defocus_px) * disc_sigma, all_lanes(least_sigma_px));
+  const Lanes size = 0.25f * specks.albedo * image_px * image_px, range = norm(specks.place_m);
   RgbLanes radiance;
-  const Lanes range = all_lanes(static_cast<float>(p.norm()));
-  for (std::size_t band = 0; band < 3; ++band)
-    radiance[band] = all_lanes(irradiance[band][lane] * size) * shader.water().transmission(band, range);
-  const GreyLanes grey = camera_.grey(radiance);
-  const Lanes brightest = max(grey[0], max(grey[1], grey[2])) / static_cast<float>(2 * pi * spot.sigma_px * spot.sigma_px);
-  if (brightest[0] < least_grey) return std::nullopt;
-  const std::optional<Vec2> image = camera_.rays.project(p);
+  for (std::size_t band = 0; band < 3; ++band) radiance[band] = irradiance[band] * size * shader.water().transmission(band, range);
+  looks.grey = camera_.grey(radiance);
+  const Lanes brightest = max(looks.grey[0], max(looks.grey[1], looks.grey[2]));
+  looks.seen = brightest >= least_grey * static_cast<float>(2 * pi) * looks.sigma_px * looks.sigma_px;
+  return looks;
+}
+
+// Where a speck's image lies; nothing where that is outside the picture or behind a surface.
+std::optional<Vec2> Particles::image_of(const Vec3& place_m, const PixelStore& pixels) const {
+  const std::optional<Vec2> image = camera_.rays.project(place_m);
   if (!image) return std::nullopt;
   const int u = std::clamp(static_cast<int>(std::lround(image->x())), 0, pixels.width - 1);
   const int v = std::clamp(static_cast<int>(std::lround(image->y())), 0, pixels.height - 1);
   const double depth_m = static_cast<double>(pixels.depth_m[pixels.index(u, v)]) + static_cast<double>(camera_.rays.origin_depth_m());
-  if (p.z() >= depth_m) return std::nullopt;
-  spot.centre_px = *image;
-  for (std::size_t c = 0; c < 3; ++c) spot.grey[c] = grey[c][0];
-  return spot;
+  return place_m.z() < depth_m ? image : std::nullopt;
 }
 
 std::vector<Particles::Spot> Particles::spots(std::span<const Cell> cells, double time_s, const Shader& shader,
@@ -181,40 +181,56 @@ std::vector<Particles::Spot> Particles::spots(std::span<const Cell> cells, doubl
   std::vector<Spot> spots;
   for (std::size_t first = 0; first < specks.size(); first += lane_count) {
     const std::size_t count = std::min<std::size_t>(lane_count, specks.size() - first);
-    Lanes3 place;
+    PlacesInView places;
     for (int lane = 0; lane < lane_count; ++lane) {
-      const Vec3 p = camera_.config.base_from_camera * specks[first + std::min(static_cast<std::size_t>(lane), count - 1)].place_m;
-      place.x[lane] = static_cast<float>(p.x()), place.y[lane] = static_cast<float>(p.y()), place.z[lane] = static_cast<float>(p.z());
+      const Speck& speck = specks[first + std::min(static_cast<std::size_t>(lane), count - 1)];
+      places.place_m.x[lane] = static_cast<float>(speck.place_m.x()), places.place_m.y[lane] = static_cast<float>(speck.place_m.y()),
+      places.place_m.z[lane] = static_cast<float>(speck.place_m.z()), places.diameter_m[lane] = static_cast<float>(speck.diameter_m);
+      places.albedo[lane] = static_cast<float>(speck.albedo);
     }
-    const RgbLanes irradiance = shader.at(place, daylight_share);
+    const Lanes3 place = camera_.place.position + camera_.place.rotation * places.place_m;
+    const Looks looks_of = looks(places, shader.at(place, daylight_share), shader);
     for (std::size_t lane = 0; lane < count; ++lane) {
-      const std::optional<Spot> spot = spot_of(specks[first + lane], irradiance, static_cast<int>(lane), shader, pixels);
-      if (spot) spots.push_back(*spot);
+      if (looks_of.seen[lane] == 0) continue;
+      const std::optional<Vec2> image = image_of(specks[first + lane].place_m, pixels);
+      if (!image) continue;
+      Spot& spot = spots.emplace_back();
+      spot.centre_px = *image;
+      spot.sigma_px = looks_of.sigma_px[lane];
+      for (std::size_t c = 0; c < 3; ++c) spot.grey[c] = looks_of.grey[c][lane];
     }
   }
   return spots;
 }
 
+Particles::Bell Particles::bell(int middle, double centre, float sigma_px, int reach) {
+  constexpr Lanes count_up{0, 1, 2, 3, 4, 5, 6, 7};
+  Bell bell;
+  const float first = static_cast<float>(middle - centre) - static_cast<float>(reach), per_sigma = 1 / sigma_px;
+  const auto size = 2 * static_cast<std::size_t>(reach) + 1;
+  bell.share.resize((size + lane_count - 1) / lane_count * lane_count);
+  for (std::size_t i = 0; i < size; i += lane_count) {
+    const Lanes off = (first + static_cast<float>(i) + count_up) * per_sigma;
+    store_lanes(bell.share.data() + i, exp(-0.5f * off * off));
+  }
+  bell.share.resize(size);
+  for (const float share : bell.share) bell.sum += share;
+  return bell;
+}
+
 // Its light is spread over the pixels about its centre, of which those from `first_row` to before `end_row` get theirs.
 void Particles::show(const Spot& spot, int first_row, int end_row, PixelStore& pixels) {
-  const double sigma = spot.sigma_px;
   const int reach = spot.reach_px();
   const auto centre_u = static_cast<int>(std::lround(spot.centre_px.x())), centre_v = static_cast<int>(std::lround(spot.centre_px.y()));
-  const auto bell = [&](int at, double centre) {
-    return static_cast<float>(std::exp(-(at - centre) * (at - centre) / (2 * sigma * sigma)));
-  };
-  std::vector<float> across;
-  across.reserve(2 * static_cast<std::size_t>(reach) + 1);
-  float sum_across = 0, sum_down = 0;
-  for (int k = -reach; k <= reach; ++k) {
-    across.push_back(bell(centre_u + k, spot.centre_px.x()));
-    sum_across += across.back(), sum_down += bell(centre_v + k, spot.centre_px.y());
-  }
-  for (int y = std::max(centre_v - reach, first_row); y <= std::min(centre_v + reach, end_row - 1); ++y) {
-    const float row = bell(y, spot.centre_px.y()) / (sum_down * sum_across);
-    for (int x = std::max(centre_u - reach, 0); x <= std::min(centre_u + reach, pixels.width - 1); ++x) {
-      const float share = row * across[static_cast<std::size_t>(std::int64_t{x} - centre_u + reach)];
-      for (std::size_t c = 0; c < pixels.channels; ++c) pixels.grey[c * pixels.plane + pixels.index(x, y)] += share * spot.grey[c];
+  const Bell across = bell(centre_u, spot.centre_px.x(), spot.sigma_px, reach),
+             down = bell(centre_v, spot.centre_px.y(), spot.sigma_px, reach);
+  const int first_u = std::max(centre_u - reach, 0), end_u = std::min(centre_u + reach + 1, pixels.width);
+  for (int v = std::max(centre_v - reach, first_row); v < std::min(centre_v + reach + 1, end_row); ++v) {
+    const float row = down.share[static_cast<std::size_t>(v - centre_v + reach)] / (down.sum * across.sum);
+    for (std::size_t c = 0; c < pixels.channels; ++c) {
+      float* onto = pixels.grey.data() + c * pixels.plane + pixels.index(0, v);
+      const float light = row * spot.grey[c];
+      for (int u = first_u; u < end_u; ++u) onto[u] += light * across.share[static_cast<std::size_t>(u - centre_u + reach)];
     }
   }
 }

@@ -47,18 +47,35 @@ class Particles {
   // A speck's image.
   struct Spot {
     Vec2 centre_px = Vec2::Zero();
-    double sigma_px = 0;
+    float sigma_px = 0;
     std::array<float, 3> grey{};  // all of it, by channel
     int reach_px() const;
     int first_row() const;
     int last_row() const;
   };
+  // Eight specks side by side, in the camera frame, and what they look like.
+  struct PlacesInView {
+    Lanes3 place_m;
+    Lanes diameter_m{}, albedo{};
+  };
+  struct Looks {
+    Lanes sigma_px{};
+    GreyLanes grey{};
+    LaneMask seen{};  // bright enough
+  };
+  // A spot's shares along one axis, not yet of unit sum.
+  struct Bell {
+    std::vector<float> share;
+    float sum = 0;
+  };
   void draw_specks(const Cell& cell, const Vec3& drift, std::vector<Speck>& specks) const;
   // Those of `cells` before the camera; place_m in its frame.
   std::vector<Speck> in_view(std::span<const Cell> cells, double time_s) const;
   std::vector<Spot> spots(std::span<const Cell> cells, double time_s, const Shader& shader, const PixelStore& pixels) const;
-  std::optional<Spot> spot_of(const Speck& speck, const RgbLanes& irradiance, int lane, const Shader& shader,
-                              const PixelStore& pixels) const;
+  Looks looks(const PlacesInView& specks, const RgbLanes& irradiance, const Shader& shader) const;
+  std::optional<Vec2> image_of(const Vec3& place_m, const PixelStore& pixels) const;  // in the camera frame
+  // Of whole pixels, `reach` of them to either side of `middle`.
+  static Bell bell(int middle, double centre, float sigma_px, int reach);
   static void show(const Spot& spot, int first_row, int end_row, PixelStore& pixels);
 
   const Camera& camera_;

@@ -101,7 +101,7 @@ struct Bench {
   float green(const CameraConfig& camera, const CameraRays& rays, int u, int v) const {
     const RayPacket packet = rays.around(CameraPlace(camera.base_from_camera), u, v, Lanes{}, Lanes{});
     const HitPacket hit = scene.all(packet);
-    const Light stripes = shader.stripes(packet, hit, 1.f, static_cast<float>(camera.blur_px));
+    const Light stripes = shader.stripes(packet, hit, 1.f, nullptr, static_cast<float>(camera.blur_px));
     float green = shader.base(packet, hit, 1.f, {}, Casters::all).radiance[1][0] + stripes.radiance[1][0] + stripes.laser[1][0];
     for (const SheetLight& sheet : shader.sheets) {
       const Glow glow = sheet.glow(packet, water);
