@@ -35,8 +35,19 @@ std::string docking_text(const mission::MissionConfig& mission) {
   return formatted("with 'mission.docking_m' at %.3g and 'mission.docking_rad' at %.3g", mission.docking.shift_m, mission.docking.turn_rad);
 }
 
-std::string words(scan::SweepOutcome outcome, const PanelSurvey& survey, bool planar) {
-  const std::string min = plate_key(survey, "min_m"), max = plate_key(survey, "max_m");
+// The key of what stands out of the panel the most: the sweep passes over it. Empty on a bare plate.
+std::string tallest_key(const PanelLayout& layout, const PanelSurvey& survey) {
+  double most_m = 0;
+  std::string key;
+  for (std::size_t i = 0; i < layout.valves.size(); ++i)
+    if (layout.valves[i].front_m() > most_m) most_m = layout.valves[i].front_m(), key = valve_key(survey, i, "height_m");
+  for (std::size_t i = 0; i < layout.buttons.size(); ++i)
+    if (layout.buttons[i].height_m > most_m) most_m = layout.buttons[i].height_m, key = button_key(survey, i, "height_m");
+  return key;
+}
+
+std::string words(scan::SweepOutcome outcome, const PanelLayout& layout, const PanelSurvey& survey, bool planar) {
+  const std::string min = plate_key(survey, "min_m"), max = plate_key(survey, "max_m"), tallest = tallest_key(layout, survey);
   switch (outcome) {
     case scan::SweepOutcome::top_unreachable:
       return "no pose of the arm puts the laser's line above the panel: see 'laser.position_m' and " + max;
@@ -46,7 +57,8 @@ std::string words(scan::SweepOutcome outcome, const PanelSurvey& survey, bool pl
       return "the laser's line is shorter than the panel is wide: see 'laser.fan_half_angle_deg', 'laser.position_m', " + min + " and " +
              max;
     case scan::SweepOutcome::no_way:
-      return planar ? "the tool would come too near to the panel: see 'laser.position_m'"
+      return planar ? "the tool would come too near to the panel: see 'laser.position_m', " + min + ", " + max +
+                          (tallest.empty() ? "" : " and " + tallest)
                     : "the arm would come too near to something, or hide the line from the camera: see 'laser.position_m' and "
                       "'camera.position_m'";
     case scan::SweepOutcome::bad_request:
@@ -189,7 +201,7 @@ std::optional<std::string> sweep_problem(const ControllerConfig& controller, con
   const scan::SweepPlan plan = scan::plan_sweep(controller.arm, request, controller.laser, mission.park_rad, surroundings);
   if (plan.outcome != scan::SweepOutcome::ok) {
     return "the laser cannot be swept over the whole panel wherever it may stand " + docking_text(mission) + ": " +
-           words(plan.outcome, survey, controller.arm.is_planar()) + place_text(mission.layout);
+           words(plan.outcome, mission.layout, survey, controller.arm.is_planar()) + place_text(mission.layout);
   }
   if (!controller.arm.is_planar()) {
     for (const auto& [q_rad, where] : {std::pair{plan.start_rad, "the sweep's start"}, {plan.end_rad, "the sweep's end"}}) {
