@@ -63,6 +63,7 @@ struct JointDriveChoice {
   std::int64_t node = 0;
   std::string profile;
   std::string polarity = "forward";  // reversed: the drive counts against the joint
+  std::string holding = "gear";      // what holds the joint without power: gear, brake, nothing
   double counts_per_rev = 0;
   double rated_torque_nm = 0;  // 0: as the drive or the arm's description says
   double rated_current_a = 0;

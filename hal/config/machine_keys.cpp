@@ -97,6 +97,11 @@ void add_drives(Keys& all, Drives& d, const JointNames& names) {
     all.push_back(key(joint + "profile", "", 0, 0, &one.profile, "make of this drive; empty: drives.profile"));
     all.push_back(
         key(joint + "polarity", "", 0, 0, &one.polarity, "whether the drive counts with the joint or against it", {"forward", "reversed"}));
+    all.push_back(
+        key(joint + "holding", "", 0, 0, &one.holding,
+            "what holds the joint without power: its gear, by the URDF's holding_torque_nm; a brake, whose times the profile has; "
+            "nothing but friction",
+            {"gear", "brake", "nothing"}));
     all.push_back(key(joint + "counts_per_rev", "counts", 0, most_counts, &one.counts_per_rev, "0: drives.counts_per_rev"));
     all.push_back(key(joint + "rated_torque_nm", "N m", 0, most_nm, &one.rated_torque_nm,
                       "the motor's rated torque, not the joint's, for drives that do not say it, and to check those that do; within a "

@@ -7,6 +7,7 @@
 #include "firmware/arm/gripper.hpp"
 #include "firmware/arm/pointing.hpp"
 #include "hal/config/arm_notes.hpp"
+#include "hal/config/holding.hpp"
 #include "hal/config/joined.hpp"
 #include "hal/config/machine_file.hpp"
 #include "hal/config/read_arm.hpp"
@@ -42,6 +43,7 @@ struct Told {
   config::Machine machine;
   ArmDescription description;
   arm::Arm arm;
+  std::vector<config::Holding> holding;
   std::vector<std::string> assumed, notes, problems;
 
   explicit Told(const std::string& name)
@@ -49,9 +51,12 @@ struct Told {
         machine(read_machine(name)),
         description(load_arm_urdf(urdf())),
         arm(machine.arm),
+        holding(config::holding_of(description, machine.drives)),
         assumed(config::keys_left_out(name)),
         notes(config::arm_notes(urdf())),
-        problems(problems_of_job(std::filesystem::absolute(name).string())) {}
+        problems(problems_of_job(std::filesystem::absolute(name).string())) {
+    for (std::string& note : config::holding_notes(description, holding)) notes.push_back(std::move(note));
+  }
 
   std::string urdf() const { return config::named_file(file, "arm.urdf", machine.arm_urdf); }
   // From the first joint to the tool, the arm stretched as far as its links are long.
@@ -78,7 +83,10 @@ Json json_of(const Told& told) {
                               {"actuator", joint.actuator.counts_per_rad > 0 ? "gear" : "screw"},
                               {"node", drive.node},
                               {"profile", drive.profile},
-                              {"polarity", drive.polarity}});
+                              {"polarity", drive.polarity},
+                              {"holding", drive.holding},
+                              {"held_nm", told.holding[i].held_nm},
+                              {"weight_nm", told.holding[i].weight_nm}});
   }
   json["ik"] = told.arm.is_planar() ? "planar" : arm::can_point(told.arm) ? arm::family_of(told.arm) : "none";
   json["reach_m"] = told.reach_m();
@@ -96,10 +104,11 @@ void tell(const Told& told) {
   for (std::size_t i = 0; i < told.description.joints.size(); ++i) {
     const ArmJoint& joint = told.description.joints[i];
     const config::JointDriveChoice drive = config::drive_of(told.machine.drives, i);
-    print("  %-9s %7.1f to %6.1f deg, %5.1f deg/s, %5.1f N m rated, %5.1f peak, %-5s node %lld, %s%s\n", joint.name.c_str(),
-          deg_from_rad(joint.lower_rad), deg_from_rad(joint.upper_rad), deg_from_rad(joint.velocity_rad_s), joint.rated_torque_nm,
-          joint.effort_nm, joint.actuator.counts_per_rad > 0 ? "gear," : "screw,", static_cast<long long>(drive.node),
-          drive.profile.c_str(), drive.polarity == "reversed" ? ", reversed" : "");
+    print("  %-9s %7.1f to %6.1f deg, %5.1f deg/s, %5.1f N m rated, %5.1f peak, %-5s node %lld, %s%s; %s, weight takes %.1f\n",
+          joint.name.c_str(), deg_from_rad(joint.lower_rad), deg_from_rad(joint.upper_rad), deg_from_rad(joint.velocity_rad_s),
+          joint.rated_torque_nm, joint.effort_nm, joint.actuator.counts_per_rad > 0 ? "gear," : "screw,",
+          static_cast<long long>(drive.node), drive.profile.c_str(), drive.polarity == "reversed" ? ", reversed" : "",
+          told.holding[i].text().c_str(), told.holding[i].weight_nm);
   }
   if (told.arm.is_planar())
     print("  inverse kinematics: planar, in closed form; the tool comes %.0f mm from the slew's axis at most\n", 1e3 * told.reach_m());

@@ -3,6 +3,8 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <system_error>
 
 #include "hal/config/core_drives.hpp"
 #include "hal/config/drive_kind.hpp"
@@ -12,8 +14,11 @@
 #include "host_sim/app/checks.hpp"
 #include "host_sim/app/command.hpp"
 #include "host_sim/app/dbc.hpp"
+#include "host_sim/app/eds.hpp"
 #include "host_sim/app/read_machine.hpp"
+#include "host_sim/devices/drive/drive_objects.hpp"
 #include "host_sim/record/file_sink.hpp"
+#include "host_sim/scenario/drive_make.hpp"
 #include "shared/arm/motor.hpp"
 #include "shared/input_error.hpp"
 
@@ -66,36 +71,81 @@ DbcDrive drive_of(const canopen::DriveSetup& setup, const ArmJoint& joint, const
   return drive;
 }
 
-int do_export(const Options& options) {
-  config::check_names({options.kind}, {"dbc"}, "export");
-  const config::Machine machine = read_machine(machine_path(options.machine));
-  const ArmDescription description = load_arm_urdf(config::named_file(machine.file, "arm.urdf", machine.arm_urdf));
-  const canopen::NetworkConfig network = network_of(machine, description);
+// Named as in the DBC, so that a tool shows both alike.
+std::vector<DbcDrive> drives_of(const config::Machine& machine, const ArmDescription& description, const canopen::NetworkConfig& network) {
   std::vector<DbcDrive> drives;
   for (std::size_t i = 0; i < machine.joints.size(); ++i) {
     DbcDrive drive = drive_of(network.drives[i], description.joints[i], config::drive_of(machine.drives, i));
     drive.name = dbc_name(machine.joints[i], drives);
     drives.push_back(std::move(drive));
   }
-  const std::string text = dbc(drives, network.io.node);
-  if (options.out.empty()) {
+  return drives;
+}
+
+int export_dbc(const std::string& text, const std::string& out) {
+  if (out.empty()) {
     print("%s", text.c_str());
-  } else {
-    record::write_file_atomically(options.out, text);
-    print("%s\n", options.out.c_str());
+    return done;
   }
+  record::write_file_atomically(out, text);
+  print("%s\n", out.c_str());
   return done;
+}
+
+void write_eds(const std::filesystem::path& folder, EdsNode node) {
+  const std::string path = (folder / node.file).string();
+  record::write_file_atomically(path, eds(node));
+  print("%s\n", path.c_str());
+}
+
+std::string eds_file(std::uint8_t node, const std::string& name) { return "node" + std::to_string(node) + "_" + name + ".eds"; }
+
+// Of the nodes that are the project's own. Another make's drive has its maker's.
+int export_eds(const config::Machine& machine, const ArmDescription& description, const std::vector<DbcDrive>& names, std::uint8_t outputs,
+               const std::filesystem::path& folder) {
+  std::error_code failed;
+  std::filesystem::create_directories(folder, failed);
+  if (failed) throw InputError(folder.string() + ": cannot be made: " + failed.message());
+  for (std::size_t i = 0; i < machine.joints.size(); ++i) {
+    const config::JointDriveChoice choice = config::drive_of(machine.drives, i);
+    const std::optional<scenario::DriveMake> make = scenario::find_make(choice.profile, std::filesystem::path(machine.file).parent_path());
+    if (!make || make->habit != nullptr) {
+      std::fprintf(stderr, "note: none for node %u, the %s: its drive's maker has that of '%s'\n", unsigned{names[i].node},
+                   machine.joints[i].c_str(), choice.profile.c_str());
+      continue;
+    }
+    devices::DriveConfig drive = devices::drive_config(description.joints[i], names[i].node);
+    devices::set_motor(description.joints[i], choice.counts_per_rev, drive);
+    write_eds(folder, {names[i].node, eds_file(names[i].node, names[i].name),
+                       std::string(can_map::servo_drive_title()) + ", " + machine.joints[i], can_map::servo_drive_objects(),
+                       can_map::servo_drive_heads(), [&](can_map::Figure figure) { return devices::figure_of(figure, drive); }});
+  }
+  write_eds(folder, {outputs, eds_file(outputs, "outputs"), can_map::output_node_title(), can_map::output_node_objects(),
+                     can_map::output_node_heads(), [](can_map::Figure) { return std::int64_t{0}; }});
+  return done;
+}
+
+int do_export(const Options& options) {
+  config::check_names({options.kind}, {"dbc", "eds"}, "export");
+  if (options.kind == "eds" && options.out.empty()) throw InputError("export eds: --out FOLDER is missing: there is a file a node");
+  const config::Machine machine = read_machine(machine_path(options.machine));
+  const ArmDescription description = load_arm_urdf(config::named_file(machine.file, "arm.urdf", machine.arm_urdf));
+  const canopen::NetworkConfig network = network_of(machine, description);
+  const std::vector<DbcDrive> drives = drives_of(machine, description, network);
+  if (options.kind == "eds") return export_eds(machine, description, drives, network.io.node, options.out);
+  return export_dbc(dbc(drives, network.io.node), options.out);
 }
 
 }  // namespace
 
 void add_export(CLI::App& app, Action& action) {
-  CLI::App* command =
-      app.add_subcommand("export", "Write what is on a machine's bus for other tools: a DBC, with which they decode its frames");
+  CLI::App* command = app.add_subcommand(
+      "export", "Write what is on a machine's bus for other tools: a DBC, with which they decode its frames, or its nodes' data sheets");
   auto options = std::make_shared<Options>();
-  command->add_option("KIND", options->kind, "What to write: dbc")->required();
+  command->add_option("KIND", options->kind, "What to write: dbc, eds")->required();
   command->add_option("MACHINE", options->machine, "A machine's file, or a shipped machine's name")->required();
-  command->add_option("--out", options->out, "The file; stdout where it is not given")->check(check_printable);
+  command->add_option("--out", options->out, "The DBC, stdout where it is not given; the folder of the data sheets")
+      ->check(check_printable);
   command->callback([options, &action] { action = [options] { return do_export(*options); }; });
 }
 

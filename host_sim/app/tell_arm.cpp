@@ -3,13 +3,18 @@
 #include <cstdio>
 
 #include "hal/config/arm_notes.hpp"
+#include "hal/config/holding.hpp"
 #include "hal/config/share.hpp"
+#include "shared/arm/arm_description.hpp"
 
 namespace lf::app {
 
 void tell_arm_notes(const scenario::Scenario& scenario) {
   const std::string urdf = config::named_file(scenario.file, "arm.urdf", scenario.arm.urdf);
-  for (const std::string& note : config::arm_notes(urdf)) std::fprintf(stderr, "note: %s\n", note.c_str());
+  std::vector<std::string> notes = config::arm_notes(urdf);
+  const ArmDescription arm = load_arm_urdf(urdf);
+  for (const std::string& note : config::holding_notes(arm, config::holding_of(arm, scenario.drives))) notes.push_back(note);
+  for (const std::string& note : notes) std::fprintf(stderr, "note: %s\n", note.c_str());
 }
 
 }  // namespace lf::app

@@ -5,7 +5,7 @@
 
 namespace lf::app {
 
-// On stderr, a line a note: joints without friction. Throws InputError when the description cannot be read.
+// On stderr, a line a note: joints without friction, joints that sink without power. Throws InputError when the description cannot be read.
 void tell_arm_notes(const scenario::Scenario& scenario);
 
 }  // namespace lf::app

@@ -6,6 +6,7 @@
 
 #include "hal/config/drive_kind.hpp"
 #include "hal/config/fault_kinds.hpp"
+#include "hal/config/holding.hpp"
 #include "hal/config/homing_file.hpp"
 #include "hal/config/joined.hpp"
 #include "hal/config/nearest.hpp"
@@ -13,6 +14,7 @@
 #include "host_sim/devices/drive/drive_dictionary.hpp"
 #include "host_sim/optics/formation/gaussian_taps.hpp"
 #include "host_sim/scenario/bounds.hpp"
+#include "host_sim/scenario/drive_make.hpp"
 #include "host_sim/scenario/instance.hpp"
 #include "host_sim/scenario/scene_file.hpp"
 #include "host_sim/scenario/true_vehicle.hpp"
@@ -46,6 +48,8 @@ ArmDescription true_arm(const Scenario& scenario) {
       for (scene::Shape& shape : arm.links[finger].shapes) shape.friction = scenario.jaw.pad_friction;
     }
   }
+  for (std::size_t i = 0; i < arm.joints.size(); ++i)
+    arm.joints[i].holding_torque_nm = config::held_nm(arm.joints[i], config::drive_of(scenario.drives, i));
   return arm;
 }
 
@@ -280,12 +284,6 @@ std::uint8_t node_number(const std::string& name, const config::Drives& drives, 
   return name == "io" ? static_cast<std::uint8_t>(drives.output_node) : name == "master" ? can_map::master_node : 0;
 }
 
-std::vector<std::string> makes_of(const std::string& profile, const std::filesystem::path& folder) {
-  std::vector<std::string> makes{std::filesystem::path(profile).stem()};
-  for (const std::string& file : config::find_drive_kind(profile, folder).like) makes.push_back(std::filesystem::path(file).stem());
-  return makes;
-}
-
 // A simulated motor is the one of the arm's description, and a drive that says its rating says that motor's. The boot refuses a drive that says another
 // rating than the stated one.
 void check_rating(const config::JointDriveChoice& choice, const config::DriveKind& kind, const std::string& joint,
@@ -311,14 +309,11 @@ void set_make(const config::Drives& drives, std::size_t joint, const std::filesy
   drive.product = kind.identity.product;
   drive.rated_current_a = choice.rated_current_a;
   drive.reversed = choice.polarity == "reversed";
-  // The profile's own make, or the nearest of those that it is like.
-  for (const std::string& make : makes_of(choice.profile, folder)) {
-    drive.habit = devices::find_habit(make);
-    if (drive.habit != nullptr) {
+  if (const std::optional<DriveMake> make = find_make(choice.profile, folder)) {
+    drive.habit = make->habit;
+    if (drive.habit != nullptr)
       drive.dictionary = devices::read_dictionary(config::share_folder() / drive_objects_file, drive.habit->dictionary);
-      return;
-    }
-    if (make == "lanternfish" || make.starts_with("cia402")) return;
+    return;
   }
   // A dictionary of which no profile is shipped can be named by nobody.
   std::string list;

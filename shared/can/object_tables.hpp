@@ -48,12 +48,32 @@ struct ObjectRow {
   Number value, low, high;
   const char* text;
   std::size_t text_capacity;  // bytes that a download may have
+  const char* name;
 };
+
+// An object with sub-indices.
+enum class ObjectKind : std::uint8_t { array, record };
+struct ObjectHead {
+  std::uint16_t index;
+  ObjectKind kind;
+  const char* name;
+};
+
+// Who made the devices, and which edition of the table they are of.
+struct Sheet {
+  const char* vendor_name;
+  std::uint32_t vendor, product, revision;
+  int version;
+  const char* date;  // month-day-year
+};
+Sheet sheet();
 
 // By index and sub-index.
 std::span<const ObjectRow> servo_drive_objects();
+std::span<const ObjectHead> servo_drive_heads();
 const char* servo_drive_title();
 std::span<const ObjectRow> output_node_objects();
+std::span<const ObjectHead> output_node_heads();
 const char* output_node_title();
 
 }  // namespace lf::can_map

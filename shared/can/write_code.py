@@ -56,8 +56,14 @@ def row_line(row):
     fields = [f"0x{row.index:04X}", str(row.sub), f"Type::{TYPES[row.type]}", f"Access::{ACCESS[row.access]}", f"Mapping::{MAPPING[row.pdo]}",
               number(row.value, ""), number(row.low, "unlimited_low"), number(row.high, "unlimited_high"),
               f'"{row.text}"' if row.type == "text" and row.text else ("own_title" if row.type == "text" and row.access == "const" else '""'),
-              str(row.capacity)]
+              str(row.capacity), f'"{row.name}"']
     return "    {" + ", ".join(fields) + "},"
+
+
+def sheet(table):
+    identity, date = table.identity, table.revision["date"].strftime("%m-%d-%Y")
+    return (f'{{"{identity["vendor_name"]}", 0x{identity["vendor"]:08X}, 0x{identity["product"]:08X}, 0x{identity["revision"]:08X}, '
+            f'{table.revision["version"]}, "{date}"}}')
 
 
 def object_tables(table):
@@ -65,8 +71,11 @@ def object_tables(table):
     for device in table.devices:
         rows = [row for o in device.objects for row in o.rows]
         lines += [f"constexpr ObjectRow {device.key}_rows[] = {{"] + [row_line(row) for row in rows] + ["};", ""]
-    lines += ["}  // namespace", ""]
+        heads = [f'    {{0x{o.index:04X}, ObjectKind::{o.kind}, "{o.name}"}},' for o in device.objects if o.kind != "var"]
+        lines += [f"constexpr ObjectHead {device.key}_head_rows[] = {{"] + heads + ["};", ""]
+    lines += ["}  // namespace", "", f"Sheet sheet() {{ return {sheet(table)}; }}"]
     for device in table.devices:
         lines += [f"std::span<const ObjectRow> {device.key}_objects() {{ return {device.key}_rows; }}",
+                  f"std::span<const ObjectHead> {device.key}_heads() {{ return {device.key}_head_rows; }}",
                   f'const char* {device.key}_title() {{ return "{device.title}"; }}']
     return "\n".join(lines + ["", "}  // namespace lf::can_map", ""])

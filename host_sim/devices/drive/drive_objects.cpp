@@ -58,6 +58,8 @@ std::int64_t figure_of(Figure figure, const DriveConfig& config, const MotorFigu
 
 }  // namespace
 
+std::int64_t figure_of(Figure figure, const DriveConfig& config) { return figure_of(figure, config, figures(config)); }
+
 std::vector<Object> drive_objects(const DriveConfig& config) {
   const MotorFigures motor = figures(config);
   return node_objects(can_map::servo_drive_objects(), config.node, config.name,

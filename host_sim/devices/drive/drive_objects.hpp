@@ -9,10 +9,14 @@
 
 #include "host_sim/devices/canopen/object_dictionary.hpp"
 #include "host_sim/devices/devices_config.hpp"
+#include "shared/can/object_tables.hpp"
 
 namespace lf::devices {
 
 inline constexpr std::int64_t mode_profile_position = 1, mode_profile_velocity = 3, mode_homing = 6, mode_cyclic_position = 8;
+
+// A figure of the CAN map, as this drive has it.
+std::int64_t figure_of(can_map::Figure figure, const DriveConfig& config);
 
 // All of them, 1000 to 6502.
 std::vector<Object> drive_objects(const DriveConfig& config);

@@ -57,5 +57,35 @@ TEST_F(Export, WritesAFileAndTellsWhatItCannotDo) {
   EXPECT_THAT(nowhere.err, HasSubstr("nowhere/a.dbc: cannot be written: No such file or directory"));
 }
 
+// So are the data sheets.
+TEST_F(Export, TheDefaultMachinesDataSheetsAreThoseThatTheBuildMakes) {
+  const std::filesystem::path built = std::filesystem::path(LANTERNFISH_PROGRAM).parent_path().parent_path() / "share/can";
+  const Said said = run("export eds arm5e --out sheets");
+  ASSERT_EQ(said.status, 0) << said.err;
+  for (const char* name :
+       {"node1_slew.eds", "node2_shoulder.eds", "node3_elbow.eds", "node4_roll.eds", "node5_jaw.eds", "node6_outputs.eds"})
+    EXPECT_EQ(config::read_text_file((folder() / "sheets" / name).string()), config::read_text_file((built / name).string())) << name;
+}
+
+TEST_F(Export, ADriveOfAnotherMakeHasItsMakersDataSheet) {
+  std::ofstream(folder() / "other.yaml")
+      << "version: 1\narm: {urdf: arm/arm5e.urdf}\ndrives: {elbow: {profile: epos4, node: 9}, roll: {node: 14}}\n";
+  const Said said = run("export eds other.yaml --out sheets");
+  ASSERT_EQ(said.status, 0) << said.err;
+  EXPECT_THAT(said.err, HasSubstr("none for node 9, the elbow: its drive's maker has that of 'epos4'"));
+  EXPECT_FALSE(std::filesystem::exists(folder() / "sheets/node9_elbow.eds"));
+  EXPECT_THAT(config::read_text_file((folder() / "sheets/node14_roll.eds").string()),
+              HasSubstr("Description=LF servo drive, roll, node 14\r\n"));
+}
+
+TEST_F(Export, DataSheetsNeedAFolder) {
+  EXPECT_EQ(run("export eds arm5e").status, 2);
+  EXPECT_THAT(run("export eds arm5e").err, HasSubstr("--out FOLDER is missing"));
+  std::ofstream(folder() / "a_file") << "x";
+  const Said said = run("export eds arm5e --out a_file/sheets");
+  EXPECT_EQ(said.status, 2);
+  EXPECT_THAT(said.err, HasSubstr("a_file/sheets: cannot be made"));
+}
+
 }  // namespace
 }  // namespace lf::app
