@@ -5,11 +5,11 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>
 #include <string_view>
 
+#include "hal/vision/codecs/picture_codecs.hpp"
 #include "hal/vision/pixels.hpp"
 #include "shared/input_error.hpp"
 #include "shared/unreadable_file.hpp"
@@ -80,7 +80,7 @@ cv::Mat decode(const std::string& path, Channel channel) {
   try {
     const cv::Mat buffer(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
     // The pixels as the sensor had them: no rotation by EXIF, which would contradict the calibration.
-    if (!bytes.empty()) image = cv::imdecode(buffer, cv::IMREAD_UNCHANGED | cv::IMREAD_IGNORE_ORIENTATION);
+    if (!bytes.empty()) image = picture_codecs().decode(buffer);
   } catch (const cv::Exception&) {
     image.release();
   }

@@ -6,10 +6,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <opencv2/core/utils/logger.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-#include <opencv2/videoio.hpp>
 
+#include "hal/vision/codecs/picture_codecs.hpp"
 #include "hal/vision/panel_vision.hpp"
 #include "hal/vision/pixels.hpp"
 #include "shared/input_error.hpp"
@@ -23,7 +22,7 @@ class MarkerFinder {
   explicit MarkerFinder(const MarkerFilesOptions& options) : options_(options), detector_(options.detector) {}
 
   void look_in(const std::string& path) {
-    if (cv::haveImageReader(path)) {
+    if (picture_codecs().has_reader(path)) {
       const GreyImage image = read_image_file(path, options_.channel);
       look_at(path, 0, image.view());
     } else {
@@ -38,7 +37,7 @@ class MarkerFinder {
     for (const MarkerInFrame& found : frames_[overlay_frame_].markers) draw(picture, found.marker);
     bool written = false;
     try {
-      written = cv::imwrite(options_.overlay_path, picture);
+      written = picture_codecs().write(options_.overlay_path, picture);
     } catch (const cv::Exception&) {
       written = false;  // no encoder for that ending
     }
@@ -49,12 +48,12 @@ class MarkerFinder {
 
  private:
   void look_in_video(const std::string& path) {
-    cv::VideoCapture video(path, cv::CAP_FFMPEG);
+    const std::unique_ptr<Video> video = picture_codecs().open_video(path);
     const auto refuse = [&] { throw InputError(path, 0, "is neither an image nor a video that can be decoded, or it is truncated"); };
-    if (!video.isOpened()) refuse();
-    const auto announced = static_cast<std::int64_t>(video.get(cv::CAP_PROP_FRAME_COUNT));
+    if (!video) refuse();
+    const std::int64_t announced = video->announced_frames();
     std::int64_t frame = 0;
-    for (cv::Mat picture; video.read(picture); ++frame) {
+    for (cv::Mat picture; video->read(picture); ++frame) {
       const cv::Mat grey = one_channel(picture, options_.channel);
       look_at(path, frame, {grey.data, grey.cols, grey.rows, static_cast<std::int32_t>(grey.step)});
     }

@@ -3,9 +3,9 @@
 #include <cctype>
 #include <cmath>
 #include <cstdio>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "hal/vision/codecs/picture_codecs.hpp"
 #include "shared/input_error.hpp"
 
 namespace lf::app {
@@ -156,7 +156,7 @@ std::vector<std::uint8_t> draw_reach(const scenario::Scenario& scenario, const s
     y += 22;
   }
   std::vector<std::uint8_t> bytes;
-  cv::imencode(format, picture, bytes);
+  vision::picture_codecs().encode(format, picture, bytes, {});
   return bytes;
 }
 

@@ -5,6 +5,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "hal/vision/codecs/picture_codecs.hpp"
 #include "shared/input_error.hpp"
 
 namespace lf::record {
@@ -13,7 +14,8 @@ namespace {
 std::vector<std::uint8_t> encode(const cv::Mat& image) {
   std::vector<std::uint8_t> bytes;
   // A noisy camera frame takes 23 ms and 244 kB at level 3, 16 ms and 287 kB at 1, 68 ms and 258 kB at 6.
-  if (!cv::imencode(".png", image, bytes, {cv::IMWRITE_PNG_COMPRESSION, 1})) throw InputError("an image cannot be encoded as PNG");
+  if (!vision::picture_codecs().encode(".png", image, bytes, {cv::IMWRITE_PNG_COMPRESSION, 1}))
+    throw InputError("an image cannot be encoded as PNG");
   return bytes;
 }
 
@@ -84,7 +86,8 @@ std::vector<std::uint8_t> encode_jpeg(const RgbImage& image, int quality) {
   cv::Mat swapped;
   cv::cvtColor(cv::Mat(image.height, image.width, CV_8UC3, const_cast<std::uint8_t*>(image.pixels.data())), swapped, cv::COLOR_RGB2BGR);
   std::vector<std::uint8_t> file;
-  if (!cv::imencode(".jpg", swapped, file, {cv::IMWRITE_JPEG_QUALITY, quality})) throw InputError("this OpenCV writes no JPEG");
+  if (!vision::picture_codecs().encode(".jpg", swapped, file, {cv::IMWRITE_JPEG_QUALITY, quality}))
+    throw InputError("this OpenCV writes no JPEG");
   return file;
 }
 

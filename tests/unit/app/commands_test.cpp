@@ -5,10 +5,11 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
+#include <opencv2/core.hpp>
 #include <sstream>
 
 #include "firmware/safety/faults.hpp"
+#include "hal/vision/codecs/picture_codecs.hpp"
 #include "host_sim/record/png.hpp"
 #include "tests/unit/app/program.hpp"
 
@@ -115,7 +116,7 @@ TEST_F(Commands, PeaksFindsTheLasersColourInOnePicture) {
     }
   }
   for (const char* name : {"colour.png", "colour.tiff"}) {
-    ASSERT_TRUE(cv::imwrite((folder() / name).string(), picture));
+    ASSERT_TRUE(vision::picture_codecs().write((folder() / name).string(), picture));
     const Json excess = json_of(std::string("peaks ") + name + " --channel green-excess"), grey = json_of(std::string("peaks ") + name);
     ASSERT_EQ(excess["peaks"].size(), 120u) << name;
     ASSERT_EQ(grey["peaks"].size(), 120u) << name;

@@ -5,9 +5,9 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 
 #include "tests/unit/app/program.hpp"
+#include "tests/unit/read_picture.hpp"
 
 namespace lf::app {
 
@@ -29,7 +29,7 @@ TEST_F(SceneFiles, AreToldAndDrawnByCheck) {
   const std::string empty = file("empty.yaml", "version: 1\n"), without = file("without.png", "");
   EXPECT_EQ(run("check scene " + empty + " --picture " + without).status, 0);
   cv::Mat difference;
-  cv::absdiff(cv::imread(picture), cv::imread(without), difference);
+  cv::absdiff(read_picture(picture), read_picture(without), difference);
   EXPECT_GT(cv::countNonZero(difference.reshape(1) > 40), 5'000);
   const Said said = run("check scene " + shipped);
   EXPECT_EQ(said.status, 0) << said.err;

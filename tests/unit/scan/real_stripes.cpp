@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <opencv2/imgcodecs.hpp>
+
+#include "tests/unit/read_picture.hpp"
 
 namespace lf::test {
 namespace {
@@ -14,7 +15,7 @@ const std::string data_folder = LANTERNFISH_TEST_DATA;
 }  // namespace
 
 Picture red_of(const std::string& file) {
-  const cv::Mat image = cv::imread(data_folder + "/" + file, cv::IMREAD_COLOR);
+  const cv::Mat image = read_picture(data_folder + "/" + file);
   Picture picture{image.cols, image.rows, {}};
   for (int v = 0; v < image.rows; ++v) {
     for (int u = 0; u < image.cols; ++u) picture.pixels.push_back(image.at<cv::Vec3b>(v, u)[2]);
