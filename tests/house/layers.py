@@ -49,12 +49,15 @@ OWNERS = {
     r"^pcl/": ["hal/vision/", "host_sim/record/"],
     r"^apriltag": ["hal/vision/", "host_sim/optics/"],
     r"^opencv2/": ["hal/vision/", "host_sim/record/", "host_sim/optics/", "host_sim/app/"],
+    # Whoever links them waits for some 220 libraries at every start; png.cpp knows their constants alone.
+    r"^opencv2/(imgcodecs|videoio|highgui)": ["hal/vision/codecs/codecs_module", "host_sim/record/png"],
     r"^linux/|^sys/socket|^net/": ["hal/vehicle/", "host_sim/serve/v4l2_target"],
     # POSIX beside those: the vehicle's side, the desktop program's processes and terminal, the files shared with other processes, and the one that has to reach the disk.
     r"^(unistd|fcntl|poll|sched|pthread|pwd|grp|termios|dirent|dlfcn|ifaddrs|syslog|signal)\.h$|^csignal$|^sys/|^netinet/|^arpa/":
         ["hal/vehicle/", "host_sim/app/", "host_sim/serve/come_first", "host_sim/serve/serve_orders", "host_sim/serve/v4l2_target", "shared/frame_ring/mapped_file",
          "shared/frame_ring/shared_file",
-         "hal/config/homing_file", "host_sim/record/folder_in_writing"],  # fsync, flock
+         "hal/config/homing_file", "host_sim/record/folder_in_writing",  # fsync, flock
+         "hal/vision/codecs/picture_codecs"],  # dlopen
     r"^kdl/": [],
 }
 
