@@ -6,6 +6,7 @@
 
 #include "firmware/arm/actuator.hpp"
 #include "firmware/mission/axis_limits.hpp"
+#include "hal/config/holding.hpp"
 #include "hal/config/motor_check.hpp"
 #include "shared/arm/motor.hpp"
 #include "shared/input_error.hpp"
@@ -46,9 +47,7 @@ void set_drive(const Machine& machine, std::size_t joint, const DriveKind& kind,
   const JointDriveChoice choice = drive_of(machine.drives, joint);
   const std::string where = machine.told_in() + ": drives." + description.name;
   check_motor(choice, description, where);
-  if (choice.holding == "brake" && kind.brake_closes_ms == 0)
-    throw InputError(where + ".holding is brake, and the profile '" + choice.profile +
-                     "' has none: a profile says so with 'brake: {opens_ms: 100, closes_ms: 100}'");
+  check_holding(choice, kind, where);
   setup.node = static_cast<std::uint8_t>(choice.node);
   // A drive that says its rated torque is only checked against a stated one; one that does not, has the arm's description's.
   const bool described = choice.rated_torque_nm == 0 && kind.rating == "configured";

@@ -6,12 +6,15 @@
 #include <cstdio>
 #include <random>
 
+#include "shared/arm/motor.hpp"
+#include "shared/input_error.hpp"
+
 namespace lf::config {
 namespace {
 
 std::string text_of_nm(double nm) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.3g N m", nm);
+  std::snprintf(text, sizeof text, nm >= 100 ? "%.0f N m" : "%.3g N m", nm);
   return text;
 }
 
@@ -55,18 +58,31 @@ std::vector<double> weight_torques_nm(const ArmDescription& arm) {
     const std::vector<double> torques = torques_nm(arm, angles_rad);
     for (std::size_t i = 0; i < most.size(); ++i) most[i] = std::max(most[i], std::abs(torques[i]));
   }
+  constexpr double rounding_nm = 1e-6;  // an upright axis carries nothing
+  for (double& nm : most) nm = nm < rounding_nm ? 0 : nm;
   return most;
 }
 
+void check_holding(const JointDriveChoice& choice, const DriveKind& kind, const std::string& where) {
+  if (choice.holding != "brake" || kind.brake_closes_ms > 0) return;
+  throw InputError(where + ".holding is brake, and the profile '" + choice.profile +
+                   "' has none: where this drive has one, write a profile with 'like: " + choice.profile +
+                   "' and its times, 'brake: {opens_ms: ..., closes_ms: ...}'");
+}
+
+// Motor, brake and friction act through the gear, and hold the least where it has the least lever.
 double held_nm(const ArmJoint& joint, const JointDriveChoice& choice) {
   constexpr double brake_over_peak = 1.5;
-  if (choice.holding == "nothing") return joint.friction.coulomb_share * joint.rated_torque_nm;
-  return choice.holding == "brake" ? std::max(joint.holding_torque_nm, brake_over_peak * joint.effort_nm) : joint.holding_torque_nm;
+  if (choice.holding == "gear") return joint.holding_torque_nm;
+  const double lever_share = least_motor_ratio(joint, choice.counts_per_rev) / best_motor_ratio(joint, choice.counts_per_rev);
+  return lever_share *
+         (choice.holding == "brake" ? brake_over_peak * joint.effort_nm : joint.friction.coulomb_share * joint.rated_torque_nm);
 }
 
 std::string Holding::text() const {
-  if (by == "brake") return by;
-  return (by == "gear" ? "gear holds " : "nothing but friction, ") + text_of_nm(held_nm);
+  if (held_nm == 0) return "nothing holds it";
+  const std::string kind = by == "brake" ? "brake, taken to hold " : by == "gear" ? "gear holds " : "nothing but friction, ";
+  return kind + text_of_nm(held_nm);
 }
 
 std::vector<Holding> holding_of(const ArmDescription& arm, const Drives& drives) {
@@ -87,8 +103,8 @@ std::vector<std::string> holding_notes(const ArmDescription& arm, const std::vec
                text_of_nm(joints[i].weight_nm) + ")";
   }
   if (sinking.empty()) return {};
-  return {"without power these joints sink, and each stop ends without power: " + sinking +
-          ". See 'drives.<joint>.holding' and 'holding_torque_nm' of the arm's URDF"};
+  return {"without power these joints may sink, and each stop ends without power: " + sinking +
+          ", the vehicle level and the hand empty. See 'drives.<joint>.holding' and 'holding_torque_nm' of the arm's URDF"};
 }
 
 }  // namespace lf::config

@@ -1,5 +1,6 @@
 #include "host_sim/app/check_machine.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <sstream>
@@ -101,11 +102,13 @@ Json json_of(const Told& told) {
 
 void tell(const Told& told) {
   print("%s: the arm of %s\n", told.file.c_str(), told.urdf().c_str());
+  int width = 0;
+  for (const ArmJoint& joint : told.description.joints) width = std::max(width, static_cast<int>(joint.name.size()));
   for (std::size_t i = 0; i < told.description.joints.size(); ++i) {
     const ArmJoint& joint = told.description.joints[i];
     const config::JointDriveChoice drive = config::drive_of(told.machine.drives, i);
-    print("  %-9s %7.1f to %6.1f deg, %5.1f deg/s, %5.1f N m rated, %5.1f peak, %-5s node %lld, %s%s; %s, weight takes %.1f\n",
-          joint.name.c_str(), deg_from_rad(joint.lower_rad), deg_from_rad(joint.upper_rad), deg_from_rad(joint.velocity_rad_s),
+    print("  %-*s %7.1f to %6.1f deg, %5.1f deg/s, %5.1f N m rated, %5.1f peak, %-5s node %lld, %s%s; %s, the weight takes %.1f N m\n",
+          width, joint.name.c_str(), deg_from_rad(joint.lower_rad), deg_from_rad(joint.upper_rad), deg_from_rad(joint.velocity_rad_s),
           joint.rated_torque_nm, joint.effort_nm, joint.actuator.counts_per_rad > 0 ? "gear," : "screw,",
           static_cast<long long>(drive.node), drive.profile.c_str(), drive.polarity == "reversed" ? ", reversed" : "",
           told.holding[i].text().c_str(), told.holding[i].weight_nm);

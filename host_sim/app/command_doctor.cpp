@@ -11,8 +11,10 @@
 
 #include "hal/config/limits_file.hpp"
 #include "hal/config/share.hpp"
+#include "hal/vision/codecs/picture_codecs.hpp"
 #include "host_sim/app/command.hpp"
 #include "host_sim/scenario/instance.hpp"
+#include "shared/input_error.hpp"
 #include "shared/version/version.hpp"
 
 namespace lf::app {
@@ -69,6 +71,14 @@ Finding libraries() {
   return {"libraries", !found.empty(), list, "install the packages of toolchain/packages.txt"};
 }
 
+Finding pictures() {
+  try {
+    return {"pictures", true, vision::picture_codecs_file(), ""};
+  } catch (const InputError& error) {
+    return {"pictures", false, error.what(), "without them no picture is read, and no run leaves one"};
+  }
+}
+
 Finding share() {
   try {
     const std::string folder = config::share_folder();
@@ -101,7 +111,7 @@ Finding writable() {
 }
 
 int doctor(bool json) {
-  const std::vector<Finding> findings{processor(), threads(), memory(), libraries(), share(), scenarios(), writable()};
+  const std::vector<Finding> findings{processor(), threads(), memory(), libraries(), pictures(), share(), scenarios(), writable()};
   bool all = true;
   Json list = Json::array();
   for (const Finding& finding : findings) {

@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <optional>
+#include <set>
 #include <system_error>
 
 #include "hal/config/core_drives.hpp"
@@ -18,7 +18,6 @@
 #include "host_sim/app/read_machine.hpp"
 #include "host_sim/devices/drive/drive_objects.hpp"
 #include "host_sim/record/file_sink.hpp"
-#include "host_sim/scenario/drive_make.hpp"
 #include "shared/arm/motor.hpp"
 #include "shared/input_error.hpp"
 
@@ -92,36 +91,57 @@ int export_dbc(const std::string& text, const std::string& out) {
   return done;
 }
 
-void write_eds(const std::filesystem::path& folder, EdsNode node) {
-  const std::string path = (folder / node.file).string();
-  record::write_file_atomically(path, eds(node));
-  print("%s\n", path.c_str());
+std::string eds_file(std::uint8_t node, const std::string& name) { return "node" + std::to_string(node) + "_" + name + ".eds"; }
+
+// What an earlier export left in the folder would be taken for this machine's.
+void note_others(const std::filesystem::path& folder, const std::set<std::string>& written) {
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename();
+    if (name.starts_with("node") && name.ends_with(".eds") && !written.contains(name))
+      std::fprintf(stderr, "note: %s is not of this export\n", entry.path().c_str());
+  }
 }
 
-std::string eds_file(std::uint8_t node, const std::string& name) { return "node" + std::to_string(node) + "_" + name + ".eds"; }
+// Whoever's identity (object 1018) a drive has, wrote its data sheet.
+bool is_own(const config::DriveKind& kind) {
+  const can_map::Sheet sheet = can_map::sheet();
+  return kind.identity.vendor == sheet.vendor && kind.identity.product == sheet.product;
+}
 
 // Of the nodes that are the project's own. Another make's drive has its maker's.
 int export_eds(const config::Machine& machine, const ArmDescription& description, const std::vector<DbcDrive>& names, std::uint8_t outputs,
                const std::filesystem::path& folder) {
   std::error_code failed;
+  if (std::filesystem::exists(folder, failed) && !std::filesystem::is_directory(folder, failed))
+    throw InputError(folder.string() + ": is a file, not a folder");
   std::filesystem::create_directories(folder, failed);
   if (failed) throw InputError(folder.string() + ": cannot be made: " + failed.message());
+  std::set<std::string> written;
+  const auto write = [&](const EdsNode& node) {
+    const std::string path = (folder / node.file).string();
+    record::write_file_atomically(path, eds(node));
+    written.insert(node.file);
+    print("%s\n", path.c_str());
+  };
   for (std::size_t i = 0; i < machine.joints.size(); ++i) {
     const config::JointDriveChoice choice = config::drive_of(machine.drives, i);
-    const std::optional<scenario::DriveMake> make = scenario::find_make(choice.profile, std::filesystem::path(machine.file).parent_path());
-    if (!make || make->habit != nullptr) {
-      std::fprintf(stderr, "note: none for node %u, the %s: its drive's maker has that of '%s'\n", unsigned{names[i].node},
-                   machine.joints[i].c_str(), choice.profile.c_str());
+    const config::DriveKind kind = config::find_drive_kind(choice.profile, std::filesystem::path(machine.file).parent_path());
+    if (!is_own(kind)) {
+      std::fprintf(stderr, "note: no data sheet for node %u (%s): the maker of its drive has it, %s\n", unsigned{names[i].node},
+                   machine.joints[i].c_str(), kind.title.c_str());
       continue;
     }
     devices::DriveConfig drive = devices::drive_config(description.joints[i], names[i].node);
     devices::set_motor(description.joints[i], choice.counts_per_rev, drive);
-    write_eds(folder, {names[i].node, eds_file(names[i].node, names[i].name),
-                       std::string(can_map::servo_drive_title()) + ", " + machine.joints[i], can_map::servo_drive_objects(),
-                       can_map::servo_drive_heads(), [&](can_map::Figure figure) { return devices::figure_of(figure, drive); }});
+    if (choice.rated_torque_nm > 0) drive.rated_torque_nm = choice.rated_torque_nm;
+    write({names[i].node, eds_file(names[i].node, names[i].name), std::string(can_map::servo_drive_title()) + ", " + machine.joints[i],
+           can_map::servo_drive_objects(), can_map::servo_drive_heads(),
+           [&](can_map::Figure figure) { return devices::figure_of(figure, drive); }});
   }
-  write_eds(folder, {outputs, eds_file(outputs, "outputs"), can_map::output_node_title(), can_map::output_node_objects(),
-                     can_map::output_node_heads(), [](can_map::Figure) { return std::int64_t{0}; }});
+  write({outputs, eds_file(outputs, "outputs"), can_map::output_node_title(), can_map::output_node_objects(), can_map::output_node_heads(),
+         [](can_map::Figure) { return std::int64_t{0}; }});
+  note_others(folder, written);
   return done;
 }
 

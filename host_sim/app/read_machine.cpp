@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "hal/config/drive_kind.hpp"
+#include "hal/config/holding.hpp"
 #include "hal/config/joined.hpp"
 #include "hal/config/limits_file.hpp"
 #include "hal/config/machine_file.hpp"
@@ -44,7 +45,11 @@ config::Machine read_machine(const std::string& file) {
     });
     take([&] { (void)config::park_pose(machine); });
     for (std::size_t i = 0; i < machine.joints.size(); ++i)
-      take([&] { (void)config::find_drive_kind(config::drive_of(machine.drives, i).profile, std::filesystem::path(file).parent_path()); });
+      take([&] {
+        const config::JointDriveChoice choice = config::drive_of(machine.drives, i);
+        config::check_holding(choice, config::find_drive_kind(choice.profile, std::filesystem::path(file).parent_path()),
+                              file + ": drives." + machine.joints[i]);
+      });
   }
   problems.erase(std::unique(problems.begin(), problems.end()), problems.end());
   if (!problems.empty()) throw InputError(config::joined(problems));

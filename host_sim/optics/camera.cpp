@@ -6,10 +6,11 @@ Camera::Camera(const CameraConfig& camera)
     : config(camera), place(camera.base_from_camera), rays(camera.intrinsics, camera.port), sensor(camera) {}
 
 RayPacket Camera::sub_pixels(int u, int v, int half) const {
-  constexpr Lanes black_u{-0.375f, 0.125f, -0.125f, 0.375f, -0.375f, 0.125f, -0.125f, 0.375f};
-  constexpr Lanes white_u{-0.125f, 0.375f, -0.375f, 0.125f, -0.125f, 0.375f, -0.375f, 0.125f};
+  // Of each row, column and diagonal two of the four.
+  constexpr Lanes first_u{-0.375f, 0.125f, -0.125f, 0.375f, -0.125f, 0.375f, -0.375f, 0.125f};
+  constexpr Lanes second_u{-0.125f, 0.375f, -0.375f, 0.125f, -0.375f, 0.125f, -0.125f, 0.375f};
   constexpr Lanes offset_v{-0.375f, -0.375f, -0.125f, -0.125f, 0.125f, 0.125f, 0.375f, 0.375f};
-  return rays.around(place, u, v, half == 0 ? black_u : white_u, offset_v);
+  return rays.around(place, u, v, half == 0 ? first_u : second_u, offset_v);
 }
 
 GreyLanes Camera::grey(const RgbLanes& radiance) const {

@@ -20,7 +20,7 @@ struct Camera {
   RayPacket row(int u, int v) const { return rays.row(place, u, v); }
   RayLines lines(int u, int v) const { return rays.lines(place, u, v); }
 
-  // The rays of half of pixel (u, v)'s 4x4 sub-pixels: 0 the black, 1 the white squares of a chessboard.
+  // The rays of half of pixel (u, v)'s 4x4 sub-pixels: two a row, column and diagonal, and the others.
   RayPacket sub_pixels(int u, int v, int half) const;
 
   GreyLanes grey(const RgbLanes& radiance) const;

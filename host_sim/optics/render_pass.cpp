@@ -30,14 +30,13 @@ Changes RenderPass::judge_tiles(int tile_row) const {
 
 void RenderPass::sample(int tile_row) const {
   const Changes possible = judge_tiles(tile_row);
-  const GlowRows glow(camera_, shader_, tiles_.first_row(tile_row), tiles_.end_row(tile_row));
   for (int v = tiles_.first_row(tile_row); v < tiles_.end_row(tile_row); ++v) {
     const std::vector<float> haze = possible != 0 ? still_.haze_row(v) : std::vector<float>{};
-    for (int u = 0; u < camera_.width(); u += lane_count) sample_packet(u, v, haze.empty() ? nullptr : &haze, glow);
+    for (int u = 0; u < camera_.width(); u += lane_count) sample_packet(u, v, haze.empty() ? nullptr : &haze);
   }
 }
 
-void RenderPass::sample_packet(int u, int v, const std::vector<float>* haze_row, const GlowRows& glow) const {
+void RenderPass::sample_packet(int u, int v, const std::vector<float>* haze_row) const {
   const std::size_t i = live_.pixels.index(u, v);
   const Changes possible = live_.tiles[tiles_.at(u, v)];
   Changes& changes = live_.packets[packet(u, v)];
@@ -47,7 +46,7 @@ void RenderPass::sample_packet(int u, int v, const std::vector<float>* haze_row,
   } else if (possible == 0 && still_.open_water(u, v)) {
     Sample water;
     water.grey = still_.pixels().at(still_.pixels().grey, i);
-    add_glow(glow, u, v, all_lanes(std::numeric_limits<float>::infinity()), water.grey);
+    add_glow(camera_.lines(u, v), all_lanes(std::numeric_limits<float>::infinity()), water.grey);
     live_.pixels.set_light(i, water);
   } else {
     const RayPacket rays = camera_.row(u, v);
@@ -55,7 +54,7 @@ void RenderPass::sample_packet(int u, int v, const std::vector<float>* haze_row,
     changes = put_in_moving(rays, possible, 1.f, {haze_row, static_cast<float>(u), 1.f}, sample);
     const RgbLanes albedo = still_.albedo(u, v);
     changes |= add_stripes(rays, 1.f, (changes & hidden) != 0 ? nullptr : &albedo, sample);
-    add_glow(glow, u, v, sample.hit.parameter, sample.grey);
+    add_glow(rays, sample.hit.parameter, sample.grey);
     if (changes != 0) return live_.pixels.set(i, sample);
     live_.pixels.set_light(i, sample);
   }
@@ -95,9 +94,9 @@ Changes RenderPass::add_stripes(const RayPacket& rays, float footprint, const Rg
   return static_cast<Changes>((any(light.reached) ? striped : 0) | (any(light.beside) ? skirted : 0));
 }
 
-void RenderPass::add_glow(const GlowRows& rows, int u, int v, Lanes surface_parameter, GreyLanes& grey) const {
-  for (std::size_t sheet = 0; sheet < shader_.sheets.size(); ++sheet) {
-    const Glow glow = rows.at(sheet, u, v);
+void RenderPass::add_glow(const RayLines& rays, Lanes surface_parameter, GreyLanes& grey) const {
+  for (const SheetLight& sheet : shader_.sheets) {
+    const Glow glow = sheet.glow(rays, shader_.water());
     const GreyLanes values = camera_.grey(glow.radiance);
     for (std::size_t c = 0; c < camera_.channels(); ++c) grey[c] += glow.parameter < surface_parameter ? values[c] : Lanes{};
   }

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "host_sim/optics/formation/lens_spot.hpp"
-#include "host_sim/optics/glow_rows.hpp"
 #include "host_sim/optics/still_view.hpp"
 
 namespace lf::optics {
@@ -51,10 +50,10 @@ class RenderPass {
 
  private:
   Changes judge_tiles(int tile_row) const;
-  void sample_packet(int u, int v, const std::vector<float>* haze_row, const GlowRows& glow) const;
+  void sample_packet(int u, int v, const std::vector<float>* haze_row) const;
   Changes put_in_moving(const RayPacket& rays, Changes possible, float footprint, const HazePlace& haze, Sample& sample) const;
   Changes add_stripes(const RayPacket& rays, float footprint, const RgbLanes* albedo, Sample& sample) const;
-  void add_glow(const GlowRows& rows, int u, int v, Lanes surface_parameter, GreyLanes& grey) const;
+  void add_glow(const RayLines& rays, Lanes surface_parameter, GreyLanes& grey) const;
   std::vector<Glow> glows(int u, int v) const;
   Changes changes_about(int u, int v) const;
   LaneMask marks_under_stripe(int u, int v) const;

@@ -56,16 +56,6 @@ void SheetLight::meet(const SplitScene& scene) {
     const RayLines rays{emitter_, base_from_laser_ * Lanes3(tan_cone_ * radius, tangent, all_lanes(1.f))};
     store_lanes(ends_m_.data() + first, scene.all(rays).parameter * CameraRays::slope(rays));
   }
-  find_borders();
-}
-
-void SheetLight::find_borders() {
-  constexpr float least_step = 0.05f;  // of the nearer end; along a plane the ends change by 0.01 from ray to ray
-  borders_.assign(ends_m_.size(), 0);
-  for (std::size_t i = 1; i < ends_m_.size(); ++i) {
-    const float near = std::min(ends_m_[i - 1], ends_m_[i]), far = std::max(ends_m_[i - 1], ends_m_[i]);
-    borders_[i] = borders_[i - 1] + (far > (1 + least_step) * near ? 1 : 0);
-  }
 }
 
 double SheetLight::off_m(const Vec3& place) const { return place.x() - static_cast<double>(tan_cone_) * std::hypot(place.y(), place.z()); }
@@ -93,16 +83,13 @@ void SheetLight::shade_by(const std::vector<Speck>& specks) {
   shadows_.emplace(std::move(casters), tan_half_fan_);
 }
 
-LaneMask SheetLight::end_of(Lanes y, Lanes z) const {
-  const Lanes share = 0.5f + 0.5f * y / (max(z, all_lanes(1e-4f)) * tan_half_fan_);
-  return __builtin_convertvector(clamp(share, 0.f, 1.f) * (end_count - 1) + 0.5f, LaneMask);
-}
-
-Lanes SheetLight::end_m(LaneMask ray) const {
+Lanes SheetLight::end_m(Lanes y, Lanes z) const {
   constexpr float endless_m = 1e6f;
   if (ends_m_.empty()) return all_lanes(endless_m);
+  const Lanes share = 0.5f + 0.5f * y / (max(z, all_lanes(1e-4f)) * tan_half_fan_);
+  const LaneMask place = __builtin_convertvector(clamp(share, 0.f, 1.f) * (end_count - 1) + 0.5f, LaneMask);
   Lanes end;
-  for (int lane = 0; lane < lane_count; ++lane) end[lane] = ends_m_[static_cast<std::size_t>(ray[lane])];
+  for (int lane = 0; lane < lane_count; ++lane) end[lane] = ends_m_[static_cast<std::size_t>(place[lane])];
   return end;
 }
 
@@ -172,7 +159,7 @@ void SheetLight::add_skirt(const SurfacePacket& s, const ImageDistance& d, const
   const Lanes range = max(sqrt(d.range2), all_lanes(least_range_m));
   const Lanes incidence = max(-dot(s.normal, s.point - emitter_) / range, Lanes{});
   const Lanes weight = fan_weight(d.place.y, d.place.z) * incidence;
-  beside &= (weight > 0.f) & (range < end_m(end_of(d.place.y, d.place.z)) * (1.f + skirt_reach_rad) + past_end_m);
+  beside &= (weight > 0.f) & (range < end_m(d.place.y, d.place.z) * (1.f + skirt_reach_rad) + past_end_m);
   if (!any(beside)) return;
   const Lanes distance2 = d.distance * d.distance;
   const Lanes sigma2 = sigma2_m2(range);
@@ -258,7 +245,7 @@ RgbLanes SheetLight::at(const Lanes3& point, const Water& water) const {
   if (pattern_.has_value()) return irradiance;
   const Lanes3 place = base_from_laser_.transposed_times(point - emitter_);
   const Lanes range = max(norm(place), all_lanes(least_range_m));
-  const Lanes lit = range < end_m(end_of(place.y, place.z)) ? fan_weight(place.y, place.z) : Lanes{};
+  const Lanes lit = range < end_m(place.y, place.z) ? fan_weight(place.y, place.z) : Lanes{};
   const Lanes off_m = place.x - tan_cone_ * sqrt(place.y * place.y + place.z * place.z);
   const Lanes sigma2 = sigma2_m2(range);
   const Lanes light = lit * w_per_rad_ / (range * root_two_pi * sqrt(sigma2)) * exp(-0.5f * off_m * off_m / sigma2);
@@ -303,20 +290,9 @@ Glow SheetLight::glow(const RayLines& rays, const Water& water) const {
   glow.parameter = -start.x * per_approach;
   const Lanes y = start.y + glow.parameter * direction.y, z = start.z + glow.parameter * direction.z;
   const Lanes range = max(sqrt(y * y + z * z), all_lanes(least_range_m));
-  constexpr std::int32_t behind_camera = -1, behind_emitter = -2, left_of_fan = -3, right_of_fan = -4;
   Lanes weight = glow.parameter > 0.f ? fan_weight(y, z) : Lanes{};
-  glow.zone = glow.parameter > 0.f
-                  ? (z > 1e-3f ? (y < 0.f ? LaneMask{} + left_of_fan : LaneMask{} + right_of_fan) : LaneMask{} + behind_emitter)
-                  : LaneMask{} + behind_camera;
-  const LaneMask in_fan = weight > 0.f;
-  if (!water.scatters() || !any(in_fan)) return glow;
-  const LaneMask ray = end_of(y, z);
-  const LaneMask ended = range >= end_m(ray);
-  LaneMask borders{};
-  for (int lane = 0; lane < lane_count && !borders_.empty(); ++lane) borders[lane] = borders_[static_cast<std::size_t>(ray[lane])];
-  const LaneMask at_fans_end = abs(y) > (tan_half_fan_ - 0.5f * fan_edge) * z;
-  glow.zone = in_fan ? 4 * borders - 2 * at_fans_end - ended : glow.zone;
-  weight = ended ? Lanes{} : weight;
+  if (!water.scatters() || !any(weight > 0.f)) return glow;
+  weight = range < end_m(y, z) ? weight : Lanes{};
   if (!any(weight > 0.f)) return glow;
   const Lanes slope2 = dot(direction, direction), slope = sqrt(slope2);
   const Lanes per_length2 = 1.f / (range * slope);

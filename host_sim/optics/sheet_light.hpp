@@ -32,8 +32,6 @@ struct StripePacket {
 // The light that a sheet scatters in the water into a packet of rays, seen where no surface comes before it.
 struct Glow {
   Lanes parameter{};  // of the rays where they cross the sheet
-  // Of the sheet, where that is: beside its light; or in it, between two borders of shadows, at the fan's end or not, before its rays' ends or beyond.
-  LaneMask zone{};
   RgbLanes radiance{};
 };
 
@@ -86,11 +84,9 @@ class SheetLight {
   StripePacket line(const SurfacePacket& surface, const Water& water, float footprint, float blur_px) const;
   StripePacket picture(const SurfacePacket& surface, const Water& water, float footprint) const;
   Lanes fan_weight(Lanes y, Lanes z) const;
-  Lanes fan_power(Lanes tangent) const;     // over the mean
-  Lanes sigma2_m2(Lanes range) const;       // of the beam's cross-section
-  LaneMask end_of(Lanes y, Lanes z) const;  // the ray through a place in the sheet, of those in ends_m_
-  Lanes end_m(LaneMask ray) const;          // range at which it ends
-  void find_borders();
+  Lanes fan_power(Lanes tangent) const;  // over the mean
+  Lanes sigma2_m2(Lanes range) const;    // of the beam's cross-section
+  Lanes end_m(Lanes y, Lanes z) const;   // range at which the sheet's ray through a place in it ends
 
   Rotation base_from_laser_;  // columns: plane normal, along the fan, central ray
   Lanes3 emitter_;
@@ -102,8 +98,7 @@ class SheetLight {
   const std::optional<PatternTable>& pattern_;
   std::span<const float> fan_profile_;
   std::optional<SheetShadows> shadows_;
-  std::vector<float> ends_m_;          // of rays that are even in the tangent of their angle; empty: none ends
-  std::vector<std::int32_t> borders_;  // of shadows, before each of these rays: where the ends of two beside each other are far apart
+  std::vector<float> ends_m_;  // of rays that are even in the tangent of their angle; empty: none ends
 };
 
 }  // namespace lf::optics

@@ -41,6 +41,8 @@ Pose small_pose(const Vec3& shift_m, const Vec3& turn_rad) {
 
 ArmDescription true_arm(const Scenario& scenario) {
   ArmDescription arm = load_arm_urdf(config::find_file(scenario.arm.urdf, std::filesystem::path(scenario.file).parent_path()));
+  for (std::size_t i = 0; i < arm.joints.size(); ++i)
+    arm.joints[i].holding_torque_nm = config::held_nm(arm.joints[i], config::drive_of(scenario.drives, i));
   if (scenario.jaw.torque_nm > 0) arm.jaw().effort_nm = arm.finger_b.effort_nm = scenario.jaw.torque_nm;
   if (scenario.jaw.pad_friction > 0) {
     const scene::OwnBodies own(arm.arm_joints());
@@ -48,8 +50,6 @@ ArmDescription true_arm(const Scenario& scenario) {
       for (scene::Shape& shape : arm.links[finger].shapes) shape.friction = scenario.jaw.pad_friction;
     }
   }
-  for (std::size_t i = 0; i < arm.joints.size(); ++i)
-    arm.joints[i].holding_torque_nm = config::held_nm(arm.joints[i], config::drive_of(scenario.drives, i));
   return arm;
 }
 

@@ -1,4 +1,4 @@
-// A picture file as it is stored; of several channels blue, green, red.
+// A picture file in blue, green and red.
 #pragma once
 
 #include <fstream>
@@ -14,7 +14,15 @@ namespace lf {
 inline cv::Mat read_picture(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   std::vector<char> bytes{std::istreambuf_iterator<char>(in), {}};
-  return bytes.empty() ? cv::Mat() : vision::picture_codecs().decode(cv::Mat(1, static_cast<int>(bytes.size()), CV_8U, bytes.data()));
+  if (bytes.empty()) return {};
+  const cv::Mat stored = vision::picture_codecs().decode(cv::Mat(1, static_cast<int>(bytes.size()), CV_8U, bytes.data()));
+  std::vector<cv::Mat> channels;
+  cv::split(stored, channels);
+  if (channels.size() < 3) channels.assign(3, channels.front());
+  channels.resize(3);  // no transparency
+  cv::Mat picture;
+  cv::merge(channels, picture);
+  return picture;
 }
 
 }  // namespace lf

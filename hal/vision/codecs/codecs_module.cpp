@@ -40,7 +40,7 @@ std::unique_ptr<Video> open_video(const std::string& path) {
 std::unique_ptr<Video> open_video(const std::string&) { return nullptr; }
 #endif
 
-constexpr PictureCodecs codecs{encode, decode, write, has_reader, open_video};
+constexpr PictureCodecs codecs{codecs_edition, sizeof(PictureCodecs), encode, decode, write, has_reader, open_video};
 
 }  // namespace
 }  // namespace lf::vision

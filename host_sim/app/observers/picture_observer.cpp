@@ -5,6 +5,8 @@
 #include <iterator>
 #include <utility>
 
+#include "hal/vision/codecs/picture_codecs.hpp"
+
 namespace lf::app {
 
 namespace {
@@ -22,6 +24,10 @@ std::string formatted(const char* format, double value) {
 ImageView view_of(const optics::Frame& frame) { return {frame.pixels.data(), frame.width, frame.height, frame.width}; }
 
 }  // namespace
+
+PictureObserver::PictureObserver(RunFiles& files) : files_(files) {
+  if (files.wanted()) (void)vision::picture_codecs();
+}
 
 void PictureObserver::on_telemetry(const Telemetry& telemetry) {
   for (const Event& event : telemetry.events) outside_.on_event(event);

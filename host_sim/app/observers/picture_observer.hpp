@@ -17,7 +17,8 @@ namespace lf::app {
 
 class PictureObserver : public hal::SimObserver {
  public:
-  explicit PictureObserver(RunFiles& files) : files_(files) {}
+  // Throws InputError where pictures are wanted and cannot be written: before anything is flown.
+  explicit PictureObserver(RunFiles& files);
 
   void on_step(Time now, const world::World& world) override { outside_.on_step(now, world); }
   void on_telemetry(const Telemetry& telemetry) override;

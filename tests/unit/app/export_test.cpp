@@ -72,10 +72,24 @@ TEST_F(Export, ADriveOfAnotherMakeHasItsMakersDataSheet) {
       << "version: 1\narm: {urdf: arm/arm5e.urdf}\ndrives: {elbow: {profile: epos4, node: 9}, roll: {node: 14}}\n";
   const Said said = run("export eds other.yaml --out sheets");
   ASSERT_EQ(said.status, 0) << said.err;
-  EXPECT_THAT(said.err, HasSubstr("none for node 9, the elbow: its drive's maker has that of 'epos4'"));
+  EXPECT_THAT(said.err, HasSubstr("no data sheet for node 9 (elbow): the maker of its drive has it, "));
   EXPECT_FALSE(std::filesystem::exists(folder() / "sheets/node9_elbow.eds"));
   EXPECT_THAT(config::read_text_file((folder() / "sheets/node14_roll.eds").string()),
               HasSubstr("Description=LF servo drive, roll, node 14\r\n"));
+}
+
+// A drive that is simulated as the project's own is still another's.
+TEST_F(Export, ADriveThatIsOnlyLikeOursHasNoneOfOurs) {
+  std::ofstream(folder() / "acme.yaml") << "title: ACME servo\nlike: cia402\nidentity: {vendor: \"0x00000ABC\", product: \"0x1\"}\n";
+  std::ofstream(folder() / "other.yaml") << "version: 1\narm: {urdf: arm/arm5e.urdf}\ndrives: {profile: acme.yaml}\n";
+  std::filesystem::create_directory(folder() / "sheets");
+  std::ofstream(folder() / "sheets/node1_slew.eds") << "of another machine";
+  const Said said = run("export eds other.yaml --out sheets");
+  ASSERT_EQ(said.status, 0) << said.err;
+  EXPECT_THAT(said.err, HasSubstr("no data sheet for node 1 (slew): the maker of its drive has it, ACME servo"));
+  EXPECT_THAT(said.err, HasSubstr("sheets/node1_slew.eds is not of this export"));
+  EXPECT_FALSE(std::filesystem::exists(folder() / "sheets/node2_shoulder.eds"));
+  EXPECT_TRUE(std::filesystem::exists(folder() / "sheets/node6_outputs.eds"));
 }
 
 TEST_F(Export, DataSheetsNeedAFolder) {
@@ -85,6 +99,7 @@ TEST_F(Export, DataSheetsNeedAFolder) {
   const Said said = run("export eds arm5e --out a_file/sheets");
   EXPECT_EQ(said.status, 2);
   EXPECT_THAT(said.err, HasSubstr("a_file/sheets: cannot be made"));
+  EXPECT_THAT(run("export eds arm5e --out a_file").err, HasSubstr("a_file: is a file, not a folder"));
 }
 
 }  // namespace

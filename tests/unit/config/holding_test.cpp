@@ -37,8 +37,10 @@ TEST(Holding, TheLoadGrowsTowardTheBase) {
 
 TEST(Holding, AGearABrakeOrFriction) {
   ArmJoint joint;
+  joint.lower_rad = -1, joint.upper_rad = 1, joint.actuator.counts_per_rad = 5000;
   joint.holding_torque_nm = 15, joint.effort_nm = 12, joint.rated_torque_nm = 6, joint.friction.coulomb_share = 0.05;
   JointDriveChoice choice;
+  choice.counts_per_rev = 64;
   EXPECT_DOUBLE_EQ(held_nm(joint, choice), 15);
   choice.holding = "brake";
   EXPECT_DOUBLE_EQ(held_nm(joint, choice), 18);
@@ -46,18 +48,39 @@ TEST(Holding, AGearABrakeOrFriction) {
   EXPECT_DOUBLE_EQ(held_nm(joint, choice), 0.3);
 }
 
+// The elbow's screw between pivots a and b: its lever is a b sin(angle) / length, by the law of cosines.
+TEST(Holding, AScrewsFrictionHoldsLeastWhereItsLeverIsShort) {
+  const ArmDescription arm = arm5e();
+  const ArmJoint& elbow = arm.joints[2];
+  double least = 1e9, most = 0;
+  for (int i = 0; i <= 1000; ++i) {
+    const double between = elbow.lower_rad + (elbow.upper_rad - elbow.lower_rad) * i / 1000 + elbow.actuator.offset_rad;
+    const double a = elbow.actuator.pivot_a_m, b = elbow.actuator.pivot_b_m;
+    const double lever = std::abs(a * b * std::sin(between) / std::sqrt(a * a + b * b - 2 * a * b * std::cos(between)));
+    least = std::min(least, lever), most = std::max(most, lever);
+  }
+  ASSERT_LT(least, 0.5 * most);
+  Drives drives;
+  JointDriveChoice choice = drive_of(drives, 2);
+  choice.holding = "nothing";
+  EXPECT_NEAR(held_nm(elbow, choice), 0.06 * 30 * least / most, 0.01);
+}
+
 TEST(Holding, WhatSinksIsNamedWithItsWeight) {
   const ArmDescription arm = arm5e();
   Drives drives;
   EXPECT_THAT(holding_notes(arm, holding_of(arm, drives)), IsEmpty());
   drives.joints[1].holding = "nothing";
-  ArmDescription oiled = arm;
-  oiled.joints[1].friction.coulomb_share = 0.01;
-  const std::vector<Holding> joints = holding_of(oiled, drives);
+  const std::vector<Holding> joints = holding_of(arm, drives);
   EXPECT_FALSE(joints[1].holds());
-  EXPECT_THAT(holding_notes(oiled, joints),
-              ElementsAre(testing::AllOf(HasSubstr("shoulder (nothing but friction, 0.3 N m, the arm's weight takes"),
-                                         HasSubstr("drives.<joint>.holding"))));
+  EXPECT_TRUE(joints[2].holds());
+  EXPECT_THAT(holding_notes(arm, joints),
+              ElementsAre(testing::AllOf(HasSubstr("shoulder (nothing but friction, "), HasSubstr("the hand empty"),
+                                         HasSubstr("drives.<joint>.holding"), testing::Not(HasSubstr("elbow")))));
+  // Less than half as much again is not enough: a load in the hand comes on top.
+  EXPECT_FALSE((Holding{"gear", 14.9, 10}).holds());
+  EXPECT_TRUE((Holding{"gear", 15.1, 10}).holds());
+  EXPECT_EQ((Holding{"gear", 0, 10}).text(), "nothing holds it");
 }
 
 }  // namespace

@@ -182,5 +182,30 @@ TEST_F(MachineKey, OfAnArmThatItsLimitsDoNotFitIsRefused) {
   EXPECT_THAT(refusal(with("arm: {urdf: other.urdf}\n")), HasSubstr("the jaw grips with its drive's peak torque, 30 N m"));
 }
 
+// The elbow's angle after the drives have been without power for so long, the arm stretched level before the vehicle.
+double elbow_moves_rad(const std::string& holding) {
+  const Scenario s = load_scenario("default", {"drives.elbow.holding=" + holding});
+  hal::SimConfig truth = make_truth(s, draw(s, 1), make_nominal(s, true), 1);
+  truth.world.start_rad[1] = 0.1, truth.world.start_rad[2] = 0.1;
+  truth.world.base_from_panel.translation().x() += 2;  // out of its way
+  world::World world(truth.world);
+  JointDrives drives;
+  for (auto& drive : drives) drive.released = true;
+  world.set_drives(drives);
+  for (int step = 0; step < 2000; ++step) world.step();
+  return std::abs(world.readings()[2].position_rad - 0.1);
+}
+
+TEST(Holding, TheSimulatedArmSinksWhereNothingHoldsIt) {
+  EXPECT_LT(elbow_moves_rad("gear"), 0.005);
+  EXPECT_GT(elbow_moves_rad("nothing"), 0.05);
+}
+
+TEST(Holding, ABrakeThatTheDriveHasNotIsRefused) {
+  EXPECT_THAT(refusal("default", {"drives.elbow.holding=brake"}),
+              AllOf(HasSubstr("drives.elbow.holding is brake, and the profile 'lanternfish' has none"), HasSubstr("like: lanternfish")));
+  EXPECT_EQ(refusal("default", {"drives.elbow.holding=brake", "drives.elbow.profile=epos4"}), "");
+}
+
 }  // namespace
 }  // namespace lf::scenario
