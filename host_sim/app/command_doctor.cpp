@@ -11,7 +11,7 @@
 
 #include "hal/config/limits_file.hpp"
 #include "hal/config/share.hpp"
-#include "hal/vision/codecs/picture_codecs.hpp"
+#include "hal/vision/codecs/codecs_file.hpp"
 #include "host_sim/app/command.hpp"
 #include "host_sim/scenario/instance.hpp"
 #include "shared/input_error.hpp"

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <system_error>
 
+#include "hal/vision/codecs/codecs_file.hpp"
 #include "shared/input_error.hpp"
 
 namespace lf::vision {

@@ -35,6 +35,5 @@ struct PictureCodecs {
 // Loads them at the first call, from ../lib/lanternfish or ../lib beside the program's folder. Throws InputError when the library is not there, is cut off, or is of
 // another edition.
 const PictureCodecs& picture_codecs();
-std::string picture_codecs_file();  // where they were found
 
 }  // namespace lf::vision

@@ -5,7 +5,7 @@
 #include <iterator>
 #include <utility>
 
-#include "hal/vision/codecs/picture_codecs.hpp"
+#include "hal/vision/codecs/codecs_file.hpp"
 
 namespace lf::app {
 
@@ -26,7 +26,7 @@ ImageView view_of(const optics::Frame& frame) { return {frame.pixels.data(), fra
 }  // namespace
 
 PictureObserver::PictureObserver(RunFiles& files) : files_(files) {
-  if (files.wanted()) (void)vision::picture_codecs();
+  if (files.wanted()) (void)vision::picture_codecs_file();
 }
 
 void PictureObserver::on_telemetry(const Telemetry& telemetry) {

@@ -226,11 +226,11 @@ void Particles::show(const Spot& spot, int first_row, int end_row, PixelStore& p
              down = bell(centre_v, spot.centre_px.y(), spot.sigma_px, reach);
   const int first_u = std::max(centre_u - reach, 0), end_u = std::min(centre_u + reach + 1, pixels.width);
   for (int v = std::max(centre_v - reach, first_row); v < std::min(centre_v + reach + 1, end_row); ++v) {
-    const float row = down.share[static_cast<std::size_t>(v - centre_v + reach)] / (down.sum * across.sum);
+    const float row = down.share[static_cast<std::size_t>(std::int64_t{v} - centre_v + reach)] / (down.sum * across.sum);
     for (std::size_t c = 0; c < pixels.channels; ++c) {
       float* onto = pixels.grey.data() + c * pixels.plane + pixels.index(0, v);
       const float light = row * spot.grey[c];
-      for (int u = first_u; u < end_u; ++u) onto[u] += light * across.share[static_cast<std::size_t>(u - centre_u + reach)];
+      for (int u = first_u; u < end_u; ++u) onto[u] += light * across.share[static_cast<std::size_t>(std::int64_t{u} - centre_u + reach)];
     }
   }
 }
