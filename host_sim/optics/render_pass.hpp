@@ -1,4 +1,4 @@
-// The passes that make the light of one frame of a still view: moving bodies and laser put in, sixteen samples where there is an edge or a stripe on a mark's, and
+// The passes that make the light of one frame of a still view: moving bodies and laser put in, up to sixteen samples where there is an edge or a stripe on a mark's, and
 // the ground truth.
 // Each works on rows of tiles.
 #pragma once
