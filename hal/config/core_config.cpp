@@ -11,7 +11,6 @@
 #include "firmware/arm/tool_place.hpp"
 #include "hal/config/core_drives.hpp"
 #include "hal/config/drive_kind.hpp"
-#include "hal/config/holding.hpp"
 #include "hal/config/homing_file.hpp"
 #include "hal/config/limits_check.hpp"
 #include "hal/config/limits_file.hpp"
@@ -349,8 +348,6 @@ Core assemble(Machine machine, const Steps& steps) {
     }
     drives_known = drives;
     note_assumed_ratings(machine, profiles, description, core);
-    for (const std::string& note : holding_notes(description, holding_of(description, machine.drives)))
-      core.notes.push_back(machine.told_in() + ": " + note);
   }
   if (arm) steps.take([&] { set_zeros(machine, folder, description, core); });
   if (drives_known) steps.take([&] { check_network(machine, controller.network); });

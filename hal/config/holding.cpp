@@ -99,12 +99,12 @@ std::vector<std::string> holding_notes(const ArmDescription& arm, const std::vec
   std::string sinking;
   for (std::size_t i = 0; i < joints.size(); ++i) {
     if (joints[i].holds()) continue;
-    sinking += (sinking.empty() ? "" : ", ") + arm.joints[i].name + " (" + joints[i].text() + ", the arm's weight takes " +
+    sinking += (sinking.empty() ? "" : ", ") + arm.joints[i].name + " (" + joints[i].text() + "; the arm's weight takes up to " +
                text_of_nm(joints[i].weight_nm) + ")";
   }
   if (sinking.empty()) return {};
-  return {"without power these joints may sink, and each stop ends without power: " + sinking +
-          ", the vehicle level and the hand empty. See 'drives.<joint>.holding' and 'holding_torque_nm' of the arm's URDF"};
+  return {"each stop ends without power, and then these joints may sink: " + sinking +
+          ". That is with the vehicle level and the hand empty. See 'drives.<joint>.holding' and 'holding_torque_nm' of the arm's URDF"};
 }
 
 }  // namespace lf::config

@@ -21,6 +21,7 @@
 #include "hal/command_line/help_command.hpp"
 #include "hal/command_line/refusal.hpp"
 #include "hal/config/arm_notes.hpp"
+#include "hal/config/holding.hpp"
 #include "hal/config/homing_file.hpp"
 #include "hal/config/share.hpp"
 #include "hal/vehicle/daemon.hpp"
@@ -86,6 +87,9 @@ int refuse(const std::string& message, int status) {
 std::vector<std::string> notes_of(const VehicleConfig& config) {
   const std::string urdf = config::find_file(config.machine.arm_urdf, std::filesystem::path(config.machine.file).parent_path());
   std::vector<std::string> notes = config::arm_notes(urdf);
+  const ArmDescription arm = load_arm_urdf(urdf);
+  for (const std::string& note : config::holding_notes(arm, config::holding_of(arm, config.machine.drives)))
+    notes.push_back(config.machine.told_in() + ": " + note);
   notes.insert(notes.end(), config.core.notes.begin(), config.core.notes.end());
   if (config.camera_source == "none") notes.emplace_back("camera.source is none: `start` is refused, `home`, `jog` and stowing need none");
   for (const std::string& note : notes) std::fprintf(stderr, "lanternfishd: note: %s\n", note.c_str());

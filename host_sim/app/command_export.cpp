@@ -128,8 +128,8 @@ int export_eds(const config::Machine& machine, const ArmDescription& description
     const config::JointDriveChoice choice = config::drive_of(machine.drives, i);
     const config::DriveKind kind = config::find_drive_kind(choice.profile, std::filesystem::path(machine.file).parent_path());
     if (!is_own(kind)) {
-      std::fprintf(stderr, "note: no data sheet for node %u (%s): the maker of its drive has it, %s\n", unsigned{names[i].node},
-                   machine.joints[i].c_str(), kind.title.c_str());
+      std::fprintf(stderr, "note: no data sheet for node %u (%s): its drive is of another make, %s, whose maker has one\n",
+                   unsigned{names[i].node}, machine.joints[i].c_str(), kind.title.c_str());
       continue;
     }
     devices::DriveConfig drive = devices::drive_config(description.joints[i], names[i].node);

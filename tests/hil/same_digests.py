@@ -3,8 +3,9 @@
 
 Usage: tests/hil/same_digests.py LANTERNFISH RECORDED.csv --out FOLDER [--scenario NAME] [--seeds 1-20] [--record]
 
-RECORDED.csv has the columns seed and digest (default_digests.csv: of 60a244e1, flown on an AMD EPYC on 29 November 2026; another make of processor has others, as a build for another has). --record writes it anew: after a change that is meant to
-change runs, with the reason in the commit. A FOLDER of the same program and scenario is gone on with, as campaign does.
+RECORDED.csv has the columns seed and digest. default_digests.csv was flown on an AMD EPYC on 29 November 2026; another make of processor has others, as a build for
+another has. --record writes it anew: after a change that is meant to change runs, with the reason in the commit. A FOLDER of the same program and scenario is gone on
+with, as campaign does.
 Exit status: 0 where all are equal and every run succeeds, 1 otherwise.
 """
 import argparse

@@ -1,6 +1,6 @@
 // Picture files and videos, by OpenCV's codecs.
 //
-// These bring some two hundred libraries along, which would take every start of a program 0.3 s. So they are a library of their own, loaded when the first picture is
+// These bring some two hundred libraries along, which would take every start of a program 0.4 s. So they are a library of their own, loaded when the first picture is
 // read or written.
 #pragma once
 

@@ -72,7 +72,7 @@ TEST_F(Export, ADriveOfAnotherMakeHasItsMakersDataSheet) {
       << "version: 1\narm: {urdf: arm/arm5e.urdf}\ndrives: {elbow: {profile: epos4, node: 9}, roll: {node: 14}}\n";
   const Said said = run("export eds other.yaml --out sheets");
   ASSERT_EQ(said.status, 0) << said.err;
-  EXPECT_THAT(said.err, HasSubstr("no data sheet for node 9 (elbow): the maker of its drive has it, "));
+  EXPECT_THAT(said.err, HasSubstr("no data sheet for node 9 (elbow): its drive is of another make, "));
   EXPECT_FALSE(std::filesystem::exists(folder() / "sheets/node9_elbow.eds"));
   EXPECT_THAT(config::read_text_file((folder() / "sheets/node14_roll.eds").string()),
               HasSubstr("Description=LF servo drive, roll, node 14\r\n"));
@@ -86,7 +86,7 @@ TEST_F(Export, ADriveThatIsOnlyLikeOursHasNoneOfOurs) {
   std::ofstream(folder() / "sheets/node1_slew.eds") << "of another machine";
   const Said said = run("export eds other.yaml --out sheets");
   ASSERT_EQ(said.status, 0) << said.err;
-  EXPECT_THAT(said.err, HasSubstr("no data sheet for node 1 (slew): the maker of its drive has it, ACME servo"));
+  EXPECT_THAT(said.err, HasSubstr("no data sheet for node 1 (slew): its drive is of another make, ACME servo, whose maker has one"));
   EXPECT_THAT(said.err, HasSubstr("sheets/node1_slew.eds is not of this export"));
   EXPECT_FALSE(std::filesystem::exists(folder() / "sheets/node2_shoulder.eds"));
   EXPECT_TRUE(std::filesystem::exists(folder() / "sheets/node6_outputs.eds"));

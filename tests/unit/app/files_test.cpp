@@ -96,6 +96,35 @@ TEST_F(Files, ACheckoutThatWasCopiedUsesItsOwnFiles) {
   EXPECT_THAT(scenarios_of(copy / "usr" / "bin" / "lanternfish"), ::testing::Not(HasSubstr("only_here")));
 }
 
+// The codecs' library of a copied program: damaged, another's, missing, and the right one.
+class Codecs : public Program {
+ protected:
+  void SetUp() override {
+    Program::SetUp();
+    const std::filesystem::path program = LANTERNFISH_PROGRAM;
+    std::filesystem::create_directories(folder() / "bin");
+    std::filesystem::create_directories(folder() / "lib");
+    std::filesystem::copy_file(program, folder() / "bin/lanternfish");
+    library_ = text_of(program.parent_path().parent_path() / "lib/lanternfish_codecs.so");
+  }
+  Said doctor() const { return run("doctor", R"(sh -c 'exec bin/lanternfish "$@"')"); }
+  std::string library_;
+};
+
+TEST_F(Codecs, ThatAreDamagedOrMissingAreToldAndEndNothing) {
+  ASSERT_GT(library_.size(), 10'000u);
+  EXPECT_THAT(doctor().out, HasSubstr("lib/lanternfish_codecs.so is there"));
+  for (const std::string& damaged :
+       {std::string(), std::string("text"), library_.substr(0, 5'000), library_.substr(0, library_.size() - 1)}) {
+    file("lib/lanternfish_codecs.so", damaged);
+    const Said said = doctor();
+    EXPECT_EQ(said.status, 3) << damaged.size();
+    EXPECT_THAT(said.out, HasSubstr("is no library of this kind of processor, or is cut off"));
+  }
+  file("lib/lanternfish_codecs.so", library_);
+  EXPECT_EQ(doctor().status, 0) << doctor().out;
+}
+
 }  // namespace
 
 }  // namespace lf::app

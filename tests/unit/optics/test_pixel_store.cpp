@@ -46,5 +46,28 @@ TEST(PixelStore, AStepACreaseAndOpenWaterAreNotOnePlane) {
   EXPECT_FALSE(on_one_plane(column(1.4f, 0.004f, 0, -1), 10, 30));
 }
 
+// Eight samples of one face under one lamp; each change of one of them is an edge, or a stripe's.
+TEST(PixelStore, ASampleIsEvenOnOneFaceInOneLight) {
+  Sample even;
+  even.hit.shape = LaneMask{} + 3;
+  even.hit.parameter = all_lanes(0.7f);
+  even.hit.normal = Lanes3(Vec3(-1, 0, 0));
+  even.reached = even.lit = LaneMask{} + (1 << 16);
+  ASSERT_TRUE(even.is_even());
+  constexpr int lane = 5;
+  const auto changed = [&](const auto& change) {
+    Sample sample = even;
+    change(sample);
+    return sample.is_even();
+  };
+  EXPECT_FALSE(changed([](Sample& s) { s.hit.shape[lane] = 4; })) << "another shape";
+  EXPECT_FALSE(changed([](Sample& s) { s.hit.shape[lane] = -1; })) << "open water";
+  EXPECT_FALSE(changed([](Sample& s) { s.hit.parameter[lane] = 0.75f; })) << "a step";
+  EXPECT_TRUE(changed([](Sample& s) { s.hit.parameter[lane] = 0.703f; })) << "a plane at a slant";
+  EXPECT_FALSE(changed([](Sample& s) { s.hit.normal.x[lane] = -0.9f, s.hit.normal.z[lane] = 0.436f; })) << "a crease";
+  EXPECT_FALSE(changed([](Sample& s) { s.lit[lane] = 0; })) << "a shadow";
+  EXPECT_FALSE(changed([](Sample& s) { s.reached |= 1; })) << "a stripe on all of them";
+}
+
 }  // namespace
 }  // namespace lf::optics
